@@ -1,0 +1,2 @@
+//! The program `hasard`.
+fn main() {}

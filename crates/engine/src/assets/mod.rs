@@ -1,0 +1,82 @@
+//! Pictures behind one interface: the embedded set that this project draws itself, or an IWAD.
+//!
+//! Everything is paletted (one byte a pixel); the renderer maps bytes through a light table, then the palette.
+
+/// A picture: column-major, `pixels[x * height + y]`, so that a wall or sprite column is contiguous.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Width in texels.
+    pub width: u16,
+    /// Height in texels.
+    pub height: u16,
+    /// Pixels to the left of the anchor (sprites), or the patch's left offset (view weapons).
+    pub offset_x: i16,
+    /// Pixels above the anchor.
+    pub offset_y: i16,
+    /// Palette indices, column by column.
+    pub pixels: Box<[u8]>,
+    /// Opacity of each pixel (0 or 1), column by column; `None` when every pixel is opaque.
+    pub mask: Option<Box<[u8]>>,
+}
+
+/// The views of one frame of a sprite: for each of the 8 rotations (0 = facing the viewer, then counter-clockwise
+/// as the viewer walks around it: the classic rotation digits 1..=8) an index into [`Assets::images`] and whether it is mirrored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct SpriteFrame {
+    /// Image index of each rotation; `u32::MAX` where there is none.
+    pub images: [u32; 8],
+    /// Whether each rotation is drawn mirrored.
+    pub mirrored: [bool; 8],
+}
+
+/// A sprite: frames `A`, `B`, ...
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Sprite {
+    /// Frames in letter order.
+    pub frames: Vec<SpriteFrame>,
+}
+
+/// A set of pictures.
+#[derive(Clone, Debug)]
+pub struct Assets {
+    /// 256 colours.
+    pub palette: [[u8; 3]; 256],
+    /// 32 light tables, 0 full bright to 31 nearly black: palette index to palette index.
+    pub light_tables: Box<[[u8; 256]; 32]>,
+    /// Every picture.
+    pub images: Vec<Image>,
+    /// Textures and flats by name: first image, number of animation frames (consecutive images), tics a frame.
+    pub textures: std::collections::BTreeMap<crate::map::TextureName, TextureEntry>,
+    /// Sprites, in the order of [`SPRITE_NAMES`].
+    pub sprites: Vec<Sprite>,
+    /// Status bar, font, face and sky pictures by lump name (`STBAR`, `STTNUM0`, `STFST00`, `SKY1`, ...).
+    pub graphics: std::collections::BTreeMap<crate::map::TextureName, u32>,
+}
+
+/// Where a texture's pictures are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TextureEntry {
+    /// Index of the first image.
+    pub first: u32,
+    /// Number of animation frames.
+    pub frames: u8,
+    /// Tics that each frame is shown.
+    pub tics: u8,
+}
+
+/// Four-letter sprite names; an actor's `sprite` is an index into this list.
+pub const SPRITE_NAMES: [&str; 62] = [
+    "BON1", "STIM", "MEDI", "BON2", "ROCK", "SHEL", "CELL", "CLIP", "PVIS", "PINS", "PMAP", "BPAK", "SUIT", "YKEY",
+    "BSKU", // items
+    "PIST", "SHOT", "SGN2", "MGUN", "LAUN", "PLAS", "BFUG", // weapons to pick up
+    "HEAD", "POSS", "SPOS", "CPOS", "TROO", "SARG", "SKEL", "SKUL", // monsters
+    "BAR1", "BEXP", "MISL", "PLSS", "PLSE", "BFS1", "BFE1", "PUFF", "BLUD", // effects
+    "TLMP", "TLP2", "COL4", "COL2", "COL5", "ELEC", "TRE1", "SMIT", "TRE2", "POL5", "PLAY", "BRS1", "COL1", // decor, player
+    "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", // view weapons
+];
+
+/// The index of a sprite name.
+#[must_use]
+pub fn sprite_index(name: &str) -> Option<u8> {
+    SPRITE_NAMES.iter().position(|&n| n == name).map(|i| i as u8)
+}

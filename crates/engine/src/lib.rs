@@ -1,0 +1,17 @@
+//! The engine of HASARD: a deterministic Doom-like world that advances tic by tic (35 a second), and its picture.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`math`] | 16.16 fixed point, binary angles, frozen trigonometry, the random stream |
+//! | [`map`] | UDMF text in and out, the map builder, the BSP and blockmap; a built map is immutable and shared |
+//! | [`assets`] | palette, light tables, textures, sprites, status-bar art: the embedded set, or an IWAD |
+//! | [`world`] | things, movement, sector movers, weapons, monsters, events: plain data, `Clone` is a snapshot |
+//! | [`render`] | first-person colour, depth and labels, status bar, top-down map |
+//!
+//! The engine knows no reward, no scenario, no thread and no file system.
+
+pub mod assets;
+pub mod map;
+pub mod math;
+pub mod render;
+pub mod world;

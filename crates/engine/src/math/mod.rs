@@ -1,0 +1,12 @@
+//! Numbers of the world: 16.16 fixed point, binary angles, frozen trigonometry, the random stream.
+//!
+//! Nothing here uses floating point at run time, so every platform computes the same bits.
+
+mod angle;
+mod fixed;
+mod quarter_sine;
+mod rng;
+
+pub use angle::Angle;
+pub use fixed::Fixed;
+pub use rng::Rng;

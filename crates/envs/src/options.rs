@@ -1,0 +1,83 @@
+//! How an environment is made.
+
+/// Which of the two sets of constants of `DECISIONS.md` the scenario follows.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum RuleSet {
+    /// The paper's text made self-consistent.
+    #[default]
+    Paper,
+    /// What the published package does.
+    Released,
+}
+
+/// What the learner sees.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum ObservationKind {
+    /// Red, green, blue.
+    #[default]
+    Rgb,
+    /// Red, green, blue, depth (0 near to 255 far).
+    RgbDepth,
+    /// One fixed colour per class.
+    Segmented,
+    /// One channel of luminance.
+    Grey,
+}
+
+/// Order of an observation's axes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Layout {
+    /// Height, width, channels: what people and Gymnasium expect.
+    #[default]
+    Hwc,
+    /// Channels, height, width: what convolutions expect.
+    Chw,
+}
+
+/// Size of a frame in pixels. 128x72 is the learner's nearest-neighbour reduction of 160x120.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct FrameSize {
+    /// Columns.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+}
+
+/// Everything that a user may choose about an environment beside its id.
+#[derive(Clone, Debug)]
+pub struct EnvOptions {
+    /// Constants of the paper or of the published package.
+    pub rules: RuleSet,
+    /// Hard constraint: harm ends the episode.
+    pub hard: bool,
+    /// The full action space instead of the simplified one.
+    pub full_actions: bool,
+    /// Tics that each action is held; 1..=35.
+    pub frame_skip: u32,
+    /// Frame size.
+    pub size: FrameSize,
+    /// What is drawn.
+    pub observation: ObservationKind,
+    /// Axis order of observations.
+    pub layout: Layout,
+    /// Number of last frames stacked along the channel axis, oldest first; 1..=16.
+    pub frame_stack: usize,
+    /// Pictures to draw with; the embedded set if `None`.
+    pub assets: Option<std::sync::Arc<hasard_engine::assets::Assets>>,
+}
+
+impl Default for EnvOptions {
+    fn default() -> EnvOptions {
+        EnvOptions {
+            rules: RuleSet::Paper,
+            hard: false,
+            full_actions: false,
+            frame_skip: 4,
+            size: FrameSize { width: 160, height: 120 },
+            observation: ObservationKind::Rgb,
+            layout: Layout::Hwc,
+            frame_stack: 1,
+            assets: None,
+        }
+    }
+}
