@@ -3,6 +3,7 @@
 mod action;
 mod batch;
 mod options;
+pub mod scenarios;
 
 pub use action::{ActionGroup, ActionSpace, DeltaButton};
 pub use batch::{Batch, Episode};
