@@ -35,7 +35,7 @@ pub struct CostTerm {
     pub counted: bool,
 }
 
-/// A world with a task in it: what [`crate::VecEnv`] makes batches of. The benchmark's own is [`crate::Env`].
+/// A world with a task in it: what [`crate::VecEnv`] makes batches of.
 ///
 /// Everything that happens must follow from the seed of the last [`reset`](Environment::reset) and the actions since.
 pub trait Environment: Send {
