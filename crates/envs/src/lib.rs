@@ -5,12 +5,9 @@ mod batch;
 mod environment;
 mod error;
 mod options;
-<<<<<<< HEAD
 mod registry;
 mod vec_env;
-=======
 pub mod scenarios;
->>>>>>> main
 
 pub use action::{ActionGroup, ActionSpace, BUTTONS, DELTA_DEGREES, DeltaButton, parse_command};
 pub use batch::{Batch, Episode};
