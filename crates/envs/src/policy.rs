@@ -31,7 +31,10 @@ impl std::str::FromStr for Policy {
         let wrong = |why: String| EnvError::Policy { given: text.chars().take(80).collect(), why };
         let steps = |digits: &str, least: u32| match digits.parse::<u32>() {
             Ok(steps) if steps >= least => Ok(steps),
-            _ => Err(wrong(format!("'{}' is no number of steps; write a whole number from {least} up", digits.chars().take(20).collect::<String>()))),
+            _ => Err(wrong(format!(
+                "'{}' is no number of steps; write a whole number from {least} up",
+                digits.chars().take(20).collect::<String>()
+            ))),
         };
         let buttons = |names: &str| match parse_command(names) {
             _ if names.is_empty() => Err(wrong("no button is named; write for example hold:MOVE_FORWARD".to_string())),
@@ -128,7 +131,18 @@ mod tests {
 
     #[test]
     fn wrong_policies_are_one_clear_line() {
-        for wrong in ["", "rand", "sticky", "sticky:", "sticky:0", "sticky:-1", "hold:", "hold:FLY", "hold-after:ATTACK", "hold-after:x:JUMP"] {
+        for wrong in [
+            "",
+            "rand",
+            "sticky",
+            "sticky:",
+            "sticky:0",
+            "sticky:-1",
+            "hold:",
+            "hold:FLY",
+            "hold-after:ATTACK",
+            "hold-after:x:JUMP",
+        ] {
             let text = wrong.parse::<Policy>().expect_err(wrong).to_string();
             assert!(text.contains(wrong) && text.lines().count() == 1, "{text}");
         }

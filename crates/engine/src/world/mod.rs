@@ -31,6 +31,7 @@ pub use actor_info::{ActorFlags, ActorInfo};
 pub use collision::{Move, Position, approximate_distance};
 pub use command::{Buttons, Command};
 pub use event::{DamageKind, Event};
+pub use hash::Fingerprint;
 pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
 pub use sector::{SectorDamage, SectorState};

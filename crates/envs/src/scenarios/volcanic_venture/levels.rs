@@ -86,14 +86,8 @@ const PAPER_1: Level = Level {
     cost_scale: 1.0,
     softened_blow_goes_below_zero: false,
 };
-const PAPER_2: Level = Level {
-    platform_chance: 0.3,
-    platform_height: [8, 48],
-    change: Change::AtOnce,
-    grace_tics: 60,
-    start_items: 20,
-    ..PAPER_1
-};
+const PAPER_2: Level =
+    Level { platform_chance: 0.3, platform_height: [8, 48], change: Change::AtOnce, grace_tics: 60, start_items: 20, ..PAPER_1 };
 const PAPER_3: Level = Level {
     platform_chance: 0.2,
     platform_height: [8, 32],
