@@ -1,5 +1,6 @@
 //! Actors: every thing that stands, lies, flies or walks in a world.
 
+use super::{ActorFlags, Heading, Phase};
 use crate::math::{Angle, Fixed};
 
 /// What an actor is. Class names are those of the original engine.
@@ -114,10 +115,34 @@ pub struct Actor {
     pub health: i32,
     /// Thing id for scripts, 0 for none.
     pub tid: i32,
-    /// Index into `sprite::NAMES`-like list of sprite names, see `assets::SPRITE_NAMES`; 255 draws nothing.
-    pub sprite: u8,
-    /// Frame of the sprite, 0 = `A`.
-    pub frame: u8,
-    /// Drawn at full brightness whatever the sector's light.
-    pub bright: bool,
+    /// Properties; those of its kind at first, then changed by death and scripts.
+    pub flags: ActorFlags,
+    /// Mass; thrust is divided by it.
+    pub mass: i32,
+    /// Map units per step (monsters) or per tic (missiles).
+    pub speed: Fixed,
+    /// Which of its animations it is in.
+    pub phase: Phase,
+    /// Frame of that animation.
+    pub step: u8,
+    /// Tics left of that frame, -1 for ever.
+    pub tics: i16,
+    /// The world's tic when it appeared.
+    pub spawn_tic: u32,
+    /// Whoever fired it (missiles) or killed it (barrels): to blame for what it does.
+    pub origin: Option<ActorId>,
+    /// The patrol point that a monster walks to.
+    pub goal: Option<ActorId>,
+    /// The monster has set out for its goal.
+    pub pursuing: bool,
+    /// The monster reached its goal in the last step: the next one only chooses a direction.
+    pub arrived: bool,
+    /// Direction of a monster's steps.
+    pub heading: Heading,
+    /// Steps left before a monster chooses a new direction.
+    pub steps_left: i32,
+    /// A floating monster changed height in its last step because something blocked it.
+    pub in_float: bool,
+    /// Thing id of the patrol point that follows this one, 0 for none.
+    pub next_goal: i32,
 }

@@ -5,16 +5,22 @@
 //! original engine, with the scripts in the caller's hands.
 
 mod actor;
+mod actor_info;
 mod command;
 mod event;
+mod patrol;
 mod player;
 mod sector;
+mod states;
 
 pub use actor::{Actor, ActorId, ActorKind};
+pub use actor_info::{ActorFlags, ActorInfo};
 pub use command::{Buttons, Command};
 pub use event::{DamageKind, Event};
+pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, Weapon};
 pub use sector::{SectorDamage, SectorState};
+pub use states::{Action, Animation, Frame, Phase, Picture, Then, animation, is_timed};
 
 use crate::map::Map;
 use crate::math::Rng;
