@@ -1,6 +1,7 @@
 //! Losing health: what reduces it, the thrust of a hit, pain, and death.
 
-use super::{ActorFlags, ActorId, ActorKind, Angle, DamageKind, Event, Fixed, Phase, World, animation};
+use super::{Actor, ActorFlags, ActorId, ActorKind, DamageKind, Event, Phase, World, animation};
+use crate::math::{Angle, Fixed};
 
 /// Fastest thrust of one hit, map units per tic.
 const LARGEST_THRUST: Fixed = Fixed::from_int(32);
@@ -14,24 +15,20 @@ const ARMOR_SHARE: Fixed = Fixed(21846);
 /// Largest value of the red flash counter.
 const LARGEST_DAMAGE_COUNT: i32 = 100;
 
-/// Who did the damage.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Blame {
-    /// What touched the victim: a rocket, a barrel; it is pushed away from there. For bullets, the shooter.
-    pub inflictor: Option<ActorId>,
-    /// Who is to blame.
-    pub source: Option<ActorId>,
-}
-
-impl Blame {
-    /// Nobody: floors, falls, scripts.
-    pub const NOBODY: Blame = Blame { inflictor: None, source: None };
-}
-
 impl World {
     /// Hurts `victim` by `amount` health points before armour, in the original's order: damage factor, thrust,
     /// invulnerability, armour, health, then death or pain. Gives the health points lost.
-    pub fn damage(&mut self, victim: ActorId, blame: Blame, amount: i32, by: DamageKind) -> i32 {
+    ///
+    /// `inflictor` is what touched the victim (a rocket, a barrel; for bullets the shooter), which is pushed away from
+    /// there; `source` is who is to blame. Floors, falls and scripts have neither.
+    pub fn damage(
+        &mut self,
+        victim: ActorId,
+        inflictor: Option<ActorId>,
+        source: Option<ActorId>,
+        amount: i32,
+        by: DamageKind,
+    ) -> i32 {
         let Some(actor) = self.get(victim) else { return 0 };
         if !actor.flags.any(ActorFlags::SHOOTABLE) || actor.health <= 0 || amount < 0 {
             return 0;
@@ -48,7 +45,7 @@ impl World {
         } else if actor.flags.any(ActorFlags::INVULNERABLE) {
             return 0;
         }
-        if let Some(inflictor) = blame.inflictor.filter(|&inflictor| inflictor != victim) {
+        if let Some(inflictor) = inflictor.filter(|&inflictor| inflictor != victim) {
             self.thrust_from(slot, inflictor, amount);
         }
         if let Some(player) = player {
@@ -65,10 +62,10 @@ impl World {
         // Others than players keep what goes below zero: it is nobody's business but the original's gibs'.
         actor.health -= if player.is_some() { lost } else { amount };
         if lost > 0 {
-            self.events.push(Event::Hurt { victim, amount: lost, source: blame.source, by });
+            self.events.push(Event::Hurt { victim, amount: lost, source, by });
         }
         if self.actors[slot].health <= 0 {
-            self.die(victim, blame.source);
+            self.die(victim, source);
         } else {
             self.feel(slot);
         }
@@ -117,20 +114,17 @@ impl World {
         let actor = &mut self.actors[slot];
         let (kind, tid) = (actor.kind, actor.tid);
         let monster = actor.flags.any(ActorFlags::MONSTER);
-        actor.flags.clear(ActorFlags::SHOOTABLE.with(ActorFlags::FLOAT).with(ActorFlags::NO_GRAVITY));
-        actor.flags.set(ActorFlags::DROPOFF);
-        if monster || kind == ActorKind::Player {
-            actor.flags.set(ActorFlags::CORPSE);
-        }
+        actor.flags.set(ActorFlags::SHOOTABLE.with(ActorFlags::FLOAT).with(ActorFlags::NO_GRAVITY), false);
+        actor.flags.set(ActorFlags::DROP_OFF, true);
         actor.height = actor.height >> 2;
-        actor.target = source;
-        actor.goal = None;
+        actor.origin = source;
+        (actor.goal, actor.pursuing) = (None, false);
         if let Some(player) = actor.player_index() {
             self.players[player].dead = true;
-            self.actors[slot].flags.clear(ActorFlags::SOLID);
+            self.actors[slot].flags.set(ActorFlags::SOLID, false);
             self.start_lowering(player);
         }
-        let killer = source.and_then(|source| self.get(source)).and_then(super::Actor::player_index);
+        let killer = source.and_then(|source| self.get(source)).and_then(Actor::player_index);
         if let Some(killer) = killer.filter(|_| monster) {
             self.players[killer].kills += 1;
         }
@@ -159,6 +153,6 @@ impl World {
         let item = &mut self.actors[usize::from(id.slot)];
         (item.vx, item.vy, item.vz) = (vx, vy, vz);
         (item.floor_z, item.ceiling_z, item.dropoff_z) = (dropper.floor_z, dropper.ceiling_z, dropper.dropoff_z);
-        item.flags.set(ActorFlags::DROPPED);
+        item.flags.set(ActorFlags::DROPPED, true);
     }
 }

@@ -1,6 +1,7 @@
 //! Blasts: what a bursting rocket or barrel does to everything around it.
 
-use super::{ActorFlags, ActorId, Angle, Blame, DamageKind, Fixed, World};
+use super::{ActorFlags, ActorId, DamageKind, World};
+use crate::math::{Angle, Fixed};
 
 /// Damage at the centre of a blast, and the distance at which none is left.
 pub const BLAST: i32 = 128;
@@ -17,34 +18,33 @@ impl World {
         victims.clear();
         let reach = Fixed::from_int(BLAST);
         victims.extend(self.near(bomb.x, bomb.y, reach).map(|victim| victim as u16));
-        let blame = Blame { inflictor: Some(self.id_of(slot)), source };
         for &victim in &victims {
             let victim = usize::from(victim);
             let flags = self.actors[victim].flags;
             if victim == slot || self.actors[victim].removed || !flags.any(ActorFlags::SHOOTABLE) {
                 continue;
             }
-            if (bomb.flags.any(ActorFlags::OLD_BLAST)) || flags.any(ActorFlags::OLD_BLAST) {
-                self.blast_flat(slot, victim, blame, by);
+            if bomb.flags.any(ActorFlags::OLD_BLAST) || flags.any(ActorFlags::OLD_BLAST) {
+                self.blast_flat(slot, victim, source, by);
             } else {
-                self.blast_box(slot, victim, blame, by);
+                self.blast_box(slot, victim, source, by);
             }
         }
         self.scratch_slots = victims;
     }
 
     /// The barrels' rule.
-    fn blast_flat(&mut self, slot: usize, victim: usize, blame: Blame, by: DamageKind) {
+    fn blast_flat(&mut self, slot: usize, victim: usize, source: Option<ActorId>, by: DamageKind) {
         let (bomb, target) = (&self.actors[slot], &self.actors[victim]);
         let across = (target.x - bomb.x).abs().max((target.y - bomb.y).abs());
         let distance = (across - target.radius).floor().max(0);
         if distance < BLAST && self.sees(victim, slot) {
-            self.damage(self.id_of(victim), blame, BLAST - distance, by);
+            self.damage(self.id_of(victim), Some(self.id_of(slot)), source, BLAST - distance, by);
         }
     }
 
     /// The rule of all others.
-    fn blast_box(&mut self, slot: usize, victim: usize, blame: Blame, by: DamageKind) {
+    fn blast_box(&mut self, slot: usize, victim: usize, source: Option<ActorId>, by: DamageKind) {
         let (bomb, target) = (&self.actors[slot], &self.actors[victim]);
         let across = (target.x - bomb.x).abs().max((target.y - bomb.y).abs());
         let beside = across - target.radius;
@@ -67,9 +67,9 @@ impl World {
         if points <= Fixed::ZERO || !self.sees(victim, slot) {
             return;
         }
-        let (target, own) = (&self.actors[victim], blame.source == Some(self.id_of(victim)));
+        let (target, own) = (&self.actors[victim], source == Some(self.id_of(victim)));
         let rise = target.z + (target.height >> 1) - self.actors[slot].z;
-        self.damage(self.id_of(victim), blame, points.floor(), by);
+        self.damage(self.id_of(victim), Some(self.id_of(slot)), source, points.floor(), by);
         let bomb = self.actors[slot];
         let target = &mut self.actors[victim];
         let thrust = points / (2 * target.mass.max(1));

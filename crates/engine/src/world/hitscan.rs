@@ -2,8 +2,9 @@
 
 use super::sight::{Crossed, Path, WHOLE_PATH};
 use super::weapon::Spread;
-use super::{ActorFlags, ActorId, ActorKind, Angle, Blame, DamageKind, Fixed, World};
+use super::{ActorFlags, ActorId, ActorKind, DamageKind, World};
 use crate::map::SectorId;
+use crate::math::{Angle, Fixed};
 
 /// Within this distance weapons look for something to aim at, map units.
 const AIM_RANGE: i32 = 1024;
@@ -125,12 +126,7 @@ impl World {
         let level = pitch.cos();
         let (x, y) = (level * angle.cos(), level * angle.sin());
         let rise = -pitch.sin();
-        let path = Path {
-            x: self.actors[slot].x,
-            y: self.actors[slot].y,
-            dx: x * BULLET_RANGE,
-            dy: y * BULLET_RANGE,
-        };
+        let path = Path { x: self.actors[slot].x, y: self.actors[slot].y, dx: x * BULLET_RANGE, dy: y * BULLET_RANGE };
         let muzzle = self.muzzle(slot);
         let impact = self.trace(slot, &path, muzzle, rise);
         let range = Fixed::from_int(BULLET_RANGE);
@@ -145,8 +141,7 @@ impl World {
                 let (x, y, z) = place(part_of(range, at));
                 let bleeds = !self.actors[victim].flags.any(ActorFlags::NO_BLOOD);
                 let shooter = self.id_of(slot);
-                let blame = Blame { inflictor: Some(shooter), source: Some(shooter) };
-                self.damage(self.id_of(victim), blame, damage, DamageKind::Bullet);
+                self.damage(self.id_of(victim), Some(shooter), Some(shooter), damage, DamageKind::Bullet);
                 if bleeds {
                     let id = self.spawn_mark(ActorKind::Blood, x, y, z);
                     self.weaken_blood(id, damage);
@@ -211,7 +206,7 @@ impl World {
         let plane = if z < state.floor {
             state.floor
         } else if z > state.ceiling {
-            if self.map.is_sky(state.ceiling_texture) {
+            if self.is_sky(state.ceiling_texture) {
                 return Some(Impact::Nothing);
             }
             state.ceiling
@@ -223,7 +218,7 @@ impl World {
 
     /// Whether the ceilings on both sides of a line are sky, so that nothing is above the opening.
     fn both_sky(&self, one: SectorId, other: SectorId) -> bool {
-        let sky = |sector: SectorId| self.map.is_sky(self.sectors[sector.0 as usize].ceiling_texture);
+        let sky = |sector: SectorId| self.is_sky(self.sectors[sector.0 as usize].ceiling_texture);
         sky(one) && sky(other)
     }
 
@@ -283,7 +278,7 @@ impl World {
             _ => 0,
         };
         if step > 0 {
-            self.set_frame(usize::from(id.slot), step);
+            self.skip_to_frame(usize::from(id.slot), step);
         }
     }
 }

@@ -1,13 +1,11 @@
 //! Missiles: how players throw them, what stops them, and how they burst.
 
 use super::collision::Move;
-use super::{ActorFlags, ActorId, ActorKind, Blame, DamageKind, Fixed, Phase, World};
+use super::{ActorFlags, ActorKind, DamageKind, Phase, World};
+use crate::math::{Angle, Fixed};
 
 /// Height of the muzzle for missiles above half the body's height: 4 lower than for bullets.
 const MISSILE_OFFSET: Fixed = Fixed::from_int(4);
-
-/// Every so many tics a rocket leaves a puff of smoke.
-const SMOKE_PERIOD: u32 = 4;
 
 impl World {
     /// Throws a missile from a player's weapon along its aim.
@@ -18,10 +16,10 @@ impl World {
         let z = body.z + (body.height >> 1) + MISSILE_OFFSET * self.players[player].crouch;
         let missile = self.spawn(kind, body.x, body.y, z.max(body.floor_z));
         let slot = usize::from(missile.slot);
-        let pitch = crate::math::Angle(aim.pitch as u32);
+        let pitch = Angle(aim.pitch as u32);
         let actor = &mut self.actors[slot];
         actor.angle = aim.angle;
-        actor.target = Some(id);
+        actor.origin = Some(id);
         actor.vx = pitch.cos() * aim.angle.cos() * actor.speed;
         actor.vy = pitch.cos() * aim.angle.sin() * actor.speed;
         actor.vz = -pitch.sin() * actor.speed;
@@ -49,6 +47,9 @@ impl World {
 
     /// A missile's move was refused: it hurts the actor in its way and bursts, or vanishes into the sky.
     pub(super) fn missile_blocked(&mut self, slot: usize, attempt: &Move) {
+        if self.actors[slot].phase == Phase::Death {
+            return;
+        }
         match attempt.position.blocking_actor {
             Some(victim) => self.missile_hits(slot, victim),
             None if self.is_lost_in_sky(slot, attempt) => {
@@ -64,13 +65,16 @@ impl World {
     fn is_lost_in_sky(&self, slot: usize, attempt: &Move) -> bool {
         let Some(line) = attempt.position.ceiling_line.map(|index| &self.map.lines[index as usize]) else { return false };
         let Some(back) = line.back_sector.map(|back| &self.sectors[back.0 as usize]) else { return false };
-        self.map.is_sky(back.ceiling_texture) && self.actors[slot].z >= back.ceiling
+        self.is_sky(back.ceiling_texture) && self.actors[slot].z >= back.ceiling
     }
 
     /// A missile met the floor (or else the ceiling): it bursts, or vanishes into the sky.
     pub(super) fn missile_hit_plane(&mut self, slot: usize, floor: bool) {
+        if self.actors[slot].phase == Phase::Death {
+            return;
+        }
         let state = &self.sectors[self.actors[slot].sector.0 as usize];
-        if !floor && self.map.is_sky(state.ceiling_texture) {
+        if !floor && self.is_sky(state.ceiling_texture) {
             self.remove(self.id_of(slot));
         } else {
             self.burst(slot);
@@ -80,13 +84,12 @@ impl World {
     /// A direct hit: 1 to 8 times the missile's damage.
     fn missile_hits(&mut self, slot: usize, victim: usize) {
         let missile = &self.actors[slot];
-        let (kind, source) = (missile.kind, missile.target);
+        let (kind, source) = (missile.kind, missile.origin);
         if !self.actors[victim].flags.any(ActorFlags::SHOOTABLE) {
             return;
         }
         let damage = (1 + self.rng.below(8) as i32) * kind.info().damage;
-        let blame = Blame { inflictor: Some(self.id_of(slot)), source };
-        self.damage(self.id_of(victim), blame, damage, DamageKind::Rocket);
+        self.damage(self.id_of(victim), Some(self.id_of(slot)), source, damage, DamageKind::Rocket);
     }
 
     /// Stops a missile and starts its explosion, whose first frame is up to 3 tics shorter.
@@ -94,24 +97,18 @@ impl World {
         let actor = &mut self.actors[slot];
         (actor.vx, actor.vy, actor.vz) = (Fixed::ZERO, Fixed::ZERO, Fixed::ZERO);
         self.set_phase(slot, Phase::Death);
-        // A missile bursts in its move, and the tic that it moves in counts.
         self.shorten_frame(slot);
-        self.actors[slot].flags.clear(ActorFlags::MISSILE);
     }
 
-    /// Leaves a puff of smoke behind a rocket, every 4 tics of its flight.
-    pub(super) fn trail_smoke(&mut self, slot: usize) {
+    /// Leaves a puff of smoke where a rocket came from.
+    pub(super) fn leave_smoke(&mut self, slot: usize) {
         let rocket = self.actors[slot];
-        let age = self.tic.wrapping_sub(rocket.spawn_tic) + 1;
-        if rocket.kind != ActorKind::Rocket || rocket.phase != Phase::Idle || !age.is_multiple_of(SMOKE_PERIOD) {
-            return;
-        }
-        let direction = crate::math::Angle::of_vector(rocket.vx, rocket.vy);
+        let direction = Angle::of_vector(rocket.vx, rocket.vy);
         let behind = rocket.radius * 2;
-        let x = rocket.x - behind * direction.cos() + Fixed(self.rng.byte() << 10);
-        let y = rocket.y - behind * direction.sin() + Fixed(self.rng.byte() << 10);
-        let z = rocket.z + rocket.height.scale(2, 3);
-        let smoke: ActorId = self.spawn(ActorKind::RocketSmokeTrail, x, y, z);
+        let x = rocket.x - rocket.vx - behind * direction.cos() + Fixed(self.rng.byte() << 10);
+        let y = rocket.y - rocket.vy - behind * direction.sin() + Fixed(self.rng.byte() << 10);
+        let z = rocket.z - rocket.vz + rocket.height.scale(2, 3);
+        let smoke = self.spawn(ActorKind::RocketSmokeTrail, x, y, z);
         let slot = usize::from(smoke.slot);
         self.actors[slot].vz = Fixed::ONE;
         self.shorten_frame(slot);

@@ -5,7 +5,8 @@
 //! chosen is kept for up to 16 steps.
 
 use super::patrol::Heading;
-use super::{ActorFlags, Angle, Fixed, Phase, World, approximate_distance};
+use super::{ActorFlags, Phase, World, approximate_distance};
+use crate::math::{Angle, Fixed};
 
 /// A goal counts as reached within this distance and its radius.
 const GOAL_REACH: Fixed = Fixed::from_int(44);
@@ -22,26 +23,23 @@ const FLOAT_STEP: Fixed = super::movement::FLOAT_SPEED;
 impl World {
     /// A standing monster looks for its goal and sets out for it.
     pub(super) fn look(&mut self, slot: usize) {
-        let actor = &mut self.actors[slot];
-        if actor.goal.is_some() && self.adopt_goal(slot) {
+        if self.adopt_goal(slot) {
             self.set_phase(slot, Phase::Walk);
         }
     }
 
-    /// Takes the goal as target; false where there is none (any more).
+    /// Sets out for the goal; false where there is none (any more).
     fn adopt_goal(&mut self, slot: usize) -> bool {
         let goal = self.actors[slot].goal.filter(|&goal| self.get(goal).is_some());
-        self.actors[slot].target = goal;
+        self.actors[slot].pursuing = goal.is_some();
         goal.is_some()
     }
 
     /// A step of a monster on its way.
     pub(super) fn chase(&mut self, slot: usize) {
         self.turn_to_heading(slot);
-        let on_the_way = self.actors[slot].target.is_some() && self.actors[slot].target == self.actors[slot].goal;
-        if !(on_the_way && self.adopt_goal(slot)) && !self.adopt_goal(slot) {
+        if !self.adopt_goal(slot) {
             self.set_phase(slot, Phase::Idle);
-            self.look(slot);
             return;
         }
         if std::mem::take(&mut self.actors[slot].arrived) {
@@ -78,14 +76,14 @@ impl World {
         if distance >= GOAL_REACH + goal.radius {
             return false;
         }
-        let (next, facing) = (goal.args[0], goal.angle);
+        let (next, facing) = (goal.next_goal, goal.angle);
         let next = self.patrol_point(next);
         let actor = &mut self.actors[slot];
         if next.is_none() {
             actor.angle = facing;
         }
         actor.goal = next;
-        actor.target = None;
+        actor.pursuing = false;
         actor.arrived = true;
         true
     }
@@ -122,7 +120,7 @@ impl World {
         if !attempt.moved {
             return flags.any(ActorFlags::FLOAT) && attempt.fits_higher && self.float_past(slot, attempt.position.floor_z);
         }
-        self.actors[slot].flags.clear(ActorFlags::IN_FLOAT);
+        self.actors[slot].in_float = false;
         if walks {
             self.step_down(slot);
         }
@@ -147,7 +145,7 @@ impl World {
         }
         let actor = &mut self.actors[slot];
         actor.z = z;
-        actor.flags.set(ActorFlags::IN_FLOAT);
+        actor.in_float = true;
         true
     }
 
@@ -170,7 +168,7 @@ impl World {
     /// For a walker that hangs over a deep drop: the direction away from the lines that it hangs over.
     fn away_from_ledges(&self, slot: usize) -> Option<(Fixed, Fixed)> {
         let actor = &self.actors[slot];
-        let exempt = ActorFlags::DROPOFF.with(ActorFlags::ON_ACTOR).with(ActorFlags::FLOAT);
+        let exempt = ActorFlags::DROP_OFF.with(ActorFlags::ON_ACTOR).with(ActorFlags::FLOAT);
         if actor.floor_z - actor.dropoff_z <= actor.max_dropoff || actor.z > actor.floor_z || actor.flags.any(exempt) {
             return None;
         }
@@ -181,13 +179,7 @@ impl World {
             for column in columns.clone() {
                 for &index in blocks.lines_in(column, row) {
                     let line = &self.map.lines[index as usize];
-                    let first_block = {
-                        // A line lies in several blocks: it counts in the first of them that is searched.
-                        let own_row = blocks.row_of(line.bounds[2]).max(blocks.row_of(actor.y - actor.radius));
-                        let _ = own_row;
-                        true
-                    };
-                    let Some(back) = line.back_sector.filter(|_| first_block) else { continue };
+                    let Some(back) = line.back_sector else { continue };
                     if !super::collision::cuts(line, actor.x, actor.y, actor.radius) {
                         continue;
                     }

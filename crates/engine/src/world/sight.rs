@@ -1,7 +1,8 @@
 //! Lines through the map: what a straight path crosses, and whether one actor can see another.
 
-use super::{ActorFlags, Fixed, World};
-use crate::map::Line;
+use super::{ActorFlags, World};
+use crate::map::{Line, TextureId, TextureName};
+use crate::math::Fixed;
 
 /// Length of a path in units of [`Crossing::at`].
 pub(super) const WHOLE_PATH: i64 = 1 << 30;
@@ -79,7 +80,15 @@ impl Path {
     }
 }
 
+/// The ceiling texture that is the sky.
+const SKY: TextureName = TextureName::new("F_SKY1");
+
 impl World {
+    /// Whether a ceiling texture is the sky, into which missiles and bullets vanish.
+    pub(super) fn is_sky(&self, texture: TextureId) -> bool {
+        self.map.textures.get(usize::from(texture.0)) == Some(&SKY)
+    }
+
     /// Collects the lines that a path crosses, nearest first, into `found`.
     pub(super) fn lines_on(&self, path: &Path, found: &mut Vec<Crossing>) {
         found.clear();

@@ -154,10 +154,9 @@ impl World {
         let current = player.weapon_state.pending.or(player.weapon).map_or(Weapon::COUNT - 1, |weapon| weapon as usize);
         let stride = if next { 1 } else { Weapon::COUNT - 1 };
         let order = (1..=Weapon::COUNT).map(|i| Weapon::ALL[(current + i * stride) % Weapon::COUNT]);
-        if let Some(weapon) = order.into_iter().find(|&weapon| self.can_fire(index, weapon)) {
-            if self.players[index].weapon != Some(weapon) {
-                self.players[index].weapon_state.pending = Some(weapon);
-            }
+        let Some(weapon) = order.into_iter().find(|&weapon| self.can_fire(index, weapon)) else { return };
+        if self.players[index].weapon != Some(weapon) {
+            self.players[index].weapon_state.pending = Some(weapon);
         }
     }
 
@@ -283,8 +282,7 @@ impl World {
         if held && state.pending.is_none() && !dead {
             state.repeats += 1;
             self.fire(player);
-            return self.players[player].weapon_state.step == 0
-                || self.players[player].weapon_state.hands != Hands::Firing;
+            return self.players[player].weapon_state.step == 0 || self.players[player].weapon_state.hands != Hands::Firing;
         }
         state.repeats = 0;
         if let Some(weapon) = self.players[player].weapon

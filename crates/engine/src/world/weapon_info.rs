@@ -55,8 +55,6 @@ pub(super) struct FlashFrame {
 /// The fixed properties of a weapon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeaponInfo {
-    /// The weapon that this row describes.
-    pub weapon: Weapon,
     /// Its ammunition.
     pub ammo: usize,
     /// Used by a shot.
@@ -91,114 +89,110 @@ const fn flash(letter: u8, tics: i16, light: u8) -> FlashFrame {
 
 use super::weapon_info::Shot::{Again, Fire, Flash};
 
-/// One row a weapon, in the order of [`Weapon`].
-static INFO: [WeaponInfo; Weapon::COUNT] = [
-    WeaponInfo {
-        weapon: Weapon::Pistol,
-        ammo: ammo::CLIP,
-        ammo_per_shot: 1,
-        ammo_given: 20,
-        rank: 1900,
-        fresh_press: false,
-        sprite: sprite("PISG"),
-        fire: &[show(b'A', 4), frame(b'B', 6, Fire), show(b'C', 4), frame(b'B', 5, Again)],
-        flash_sprite: sprite("PISF"),
-        flashes: &[&[flash(b'A', 7, 1)]],
-    },
-    WeaponInfo {
-        weapon: Weapon::Shotgun,
-        ammo: ammo::SHELL,
-        ammo_per_shot: 1,
-        ammo_given: 8,
-        rank: 1300,
-        fresh_press: false,
-        sprite: sprite("SHTG"),
-        fire: &[
-            show(b'A', 3),
-            frame(b'A', 7, Fire),
-            show(b'B', 5),
-            show(b'C', 5),
-            show(b'D', 4),
-            show(b'C', 5),
-            show(b'B', 5),
-            show(b'A', 3),
-            frame(b'A', 7, Again),
-        ],
-        flash_sprite: sprite("SHTF"),
-        flashes: &[&[flash(b'A', 4, 1), flash(b'B', 3, 2)]],
-    },
-    WeaponInfo {
-        weapon: Weapon::SuperShotgun,
-        ammo: ammo::SHELL,
-        ammo_per_shot: 2,
-        ammo_given: 8,
-        rank: 400,
-        fresh_press: false,
-        sprite: sprite("SHT2"),
-        fire: &[
-            show(b'A', 3),
-            frame(b'A', 7, Fire),
-            show(b'B', 7),
-            show(b'C', 7),
-            show(b'D', 7),
-            show(b'E', 7),
-            show(b'F', 7),
-            show(b'G', 6),
-            show(b'H', 6),
-            frame(b'A', 5, Again),
-        ],
-        flash_sprite: sprite("SHT2"),
-        flashes: &[&[flash(b'I', 4, 1), flash(b'J', 3, 2)]],
-    },
-    WeaponInfo {
-        weapon: Weapon::Chaingun,
-        ammo: ammo::CLIP,
-        ammo_per_shot: 1,
-        ammo_given: 20,
-        rank: 700,
-        fresh_press: false,
-        sprite: sprite("CHGG"),
-        fire: &[frame(b'A', 4, Fire), frame(b'B', 4, Fire), frame(b'B', 0, Again)],
-        flash_sprite: sprite("CHGF"),
-        flashes: &[&[flash(b'A', 5, 1)], &[flash(b'B', 5, 2)]],
-    },
-    WeaponInfo {
-        weapon: Weapon::RocketLauncher,
-        ammo: ammo::ROCKET,
-        ammo_per_shot: 1,
-        ammo_given: 2,
-        rank: 2500,
-        fresh_press: true,
-        sprite: sprite("MISG"),
-        fire: &[frame(b'B', 8, Flash), frame(b'B', 12, Fire), frame(b'B', 0, Again)],
-        flash_sprite: sprite("MISF"),
-        flashes: &[&[flash(b'A', 3, 1), flash(b'B', 4, 1), flash(b'C', 4, 2), flash(b'D', 4, 2)]],
-    },
-    WeaponInfo {
-        weapon: Weapon::PlasmaRifle,
-        ammo: ammo::CELL,
-        ammo_per_shot: 1,
-        ammo_given: 40,
-        rank: 100,
-        fresh_press: false,
-        sprite: sprite("PLSG"),
-        fire: &[frame(b'A', 3, Fire), frame(b'B', 20, Again)],
-        flash_sprite: sprite("PLSF"),
-        flashes: &[&[flash(b'A', 4, 1)], &[flash(b'B', 4, 1)]],
-    },
-    WeaponInfo {
-        weapon: Weapon::Bfg9000,
-        ammo: ammo::CELL,
-        ammo_per_shot: 40,
-        ammo_given: 40,
-        rank: 2800,
-        fresh_press: true,
-        sprite: sprite("BFGG"),
-        fire: &[show(b'A', 20), frame(b'B', 10, Flash), frame(b'B', 10, Fire), frame(b'B', 20, Again)],
-        flash_sprite: sprite("BFGF"),
-        flashes: &[&[flash(b'A', 11, 1), flash(b'B', 6, 2)]],
-    },
-];
+static PISTOL: WeaponInfo = WeaponInfo {
+    ammo: ammo::CLIP,
+    ammo_per_shot: 1,
+    ammo_given: 20,
+    rank: 1900,
+    fresh_press: false,
+    sprite: sprite("PISG"),
+    fire: &[show(b'A', 4), frame(b'B', 6, Fire), show(b'C', 4), frame(b'B', 5, Again)],
+    flash_sprite: sprite("PISF"),
+    flashes: &[&[flash(b'A', 7, 1)]],
+};
+
+static SHOTGUN: WeaponInfo = WeaponInfo {
+    ammo: ammo::SHELL,
+    ammo_per_shot: 1,
+    ammo_given: 8,
+    rank: 1300,
+    fresh_press: false,
+    sprite: sprite("SHTG"),
+    fire: &[
+        show(b'A', 3),
+        frame(b'A', 7, Fire),
+        show(b'B', 5),
+        show(b'C', 5),
+        show(b'D', 4),
+        show(b'C', 5),
+        show(b'B', 5),
+        show(b'A', 3),
+        frame(b'A', 7, Again),
+    ],
+    flash_sprite: sprite("SHTF"),
+    flashes: &[&[flash(b'A', 4, 1), flash(b'B', 3, 2)]],
+};
+
+static SUPER_SHOTGUN: WeaponInfo = WeaponInfo {
+    ammo: ammo::SHELL,
+    ammo_per_shot: 2,
+    ammo_given: 8,
+    rank: 400,
+    fresh_press: false,
+    sprite: sprite("SHT2"),
+    fire: &[
+        show(b'A', 3),
+        frame(b'A', 7, Fire),
+        show(b'B', 7),
+        show(b'C', 7),
+        show(b'D', 7),
+        show(b'E', 7),
+        show(b'F', 7),
+        show(b'G', 6),
+        show(b'H', 6),
+        frame(b'A', 5, Again),
+    ],
+    flash_sprite: sprite("SHT2"),
+    flashes: &[&[flash(b'I', 4, 1), flash(b'J', 3, 2)]],
+};
+
+static CHAINGUN: WeaponInfo = WeaponInfo {
+    ammo: ammo::CLIP,
+    ammo_per_shot: 1,
+    ammo_given: 20,
+    rank: 700,
+    fresh_press: false,
+    sprite: sprite("CHGG"),
+    fire: &[frame(b'A', 4, Fire), frame(b'B', 4, Fire), frame(b'B', 0, Again)],
+    flash_sprite: sprite("CHGF"),
+    flashes: &[&[flash(b'A', 5, 1)], &[flash(b'B', 5, 2)]],
+};
+
+static ROCKET_LAUNCHER: WeaponInfo = WeaponInfo {
+    ammo: ammo::ROCKET,
+    ammo_per_shot: 1,
+    ammo_given: 2,
+    rank: 2500,
+    fresh_press: true,
+    sprite: sprite("MISG"),
+    fire: &[frame(b'B', 8, Flash), frame(b'B', 12, Fire), frame(b'B', 0, Again)],
+    flash_sprite: sprite("MISF"),
+    flashes: &[&[flash(b'A', 3, 1), flash(b'B', 4, 1), flash(b'C', 4, 2), flash(b'D', 4, 2)]],
+};
+
+static PLASMA_RIFLE: WeaponInfo = WeaponInfo {
+    ammo: ammo::CELL,
+    ammo_per_shot: 1,
+    ammo_given: 40,
+    rank: 100,
+    fresh_press: false,
+    sprite: sprite("PLSG"),
+    fire: &[frame(b'A', 3, Fire), frame(b'B', 20, Again)],
+    flash_sprite: sprite("PLSF"),
+    flashes: &[&[flash(b'A', 4, 1)], &[flash(b'B', 4, 1)]],
+};
+
+static BFG9000: WeaponInfo = WeaponInfo {
+    ammo: ammo::CELL,
+    ammo_per_shot: 40,
+    ammo_given: 40,
+    rank: 2800,
+    fresh_press: true,
+    sprite: sprite("BFGG"),
+    fire: &[show(b'A', 20), frame(b'B', 10, Flash), frame(b'B', 10, Fire), frame(b'B', 20, Again)],
+    flash_sprite: sprite("BFGF"),
+    flashes: &[&[flash(b'A', 11, 1), flash(b'B', 6, 2)]],
+};
 
 impl Weapon {
     /// Number of weapons.
@@ -217,7 +211,15 @@ impl Weapon {
 
     /// The fixed properties of the weapon.
     pub(super) fn info(self) -> &'static WeaponInfo {
-        &INFO[self as usize]
+        match self {
+            Weapon::Pistol => &PISTOL,
+            Weapon::Shotgun => &SHOTGUN,
+            Weapon::SuperShotgun => &SUPER_SHOTGUN,
+            Weapon::Chaingun => &CHAINGUN,
+            Weapon::RocketLauncher => &ROCKET_LAUNCHER,
+            Weapon::PlasmaRifle => &PLASMA_RIFLE,
+            Weapon::Bfg9000 => &BFG9000,
+        }
     }
 
     /// Index into [`Player::ammo`](super::Player::ammo) of the weapon's ammunition.
@@ -242,18 +244,6 @@ impl Weapon {
             Weapon::RocketLauncher => 5,
             Weapon::PlasmaRifle => 6,
             Weapon::Bfg9000 => 7,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_table_is_in_the_order_of_the_weapons() {
-        for weapon in Weapon::ALL {
-            assert_eq!(weapon.info().weapon, weapon);
         }
     }
 }
