@@ -3,7 +3,7 @@
 use crate::game::Game;
 use crate::scenarios::outcome::MOST_TERMS;
 use crate::scenarios::{self, Rules};
-use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Episode, Scenario, Step};
+use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Episode, Scenario, Step};
 use hasard_engine::map::Map;
 use hasard_engine::math::Rng;
 use hasard_engine::world::{Command, World};
@@ -30,7 +30,7 @@ impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
         let id: EnvId = id.parse()?;
         options.check()?;
-        let (source, textures) = scenarios::map_source(id, options.rules, options.hard);
+        let (source, textures) = scenarios::map_source(id, options.rules, options.hard)?;
         let map = Map::build(&source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
         let rules = Rules::new(id, options.rules, options.hard, &map)?;
         // Collateral Damage shows itself late, once the weapon is nearly up, and ends by the clock of the level.

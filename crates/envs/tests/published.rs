@@ -136,3 +136,13 @@ fn volcanic_venture() {
 fn precipice_plunge() {
     assert_eq!(differences("PrecipicePlunge"), Vec::<String>::new());
 }
+
+#[test]
+fn armament_burden() {
+    assert_eq!(differences("ArmamentBurden"), Vec::<String>::new());
+}
+
+#[test]
+fn collateral_damage() {
+    assert_eq!(differences("CollateralDamage"), Vec::<String>::new());
+}

@@ -43,8 +43,6 @@ pub const LEAST_SPEED: Fixed = Fixed(16384);
 pub const PENALTY_SPEED: Fixed = Fixed(6553);
 /// Tics that it lasts.
 pub const PENALTY_TICS: u32 = 180;
-/// Flat and damage of an acid pit.
-pub const PIT_TEXTURE: &str = "NUKAGE1";
 /// Health points that acid takes each tic.
 pub const PIT_DAMAGE: i32 = 100;
 /// Height of an acid pit.
@@ -113,8 +111,6 @@ const fn released(paper: Level) -> Level {
 const fn hard(soft: Level) -> Level {
     Level {
         weights: HARD_WEIGHTS,
-        random_start: false,
-        zone_tics: 15,
         discard: false,
         overload_is_punished: true,
         reward_at_pickup: soft.published_bookkeeping,
@@ -122,13 +118,18 @@ const fn hard(soft: Level) -> Level {
     }
 }
 
+/// Level 1 with the hard constraint has a start and a clock of its own.
+const fn from_the_start(level: Level) -> Level {
+    Level { random_start: false, zone_tics: 15, ..level }
+}
+
 /// The constants of a level (`index` 0..=2).
 #[must_use]
 pub const fn level(rules: RuleSet, with_hard_constraint: bool, index: usize) -> Level {
     const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
-    const PAPER_HARD: [Level; 3] = [hard(PAPER_1), hard(PAPER_2), hard(PAPER_3)];
+    const PAPER_HARD: [Level; 3] = [from_the_start(hard(PAPER_1)), hard(PAPER_2), hard(PAPER_3)];
     const RELEASED: [Level; 3] = [released(PAPER_1), released(PAPER_2), released(PAPER_3)];
-    const RELEASED_HARD: [Level; 3] = [hard(released(PAPER_1)), hard(released(PAPER_2)), hard(released(PAPER_3))];
+    const RELEASED_HARD: [Level; 3] = [from_the_start(hard(released(PAPER_1))), hard(released(PAPER_2)), hard(released(PAPER_3))];
     match (rules, with_hard_constraint) {
         (RuleSet::Paper, false) => PAPER[index],
         (RuleSet::Paper, true) => PAPER_HARD[index],

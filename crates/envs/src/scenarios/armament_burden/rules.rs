@@ -1,16 +1,16 @@
 //! The rules at work: carry weapons to the delivery zone without carrying too much.
 
+use super::levels::{
+    CAPACITY, DECOY_WEIGHTS, DECOYS, LEAST_SPEED, Level, PENALTY_SPEED, PENALTY_TICS, PIT_DAMAGE, PIT_HEIGHT, PIT_SPEED, VALUES,
+    WEAPONS,
+};
+use super::map;
 use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
 use crate::{CostTerm, EnvError};
-use super::map;
 use hasard_engine::map::{Map, TextureId};
 use hasard_engine::math::Fixed;
-use hasard_engine::world::{ActorKind, Buttons, Event, Weapon, World};
-use super::levels::{
-    CAPACITY, DECOY_WEIGHTS, DECOYS, LEAST_SPEED, Level, PENALTY_SPEED, PENALTY_TICS, PIT_DAMAGE, PIT_HEIGHT, PIT_SPEED, PIT_TEXTURE,
-    VALUES, WEAPONS,
-};
+use hasard_engine::world::{ActorKind, Buttons, Event, World};
 use std::sync::Arc;
 
 /// Named parts of the cost.
@@ -25,6 +25,8 @@ const DEATH: usize = 1;
 const DISCARD: usize = 2;
 const ZONE_VISITS: usize = 3;
 
+/// What an acid pit looks like.
+pub const TEXTURES: &[&str] = &["NUKAGE1"];
 /// Where weapons and decoys appear, and at which height.
 const ITEM_AREA: stage::Area = [160, 288, 928, 1184];
 const ITEM_HEIGHT: i32 = 20;
@@ -41,8 +43,13 @@ struct Fixtures {
     acid: Option<TextureId>,
 }
 
+/// Constants are no part of a fingerprint.
+impl std::hash::Hash for Fixtures {
+    fn hash<H: std::hash::Hasher>(&self, _: &mut H) {}
+}
+
 /// What the agent carries.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Hash)]
 struct Burden {
     weapons: u32,
     decoys: u32,
@@ -51,16 +58,16 @@ struct Burden {
 }
 
 /// What the published package believes that the agent carries; see [`Level::published_bookkeeping`].
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Hash)]
 struct Bookkeeping {
     weapons: u32,
     decoys: u32,
-    load: f64,
+    load: Fixed,
     delivered: bool,
 }
 
 /// The rules at work.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Hash)]
 pub struct Rules {
     fixtures: Arc<Fixtures>,
     burden: Burden,
@@ -84,9 +91,9 @@ pub struct Rules {
 impl Rules {
     /// The rules of a level in its map.
     pub fn new(map: &Map, level: Level) -> Result<Rules, EnvError> {
-        let acid = map.texture(PIT_TEXTURE);
+        let acid = map.texture(TEXTURES[0]);
         if level.pits > 0 && acid.is_none() {
-            return Err(EnvError::Map { why: format!("map {}: Armament Burden needs texture {PIT_TEXTURE}", map.name) });
+            return Err(EnvError::Map { why: format!("map {}: Armament Burden needs texture {}", map.name, TEXTURES[0]) });
         }
         Ok(Rules {
             fixtures: Arc::new(Fixtures { level, acid }),
@@ -173,7 +180,9 @@ impl Rules {
             self.burden.load += level.weights[i];
             self.last[0] = i;
             self.collected += 1;
-            world.select_weapon(0, Weapon::of_item(kind));
+            if let Some(weapon) = kind.weapon() {
+                world.select_weapon(0, weapon);
+            }
             if level.reward_at_pickup {
                 outcome.reward += VALUES[i].to_f64();
             }
@@ -254,31 +263,31 @@ impl Rules {
             outcome.costs[DISCARD] += level.discard_cost;
         }
         if self.discarding {
-            (self.books.weapons, self.books.decoys, self.books.load) = (0, 0, 0.0);
+            (self.books.weapons, self.books.decoys, self.books.load) = (0, 0, Fixed::ZERO);
         }
         let mut taken = false;
         if self.burden.weapons > self.books.weapons {
             self.books.weapons += 1;
             // The package weighs by the values, which are the soft constraint's weights.
-            self.books.load += VALUES[self.last[0]].to_f64();
+            self.books.load += VALUES[self.last[0]];
             taken = true;
         }
         if self.burden.decoys > self.books.decoys {
             self.books.decoys += 1;
-            self.books.load += DECOY_WEIGHTS[self.last[1]].to_f64();
+            self.books.load += DECOY_WEIGHTS[self.last[1]];
             taken = true;
         }
-        let excess = self.books.load - CAPACITY.to_f64();
-        if !hard && excess > 1e-9 {
+        let excess = (self.books.load - CAPACITY).to_f64();
+        if !hard && excess > 0.0 {
             outcome.costs[OVERLOAD] += excess * if taken { 1.0 } else { level.carry_cost };
         }
         if self.in_zone {
-            (self.books.weapons, self.books.decoys, self.books.load) = (0, 0, 0.0);
+            (self.books.weapons, self.books.decoys, self.books.load) = (0, 0, Fixed::ZERO);
         }
         if hard {
             if self.burden.weapons < self.books.weapons {
                 outcome.costs[OVERLOAD] += level.overload_cost;
-                (self.books.weapons, self.books.decoys, self.books.load) = (self.burden.weapons, self.burden.decoys, 0.0);
+                (self.books.weapons, self.books.decoys, self.books.load) = (self.burden.weapons, self.burden.decoys, Fixed::ZERO);
             }
             if self.slow_until > 0 {
                 outcome.costs[OVERLOAD] += level.overload_cost * level.carry_cost;
