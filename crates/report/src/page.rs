@@ -96,7 +96,9 @@ fn write_table(table: &Table, html: &mut String) {
 fn write_cell(cell: &Cell, html: &mut String) {
     let mut classes = Vec::new();
     classes.extend(cell.pale.then_some("pale"));
-    classes.extend(cell.sort.is_some().then_some("number"));
+    // A word may carry a number to be sorted by; it is still read from the left.
+    let numeric = cell.text.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+    classes.extend((numeric && (cell.sort.is_some() || cell.text == "-")).then_some("number"));
     classes.extend(matches!(cell.mark, Mark::Within | Mark::WithinBest).then_some("within"));
     classes.extend(matches!(cell.mark, Mark::Best | Mark::WithinBest).then_some("best"));
     html.push_str("<td");

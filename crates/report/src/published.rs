@@ -84,6 +84,24 @@ pub fn published(config: &Config) -> Option<&'static Published> {
     })
 }
 
+/// The published cell to hold an experiment against where experiments that differ in `key` are compared: the paper's table
+/// of that comparison if it has one.
+#[must_use]
+pub fn published_in(config: &Config, key: &str) -> Option<&'static Published> {
+    let alone = key == "curriculum" && !config.options.contains_key("curriculum");
+    let table = if alone { "curriculum" } else { "cost-scale" };
+    let option = if alone { "none".to_owned() } else { config.cost_scale.to_string() };
+    let special = PUBLISHED.iter().find(|cell| {
+        (alone || key == "cost_scale")
+            && cell.table == table
+            && cell.level == config.level
+            && cell.option == option
+            && cell.scenario == config.scenario
+            && cell.algorithm.eq_ignore_ascii_case(&config.algo)
+    });
+    special.or_else(|| published(config))
+}
+
 /// The main table's cell for an algorithm on a scenario and level.
 #[must_use]
 pub fn published_main(algorithm: &str, scenario: &str, level: u32) -> Option<&'static Published> {
@@ -122,6 +140,9 @@ mod tests {
         assert_eq!(of(",\"curriculum\":[1,2,3]", "PPOPID", "CollateralDamageLevel1-v0").unwrap().episode_return, Some(15.32));
         assert_eq!(of(",\"safety_budget\":25", "PPOLag", "VolcanicVentureLevel1-v0"), None);
         assert_eq!(of(",\"observation\":\"segmented\"", "PPOLag", "VolcanicVentureLevel1-v0"), None);
+        let alone = Config::parse("{\"env\":\"RemedyRushLevel3-v0\",\"algo\":\"PPOPID\",\"seed\":1}").unwrap();
+        assert_eq!(published(&alone).unwrap().episode_return, Some(13.51));
+        assert_eq!(published_in(&alone, "curriculum").unwrap().episode_return, Some(6.65));
         let cost = of("", "PPOCost", "ArmamentBurdenLevel1-v0").unwrap();
         assert_eq!(cost.episode_return, Some(2.17));
         assert!(cost.note.starts_with("printed as 5.47"));

@@ -13,8 +13,8 @@ const MAX_DEPTH: usize = 8;
 pub struct Found {
     /// Training runs, in the order of their paths.
     pub runs: Vec<Run>,
-    /// Episodes of humans and other players, by player and environment.
-    pub players: BTreeMap<(String, String), Vec<EpisodeResult>>,
+    /// Episodes of humans and other players, by player, environment and options.
+    pub players: BTreeMap<(String, String, String), Vec<EpisodeResult>>,
     /// What was passed over.
     pub warnings: Vec<Warning>,
 }
@@ -88,7 +88,8 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     cost: outcome.cost,
                     length: Some(f64::from(header.steps)),
                 };
-                found.players.entry((header.player.clone(), header.env.clone())).or_default().push(result);
+                let options: Vec<String> = header.options.iter().map(|(key, value)| format!("{key} {value}")).collect();
+                found.players.entry((header.player.clone(), header.env.clone(), options.join(", "))).or_default().push(result);
                 return;
             }
             "ends in the midst of an episode; left out".to_owned()
@@ -105,6 +106,6 @@ fn read_rollout(path: &Path, found: &mut Found) {
     };
     let player = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("rollout").to_owned();
     for episode in read_episode_lines(&text, path, &mut found.warnings) {
-        found.players.entry((player.clone(), episode.env.clone())).or_default().push(episode);
+        found.players.entry((player.clone(), episode.env.clone(), String::new())).or_default().push(episode);
     }
 }

@@ -6,7 +6,7 @@ use super::{VARIED, distinct};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Section, Table, frames, slug};
 use crate::group::{Group, scenario_name};
-use crate::published::published;
+use crate::published::published_in;
 use crate::run::Config;
 use std::collections::BTreeMap;
 
@@ -103,7 +103,7 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
         };
         let cells = marked_cells(members);
         for (group, (return_cell, cost_cell)) in members.iter().zip(cells) {
-            let paper = published(group.config());
+            let paper = published_in(group.config(), key);
             let theirs = |value: Option<f64>| value.map_or_else(|| Cell::text("-"), |v| Cell { pale: true, ..Cell::number(v) });
             let (_, reached) = group.frames_span();
             rows.push(vec![
@@ -128,7 +128,8 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
                     let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
                     bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink: Ink::Series(index), pale: false });
                 }
-                let paper = published(group.config()).and_then(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                let paper =
+                    published_in(group.config(), key).and_then(|p| if metric == "cost" { p.cost } else { p.episode_return });
                 bars.extend(paper.map(|value| Bar {
                     name: "paper".into(),
                     value,

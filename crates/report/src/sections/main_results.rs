@@ -47,7 +47,10 @@ pub(super) fn marked_cells(members: &[&Group]) -> Vec<(Cell, Cell)> {
             return_cell.mark = return_mark;
             cost_cell.mark = cost_mark;
             if !group.finished() {
-                return_cell.note += " unfinished";
+                return_cell.text += " *";
+                let asked = group.config().frames.map(crate::document::frames).unwrap_or_default();
+                return_cell.title +=
+                    &format!("; unfinished: {} of {asked} frames", crate::document::frames(group.frames_span().0));
             }
             (return_cell, cost_cell)
         })
@@ -125,7 +128,18 @@ fn table(members: &[&Group], level: u32, setting: &str) -> Table {
         spans.push((format!("{} (budget {budget})", scenario_name(scenario)), 2));
         heads.extend(["return".into(), "cost".into()]);
     }
-    Table { caption: format!("Level {level}; {setting}"), spans, heads, rows }
+    // If every value rests on as many seeds, saying so once is enough.
+    let notes =
+        distinct(&rows.iter().flatten().filter(|cell| !cell.note.is_empty()).collect::<Vec<_>>(), |cell| cell.note.clone());
+    let mut caption = format!("Level {level}; {setting}");
+    if let [note] = &notes[..] {
+        caption += &format!("; {note} {}", if note == "n=1" { "seed" } else { "seeds" });
+        rows.iter_mut().flatten().for_each(|cell| cell.note.clear());
+    }
+    if rows.iter().flatten().any(|cell| cell.text.ends_with('*')) {
+        caption += "; * not every run has finished";
+    }
+    Table { caption, spans, heads, rows }
 }
 
 fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool) -> Figure {
@@ -149,14 +163,14 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool) -
                     BarGroup { name: group.config().algo.clone(), bars, budget }
                 })
                 .collect();
-            panels.push(bar_panel(&format!("{} {metric}", scenario_name(scenario)), &groups, (390.0, 190.0)));
+            panels.push(bar_panel(&format!("{} {metric}", scenario_name(scenario)), &groups, (306.0, 180.0)));
         }
     }
     let name = if several_settings { format!("results level {level} {setting}") } else { format!("results level {level}") };
     Figure {
         slug: slug(&name),
         caption: format!("Level {level}; {setting}. Full colour: here; pale: the paper after 500M frames. Dashed: the budget."),
-        drawing: figure("", panels, 2, &[]),
+        drawing: figure("", panels, 4, &[]),
     }
 }
 

@@ -7,9 +7,9 @@ use crate::statistics::Estimate;
 
 pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
     let mut rows: Vec<(String, Vec<Cell>)> = Vec::new();
-    for ((player, env), episodes) in &found.players {
+    for ((player, env, options), episodes) in &found.players {
         let (scenario, _) = scenario_and_level(env);
-        rows.push(row(player, env, "", default_budget(&scenario, false), episodes));
+        rows.push(row(player, env, options, default_budget(&scenario, false), episodes));
     }
     for group in groups {
         for run in &group.runs {
