@@ -25,7 +25,7 @@ pub fn page(document: &Document) -> String {
     for section in &document.sections {
         write_section(section, &mut html);
     }
-    let _ = write!(html, "</main><div id=\"tip\" hidden></div><script>{SCRIPT}</script></body></html>\n");
+    let _ = writeln!(html, "</main><div id=\"tip\" hidden></div><script>{SCRIPT}</script></body></html>");
     html
 }
 
