@@ -1,8 +1,12 @@
 //! Where a frame is seen from.
 
 use super::View;
+use super::palette::power_shows;
 use crate::math::Angle;
 use crate::world::World;
+
+/// The light table of light amplification.
+const AMPLIFIED_TABLE: usize = 1;
 
 /// Position, direction and light of one frame's eye.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +45,6 @@ impl Camera {
         // Half the width is one focal length: the outermost rays are 45 degrees off.
         let ray_step = right.map(|r| (r << 17) / width);
         let ray = [0, 1].map(|i| (forward[i] << 16) - ray_step[i] * (width - 1) / 2);
-        let amplified = player.infrared_tics > 128 || player.infrared_tics & 8 != 0;
         Camera {
             x: i64::from(x),
             y: i64::from(y),
@@ -52,7 +55,7 @@ impl Camera {
             ray,
             ray_step,
             extra_light: i32::from(player.extra_light),
-            fixed_table: amplified.then_some(1),
+            fixed_table: power_shows(player.infrared_tics).then_some(AMPLIFIED_TABLE),
         }
     }
 

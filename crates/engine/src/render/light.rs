@@ -23,11 +23,6 @@ impl Light {
         Light { base: (64 << 16) - (level << 14), fixed: camera.fixed_table.map(|table| table as u8) }
     }
 
-    /// Full light that nothing dims.
-    pub fn full() -> Light {
-        Light { base: 0, fixed: Some(0) }
-    }
-
     /// The table where `nearness` is [`ONE_TABLE_DISTANCE`] divided by the distance, 16.16.
     #[inline]
     pub fn table(self, nearness: i64) -> usize {

@@ -5,24 +5,34 @@
 //! that the same world gives the same pixels everywhere.
 
 mod camera;
+mod convert;
 mod frame;
+mod label;
 mod light;
+mod masked;
 mod openings;
+mod palette;
 mod picture;
 mod plane;
 mod renderer;
 mod scene;
 mod seg;
+mod segmentation;
 mod silhouette;
 mod size;
 mod sky;
+mod sprite;
+mod status_bar;
 mod view;
 mod walk;
 mod wall;
+mod weapon;
 
 pub use frame::class;
-pub use renderer::Renderer;
+pub use label::Label;
+pub use renderer::{RenderOptions, Renderer};
 pub use scene::Scene;
+pub use segmentation::SegmentationColours;
 pub use size::{FrameSize, SizeError};
 pub use view::View;
 

@@ -21,7 +21,12 @@ impl WallPicture {
         let (width, height) = (u32::from(image.width).max(1), u32::from(image.height).max(1));
         let mut pixels = image.pixels.to_vec();
         pixels.resize((width * height) as usize, 0);
-        WallPicture { width, height, inverse_height: ((1 << 32) + i64::from(height) - 1) / i64::from(height), pixels: pixels.into() }
+        WallPicture {
+            width,
+            height,
+            inverse_height: ((1 << 32) + i64::from(height) - 1) / i64::from(height),
+            pixels: pixels.into(),
+        }
     }
 
     /// The texels of the column that holds the horizontal texture position `u`, 16.16.
@@ -35,11 +40,8 @@ impl WallPicture {
     #[inline]
     pub fn column_start(&self, u: i64) -> usize {
         let u = (u >> 16) as i32;
-        let column = if self.width.is_power_of_two() {
-            u as u32 & (self.width - 1)
-        } else {
-            u.rem_euclid(self.width as i32) as u32
-        };
+        let column =
+            if self.width.is_power_of_two() { u as u32 & (self.width - 1) } else { u.rem_euclid(self.width as i32) as u32 };
         (column * self.height) as usize
     }
 }
@@ -145,8 +147,7 @@ impl Textures {
     pub fn add(&mut self, assets: &Assets, entry: TextureEntry, missing: u8) {
         let first = self.walls.len() as u32;
         let frames = u32::from(entry.frames).max(1);
-        let solid =
-            Image { width: 1, height: 1, offset_x: 0, offset_y: 0, pixels: Box::new([missing]), mask: None };
+        let solid = Image { width: 1, height: 1, offset_x: 0, offset_y: 0, pixels: Box::new([missing]), mask: None };
         for frame in 0..frames {
             let image = assets.images.get(entry.first.saturating_add(frame) as usize);
             let image = image.filter(|image| image.width > 0 && image.height > 0).unwrap_or(&solid);

@@ -232,8 +232,7 @@ impl<'a> PlaneShader<'a> {
             (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.ray[0])),
             (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.ray[1])).wrapping_neg(),
         ];
-        let step =
-            [distance.wrapping_mul(camera.ray_step[0]), distance.wrapping_mul(camera.ray_step[1]).wrapping_neg()];
+        let step = [distance.wrapping_mul(camera.ray_step[0]), distance.wrapping_mul(camera.ray_step[1]).wrapping_neg()];
         let shift = 16 - BITS;
         let pack = |u: i64, v: i64| {
             let high = (u << shift) as u64 & 0xFFFF_FFFF_0000_0000;
@@ -267,8 +266,7 @@ mod tests {
     fn spans_cover_each_pixel_once() {
         let mut rng = crate::math::Rng::new(5);
         for _ in 0..3000 {
-            let columns: Vec<(i16, i16)> =
-                (0..6).map(|_| (rng.between(0, 8) as i16, rng.between(0, 8) as i16)).collect();
+            let columns: Vec<(i16, i16)> = (0..6).map(|_| (rng.between(0, 8) as i16, rng.between(0, 8) as i16)).collect();
             let pixels = covered(&columns);
             for (i, &count) in pixels.iter().enumerate() {
                 let (row, (top, bottom)) = ((i / 6) as i16, columns[i % 6]);

@@ -1,6 +1,7 @@
 //! A map made ready for drawing with a set of pictures.
 
 use super::picture::{MaskedPicture, Textures};
+use super::status_bar::BarArt;
 use crate::assets::{Assets, TextureEntry};
 use crate::map::{Map, Node, Seg, Side, TextureId, TextureName};
 use std::sync::Arc;
@@ -69,6 +70,10 @@ pub struct Scene {
     pub(super) sprite_pictures: Vec<Option<MaskedPicture>>,
     /// Index of the solid picture that fills what has no texture, in `textures.walls`.
     pub(super) missing_picture: usize,
+    /// The status bar's pictures.
+    pub(super) bar: BarArt,
+    /// The colour halfway between each two: `blends[a * 256 + b]`.
+    blends: Box<[u8]>,
 }
 
 impl Scene {
@@ -94,7 +99,13 @@ impl Scene {
         let mut faces = vec![None; map.sides.len()];
         for line in &map.lines {
             let (dx, dy) = (i64::from(line.dx.0), i64::from(line.dy.0));
-            let contrast = if dx == 0 { 8 } else if dy == 0 { -8 } else { 0 };
+            let contrast = if dx == 0 {
+                8
+            } else if dy == 0 {
+                -8
+            } else {
+                0
+            };
             let unit = unit_vector(dx, dy);
             let sides = [Some((line.front, line.v1, unit)), line.back.map(|back| (back, line.v2, [-unit[0], -unit[1]]))];
             for (id, start, along) in sides.into_iter().flatten() {
@@ -127,19 +138,23 @@ impl Scene {
             // A side that no line uses is never drawn.
             faces: faces.into_iter().map(|face| face.unwrap_or_else(|| bare.clone())).collect(),
             nodes: map.nodes.clone(),
-            subsectors: map
-                .subsectors
-                .iter()
-                .map(|s| [s.first_seg, s.first_seg + s.seg_count, s.sector.0])
-                .collect(),
+            subsectors: map.subsectors.iter().map(|s| [s.first_seg, s.first_seg + s.seg_count, s.sector.0]).collect(),
             sector_count: map.sectors.len(),
             sky_flat: map.textures.iter().position(|&name| name == SKY_FLAT).map(|i| TextureId(i as u16)),
             sky,
             sprite_pictures: sprite_pictures(&assets),
             textures,
             missing_picture,
+            bar: BarArt::new(&assets),
+            blends: blends(&assets.palette),
             assets,
         }
+    }
+
+    /// The palette index halfway between two.
+    #[inline]
+    pub(super) fn blend(&self, a: u8, b: u8) -> u8 {
+        self.blends[usize::from(a) * 256 + usize::from(b)]
     }
 }
 
@@ -187,8 +202,19 @@ fn sprite_pictures(assets: &Assets) -> Vec<Option<MaskedPicture>> {
 
 /// The palette index nearest to a colour.
 pub(super) fn nearest_colour(palette: &[[u8; 3]; 256], colour: [u8; 3]) -> u8 {
-    let distance = |candidate: &[u8; 3]| -> i32 {
-        candidate.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum()
-    };
+    let distance =
+        |candidate: &[u8; 3]| -> i32 { candidate.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum() };
     (0..256).min_by_key(|&i| distance(&palette[i])).unwrap_or(0) as u8
+}
+
+fn blends(palette: &[[u8; 3]; 256]) -> Box<[u8]> {
+    // The nearest index of every colour reduced to 5 bits a channel, so that 65,536 pairs need 32,768 searches.
+    let nearest: Vec<u8> = (0..1usize << 15)
+        .map(|i| nearest_colour(palette, [10, 5, 0].map(|shift| ((i >> shift & 31) * 255 / 31) as u8)))
+        .collect();
+    let halfway = |a: usize, b: usize| {
+        let reduced = |i: usize| (usize::from(palette[a][i]) + usize::from(palette[b][i])) / 16;
+        nearest[reduced(0) << 10 | reduced(1) << 5 | reduced(2)]
+    };
+    (0..1 << 16).map(|i| halfway(i >> 8, i & 255)).collect()
 }

@@ -92,12 +92,7 @@ impl Walk<'_> {
     }
 
     /// A line with a sector on its other side.
-    fn opening<const DEPTH: bool, const CLASS: bool>(
-        &mut self,
-        seen: &SeenSeg,
-        front: &SectorState,
-        back: &SectorState,
-    ) {
+    fn opening<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenSeg, front: &SectorState, back: &SectorState) {
         let (face, range) = (seen.face, seen.first..seen.end);
         let shut = back.ceiling <= front.floor || back.floor >= front.ceiling || back.floor >= back.ceiling;
         // Between two skies there is no wall: the sky goes on.
@@ -132,16 +127,8 @@ impl Walk<'_> {
             }
         }
         let eye = Fixed(self.camera.z as i32);
-        let below = if front.floor > back.floor {
-            Some(front.floor)
-        } else {
-            (back.floor > eye).then_some(Fixed::MAX)
-        };
-        let above = if ceiling < back.ceiling {
-            Some(ceiling)
-        } else {
-            (back.ceiling < eye && !both_sky).then_some(Fixed::MIN)
-        };
+        let below = if front.floor > back.floor { Some(front.floor) } else { (back.floor > eye).then_some(Fixed::MAX) };
+        let above = if ceiling < back.ceiling { Some(ceiling) } else { (back.ceiling < eye && !both_sky).then_some(Fixed::MIN) };
         if shut {
             self.openings.close(seen.first, seen.end);
         } else {

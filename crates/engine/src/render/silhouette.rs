@@ -36,6 +36,8 @@ pub(super) struct Silhouettes {
     pub tops: Vec<i16>,
     /// One past the last open rows.
     pub bottoms: Vec<i16>,
+    /// Columns whose masked texture has been drawn.
+    pub drawn: Vec<bool>,
 }
 
 impl Silhouettes {
@@ -44,6 +46,7 @@ impl Silhouettes {
         self.list.clear();
         self.tops.clear();
         self.bottoms.clear();
+        self.drawn.clear();
     }
 
     /// Adds a silhouette with the rows that are open in its columns.
@@ -51,6 +54,7 @@ impl Silhouettes {
         silhouette.rows = self.tops.len();
         self.tops.extend_from_slice(tops);
         self.bottoms.extend_from_slice(bottoms);
+        self.drawn.resize(self.tops.len(), false);
         self.list.push(silhouette);
     }
 }

@@ -46,6 +46,10 @@ pub struct View {
     pub(super) bar_columns: Box<[u16]>,
     /// Row of the status bar's art in each frame row of the bar.
     pub(super) bar_rows: Box<[u16]>,
+    /// For each column of the art 0..=320, the first frame column that shows it or one to its right.
+    pub(super) first_bar_column: Box<[u16]>,
+    /// For each row of the art 0..=32, the first row of the bar that shows it or one below.
+    pub(super) first_bar_row: Box<[u16]>,
 }
 
 impl View {
@@ -84,13 +88,16 @@ impl View {
             })
             .collect();
         let bar_height = height - base_view_rows;
-        let bar_columns = columns.iter().map(|&c| ((2 * c + 1) * BAR_ART_WIDTH / (2 * width)) as u16).collect();
-        let bar_rows = all_rows[view_rows..]
+        let bar_columns: Box<[u16]> = columns.iter().map(|&c| ((2 * c + 1) * BAR_ART_WIDTH / (2 * width)) as u16).collect();
+        let bar_rows: Box<[u16]> = all_rows[view_rows..]
             .iter()
             .map(|&r| ((2 * (r - base_view_rows) + 1) * BAR_ART_HEIGHT / (2 * bar_height)) as u16)
             .collect();
+        let first_at = |samples: &[u16], art: u32| samples.partition_point(|&at| u32::from(at) < art) as u16;
         View {
             size,
+            first_bar_column: (0..=BAR_ART_WIDTH).map(|art| first_at(&bar_columns, art)).collect(),
+            first_bar_row: (0..=BAR_ART_HEIGHT).map(|art| first_at(&bar_rows, art)).collect(),
             base_width: width,
             base_view_rows,
             view_rows,
@@ -117,6 +124,11 @@ impl View {
     #[must_use]
     pub fn view_rows(&self) -> usize {
         self.view_rows
+    }
+
+    /// Rows of the whole base grid, the status bar among them.
+    pub(super) fn base_rows(&self) -> u32 {
+        if self.size == FrameSize::LEARNER { u32::from(FrameSize::CLASSIC.height) } else { u32::from(self.size.height) }
     }
 
     /// Frame columns.

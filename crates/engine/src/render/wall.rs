@@ -114,13 +114,7 @@ pub(super) struct WallShader<'a> {
 
 impl WallShader<'_> {
     /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on.
-    pub fn draw<const DEPTH: bool, const CLASS: bool>(
-        &self,
-        frame: &mut Frame,
-        first: usize,
-        tops: &[i16],
-        bottoms: &[i16],
-    ) {
+    pub fn draw<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
         let picture = self.picture;
         let start = (self.hung_from * picture.inverse_height) >> 16;
         for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate() {
