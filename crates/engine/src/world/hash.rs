@@ -24,6 +24,7 @@ impl Clone for World {
             movers_run: self.movers_run,
             lights: self.lights.clone(),
             lights_run: self.lights_run,
+            touched: Vec::new(),
         }
     }
 
@@ -47,6 +48,7 @@ impl Clone for World {
             movers_run,
             lights,
             lights_run,
+            touched: _,
         } = source;
         if !Arc::ptr_eq(&self.map, map) {
             self.map = Arc::clone(map);

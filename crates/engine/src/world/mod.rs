@@ -79,6 +79,8 @@ pub struct World {
     lights: Vec<Light>,
     /// How many of them have run in this tic.
     lights_run: usize,
+    /// Scratch: the slots of the actors that touch a moving sector. No state.
+    touched: Vec<usize>,
 }
 
 impl World {
@@ -106,6 +108,7 @@ impl World {
             movers_run: 0,
             lights: Vec::new(),
             lights_run: 0,
+            touched: Vec::new(),
         };
         for number in 1..=4 {
             for thing in map.things.iter().filter(|thing| thing.kind == number) {
