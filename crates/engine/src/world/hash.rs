@@ -15,6 +15,7 @@ impl Clone for World {
             tic: self.tic,
             events: self.events.clone(),
             no_autoaim: self.no_autoaim,
+            monsters_drop_items: self.monsters_drop_items,
             awake: self.awake.clone(),
             free_slots: self.free_slots.clone(),
             fresh: self.fresh.clone(),
@@ -25,6 +26,8 @@ impl Clone for World {
             lights: self.lights.clone(),
             lights_run: self.lights_run,
             touched: Vec::new(),
+            scratch_crossings: Vec::new(),
+            scratch_slots: Vec::new(),
         }
     }
 
@@ -39,6 +42,7 @@ impl Clone for World {
             tic,
             events,
             no_autoaim,
+            monsters_drop_items,
             awake,
             free_slots,
             fresh,
@@ -49,6 +53,8 @@ impl Clone for World {
             lights,
             lights_run,
             touched: _,
+            scratch_crossings: _,
+            scratch_slots: _,
         } = source;
         if !Arc::ptr_eq(&self.map, map) {
             self.map = Arc::clone(map);
@@ -60,6 +66,7 @@ impl Clone for World {
         self.tic = *tic;
         self.events.clone_from(events);
         self.no_autoaim = *no_autoaim;
+        self.monsters_drop_items = *monsters_drop_items;
         self.awake.clone_from(awake);
         self.free_slots.clone_from(free_slots);
         self.fresh.clone_from(fresh);
@@ -81,6 +88,7 @@ impl Hash for World {
         self.rng.hash(state);
         self.tic.hash(state);
         self.no_autoaim.hash(state);
+        self.monsters_drop_items.hash(state);
         self.awake.hash(state);
         self.free_slots.hash(state);
         self.fresh.hash(state);
