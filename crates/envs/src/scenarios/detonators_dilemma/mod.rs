@@ -1,0 +1,4 @@
+//! Detonator's Dilemma.
+
+pub mod map;
+mod terrain;

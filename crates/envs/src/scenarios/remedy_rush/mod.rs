@@ -1,0 +1,3 @@
+//! Remedy Rush.
+
+pub mod map;
