@@ -142,14 +142,20 @@ fn ground(b: &mut MapBuilder) {
     let court = Style { floor: 288, floor_texture: "RROCK18", ..GROUND };
     let high = Style { floor: 336, floor_texture: "MFLR8_3", ..GROUND };
     b.rectangle(court, -1300, -1700, 600, 420);
-    b.polygon(
-        Style { floor: 272, floor_texture: "RROCK19", ..GROUND },
-        &[(-1300, -1700), (-800, -1700), (-800, -700), (-920, -560), (-1040, -620), (-1300, -480)],
-    );
-    b.polygon(
-        Style { floor: 264, floor_texture: "FLAT10", ..GROUND },
-        &[(-1300, -1300), (-1100, -1250), (-940, -1330), (-800, -1240), (-800, -1000), (-980, -940), (-1300, -1020)],
-    );
+    // The western court climbs southwards.
+    for (north, floor, floor_texture) in [
+        (-330, 312, "RROCK19"),
+        (-450, 336, "RROCK18"),
+        (-560, 360, "RROCK17"),
+        (-680, 384, "RROCK19"),
+        (-800, 400, "FLAT10"),
+        (-920, 416, "RROCK18"),
+    ] {
+        let edge = [(-1300, 0), (-1180, -30), (-1060, 20), (-940, -20), (-800, 15)].map(|(x, dy)| (x, north + dy));
+        let mut corners = edge.to_vec();
+        corners.extend([(-800, -1700), (-1300, -1700)]);
+        b.polygon(Style { floor, floor_texture, ..GROUND }, &corners);
+    }
     b.polygon(
         Style { floor_texture: "GRASS1", ..court },
         &[(-1100, -100), (-980, 20), (-700, 60), (-560, 300), (-800, 300), (-1180, 180)],
@@ -187,6 +193,31 @@ fn ground(b: &mut MapBuilder) {
             _ => ("RROCK17", "ASHWALL4"),
         };
         b.polygon(Style { floor: patch.floor, floor_texture, step, ..GROUND }, patch.outline);
+    }
+    // The pad where the player of level 1 starts.
+    let pad = Style { floor: 264, floor_texture: "MFLR8_3", step: "STONE7", ..GROUND };
+    b.polygon(
+        pad,
+        &[(1804, -1030), (1844, -1030), (1862, -1012), (1862, -974), (1844, -956), (1804, -956), (1786, -974), (1786, -1012)],
+    );
+    // The bays of the southern wall rise towards the back.
+    for (i, floor_texture) in ["RROCK19", "RROCK17", "FLAT10", "RROCK18", "RROCK17"].into_iter().enumerate() {
+        let (floor, north) = (264 + 8 * i as i32, -1108 - 26 * i as i32);
+        for (west, east) in [(-340, 160), (180, 690), (690, 1040)] {
+            let middle = (west + east) / 2;
+            b.polygon(
+                Style { floor, floor_texture, step: "ZIMMER8", ..GROUND },
+                &[
+                    (west, north - 12),
+                    ((west + middle) / 2, north + 6),
+                    (middle, north - 14),
+                    ((east + middle) / 2, north + 8),
+                    (east, north - 8),
+                    (east, -1300),
+                    (west, -1300),
+                ],
+            );
+        }
     }
 }
 
@@ -292,8 +323,6 @@ fn shades(b: &mut MapBuilder) {
 
 /// Ledges behind the bays of the southern wall: scenery that nobody reaches.
 fn bays(b: &mut MapBuilder) {
-    let apron = |floor, floor_texture| Style { floor, floor_texture, ..GROUND };
-    // What can be walked on rises a little towards the back.
     for (west, east, south) in [(-380, 160, -1300), (140, 680, -1300), (660, 1080, -1300)] {
         b.shade(SHADE, &[(west, south), (east, south), (east - 40, -1170), (west + 40, -1150)]);
     }
@@ -333,7 +362,7 @@ fn bays(b: &mut MapBuilder) {
         );
     }
     // The dead end in the south-west looks into a lower cave.
-    let pool = Style { ceiling: 400, light: 144, floor_texture: "NUKAGE1", ceiling_texture: "RROCK15", ..apron(280, "NUKAGE1") };
+    let pool = Style { ceiling: 400, light: 144, floor_texture: "NUKAGE1", ceiling_texture: "RROCK15", floor: 280, ..GROUND };
     b.polygon(pool, &[(-640, -1624), (-420, -1636), (-420, -1720), (-560, -1750), (-650, -1720)]);
     b.mark(Mark { middle: Some("MIDBARS3"), ..blocking }, &[(-640, -1624), (-420, -1636)]);
 }

@@ -11,7 +11,7 @@ pub(super) struct Patch {
 }
 
 /// The ground of the main hall.
-pub(super) const HALL: [Patch; 11] = [
+pub(super) const HALL: [Patch; 12] = [
     Patch {
         floor: 224,
         outline: &[
@@ -176,6 +176,20 @@ pub(super) const HALL: [Patch; 11] = [
             (934, -796),
             (924, -850),
             (868, -882),
+        ],
+    },
+    Patch {
+        floor: 264,
+        outline: &[
+            (-262, -880),
+            (-268, -922),
+            (-220, -936),
+            (-160, -896),
+            (-92, -918),
+            (-30, -896),
+            (28, -920),
+            (22, -876),
+            (-100, -860),
         ],
     },
     Patch {

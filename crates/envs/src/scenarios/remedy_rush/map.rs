@@ -187,11 +187,11 @@ impl Town {
         self.house(texture, &[(west, south), (east, south), (east, north), (west, north)]);
     }
 
-    /// `count` windows of 64 units, 128 apart, in a wall: shallow recesses too high to climb into, their back in
+    /// `count` windows of 64 units, 128 apart, in a wall: shallow recesses too high to jump into, their back in
     /// `pane`. (`x`, `y`) is the middle of the first window, on the wall.
     fn windows(&mut self, facing: Facing, x: i32, y: i32, count: i32, house: &'static str, pane: &'static str) {
         let style =
-            Style { floor: 48, ceiling: 112, light: 255, ceiling_texture: "FLAT19", step: house, lintel: house, ..GROUND };
+            Style { floor: 64, ceiling: 128, light: 255, ceiling_texture: "FLAT19", step: house, lintel: house, ..GROUND };
         let style = Style { wall: pane, floor_texture: "FLAT19", ..style };
         for i in 0..count {
             let along = 128 * i;
@@ -254,7 +254,7 @@ impl Town {
         self.block("MODWALL4", -496, 268, -336, 692);
         let b = &mut self.builder;
         b.polygon(ALCOVE, &[(-400, 308), (-336, 308), (-336, 652), (-448, 652), (-448, 356)]);
-        let shelf = Style { floor: 44, ceiling: 96, light: 240, tag: 0, step: "CRATE1", lintel: "MODWALL4", ..ALCOVE };
+        let shelf = Style { floor: 64, ceiling: 96, light: 240, tag: 0, step: "CRATE1", lintel: "MODWALL4", ..ALCOVE };
         b.polygon(
             Style { wall: "COMPUTE2", floor_texture: "FLAT5", ..shelf },
             &[(-448, 372), (-448, 636), (-472, 636), (-472, 372)],
@@ -265,7 +265,7 @@ impl Town {
         let b = &mut self.builder;
         b.rectangle(Style { ceiling: 112, ..ALCOVE }, -480, -92, -464, 140);
         for south in [-72, 0, 72] {
-            let cabinet = Style { floor: 32, ceiling: 96, light: 255, wall: "COMPUTE2", step: "METAL5", ..ALCOVE };
+            let cabinet = Style { floor: 64, ceiling: 96, light: 255, wall: "COMPUTE2", step: "METAL5", ..ALCOVE };
             b.rectangle(Style { tag: 0, ..cabinet }, -496, south, -480, south + 48);
         }
     }
@@ -346,7 +346,7 @@ impl Town {
         b.polygon(glass, &[(836, -484), (1020, -484), (1052, -516), (1052, -700), (1020, -740), (836, -740)]);
         b.rectangle(ROOM, 820, -636, 836, -580);
         b.rectangle(
-            Style { floor: 48, ceiling: 112, light: 255, step: "SILVER3", lintel: "SILVER3", wall: "LITEBLU4", ..glass },
+            Style { floor: 64, ceiling: 112, light: 255, step: "SILVER3", lintel: "SILVER3", wall: "LITEBLU4", ..glass },
             1052,
             -660,
             1060,
@@ -371,6 +371,10 @@ impl Town {
         b.rectangle(COUNTER, at(-252), -548, at(20), -512);
         b.rectangle(Style { floor: 72, step: "SILVER3", ..COUNTER }, at(-60), -580, at(20), -512);
         b.rectangle(Style { floor: 48, floor_texture: "CRATE1", step: "CRATE1", ..COUNTER }, at(-332), -704, at(-268), -652);
+        // Nobody climbs onto them.
+        let blocking = Mark { blocking: true, ..Mark::default() };
+        b.mark(blocking, &[(at(-252), -512), (at(-252), -548), (at(-60), -548), (at(-60), -580), (at(20), -580)]);
+        b.mark(blocking, &[(at(-332), -652), (at(-268), -652), (at(-268), -704)]);
         // A table to walk over, a rug and a lamp.
         let table = Style { floor: 20, floor_texture: "FLAT5", step: "CRATE1", ..ROOM };
         b.polygon(table, &[(at(-168), -696), (at(-108), -704), (at(-96), -612), (at(-156), -604)]);
@@ -427,6 +431,8 @@ impl Town {
         b.rectangle(passage, -236, -420, -80, -292);
         b.rectangle(Style { light: 255, ceiling_texture: "TLITE6_4", ..passage }, -180, -320, -136, -300);
         b.rectangle(Style { floor: 56, floor_texture: "FLAT19", step: "SUPPORT3", ..passage }, -188, -420, -132, -340);
+        let blocking = Mark { blocking: true, ..Mark::default() };
+        b.mark(blocking, &[(-188, -420), (-188, -340), (-132, -340), (-132, -420)]);
         // Low walls with railings: seen over, not climbed.
         let low_wall = Style { floor: 40, floor_texture: "FLAT19", step: "BRIKS20", ..GROUND };
         for (west, south, east, north) in [(-464, -108, -252, -92), (-236, -212, -220, -124), (-588, -492, -364, -476)] {
@@ -514,8 +520,8 @@ impl Town {
         for (kind, x, y) in [
             (24, 224.0, -28.0),
             (24, 754.0, 412.0),
-            (15, 754.0, 312.0),
-            (15, -236.0, 372.0),
+            (10, 754.0, 312.0),
+            (10, -236.0, 372.0),
             (81, 120.0, -420.0),
             (54, 60.0, 1360.0),
             (54, 388.0, 1360.0),
