@@ -109,7 +109,7 @@ impl Encoder {
 
     /// The last picture as a decoder shows it.
     #[cfg(test)]
-    pub fn decoded(&self) -> &Frame {
+    pub fn shown(&self) -> &Frame {
         &self.reference
     }
 
@@ -317,12 +317,12 @@ impl Encoder {
         self.decoded.planes[0].set_block(x, y, &decoded);
 
         let quantiser = Quantiser::new(chroma_quantiser(self.quantiser), intra);
-        for part in 0..2 {
+        for (part, predicted) in chroma.iter().enumerate() {
             let plane = part + 1;
             let source = self.source.planes[plane].block::<8>(x / 2, y / 2);
             let mut dc = [0; 4];
             for (index, levels) in residual.chroma[part].iter_mut().enumerate() {
-                let mut coefficients = forward(&difference(&source, &chroma[part], index % 2 * 4, index / 2 * 4));
+                let mut coefficients = forward(&difference(&source, predicted, index % 2 * 4, index / 2 * 4));
                 dc[index] = coefficients[0];
                 coefficients[0] = 0;
                 *levels = quantiser.quantise(&coefficients);
@@ -335,7 +335,7 @@ impl Encoder {
                 residual.chroma_pattern = residual.chroma_pattern.max(1);
             }
             let scaled = quantiser.scale_chroma_dc(&residual.chroma_dc[part]);
-            let mut decoded = chroma[part];
+            let mut decoded = *predicted;
             for (index, levels) in residual.chroma[part].iter().enumerate() {
                 let mut coefficients = quantiser.scale(levels);
                 coefficients[0] = scaled[index];

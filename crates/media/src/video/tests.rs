@@ -31,7 +31,7 @@ fn encode(path: &Path, width: usize, height: usize, frames: usize) -> Vec<plane:
     let mut expected = Vec::new();
     for k in 0..frames {
         writer.push(&scene(width, height, k)).unwrap();
-        expected.push(writer.encoder.decoded().clone());
+        expected.push(writer.encoder.shown().clone());
     }
     writer.finish().unwrap();
     expected
