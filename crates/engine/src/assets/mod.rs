@@ -2,6 +2,8 @@
 //!
 //! Everything is paletted (one byte a pixel); the renderer maps bytes through a light table, then the palette.
 
+mod embedded;
+
 /// A picture: column-major, `pixels[x * height + y]`, so that a wall or sprite column is contiguous.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
@@ -47,10 +49,24 @@ pub struct Assets {
     pub images: Vec<Image>,
     /// Textures and flats by name: first image, number of animation frames (consecutive images), tics a frame.
     pub textures: std::collections::BTreeMap<crate::map::TextureName, TextureEntry>,
+    /// Textures that stand in for names which [`Assets::textures`] lacks, so that a map by someone else is never full of holes.
+    pub fallbacks: Vec<TextureEntry>,
     /// Sprites, in the order of [`SPRITE_NAMES`].
     pub sprites: Vec<Sprite>,
     /// Status bar, font, face and sky pictures by lump name (`STBAR`, `STTNUM0`, `STFST00`, `SKY1`, ...).
     pub graphics: std::collections::BTreeMap<crate::map::TextureName, u32>,
+}
+
+impl Assets {
+    /// The texture or flat of a name; a name that the set lacks always gets the same one of [`Assets::fallbacks`].
+    #[must_use]
+    pub fn texture(&self, name: crate::map::TextureName) -> TextureEntry {
+        self.textures.get(&name).copied().unwrap_or_else(|| {
+            let hash = name.0.iter().fold(0u32, |hash, &byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
+            let first_picture = TextureEntry { first: 0, frames: 1, tics: 1 };
+            self.fallbacks.get(hash as usize % self.fallbacks.len().max(1)).copied().unwrap_or(first_picture)
+        })
+    }
 }
 
 /// Where a texture's pictures are.

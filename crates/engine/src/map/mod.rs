@@ -1,9 +1,21 @@
 //! Maps: the editable source (UDMF), the builder that authors it in Rust, and the built, immutable form.
 
+mod arrangement;
+mod blockmap;
+mod bsp;
+mod build;
+#[cfg(test)]
+mod build_tests;
+mod builder;
 mod built;
+mod error;
 mod source;
+mod tile_grid;
 
+pub use builder::{BuilderError, MapBuilder, Mark, Style};
 pub use built::{
     Blockmap, Line, LineFlags, Map, MapThing, Node, Sector, SectorId, Seg, Side, SideId, Subsector, TextureId, Vertex,
 };
+pub use error::MapError;
 pub use source::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+pub use tile_grid::TileGrid;

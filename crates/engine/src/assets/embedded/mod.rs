@@ -1,0 +1,112 @@
+//! The project's own picture set, painted by code when the program starts.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `palette`, `colour` | the 256 colours, the light tables, true colours and their rounding to the palette |
+//! | `noise`, `surface` | tileable noise; surfaces with relief that are lit, tinted and tiled |
+//! | `canvas`, `model` | two-dimensional painting; small solid models turned into sprites from eight sides |
+//! | `textures`, `sky` | walls, floors, fences, liquids, skies |
+//! | `sprites`, `hud` | things of the world; status bar, digits, faces, letters |
+//! | `gallery` | where the finished pictures are collected |
+//!
+//! Nothing is random from run to run and nothing depends on the platform's mathematical library, so the pictures, and
+//! every observation made of them, are the same bits everywhere.
+
+mod canvas;
+mod colour;
+mod gallery;
+mod hud;
+mod noise;
+mod palette;
+mod sprites;
+mod surface;
+mod textures;
+
+use super::Assets;
+use gallery::Gallery;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+impl Assets {
+    /// The project's own pictures: painted at the first call, shared ever after.
+    #[must_use]
+    pub fn embedded() -> Arc<Assets> {
+        static EMBEDDED: OnceLock<Arc<Assets>> = OnceLock::new();
+        EMBEDDED.get_or_init(|| Arc::new(paint())).clone()
+    }
+}
+
+fn paint() -> Assets {
+    let palette = palette::colours();
+    let mut gallery = Gallery::new(Assets {
+        light_tables: palette::light_tables(&palette),
+        palette,
+        images: Vec::new(),
+        textures: BTreeMap::new(),
+        fallbacks: Vec::new(),
+        sprites: Vec::new(),
+        graphics: BTreeMap::new(),
+    });
+    textures::paint(&mut gallery);
+    sprites::paint(&mut gallery);
+    hud::paint(&mut gallery);
+    gallery.assets
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Assets, Image};
+
+    #[test]
+    fn every_image_is_whole_and_every_reference_leads_to_one() {
+        let assets = Assets::embedded();
+        for image in &assets.images {
+            let size = image.width as usize * image.height as usize;
+            assert!(size > 0 && image.pixels.len() == size);
+            assert!(image.mask.as_ref().is_none_or(|mask| mask.len() == size && mask.contains(&1)));
+        }
+        for (name, entry) in &assets.textures {
+            assert!(entry.frames > 0 && entry.tics > 0, "{name:?}");
+            assert!(entry.first as usize + entry.frames as usize <= assets.images.len(), "{name:?}");
+        }
+        assert!(assets.graphics.values().all(|&index| (index as usize) < assets.images.len()));
+    }
+
+    #[test]
+    fn surfaces_of_volcanic_venture_have_the_mean_colours_of_the_specification() {
+        let assets = Assets::embedded();
+        let cases = [("LAVA1", [112, 35, 7]), ("FLOOR0_5", [97, 97, 97]), ("AQF052", [83, 83, 83]), ("A-BROK28", [120, 97, 77])];
+        for (name, expected) in cases {
+            let image: &Image = &assets.images[assets.texture(crate::map::TextureName::new(name)).first as usize];
+            for (channel, expected) in expected.into_iter().enumerate() {
+                let sum: i32 = image.pixels.iter().map(|&p| i32::from(assets.palette[p as usize][channel])).sum();
+                let mean = sum / image.pixels.len() as i32;
+                assert!((mean - expected).abs() <= 6, "{name}: channel {channel} is {mean}, not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn unknown_texture_names_get_a_lasting_stand_in() {
+        let assets = Assets::embedded();
+        let unknown = |name| assets.texture(crate::map::TextureName::new(name));
+        assert_eq!(unknown("NOSUCH1"), unknown("NOSUCH1"));
+        assert!((unknown("NOSUCH1").first as usize) < assets.images.len());
+        assert!(assets.fallbacks.len() > 1);
+    }
+
+    #[test]
+    fn light_tables_darken_step_by_step_and_the_first_changes_nothing() {
+        let assets = Assets::embedded();
+        let brightness = |table: usize| -> i32 {
+            assets.light_tables[table].iter().flat_map(|&p| assets.palette[p as usize]).map(i32::from).sum()
+        };
+        assert!((0..256).all(|i| assets.light_tables[0][i] == i as u8));
+        let full = brightness(0);
+        for table in 1..32 {
+            let expected = full * (32 - table as i32) / 32;
+            let off = (brightness(table) - expected).abs();
+            assert!(off < full / 30, "table {table} is off by {off} of {full}");
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Things of the world: items, decorations, creatures, effects and the weapons in the player's hands.
+
+mod bonus;
+
+use super::gallery::Gallery;
+
+/// Paints every sprite.
+pub(super) fn paint(gallery: &mut Gallery) {
+    bonus::paint(gallery);
+}
