@@ -6,8 +6,8 @@ mod environment;
 mod error;
 mod options;
 mod registry;
-mod vec_env;
 pub mod scenarios;
+mod vec_env;
 
 pub use action::{ActionGroup, ActionSpace, BUTTONS, DELTA_DEGREES, DeltaButton, parse_command};
 pub use batch::{Batch, Episode};
