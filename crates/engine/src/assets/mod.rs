@@ -91,8 +91,17 @@ pub const SPRITE_NAMES: [&str; 62] = [
     "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", // view weapons
 ];
 
-/// The index of a sprite name.
+/// The index of a sprite name; `const`, so that the state tables resolve their names while compiling.
 #[must_use]
-pub fn sprite_index(name: &str) -> Option<u8> {
-    SPRITE_NAMES.iter().position(|&n| n == name).map(|i| i as u8)
+pub const fn sprite_index(name: &str) -> Option<u8> {
+    let name = name.as_bytes();
+    let mut i = 0;
+    while i < SPRITE_NAMES.len() {
+        let other = SPRITE_NAMES[i].as_bytes();
+        if name.len() == 4 && name[0] == other[0] && name[1] == other[1] && name[2] == other[2] && name[3] == other[3] {
+            return Some(i as u8);
+        }
+        i += 1;
+    }
+    None
 }
