@@ -81,14 +81,14 @@ pub struct TextureEntry {
 }
 
 /// Four-letter sprite names; an actor's `sprite` is an index into this list.
-pub const SPRITE_NAMES: [&str; 62] = [
+pub const SPRITE_NAMES: [&str; 65] = [
     "BON1", "STIM", "MEDI", "BON2", "ROCK", "SHEL", "CELL", "CLIP", "PVIS", "PINS", "PMAP", "BPAK", "SUIT", "YKEY",
     "BSKU", // items
     "PIST", "SHOT", "SGN2", "MGUN", "LAUN", "PLAS", "BFUG", // weapons to pick up
     "HEAD", "POSS", "SPOS", "CPOS", "TROO", "SARG", "SKEL", "SKUL", // monsters
     "BAR1", "BEXP", "MISL", "PLSS", "PLSE", "BFS1", "BFE1", "PUFF", "BLUD", // effects
     "TLMP", "TLP2", "COL4", "COL2", "COL5", "ELEC", "TRE1", "SMIT", "TRE2", "POL5", "PLAY", "BRS1", "COL1", // decor, player
-    "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", // view weapons
+    "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", "SHT2", "PLSF", "BFGF", // view weapons
 ];
 
 /// The index of a sprite name; `const`, so that the state tables resolve their names while compiling.

@@ -152,6 +152,8 @@ pub struct Actor {
     pub steps_left: i32,
     /// A floating monster changed height in its last step because something blocked it.
     pub in_float: bool,
+    /// The monster backs off from a ledge: the usual test of drops is replaced (see `World::try_move`).
+    pub avoids_ledge: bool,
     /// Thing id of the patrol point that follows this one, 0 for none.
     pub next_goal: i32,
     /// Index of the player whose body this is; 255 for none.

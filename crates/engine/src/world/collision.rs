@@ -68,7 +68,7 @@ pub(crate) fn behind(line: &Line, x: Fixed, y: Fixed) -> bool {
 }
 
 /// Whether a line cuts the inside of the square of half side `radius` around (x, y).
-fn cuts(line: &Line, x: Fixed, y: Fixed, radius: Fixed) -> bool {
+pub(crate) fn cuts(line: &Line, x: Fixed, y: Fixed, radius: Fixed) -> bool {
     let (west, east, south, north) = (x - radius, x + radius, y - radius, y + radius);
     let [line_west, line_east, line_south, line_north] = line.bounds;
     if west >= line_east || east <= line_west || south >= line_north || north <= line_south {
@@ -301,7 +301,13 @@ impl World {
         if !dropoff && !actor.flags.any(ActorFlags::DROP_OFF.with(ActorFlags::FLOAT)) {
             let on_actor = actor.flags.any(ActorFlags::ON_ACTOR);
             let floor = if on_actor { actor.z.max(position.floor_z) } else { position.floor_z };
-            if floor - position.dropoff_z > actor.max_dropoff {
+            let too_deep = if actor.avoids_ledge {
+                // Backing off from a ledge: anything goes that is not another ledge.
+                actor.floor_z - position.floor_z > actor.max_dropoff || actor.dropoff_z - position.dropoff_z > actor.max_dropoff
+            } else {
+                floor - position.dropoff_z > actor.max_dropoff
+            };
+            if too_deep {
                 return (false, true);
             }
         }

@@ -15,6 +15,7 @@ impl Clone for World {
             tic: self.tic,
             events: self.events.clone(),
             no_autoaim: self.no_autoaim,
+            monsters_drop_items: self.monsters_drop_items,
             awake: self.awake.clone(),
             free_slots: self.free_slots.clone(),
             fresh: self.fresh.clone(),
@@ -24,6 +25,8 @@ impl Clone for World {
             movers_run: self.movers_run,
             lights: self.lights.clone(),
             lights_run: self.lights_run,
+            scratch_crossings: Vec::new(),
+            scratch_slots: Vec::new(),
         }
     }
 
@@ -38,6 +41,7 @@ impl Clone for World {
             tic,
             events,
             no_autoaim,
+            monsters_drop_items,
             awake,
             free_slots,
             fresh,
@@ -47,6 +51,8 @@ impl Clone for World {
             movers_run,
             lights,
             lights_run,
+            scratch_crossings: _,
+            scratch_slots: _,
         } = source;
         if !Arc::ptr_eq(&self.map, map) {
             self.map = Arc::clone(map);
@@ -58,6 +64,7 @@ impl Clone for World {
         self.tic = *tic;
         self.events.clone_from(events);
         self.no_autoaim = *no_autoaim;
+        self.monsters_drop_items = *monsters_drop_items;
         self.awake.clone_from(awake);
         self.free_slots.clone_from(free_slots);
         self.fresh.clone_from(fresh);
@@ -79,6 +86,7 @@ impl Hash for World {
         self.rng.hash(state);
         self.tic.hash(state);
         self.no_autoaim.hash(state);
+        self.monsters_drop_items.hash(state);
         self.awake.hash(state);
         self.free_slots.hash(state);
         self.fresh.hash(state);

@@ -9,32 +9,46 @@ mod actor_info;
 mod arena;
 mod collision;
 mod command;
+mod damage;
 mod event;
+mod explosion;
+mod face;
 mod hash;
-mod hooks;
+mod hitscan;
+mod inventory;
 mod light;
+mod missile;
+mod monster;
 mod movement;
 mod mover;
 mod patrol;
 mod pickup;
 mod player;
 mod sector;
+mod sight;
 mod slide;
 mod spawn;
 mod states;
 mod think;
 mod view;
 mod waggle;
+mod weapon;
+mod weapon_info;
 
 pub use actor::{Actor, ActorId, ActorKind};
 pub use actor_info::{ActorFlags, ActorInfo};
 pub use collision::{Move, Position, approximate_distance};
 pub use command::{Buttons, Command};
 pub use event::{DamageKind, Event};
+pub use explosion::BLAST;
+pub use face::{Face, FaceState};
+pub use inventory::{BLUE_SKULL, YELLOW_CARD};
 pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
 pub use sector::{SectorDamage, SectorState};
 pub use states::{Action, Animation, Frame, Phase, Picture, Then, animation, is_timed};
+pub use weapon::{Hands, WeaponState};
+pub use weapon_info::ammo;
 
 use crate::map::Map;
 use crate::math::{Fixed, Rng};
@@ -61,6 +75,8 @@ pub struct World {
     pub events: Vec<Event>,
     /// Monsters and weapons do not search for targets vertically or sideways (Collateral Damage).
     pub no_autoaim: bool,
+    /// Killed soldiers drop their weapon or clip.
+    pub monsters_drop_items: bool,
     /// Whether each slot's actor runs every tic; false for those at rest, players' bodies, fresh actors and free slots.
     awake: Vec<bool>,
     /// Free slots, the last freed on top.
@@ -79,6 +95,10 @@ pub struct World {
     lights: Vec<Light>,
     /// How many of them have run in this tic.
     lights_run: usize,
+    /// Space for searches along a path; empty between uses in meaning, not in capacity.
+    scratch_crossings: Vec<sight::Crossing>,
+    /// Space for the victims of a blast.
+    scratch_slots: Vec<u16>,
 }
 
 impl World {
@@ -97,6 +117,7 @@ impl World {
             tic: 0,
             events: Vec::new(),
             no_autoaim: false,
+            monsters_drop_items: false,
             awake: Vec::new(),
             free_slots: Vec::new(),
             fresh: Vec::new(),
@@ -106,6 +127,8 @@ impl World {
             movers_run: 0,
             lights: Vec::new(),
             lights_run: 0,
+            scratch_crossings: Vec::new(),
+            scratch_slots: Vec::new(),
         };
         for number in 1..=4 {
             for thing in map.things.iter().filter(|thing| thing.kind == number) {

@@ -1,7 +1,7 @@
 //! Players: what a human or an agent has beyond its body.
 
 use super::view::VIEW_HEIGHT;
-use super::{ActorId, Buttons};
+use super::{ActorId, Buttons, FaceState, WeaponState, ammo};
 use crate::math::Fixed;
 
 /// Tics after the start of a map during which no input has effect; scenarios may change a player's count.
@@ -12,7 +12,6 @@ pub const SPAWN_FREEZE_TICS: u32 = 8;
 #[repr(u8)]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Weapon {
-    Fist,
     Pistol,
     Shotgun,
     SuperShotgun,
@@ -110,8 +109,10 @@ pub struct Player {
     pub bob_velocity: [Fixed; 2],
     /// Feet were on a floor or an actor when the player last thought.
     pub on_ground: bool,
-    /// Face of the status bar: 0..=4 by health band combined with glance; drawn by the renderer.
-    pub face: u8,
+    /// What the hands and the weapon are doing.
+    pub weapon_state: WeaponState,
+    /// Face of the status bar; the band of health comes from [`World::face_band`](super::World::face_band).
+    pub face_state: FaceState,
     /// Monsters killed.
     pub kills: u32,
 }
@@ -129,7 +130,7 @@ impl Player {
             speed: Fixed::ONE,
             armor: 0,
             ammo: [0; 4],
-            max_ammo: [200, 50, 50, 300],
+            max_ammo: ammo::MOST,
             weapons: 0,
             weapon: None,
             sprites: [None; 2],
@@ -155,7 +156,8 @@ impl Player {
             crouch_view_offset: Fixed::ZERO,
             bob_velocity: [Fixed::ZERO; 2],
             on_ground: true,
-            face: 0,
+            weapon_state: WeaponState::default(),
+            face_state: FaceState::default(),
             kills: 0,
         }
     }

@@ -4,7 +4,7 @@
 //! (items, decor, a barrel at rest) need no counter: their frame is a function of the tics since they appeared, so that
 //! a hundred items at rest cost nothing per tic.
 
-use super::{Actor, ActorKind};
+use super::{Actor, ActorFlags, ActorKind, DamageKind, World};
 use crate::assets::sprite_index;
 
 /// Which of its animations an actor is in.
@@ -33,8 +33,10 @@ pub enum Action {
     Chase,
     /// A dying monster stops being in the way.
     StopBlocking,
-    /// Bursts: a blast with the damage of its kind.
+    /// Bursts: a blast.
     Explode,
+    /// A rocket leaves a puff of smoke.
+    Smoke,
 }
 
 /// A picture and how long it is shown.
@@ -187,7 +189,7 @@ const fn idle_of(kind: ActorKind) -> Animation {
         K::Revenant => stand!("SKEL", b"AB", false),
         K::LostSoul => stand!("SKUL", b"AB", true),
         K::ExplosiveBarrel => idle!("BAR1", b"AB", 6),
-        K::Rocket => idle!("MISL", b"A", -1, true),
+        K::Rocket => once!(Loop: act(bright("MISL", b'A', 4), Action::Smoke)),
         K::RocketSmokeTrail => once!(Vanish: still("PUFF", b'B', 4), still("PUFF", b'C', 4), still("PUFF", b'B', 4),
             still("PUFF", b'C', 4), still("PUFF", b'D', 4)),
         K::PlasmaBall => idle!("PLSS", b"AB", 6, true),
@@ -336,6 +338,74 @@ pub fn animation(kind: ActorKind, phase: Phase) -> &'static Animation {
 #[must_use]
 pub fn is_timed(kind: ActorKind, phase: Phase) -> bool {
     phase == Phase::Idle && ANIMATIONS[kind as usize].idle_is_timed
+}
+
+impl World {
+    /// Starts the idle animation of a new actor; the end of [`World::spawn`]. Nothing is done on its first frame.
+    pub(super) fn start_animation(&mut self, slot: usize) {
+        let actor = &mut self.actors[slot];
+        (actor.phase, actor.step) = (Phase::Idle, 0);
+        actor.tics = animation(actor.kind, Phase::Idle).frames[0].tics;
+    }
+
+    /// One tic of an actor's animation; called every tic after its move, unless the animation is timed. May remove it.
+    pub(super) fn tick_animation(&mut self, slot: usize) {
+        let actor = &mut self.actors[slot];
+        if actor.tics < 0 {
+            return;
+        }
+        actor.tics -= 1;
+        if actor.tics > 0 {
+            return;
+        }
+        let animation = animation(actor.kind, actor.phase);
+        let next = usize::from(actor.step) + 1;
+        if next < animation.frames.len() {
+            return self.enter_frame(slot, next as u8);
+        }
+        match animation.then {
+            Then::Loop => self.enter_frame(slot, 0),
+            Then::Walk => self.set_phase(slot, Phase::Walk),
+            Then::Vanish => self.remove(self.id_of(slot)),
+        }
+    }
+
+    /// Puts an actor into the first frame of a phase and does what that frame does.
+    pub(super) fn set_phase(&mut self, slot: usize, phase: Phase) {
+        self.actors[slot].phase = phase;
+        self.wake_slot(slot);
+        self.enter_frame(slot, 0);
+    }
+
+    fn enter_frame(&mut self, slot: usize, step: u8) {
+        let actor = &mut self.actors[slot];
+        let frame = &animation(actor.kind, actor.phase).frames[usize::from(step)];
+        (actor.step, actor.tics) = (step, frame.tics);
+        match frame.action {
+            Action::None => {}
+            Action::Look => self.look(slot),
+            Action::Chase => self.chase(slot),
+            Action::StopBlocking => self.actors[slot].flags.set(ActorFlags::SOLID, false),
+            Action::Smoke => self.leave_smoke(slot),
+            Action::Explode => {
+                let (kind, origin) = (actor.kind, actor.origin);
+                let by = if kind == K::ExplosiveBarrel { DamageKind::Barrel } else { DamageKind::Splash };
+                self.blast(slot, origin, by);
+            }
+        }
+    }
+
+    /// Takes 0 to 3 tics off an actor's frame, but leaves 1, so that puffs and explosions do not all look alike.
+    pub(super) fn shorten_frame(&mut self, slot: usize) {
+        let cut = (self.rng.byte() & 3) as i16;
+        let actor = &mut self.actors[slot];
+        actor.tics = (actor.tics - cut).max(1);
+    }
+
+    /// Puts an actor into a later frame of its animation.
+    pub(super) fn skip_to_frame(&mut self, slot: usize, step: u8) {
+        self.enter_frame(slot, step);
+    }
 }
 
 impl Actor {

@@ -74,6 +74,7 @@ impl World {
         self.calculate_view(index);
         self.damage_by_sector(index, slot);
         self.tick_weapon(index);
+        self.tick_face(index);
         self.count_down(index);
     }
 
