@@ -36,9 +36,15 @@ impl Trace {
             return None;
         }
         let wide = |value: Fixed| i64::from(value.0);
-        let denominator = (wide(line.dy) * wide(self.dx) - wide(line.dx) * wide(self.dy)) >> 16;
-        let numerator = wide(line.v1.x - self.x) * wide(line.dy) + wide(self.y - line.v1.y) * wide(line.dx);
-        let fraction = if denominator == 0 { 0 } else { numerator / denominator };
+        let denominator = i128::from(wide(line.dy) * wide(self.dx) - wide(line.dx) * wide(self.dy));
+        let numerator = i128::from(wide(line.v1.x - self.x) * wide(line.dy) + wide(self.y - line.v1.y) * wide(line.dx)) << 16;
+        // Rounded to the nearest 65536th, as the recorded contacts are.
+        let fraction = if denominator == 0 {
+            0
+        } else {
+            ((2 * numerator.abs() + denominator.abs()) / (2 * denominator.abs()) * numerator.signum() * denominator.signum())
+                as i64
+        };
         (0..=1 << 16).contains(&fraction).then_some(Fixed(fraction as i32))
     }
 }
