@@ -2,6 +2,7 @@
 
 mod args;
 mod commands;
+mod episode_lines;
 mod failure;
 mod settings;
 
@@ -19,11 +20,6 @@ fn main() -> ExitCode {
         Command::Envs(args) => commands::envs::run(&args),
         Command::Rollout(args) => commands::rollout::run(&args),
         Command::Trace(args) => commands::trace::run(&args),
-        Command::Bench(args) => commands::bench::run(&args),
-        Command::Render(args) => commands::render::run(&args),
-        Command::Train(args) => commands::train::run(&args),
-        Command::Eval(args) => commands::eval::run(&args),
-        Command::ExportWad(args) => commands::export_wad::run(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

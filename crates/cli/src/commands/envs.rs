@@ -29,7 +29,8 @@ pub fn run(args: &EnvsArgs) -> Outcome {
             let sizes = |space: &ActionSpace| {
                 let sizes: Vec<String> = space.sizes().iter().map(usize::to_string).collect();
                 let total: usize = space.sizes().iter().product();
-                let deltas = if space.deltas.is_empty() { String::new() } else { format!(" + {} continuous", space.deltas.len()) };
+                let deltas =
+                    if space.deltas.is_empty() { String::new() } else { format!(" + {} continuous", space.deltas.len()) };
                 format!("{} = {total}{deltas}", sizes.join("x"))
             };
             writeln!(out, "{:<28} {budget:>6}  {:<40} {}", id.to_string(), sizes(&simplified), sizes(&full))?;

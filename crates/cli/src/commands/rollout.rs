@@ -10,9 +10,6 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     // A fixed policy looks at nothing, so nothing is drawn and the size does not matter.
     let options = settings::env_options(&args.env_args, Size::LEARNER)?;
     let mut lines = episode_lines::EpisodeLines::new(args.json);
-    if let Some(run) = args.policy.strip_prefix("run:") {
-        return super::eval::play(std::path::Path::new(run), Some((&args.env, &options)), args.episodes, args.seed, false, &mut lines);
-    }
     let policy: Policy = args.policy.parse().map_err(Failure::bad)?;
     let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
     for i in 0..args.episodes {

@@ -12,8 +12,18 @@ use std::path::Path;
 
 /// The columns after `tic` and `action`.
 const COLUMNS: [&str; 12] = [
-    "POSITION_X", "POSITION_Y", "POSITION_Z", "ANGLE", "PITCH", "VELOCITY_X", "VELOCITY_Y", "VELOCITY_Z", "VIEW_HEIGHT",
-    "HEALTH", "ON_GROUND", "CAMERA_POSITION_Z",
+    "POSITION_X",
+    "POSITION_Y",
+    "POSITION_Z",
+    "ANGLE",
+    "PITCH",
+    "VELOCITY_X",
+    "VELOCITY_Y",
+    "VELOCITY_Z",
+    "VIEW_HEIGHT",
+    "HEALTH",
+    "ON_GROUND",
+    "CAMERA_POSITION_Z",
 ];
 
 /// Runs the command.
@@ -26,7 +36,11 @@ pub fn run(args: &TraceArgs) -> Outcome {
     env.reset(args.seed);
     while env.world().tic < args.after {
         if env.step_buttons(Command::default()).ended() {
-            return Err(Failure::bad(format!("--after {}: the episode ends at tic {}; give fewer tics", args.after, env.world().tic)));
+            return Err(Failure::bad(format!(
+                "--after {}: the episode ends at tic {}; give fewer tics",
+                args.after,
+                env.world().tic
+            )));
         }
     }
     if let Some(Start { position: [x, y, z], angle, pitch }) = start {
@@ -62,36 +76,49 @@ struct Start {
 
 fn parse_start(text: &str) -> Result<Start, Failure> {
     let wrong = || Failure::bad(format!("--start '{text}': write X,Y,Z,ANGLE[,PITCH] in map units (below 32768) and degrees"));
-    let numbers: Vec<f64> = text.split(',').map(|part| part.trim().parse::<f64>()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let numbers: Vec<f64> =
+        text.split(',').map(|part| part.trim().parse::<f64>()).collect::<Result<_, _>>().map_err(|_| wrong())?;
     let (position, angle, pitch) = match numbers[..] {
         [x, y, z, angle] => ([x, y, z], angle, 0.0),
         [x, y, z, angle, pitch] => ([x, y, z], angle, pitch),
         _ => return Err(wrong()),
     };
-    if position.iter().any(|value| !(-32768.0..32768.0).contains(value)) || !(-360.0..=360.0).contains(&angle) || !(-90.0..=90.0).contains(&pitch) {
+    if position.iter().any(|value| !(-32768.0..32768.0).contains(value))
+        || !(-360.0..=360.0).contains(&angle)
+        || !(-90.0..=90.0).contains(&pitch)
+    {
         return Err(wrong());
     }
-    Ok(Start { position: position.map(Fixed::from_f64), angle: Angle::from_degrees(angle), pitch: (pitch / 360.0 * 4_294_967_296.0) as i32 })
+    Ok(Start {
+        position: position.map(Fixed::from_f64),
+        angle: Angle::from_degrees(angle),
+        pitch: (pitch / 360.0 * 4_294_967_296.0) as i32,
+    })
 }
 
 /// The actions of a CSV file's `action` column, without its `start` and `FINISHED` rows.
 fn read_actions(path: &Path) -> Result<Vec<(String, Command)>, Failure> {
     let name = path.display();
-    let bytes = hasard_media::read_limited(path, 1 << 26).map_err(Failure::bad)?;
-    let text = String::from_utf8(bytes).map_err(|_| Failure::bad(format!("{name}: not text; give a CSV file with an 'action' column")))?;
+    let bytes = hasard_media::files::read_limited(path, 1 << 26).map_err(Failure::bad)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Failure::bad(format!("{name}: not text; give a CSV file with an 'action' column")))?;
     let mut lines = text.lines();
     let header = lines.next().unwrap_or_default();
     let column = header.split(',').position(|field| field.trim() == "action");
-    let column = column.ok_or_else(|| Failure::bad(format!("{name}: its first line names no 'action' column; add a header line such as tic,action")))?;
+    let column = column.ok_or_else(|| {
+        Failure::bad(format!("{name}: its first line names no 'action' column; add a header line such as tic,action"))
+    })?;
     let mut actions = Vec::new();
     for (number, line) in lines.enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let action = line.split(',').nth(column).map(str::trim);
-        let action = action.ok_or_else(|| Failure::bad(format!("{name} line {}: no 'action' field; every line needs one", number + 2)))?;
+        let action =
+            action.ok_or_else(|| Failure::bad(format!("{name} line {}: no 'action' field; every line needs one", number + 2)))?;
         match action {
             "start" => {}
             "FINISHED" => break,
             _ => {
-                let command = parse_command(action).map_err(|error| Failure::bad(format!("{name} line {}: {error}", number + 2)))?;
+                let command =
+                    parse_command(action).map_err(|error| Failure::bad(format!("{name} line {}: {error}", number + 2)))?;
                 actions.push((action.to_string(), command));
             }
         }
