@@ -81,3 +81,18 @@ impl Default for EnvOptions {
         }
     }
 }
+
+impl EnvOptions {
+    /// What is wrong with the options, if anything.
+    pub fn check(&self) -> Result<(), crate::EnvError> {
+        let within = |option, given: usize, least: usize, most: usize| {
+            let allowed = format!("{least}..={most}");
+            let fits = (least..=most).contains(&given);
+            if fits { Ok(()) } else { Err(crate::EnvError::Option { option, given: given.to_string(), allowed }) }
+        };
+        within("frame_skip", self.frame_skip as usize, 1, 35)?;
+        within("frame_stack", self.frame_stack, 1, 16)?;
+        within("frame width", usize::from(self.size.width), 64, 1920)?;
+        within("frame height", usize::from(self.size.height), 48, 1080)
+    }
+}
