@@ -133,7 +133,6 @@ impl BarState {
 /// The ammunition of a weapon, as an index into [`Player::ammo`].
 fn ammo_of(weapon: Weapon) -> Option<usize> {
     match weapon {
-        Weapon::Fist => None,
         Weapon::Pistol | Weapon::Chaingun => Some(0),
         Weapon::Shotgun | Weapon::SuperShotgun => Some(1),
         Weapon::RocketLauncher => Some(2),
