@@ -14,6 +14,8 @@ mod openings;
 mod palette;
 mod picture;
 mod plane;
+#[cfg(test)]
+mod render_tests;
 mod renderer;
 mod scene;
 mod seg;

@@ -22,7 +22,7 @@ impl Openings {
         self.bottom.resize(width, rows as i16);
         self.open.clear();
         self.open.resize(width.div_ceil(64), u64::MAX);
-        if width % 64 != 0 {
+        if !width.is_multiple_of(64) {
             self.open[width / 64] = (1 << (width % 64)) - 1;
         }
         self.any_closed = false;

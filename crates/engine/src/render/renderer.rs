@@ -166,11 +166,11 @@ impl Renderer {
     /// What is drawn over the world: weapon, status bar, flashes.
     fn draw_overlay<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera, world: &World, player: usize) {
         let (scene, view) = (&self.scene, &self.view);
+        let state = BarState::of_player(world, player);
         let player = &world.players[player];
-        let body = world.get(player.actor);
-        let level = body.and_then(|body| world.sectors.get(body.sector.0 as usize)).map_or(0, |sector| sector.light);
+        let level =
+            world.get(player.actor).and_then(|body| world.sectors.get(body.sector.0 as usize)).map_or(0, |sector| sector.light);
         weapon::draw::<DEPTH, CLASS>(&mut self.frame, scene, view, camera, player, i32::from(level));
-        let state = BarState::of_player(player, body, world.tic);
         self.status_bar.update(&mut self.frame, &scene.bar, view, state);
         let tint = Tint::of_player(player, self.options.green_goggles);
         if tint != self.tint {

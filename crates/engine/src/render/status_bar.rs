@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::picture::MaskedPicture;
 use crate::assets::Assets;
 use crate::map::TextureName;
-use crate::world::{Actor, Player, Weapon};
+use crate::world::{Face, Weapon, World};
 
 /// The pictures of the bar; what a set lacks is not drawn.
 #[derive(Clone, Debug)]
@@ -17,8 +17,8 @@ pub(super) struct BarArt {
     percent: Option<MaskedPicture>,
     grey_digits: [Option<MaskedPicture>; 10],
     yellow_digits: [Option<MaskedPicture>; 10],
-    /// By band of health, then by [`Mood`].
-    faces: [[Option<MaskedPicture>; Mood::COUNT]; FACE_BANDS],
+    /// By band of health: three glances, outcry, grin, rage.
+    faces: [[Option<MaskedPicture>; 6]; FACE_BANDS],
     dead_face: Option<MaskedPicture>,
     /// Blue, yellow and red cards, then skulls.
     keys: [Option<MaskedPicture>; 6],
@@ -45,8 +45,9 @@ impl BarArt {
                 std::array::from_fn(|mood| {
                     find(match mood {
                         0..=2 => format!("STFST{band}{mood}"),
-                        3 => format!("STFKILL{band}"),
-                        _ => format!("STFOUCH{band}"),
+                        3 => format!("STFOUCH{band}"),
+                        4 => format!("STFEVL{band}"),
+                        _ => format!("STFKILL{band}"),
                     })
                 })
             }),
@@ -54,31 +55,15 @@ impl BarArt {
             keys: std::array::from_fn(|i| find(format!("STKEYS{i}"))),
         }
     }
-}
 
-/// What the face does.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Mood {
-    /// Looks right, ahead or left.
-    Glance(u8),
-    /// Is being hurt.
-    Rage,
-    /// Is being hurt much.
-    Ouch,
-}
-
-impl Mood {
-    const COUNT: usize = 5;
-    /// Tics between glances.
-    const GLANCE_TICS: u32 = 17;
-    /// Damage counter from which a blow is a heavy one.
-    const HEAVY_BLOW: u8 = 20;
-
-    fn index(self) -> usize {
-        match self {
-            Mood::Glance(direction) => usize::from(direction),
-            Mood::Rage => 3,
-            Mood::Ouch => 4,
+    fn face(&self, face: Face, band: usize) -> Option<&MaskedPicture> {
+        let moods = &self.faces[band.min(FACE_BANDS - 1)];
+        match face {
+            Face::Glance(direction) => moods[usize::from(direction.min(2))].as_ref(),
+            Face::Ouch => moods[3].as_ref(),
+            Face::Grin => moods[4].as_ref(),
+            Face::Rage => moods[5].as_ref(),
+            Face::Dead => self.dead_face.as_ref(),
         }
     }
 }
@@ -88,9 +73,10 @@ impl Mood {
 pub(super) struct BarState {
     ammo: Option<i32>,
     health: i32,
-    arms: u8,
-    dead: bool,
-    mood: Mood,
+    /// Weapons owned, by slots 2 to 7.
+    arms: [bool; 6],
+    face: Face,
+    face_band: usize,
     armour: i32,
     keys: u8,
     stock: [[i32; 2]; 4],
@@ -101,48 +87,29 @@ const LARGEST: i32 = 999;
 
 impl BarState {
     /// What a player's bar shows.
-    pub fn of_player(player: &Player, body: Option<&Actor>, tic: u32) -> BarState {
-        let health = body.map_or(0, |body| body.health).clamp(0, LARGEST);
-        let owned = |weapon: Weapon| player.weapons >> (weapon as u16) & 1 != 0;
-        let slots = [
-            owned(Weapon::Pistol),
-            owned(Weapon::Shotgun) || owned(Weapon::SuperShotgun),
-            owned(Weapon::Chaingun),
-            owned(Weapon::RocketLauncher),
-            owned(Weapon::PlasmaRifle),
-            owned(Weapon::Bfg9000),
-        ];
-        let mood = match player.damage_count {
-            0 => Mood::Glance(glance(tic / Mood::GLANCE_TICS)),
-            count if count > Mood::HEAVY_BLOW => Mood::Ouch,
-            _ => Mood::Rage,
-        };
+    pub fn of_player(world: &World, index: usize) -> BarState {
+        let player = &world.players[index];
+        let health = world.get(player.actor).map_or(0, |body| body.health).clamp(0, LARGEST);
+        let arms = [
+            Weapon::Pistol.bit(),
+            Weapon::Shotgun.bit() | Weapon::SuperShotgun.bit(),
+            Weapon::Chaingun.bit(),
+            Weapon::RocketLauncher.bit(),
+            Weapon::PlasmaRifle.bit(),
+            Weapon::Bfg9000.bit(),
+        ]
+        .map(|bits| player.weapons & bits != 0);
         BarState {
-            ammo: player.weapon.and_then(ammo_of).map(|kind| player.ammo[kind].clamp(0, LARGEST)),
+            ammo: player.weapon.map(|weapon| player.ammo[weapon.ammo_type()].clamp(0, LARGEST)),
             health,
-            arms: (0..6).fold(0, |bits, i| bits | u8::from(slots[i]) << i),
-            dead: player.dead,
-            mood,
+            arms,
+            face: player.face_state.shown,
+            face_band: usize::from(world.face_band(index)),
             armour: player.armor.clamp(0, LARGEST),
             keys: player.keys,
             stock: std::array::from_fn(|i| [player.ammo[i], player.max_ammo[i]].map(|n| n.clamp(0, LARGEST))),
         }
     }
-}
-
-/// The ammunition of a weapon, as an index into [`Player::ammo`].
-fn ammo_of(weapon: Weapon) -> Option<usize> {
-    match weapon {
-        Weapon::Pistol | Weapon::Chaingun => Some(0),
-        Weapon::Shotgun | Weapon::SuperShotgun => Some(1),
-        Weapon::RocketLauncher => Some(2),
-        Weapon::PlasmaRifle | Weapon::Bfg9000 => Some(3),
-    }
-}
-
-/// Where the face looks in the `n`th stretch of time: of no consequence, so not drawn from the world's stream.
-fn glance(n: u32) -> u8 {
-    ((n.wrapping_mul(0x9E37_79B1) >> 16) % 3) as u8
 }
 
 /// Columns of the art that each part takes: ammunition, health, arms, face, armour, keys, stock.
@@ -191,7 +158,7 @@ impl StatusBar {
             changed(|a, b| a.ammo == b.ammo),
             changed(|a, b| a.health == b.health),
             changed(|a, b| a.arms == b.arms),
-            changed(|a, b| (face_band(a), a.mood, a.dead) == (face_band(b), b.mood, b.dead)),
+            changed(|a, b| (a.face, a.face_band) == (b.face, b.face_band)),
             changed(|a, b| a.armour == b.armour),
             changed(|a, b| a.keys == b.keys),
             changed(|a, b| a.stock == b.stock),
@@ -209,14 +176,14 @@ impl StatusBar {
         }
         if redraw[2] {
             for slot in 0..6 {
-                let digits = if state.arms >> slot & 1 != 0 { &art.yellow_digits } else { &art.grey_digits };
+                let digits = if state.arms[slot] { &art.yellow_digits } else { &art.grey_digits };
                 let (x, y) = (111 + 12 * (slot as i32 % 3), 4 + 10 * (slot as i32 / 3));
                 draw(pixels, view, digits[slot + 2].as_ref(), x, y);
             }
         }
         if redraw[3] {
-            let face = if state.dead { &art.dead_face } else { &art.faces[face_band(&state)][state.mood.index()] };
-            draw(pixels, view, face.as_ref(), PARTS[3][0] as i32, 0);
+            let face = art.face(state.face, state.face_band);
+            draw(pixels, view, face, PARTS[3][0] as i32, 0);
         }
         if redraw[4] {
             number(pixels, view, &art.big_digits, state.armour, ARMOUR_END, NUMBER_ROW);
@@ -238,11 +205,6 @@ impl StatusBar {
             }
         }
     }
-}
-
-/// Which face a state of health has, 0 the healthiest.
-fn face_band(state: &BarState) -> usize {
-    ((100 - state.health.min(100)) as usize * FACE_BANDS / 101).min(FACE_BANDS - 1)
 }
 
 /// Draws a number whose last digit ends left of art column `end`.
