@@ -1,11 +1,14 @@
 //! The single environment.
 
+use crate::eye::Eye;
 use crate::game::Game;
 use crate::scenarios::outcome::MOST_TERMS;
 use crate::scenarios::{self, Rules};
-use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Episode, Scenario, Step};
+use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Episode, Scenario, Step};
+use hasard_engine::assets::Assets;
 use hasard_engine::map::Map;
 use hasard_engine::math::Rng;
+use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, View};
 use hasard_engine::world::{Command, World};
 use std::sync::Arc;
 
@@ -21,6 +24,8 @@ pub(crate) struct Blueprint {
     end_tic: u32,
     /// The world before its first tic.
     template: Game,
+    scene: Arc<Scene>,
+    view: Arc<View>,
 }
 
 /// Length of an episode, in tics after its first observation.
@@ -33,6 +38,7 @@ impl Blueprint {
         let (source, textures) = scenarios::map_source(id, options.rules, options.hard)?;
         let map = Map::build(&source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
         let rules = Rules::new(id, options.rules, options.hard, &map)?;
+        let scene = Scene::new(&map, options.assets.clone().unwrap_or_else(Assets::embedded));
         // Collateral Damage shows itself late, once the weapon is nearly up, and ends by the clock of the level.
         let (start_tic, end_tic) = match id.scenario {
             Scenario::CollateralDamage => (16, EPISODE_TICS),
@@ -46,8 +52,15 @@ impl Blueprint {
             start_tic,
             end_tic,
             template: Game::new(World::new(Arc::new(map), 0), rules),
+            scene: Arc::new(scene),
+            view: Arc::new(view(options.size)?),
         })
     }
+}
+
+fn view(size: FrameSize) -> Result<View, EnvError> {
+    let allowed = "64x48 to 1920x1080".to_string();
+    View::new(size).map_err(|_| EnvError::Option { option: "the frame size", given: size.to_string(), allowed })
 }
 
 /// An episode's sums.
@@ -66,6 +79,7 @@ pub struct Snapshot {
     seed: u64,
     totals: Totals,
     last: Step,
+    memory: (Vec<u8>, usize),
 }
 
 /// One world with its task.
@@ -88,6 +102,7 @@ pub struct Env {
     totals: Totals,
     last: Step,
     last_costs: [f64; MOST_TERMS],
+    eye: Eye,
 }
 
 impl Env {
@@ -104,8 +119,17 @@ impl Env {
 
     fn of(blueprint: Arc<Blueprint>) -> Env {
         let game = blueprint.template.clone();
-        let mut env =
-            Env { game, seed: 0, totals: Totals::default(), last: Step::default(), last_costs: [0.0; MOST_TERMS], blueprint };
+        let (scene, view) = (Arc::clone(&blueprint.scene), Arc::clone(&blueprint.view));
+        let eye = Eye::new(scene, view, &blueprint.options, blueprint.template.rules.green_goggles());
+        let mut env = Env {
+            blueprint,
+            game,
+            seed: 0,
+            totals: Totals::default(),
+            last: Step::default(),
+            last_costs: [0.0; MOST_TERMS],
+            eye,
+        };
         env.reset(0);
         env
     }
@@ -145,6 +169,7 @@ impl Env {
         self.totals = Totals::default();
         self.last = Step::default();
         self.last_costs = [0.0; MOST_TERMS];
+        self.eye.open(&self.game.world);
     }
 
     /// Holds an action for `frame_skip` tics. Parts beyond the action space count as pressing nothing.
@@ -177,7 +202,32 @@ impl Env {
         self.totals.episode_return += self.last.reward;
         self.totals.cost += cost;
         self.totals.costs.iter_mut().zip(&self.last_costs).for_each(|(total, cost)| *total += cost);
+        self.eye.blink(&self.game.world);
         self.last
+    }
+
+    /// Shape of an observation: height, width, channels or channels, height, width, as chosen.
+    #[must_use]
+    pub fn observation_shape(&self) -> [usize; 3] {
+        self.eye.shape()
+    }
+
+    /// Draws the observation of the present state.
+    ///
+    /// # Panics
+    /// If `out` is not as long as the product of the observation shape.
+    pub fn observe(&mut self, out: &mut [u8]) {
+        self.eye.observe(&self.game.world, out);
+    }
+
+    /// Draws the present as the observation's size shows it, with depth and labels where asked for, for tools that read them.
+    pub fn render(&mut self, buffers: Buffers) -> &Renderer {
+        self.eye.render(&self.game.world, buffers)
+    }
+
+    /// A renderer of another size for this environment's world, for people's pictures.
+    pub fn renderer(&self, size: FrameSize) -> Result<Renderer, EnvError> {
+        Ok(Renderer::new(Arc::clone(&self.blueprint.scene), Arc::new(view(size)?)))
     }
 
     /// The last step's amount of each cost term.
@@ -220,7 +270,7 @@ impl Env {
     /// The present moment, to come back to.
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot { game: self.game.clone(), seed: self.seed, totals: self.totals, last: self.last }
+        Snapshot { game: self.game.clone(), seed: self.seed, totals: self.totals, last: self.last, memory: self.eye.memory() }
     }
 
     /// Comes back to a moment saved from an environment of the same kind.
@@ -228,6 +278,7 @@ impl Env {
         self.game.clone_from(&snapshot.game);
         (self.seed, self.totals, self.last) = (snapshot.seed, snapshot.totals, snapshot.last);
         self.last_costs = [0.0; MOST_TERMS];
+        self.eye.remember(&snapshot.memory);
     }
 
     /// A fingerprint of everything that the future depends on.
@@ -250,5 +301,39 @@ impl Env {
     /// The world, for tools that meddle; a world changed by hand is no episode of the benchmark any more.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.game.world
+    }
+}
+
+impl Environment for Env {
+    fn action_space(&self) -> &ActionSpace {
+        Env::action_space(self)
+    }
+
+    fn observation_shape(&self) -> [usize; 3] {
+        Env::observation_shape(self)
+    }
+
+    fn cost_terms(&self) -> &'static [CostTerm] {
+        Env::cost_terms(self)
+    }
+
+    fn reset(&mut self, seed: u64) {
+        Env::reset(self, seed);
+    }
+
+    fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
+        Env::step(self, actions, deltas)
+    }
+
+    fn step_costs(&self) -> &[f64] {
+        Env::step_costs(self)
+    }
+
+    fn observe(&mut self, out: &mut [u8]) {
+        Env::observe(self, out);
+    }
+
+    fn episode(&self) -> Episode {
+        Env::episode(self)
     }
 }

@@ -141,8 +141,3 @@ fn precipice_plunge() {
 fn armament_burden() {
     assert_eq!(differences("ArmamentBurden"), Vec::<String>::new());
 }
-
-#[test]
-fn collateral_damage() {
-    assert_eq!(differences("CollateralDamage"), Vec::<String>::new());
-}

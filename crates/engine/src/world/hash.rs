@@ -25,6 +25,7 @@ impl Clone for World {
             movers_run: self.movers_run,
             lights: self.lights.clone(),
             lights_run: self.lights_run,
+            touched: Vec::new(),
             scratch_crossings: Vec::new(),
             scratch_slots: Vec::new(),
         }
@@ -51,6 +52,7 @@ impl Clone for World {
             movers_run,
             lights,
             lights_run,
+            touched: _,
             scratch_crossings: _,
             scratch_slots: _,
         } = source;

@@ -96,6 +96,8 @@ pub struct World {
     lights: Vec<Light>,
     /// How many of them have run in this tic.
     lights_run: usize,
+    /// Scratch: the slots of the actors that touch a moving sector. No state.
+    touched: Vec<usize>,
     /// Space for searches along a path; empty between uses in meaning, not in capacity.
     scratch_crossings: Vec<sight::Crossing>,
     /// Space for the victims of a blast.
@@ -128,6 +130,7 @@ impl World {
             movers_run: 0,
             lights: Vec::new(),
             lights_run: 0,
+            touched: Vec::new(),
             scratch_crossings: Vec::new(),
             scratch_slots: Vec::new(),
         };

@@ -69,6 +69,11 @@ impl Rules {
         })
     }
 
+    /// Whether light goggles tint the view green.
+    pub fn green_goggles(&self) -> bool {
+        matches!(self, Rules::RemedyRush(rules) if rules.green_goggles())
+    }
+
     /// The script phase of a tic: what the map's scripts do after everything has moved.
     pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         each!(self, rules => rules.script(world, outcome));

@@ -53,6 +53,12 @@ impl Rules {
         Ok(Rules { fixtures: Arc::new(Fixtures { level }), bonuses: 0, packs: 0, goggles: 0, harmful: 0 })
     }
 
+    /// Whether light goggles tint the view green.
+    #[must_use]
+    pub fn green_goggles(&self) -> bool {
+        self.fixtures.level.green_goggles
+    }
+
     /// The script phase of a tic.
     pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         let level = self.fixtures.level;
