@@ -22,6 +22,12 @@ pub enum Command {
     Rollout(RolloutArgs),
     /// Run recorded inputs tic by tic and print position, velocity and view as CSV
     Trace(TraceArgs),
+    /// Measure environment speed: random actions, resets included, observations written
+    Bench(BenchArgs),
+    /// Draw a moment of an episode as PNG: colour, depth, segmentation or map
+    Render(RenderArgs),
+    /// Write an environment's map as a WAD that other engines load
+    ExportWad(ExportWadArgs),
 }
 
 /// Options of every command that makes an environment.
@@ -49,6 +55,12 @@ pub struct EnvArgs {
     /// Number of last frames stacked along the channels
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=16))]
     pub frame_stack: u8,
+    /// Limit the depth of walls as the published engine does
+    #[arg(long)]
+    pub published_depth: bool,
+    /// Segment in the published colours, some of which several classes share
+    #[arg(long)]
+    pub published_colours: bool,
     /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
@@ -172,4 +184,84 @@ pub struct TraceArgs {
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
+}
+
+/// `hasard bench`.
+#[derive(Args, Debug)]
+pub struct BenchArgs {
+    /// Environment id
+    pub env: String,
+    /// Worlds in the batch
+    #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub envs: u32,
+    /// Worker threads
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: u32,
+    /// Seconds to measure
+    #[arg(long, default_value_t = 5.0)]
+    pub seconds: f64,
+    /// Seed
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// What `hasard render` draws.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Buffer {
+    /// What the player sees
+    Rgb,
+    /// Distance, near black to far white
+    Depth,
+    /// One colour per class
+    Segmented,
+}
+
+/// `hasard render`.
+#[derive(Args, Debug)]
+pub struct RenderArgs {
+    /// Environment id
+    pub env: String,
+    /// PNG file to write
+    #[arg(short, long, value_name = "FILE", default_value = "frame.png")]
+    pub out: PathBuf,
+    /// Which buffer
+    #[arg(long, value_enum, default_value_t = Buffer::Rgb)]
+    pub buffer: Buffer,
+    /// Policy that acts before the picture
+    #[arg(long, default_value = "random")]
+    pub policy: String,
+    /// Policy steps before the picture
+    #[arg(long, default_value_t = 0)]
+    pub step: u32,
+    /// Seed of the episode
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard export-wad`.
+#[derive(Args, Debug)]
+pub struct ExportWadArgs {
+    /// Environment id
+    pub env: String,
+    /// WAD file to write
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Constants of the paper, or of the published package
+    #[arg(long, value_enum, default_value_t = Rules::Paper)]
+    pub rules: Rules,
+    /// The hard constraint's map
+    #[arg(long)]
+    pub hard: bool,
+    /// Accepted for uniformity; maps do not depend on it
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
 }

@@ -20,6 +20,9 @@ fn main() -> ExitCode {
         Command::Envs(args) => commands::envs::run(&args),
         Command::Rollout(args) => commands::rollout::run(&args),
         Command::Trace(args) => commands::trace::run(&args),
+        Command::Bench(args) => commands::bench::run(&args),
+        Command::Render(args) => commands::render::run(&args),
+        Command::ExportWad(args) => commands::export_wad::run(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

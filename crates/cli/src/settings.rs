@@ -35,6 +35,8 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
         },
         layout: Layout::Hwc,
         frame_stack: usize::from(args.frame_stack),
+        published_depth: args.published_depth,
+        published_colours: args.published_colours,
         assets: None,
     })
 }
