@@ -1,5 +1,5 @@
 //! Writes every embedded picture to contact sheets, to be looked at: `cargo run --release -p hasard-engine --example
-//! contact_sheet -- OUTDIR [ZOOM]`. Textures are shown tiled twice across and down, sprites by frame and rotation.
+//! contact_sheet -- OUTDIR [ZOOM [NAMES [FRAMES]]]`, NAMES beginnings of names joined by commas. Textures are shown tiled twice across and down, sprites by frame and rotation.
 
 use hasard_engine::assets::{Assets, Image, SPRITE_NAMES};
 use std::path::Path;
@@ -55,6 +55,9 @@ impl Sheet {
 
     fn save(&self, path: &Path) {
         let height = self.rgb.len() / 3 / self.width;
+        if height == 0 {
+            return;
+        }
         let file = std::fs::File::create(path).expect("the output folder is writable");
         let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), self.width as u32, height as u32);
         encoder.set_color(png::ColorType::Rgb);
@@ -72,6 +75,7 @@ fn main() {
     };
     let zoom = arguments.get(2).and_then(|z| z.parse().ok()).unwrap_or(2);
     let only = arguments.get(3);
+    let frames_shown = arguments.get(4).and_then(|n| n.parse().ok()).unwrap_or(usize::MAX);
     std::fs::create_dir_all(out).expect("the output folder can be made");
     let start = std::time::Instant::now();
     let assets = Assets::embedded();
@@ -94,7 +98,7 @@ fn main() {
     let mut sprites = Sheet::new(1400, zoom);
     for (sprite, _) in assets.sprites.iter().zip(SPRITE_NAMES).filter(|(_, name)| chosen(name)) {
         sprites.next_row();
-        for frame in &sprite.frames {
+        for frame in sprite.frames.iter().take(frames_shown) {
             let same = frame.images.iter().all(|&image| image == frame.images[0]);
             for rotation in 0..if same { 1 } else { 8 } {
                 if let Some(image) = assets.images.get(frame.images[rotation] as usize) {

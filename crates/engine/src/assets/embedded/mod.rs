@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `palette`, `colour` | the 256 colours, the light tables, true colours and their rounding to the palette |
 //! | `noise`, `surface` | tileable noise; surfaces with relief that are lit, tinted and tiled |
-//! | `canvas`, `model` | two-dimensional painting; small solid models turned into sprites from eight sides |
+//! | `canvas`, `model`, `camera`, `vector` | two-dimensional painting; small solid models turned into sprites from eight sides |
 //! | `textures`, `sky` | walls, floors, fences, liquids, skies |
 //! | `sprites`, `hud` | things of the world; status bar, digits, faces, letters |
 //! | `gallery` | where the finished pictures are collected |
@@ -12,15 +12,18 @@
 //! Nothing is random from run to run and nothing depends on the platform's mathematical library, so the pictures, and
 //! every observation made of them, are the same bits everywhere.
 
+mod camera;
 mod canvas;
 mod colour;
 mod gallery;
 mod hud;
+mod model;
 mod noise;
 mod palette;
 mod sprites;
 mod surface;
 mod textures;
+mod vector;
 
 use super::Assets;
 use gallery::Gallery;
