@@ -153,4 +153,28 @@ impl Model {
         });
         Model { parts: parts.collect() }
     }
+
+    /// The figure enlarged around its origin.
+    pub(super) fn scaled(&self, factor: f32) -> Model {
+        let parts = self.parts.iter().map(|part| {
+            let shape = match part.shape {
+                Shape::Egg { centre, half, frame } => Shape::Egg { centre: centre * factor, half: half * factor, frame },
+                Shape::Block { centre, half, frame } => Shape::Block { centre: centre * factor, half: half * factor, frame },
+                Shape::Limb { from, to, from_radius, to_radius } => Shape::Limb {
+                    from: from * factor,
+                    to: to * factor,
+                    from_radius: from_radius * factor,
+                    to_radius: to_radius * factor,
+                },
+                Shape::Tube { from, to, from_radius, to_radius } => Shape::Tube {
+                    from: from * factor,
+                    to: to * factor,
+                    from_radius: from_radius * factor,
+                    to_radius: to_radius * factor,
+                },
+            };
+            Part { shape, material: part.material }
+        });
+        Model { parts: parts.collect() }
+    }
 }

@@ -1,6 +1,6 @@
 //! The cast: which figures give which sprite frames.
 
-use super::fiends::{DEATH_STEPS, Deed, demon, imp, revenant};
+use super::fiends::{Deed, demon, imp, revenant};
 use super::floaters::{burst_cacodemon, cacodemon, dying_soul, lost_soul};
 use super::soldiers::Soldier;
 use crate::assets::SpriteFrame;
@@ -10,9 +10,12 @@ use crate::assets::embedded::model::Model;
 
 /// Paints every creature and the player's figure.
 pub(super) fn paint(gallery: &mut Gallery) {
-    for (name, soldier) in
-        [("POSS", Soldier::Rifleman), ("SPOS", Soldier::Shotgunner), ("CPOS", Soldier::Chaingunner), ("PLAY", Soldier::Player)]
-    {
+    for (name, soldier, steps) in [
+        ("POSS", Soldier::Rifleman, 5),
+        ("SPOS", Soldier::Shotgunner, 5),
+        ("CPOS", Soldier::Chaingunner, 7),
+        ("PLAY", Soldier::Player, 7),
+    ] {
         // A-D walk, E-F aim and fire, G pain, H on death.
         for moment in 0..4 {
             around(gallery, name, &soldier.walking(moment));
@@ -20,19 +23,24 @@ pub(super) fn paint(gallery: &mut Gallery) {
         around(gallery, name, &soldier.aiming(false));
         around(gallery, name, &soldier.aiming(true));
         around(gallery, name, &soldier.hurt());
-        let steps = 6;
         for step in 0..steps {
             ahead(gallery, name, &soldier.dying(step, steps));
         }
     }
-    walker(gallery, "TROO", imp, 4, 3);
-    walker(gallery, "SARG", demon, 4, 3);
-    walker(gallery, "SKEL", revenant, 6, 5);
+    // The player torn apart: frames O to W, of which maps only ever show the last.
+    let remains = Soldier::remains();
+    for _ in 0..8 {
+        gallery.repeat_last("PLAY");
+    }
+    ahead(gallery, "PLAY", &remains);
+    walker(gallery, "TROO", imp, [4, 3, 5]);
+    walker(gallery, "SARG", demon, [4, 3, 6]);
+    walker(gallery, "SKEL", revenant, [6, 5, 5]);
     floaters(gallery);
 }
 
-/// A fiend on legs: its walk, `strikes` frames of attack, pain, death.
-fn walker(gallery: &mut Gallery, name: &str, figure: fn(Deed) -> Model, moments: usize, strikes: usize) {
+/// A fiend on legs: so many frames of its walk, of attack (then one of pain) and of death.
+fn walker(gallery: &mut Gallery, name: &str, figure: fn(Deed) -> Model, [moments, strikes, steps]: [usize; 3]) {
     for moment in 0..moments {
         around(gallery, name, &figure(Deed::Walk(moment)));
     }
@@ -42,8 +50,8 @@ fn walker(gallery: &mut Gallery, name: &str, figure: fn(Deed) -> Model, moments:
         gallery.frame(name, strike);
     }
     around(gallery, name, &figure(Deed::Hurt));
-    for step in 0..DEATH_STEPS {
-        ahead(gallery, name, &figure(Deed::Die(step)));
+    for step in 0..steps {
+        ahead(gallery, name, &figure(Deed::Die(step, steps)));
     }
 }
 
@@ -89,7 +97,12 @@ pub(super) fn seen_around(gallery: &mut Gallery, model: &Model) -> SpriteFrame {
 }
 
 /// Adds a frame that shows the front to every side.
-pub(super) fn ahead(gallery: &mut Gallery, name: &str, model: &Model) {
-    let image = hang(gallery, &portrait(model, View::side(0)));
+fn ahead(gallery: &mut Gallery, name: &str, model: &Model) {
+    ahead_from(gallery, name, model, View::side(0));
+}
+
+/// Adds a frame that shows one view to every side.
+pub(super) fn ahead_from(gallery: &mut Gallery, name: &str, model: &Model, view: View) {
+    let image = hang(gallery, &portrait(model, view));
     gallery.frame(name, SpriteFrame { images: [image; 8], mirrored: [false; 8] });
 }

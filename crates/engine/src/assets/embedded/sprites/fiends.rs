@@ -18,12 +18,9 @@ pub(super) enum Deed {
     Strike,
     /// Flinching from a hit.
     Hurt,
-    /// Falling, step by step.
-    Die(usize),
+    /// Falling: the step and the number of steps.
+    Die(usize, usize),
 }
-
-/// Steps of a fiend's fall.
-pub(super) const DEATH_STEPS: usize = 6;
 
 /// The pose of a deed, with the roll of the falling body.
 fn pose_of(deed: Deed, hips: f32, stance: f32, stride: f32, moments: usize) -> (Pose, f32) {
@@ -31,7 +28,7 @@ fn pose_of(deed: Deed, hips: f32, stance: f32, stride: f32, moments: usize) -> (
         Deed::Walk(moment) => (Pose::walking(hips, stance, stride, moment, moments), 0.0),
         Deed::Strike => (Pose::standing(hips, stance + 1.0), 0.0),
         Deed::Hurt => (Pose::flinching(hips, stance), 0.0),
-        Deed::Die(step) => falling(hips, stance, step, DEATH_STEPS),
+        Deed::Die(step, count) => falling(hips, stance, step, count),
     }
 }
 
@@ -147,7 +144,7 @@ pub(super) fn demon(deed: Deed) -> Model {
     let gape = match deed {
         Deed::Walk(moment) => 3.4 + if moment % 2 == 0 { 0.0 } else { 0.9 },
         Deed::Strike => 7.0,
-        Deed::Hurt | Deed::Die(_) => 5.6,
+        Deed::Hurt | Deed::Die(..) => 5.6,
     };
     let face = |x: f32, y: f32, z: f32| at(8.0 + x, y, 17.0 + z);
     m.egg_in(frame, face(0.0, 0.0, 4.0), Vector(10.0, 10.6, 8.6), hide);
@@ -258,7 +255,7 @@ pub(super) fn skull(m: &mut Model, frame: Frame, centre: Vector, size: f32, gape
 
 /// Blood on the dying, and their fall.
 fn finish(mut model: Model, deed: Deed, roll: f32, wound: Vector) -> Model {
-    if let Deed::Die(step) = deed {
+    if let Deed::Die(step, _) = deed {
         let blood = Material::new(0x300404, 0x840C08, 0xC82018).mottled(0.4, 1.0);
         if step > 0 {
             model.egg(wound + Vector(1.0, 0.0, 0.0), Vector(3.0, 4.0, 4.4), blood);

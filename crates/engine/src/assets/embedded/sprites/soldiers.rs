@@ -107,6 +107,19 @@ impl Soldier {
         laid_over(&model, roll, 6.0)
     }
 
+    /// What an explosion leaves of the player.
+    pub(super) fn remains() -> Model {
+        let outfit = Soldier::Player.outfit();
+        let mut m = Model::new();
+        m.egg(Vector(0.0, 0.0, 0.8), Vector(12.0, 19.0, 1.2), BLOOD);
+        m.egg(Vector(3.0, -9.0, 3.0), Vector(4.4, 4.6, 3.4), outfit.vest);
+        m.limb(Vector(4.0, 3.0, 2.4), Vector(1.0, 12.0, 2.0), (2.6, 1.8), outfit.trousers);
+        m.egg(Vector(2.0, 14.0, 2.2), Vector(2.4, 3.4, 2.0), outfit.boots);
+        m.ball(Vector(6.0, -2.0, 2.4), 2.6, BLOOD);
+        m.egg(Vector(-4.0, 2.0, 3.4), Vector(4.0, 5.0, 3.0), BLOOD);
+        m
+    }
+
     fn figure(self, pose: &Pose, aiming: bool) -> Model {
         let outfit = self.outfit();
         let mut model = Model::new();
