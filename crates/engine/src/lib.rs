@@ -5,6 +5,7 @@
 //! | [`math`] | 16.16 fixed point, binary angles, frozen trigonometry, the random stream |
 //! | [`map`] | UDMF text in and out, the map builder, the BSP and blockmap; a built map is immutable and shared |
 //! | [`assets`] | palette, light tables, textures, sprites, status-bar art: the embedded set, or an IWAD |
+//! | [`wad`] | the container that maps and pictures come in |
 //! | [`world`] | things, movement, sector movers, weapons, monsters, events: plain data, `Clone` is a snapshot |
 //! | [`render`] | first-person colour, depth and labels, status bar, top-down map |
 //!
@@ -14,4 +15,5 @@ pub mod assets;
 pub mod map;
 pub mod math;
 pub mod render;
+pub mod wad;
 pub mod world;

@@ -1,6 +1,30 @@
-//! Action spaces: groups of exclusive buttons, and delta buttons.
+//! Action spaces: groups of exclusive buttons, and delta buttons; and the names of buttons.
 
-use hasard_engine::world::Buttons;
+use crate::{EnvError, Scenario};
+use hasard_engine::world::{Buttons, Command};
+
+/// Degrees per tic of a delta button at full deflection.
+pub const DELTA_DEGREES: f64 = 7.5;
+
+/// Every button by name, in the order of the original's full action space.
+pub const BUTTONS: [(&str, Buttons); 16] = [
+    ("MOVE_FORWARD", Buttons::MOVE_FORWARD),
+    ("MOVE_BACKWARD", Buttons::MOVE_BACKWARD),
+    ("MOVE_RIGHT", Buttons::MOVE_RIGHT),
+    ("MOVE_LEFT", Buttons::MOVE_LEFT),
+    ("SELECT_NEXT_WEAPON", Buttons::SELECT_NEXT_WEAPON),
+    ("SELECT_PREV_WEAPON", Buttons::SELECT_PREV_WEAPON),
+    ("ATTACK", Buttons::ATTACK),
+    ("SPEED", Buttons::SPEED),
+    ("JUMP", Buttons::JUMP),
+    ("USE", Buttons::USE),
+    ("CROUCH", Buttons::CROUCH),
+    ("TURN180", Buttons::TURN180),
+    ("TURN_LEFT", Buttons::TURN_LEFT),
+    ("TURN_RIGHT", Buttons::TURN_RIGHT),
+    ("LOOK_UP", Buttons::LOOK_UP),
+    ("LOOK_DOWN", Buttons::LOOK_DOWN),
+];
 
 /// A sub-action: 0 presses nothing, `i` presses `buttons[i - 1]`.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -18,6 +42,17 @@ pub enum DeltaButton {
     Turn,
 }
 
+impl DeltaButton {
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            DeltaButton::Look => "LOOK_UP_DOWN_DELTA",
+            DeltaButton::Turn => "TURN_LEFT_RIGHT_DELTA",
+        }
+    }
+}
+
 /// A tuple of categorical sub-actions followed by a tuple of continuous ones.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct ActionSpace {
@@ -28,9 +63,171 @@ pub struct ActionSpace {
 }
 
 impl ActionSpace {
+    /// The space of a scenario: the few buttons that its task needs, or all of them.
+    #[must_use]
+    pub fn of(scenario: Scenario, full: bool) -> ActionSpace {
+        if full { ActionSpace::full(scenario) } else { ActionSpace::simplified(scenario) }
+    }
+
+    fn simplified(scenario: Scenario) -> ActionSpace {
+        const TURN: &[&str] = &["TURN_LEFT", "TURN_RIGHT"];
+        const FORWARD: &[&str] = &["MOVE_FORWARD"];
+        let groups: &[&[&str]] = match scenario {
+            Scenario::ArmamentBurden => &[TURN, FORWARD, &["USE"], &["JUMP"]],
+            Scenario::CollateralDamage => &[TURN, &["ATTACK"]],
+            Scenario::DetonatorsDilemma => &[TURN, FORWARD, &["JUMP"], &["SPEED"], &["ATTACK"]],
+            Scenario::PrecipicePlunge => &[TURN, &["MOVE_FORWARD", "MOVE_BACKWARD"], &["LOOK_UP", "LOOK_DOWN"], &["JUMP"]],
+            Scenario::RemedyRush => &[TURN, FORWARD, &["SPEED"], &["JUMP"]],
+            Scenario::VolcanicVenture => &[TURN, FORWARD, &["JUMP"], &["SPEED"]],
+        };
+        ActionSpace::new(groups, &[])
+    }
+
+    fn full(scenario: Scenario) -> ActionSpace {
+        let mut groups: Vec<&[&str]> = Vec::new();
+        if scenario != Scenario::CollateralDamage {
+            groups.extend([&["MOVE_FORWARD", "MOVE_BACKWARD"][..], &["MOVE_RIGHT", "MOVE_LEFT"]]);
+        }
+        groups.extend([&["SELECT_NEXT_WEAPON", "SELECT_PREV_WEAPON"][..], &["ATTACK"]]);
+        if scenario != Scenario::ArmamentBurden {
+            groups.push(&["SPEED"]);
+        }
+        groups.extend([&["JUMP"][..], &["USE"], &["CROUCH"], &["TURN180"]]);
+        ActionSpace::new(&groups, &[DeltaButton::Look, DeltaButton::Turn])
+    }
+
+    fn new(groups: &[&[&str]], deltas: &[DeltaButton]) -> ActionSpace {
+        let named = |name: &&str| *BUTTONS.iter().find(|(n, _)| n == name).expect("the table names only buttons that exist");
+        let groups = groups.iter().map(|names| ActionGroup { buttons: names.iter().map(named).collect() }).collect();
+        ActionSpace { groups, deltas: deltas.to_vec() }
+    }
+
     /// Number of choices of each categorical sub-action.
     #[must_use]
     pub fn sizes(&self) -> Vec<usize> {
         self.groups.iter().map(|group| group.buttons.len() + 1).collect()
+    }
+
+    /// What is wrong with an action, if anything.
+    pub fn check(&self, lane: usize, actions: &[u8], deltas: &[f32]) -> Result<(), EnvError> {
+        if actions.len() != self.groups.len() || deltas.len() != self.deltas.len() {
+            let (groups, continuous) = (self.groups.len(), self.deltas.len());
+            let why = format!(
+                "it has {} categorical and {} continuous parts; the action space has {groups} and {continuous}",
+                actions.len(),
+                deltas.len()
+            );
+            return Err(EnvError::Action { lane, why });
+        }
+        for (i, (&choice, group)) in actions.iter().zip(&self.groups).enumerate() {
+            if usize::from(choice) > group.buttons.len() {
+                let why = format!("part {i} is {choice}; it must be 0..={}", group.buttons.len());
+                return Err(EnvError::Action { lane, why });
+            }
+        }
+        for (&value, delta) in deltas.iter().zip(&self.deltas) {
+            if !value.is_finite() {
+                return Err(EnvError::Action {
+                    lane,
+                    why: format!("{} is {value}; it must be a number in [-1, 1]", delta.name()),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The command that an action stands for; continuous parts beyond [-1, 1] count as the nearest end.
+    #[must_use]
+    pub fn command(&self, actions: &[u8], deltas: &[f32]) -> Command {
+        let mut command = Command::default();
+        for (&choice, group) in actions.iter().zip(&self.groups) {
+            if let Some(&(_, button)) = usize::from(choice).checked_sub(1).and_then(|i| group.buttons.get(i)) {
+                command.buttons |= button;
+            }
+        }
+        for (&value, delta) in deltas.iter().zip(&self.deltas) {
+            let units = Command::quantise_delta(f64::from(value.clamp(-1.0, 1.0)) * DELTA_DEGREES);
+            match delta {
+                DeltaButton::Look => command.look_delta = units,
+                DeltaButton::Turn => command.turn_delta = units,
+            }
+        }
+        command
+    }
+}
+
+/// Reads buttons by name, joined by `+`: `MOVE_FORWARD+SPEED`, delta buttons as `TURN_LEFT_RIGHT_DELTA=2.5` (degrees per tic; a
+/// bare delta name means 1). `noop` and the empty text press nothing.
+pub fn parse_command(text: &str) -> Result<Command, EnvError> {
+    let mut command = Command::default();
+    if text.is_empty() || text == "noop" {
+        return Ok(command);
+    }
+    for part in text.split('+') {
+        let unknown = || EnvError::UnknownButton { given: part.chars().take(80).collect() };
+        let (name, value) = part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));
+        let delta = [DeltaButton::Look, DeltaButton::Turn].into_iter().find(|delta| delta.name() == name);
+        if let Some(delta) = delta {
+            let degrees: f64 = value.map_or(Ok(1.0), str::parse).map_err(|_| unknown())?;
+            if !(-360.0..=360.0).contains(&degrees) {
+                return Err(unknown());
+            }
+            let units = Command::quantise_delta(degrees);
+            match delta {
+                DeltaButton::Look => command.look_delta = units,
+                DeltaButton::Turn => command.turn_delta = units,
+            }
+        } else {
+            let found = BUTTONS.iter().find(|(n, _)| *n == name).ok_or_else(unknown)?;
+            if value.is_some_and(|value| value != "1") {
+                return Err(unknown());
+            }
+            command.buttons |= found.1;
+        }
+    }
+    Ok(command)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spaces_have_the_published_numbers_of_actions() {
+        let count = |scenario, full| ActionSpace::of(scenario, full).sizes().iter().product::<usize>();
+        let simplified = Scenario::ALL.map(|scenario| count(scenario, false));
+        assert_eq!(simplified, [24, 6, 48, 54, 24, 24]);
+        let full = Scenario::ALL.map(|scenario| count(scenario, true));
+        assert_eq!(full, [864, 192, 1728, 1728, 1728, 1728]);
+    }
+
+    #[test]
+    fn an_action_becomes_its_buttons() {
+        let space = ActionSpace::of(Scenario::VolcanicVenture, false);
+        let command = space.command(&[2, 1, 0, 1], &[]);
+        assert_eq!(command.buttons, Buttons::TURN_RIGHT | Buttons::MOVE_FORWARD | Buttons::SPEED);
+        let full = ActionSpace::of(Scenario::VolcanicVenture, true);
+        let command = full.command(&[0; 9], &[-1.0, 1.0]);
+        assert_eq!((command.look_delta, command.turn_delta), (-1366, 1365));
+    }
+
+    #[test]
+    fn wrong_actions_are_named() {
+        let space = ActionSpace::of(Scenario::CollateralDamage, true);
+        assert!(space.check(0, &[0; 7], &[0.0, 0.0]).is_ok());
+        assert!(space.check(0, &[0; 6], &[0.0, 0.0]).is_err());
+        assert!(space.check(0, &[3, 0, 0, 0, 0, 0, 0], &[0.0, 0.0]).is_err());
+        assert!(space.check(0, &[0; 7], &[f32::NAN, 0.0]).is_err());
+    }
+
+    #[test]
+    fn buttons_are_read_by_name() {
+        assert_eq!(parse_command("MOVE_FORWARD+SPEED").unwrap().buttons, Buttons::MOVE_FORWARD | Buttons::SPEED);
+        assert_eq!(parse_command("TURN_LEFT_RIGHT_DELTA=-7.5").unwrap().turn_delta, -1366);
+        assert_eq!(parse_command("LOOK_UP_DOWN_DELTA").unwrap().look_delta, Command::quantise_delta(1.0));
+        assert_eq!(parse_command("noop").unwrap(), Command::default());
+        for wrong in ["FORWARD", "MOVE_FORWARD+", "TURN_LEFT_RIGHT_DELTA=x", "JUMP=2", "TURN_LEFT_RIGHT_DELTA=nan"] {
+            assert!(parse_command(wrong).is_err(), "{wrong}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What passes between a batch of worlds and its user.
 
 /// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the caller and handed
-/// over for the time of a step, so that nothing is copied.
+/// over for the time of a step, so that nothing is copied. Made by [`crate::VecEnv::batch`] with every buffer as long as it must be.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Batch {
     /// In: categorical sub-actions, `[lanes, groups]`.
@@ -12,8 +12,10 @@ pub struct Batch {
     pub observations: Vec<u8>,
     /// Out: reward of the step, `[lanes]`.
     pub rewards: Vec<f32>,
-    /// Out: cost of the step (the sum of its terms), `[lanes]`.
+    /// Out: cost of the step (the sum of its counted terms), `[lanes]`.
     pub costs: Vec<f32>,
+    /// Out: each cost term of the step, counted or not, `[lanes, terms]`.
+    pub cost_terms: Vec<f32>,
     /// Out: the episode ended by death or goal, `[lanes]`.
     pub terminated: Vec<bool>,
     /// Out: the episode ended by time-out, `[lanes]`.
@@ -35,7 +37,7 @@ pub struct Episode {
     pub episode_return: f64,
     /// Sum of costs.
     pub cost: f64,
-    /// Sum of each named cost term.
+    /// Sum of each named cost term, counted or not, in the order of the environment's cost terms.
     pub costs: Vec<(&'static str, f64)>,
     /// Length in policy steps.
     pub length: u32,

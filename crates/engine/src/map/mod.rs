@@ -11,6 +11,7 @@ mod built;
 mod error;
 mod source;
 mod tile_grid;
+pub mod udmf;
 
 pub use builder::{BuilderError, MapBuilder, Mark, Style};
 pub use built::{

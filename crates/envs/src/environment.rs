@@ -1,0 +1,65 @@
+//! What a batch asks of the worlds in it.
+
+use crate::{ActionSpace, Episode};
+
+/// What a step brought.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Step {
+    /// Reward, over all tics of the step.
+    pub reward: f64,
+    /// Cost, over all tics of the step: the sum of the counted cost terms.
+    pub cost: f64,
+    /// The episode ended by death or goal.
+    pub terminated: bool,
+    /// The episode ended by time-out.
+    pub truncated: bool,
+}
+
+impl Step {
+    /// Whether the episode is over.
+    #[must_use]
+    pub const fn ended(&self) -> bool {
+        self.terminated || self.truncated
+    }
+}
+
+/// A named part of the cost.
+///
+/// The scalar cost is the sum of the counted terms. The others are constraints that the scenario measures beside it, so that
+/// each may be given its own budget, without changing the published scalar cost.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct CostTerm {
+    /// Its name.
+    pub name: &'static str,
+    /// Part of the scalar cost.
+    pub counted: bool,
+}
+
+/// A world with a task in it: what [`crate::VecEnv`] makes batches of.
+///
+/// Everything that happens must follow from the seed of the last [`reset`](Environment::reset) and the actions since.
+pub trait Environment: Send {
+    /// The action space.
+    fn action_space(&self) -> &ActionSpace;
+
+    /// Shape of an observation, in the order of the chosen layout.
+    fn observation_shape(&self) -> [usize; 3];
+
+    /// The cost terms, in the order of [`step_costs`](Environment::step_costs).
+    fn cost_terms(&self) -> &'static [CostTerm];
+
+    /// Starts the episode of `seed`.
+    fn reset(&mut self, seed: u64);
+
+    /// Advances by one policy step. After an episode's end nothing moves: reward and cost are 0, the flags stay.
+    fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step;
+
+    /// The last step's amount of each cost term.
+    fn step_costs(&self) -> &[f64];
+
+    /// Writes the observation of the present state, as long as the product of the observation shape.
+    fn observe(&mut self, out: &mut [u8]);
+
+    /// The episode so far, as it would be reported if it ended now (its lane is left 0).
+    fn episode(&self) -> Episode;
+}

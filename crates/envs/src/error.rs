@@ -1,0 +1,95 @@
+//! What can go wrong, each with the input that caused it and the remedy.
+
+use std::fmt;
+
+/// An error of this crate. Its text is one line that names the input and the remedy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum EnvError {
+    /// No environment has this id.
+    UnknownId {
+        /// What was asked for.
+        id: String,
+        /// The nearest id that exists.
+        nearest: String,
+    },
+    /// An option has a value that it cannot take.
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// What was given.
+        given: String,
+        /// What it may be.
+        allowed: String,
+    },
+    /// A policy's text says nothing that can be followed.
+    Policy {
+        /// What was given.
+        given: String,
+        /// What is wrong with it, and what would be right.
+        why: String,
+    },
+    /// A button has no such name.
+    UnknownButton {
+        /// What was given.
+        given: String,
+    },
+    /// An action is outside of the action space.
+    Action {
+        /// Lane of the batch (0 for a single environment).
+        lane: usize,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// A batch's buffer has another size than its group of lanes needs.
+    BatchSize {
+        /// Name of the field.
+        field: &'static str,
+        /// Its length.
+        given: usize,
+        /// The length needed.
+        needed: usize,
+    },
+    /// A group of lanes was used out of turn.
+    Turn {
+        /// What was out of turn, and what must come first.
+        why: String,
+    },
+    /// An environment panicked; the batch of worlds cannot go on.
+    Panicked {
+        /// The panic's message.
+        message: String,
+    },
+    /// A map could not be built, or lacks something that its scenario needs.
+    Map {
+        /// Which map, and what is wrong.
+        why: String,
+    },
+}
+
+impl fmt::Display for EnvError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            EnvError::UnknownId { id, nearest } => {
+                write!(f, "no environment is called '{id}'; the nearest is '{nearest}', and `hasard envs` lists them all")
+            }
+            EnvError::Option { option, given, allowed } => write!(f, "{option} cannot be {given}; it must be {allowed}"),
+            EnvError::Policy { given, why } => write!(f, "policy '{given}': {why}"),
+            EnvError::UnknownButton { given } => write!(
+                f,
+                "no button is called '{given}'; join names like MOVE_FORWARD, TURN_LEFT, ATTACK by '+', delta buttons as NAME=DEGREES"
+            ),
+            EnvError::Action { lane, why } => write!(f, "action of lane {lane}: {why}"),
+            EnvError::BatchSize { field, given, needed } => {
+                write!(f, "batch field {field} has length {given}, but its lanes need {needed}; make batches with VecEnv::batch")
+            }
+            EnvError::Turn { why } => f.write_str(why),
+            EnvError::Panicked { message } => {
+                write!(f, "an environment panicked ({message}); this is a fault of hasard, please report it")
+            }
+            EnvError::Map { why } => f.write_str(why),
+        }
+    }
+}
+
+impl std::error::Error for EnvError {}

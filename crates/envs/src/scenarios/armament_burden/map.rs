@@ -1,0 +1,68 @@
+//! The arena of Armament Burden: a square hall of 15 x 15 tiles with a delivery strip along its western wall.
+
+use super::tiles;
+use hasard_engine::map::{MapBuilder, MapSource, Mark, Style, TileGrid};
+
+/// Side of a tile, map units.
+pub const TILE: i32 = 64;
+/// South-western corner of the hall.
+pub const ORIGIN: (i32, i32) = (0, 256);
+/// Tiles a side.
+pub const TILES: usize = 15;
+/// Weapons are delivered west of this line.
+pub const DELIVERY_EAST: i32 = 128;
+
+/// Solid decorations of levels 2 and 3: editor number, x, y. Columns are 40 high, pillars 128.
+const DECOR: [(i32, f64, f64); 8] = [
+    (33, 224.0, 352.0),
+    (33, 224.0, 1120.0),
+    (31, 224.0, 928.0),
+    (31, 224.0, 544.0),
+    (48, 864.0, 800.0),
+    (48, 864.0, 672.0),
+    (36, 608.0, 864.0),
+    (36, 608.0, 608.0),
+];
+
+/// The map of a level, 1..=3. Level 1 has four low crates; levels 2 and 3 have obstacles of every height, and in
+/// level 3 the tiles that may become acid pits carry tags.
+#[must_use]
+pub fn source(level: u8) -> MapSource {
+    let (floors, textures) = if level == 1 {
+        (&tiles::FLOOR_LEVEL_1, &tiles::TEXTURE_LEVEL_1)
+    } else {
+        (&tiles::FLOOR_LEVELS_2_3, &tiles::TEXTURE_LEVELS_2_3)
+    };
+    let grid = TileGrid::new(ORIGIN, TILE, TILES, TILES, |column, row| {
+        let texture = tiles::TEXTURES[textures[row][column]];
+        Style {
+            floor: floors[row][column],
+            ceiling: 150,
+            light: 210,
+            floor_texture: texture,
+            ceiling_texture: "SLIME16",
+            wall: "AQRUST07",
+            step: if texture == "CRATOP2" { "LITEYEL3" } else { "LITEBLU4" },
+            lintel: "AQRUST07",
+            special: 0,
+            tag: if level == 3 { tiles::PIT_TAGS[row][column] } else { 0 },
+        }
+    });
+    let mut builder = MapBuilder::new();
+    grid.paint(&mut builder);
+    let wall = |texture| Mark { wall: Some(texture), ..Mark::default() };
+    let at = |column, row| grid.corner(column, row);
+    builder.mark(wall("BSTONE3"), &[at(0, 0), at(0, TILES)]);
+    builder.mark(wall("COMPUTE2"), &[at(TILES, 0), at(TILES, TILES)]);
+    // Steel ribs between the computers.
+    for row in [2, 5, 9, 12] {
+        builder.mark(wall("METAL5"), &[at(TILES, row), at(TILES, row + 1)]);
+    }
+    builder.thing(1, 32.0, 736.0, 0);
+    if level != 1 {
+        for (kind, x, y) in DECOR {
+            builder.thing(kind, x, y, 0);
+        }
+    }
+    builder.finish().expect("the tiles fit together")
+}

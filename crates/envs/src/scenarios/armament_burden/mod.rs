@@ -1,0 +1,4 @@
+//! Armament Burden.
+
+pub mod map;
+mod tiles;

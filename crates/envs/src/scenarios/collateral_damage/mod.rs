@@ -1,0 +1,3 @@
+//! Collateral Damage.
+
+pub mod map;

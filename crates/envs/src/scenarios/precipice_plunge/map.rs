@@ -1,0 +1,41 @@
+//! The shaft of Precipice Plunge: a corridor of 58 x 7 tiles that the rules lower into a descending cave.
+
+use hasard_engine::map::{MapBuilder, MapSource, Style, TileGrid};
+
+/// Side of a tile, map units.
+pub const TILE: i32 = 64;
+/// Tiles from west to east.
+pub const COLUMNS: usize = 58;
+/// Tiles from south to north.
+pub const ROWS: usize = 7;
+/// Columns of the platform that stays at height 0.
+pub const START_COLUMNS: usize = 2;
+/// Tag of tile (2, 0); tags go up row by row, then column by column.
+pub const FIRST_TAG: i32 = 128;
+
+/// The tag of a tile, 0 on the start platform.
+#[must_use]
+pub fn tag(column: usize, row: usize) -> i32 {
+    column.checked_sub(START_COLUMNS).map_or(0, |x| FIRST_TAG + (x * ROWS + row) as i32)
+}
+
+/// The map, with the flat bottom of the cave beginning at column `bottom`. All floors start at 0.
+#[must_use]
+pub fn source(bottom: usize) -> MapSource {
+    let mut builder = MapBuilder::new();
+    let grid = TileGrid::new((0, 0), TILE, COLUMNS, ROWS, |column, row| Style {
+        floor: 0,
+        ceiling: 128,
+        light: 260,
+        floor_texture: if column < bottom { "FLAT5" } else { "AQF018" },
+        ceiling_texture: "RROCK15",
+        wall: "BIGBRIK1",
+        step: if column < START_COLUMNS || column % 2 == 0 { "A-MUD" } else { "ZIMMER4" },
+        lintel: "BIGBRIK1",
+        special: 0,
+        tag: tag(column, row),
+    });
+    grid.paint(&mut builder);
+    builder.thing(1, 32.0, 224.0, 0);
+    builder.finish().expect("the tiles fit together")
+}

@@ -1,0 +1,3 @@
+//! Precipice Plunge.
+
+pub mod map;

@@ -1,0 +1,4 @@
+//! Volcanic Venture.
+
+pub mod map;
+mod tiles;

@@ -1,0 +1,132 @@
+//! Files that are written whole or not at all.
+
+use crate::MediaError;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A file in the making: it carries a temporary name until [`WholeFile::finish`] renames it, so that nobody ever reads
+/// half of it and a failed write leaves the former file as it was. Dropped unfinished, it is removed.
+pub struct WholeFile {
+    path: PathBuf,
+    temporary: PathBuf,
+    out: Option<BufWriter<std::fs::File>>,
+}
+
+impl WholeFile {
+    /// Begins the file, making its folder if need be.
+    ///
+    /// # Errors
+    /// When the folder or the temporary file cannot be made.
+    pub fn create(path: &Path) -> Result<WholeFile, MediaError> {
+        let Some(name) = path.file_name() else {
+            return Err(MediaError::format(path, "is not the name of a file; give one, such as out.png"));
+        };
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder {
+            std::fs::create_dir_all(folder).map_err(|e| MediaError::io(folder, "make this folder", e))?;
+        }
+        let mut temporary_name = std::ffi::OsString::from(".");
+        temporary_name.push(name);
+        temporary_name.push(format!(".{}.tmp", std::process::id()));
+        let temporary = path.with_file_name(temporary_name);
+        let file = std::fs::File::create(&temporary).map_err(|e| MediaError::io(path, "write", e))?;
+        Ok(WholeFile { path: path.to_owned(), temporary, out: Some(BufWriter::with_capacity(1 << 16, file)) })
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// When the last bytes cannot be written (a full disk) or the file cannot be renamed.
+    pub fn finish(mut self) -> Result<(), MediaError> {
+        let out = self.out.take().expect("a file is finished once");
+        let result = out
+            .into_inner()
+            .map_err(std::io::IntoInnerError::into_error)
+            .and_then(|file| file.sync_all())
+            .and_then(|()| std::fs::rename(&self.temporary, &self.path));
+        if result.is_err() {
+            let _ = std::fs::remove_file(&self.temporary);
+        }
+        result.map_err(|e| MediaError::io(&self.path, "write", e))
+    }
+
+    /// The name that the file will have.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Write for WholeFile {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.out.as_mut().expect("writes end with finish").write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.as_mut().expect("writes end with finish").flush()
+    }
+}
+
+impl std::io::Seek for WholeFile {
+    fn seek(&mut self, to: std::io::SeekFrom) -> std::io::Result<u64> {
+        self.out.as_mut().expect("writes end with finish").seek(to)
+    }
+}
+
+impl Drop for WholeFile {
+    fn drop(&mut self) {
+        if self.out.take().is_some() {
+            let _ = std::fs::remove_file(&self.temporary);
+        }
+    }
+}
+
+/// Writes a whole file, or leaves what was there.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MediaError> {
+    let mut file = WholeFile::create(path)?;
+    file.write_all(bytes).map_err(|e| MediaError::io(path, "write", e))?;
+    file.finish()
+}
+
+/// Reads a file that must not be larger than `limit` bytes, so that a wrong name cannot fill the memory.
+///
+/// # Errors
+/// When it cannot be read or is larger.
+pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, MediaError> {
+    use std::io::Read;
+    let file = std::fs::File::open(path).map_err(|e| MediaError::io(path, "read", e))?;
+    let mut bytes = Vec::new();
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| MediaError::io(path, "read", e))?;
+    if bytes.len() as u64 > limit {
+        return Err(MediaError::format(path, format!("is larger than {limit} bytes; is it the right file?")));
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unfinished_file_leaves_the_former_one() {
+        let folder = std::env::temp_dir().join(format!("hasard-files-{}", std::process::id()));
+        let path = folder.join("deep").join("a.txt");
+        write_whole(&path, b"first").unwrap();
+        let mut second = WholeFile::create(&path).unwrap();
+        second.write_all(b"half").unwrap();
+        drop(second);
+        assert_eq!(read_limited(&path, 100).unwrap(), b"first");
+        assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+        assert!(read_limited(&path, 4).unwrap_err().to_string().contains("larger than 4 bytes"));
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_folder_in_the_way_is_named() {
+        let error = write_whole(Path::new("/dev/null/x/y.png"), b"").unwrap_err().to_string();
+        assert!(error.contains("/dev/null/x"), "{error}");
+    }
+}

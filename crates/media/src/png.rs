@@ -1,0 +1,101 @@
+//! PNG files.
+
+use crate::files::{WholeFile, read_limited};
+use crate::{MediaError, Picture};
+use std::path::Path;
+
+/// Largest PNG file that is read, in bytes.
+const READ_LIMIT: u64 = 64 << 20;
+
+/// The picture as the bytes of a PNG file. Same picture, same bytes.
+///
+/// # Panics
+/// Never: memory takes every write.
+#[must_use]
+pub fn encode(picture: &Picture) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_to(picture, &mut bytes).expect("writing to memory does not fail");
+    bytes
+}
+
+/// Writes a PNG file, whole or not at all.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write(picture: &Picture, path: &Path) -> Result<(), MediaError> {
+    let mut file = WholeFile::create(path)?;
+    write_to(picture, &mut file).map_err(|e| MediaError::io(path, "write", std::io::Error::other(e)))?;
+    file.finish()
+}
+
+fn write_to(picture: &Picture, out: impl std::io::Write) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(out, picture.width() as u32, picture.height() as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Balanced);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(picture.rgb())?;
+    writer.finish()
+}
+
+/// Reads a PNG file of any colour type; transparency is laid over black.
+///
+/// # Errors
+/// When it cannot be read, is no PNG, or is larger than 64 MiB or 65,535 pixels a side.
+pub fn read(path: &Path) -> Result<Picture, MediaError> {
+    decode(&read_limited(path, READ_LIMIT)?, path)
+}
+
+/// Reads the bytes of a PNG file; `name` is for messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn decode(bytes: &[u8], name: &Path) -> Result<Picture, MediaError> {
+    let bad = |e: png::DecodingError| MediaError::format(name, format!("is no readable PNG: {e}"));
+    let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), png::Limits { bytes: 512 << 20 });
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info().map_err(bad)?;
+    let size = reader
+        .output_buffer_size()
+        .filter(|&size| size <= 512 << 20)
+        .ok_or_else(|| MediaError::format(name, "is a PNG of more than 512 MiB of pixels"))?;
+    let mut pixels = vec![0; size];
+    let info = reader.next_frame(&mut pixels).map_err(bad)?;
+    let samples = info.color_type.samples();
+    let rgb = pixels[..info.buffer_size()]
+        .chunks_exact(samples)
+        .flat_map(|p| {
+            let (rgb, alpha) = match samples {
+                1 => ([p[0]; 3], 255),
+                2 => ([p[0]; 3], p[1]),
+                3 => ([p[0], p[1], p[2]], 255),
+                _ => ([p[0], p[1], p[2]], p[3]),
+            };
+            rgb.map(|c| (u32::from(c) * u32::from(alpha) / 255) as u8)
+        })
+        .collect();
+    Picture::from_rgb(info.width as usize, info.height as usize, rgb)
+        .map_err(|e| MediaError::format(name, format!("is a PNG of an unusable size: {e}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read() {
+        let picture = Picture::from_rgb(5, 3, (0..45).map(|i| i * 5).collect()).unwrap();
+        assert_eq!(decode(&encode(&picture), Path::new("memory")).unwrap(), picture);
+    }
+
+    #[test]
+    fn damaged_files_are_errors() {
+        let whole = encode(&Picture::filled(40, 30, [1, 2, 3]));
+        for cut in 0..whole.len() - 12 {
+            // The last 12 bytes are the end mark, which a reader of pixels may do without.
+            assert!(decode(&whole[..cut], Path::new("cut.png")).is_err(), "cut at {cut}");
+        }
+        let error = decode(b"GIF89a", Path::new("x.png")).unwrap_err().to_string();
+        assert!(error.starts_with("x.png: is no readable PNG"), "{error}");
+    }
+}
