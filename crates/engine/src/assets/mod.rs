@@ -81,18 +81,27 @@ pub struct TextureEntry {
 }
 
 /// Four-letter sprite names; an actor's `sprite` is an index into this list.
-pub const SPRITE_NAMES: [&str; 62] = [
+pub const SPRITE_NAMES: [&str; 65] = [
     "BON1", "STIM", "MEDI", "BON2", "ROCK", "SHEL", "CELL", "CLIP", "PVIS", "PINS", "PMAP", "BPAK", "SUIT", "YKEY",
     "BSKU", // items
     "PIST", "SHOT", "SGN2", "MGUN", "LAUN", "PLAS", "BFUG", // weapons to pick up
     "HEAD", "POSS", "SPOS", "CPOS", "TROO", "SARG", "SKEL", "SKUL", // monsters
     "BAR1", "BEXP", "MISL", "PLSS", "PLSE", "BFS1", "BFE1", "PUFF", "BLUD", // effects
     "TLMP", "TLP2", "COL4", "COL2", "COL5", "ELEC", "TRE1", "SMIT", "TRE2", "POL5", "PLAY", "BRS1", "COL1", // decor, player
-    "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", // view weapons
+    "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", "SHT2", "PLSF", "BFGF", // view weapons
 ];
 
-/// The index of a sprite name.
+/// The index of a sprite name; `const`, so that the state tables resolve their names while compiling.
 #[must_use]
-pub fn sprite_index(name: &str) -> Option<u8> {
-    SPRITE_NAMES.iter().position(|&n| n == name).map(|i| i as u8)
+pub const fn sprite_index(name: &str) -> Option<u8> {
+    let name = name.as_bytes();
+    let mut i = 0;
+    while i < SPRITE_NAMES.len() {
+        let other = SPRITE_NAMES[i].as_bytes();
+        if name.len() == 4 && name[0] == other[0] && name[1] == other[1] && name[2] == other[2] && name[3] == other[3] {
+            return Some(i as u8);
+        }
+        i += 1;
+    }
+    None
 }

@@ -37,6 +37,12 @@ impl Angle {
         Angle((units as u32) << 16)
     }
 
+    /// From 8192ths of a turn, the unit of the sine table.
+    #[must_use]
+    pub const fn from_fine(fine: i32) -> Angle {
+        Angle((fine as u32) << 19)
+    }
+
     /// Sine by the 8192-entry fine table (`angle >> 19`).
     #[must_use]
     pub fn sin(self) -> Fixed {
@@ -84,14 +90,30 @@ impl Angle {
 
 /// `small * cos(i) - large * sin(i)`: positive while the table angle `i` is below the vector's.
 fn excess(small: i64, large: i64, i: usize) -> i64 {
-    (small * i64::from(QUARTER_SINE[2048 - i]) - large * i64::from(QUARTER_SINE[i])) >> 16
+    let cosine = if i == 0 { 1 << 16 } else { i64::from(QUARTER_SINE[2048 - i]) };
+    (small * cosine - large * i64::from(QUARTER_SINE[i])) >> 16
 }
 
+/// The whole fine sine. Its second quarter mirrors the first one entry early (entry `2048 + i` is entry `2047 - i`, the
+/// peak apart), so that it is not quite symmetric: the recorded view bob follows exactly this table.
+static FINE_SINE: [i32; 8192] = {
+    let mut table = [0; 8192];
+    let mut i = 0;
+    while i < 2048 {
+        table[i] = QUARTER_SINE[i];
+        table[2048 + i] = QUARTER_SINE[2047 - i];
+        table[4096 + i] = -table[i];
+        table[6144 + i] = -table[2048 + i];
+        i += 1;
+    }
+    table[2048] = 1 << 16;
+    table[6144] = -(1 << 16);
+    table
+};
+
+/// Sine of a fine angle, 8192ths of a turn.
 fn fine_sine(fine: u32) -> Fixed {
-    let fine = (fine & 8191) as usize;
-    let (half, i) = (fine >= 4096, fine & 4095);
-    let value = QUARTER_SINE[if i <= 2048 { i } else { 4096 - i }];
-    Fixed(if half { -value } else { value })
+    Fixed(FINE_SINE[(fine & 8191) as usize])
 }
 
 impl fmt::Debug for Angle {
@@ -141,7 +163,18 @@ mod tests {
     fn the_frozen_table_is_the_sine() {
         for (i, &value) in QUARTER_SINE.iter().enumerate() {
             let exact = (i as f64 * std::f64::consts::TAU / 8192.0).sin() * 65536.0;
-            assert_eq!(f64::from(value), exact.round(), "entry {i}");
+            assert_eq!(f64::from(value), exact.floor(), "entry {i}");
+        }
+    }
+
+    #[test]
+    fn the_second_quarter_mirrors_the_first_one_entry_early() {
+        let sine = |fine| Angle::from_fine(fine).sin().0;
+        assert_eq!((sine(2047), sine(2048), sine(2049), sine(2050)), (65535, 65536, 65535, 65535));
+        assert_eq!((sine(4094), sine(4095), sine(4096), sine(4097)), (50, 0, 0, -50));
+        for i in 1..2048 {
+            assert_eq!(sine(2048 + i), sine(2047 - i), "entry {i} of the second quarter");
+            assert_eq!(sine(4096 + i), -sine(i), "entry {i} of the third quarter");
         }
     }
 

@@ -2,7 +2,7 @@
 
 /// A small splittable random stream: SplitMix64 (Steele, Lea, Flood: *Fast splittable pseudorandom number generators*,
 /// OOPSLA 2014). One lives in every world, and it is the whole of the world's randomness.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Rng {
     state: u64,
 }

@@ -4,7 +4,7 @@ use super::{ActorId, ActorKind};
 use crate::math::Fixed;
 
 /// What did the damage.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum DamageKind {
     Sector,
@@ -17,7 +17,7 @@ pub enum DamageKind {
 }
 
 /// One happening; `World::events` lists them in order until the caller clears it.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Event {
     /// A player took an item, which is gone from the world now.

@@ -1,14 +1,17 @@
 //! Players: what a human or an agent has beyond its body.
 
-use super::ActorId;
+use super::view::VIEW_HEIGHT;
+use super::{ActorId, Buttons, FaceState, WeaponState, ammo};
 use crate::math::Fixed;
+
+/// Tics after the start of a map during which no input has effect; scenarios may change a player's count.
+pub const SPAWN_FREEZE_TICS: u32 = 8;
 
 /// A weapon that a player can hold, in slot order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[repr(u8)]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Weapon {
-    Fist,
     Pistol,
     Shotgun,
     SuperShotgun,
@@ -19,7 +22,7 @@ pub enum Weapon {
 }
 
 /// One layer of the view weapon (the weapon, or its muzzle flash), in 320x200 screen space.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct PlayerSprite {
     /// Index into `assets::SPRITE_NAMES`.
     pub sprite: u8,
@@ -34,7 +37,7 @@ pub struct PlayerSprite {
 }
 
 /// A player: view, inventory, timers. The body is an [`Actor`](super::Actor).
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Player {
     /// The body.
     pub actor: ActorId,
@@ -84,10 +87,89 @@ pub struct Player {
     pub freeze_tics: u32,
     /// Health points are 0.
     pub dead: bool,
+    /// Buttons of this tic.
+    pub buttons: Buttons,
     /// Buttons of the last tic, for edges.
-    pub buttons: super::Buttons,
-    /// Face of the status bar: 0..=4 by health band combined with glance; drawn by the renderer.
-    pub face: u8,
+    pub old_buttons: Buttons,
+    /// Consecutive tics that any turn button has been down.
+    pub turn_held_tics: u32,
+    /// Tics left of a half turn.
+    pub turn180_tics: u8,
+    /// Forward command of this tic, right command: 256ths of the units of the button table.
+    pub thrust: [i32; 2],
+    /// 0 when a jump may start, negative while in the air after one, positive for a while after landing.
+    pub jump_tics: i32,
+    /// A jump pressed while crouched forces getting up: 1 until the next press of crouch.
+    pub forced_rise: bool,
+    /// 1.0 upright to 0.5 crouched.
+    pub crouch: Fixed,
+    /// Change of the eye's rest height by crouching, 0 upright to -20.5 map units.
+    pub crouch_view_offset: Fixed,
+    /// The velocity that the player's own effort gives, map units per tic: what the view bobs by.
+    pub bob_velocity: [Fixed; 2],
+    /// Feet were on a floor or an actor when the player last thought.
+    pub on_ground: bool,
+    /// What the hands and the weapon are doing.
+    pub weapon_state: WeaponState,
+    /// Face of the status bar; the band of health comes from [`World::face_band`](super::World::face_band).
+    pub face_state: FaceState,
     /// Monsters killed.
     pub kills: u32,
+}
+
+impl Player {
+    /// A player as a map starts it, with its feet at `floor_z`.
+    pub(crate) fn new(actor: ActorId, floor_z: Fixed) -> Player {
+        Player {
+            actor,
+            pitch: 0,
+            view_height: VIEW_HEIGHT,
+            delta_view_height: Fixed::ZERO,
+            view_z: floor_z + VIEW_HEIGHT,
+            bob: Fixed::ZERO,
+            speed: Fixed::ONE,
+            armor: 0,
+            ammo: [0; 4],
+            max_ammo: ammo::MOST,
+            weapons: 0,
+            weapon: None,
+            sprites: [None; 2],
+            extra_light: 0,
+            damage_count: 0,
+            bonus_count: 0,
+            infrared_tics: 0,
+            rad_suit_tics: 0,
+            blur_tics: 0,
+            keys: 0,
+            invulnerable: false,
+            damage_factor: Fixed::ONE,
+            freeze_tics: SPAWN_FREEZE_TICS,
+            dead: false,
+            buttons: Buttons::default(),
+            old_buttons: Buttons::default(),
+            turn_held_tics: 0,
+            turn180_tics: 0,
+            thrust: [0; 2],
+            jump_tics: 0,
+            forced_rise: false,
+            crouch: Fixed::ONE,
+            crouch_view_offset: Fixed::ZERO,
+            bob_velocity: [Fixed::ZERO; 2],
+            on_ground: true,
+            weapon_state: WeaponState::default(),
+            face_state: FaceState::default(),
+            kills: 0,
+        }
+    }
+
+    /// Forgets all motion: the eye at rest above feet at `z`, nothing held, upright, looking along `pitch`.
+    pub(crate) fn come_to_rest(&mut self, pitch: i32, z: Fixed) {
+        let fresh = Player::new(self.actor, z);
+        self.pitch = pitch;
+        (self.view_height, self.delta_view_height) = (fresh.view_height, fresh.delta_view_height);
+        (self.view_z, self.bob, self.bob_velocity) = (fresh.view_z, fresh.bob, fresh.bob_velocity);
+        (self.crouch, self.crouch_view_offset, self.forced_rise) = (fresh.crouch, fresh.crouch_view_offset, false);
+        (self.jump_tics, self.turn_held_tics, self.turn180_tics) = (0, 0, 0);
+        (self.buttons, self.old_buttons) = (fresh.buttons, fresh.old_buttons);
+    }
 }

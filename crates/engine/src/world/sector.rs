@@ -1,10 +1,12 @@
 //! What changes of a sector.
 
-use crate::map::TextureId;
+use super::{DamageKind, World};
+use crate::map::{Sector, TextureId};
 use crate::math::Fixed;
+use std::sync::Arc;
 
 /// Damage to players who stand on a floor.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct SectorDamage {
     /// Health points a hit; 0 for none.
     pub amount: i32,
@@ -15,7 +17,7 @@ pub struct SectorDamage {
 }
 
 /// The changing part of a sector.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct SectorState {
     /// Floor height.
     pub floor: Fixed,
@@ -33,4 +35,69 @@ pub struct SectorState {
     pub floor_busy: bool,
     /// A ceiling mover is at work.
     pub ceiling_busy: bool,
+    /// A light effect is at work: new ones are ignored.
+    pub light_busy: bool,
+}
+
+impl SectorState {
+    /// A sector as the map starts it. Special 83 is lava before any script: 8 points every 32 tics, through any suit.
+    pub(crate) fn new(sector: &Sector) -> SectorState {
+        let damage = match sector.special & 0xFF {
+            83 => SectorDamage { amount: 8, interval: 32, leak: 256 },
+            _ => SectorDamage::default(),
+        };
+        SectorState {
+            floor: sector.floor,
+            ceiling: sector.ceiling,
+            floor_texture: sector.floor_texture,
+            ceiling_texture: sector.ceiling_texture,
+            light: sector.light,
+            damage,
+            floor_busy: false,
+            ceiling_busy: false,
+            light_busy: false,
+        }
+    }
+}
+
+impl World {
+    /// The sectors with a tag get new damage. An interval of 0 or less takes the default of its amount: below 20
+    /// points every 32 tics, below 50 every 32 tics leaking through suits, from 50 every tic whatever the suit.
+    pub fn set_sector_damage(&mut self, tag: i32, amount: i32, interval: i32, leak: i32) {
+        let damage = match amount {
+            _ if interval > 0 => SectorDamage { amount, interval: interval as u32, leak },
+            ..20 => SectorDamage { amount, interval: 32, leak: 0 },
+            20..50 => SectorDamage { amount, interval: 32, leak: 5 },
+            50.. => SectorDamage { amount, interval: 1, leak: 256 },
+        };
+        let map = Arc::clone(&self.map);
+        for sector in map.tagged(tag) {
+            self.sectors[sector.0 as usize].damage = damage;
+        }
+    }
+
+    /// The floors of the sectors with a tag get another texture (see [`Map::texture`](crate::map::Map::texture)).
+    pub fn change_floor_texture(&mut self, tag: i32, texture: TextureId) {
+        let map = Arc::clone(&self.map);
+        for sector in map.tagged(tag) {
+            self.sectors[sector.0 as usize].floor_texture = texture;
+        }
+    }
+
+    /// Hurts a player who stands on a harmful floor. A neighbouring floor's edge is safe, and so is the air: the feet
+    /// must be at the height of the floor under the centre.
+    pub(crate) fn damage_by_sector(&mut self, index: usize, slot: usize) {
+        let body = &self.actors[slot];
+        let sector = &self.sectors[body.sector.0 as usize];
+        let damage = sector.damage;
+        if damage.amount <= 0 || body.z != sector.floor || !self.tic.is_multiple_of(damage.interval.max(1)) {
+            return;
+        }
+        let suited = self.players[index].rad_suit_tics > 0;
+        if suited && self.rng.byte() >= damage.leak {
+            return;
+        }
+        let victim = self.players[index].actor;
+        self.damage(victim, None, None, damage.amount, DamageKind::Sector);
+    }
 }

@@ -1,0 +1,166 @@
+//! Floors and ceilings that move, and what that does to the things on them.
+
+use super::waggle::Waggle;
+use super::{ActorFlags, World};
+use crate::map::SectorId;
+use crate::math::Fixed;
+use std::sync::Arc;
+
+/// Actors ride down with floors slower than this (map units per tic); faster ones leave them falling behind.
+const RIDE_LIMIT: Fixed = Fixed::from_int(9);
+
+/// A floor or ceiling at work.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) enum Mover {
+    /// A plane on its way to a height.
+    Plane(PlaneMover),
+    /// A floor that swings.
+    Waggle(Waggle),
+}
+
+/// A plane on its way to a height.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) struct PlaneMover {
+    sector: SectorId,
+    ceiling: bool,
+    /// Downwards; a target that lies the other way is reached at once.
+    down: bool,
+    /// Map units per tic, positive.
+    speed: Fixed,
+    target: Fixed,
+}
+
+/// Eighths of a map unit per tic, as scripts give speeds.
+fn script_speed(eighths: i32) -> Fixed {
+    Fixed(eighths.wrapping_mul(1 << 13))
+}
+
+impl World {
+    /// Lowers the floors of the sectors with a tag by `amount` map units at `speed` eighths of a map unit per tic.
+    /// A negative amount raises them at once. Busy floors are left alone.
+    pub fn floor_lower_by_value(&mut self, tag: i32, speed: i32, amount: i32) {
+        self.start_planes(tag, false, |floor| (true, floor - Fixed::from_int(amount)), speed);
+    }
+
+    /// Lowers ceilings likewise; a negative amount raises them at once.
+    pub fn ceiling_lower_by_value(&mut self, tag: i32, speed: i32, amount: i32) {
+        self.start_planes(tag, true, |ceiling| (true, ceiling - Fixed::from_int(amount)), speed);
+    }
+
+    /// Moves the floors of the sectors with a tag to a height, up or down as needed.
+    pub fn floor_move_to_value(&mut self, tag: i32, speed: i32, height: i32) {
+        let target = Fixed::from_int(height);
+        self.start_planes(tag, false, |floor| (target <= floor, target), speed);
+    }
+
+    fn start_planes(&mut self, tag: i32, ceiling: bool, aim: impl Fn(Fixed) -> (bool, Fixed), speed: i32) {
+        let map = Arc::clone(&self.map);
+        for sector in map.tagged(tag) {
+            let state = &mut self.sectors[sector.0 as usize];
+            let busy = if ceiling { &mut state.ceiling_busy } else { &mut state.floor_busy };
+            if std::mem::replace(busy, true) {
+                continue;
+            }
+            let (down, target) = aim(if ceiling { state.ceiling } else { state.floor });
+            let speed = script_speed(speed);
+            self.movers.push(Mover::Plane(PlaneMover { sector, ceiling, down, speed, target }));
+        }
+    }
+
+    /// Runs the movers from number `first` on, and drops those that are done.
+    pub(crate) fn run_movers(&mut self, first: usize) {
+        let mut kept = first;
+        for index in first..self.movers.len() {
+            let mut mover = self.movers[index];
+            let goes_on = match &mut mover {
+                Mover::Plane(plane) => self.run_plane(plane),
+                Mover::Waggle(waggle) => self.run_waggle(waggle),
+            };
+            if goes_on {
+                self.movers[kept] = mover;
+                kept += 1;
+            }
+        }
+        self.movers.truncate(kept);
+        self.movers_run = kept;
+    }
+
+    /// One tic of a plane; false when it has arrived.
+    fn run_plane(&mut self, mover: &PlaneMover) -> bool {
+        let state = &self.sectors[mover.sector.0 as usize];
+        let height = if mover.ceiling { state.ceiling } else { state.floor };
+        let next = if mover.down { height - mover.speed } else { height + mover.speed };
+        let arrives = if mover.down { next <= mover.target } else { next >= mover.target };
+        let next = if arrives { mover.target } else { next };
+        self.shift_plane(mover.sector, mover.ceiling, next);
+        if arrives {
+            let state = &mut self.sectors[mover.sector.0 as usize];
+            *(if mover.ceiling { &mut state.ceiling_busy } else { &mut state.floor_busy }) = false;
+        }
+        !arrives
+    }
+
+    /// Sets a floor or ceiling and carries, drops or pushes the actors that touch the sector. If something does not
+    /// fit any more, the plane goes back; false then.
+    pub(crate) fn shift_plane(&mut self, sector: SectorId, ceiling: bool, height: Fixed) -> bool {
+        let old = self.set_plane(sector, ceiling, height);
+        if old == height || self.adjust_actors(sector, ceiling, height - old) {
+            return true;
+        }
+        self.set_plane(sector, ceiling, old);
+        self.adjust_actors(sector, ceiling, old - height);
+        false
+    }
+
+    fn set_plane(&mut self, sector: SectorId, ceiling: bool, height: Fixed) -> Fixed {
+        let state = &mut self.sectors[sector.0 as usize];
+        std::mem::replace(if ceiling { &mut state.ceiling } else { &mut state.floor }, height)
+    }
+
+    /// Re-evaluates every actor that touches a sector whose floor or ceiling moved by `change`; false if one does not
+    /// fit.
+    fn adjust_actors(&mut self, sector: SectorId, ceiling: bool, change: Fixed) -> bool {
+        let bounds = self.map.sectors[sector.0 as usize].bounds;
+        let mut fits = true;
+        for slot in 0..self.actors.len() {
+            let actor = &self.actors[slot];
+            if actor.removed
+                || actor.flags.any(super::arena::NOT_LISTED)
+                || actor.x + actor.radius <= bounds[0]
+                || actor.x - actor.radius >= bounds[1]
+                || actor.y + actor.radius <= bounds[2]
+                || actor.y - actor.radius >= bounds[3]
+            {
+                continue;
+            }
+            fits &= self.adjust_actor(slot, ceiling, change);
+        }
+        fits
+    }
+
+    /// Gives one actor its new floor and ceiling, and moves it with the floor; false if it does not fit.
+    fn adjust_actor(&mut self, slot: usize, ceiling: bool, change: Fixed) -> bool {
+        let (x, y) = (self.actors[slot].x, self.actors[slot].y);
+        let position = self.check_position(slot, x, y);
+        self.touch_items(slot, &position);
+        let actor = &mut self.actors[slot];
+        let old_floor = std::mem::replace(&mut actor.floor_z, position.floor_z);
+        (actor.ceiling_z, actor.dropoff_z) = (position.ceiling_z, position.dropoff_z);
+        if !ceiling && old_floor != actor.floor_z {
+            if change < Fixed::ZERO {
+                let falls = actor.vz == Fixed::ZERO && !actor.flags.any(ActorFlags::NO_GRAVITY);
+                let rides = actor.vz == Fixed::ZERO && actor.flags.any(ActorFlags::NO_GRAVITY) && actor.z == old_floor;
+                if rides || (falls && -change < RIDE_LIMIT && actor.z - actor.floor_z <= -change) {
+                    actor.z = actor.floor_z;
+                }
+            } else if actor.z < actor.floor_z {
+                actor.z = actor.floor_z;
+            }
+        } else if ceiling && actor.top() > actor.ceiling_z {
+            actor.z = (actor.ceiling_z - actor.height).max(actor.floor_z);
+        }
+        let fits = actor.ceiling_z - actor.floor_z >= actor.height || !actor.flags.any(ActorFlags::SOLID);
+        self.wake_slot(slot);
+        fits
+    }
+}

@@ -1,0 +1,146 @@
+//! Sliding along walls: what is left of a player's move when a wall is in the way.
+
+use super::World;
+use super::collision::behind;
+use crate::map::Line;
+use crate::math::Fixed;
+
+/// No wall was hit: one above the whole move.
+const NO_HIT: Fixed = Fixed((1 << 16) + 1);
+
+/// The part of a move that is kept as distance from the wall.
+const GAP: Fixed = Fixed((1 << 16) / 32);
+
+/// Attempts to slide before stair-stepping.
+const ATTEMPTS: u32 = 2;
+
+/// A straight piece of a corner's way.
+#[derive(Clone, Copy)]
+struct Trace {
+    x: Fixed,
+    y: Fixed,
+    dx: Fixed,
+    dy: Fixed,
+}
+
+impl Trace {
+    /// Whether a point is on the left, computed as coarsely as [`behind`].
+    fn left_of(&self, x: Fixed, y: Fixed) -> bool {
+        let across = i64::from((y - self.y).0) * i64::from(self.dx.0) + i64::from((self.x - x).0) * i64::from(self.dy.0);
+        across >> 32 > 0
+    }
+
+    /// The fraction of the way at which it meets a line, if the line is crossed within the way.
+    fn meets(&self, line: &Line) -> Option<Fixed> {
+        if self.left_of(line.v1.x, line.v1.y) == self.left_of(line.v2.x, line.v2.y) {
+            return None;
+        }
+        let wide = |value: Fixed| i64::from(value.0);
+        let denominator = (wide(line.dy) * wide(self.dx) - wide(line.dx) * wide(self.dy)) >> 16;
+        let numerator = wide(line.v1.x - self.x) * wide(line.dy) + wide(self.y - line.v1.y) * wide(line.dx);
+        let fraction = if denominator == 0 { 0 } else { numerator / denominator };
+        (0..=1 << 16).contains(&fraction).then_some(Fixed(fraction as i32))
+    }
+}
+
+impl World {
+    /// Slides the actor in `slot` for one of `steps` equal parts (`dx`, `dy`) of its move: up to the wall, then along
+    /// it. Its velocity becomes what is left along the wall.
+    pub(crate) fn slide(&mut self, slot: usize, mut dx: Fixed, mut dy: Fixed, steps: i32) {
+        for _ in 0..ATTEMPTS {
+            let actor = &self.actors[slot];
+            let (x, y, radius) = (actor.x, actor.y, actor.radius);
+            let (lead_x, trail_x) = if dx.0 > 0 { (x + radius, x - radius) } else { (x - radius, x + radius) };
+            let (lead_y, trail_y) = if dy.0 > 0 { (y + radius, y - radius) } else { (y - radius, y + radius) };
+            let mut best = (NO_HIT, 0);
+            self.nearest_wall(slot, Trace { x: lead_x, y: lead_y, dx, dy }, &mut best);
+            self.nearest_wall(slot, Trace { x: trail_x, y: lead_y, dx, dy }, &mut best);
+            self.nearest_wall(slot, Trace { x: lead_x, y: trail_y, dx, dy }, &mut best);
+            let (hit, wall) = best;
+            if hit == NO_HIT {
+                break;
+            }
+            let way = hit - GAP;
+            if way > Fixed::ZERO && !self.try_move(slot, x + dx * way, y + dy * way, true).moved {
+                break;
+            }
+            let rest = (Fixed::ONE - hit).min(Fixed::ONE);
+            if rest <= Fixed::ZERO {
+                return;
+            }
+            (dx, dy) = (dx * rest, dy * rest);
+            let (along_x, along_y) = along(&self.map.lines[wall as usize], dx, dy);
+            let actor = &mut self.actors[slot];
+            (actor.vx, actor.vy) = (along_x * steps, along_y * steps);
+            let (x, y) = (actor.x, actor.y);
+            self.limit_bob(slot);
+            if self.try_move(slot, x + along_x, y + along_y, true).moved {
+                return;
+            }
+        }
+        let (x, y) = (self.actors[slot].x, self.actors[slot].y);
+        if !self.try_move(slot, x, y + dy, true).moved {
+            self.try_move(slot, x + dx, y, true);
+        }
+    }
+
+    /// Takes the nearest blocking line on a corner's way into `best` (fraction, line).
+    fn nearest_wall(&self, slot: usize, mut trace: Trace, best: &mut (Fixed, u32)) {
+        let blocks = &self.map.blockmap;
+        // A way that starts exactly on a block's edge is shifted by one unit, as the original does.
+        let on_edge = |at: Fixed, origin: Fixed| (at - origin).0 & ((128 << 16) - 1) == 0;
+        let (end_x, end_y) = (trace.x + trace.dx, trace.y + trace.dy);
+        if on_edge(trace.x, blocks.origin_x) {
+            trace.x += Fixed::ONE;
+            trace.dx = end_x - trace.x;
+        }
+        if on_edge(trace.y, blocks.origin_y) {
+            trace.y += Fixed::ONE;
+            trace.dy = end_y - trace.y;
+        }
+        let columns = [blocks.column_of(trace.x), blocks.column_of(end_x)];
+        let rows = [blocks.row_of(trace.y), blocks.row_of(end_y)];
+        for row in rows[0].min(rows[1])..=rows[0].max(rows[1]) {
+            for column in columns[0].min(columns[1])..=columns[0].max(columns[1]) {
+                for &index in blocks.lines_in(column, row) {
+                    let line = &self.map.lines[index as usize];
+                    if let Some(fraction) = trace.meets(line)
+                        && fraction < best.0
+                        && self.walls_off(slot, line)
+                    {
+                        *best = (fraction, index);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether the actor in `slot` cannot cross a line from where it is.
+    fn walls_off(&self, slot: usize, line: &Line) -> bool {
+        let actor = &self.actors[slot];
+        let Some(back) = line.back_sector else { return !behind(line, actor.x, actor.y) };
+        if line.flags.blocking {
+            return true;
+        }
+        let opening = self.opening(line.front_sector, back);
+        opening.top - opening.bottom < actor.height
+            || opening.top - actor.z < actor.height
+            || opening.bottom - actor.z > actor.max_step
+            || (actor.z < opening.bottom && self.actor_at(slot, opening.bottom).is_some())
+    }
+}
+
+/// What is left of a move along a wall.
+fn along(line: &Line, dx: Fixed, dy: Fixed) -> (Fixed, Fixed) {
+    if line.dy.0 == 0 {
+        return (dx, Fixed::ZERO);
+    }
+    if line.dx.0 == 0 {
+        return (Fixed::ZERO, dy);
+    }
+    let wide = |value: Fixed| i128::from(value.0);
+    let inner = wide(dx) * wide(line.dx) + wide(dy) * wide(line.dy);
+    let length_squared = wide(line.dx) * wide(line.dx) + wide(line.dy) * wide(line.dy);
+    let part = |component: Fixed| Fixed((inner * wide(component) / length_squared) as i32);
+    (part(line.dx), part(line.dy))
+}

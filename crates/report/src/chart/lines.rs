@@ -1,0 +1,119 @@
+//! Curves with bands.
+
+use super::axis::{Axis, draw_vertical_axis, short, ticks};
+use super::{Anchor, Drawing, Hover, HoverCurve, Ink, Shape};
+use crate::curve::Curve;
+
+/// A curve on a panel.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Its name in legend and pointer box.
+    pub name: String,
+    /// Its colour.
+    pub ink: Ink,
+    /// Its points.
+    pub curve: Curve,
+}
+
+/// What a panel of curves shows.
+#[derive(Clone, Debug, Default)]
+pub struct LinePanel {
+    /// Its title.
+    pub title: String,
+    /// The curves.
+    pub series: Vec<Series>,
+    /// The budget: a dashed line across.
+    pub budget: Option<f64>,
+    /// Width and height of the whole panel.
+    pub size: (f64, f64),
+}
+
+/// Draws curves against frames: the mean as a line, its 95 % interval as a band, every seed as a thin line. Each curve
+/// ends where its runs ended.
+#[must_use]
+pub fn line_panel(panel: &LinePanel) -> Drawing {
+    let (width, height) = panel.size;
+    let mut drawing = Drawing::new(width, height);
+    let (left, top, right, bottom) = (46.0, 26.0, width - 8.0, height - 22.0);
+    drawing.shapes.push(Shape::Text {
+        at: (left, 14.0),
+        anchor: Anchor::Start,
+        size: 12.0,
+        ink: Ink::Text,
+        bold: true,
+        text: panel.title.clone(),
+    });
+    let curves = || panel.series.iter().map(|series| &series.curve);
+    let most_frames = curves().flat_map(|c| &c.seeds).filter_map(|(_, points)| points.last()).map(|p| p.0).fold(0.0, f64::max);
+    if most_frames <= 0.0 {
+        drawing.text(((left + right) / 2.0, (top + bottom) / 2.0), Anchor::Middle, Ink::Muted, "no report yet");
+        return drawing;
+    }
+    let high = curves().map(Curve::top).fold(panel.budget.unwrap_or(0.0) * 1.15, f64::max);
+    let low = curves().map(Curve::bottom).fold(0.0, f64::min);
+    let values = ticks(low, if high > low { high } else { low + 1.0 }, 4);
+    let vertical = Axis { from: values[0], to: values[values.len() - 1], start: bottom, end: top };
+    let horizontal = Axis { from: 0.0, to: most_frames, start: left, end: right };
+    draw_vertical_axis(&mut drawing, &vertical, &values, left, right);
+    let frame_ticks = ticks(0.0, most_frames, 4);
+    for &frames in frame_ticks.iter().filter(|frames| **frames <= most_frames * 1.001) {
+        let anchor = if frames > most_frames * 0.97 { Anchor::End } else { Anchor::Middle };
+        drawing.text((horizontal.place(frames), bottom + 15.0), anchor, Ink::Muted, short(frames));
+    }
+    // Thin seeds below, then bands, then means, so that means stay readable.
+    for series in &panel.series {
+        if series.curve.seeds.len() > 1 || series.curve.mean.is_empty() {
+            for (_, points) in &series.curve.seeds {
+                drawing.shapes.push(Shape::Line {
+                    points: points.iter().map(|p| (horizontal.place(p.0), vertical.place(p.1))).collect(),
+                    ink: series.ink,
+                    width: 0.7,
+                    dashed: false,
+                    opacity: 0.35,
+                });
+            }
+        }
+    }
+    for series in &panel.series {
+        let banded: Vec<_> = series.curve.mean.iter().filter(|point| point.value.half_width.is_some()).collect();
+        let upper = banded.iter().map(|p| (horizontal.place(p.frames), vertical.place(p.value.high())));
+        let lower = banded.iter().rev().map(|p| (horizontal.place(p.frames), vertical.place(p.value.low())));
+        let points: Vec<_> = upper.chain(lower).collect();
+        if points.len() > 3 {
+            drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: 0.16 });
+        }
+    }
+    for series in &panel.series {
+        let points: Vec<_> =
+            series.curve.mean.iter().map(|p| (horizontal.place(p.frames), vertical.place(p.value.mean))).collect();
+        if let [only] = points[..] {
+            drawing.shapes.push(Shape::Dot { at: only, radius: 2.5, ink: series.ink, title: series.name.clone() });
+        }
+        drawing.shapes.push(Shape::Line { points, ink: series.ink, width: 1.8, dashed: false, opacity: 1.0 });
+    }
+    if let Some(budget) = panel.budget {
+        let y = vertical.place(budget);
+        drawing.shapes.push(Shape::Line {
+            points: vec![(left, y), (right, y)],
+            ink: Ink::Budget,
+            width: 1.4,
+            dashed: true,
+            opacity: 1.0,
+        });
+        drawing.text((right, y - 4.0), Anchor::End, Ink::Budget, format!("budget {}", short(budget)));
+    }
+    drawing.hovers.push(Hover {
+        place: [left, top, right - left, bottom - top],
+        horizontal: (0.0, most_frames),
+        curves: panel
+            .series
+            .iter()
+            .map(|series| HoverCurve {
+                name: series.name.clone(),
+                ink: series.ink,
+                points: series.curve.mean.iter().map(|p| (p.frames, p.value.mean, p.value.half_width, p.value.n)).collect(),
+            })
+            .collect(),
+    });
+    drawing
+}

@@ -1,0 +1,136 @@
+//! Runs of one experiment that differ in their seed alone.
+
+use crate::run::{Found, Run, Warning};
+use crate::statistics::Estimate;
+use std::collections::BTreeMap;
+
+/// Reports at the end of a run that a table's cell is the mean of, as in the paper.
+pub const LAST_POINTS: usize = 10;
+
+/// One experiment: the same environment, algorithm and options, a run a seed. Nothing else is ever averaged.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// The runs, in the order of their seeds, no seed twice.
+    pub runs: Vec<Run>,
+}
+
+impl Group {
+    /// Sorts runs into experiments, in the order scenario, level, algorithm, options. Of several runs with equal
+    /// configuration and seed the one that got furthest is kept.
+    pub fn sort(found: &Found, warnings: &mut Vec<Warning>) -> Vec<Group> {
+        let mut groups: BTreeMap<String, Vec<Run>> = BTreeMap::new();
+        for run in &found.runs {
+            let config = &run.config;
+            let place = scenario_order(&config.scenario);
+            let key = format!(
+                "{place:02} {} {} {:02} {} {:?} {:?} {:?}",
+                config.scenario,
+                config.level,
+                algorithm_order(&config.algo),
+                config.algo.to_ascii_lowercase(),
+                config.options,
+                config.safety_budget,
+                config.frames
+            );
+            groups.entry(key).or_default().push(run.clone());
+        }
+        groups
+            .into_values()
+            .map(|mut runs| {
+                runs.sort_by(|a, b| a.config.seed.cmp(&b.config.seed).then(b.frames().total_cmp(&a.frames())));
+                let mut kept: Vec<Run> = Vec::new();
+                for run in runs {
+                    match kept.last() {
+                        Some(last) if last.config.seed == run.config.seed => warnings.push(Warning {
+                            problem: format!(
+                                "repeats the configuration and seed {} of {}, which got further or as far; left out",
+                                run.config.seed,
+                                last.path.display()
+                            ),
+                            path: run.path,
+                            line: 0,
+                        }),
+                        _ => kept.push(run),
+                    }
+                }
+                Group { runs: kept }
+            })
+            .collect()
+    }
+
+    /// What all its runs share.
+    #[must_use]
+    pub fn config(&self) -> &crate::run::Config {
+        &self.runs[0].config
+    }
+
+    /// A metric at the end of training: per seed the mean of the last reports, then the mean over seeds.
+    #[must_use]
+    pub fn final_estimate(&self, metric: &str) -> Option<Estimate> {
+        Estimate::of(&self.final_samples(metric))
+    }
+
+    /// A metric at the end of training, a number a seed.
+    #[must_use]
+    pub fn final_samples(&self, metric: &str) -> Vec<f64> {
+        self.runs.iter().filter_map(|run| run.last_mean(metric, LAST_POINTS)).collect()
+    }
+
+    /// Whether the mean cost at the end of training is within the budget; `None` without costs.
+    #[must_use]
+    pub fn within_budget(&self) -> Option<bool> {
+        self.final_estimate("cost_mean").map(|cost| cost.mean <= self.config().safety_budget)
+    }
+
+    /// Frames that the shortest and the longest run reached.
+    #[must_use]
+    pub fn frames_span(&self) -> (f64, f64) {
+        let frames = self.runs.iter().map(Run::frames);
+        (frames.clone().fold(f64::INFINITY, f64::min), frames.fold(0.0, f64::max))
+    }
+
+    /// Whether every run reached the frames that it was asked for; `true` if they do not say.
+    #[must_use]
+    pub fn finished(&self) -> bool {
+        self.runs.iter().all(|run| run.config.frames.is_none_or(|asked| run.frames() >= asked * 0.999))
+    }
+
+    /// The options under which it ran, without the one of the given name, as one line; empty for none.
+    #[must_use]
+    pub fn options_line(&self, without: Option<&str>) -> String {
+        let options = self.config().options.iter().filter(|(key, _)| Some(key.as_str()) != without);
+        options.map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The order of the paper's tables.
+pub const SCENARIOS: [(&str, &str); 6] = [
+    ("ArmamentBurden", "Armament Burden"),
+    ("VolcanicVenture", "Volcanic Venture"),
+    ("RemedyRush", "Remedy Rush"),
+    ("CollateralDamage", "Collateral Damage"),
+    ("PrecipicePlunge", "Precipice Plunge"),
+    ("DetonatorsDilemma", "Detonator's Dilemma"),
+];
+
+/// The algorithms in the order of the paper's tables, then those beyond it.
+const ALGORITHMS: [&str; 13] =
+    ["PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O", "TRPO", "TRPOLag", "TRPOPID", "CPO", "FOCOPS", "CUP", "IPO"];
+
+/// Place of a scenario in tables; unknown ones come last.
+#[must_use]
+pub fn scenario_order(scenario: &str) -> usize {
+    SCENARIOS.iter().position(|(id, _)| *id == scenario).unwrap_or(SCENARIOS.len())
+}
+
+/// Name of a scenario for people.
+#[must_use]
+pub fn scenario_name(scenario: &str) -> String {
+    SCENARIOS.iter().find(|(id, _)| *id == scenario).map_or(scenario, |(_, name)| name).to_owned()
+}
+
+/// Place of an algorithm in tables, and its colour in figures; unknown ones come last.
+#[must_use]
+pub fn algorithm_order(algo: &str) -> usize {
+    ALGORITHMS.iter().position(|known| known.eq_ignore_ascii_case(algo)).unwrap_or(ALGORITHMS.len())
+}

@@ -1,0 +1,31 @@
+//! The report on training runs: the paper's tables and figures, made from run directories alone.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`run`] | run directories: `config.json`, `metrics.jsonl`, evaluations, heatmaps; recorded episodes |
+//! | [`group`] | experiments: the runs that differ in their seed alone |
+//! | [`statistics`], [`curve`] | intervals, inter-quartile means, curves over seeds |
+//! | [`published`] | the values that the paper prints |
+//! | [`document`], `sections` | what the report says |
+//! | [`chart`], [`heat`] | figures and heatmaps |
+//! | [`write_report`] | HTML, Markdown, CSV, SVG, PNG and GIF files |
+//!
+//! Nothing here trains, plays or knows an environment, so that a report can be made of runs of any version and on any
+//! machine. Same runs, same bytes.
+
+pub mod chart;
+mod csv;
+pub mod curve;
+pub mod document;
+mod escape;
+pub mod group;
+pub mod heat;
+mod markdown;
+mod page;
+pub mod published;
+pub mod run;
+mod sections;
+pub mod statistics;
+mod write;
+
+pub use write::{Written, write_report};

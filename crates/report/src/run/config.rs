@@ -1,0 +1,213 @@
+//! `config.json`: what was trained and how.
+
+use super::Warning;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Keys that say where, when and on what machine a run was made, and so do not tell one experiment from another.
+/// (The seed does tell runs apart, but not experiments: runs that differ in it alone are averaged.)
+const NOT_IDENTITY: &[&str] = &[
+    "seed",
+    "out",
+    "dir",
+    "device",
+    "threads",
+    "json",
+    "resume",
+    "version",
+    "program",
+    "commit",
+    "command",
+    "command_line",
+    "host",
+    "started",
+    "created",
+    "timestamp",
+    "checkpoint_every",
+    "checkpoint_seconds",
+    "keep",
+    "report_every",
+    "report_seconds",
+    "quiet",
+    "format",
+    "format_version",
+    "log",
+    "tensorboard",
+    "heatmap",
+    "heatmaps",
+];
+
+/// Other spellings of a key that mean the same.
+const SPELLINGS: &[(&str, &[&str])] = &[
+    ("env", &["environment", "env_id", "id"]),
+    ("algo", &["algorithm"]),
+    ("safety_budget", &["budget", "safety_bound"]),
+    ("cost_scale", &["penalty_scale", "penalty_scaling"]),
+    ("hard", &["hard_constraint"]),
+    ("frames", &["total_frames", "train_for_frames"]),
+    ("observation", &["obs"]),
+];
+
+/// What was trained and how. Everything but the seed is the experiment's identity: runs are averaged only if all of it
+/// is equal, known key or not.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Config {
+    /// Id of the environment.
+    pub env: String,
+    /// Name of the scenario, as in the id.
+    pub scenario: String,
+    /// Its level; the last one of a curriculum.
+    pub level: u32,
+    /// The algorithm, as the run spells it.
+    pub algo: String,
+    /// The seed.
+    pub seed: u64,
+    /// Cost that an episode may have.
+    pub safety_budget: f64,
+    /// What PPOCost multiplies costs by before it takes them off the reward; 1 for the others.
+    pub cost_scale: f64,
+    /// Frames that were asked for, if the run says.
+    pub frames: Option<f64>,
+    /// Every other key that may change results, as text; nested keys are joined by dots. `safety_budget` is among them
+    /// only if it is not the scenario's own.
+    pub options: BTreeMap<String, String>,
+}
+
+impl Config {
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// When it cannot be read, is no JSON object, or lacks `env`, `algo` or `seed`.
+    pub fn read(path: &Path) -> Result<Config, Warning> {
+        Config::parse(&super::read_text(path)?).map_err(|problem| Warning { path: path.to_owned(), line: 0, problem })
+    }
+
+    /// Understands the text of the file.
+    ///
+    /// # Errors
+    /// As [`Config::read`], without the path.
+    pub fn parse(text: &str) -> Result<Config, String> {
+        let value: Value =
+            serde_json::from_str(text).map_err(|e| format!("is no JSON ({e}); restore it or leave the run out"))?;
+        let Value::Object(object) = &value else { return Err("is not a JSON object; restore it or leave the run out".into()) };
+        let mut options = BTreeMap::new();
+        for (key, value) in object {
+            let canonical =
+                SPELLINGS.iter().find(|(_, others)| others.contains(&key.as_str())).map_or(key.as_str(), |(name, _)| name);
+            flatten(canonical, value, &mut options);
+        }
+        let mut take = |key: &str| {
+            options.remove(key).ok_or_else(|| format!("lacks the key \"{key}\"; is it the config.json of a hasard training run?"))
+        };
+        let env = take("env")?;
+        let algo = take("algo")?;
+        let seed = take("seed")?;
+        let seed = seed.parse().map_err(|_| format!("has the seed {seed}, which is no whole number from 0 on"))?;
+        let (scenario, mut level) = scenario_and_level(&env);
+        // A curriculum ends in its last level, and that is what its results are results of.
+        if let Some(last) = options.get("curriculum").and_then(|levels| levels.rsplit(',').next()?.trim().parse().ok()) {
+            level = last;
+        }
+        options.retain(|key, _| !NOT_IDENTITY.contains(&key.split('.').next().unwrap_or(key)));
+        let released = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
+        let hard = options.get("hard").is_some_and(|hard| hard == "true");
+        let own_budget = if hard { 0.0 } else { default_budget(&scenario, released) };
+        let given = options.get("safety_budget").map(|text| text.parse::<f64>());
+        let safety_budget = match given {
+            None => own_budget,
+            Some(Ok(budget)) if budget.is_finite() && budget >= 0.0 => budget,
+            Some(_) => return Err(format!("has the safety_budget {}, which is no cost", options["safety_budget"])),
+        };
+        // The budgets of the paper (50) and of the released code (5) for Armament Burden are both "the scenario's own".
+        if safety_budget == own_budget || (!hard && safety_budget == default_budget(&scenario, false)) {
+            options.remove("safety_budget");
+        }
+        let own_scale = if released && scenario == "ArmamentBurden" { 0.1 } else { 1.0 };
+        let scale_applies = algo.eq_ignore_ascii_case("PPOCost");
+        let cost_scale = match options.get("cost_scale").filter(|_| scale_applies).map(|text| text.parse::<f64>()) {
+            None => {
+                if scale_applies {
+                    own_scale
+                } else {
+                    1.0
+                }
+            }
+            Some(Ok(scale)) if scale.is_finite() => scale,
+            Some(_) => return Err(format!("has the cost_scale {}, which is no number", options["cost_scale"])),
+        };
+        if cost_scale == own_scale || !scale_applies {
+            options.remove("cost_scale");
+        }
+        // What is left at its usual value need not be told, and older runs may lack the key.
+        for (key, usual) in
+            [("hard", "false"), ("full_actions", "false"), ("observation", "rgb"), ("frame_skip", "4"), ("frame_stack", "1")]
+        {
+            if options.get(key).is_some_and(|value| value.eq_ignore_ascii_case(usual)) {
+                options.remove(key);
+            }
+        }
+        let frames = options.remove("frames").and_then(|text| text.parse::<f64>().ok()).filter(|frames| frames.is_finite());
+        Ok(Config { env, scenario, level, algo, seed, safety_budget, cost_scale, frames, options })
+    }
+
+    /// Whether harm ends the episode.
+    #[must_use]
+    pub fn hard(&self) -> bool {
+        self.options.get("hard").is_some_and(|hard| hard == "true")
+    }
+}
+
+/// Writes a value as text under its key, and an object's values under their own; nulls and empty lists are left out.
+fn flatten(key: &str, value: &Value, options: &mut BTreeMap<String, String>) {
+    match value {
+        Value::Null => {}
+        Value::Object(object) => {
+            for (inner, value) in object {
+                flatten(&format!("{key}.{inner}"), value, options);
+            }
+        }
+        Value::Array(items) if items.is_empty() => {}
+        Value::Array(items) => {
+            let text: Vec<String> = items.iter().map(plain).collect();
+            options.insert(key.to_owned(), text.join(","));
+        }
+        _ => {
+            options.insert(key.to_owned(), plain(value));
+        }
+    }
+}
+
+/// A scalar as people write it: 50, not 50.0.
+fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) => match (number.as_u64(), number.as_f64()) {
+            (None, Some(float)) => format!("{float}"),
+            _ => number.to_string(),
+        },
+        other => other.to_string(),
+    }
+}
+
+/// Splits `RemedyRushLevel2-v0` into `RemedyRush` and 2; an id of another shape is its own scenario, level 1.
+#[must_use]
+pub fn scenario_and_level(env: &str) -> (String, u32) {
+    let name = env.split("-v").next().unwrap_or(env);
+    if let Some((scenario, level)) = name.rsplit_once("Level")
+        && let Some(digit) = level.chars().next().and_then(|c| c.to_digit(10))
+    {
+        return (format!("{scenario}{}", &level[1..]), digit);
+    }
+    (name.to_owned(), 1)
+}
+
+/// The scenario's own budget: the paper's, or the released code's where it differs.
+#[must_use]
+pub fn default_budget(scenario: &str, released: bool) -> f64 {
+    match scenario {
+        "RemedyRush" | "CollateralDamage" | "DetonatorsDilemma" => 5.0,
+        "ArmamentBurden" if released => 5.0,
+        _ => 50.0,
+    }
+}

@@ -1,0 +1,111 @@
+//! Finding runs and recorded episodes below the folders that a user names.
+
+use super::{EpisodeResult, Run, Warning, read_episode_lines, read_text, sorted_files};
+use hasard_media::episode::EpisodeFile;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// How deep runs are looked for below a named folder: sweeps put them at `sweep/env/algo/seed`.
+const MAX_DEPTH: usize = 8;
+
+/// What was found.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// Training runs, in the order of their paths.
+    pub runs: Vec<Run>,
+    /// Episodes of humans and other players, by player, environment and options.
+    pub players: BTreeMap<(String, String, String), Vec<EpisodeResult>>,
+    /// What was passed over.
+    pub warnings: Vec<Warning>,
+}
+
+/// Looks through folders for run directories (those with a `config.json`) and episode files of humans, and reads files
+/// of episodes (`hasard rollout --json > random.jsonl`), whose name becomes the player's.
+///
+/// # Errors
+/// When a named path does not exist, or nothing at all is found.
+pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
+    let mut found = Found::default();
+    for path in paths {
+        if path.is_dir() {
+            look(path, 0, &mut found);
+        } else if path.is_file() {
+            match path.extension().and_then(|extension| extension.to_str()) {
+                Some("episode") => read_episode_file(path, &mut found),
+                Some("jsonl") => read_rollout(path, &mut found),
+                _ => return Err(format!("{}: is neither a folder nor a .jsonl of episodes nor a .episode file", path.display())),
+            }
+        } else {
+            return Err(format!("{}: no such file or folder; name the run directories to report on", path.display()));
+        }
+    }
+    found.runs.sort_by(|a, b| a.path.cmp(&b.path));
+    // A run named twice (`runs runs/a`) is one run.
+    let mut seen = std::collections::BTreeSet::new();
+    found.runs.retain(|run| seen.insert(run.path.canonicalize().unwrap_or_else(|_| run.path.clone())));
+    found.warnings.sort();
+    found.warnings.dedup();
+    if found.runs.is_empty() && found.players.is_empty() {
+        let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+        let first = found.warnings.first().map_or_else(String::new, |warning| format!(" ({warning})"));
+        return Err(format!(
+            "no run directory (a folder with config.json) and no episode below {}{first}; name the folder that `hasard train --out` wrote",
+            names.join(" ")
+        ));
+    }
+    Ok(found)
+}
+
+fn look(folder: &Path, depth: usize, found: &mut Found) {
+    if folder.join("config.json").is_file() {
+        match Run::read(folder, &mut found.warnings) {
+            Ok(run) => found.runs.push(run),
+            Err(warning) => found.warnings.push(warning),
+        }
+        return;
+    }
+    if depth == MAX_DEPTH {
+        return;
+    }
+    for path in sorted_files(folder) {
+        if path.is_dir() {
+            // A link could lead in a circle; the bound on depth ends it.
+            look(&path, depth + 1, found);
+        } else if path.extension().is_some_and(|extension| extension == "episode") {
+            read_episode_file(&path, found);
+        }
+    }
+}
+
+fn read_episode_file(path: &Path, found: &mut Found) {
+    let problem = match EpisodeFile::read(path) {
+        Ok(file) => {
+            let header = file.header();
+            if let Some(outcome) = &header.outcome {
+                let result = EpisodeResult {
+                    env: header.env.clone(),
+                    episode_return: outcome.episode_return,
+                    cost: outcome.cost,
+                    length: Some(f64::from(header.steps)),
+                };
+                let options: Vec<String> = header.options.iter().map(|(key, value)| format!("{key} {value}")).collect();
+                found.players.entry((header.player.clone(), header.env.clone(), options.join(", "))).or_default().push(result);
+                return;
+            }
+            "ends in the midst of an episode; left out".to_owned()
+        }
+        Err(error) => error.to_string().replacen(&format!("{}: ", path.display()), "", 1),
+    };
+    found.warnings.push(Warning { path: path.to_owned(), line: 0, problem });
+}
+
+fn read_rollout(path: &Path, found: &mut Found) {
+    let text = match read_text(path) {
+        Ok(text) => text,
+        Err(warning) => return found.warnings.push(warning),
+    };
+    let player = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("rollout").to_owned();
+    for episode in read_episode_lines(&text, path, &mut found.warnings) {
+        found.players.entry((player.clone(), episode.env.clone(), String::new())).or_default().push(episode);
+    }
+}

@@ -1,0 +1,45 @@
+//! Finished episodes, as `hasard rollout --json` and `hasard eval --json` print them and episode files keep them.
+
+use super::Warning;
+use serde_json::Value;
+use std::path::Path;
+
+/// What is known of a finished episode.
+#[derive(Clone, PartialEq, Debug)]
+pub struct EpisodeResult {
+    /// Id of the environment; empty if the line does not say.
+    pub env: String,
+    /// Sum of rewards.
+    pub episode_return: f64,
+    /// Sum of costs.
+    pub cost: f64,
+    /// Policy steps, if known.
+    pub length: Option<f64>,
+}
+
+/// Understands lines of JSON that have `return` and `cost`; summaries (lines with `summary`) are passed over in silence,
+/// since they are made of the others, and damaged lines with a warning.
+pub fn read_episode_lines(text: &str, path: &Path, warnings: &mut Vec<Warning>) -> Vec<EpisodeResult> {
+    let mut episodes = Vec::new();
+    for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let value = serde_json::from_str::<Value>(line).unwrap_or(Value::Null);
+        if value.get("summary").is_some() {
+            continue;
+        }
+        let number = |key: &str| value.get(key).and_then(Value::as_f64);
+        match (number("return"), number("cost")) {
+            (Some(episode_return), Some(cost)) => episodes.push(EpisodeResult {
+                env: value.get("env").and_then(Value::as_str).unwrap_or_default().to_owned(),
+                episode_return,
+                cost,
+                length: number("length"),
+            }),
+            _ => warnings.push(Warning {
+                path: path.to_owned(),
+                line: index + 1,
+                problem: "is no episode with a return and a cost; line passed over".into(),
+            }),
+        }
+    }
+    episodes
+}

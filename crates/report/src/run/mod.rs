@@ -1,0 +1,131 @@
+//! Run directories: what a training left behind.
+
+mod config;
+mod discover;
+mod episodes;
+mod heatmap;
+mod metrics;
+
+pub use config::{Config, default_budget, scenario_and_level};
+pub use discover::{Found, discover};
+pub use episodes::{EpisodeResult, read_episode_lines};
+pub use heatmap::HeatmapData;
+pub use metrics::{Row, parse_metrics};
+
+use std::path::{Path, PathBuf};
+
+/// Largest text file that is read, in bytes: far above the metrics of any run.
+pub(crate) const TEXT_LIMIT: u64 = 512 << 20;
+
+/// Something that was passed over while reading: the reader must be told, but the report goes on.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub struct Warning {
+    /// The file.
+    pub path: PathBuf,
+    /// Line in it, from 1; 0 for the file as a whole.
+    pub line: usize,
+    /// What is wrong, and what was done about it.
+    pub problem: String,
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.line {
+            0 => write!(f, "{}: {}", self.path.display(), self.problem),
+            line => write!(f, "{}:{line}: {}", self.path.display(), self.problem),
+        }
+    }
+}
+
+/// One training run, read.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Its directory.
+    pub path: PathBuf,
+    /// What was trained and how.
+    pub config: Config,
+    /// Its reports, in the order of frames.
+    pub rows: Vec<Row>,
+    /// Episodes of `hasard eval`, if any were kept in the directory.
+    pub evaluation: Vec<EpisodeResult>,
+    /// Visited positions at moments of training, if any were kept.
+    pub heatmaps: Vec<HeatmapData>,
+    /// The automap that the heatmaps lie on, if kept.
+    pub automap: Option<PathBuf>,
+}
+
+impl Run {
+    /// Reads a run directory. Damaged lines are passed over and told of in `warnings`.
+    ///
+    /// # Errors
+    /// When `config.json` is missing or unusable: then it is no run.
+    pub fn read(path: &Path, warnings: &mut Vec<Warning>) -> Result<Run, Warning> {
+        let config = Config::read(&path.join("config.json"))?;
+        let metrics_path = path.join("metrics.jsonl");
+        let rows = match read_text(&metrics_path) {
+            Ok(text) => parse_metrics(&text, &metrics_path, warnings),
+            Err(warning) => {
+                warnings.push(warning);
+                Vec::new()
+            }
+        };
+        let mut evaluation = Vec::new();
+        for file in sorted_files(path) {
+            let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+            if name.starts_with("eval") && name.ends_with(".jsonl") {
+                match read_text(&file) {
+                    Ok(text) => evaluation.extend(read_episode_lines(&text, &file, warnings)),
+                    Err(warning) => warnings.push(warning),
+                }
+            }
+        }
+        let heatmap_path = path.join("heatmaps.jsonl");
+        let heatmaps = if heatmap_path.is_file() {
+            match read_text(&heatmap_path) {
+                Ok(text) => heatmap::parse_heatmaps(&text, &heatmap_path, warnings),
+                Err(warning) => {
+                    warnings.push(warning);
+                    Vec::new()
+                }
+            }
+        } else {
+            Vec::new()
+        };
+        let automap = Some(path.join("automap.png")).filter(|file| file.is_file());
+        Ok(Run { path: path.to_owned(), config, rows, evaluation, heatmaps, automap })
+    }
+
+    /// Frames that the run has reached.
+    #[must_use]
+    pub fn frames(&self) -> f64 {
+        self.rows.last().map_or(0.0, |row| row.frames)
+    }
+
+    /// Mean of a metric over the last `points` reports that have it; `None` if none has.
+    #[must_use]
+    pub fn last_mean(&self, metric: &str, points: usize) -> Option<f64> {
+        let last: Vec<f64> = self.rows.iter().rev().filter_map(|row| row.get(metric)).take(points).collect();
+        (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
+    }
+}
+
+/// The files of a folder in the order of their names, so that a report does not depend on the file system.
+pub(crate) fn sorted_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    files.sort();
+    files
+}
+
+/// Reads a text file; bytes that are no UTF-8 (a line cut or overwritten) become replacement characters and their line
+/// fails to parse like any other damaged one.
+pub(crate) fn read_text(path: &Path) -> Result<String, Warning> {
+    let bytes = hasard_media::files::read_limited(path, TEXT_LIMIT).map_err(|error| {
+        let text = error.to_string();
+        let problem = text.strip_prefix(&format!("{}: ", path.display())).unwrap_or(&text).to_owned();
+        Warning { path: path.to_owned(), line: 0, problem }
+    })?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+use super::*;
+
+#[test]
+fn a_damaged_last_line_is_passed_over_and_named() {
+    let whole = "{\"frames\":4096,\"return_mean\":1.5,\"multipliers\":[0.25],\"losses\":{\"value\":2}}\n\
+                 {\"frames\":8192,\"return_mean\":null,\"cost_mean\":3}\n";
+    let path = Path::new("runs/a/metrics.jsonl");
+    let mut warnings = Vec::new();
+    let rows = parse_metrics(&format!("{whole}{{\"frames\":12288,\"retu"), path, &mut warnings);
+    assert_eq!(rows.len(), 2);
+    assert_eq!(rows[0].get("multipliers.0"), Some(0.25));
+    assert_eq!(rows[0].get("losses.value"), Some(2.0));
+    assert_eq!((rows[1].get("return_mean"), rows[1].get("cost_mean")), (None, Some(3.0)));
+    assert_eq!(warnings.len(), 1);
+    let line = warnings[0].to_string();
+    assert!(line.starts_with("runs/a/metrics.jsonl:3: is damaged or half-written"), "{line}");
+    // Wherever the file is cut, no more than the last line is lost.
+    for cut in 0..whole.len() {
+        let mut warnings = Vec::new();
+        let rows = parse_metrics(&whole[..cut], path, &mut warnings);
+        let complete = whole[..cut].matches('\n').count();
+        assert!(rows.len() >= complete && rows.len() <= complete + 1, "cut at {cut}");
+        assert!(warnings.len() <= 1);
+    }
+}
+
+#[test]
+fn a_resumed_run_replaces_what_it_repeats() {
+    let line = |frames: u32, value: u32| format!("{{\"frames\":{frames},\"return_mean\":{value}}}\n");
+    let text = line(10, 1) + &line(20, 2) + &line(30, 3) + "null\n" + &line(20, 4) + &line(30, 5);
+    let mut warnings = Vec::new();
+    let rows = parse_metrics(&text, Path::new("m"), &mut warnings);
+    let seen: Vec<_> = rows.iter().map(|row| (row.frames, row.get("return_mean").unwrap())).collect();
+    assert_eq!(seen, [(10.0, 1.0), (20.0, 4.0), (30.0, 5.0)]);
+    assert_eq!(warnings.len(), 2);
+    assert_eq!((warnings[0].line, warnings[1].line), (4, 5));
+}
+
+#[test]
+fn what_makes_an_experiment_is_everything_but_machine_and_seed() {
+    let parse = |extra: &str| {
+        Config::parse(&format!("{{\"env\":\"RemedyRushLevel2-v0\",\"algo\":\"PPOLag\",\"seed\":3,\"frames\":2000000{extra}}}"))
+    };
+    let plain = parse("").unwrap();
+    assert_eq!((plain.scenario.as_str(), plain.level, plain.safety_budget, plain.frames), ("RemedyRush", 2, 5.0, Some(2e6)));
+    let usual =
+        parse(",\"hard\":false,\"full_actions\":false,\"safety_budget\":5.0,\"threads\":2,\"device\":\"cpu\",\"curriculum\":[]")
+            .unwrap();
+    assert_eq!(usual.options, plain.options);
+    let other =
+        parse(",\"safety_budget\":2.5,\"learning_rate\":{\"actor\":1e-4},\"curriculum\":[1,2,3],\"hard_constraint\":true")
+            .unwrap();
+    assert_eq!(other.safety_budget, 2.5);
+    assert!(other.hard());
+    let options: Vec<_> = other.options.iter().map(|(key, value)| format!("{key}={value}")).collect();
+    assert_eq!(options, ["curriculum=1,2,3", "hard=true", "learning_rate.actor=0.0001", "safety_budget=2.5"]);
+}
+
+#[test]
+fn an_unusable_config_says_why() {
+    for (text, part) in [
+        ("", "is no JSON"),
+        ("[1]", "not a JSON object"),
+        ("{\"algo\":\"PPO\",\"seed\":1}", "lacks the key \"env\""),
+        ("{\"env\":\"X\",\"algo\":\"PPO\",\"seed\":-1}", "seed -1"),
+        ("{\"env\":\"X\",\"algo\":\"PPO\",\"seed\":1,\"safety_budget\":\"much\"}", "safety_budget much"),
+    ] {
+        let problem = Config::parse(text).unwrap_err();
+        assert!(problem.contains(part), "{text}: {problem}");
+    }
+}
+
+#[test]
+fn ids_are_taken_apart() {
+    assert_eq!(scenario_and_level("ArmamentBurdenLevel3-v0"), ("ArmamentBurden".into(), 3));
+    assert_eq!(scenario_and_level("VolcanicVentureLevel1Hard-v0"), ("VolcanicVentureHard".into(), 1));
+    assert_eq!(scenario_and_level("Other-v1"), ("Other".into(), 1));
+}
+
+#[test]
+fn hostile_heatmaps_are_passed_over() {
+    let good = "{\"frames\":1,\"episodes\":2,\"extent\":[0,0,2,1],\"columns\":2,\"rows\":1,\"steps\":[1,0]}";
+    let bad = [
+        "{\"frames\":2,\"episodes\":2,\"extent\":[0,0,2,1],\"columns\":2,\"rows\":1,\"steps\":[1]}",
+        "{\"frames\":2,\"episodes\":2,\"extent\":[0,0,2,1],\"columns\":99999999999,\"rows\":1,\"steps\":[1]}",
+        "{\"frames\":2,\"episodes\":2,\"extent\":[5,0,2,1],\"columns\":2,\"rows\":1,\"steps\":[1,0]}",
+        "{\"frames\":2,\"episodes\":2,\"extent\":[0,0,2,1],\"columns\":2,\"rows\":1,\"steps\":[1,-4]}",
+    ];
+    let mut warnings = Vec::new();
+    let maps = heatmap::parse_heatmaps(&format!("{good}\n{}\n", bad.join("\n")), Path::new("h"), &mut warnings);
+    assert_eq!((maps.len(), warnings.len()), (1, 4));
+}

@@ -1,0 +1,51 @@
+//! Our values beside the published ones, a row each.
+
+use super::setting;
+use crate::document::{Block, Cell, Section, Table, frames};
+use crate::group::{Group, scenario_name};
+use crate::published::published;
+
+pub(super) fn section(groups: &[Group]) -> Section {
+    let mut rows = Vec::new();
+    for group in groups {
+        let Some(paper) = published(group.config()) else { continue };
+        let config = group.config();
+        let (return_estimate, cost_estimate) = (group.final_estimate("return_mean"), group.final_estimate("cost_mean"));
+        let ratio = |ours: Option<f64>, theirs: Option<f64>| match (ours, theirs) {
+            (Some(ours), Some(theirs)) if theirs != 0.0 => {
+                Cell { text: format!("{:.2}", ours / theirs), ..Cell::number(ours / theirs) }
+            }
+            _ => Cell::text("-"),
+        };
+        let theirs = |value: Option<f64>| {
+            value.map_or_else(|| Cell::text("-"), |v| Cell { title: paper.note.clone(), pale: true, ..Cell::number(v) })
+        };
+        let (_, reached) = group.frames_span();
+        rows.push(vec![
+            Cell::text(scenario_name(&config.scenario)),
+            Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
+            Cell::text(&config.algo),
+            Cell::text(setting(group)),
+            Cell::number(reached).with_text(frames(reached)),
+            Cell::estimate(return_estimate, &group.final_samples("return_mean")),
+            theirs(paper.episode_return),
+            ratio(return_estimate.map(|e| e.mean), paper.episode_return),
+            Cell::estimate(cost_estimate, &group.final_samples("cost_mean")),
+            theirs(paper.cost),
+            ratio(cost_estimate.map(|e| e.mean), paper.cost),
+        ]);
+    }
+    let heads = ["scenario", "level", "algorithm", "options", "frames", "return", "paper", "ratio", "cost", "paper", "ratio"];
+    let table = Table { caption: String::new(), spans: Vec::new(), heads: heads.map(String::from).to_vec(), rows };
+    Section {
+        slug: "paper".into(),
+        title: "Beside the paper".into(),
+        text: vec![
+            "The paper trained for 500M frames (curriculum: 300M). A run of fewer frames can only be held against the early part of its \
+             curves: constrained algorithms first overshoot the budget and come back to it within 50M to 100M frames, and PPO earns \
+             most of its final return within 100M to 150M."
+                .into(),
+        ],
+        blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] },
+    }
+}

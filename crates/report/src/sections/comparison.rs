@@ -1,0 +1,165 @@
+//! Experiments that differ in one option: budgets, cost scales, action spaces, observations, curricula, hard constraint.
+
+use super::curves::curve_figure;
+use super::main_results::marked_cells;
+use super::{VARIED, distinct};
+use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
+use crate::document::{Block, Cell, Figure, Section, Table, frames, slug};
+use crate::group::{Group, scenario_name};
+use crate::published::published_in;
+use crate::run::Config;
+use std::collections::BTreeMap;
+
+/// A section for each option by which experiments can be compared.
+pub(super) fn sections(groups: &[Group]) -> Vec<Section> {
+    let titles = [
+        (
+            "safety_budget",
+            "Safety budgets",
+            "What return a tighter or looser budget leaves. Each budget is drawn over its own bar.",
+        ),
+        (
+            "cost_scale",
+            "Cost scales",
+            "PPOCost takes scale x cost off the reward; returns and costs here are the environment's own.",
+        ),
+        ("full_actions", "Action spaces", "The simplified action space against the full one."),
+        ("observation", "Observations", "What the learner sees: colour, colour with depth, segmentation."),
+        (
+            "curriculum",
+            "Curricula",
+            "Levels one after the other against the last level alone. Curves begin at the first frame of all levels.",
+        ),
+        (
+            "hard",
+            "Hard constraint",
+            "Any harm ends the episode (or costs as the scenario's hard rules say) against the budgeted constraint.",
+        ),
+    ];
+    let mut sections: Vec<Section> = titles.iter().map(|(key, title, text)| section(groups, key, title, text)).collect();
+    // Any other option in which some experiments differ and nothing else.
+    let mut keys: Vec<String> = groups.iter().flat_map(|group| group.config().options.keys().cloned()).collect();
+    keys.sort();
+    keys.dedup();
+    keys.retain(|key| !VARIED.contains(&key.as_str()));
+    sections.extend(
+        keys.iter().map(|key| section(groups, key, &format!("Option {key}"), "Experiments that differ in this option alone.")),
+    );
+    sections
+}
+
+/// The value of an option as people read it.
+fn value_of(config: &Config, key: &str) -> String {
+    let option = config.options.get(key).cloned();
+    match key {
+        "safety_budget" => format!("budget {}", config.safety_budget),
+        "cost_scale" => format!("scale {}", config.cost_scale),
+        "full_actions" => if option.is_some() { "full" } else { "simplified" }.into(),
+        "observation" => option.unwrap_or_else(|| "rgb".into()),
+        "curriculum" => option.map_or_else(|| format!("level {} alone", config.level), |levels| format!("levels {levels}")),
+        "hard" => if config.hard() { "hard" } else { "soft" }.into(),
+        _ => option.unwrap_or_else(|| "not given".into()),
+    }
+}
+
+/// For sorting: numbers by size, then words.
+fn order_of(config: &Config, key: &str) -> (u64, String) {
+    let number = match key {
+        "safety_budget" => config.safety_budget,
+        "cost_scale" => config.cost_scale,
+        _ => f64::from(u8::from(config.options.contains_key(key))),
+    };
+    (number.max(0.0).to_bits(), value_of(config, key))
+}
+
+fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
+    let mut sets: BTreeMap<String, Vec<&Group>> = BTreeMap::new();
+    for group in groups {
+        let config = group.config();
+        // A hard run has no budget of its own to compare, and only PPOCost has a scale.
+        if key == "cost_scale" && !config.algo.eq_ignore_ascii_case("PPOCost") || key == "safety_budget" && config.hard() {
+            continue;
+        }
+        let place = crate::group::scenario_order(&config.scenario);
+        let rest = group.options_line(Some(key));
+        sets.entry(format!("{place:02} {} {} {} {rest}", config.scenario, config.level, config.algo)).or_default().push(group);
+    }
+    let mut rows = Vec::new();
+    let mut panels = Vec::new();
+    let mut figures = Vec::new();
+    for members in sets.values_mut() {
+        members.sort_by_key(|group| (order_of(group.config(), key), group.config().frames.unwrap_or(0.0).to_bits()));
+        if distinct(members, |group| value_of(group.config(), key)).len() < 2 {
+            continue;
+        }
+        let config = members[0].config();
+        let rest = members[0].options_line(Some(key));
+        let repeated = |group: &Group| {
+            members.iter().filter(|other| value_of(other.config(), key) == value_of(group.config(), key)).count() > 1
+        };
+        let label = |group: &Group| match group.config().frames {
+            Some(asked) if repeated(group) => format!("{}, {} frames", value_of(group.config(), key), frames(asked)),
+            _ => value_of(group.config(), key),
+        };
+        let cells = marked_cells(members);
+        for (group, (return_cell, cost_cell)) in members.iter().zip(cells) {
+            let paper = published_in(group.config(), key);
+            let theirs = |value: Option<f64>| value.map_or_else(|| Cell::text("-"), |v| Cell { pale: true, ..Cell::number(v) });
+            let (_, reached) = group.frames_span();
+            rows.push(vec![
+                Cell::text(scenario_name(&config.scenario)),
+                Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
+                Cell::text(&config.algo),
+                Cell::text(label(group)),
+                Cell::text(&rest),
+                Cell::number(reached).with_text(frames(reached)),
+                Cell::number(group.config().safety_budget).with_text(group.config().safety_budget.to_string()),
+                return_cell,
+                theirs(paper.and_then(|p| p.episode_return)),
+                cost_cell,
+                theirs(paper.and_then(|p| p.cost)),
+            ]);
+        }
+        let name = format!("{} level {} {}", scenario_name(&config.scenario), config.level, config.algo);
+        for metric in ["return", "cost"] {
+            let bars = |(index, group): (usize, &&Group)| {
+                let mut bars = Vec::new();
+                if let Some(estimate) = group.final_estimate(&format!("{metric}_mean")) {
+                    let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
+                    bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink: Ink::Series(index), pale: false });
+                }
+                let paper =
+                    published_in(group.config(), key).and_then(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                bars.extend(paper.map(|value| Bar {
+                    name: "paper".into(),
+                    value,
+                    interval: None,
+                    ink: Ink::Series(index),
+                    pale: true,
+                }));
+                let budget = (metric == "cost").then_some(group.config().safety_budget);
+                BarGroup { name: label(group), bars, budget }
+            };
+            let groups: Vec<BarGroup> = members.iter().enumerate().map(bars).collect();
+            panels.push(bar_panel(&format!("{name}: {metric}"), &groups, (390.0, 190.0)));
+        }
+        let lines: Vec<(String, Ink, &Group)> =
+            members.iter().enumerate().map(|(i, group)| (label(group), Ink::Series(i), *group)).collect();
+        figures.push(Block::Figure(curve_figure(&name, &slug(&format!("{key} {name} {rest}")), &rest, &lines)));
+    }
+    let mut blocks = Vec::new();
+    if !rows.is_empty() {
+        let heads =
+            ["scenario", "level", "algorithm", "varied", "other options", "frames", "budget", "return", "paper", "cost", "paper"];
+        blocks.push(Block::Table(Table {
+            caption: String::new(),
+            spans: Vec::new(),
+            heads: heads.map(String::from).to_vec(),
+            rows,
+        }));
+        let caption = "Full colour: here; pale: the paper. Dashed: the budget.".into();
+        blocks.push(Block::Figure(Figure { slug: slug(&format!("{key} bars")), caption, drawing: figure("", panels, 2, &[]) }));
+        blocks.extend(figures);
+    }
+    Section { slug: slug(key), title: title.to_owned(), text: vec![text.to_owned()], blocks }
+}

@@ -1,0 +1,88 @@
+//! Training curves.
+
+use super::{distinct, main_groups};
+use crate::chart::{Ink, LinePanel, Series, figure, line_panel};
+use crate::curve::Curve;
+use crate::document::{Block, Figure, Section, slug};
+use crate::group::{Group, algorithm_order, scenario_name, scenario_order};
+
+/// Return and cost against frames for every environment, and the multipliers where an algorithm has any.
+pub(super) fn section(groups: &[Group]) -> Section {
+    let settings = main_groups(groups);
+    let mut blocks = Vec::new();
+    for (setting, members) in &settings {
+        let places = distinct(members, |group| {
+            (group.config().level, scenario_order(&group.config().scenario), group.config().scenario.clone())
+        });
+        for (level, _, scenario) in places {
+            let here: Vec<(String, Ink, &Group)> = members
+                .iter()
+                .filter(|group| group.config().level == level && group.config().scenario == scenario)
+                .map(|group| (group.config().algo.clone(), Ink::Series(algorithm_order(&group.config().algo)), *group))
+                .collect();
+            let name = format!("{} level {level}", scenario_name(&scenario));
+            let several = settings.len() > 1;
+            blocks.push(Block::Figure(curve_figure(
+                &name,
+                &slug(&if several { format!("curves {name} {setting}") } else { format!("curves {name}") }),
+                &if several { setting.clone() } else { String::new() },
+                &here,
+            )));
+        }
+    }
+    Section {
+        slug: "curves".into(),
+        title: "Training curves".into(),
+        text: vec!["Mean over seeds with its 95 % interval; thin lines are the seeds. Dashed: the budget. Point at a curve for its values.".into()],
+        blocks,
+    }
+}
+
+/// Panels of return, cost and multiplier for experiments with a name and a colour each.
+pub(super) fn curve_figure(title: &str, file: &str, caption: &str, members: &[(String, Ink, &Group)]) -> Figure {
+    let budgets = distinct(members, |(_, _, group)| group.config().safety_budget.to_bits());
+    let one_budget = if let [bits] = budgets[..] { Some(f64::from_bits(bits)) } else { None };
+    let panel = |heading: &str, metric: &str, budget: Option<f64>| {
+        let series: Vec<Series> = members
+            .iter()
+            .map(|(name, ink, group)| Series { name: name.clone(), ink: *ink, curve: Curve::of(group, metric) })
+            .filter(|series| !series.curve.seeds.is_empty())
+            .collect();
+        LinePanel { title: heading.to_owned(), series, budget, size: (400.0, 220.0) }
+    };
+    let mut panels = vec![line_panel(&panel("return", "return_mean", None)), line_panel(&panel("cost", "cost_mean", one_budget))];
+    for multiplier in multipliers(members) {
+        let heading = if multiplier.contains('.') {
+            format!("multiplier {}", multiplier.replace("multipliers.", ""))
+        } else {
+            multiplier.clone()
+        };
+        let panel = panel(&heading, &multiplier, None);
+        // A multiplier that never leaves zero says nothing.
+        if panel.series.iter().any(|series| series.curve.top() > 0.0) {
+            panels.push(line_panel(&panel));
+        }
+    }
+    let mut legend: Vec<(String, Ink)> = members.iter().map(|(name, ink, _)| (name.clone(), *ink)).collect();
+    if one_budget.is_some() {
+        legend.push(("budget".into(), Ink::Budget));
+    }
+    let columns = if panels.len() % 3 == 0 { 3 } else { 2 };
+    Figure { slug: file.to_owned(), caption: caption.to_owned(), drawing: figure(title, panels, columns, &legend) }
+}
+
+/// Names of the multipliers that the runs report.
+fn multipliers(members: &[(String, Ink, &Group)]) -> Vec<String> {
+    let names =
+        members.iter().flat_map(|(_, _, group)| &group.runs).filter_map(|run| run.rows.last()).flat_map(|row| row.values());
+    let mut names: Vec<String> = names
+        .map(|(name, _)| name.clone())
+        .filter(|name| {
+            name.starts_with("multipliers.") || ["multiplier", "multipliers", "lagrange_multiplier"].contains(&name.as_str())
+        })
+        .collect();
+    names.sort();
+    names.dedup();
+    names.truncate(4);
+    names
+}

@@ -1,0 +1,89 @@
+//! The sections of the report, each made from all experiments.
+
+mod beside_paper;
+mod comparison;
+mod curves;
+mod heatmaps;
+mod interquartile;
+mod main_results;
+mod players;
+mod runs;
+
+use crate::document::{Document, Section};
+use crate::group::Group;
+use crate::run::{Found, Warning};
+use std::collections::BTreeMap;
+
+/// Makes the report of what was found. `warnings` grows by what is noticed on the way.
+#[must_use]
+pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec<Warning>) -> Document {
+    let frames: f64 = groups.iter().flat_map(|group| &group.runs).map(crate::run::Run::frames).sum();
+    let run_count: usize = groups.iter().map(|group| group.runs.len()).sum();
+    let mut sections = vec![main_results::section(groups), beside_paper::section(groups), curves::section(groups)];
+    sections.extend(comparison::sections(groups));
+    sections.push(interquartile::section(groups));
+    sections.push(players::section(found, groups));
+    sections.push(heatmaps::section(groups, warnings));
+    sections.push(runs::experiments(groups));
+    sections.push(runs::runs(groups));
+    sections.push(runs::warnings(warnings));
+    sections.retain(|section: &Section| !section.blocks.is_empty());
+    sections.push(method());
+    Document {
+        title: title.to_owned(),
+        subtitle: format!("{run_count} runs of {} experiments, {} frames in all", groups.len(), crate::document::frames(frames)),
+        sections,
+    }
+}
+
+fn method() -> Section {
+    Section {
+        slug: "method".into(),
+        title: "How these numbers are made".into(),
+        text: [
+            "A run is one seed. An experiment is all runs whose configuration is equal but for the seed; nothing else is ever averaged.",
+            "A table's value is, for each seed, the mean over its last ten reports (each the mean over recently finished training episodes), \
+             then the mean over seeds. ± is half the 95 % interval of Student's t distribution with n - 1 in the deviation's denominator; \
+             n is the number of seeds. With one seed there is no interval.",
+            "Green: the mean cost is within the budget. Bold: the best return among those within the budget; if none is, the least cost.",
+            "Curves show the mean over seeds (line), its 95 % interval (band) and each seed (thin lines). Means end where the shortest run \
+             ends, and no curve is stretched or smoothed; reports within one 240th of the axis are averaged.",
+            "Returns and costs are always those of the environment, never reshaped by an algorithm.",
+            "The paper's values are means over five seeds after 500 million frames; its intervals were not printed. Where the paper's \
+             scripts added back the wrong multiple of the cost, the corrected return is given.",
+        ]
+        .map(String::from)
+        .to_vec(),
+        blocks: Vec::new(),
+    }
+}
+
+/// Options that an experiment of the paper varies: they have sections of their own and stay out of the main tables.
+pub(crate) const VARIED: [&str; 6] = ["safety_budget", "cost_scale", "full_actions", "observation", "curriculum", "hard"];
+
+/// The experiments without any varied option, by what else they were run under.
+fn main_groups(groups: &[Group]) -> BTreeMap<String, Vec<&Group>> {
+    let mut settings: BTreeMap<String, Vec<&Group>> = BTreeMap::new();
+    for group in groups {
+        if !VARIED.iter().any(|key| group.config().options.contains_key(*key)) {
+            settings.entry(setting(group)).or_default().push(group);
+        }
+    }
+    settings
+}
+
+/// Everything that an experiment was run under, for people.
+fn setting(group: &Group) -> String {
+    let mut parts = vec![group.options_line(None)];
+    parts.extend(group.config().frames.map(|frames| format!("{} frames", crate::document::frames(frames))));
+    parts.retain(|part| !part.is_empty());
+    if parts.is_empty() { "default options".into() } else { parts.join(", ") }
+}
+
+/// The values of `items` under `key`, in order, without repeats.
+fn distinct<T, K: Ord>(items: &[T], key: impl Fn(&T) -> K) -> Vec<K> {
+    let mut keys: Vec<K> = items.iter().map(key).collect();
+    keys.sort();
+    keys.dedup();
+    keys
+}

@@ -1,0 +1,94 @@
+//! Every experiment, every run, and what was passed over.
+
+use super::main_results::marked_cells;
+use crate::document::{Block, Cell, Section, Table, frames, number};
+use crate::group::{Group, scenario_name};
+use crate::run::Warning;
+
+/// A row for each experiment.
+pub(super) fn experiments(groups: &[Group]) -> Section {
+    let rows = groups
+        .iter()
+        .map(|group| {
+            let config = group.config();
+            let (return_cell, cost_cell) = marked_cells(&[group]).remove(0);
+            let (shortest, longest) = group.frames_span();
+            let reached =
+                if shortest == longest { frames(longest) } else { format!("{} to {}", frames(shortest), frames(longest)) };
+            let seeds: Vec<String> = group.runs.iter().map(|run| run.config.seed.to_string()).collect();
+            vec![
+                Cell::text(scenario_name(&config.scenario)),
+                Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
+                Cell::text(&config.algo),
+                Cell::text(group.options_line(None)),
+                Cell::text(seeds.join(" ")),
+                Cell::number(longest).with_text(reached),
+                Cell::number(config.safety_budget).with_text(config.safety_budget.to_string()),
+                return_cell,
+                cost_cell,
+                Cell::estimate(group.final_estimate("length_mean"), &group.final_samples("length_mean")),
+            ]
+        })
+        .collect();
+    let heads = ["scenario", "level", "algorithm", "options", "seeds", "frames", "budget", "return", "cost", "steps an episode"];
+    section("experiments", "All experiments", heads.as_slice(), rows)
+}
+
+/// A row for each run.
+pub(super) fn runs(groups: &[Group]) -> Section {
+    let rows = groups
+        .iter()
+        .flat_map(|group| &group.runs)
+        .map(|run| {
+            let value =
+                |metric: &str| run.last_mean(metric, crate::group::LAST_POINTS).map_or_else(|| Cell::text("-"), Cell::number);
+            let last = |metric: &str| run.rows.iter().rev().find_map(|row| row.get(metric));
+            let hours = last("wall_s").map_or_else(|| Cell::text("-"), |s| Cell::number(s / 3600.0));
+            let fps =
+                run.last_mean("fps", usize::MAX).map_or_else(|| Cell::text("-"), |fps| Cell::number(fps).with_text(number(fps)));
+            let state = match run.config.frames {
+                Some(asked) if run.frames() < asked * 0.999 => format!("{:.0} %", 100.0 * run.frames() / asked),
+                _ => "finished".into(),
+            };
+            vec![
+                Cell::text(run.path.display().to_string()),
+                Cell::text(&run.config.env),
+                Cell::text(&run.config.algo),
+                Cell::number(run.config.seed as f64).with_text(run.config.seed.to_string()),
+                Cell::number(run.frames()).with_text(frames(run.frames())),
+                Cell::text(state),
+                hours,
+                fps,
+                value("return_mean"),
+                value("cost_mean"),
+                Cell::number(run.rows.len() as f64).with_text(run.rows.len().to_string()),
+            ]
+        })
+        .collect();
+    let heads =
+        ["directory", "environment", "algorithm", "seed", "frames", "state", "hours", "frames/s", "return", "cost", "reports"];
+    section("runs", "All runs", heads.as_slice(), rows)
+}
+
+/// What was passed over while reading.
+pub(super) fn warnings(warnings: &[Warning]) -> Section {
+    let rows = warnings
+        .iter()
+        .map(|warning| {
+            let line = if warning.line == 0 {
+                Cell::text("")
+            } else {
+                Cell::number(warning.line as f64).with_text(warning.line.to_string())
+            };
+            vec![Cell::text(warning.path.display().to_string()), line, Cell::text(&warning.problem)]
+        })
+        .collect();
+    section("warnings", "Passed over", &["file", "line", "problem"], rows)
+}
+
+fn section(slug: &str, title: &str, heads: &[&str], rows: Vec<Vec<Cell>>) -> Section {
+    let table =
+        Table { caption: String::new(), spans: Vec::new(), heads: heads.iter().map(|head| (*head).to_owned()).collect(), rows };
+    let blocks = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
+    Section { slug: slug.into(), title: title.into(), text: Vec::new(), blocks }
+}

@@ -1,0 +1,65 @@
+//! The whole way from run directories to a folder of files.
+
+use crate::chart::{rasterise, standalone_svg};
+use crate::document::Block;
+use crate::group::Group;
+use crate::markdown::{FIGURES, markdown};
+use crate::run::{Warning, discover};
+use crate::{csv, page, sections};
+use hasard_media::files::write_whole;
+use hasard_media::png;
+use std::path::{Path, PathBuf};
+
+/// What a report was made of and where it lies.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// The page, to be opened in a browser.
+    pub page: PathBuf,
+    /// Every file written, the page first.
+    pub files: Vec<PathBuf>,
+    /// Number of runs that it counts.
+    pub runs: usize,
+    /// Number of experiments (runs that differ in seed alone).
+    pub experiments: usize,
+    /// What was passed over; also a section of the page.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads the runs and episodes below `paths` and writes into `out`: `index.html`, `report.md`, `experiments.csv`,
+/// `runs.csv`, `curves.csv`, and `figures/` with each figure as SVG and PNG and the heatmaps as PNG and GIF. The same runs
+/// give the same bytes.
+///
+/// # Errors
+/// One line that names the path and the remedy: nothing found, or a file that cannot be written.
+pub fn write_report(paths: &[PathBuf], out: &Path, title: &str) -> Result<Written, String> {
+    let mut found = discover(paths)?;
+    let mut warnings = std::mem::take(&mut found.warnings);
+    let groups = Group::sort(&found, &mut warnings);
+    let document = sections::document(title, &found, &groups, &mut warnings);
+    let mut files = Vec::new();
+    let mut write = |name: &str, bytes: &[u8]| {
+        let path = out.join(name);
+        write_whole(&path, bytes).map_err(|error| error.to_string())?;
+        files.push(path);
+        Ok::<(), String>(())
+    };
+    write("index.html", page::page(&document).as_bytes())?;
+    write("report.md", markdown(&document).as_bytes())?;
+    write("experiments.csv", csv::experiments_csv(&groups).as_bytes())?;
+    write("runs.csv", csv::runs_csv(&groups).as_bytes())?;
+    write("curves.csv", csv::curves_csv(&groups).as_bytes())?;
+    for block in document.sections.iter().flat_map(|section| &section.blocks) {
+        match block {
+            Block::Figure(figure) => {
+                write(&format!("{FIGURES}/{}.svg", figure.slug), standalone_svg(&figure.drawing, &figure.caption).as_bytes())?;
+                if let Some(picture) = rasterise(&figure.drawing) {
+                    write(&format!("{FIGURES}/{}.png", figure.slug), &png::encode(&picture))?;
+                }
+            }
+            Block::Image(image) => write(&format!("{FIGURES}/{}", image.file), &image.bytes)?,
+            Block::Heading(_) | Block::Table(_) => {}
+        }
+    }
+    let runs = groups.iter().map(|group| group.runs.len()).sum();
+    Ok(Written { page: out.join("index.html"), files, runs, experiments: groups.len(), warnings })
+}

@@ -1,0 +1,221 @@
+//! A report on synthetic runs, from directories to files.
+
+mod synthetic;
+
+use hasard_media::episode::{EpisodeFile, Header, Outcome};
+use hasard_report::write_report;
+use std::path::{Path, PathBuf};
+use synthetic::{Folder, Synthetic, write_heatmaps};
+
+const ENVS: [(&str, f64, f64); 6] = [
+    ("ArmamentBurden", 9.0, 50.0),
+    ("VolcanicVenture", 50.0, 50.0),
+    ("RemedyRush", 48.0, 5.0),
+    ("CollateralDamage", 75.0, 5.0),
+    ("PrecipicePlunge", 240.0, 50.0),
+    ("DetonatorsDilemma", 29.0, 5.0),
+];
+
+fn write_experiments(root: &Path) {
+    for (scenario, best, budget) in ENVS {
+        let algos = [
+            ("PPO", 1.0, 5.0, 1.0),
+            ("PPOCost", 0.6, 2.1, 1.0),
+            ("PPOLag", 0.7, 0.97, 4.0),
+            ("PPOPID", 0.8, 0.95, 2.0),
+            ("P3O", 0.75, 0.8, 0.5),
+        ];
+        for (algo, share, cost, overshoot) in algos {
+            for seed in 1..=3 {
+                let env = format!("{scenario}Level1-v0");
+                let end = (best * share, budget * cost, budget * overshoot);
+                let run = Synthetic { env: &env, algo, seed, frames: 4e6, reports: 80, options: "", end };
+                run.write(&root.join("main").join(&env).join(algo).join(format!("seed{seed}")));
+            }
+        }
+        if scenario == "RemedyRush" {
+            for (budget, share) in [(2.5, 0.5), (7.5, 0.85)] {
+                for seed in 1..=2 {
+                    let options = format!(",\"safety_budget\":{budget}");
+                    let end = (best * share, budget, 10.0);
+                    let env = "RemedyRushLevel1-v0";
+                    let run = Synthetic { env, algo: "PPOLag", seed, frames: 4e6, reports: 80, options: &options, end };
+                    run.write(&root.join(format!("bounds/{budget}-{seed}")));
+                }
+            }
+            let other = |name: &str, env, algo, options, end| {
+                let run = Synthetic { env, algo, seed: 1, frames: 4e6, reports: 60, options, end };
+                run.write(&root.join(name));
+            };
+            other("scale", "RemedyRushLevel1-v0", "PPOCost", ",\"cost_scale\":0.5", (40.0, 20.0, 5.0));
+            other("full", "RemedyRushLevel1-v0", "PPOLag", ",\"full_actions\":true", (20.0, 8.0, 5.0));
+            other("hard", "RemedyRushLevel1-v0", "PPO", ",\"hard\":true", (15.0, 7.0, 5.0));
+            other("alone", "RemedyRushLevel3-v0", "PPOPID", "", (6.0, 4.0, 5.0));
+            other("curriculum", "RemedyRushLevel1-v0", "PPOPID", ",\"curriculum\":[1,2,3]", (17.0, 5.1, 5.0));
+            write_heatmaps(&root.join("main/RemedyRushLevel1-v0/PPOLag/seed1"));
+        }
+    }
+    let eval = "{\"env\":\"RemedyRushLevel1-v0\",\"episode\":0,\"return\":31,\"cost\":4,\"length\":525}\n\
+                {\"env\":\"RemedyRushLevel1-v0\",\"episode\":1,\"return\":33,\"cost\":7,\"length\":525}\n\
+                {\"summary\":{\"return\":32}}\n";
+    std::fs::write(root.join("main/RemedyRushLevel1-v0/PPOPID/seed1/eval.jsonl"), eval).unwrap();
+    for episode in 0..4u32 {
+        let header = Header {
+            env: "RemedyRushLevel1-v0".into(),
+            options: [("full-actions".to_owned(), "true".to_owned())].into(),
+            seed: u64::from(episode),
+            program: "0.1.0".into(),
+            player: "human".into(),
+            steps: 0,
+            groups: 1,
+            deltas: 0,
+            outcome: None,
+        };
+        let mut file = EpisodeFile::new(header).unwrap();
+        for _ in 0..525 {
+            file.push(&[1], &[]).unwrap();
+        }
+        let outcome = Outcome { episode_return: 40.0 + f64::from(episode), cost: 2.0, truncated: true, ..Outcome::default() };
+        file.set_outcome(outcome);
+        file.write(&root.join(format!("human/{episode}.episode"))).unwrap();
+    }
+    // What a killed trainer and a full disk leave behind.
+    let cut = root.join("main/RemedyRushLevel1-v0/PPO/seed3/metrics.jsonl");
+    let text = std::fs::read_to_string(&cut).unwrap();
+    std::fs::write(&cut, &text[..text.len() - 40]).unwrap();
+    std::fs::create_dir_all(root.join("broken")).unwrap();
+    std::fs::write(root.join("broken/config.json"), "{\"env\":").unwrap();
+}
+
+#[test]
+fn a_report_on_many_experiments() {
+    let folder = Folder::new("many");
+    let (runs, out) = (folder.0.join("runs"), folder.0.join("out"));
+    write_experiments(&runs);
+    let written = write_report(std::slice::from_ref(&runs), &out, "Synthetic runs").unwrap();
+    assert_eq!((written.runs, written.experiments), (6 * 5 * 3 + 4 + 5, 30 + 2 + 5));
+    let warnings: Vec<String> = written.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert!(warnings[0].contains("broken/config.json: is no JSON"), "{warnings:?}");
+    assert!(warnings[1].contains("PPO/seed3/metrics.jsonl:80: is damaged or half-written"), "{warnings:?}");
+
+    let page = std::fs::read_to_string(&written.page).unwrap();
+    // Self-contained: nothing is fetched from anywhere.
+    for forbidden in ["src=\"http", "href=\"http", "url(", "@import", "<link", "src=\"/", "fetch("] {
+        assert!(!page.contains(forbidden), "{forbidden}");
+    }
+    for section in ["results", "paper", "curves", "safety-budget", "cost-scale", "full-actions", "curriculum", "hard"] {
+        assert!(page.contains(&format!("<section id=\"{section}\">")), "{section}");
+    }
+    for section in ["interquartile", "players", "heatmaps", "experiments", "runs", "warnings", "method"] {
+        assert!(page.contains(&format!("<section id=\"{section}\">")), "{section}");
+    }
+    assert_balanced(&page);
+    for file in &written.files {
+        if file.extension().is_some_and(|extension| extension == "svg") {
+            assert_balanced(&std::fs::read_to_string(file).unwrap());
+        } else if file.extension().is_some_and(|extension| extension == "png") {
+            hasard_media::png::read(file).unwrap();
+        }
+    }
+    let figures = |ending: &str| written.files.iter().filter(|file| file.extension().is_some_and(|e| e == ending)).count();
+    assert!(figures("svg") >= 12 && figures("png") > figures("svg") && figures("gif") == 1);
+
+    // The mean of a cell, by hand from the same files.
+    let csv = std::fs::read_to_string(out.join("experiments.csv")).unwrap();
+    let row = csv.lines().find(|line| line.starts_with("VolcanicVentureLevel1-v0,VolcanicVenture,1,PPOLag,")).unwrap();
+    let by_hand: f64 =
+        (1..=3).map(|seed| last_ten(&runs.join(format!("main/VolcanicVentureLevel1-v0/PPOLag/seed{seed}")))).sum::<f64>() / 3.0;
+    let fields: Vec<&str> = row.split("\",").last().unwrap().split(',').collect();
+    let mean: f64 = fields[5].parse().unwrap();
+    assert!((mean - by_hand).abs() < 1e-9, "{mean} {by_hand}: {row}");
+
+    let text = std::fs::read_to_string(out.join("report.md")).unwrap();
+    let table: Vec<&str> = text.lines().filter(|line| line.starts_with("| PPO")).take(8).collect();
+    assert!(table.iter().any(|line| line.starts_with("| PPOLag |") && line.contains(" ✓")), "{table:#?}");
+    assert!(!table[0].contains('✓'), "PPO is far above every budget: {}", table[0]);
+
+    // Same runs, same bytes.
+    let again = folder.0.join("again");
+    let second = write_report(std::slice::from_ref(&runs), &again, "Synthetic runs").unwrap();
+    assert_eq!(second.files.len(), written.files.len());
+    for (one, two) in written.files.iter().zip(&second.files) {
+        assert!(std::fs::read(one).unwrap() == std::fs::read(two).unwrap(), "{} differs", one.display());
+    }
+}
+
+fn last_ten(run: &Path) -> f64 {
+    let text = std::fs::read_to_string(run.join("metrics.jsonl")).unwrap();
+    let value = |line: &str| {
+        let after = line.split("\"return_mean\":").nth(1).unwrap();
+        after.split(',').next().unwrap().parse::<f64>().unwrap()
+    };
+    text.lines().rev().take(10).map(value).sum::<f64>() / 10.0
+}
+
+/// Every element that is opened is closed, in order.
+fn assert_balanced(markup: &str) {
+    let body = markup.split("<script>").next().unwrap();
+    let mut open: Vec<&str> = Vec::new();
+    for part in body.split('<').skip(1) {
+        let tag = part.split('>').next().unwrap();
+        let name = tag.trim_start_matches('/').split([' ', '/']).next().unwrap();
+        if tag.starts_with('!') || tag.ends_with('/') || ["meta", "img"].contains(&name) {
+            continue;
+        }
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "at <{}", &part[..part.len().min(80)]);
+        } else {
+            open.push(name);
+        }
+    }
+    assert!(open.iter().all(|name| ["html", "body"].contains(name)), "{open:?}");
+}
+
+#[test]
+fn one_short_run_is_enough() {
+    let folder = Folder::new("one");
+    let run = folder.0.join("a|b<c");
+    let synthetic = Synthetic {
+        env: "Custom-v0",
+        algo: "Mine<x>",
+        seed: 1,
+        frames: 1000.0,
+        reports: 1,
+        options: ",\"note\":\"a,b\\\"|<\"",
+        end: (1.0, 2.0, 0.0),
+    };
+    synthetic.write(&run);
+    let written = write_report(&[run.clone(), run], &folder.0.join("out"), "One <run>").unwrap();
+    assert_eq!((written.runs, written.warnings.len()), (1, 0), "{:?}", written.warnings);
+    let page = std::fs::read_to_string(&written.page).unwrap();
+    assert!(page.contains("Mine&lt;x&gt;") && !page.contains("Mine<x>"));
+    assert_balanced(&page);
+}
+
+#[test]
+fn a_run_without_any_report_is_shown_as_such() {
+    let folder = Folder::new("empty");
+    let run = folder.0.join("run");
+    Synthetic { env: "RemedyRushLevel1-v0", algo: "PPO", seed: 1, frames: 1e6, reports: 0, options: "", end: (0.0, 0.0, 0.0) }
+        .write(&run);
+    let written = write_report(std::slice::from_ref(&run), &folder.0.join("out"), "t").unwrap();
+    assert!(std::fs::read_to_string(&written.page).unwrap().contains("no report yet"));
+    std::fs::remove_file(run.join("metrics.jsonl")).unwrap();
+    let written = write_report(&[run], &folder.0.join("out"), "t").unwrap();
+    assert!(written.warnings[0].to_string().contains("metrics.jsonl: cannot read"), "{:?}", written.warnings);
+}
+
+#[test]
+fn paths_without_runs_are_errors_that_say_what_to_do() {
+    let folder = Folder::new("none");
+    let error = write_report(std::slice::from_ref(&folder.0), &folder.0.join("out"), "t").unwrap_err();
+    assert!(error.contains("no run directory") && error.contains("hasard train --out"), "{error}");
+    let error = write_report(&[PathBuf::from("/no/such")], &folder.0.join("out"), "t").unwrap_err();
+    assert!(error.starts_with("/no/such: no such file or folder"), "{error}");
+    let run = folder.0.join("run");
+    Synthetic { env: "RemedyRushLevel1-v0", algo: "PPO", seed: 1, frames: 1e6, reports: 3, options: "", end: (1.0, 1.0, 0.0) }
+        .write(&run);
+    let error = write_report(&[run], Path::new("/dev/null/out"), "t").unwrap_err();
+    assert!(error.starts_with("/dev/null/out"), "{error}");
+}
