@@ -2,7 +2,9 @@
 
 pub mod advantage;
 pub mod burn_network;
+pub mod config;
 pub mod cpu;
+pub mod device;
 pub mod distribution;
 pub mod error;
 pub mod model;

@@ -132,7 +132,7 @@ impl PixelNormaliser {
             for other in work {
                 scope.spawn(other);
             }
-            if let Some(own) = own {
+            if let Some(mut own) = own {
                 own();
             }
         });
