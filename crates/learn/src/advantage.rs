@@ -49,8 +49,7 @@ mod tests {
 
     #[test]
     fn a_time_out_adds_what_would_have_come() {
-        let mut lane =
-            Lane { rewards: &[1.0, 1.0], done: &[true, false], cut_off_values: &[3.0, 0.0], values: &[0.5, 0.4, 0.2] };
+        let mut lane = Lane { rewards: &[1.0, 1.0], done: &[true, false], cut_off_values: &[3.0, 0.0], values: &[0.5, 0.4, 0.2] };
         let (mut with, mut without) = ([0.0; 2], [0.0; 2]);
         generalised_advantages(lane, 0.9, 0.5, &mut with);
         lane.cut_off_values = &[0.0; 2];

@@ -63,10 +63,7 @@ impl BurnNetwork {
         let words = Tensor::<3, Int>::from_data(TensorData::new(packed, [rows, words, 1]), device);
         let bytes = (0..4).map(|byte| words.clone().bitwise_right_shift_scalar(8 * byte).bitwise_and_scalar(255)).collect();
         let pixels = Tensor::cat(bytes, 2).float().reshape([rows as i32, -1]).narrow(1, 0, image.size());
-        (pixels * scale + shift)
-            .clamp(-5.0, 5.0)
-            .reshape([rows, image.height, image.width, image.channels])
-            .permute([0, 3, 1, 2])
+        (pixels * scale + shift).clamp(-5.0, 5.0).reshape([rows, image.height, image.width, image.channels]).permute([0, 3, 1, 2])
     }
 
     /// Outputs of all rows and the states after the last step.
@@ -108,8 +105,7 @@ impl BurnNetwork {
             for step in 0..batch.steps {
                 let first = step * batch.lanes;
                 if batch.reset[first..first + batch.lanes].contains(&true) {
-                    let keep: Vec<f32> =
-                        (0..batch.lanes).map(|lane| if batch.reset[first + lane] { 0.0 } else { 1.0 }).collect();
+                    let keep: Vec<f32> = (0..batch.lanes).map(|lane| if batch.reset[first + lane] { 0.0 } else { 1.0 }).collect();
                     h = h * Tensor::<2>::from_data(TensorData::new(keep, [batch.lanes, 1]), device);
                 }
                 let x = from_input.clone().narrow(0, first, batch.lanes);

@@ -377,9 +377,6 @@ impl Store {
         if all.is_empty() {
             return Ok(None);
         }
-        Err(LearnError::content(
-            &self.directory,
-            "every checkpoint is damaged; start a new run, or copy a whole checkpoint here",
-        ))
+        Err(LearnError::content(&self.directory, "every checkpoint is damaged; start a new run, or copy a whole checkpoint here"))
     }
 }

@@ -590,9 +590,7 @@ mod tests {
 
     #[test]
     fn presets_follow_the_table_of_decisions() {
-        let make = |algorithm, preset| {
-            TrainConfig::new(algorithm, preset, EnvConfig::new("ArmamentBurdenLevel1-v0")).unwrap()
-        };
+        let make = |algorithm, preset| TrainConfig::new(algorithm, preset, EnvConfig::new("ArmamentBurdenLevel1-v0")).unwrap();
         let (paper, released) = (make(AlgorithmKind::PpoLag, Preset::Paper), make(AlgorithmKind::PpoLag, Preset::Released));
         assert_eq!((paper.network.dense.len(), released.network.dense.len()), (2, 1));
         assert_eq!((paper.learning.clip_value, released.learning.clip_value), (1.0, 0.2));

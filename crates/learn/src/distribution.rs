@@ -129,9 +129,7 @@ impl Policy {
         };
         Policy {
             choices: shape.sizes.iter().map(|&size| log_softmax(columns(size), 1)).collect(),
-            normals: (0..shape.deltas)
-                .map(|_| (columns(1), columns(1).clamp(-LOG_DEVIATION, LOG_DEVIATION)))
-                .collect(),
+            normals: (0..shape.deltas).map(|_| (columns(1), columns(1).clamp(-LOG_DEVIATION, LOG_DEVIATION))).collect(),
         }
     }
 

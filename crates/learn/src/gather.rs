@@ -15,12 +15,12 @@ use crate::rollout::{Part, Rollout};
 use crate::sampler::{Newest, Sampler, SamplerState};
 
 enum Ask {
-    Fill(Part),
+    Fill(Box<Part>),
     Save,
 }
 
 enum Answer {
-    Filled(Part),
+    Filled(Box<Part>),
     Saved(SamplerState),
 }
 
@@ -28,7 +28,7 @@ struct Worker {
     asks: Sender<Ask>,
     answers: Receiver<Result<Answer, LearnError>>,
     /// Filled parts that came while something else was waited for.
-    waiting: std::collections::VecDeque<Part>,
+    waiting: std::collections::VecDeque<Box<Part>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -56,7 +56,7 @@ impl Gatherer {
     }
 
     /// Waits for the next rollout.
-    pub fn next(&mut self) -> Result<Rollout, LearnError> {
+    pub fn next_rollout(&mut self) -> Result<Rollout, LearnError> {
         let mut parts = Vec::with_capacity(self.workers.len());
         for worker in &mut self.workers {
             let part = match worker.waiting.pop_front() {
@@ -66,7 +66,7 @@ impl Gatherer {
                     Answer::Saved(_) => return Err(LearnError::Panic("a sampler answered out of turn".into())),
                 },
             };
-            parts.push(part);
+            parts.push(*part);
         }
         Ok(Rollout { parts })
     }
@@ -76,7 +76,7 @@ impl Gatherer {
         *self.newest.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = Arc::new(published);
         for (worker, part) in self.workers.iter().zip(rollout.parts) {
             // A worker that has gone is found out by the next answer.
-            let _ = worker.asks.send(Ask::Fill(part));
+            let _ = worker.asks.send(Ask::Fill(Box::new(part)));
         }
     }
 
@@ -119,7 +119,7 @@ fn hire(mut sampler: Sampler, steps: usize, ahead: usize, newest: Arc<Newest>, o
     let (asks, asked) = channel();
     let (answering, answers) = channel();
     for _ in 0..ahead {
-        let _ = asks.send(Ask::Fill(Part::default()));
+        let _ = asks.send(Ask::Fill(Box::default()));
     }
     let thread = std::thread::spawn(move || {
         for ask in asked {

@@ -148,11 +148,7 @@ impl Learner {
     /// The present weights for samplers.
     #[must_use]
     pub fn publish(&self) -> Published {
-        Published {
-            version: self.version,
-            parameters: Arc::new(self.parameters.clone()),
-            pixels: Arc::new(self.pixels.scale()),
-        }
+        Published { version: self.version, parameters: Arc::new(self.parameters.clone()), pixels: Arc::new(self.pixels.scale()) }
     }
 
     /// Takes over statistics of a rollout and computes its advantages and targets.
@@ -177,8 +173,7 @@ impl Learner {
             for lane in 0..lanes {
                 let (part, own) = rollout.find(lane);
                 let row = |step: usize| step * part.lanes + own;
-                let normalised: Vec<f32> =
-                    (0..=steps).map(|step| part.outputs[row(step) * width + first + critic]).collect();
+                let normalised: Vec<f32> = (0..=steps).map(|step| part.outputs[row(step) * width + first + critic]).collect();
                 let values: Vec<f32> = normalised.iter().map(|&value| moments.denormalise(value)).collect();
                 let rewards: Vec<f32> = (0..steps)
                     .map(|step| match critic {
@@ -194,8 +189,7 @@ impl Learner {
                     }
                 }
                 let out = &mut advantages[lane * steps..(lane + 1) * steps];
-                let lane_values =
-                    Lane { rewards: &rewards, done: &done, cut_off_values: &cut_off_values, values: &values };
+                let lane_values = Lane { rewards: &rewards, done: &done, cut_off_values: &cut_off_values, values: &values };
                 generalised_advantages(lane_values, settings.gamma, settings.gae_lambda, out);
                 for step in 0..steps {
                     returns[lane * steps + step] = out[step] + values[step];
@@ -278,10 +272,7 @@ impl Learner {
     pub fn heads(&self, outputs: &Tensor<2>) -> Heads {
         let policy = outputs.clone().narrow(1, 0, self.shape.action.parameters());
         let value = |critic| outputs.clone().narrow(1, self.shape.value_column() + critic, 1).squeeze_dim(1);
-        Heads {
-            policy: Policy::new(&self.shape.action, &policy),
-            values: (0..=self.shape.cost_critics).map(value).collect(),
-        }
+        Heads { policy: Policy::new(&self.shape.action, &policy), values: (0..=self.shape.cost_critics).map(value).collect() }
     }
 
     /// Output rows for a minibatch under the present parameters.
@@ -319,12 +310,7 @@ impl Learner {
     }
 
     /// One step of Adam down a gradient, for some of the networks; its norm is cut down to the largest allowed.
-    pub fn step(
-        &mut self,
-        gradient: Vec<f32>,
-        networks: std::ops::Range<usize>,
-        means: &mut Means,
-    ) -> Result<(), LearnError> {
+    pub fn step(&mut self, gradient: Vec<f32>, networks: std::ops::Range<usize>, means: &mut Means) -> Result<(), LearnError> {
         let start = self.shape.parameter_range(networks.start).start;
         let end = self.shape.parameter_range(networks.end - 1).end;
         let norm = crate::cpu::elementwise::sum_of_squares(&gradient[start..end]).sqrt();

@@ -33,8 +33,7 @@ impl Moments {
     pub fn merge(&mut self, count: f64, mean: f64, variance: f64) {
         let total = self.count + count;
         let distance = mean - self.mean;
-        let squares =
-            self.variance * self.count + variance * count + distance * distance * self.count * count / total;
+        let squares = self.variance * self.count + variance * count + distance * distance * self.count * count / total;
         *self = Moments { count: total, mean: self.mean + distance * count / total, variance: squares / total };
     }
 

@@ -42,12 +42,8 @@ impl RunDirectory {
 
     fn lock(path: &Path) -> Result<RunDirectory, LearnError> {
         let file = path.join("lock");
-        let lock = File::options()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(&file)
-            .map_err(LearnError::file(&file, "open"))?;
+        let lock =
+            File::options().create(true).truncate(false).write(true).open(&file).map_err(LearnError::file(&file, "open"))?;
         match lock.try_lock() {
             Ok(()) => Ok(RunDirectory { path: path.to_path_buf(), _lock: lock }),
             Err(TryLockError::WouldBlock) => Err(LearnError::content(
@@ -92,7 +88,10 @@ impl RunDirectory {
 pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
     let file = path.join("config.json");
     if !file.exists() {
-        return Err(LearnError::content(path, "no run is here (config.json is missing); give the directory of `hasard train --out`"));
+        return Err(LearnError::content(
+            path,
+            "no run is here (config.json is missing); give the directory of `hasard train --out`",
+        ));
     }
     let text = fs::read(&file).map_err(LearnError::file(&file, "read"))?;
     let config: TrainConfig = serde_json::from_slice(&text)

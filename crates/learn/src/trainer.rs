@@ -136,12 +136,7 @@ pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, 
 }
 
 impl Trainer {
-    fn new(
-        run: RunDirectory,
-        config: TrainConfig,
-        from: From,
-        make_worlds: &MakeWorlds<'_>,
-    ) -> Result<Trainer, LearnError> {
+    fn new(run: RunDirectory, config: TrainConfig, from: From, make_worlds: &MakeWorlds<'_>) -> Result<Trainer, LearnError> {
         let device = ComputeDevice::named(&config.device)?;
         let sampling = &config.sampling;
         let lanes = sampling.lanes / sampling.samplers;
@@ -185,8 +180,7 @@ impl Trainer {
         for (index, (worlds, state)) in worlds.into_iter().zip(states).enumerate() {
             let actor = Actor::new(&shape, &device);
             let shaping = Shaping::new(&config);
-            let mut sampler =
-                Sampler::new(&shape, worlds, actor, shaping, &config.constraints, index * lanes, config.seed)?;
+            let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, index * lanes, config.seed)?;
             if let Some(state) = state {
                 sampler.restore(state)?;
             }
@@ -223,7 +217,7 @@ impl Trainer {
         let mut over = self.frames >= self.config.frames;
         while !over {
             let waiting = Instant::now();
-            let rollout = self.gatherer.next()?;
+            let rollout = self.gatherer.next_rollout()?;
             self.means.add("seconds_waiting", waiting.elapsed().as_secs_f64());
             let learning = Instant::now();
             self.learn(&rollout, hooks)?;
@@ -268,7 +262,9 @@ impl Trainer {
         let lag = self.learner.version.saturating_sub(rollout.oldest_version());
         self.means.add("policy_lag", lag as f64);
         if lag > self.config.sampling.max_policy_lag {
-            (hooks.warn)(format!("a rollout was {lag} updates old and was thrown away; raise the policy lag allowed, or use --sync"));
+            (hooks.warn)(format!(
+                "a rollout was {lag} updates old and was thrown away; raise the policy lag allowed, or use --sync"
+            ));
             return Ok(());
         }
         let learning = self.config.learning.clone();

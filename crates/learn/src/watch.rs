@@ -133,10 +133,8 @@ mod tests {
     fn signals_are_means_of_the_latest_episodes_or_of_the_steps() {
         let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
         config.sampling.lanes = 2;
-        config.constraints = vec![
-            Constraint { term: None, budget: 50.0 },
-            Constraint { term: Some("jumps".into()), budget: 3.0 },
-        ];
+        config.constraints =
+            vec![Constraint { term: None, budget: 50.0 }, Constraint { term: Some("jumps".into()), budget: 3.0 }];
         let mut watch = Watch::new(&config);
         assert!(watch.signals(&config, &[0.1, 0.2]).is_empty());
         for (cost, jumps) in [(1000.0, 50.0), (60.0, 4.0), (80.0, 8.0)] {

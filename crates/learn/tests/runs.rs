@@ -10,8 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 fn checkpoints(run: &Path) -> Vec<PathBuf> {
-    let mut paths: Vec<PathBuf> =
-        fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<PathBuf> = fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     paths
 }
@@ -36,22 +35,16 @@ fn last_files(run: &Path) -> (Vec<u8>, Vec<u8>, Value) {
     let last = paths.iter().rfind(|path| path.file_name().unwrap().to_str().unwrap().starts_with("frames_")).unwrap();
     let mut state: Value = serde_json::from_slice(&fs::read(last.join("state.json")).unwrap()).unwrap();
     state["progress"].as_object_mut().unwrap().remove("wall_seconds");
-    (
-        fs::read(last.join("weights.safetensors")).unwrap(),
-        fs::read(last.join("training.safetensors")).unwrap(),
-        state,
-    )
+    (fs::read(last.join("weights.safetensors")).unwrap(), fs::read(last.join("training.safetensors")).unwrap(), state)
 }
 
 /// A run ended after half its frames and resumed equals the run that went straight through: every weight, moment,
 /// multiplier, statistic and row of metrics, for several algorithms and ways of sampling.
 #[test]
 fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
-    for (algorithm, samplers, groups, world_threads) in [
-        (AlgorithmKind::PpoLag, 2, 1, 0),
-        (AlgorithmKind::PpoPid, 1, 2, 1),
-        (AlgorithmKind::PpoSaute, 2, 2, 0),
-    ] {
+    for (algorithm, samplers, groups, world_threads) in
+        [(AlgorithmKind::PpoLag, 2, 1, 0), (AlgorithmKind::PpoPid, 1, 2, 1), (AlgorithmKind::PpoSaute, 2, 2, 0)]
+    {
         let mut config = tiny::config(algorithm);
         config.sampling.samplers = samplers;
         config.sampling.groups = groups;
@@ -142,15 +135,32 @@ fn rows_have_their_stable_keys() {
     let text = fs::read_to_string(path.join("metrics.jsonl")).unwrap();
     let last: Value = serde_json::from_str(text.lines().last().unwrap()).unwrap();
     for key in [
-        "frames", "updates", "wall_s", "fps", "episodes", "return_mean", "cost_mean", "length_mean", "budget", "multiplier",
-        "loss", "policy_loss", "value_loss", "cost_value_loss", "entropy", "kl_divergence", "cost/risk",
+        "frames",
+        "updates",
+        "wall_s",
+        "fps",
+        "episodes",
+        "return_mean",
+        "cost_mean",
+        "length_mean",
+        "budget",
+        "multiplier",
+        "loss",
+        "policy_loss",
+        "value_loss",
+        "cost_value_loss",
+        "entropy",
+        "kl_divergence",
+        "cost/risk",
     ] {
         assert!(last[key].is_number(), "{key} in {last}");
     }
     assert_eq!(last["frames"], config.frames);
-    assert!(fs::read_dir(&path).unwrap().any(|entry| {
-        entry.unwrap().file_name().to_str().unwrap().starts_with("events.out.tfevents")
-    }));
+    assert!(
+        fs::read_dir(&path)
+            .unwrap()
+            .any(|entry| { entry.unwrap().file_name().to_str().unwrap().starts_with("events.out.tfevents") })
+    );
     fs::remove_dir_all(path).unwrap();
 }
 
@@ -182,13 +192,16 @@ fn a_second_trainer_and_a_second_run_are_refused() {
     fs::remove_dir_all(path).unwrap();
 }
 
+/// Does something to a checkpoint.
+type Damage = fn(&Path);
+
 /// Damage of every kind to the newest checkpoint: the run goes on from the one before it, and says so.
 #[test]
 fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     let mut config = tiny::config(AlgorithmKind::PpoLag);
     config.reporting.checkpoint_seconds = 0.0;
     config.frames = 4 * config.frames_per_rollout();
-    let damages: [(&str, fn(&Path)); 5] = [
+    let damages: [(&str, Damage); 5] = [
         ("truncated", |path| truncate(&path.join("weights.safetensors"))),
         ("flipped", |path| {
             let file = path.join("training.safetensors");

@@ -1,1 +1,54 @@
 //! Pictures of a world: first-person colour, depth and labels with the status bar, and the top-down map.
+//!
+//! A [`Scene`] is a map made ready for drawing with a set of pictures, a [`View`] is the tables of a frame size; both
+//! are immutable and shared. A [`Renderer`] owns the memory of one drawing thread. All arithmetic is on integers, so
+//! that the same world gives the same pixels everywhere.
+
+mod camera;
+mod convert;
+mod frame;
+mod label;
+mod light;
+mod masked;
+mod openings;
+mod palette;
+mod picture;
+mod plane;
+#[cfg(test)]
+mod render_tests;
+mod renderer;
+mod scene;
+mod seg;
+mod segmentation;
+mod silhouette;
+mod size;
+mod sky;
+mod sprite;
+mod status_bar;
+mod view;
+mod walk;
+mod wall;
+mod weapon;
+
+pub use frame::class;
+pub use label::Label;
+pub use renderer::{RenderOptions, Renderer};
+pub use scene::Scene;
+pub use segmentation::SegmentationColours;
+pub use size::{FrameSize, SizeError};
+pub use view::View;
+
+/// Which buffers are drawn beside the colours.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Buffers {
+    /// Depth, 0 near to 255 far.
+    pub depth: bool,
+    /// What each pixel shows, and the list of actors in view.
+    pub labels: bool,
+}
+
+/// The depth buffer's value for a distance in 16.16 map units: 7.3 units a level, as measured.
+#[inline]
+fn depth_level(distance: i64) -> u8 {
+    (distance * 10 / (73 << 16)).min(255) as u8
+}

@@ -205,9 +205,13 @@ impl World {
     /// The slots of actors whose footprint may overlap the square of half side `reach` around (x, y): block by block,
     /// in each the most recently entered first. The caller compares distances.
     pub(crate) fn near(&self, x: Fixed, y: Fixed, reach: Fixed) -> Near<'_> {
-        let reach = reach + LARGEST_RADIUS;
-        let (west, south) = self.clamped_block(x - reach, y - reach);
-        let (east, north) = self.clamped_block(x + reach, y + reach);
+        self.near_box(x - reach, x + reach, y - reach, y + reach)
+    }
+
+    /// The same for a box.
+    pub(crate) fn near_box(&self, west: Fixed, east: Fixed, south: Fixed, north: Fixed) -> Near<'_> {
+        let (west, south) = self.clamped_block(west - LARGEST_RADIUS, south - LARGEST_RADIUS);
+        let (east, north) = self.clamped_block(east + LARGEST_RADIUS, north + LARGEST_RADIUS);
         let mut near = Near { world: self, west, east, north, column: west, row: south, next: NONE };
         near.next = near.head();
         near

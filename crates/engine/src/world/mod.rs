@@ -22,6 +22,8 @@ mod monster;
 mod movement;
 mod mover;
 mod patrol;
+#[cfg(test)]
+mod patrol_tests;
 mod pickup;
 mod player;
 mod sector;
@@ -42,6 +44,7 @@ pub use command::{Buttons, Command};
 pub use event::{DamageKind, Event};
 pub use explosion::BLAST;
 pub use face::{Face, FaceState};
+pub use hash::Fingerprint;
 pub use inventory::{BLUE_SKULL, YELLOW_CARD};
 pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
@@ -95,6 +98,8 @@ pub struct World {
     lights: Vec<Light>,
     /// How many of them have run in this tic.
     lights_run: usize,
+    /// Scratch: the slots of the actors that touch a moving sector. No state.
+    touched: Vec<usize>,
     /// Space for searches along a path; empty between uses in meaning, not in capacity.
     scratch_crossings: Vec<sight::Crossing>,
     /// Space for the victims of a blast.
@@ -127,6 +132,7 @@ impl World {
             movers_run: 0,
             lights: Vec::new(),
             lights_run: 0,
+            touched: Vec::new(),
             scratch_crossings: Vec::new(),
             scratch_slots: Vec::new(),
         };

@@ -1,7 +1,7 @@
 //! Floors and ceilings that move, and what that does to the things on them.
 
 use super::waggle::Waggle;
-use super::{ActorFlags, World};
+use super::{Actor, ActorFlags, World};
 use crate::map::SectorId;
 use crate::math::Fixed;
 use std::sync::Arc;
@@ -120,21 +120,21 @@ impl World {
     /// Re-evaluates every actor that touches a sector whose floor or ceiling moved by `change`; false if one does not
     /// fit.
     fn adjust_actors(&mut self, sector: SectorId, ceiling: bool, change: Fixed) -> bool {
-        let bounds = self.map.sectors[sector.0 as usize].bounds;
+        let [west, east, south, north] = self.map.sectors[sector.0 as usize].bounds;
+        let mut touched = std::mem::take(&mut self.touched);
+        touched.clear();
+        touched.extend(self.near_box(west, east, south, north).filter(|&slot| {
+            let Actor { x, y, radius, .. } = self.actors[slot];
+            x + radius > west && x - radius < east && y + radius > south && y - radius < north
+        }));
         let mut fits = true;
-        for slot in 0..self.actors.len() {
-            let actor = &self.actors[slot];
-            if actor.removed
-                || actor.flags.any(super::arena::NOT_LISTED)
-                || actor.x + actor.radius <= bounds[0]
-                || actor.x - actor.radius >= bounds[1]
-                || actor.y + actor.radius <= bounds[2]
-                || actor.y - actor.radius >= bounds[3]
-            {
-                continue;
+        for &slot in &touched {
+            // An item may have been picked up by the player before it.
+            if !self.actors[slot].removed {
+                fits &= self.adjust_actor(slot, ceiling, change);
             }
-            fits &= self.adjust_actor(slot, ceiling, change);
         }
+        self.touched = touched;
         fits
     }
 
@@ -143,6 +143,7 @@ impl World {
         let (x, y) = (self.actors[slot].x, self.actors[slot].y);
         let position = self.check_position(slot, x, y);
         self.touch_items(slot, &position);
+        let old_z = self.actors[slot].z;
         let actor = &mut self.actors[slot];
         let old_floor = std::mem::replace(&mut actor.floor_z, position.floor_z);
         (actor.ceiling_z, actor.dropoff_z) = (position.ceiling_z, position.dropoff_z);
@@ -159,8 +160,10 @@ impl World {
         } else if ceiling && actor.top() > actor.ceiling_z {
             actor.z = (actor.ceiling_z - actor.height).max(actor.floor_z);
         }
-        let fits = actor.ceiling_z - actor.floor_z >= actor.height || !actor.flags.any(ActorFlags::SOLID);
-        self.wake_slot(slot);
+        let fits = actor.ceiling_z - actor.floor_z >= actor.height || !actor.flags.any(ActorFlags::SHOOTABLE);
+        if (actor.z, actor.floor_z) != (old_z, old_floor) {
+            self.wake_slot(slot);
+        }
         fits
     }
 }

@@ -46,10 +46,8 @@ impl Algorithm for Cup {
 
         let (gamma, lambda) = (f64::from(self.settings.gamma), f64::from(self.settings.gae_lambda));
         let coefficient = (1.0 - gamma * lambda) / (1.0 - gamma).max(1e-6);
-        let costs: Vec<_> = minibatch.advantages[1..]
-            .iter()
-            .map(|advantages| minibatch.tensor(centred(advantages.clone())))
-            .collect();
+        let costs: Vec<_> =
+            minibatch.advantages[1..].iter().map(|advantages| minibatch.tensor(centred(advantages.clone()))).collect();
         let projection = |heads: &crate::learner::Heads, batch: &Minibatch<'_>| {
             let ratio = ratio(heads, batch);
             let mut total = heads.policy.divergence(&batch.old_policy).mean();

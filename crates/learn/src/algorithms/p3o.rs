@@ -53,10 +53,8 @@ impl Algorithm for P3o {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
-        let cost_advantages: Vec<_> = minibatch.advantages[1..]
-            .iter()
-            .map(|advantages| minibatch.tensor(standardised(advantages.clone())))
-            .collect();
+        let cost_advantages: Vec<_> =
+            minibatch.advantages[1..].iter().map(|advantages| minibatch.tensor(standardised(advantages.clone()))).collect();
         let loss = |heads: &_, batch: &Minibatch<'_>| {
             let ratio = ratio(heads, batch);
             let policy_loss = clipped_policy_loss(&ratio, &advantages, self.settings.clip_ratio);

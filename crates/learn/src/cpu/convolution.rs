@@ -180,8 +180,7 @@ impl ConvolutionPlan {
                 row_stride: self.block_size(),
                 inner_stride: 1,
             };
-            let right =
-                Right { data: &weights[part * inner * PANEL..], panel_stride: depth * PANEL, inner_stride: PANEL };
+            let right = Right { data: &weights[part * inner * PANEL..], panel_stride: depth * PANEL, inner_stride: PANEL };
             let size = Size { rows: self.rows(), columns: channels, inner };
             multiply(size, left, right, raw, channels, part > 0);
         }

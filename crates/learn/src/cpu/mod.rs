@@ -5,8 +5,8 @@
 
 pub mod convolution;
 pub mod elementwise;
-pub mod product;
 pub mod network;
 pub mod pass;
+pub mod product;
 pub mod simd;
 pub mod weights;

@@ -181,8 +181,7 @@ impl ActingNetwork for CpuActor {
         let shape = &self.plan.shape;
         let observations: Vec<&[u8]> = observations.chunks_exact(shape.image.size()).collect();
         let lanes = observations.len();
-        let input =
-            Input { steps: 1, lanes, observations: &observations, extra, initial_state: state, reset: &[] };
+        let input = Input { steps: 1, lanes, observations: &observations, extra, initial_state: state, reset: &[] };
         let rows = self.pass.forward(&self.plan, &self.weights, &input);
         let width = shape.outputs();
         for (to, from) in outputs.chunks_exact_mut(width).zip(rows.chunks_exact(self.plan.padded_outputs)) {

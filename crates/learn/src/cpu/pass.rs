@@ -29,6 +29,7 @@ pub struct Input<'a> {
 }
 
 /// Buffers of a pass and what the forward one leaves for the backward one.
+#[derive(Default)]
 pub struct Pass {
     rows: usize,
     /// Output of each convolution but the last, in the layout of the next one's input, row after row.
@@ -73,24 +74,6 @@ fn sized(buffer: &mut Vec<f32>, length: usize) -> &mut [f32] {
         buffer.resize(length, 0.0);
     }
     &mut buffer[..length]
-}
-
-impl Default for Pass {
-    fn default() -> Pass {
-        Pass {
-            rows: 0,
-            activations: Vec::new(),
-            features: Vec::new(),
-            dense: Vec::new(),
-            core_input: Vec::new(),
-            gates: Vec::new(),
-            share: Vec::new(),
-            before: Vec::new(),
-            after: Vec::new(),
-            outputs: Vec::new(),
-            scratch: Scratch::default(),
-        }
-    }
 }
 
 /// Where the pixels of each convolution's output go: into the next one's input, or row by row behind the last.
@@ -351,9 +334,7 @@ impl Pass {
         let back = weights.backward.as_ref().expect("weights packed for learning");
         let layers = plan.convolutions.len();
         let features = plan.shape.features();
-        for buffers in
-            [&mut scratch.padded_gradient, &mut scratch.stored_gradient, &mut scratch.convolution_gradients]
-        {
+        for buffers in [&mut scratch.padded_gradient, &mut scratch.stored_gradient, &mut scratch.convolution_gradients] {
             buffers.resize_with(layers, Vec::new);
         }
         for (layer, convolution) in plan.convolutions.iter().enumerate() {
@@ -400,14 +381,7 @@ impl Pass {
 }
 
 /// Adds the gradients of a layer's weights and biases, from its inputs and the gradient of its sums.
-fn add_layer_gradient(
-    weights: &Parameter,
-    biases: &Parameter,
-    inputs: &[f32],
-    width: usize,
-    sums: &[f32],
-    gradient: &mut [f32],
-) {
+fn add_layer_gradient(weights: &Parameter, biases: &Parameter, inputs: &[f32], width: usize, sums: &[f32], gradient: &mut [f32]) {
     let outputs = weights.outputs;
     let size = Size { rows: width, columns: outputs, inner: sums.len() / outputs };
     let left = Left { data: inputs, row_stride: 1, inner_stride: width };

@@ -128,8 +128,7 @@ impl PackedWeights {
         self.convolution_biases.resize_with(plan.convolutions.len(), Vec::new);
         for (index, convolution) in plan.convolutions.iter().enumerate() {
             let weights = plan.convolution(index);
-            convolution
-                .pack_forward(&parameters[weights.range()], resized(&mut self.convolutions[index], weights.size()));
+            convolution.pack_forward(&parameters[weights.range()], resized(&mut self.convolutions[index], weights.size()));
             copy(&mut self.convolution_biases[index], &parameters[plan.after(weights).range()]);
         }
         self.dense.resize_with(shape.dense.len(), Vec::new);

@@ -42,11 +42,8 @@ impl ModelShape {
             heads,
         };
         let heads = std::iter::once(action.parameters()).chain(std::iter::repeat_n(1, 1 + cost_critics));
-        let networks = if config.separate {
-            heads.map(|head| network(vec![head])).collect()
-        } else {
-            vec![network(heads.collect())]
-        };
+        let networks =
+            if config.separate { heads.map(|head| network(vec![head])).collect() } else { vec![network(heads.collect())] };
         let shape = ModelShape { networks, action, cost_critics };
         shape.networks.iter().try_for_each(NetworkShape::check)?;
         Ok(shape)
@@ -121,12 +118,7 @@ impl Actor {
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
         };
-        Actor {
-            networks: shape.networks.iter().map(network).collect(),
-            shape: shape.clone(),
-            outputs: Vec::new(),
-            version: None,
-        }
+        Actor { networks: shape.networks.iter().map(network).collect(), shape: shape.clone(), outputs: Vec::new(), version: None }
     }
 
     /// Takes over published weights, if they are others than before.
@@ -141,14 +133,7 @@ impl Actor {
     }
 
     /// Output rows of one step for the lanes `lanes` of `state`, which becomes the state after.
-    pub fn act(
-        &mut self,
-        observations: &[u8],
-        extra: &[f32],
-        state: &mut [Vec<f32>],
-        lanes: Range<usize>,
-        rows: &mut [f32],
-    ) {
+    pub fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [Vec<f32>], lanes: Range<usize>, rows: &mut [f32]) {
         let mut first = 0;
         for ((network, shape), state) in self.networks.iter_mut().zip(&self.shape.networks).zip(state) {
             let units = shape.state_size();
@@ -233,8 +218,7 @@ impl Stack {
         let mut first = 0;
         for index in 0..self.networks.len() {
             let count = self.shape.networks[index].outputs();
-            let own: Vec<f32> =
-                rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
+            let own: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
             self.backward_network(index, batch, &own, &mut gradient[self.shape.parameter_range(index)]);
             first += count;
         }

@@ -23,13 +23,13 @@ enum Mood {
 pub(super) fn paint(gallery: &mut Gallery) {
     for band in 0..5 {
         for glance in 0..3 {
-            gallery.graphic(&format!("STFST{band}{glance}"), &face(band, Mood::Glance(glance)), 0, 0);
+            gallery.graphic(&format!("STFST{band}{glance}"), &face(band, Mood::Glance(glance)), -5, -2);
         }
-        gallery.graphic(&format!("STFOUCH{band}"), &face(band, Mood::Ouch), 0, 0);
-        gallery.graphic(&format!("STFEVL{band}"), &face(band, Mood::Grin), 0, 0);
-        gallery.graphic(&format!("STFKILL{band}"), &face(band, Mood::Rage), 0, 0);
+        gallery.graphic(&format!("STFOUCH{band}"), &face(band, Mood::Ouch), -5, -2);
+        gallery.graphic(&format!("STFEVL{band}"), &face(band, Mood::Grin), -5, -2);
+        gallery.graphic(&format!("STFKILL{band}"), &face(band, Mood::Rage), -5, -2);
     }
-    gallery.graphic("STFDEAD0", &face(5, Mood::Dead), 0, 0);
+    gallery.graphic("STFDEAD0", &face(5, Mood::Dead), -5, -2);
 }
 
 fn skin(light: f32, pale: f32) -> Colour {

@@ -1,0 +1,132 @@
+//! Draws views of a small test level, to be looked at: `cargo run --release -p hasard-engine --example frames -- OUTDIR`;
+//! with `--time` it measures instead.
+
+use hasard_engine::assets::Assets;
+use hasard_engine::map::{Map, MapBuilder, Style, TileGrid};
+use hasard_engine::math::{Angle, Fixed, Rng};
+use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, SegmentationColours, View};
+use hasard_engine::world::{ActorKind, World};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+fn volcano() -> Map {
+    let style = |column: usize, row: usize| Style {
+        floor: 0,
+        ceiling: 250,
+        light: 210,
+        floor_texture: "LAVA1",
+        ceiling_texture: "FLAT5_5",
+        wall: "A-BROK28",
+        step: "AQF052",
+        lintel: "AQF052",
+        special: 0,
+        tag: (100 + row * 17 + column) as i32,
+    };
+    let mut builder = MapBuilder::new();
+    TileGrid::new((0, 64), 128, 17, 17, style).paint(&mut builder);
+    Map::build(&builder.finish().unwrap(), "volcano", &["FLOOR0_5"]).unwrap()
+}
+
+fn world(map: &Arc<Map>) -> World {
+    let mut world = World::new(map.clone(), 1);
+    world.add_player(Fixed::from_int(1088), Fixed::from_int(1152), Angle::EAST);
+    world
+}
+
+fn items(world: &mut World, seed: u64, count: usize, kinds: &[ActorKind]) {
+    let mut rng = Rng::new(seed);
+    for i in 0..count {
+        let (x, y) = (Fixed::from_int(rng.between(20, 2150)), Fixed::from_int(rng.between(84, 2220)));
+        let id = world.spawn(kinds[i % kinds.len()], x, y, Fixed::ZERO);
+        let actor = world.get_mut(id).unwrap();
+        (actor.z, actor.angle) = (actor.floor_z, Angle(rng.next_u64() as u32));
+    }
+}
+
+fn platforms(world: &mut World, seed: u64, chance: i32, low: i32, high: i32) {
+    let mut rng = Rng::new(seed);
+    let floor = world.map.texture("FLOOR0_5").unwrap();
+    for sector in &mut world.sectors {
+        if rng.between(0, 99) < chance {
+            sector.floor = Fixed::from_int(rng.between(low, high));
+            sector.floor_texture = floor;
+        }
+    }
+}
+
+fn place(world: &mut World, x: i32, y: i32, degrees: f64, pitch: f64) {
+    let body = &mut world.actors[0];
+    (body.x, body.y, body.angle) = (Fixed::from_int(x), Fixed::from_int(y), Angle::from_degrees(degrees));
+    let sector = world.map.sector_at(body.x, body.y);
+    body.z = world.sectors[sector.0 as usize].floor;
+    body.sector = sector;
+    world.players[0].view_z = body.z + Fixed::from_int(41);
+    world.players[0].pitch = Angle::from_degrees(pitch).0 as i32;
+}
+
+fn save(path: &Path, size: FrameSize, colour: png::ColorType, data: &[u8]) {
+    let file = std::fs::File::create(path).expect("the output folder is writable");
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), u32::from(size.width), u32::from(size.height));
+    encoder.set_color(colour);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header().unwrap().write_image_data(data).unwrap();
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let assets = Assets::embedded();
+    let map = Arc::new(volcano());
+    let scene = Arc::new(Scene::new(&map, assets.clone()));
+    let mut world = world(&map);
+    platforms(&mut world, 3, 40, 16, 16);
+    items(&mut world, 5, 30, &[ActorKind::ArmorBonus]);
+    if arguments.first().is_some_and(|a| a == "--time") {
+        for size in [(128, 72), (160, 120), (320, 240), (640, 480), (1920, 1080)] {
+            let size = FrameSize { width: size.0, height: size.1 };
+            let mut renderer = Renderer::new(scene.clone(), Arc::new(View::new(size).unwrap()));
+            for (depth, labels) in [(false, false), (true, false), (false, true), (true, true)] {
+                let mut best = f64::MAX;
+                for _ in 0..7 {
+                    let mut rng = Rng::new(9);
+                    let frames = if size.width > 400 { 50 } else { 1000 };
+                    let mut spent = 0.0;
+                    for _ in 0..frames {
+                        let (x, y) = (rng.between(20, 2150), rng.between(84, 2220));
+                        place(&mut world, x, y, f64::from(rng.between(0, 359)), 16.5);
+                        let start = Instant::now();
+                        renderer.render(&world, 0, Buffers { depth, labels });
+                        spent += start.elapsed().as_secs_f64();
+                    }
+                    best = best.min(spent / f64::from(frames));
+                }
+                println!("{size} depth {depth} labels {labels}: {:.2} us", best * 1e6);
+            }
+        }
+        return;
+    }
+    let folder = Path::new(arguments.first().map_or("/tmp/frames", String::as_str));
+    std::fs::create_dir_all(folder).expect("the output folder is writable");
+    let all: Vec<ActorKind> = ActorKind::all().collect();
+    items(&mut world, 6, 200, &all);
+    for (name, x, y, angle, pitch) in [
+        ("centre", 1088, 1152, 30.0, 16.5),
+        ("corner", 40, 100, 50.0, 0.0),
+        ("up", 1088, 1152, 100.0, -32.0),
+        ("down", 1000, 1000, 200.0, 56.0),
+        ("wall", 30, 1000, 170.0, 0.0),
+    ] {
+        place(&mut world, x, y, angle, pitch);
+        for (width, height) in [(128, 72), (160, 120), (320, 240), (640, 480)] {
+            let size = FrameSize { width, height };
+            let mut renderer = Renderer::new(scene.clone(), Arc::new(View::new(size).unwrap()));
+            renderer.render(&world, 0, Buffers { depth: true, labels: true });
+            let mut rgb = vec![0; size.pixels() * 3];
+            renderer.write_rgb_hwc(&mut rgb);
+            save(&folder.join(format!("{name}_{width}.png")), size, png::ColorType::Rgb, &rgb);
+            renderer.write_segmented_hwc(&SegmentationColours::distinct(), &mut rgb);
+            save(&folder.join(format!("{name}_{width}_classes.png")), size, png::ColorType::Rgb, &rgb);
+            save(&folder.join(format!("{name}_{width}_depth.png")), size, png::ColorType::Grayscale, renderer.depth());
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Where a frame is seen from.
+
+use super::View;
+use super::palette::power_shows;
+use crate::math::Angle;
+use crate::world::World;
+
+/// The light table of light amplification.
+const AMPLIFIED_TABLE: usize = 1;
+
+/// Position, direction and light of one frame's eye.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Camera {
+    /// East, 16.16 map units, as are the next two.
+    pub x: i64,
+    /// North.
+    pub y: i64,
+    /// Height.
+    pub z: i64,
+    /// Facing.
+    pub angle: Angle,
+    /// Cosine and sine of the facing, 16.16.
+    pub forward: [i64; 2],
+    /// First base row below the horizon.
+    pub horizon: i64,
+    /// World direction of the ray through the middle of base column 0, one unit forward; 32 fractional bits.
+    pub ray: [i64; 2],
+    /// What the direction changes by with each base column.
+    pub ray_step: [i64; 2],
+    /// Muzzle light, 0..=2.
+    pub extra_light: i32,
+    /// Light amplification: everything is drawn with this light table.
+    pub fixed_table: Option<usize>,
+}
+
+impl Camera {
+    /// The eye of a player; a player whose body is gone sees from the origin.
+    pub fn of_player(world: &World, player: usize, view: &View) -> Camera {
+        let player = &world.players[player];
+        let body = world.actors.get(usize::from(player.actor.slot));
+        let (x, y, angle) = body.map_or((0, 0, Angle::EAST), |body| (body.x.0, body.y.0, body.angle));
+        let forward = [i64::from(angle.cos().0), i64::from(angle.sin().0)];
+        let right = [forward[1], -forward[0]];
+        let width = i64::from(view.base_width);
+        // Half the width is one focal length: the outermost rays are 45 degrees off.
+        let ray_step = right.map(|r| (r << 17) / width);
+        let ray = [0, 1].map(|i| (forward[i] << 16) - ray_step[i] * (width - 1) / 2);
+        Camera {
+            x: i64::from(x),
+            y: i64::from(y),
+            z: i64::from(player.view_z.0),
+            angle,
+            forward,
+            horizon: i64::from(view.horizon(player.pitch)),
+            ray,
+            ray_step,
+            extra_light: i32::from(player.extra_light),
+            fixed_table: power_shows(player.infrared_tics).then_some(AMPLIFIED_TABLE),
+        }
+    }
+
+    /// How far a point is to the right of the left edge of the view, and to the left of the right edge, both in units
+    /// in which their sum is twice the distance forward; 16.16.
+    #[inline]
+    pub fn edges(&self, x: i64, y: i64) -> [i64; 2] {
+        let (dx, dy) = (x - self.x, y - self.y);
+        let (cos, sin) = (self.forward[0], self.forward[1]);
+        [(dx * (cos + sin) + dy * (sin - cos)) >> 16, (dx * (cos - sin) + dy * (sin + cos)) >> 16]
+    }
+}

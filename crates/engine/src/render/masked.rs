@@ -1,0 +1,166 @@
+//! What has holes: sprites and the textures in openings, drawn far to near over walls and planes.
+
+use super::View;
+use super::camera::Camera;
+use super::frame::{Frame, class};
+use super::label::{Label, Labels};
+use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::picture::MaskedPicture;
+use super::scene::Scene;
+use super::silhouette::{Silhouette, Silhouettes};
+use super::sprite::{Covered, SeenSprite};
+use super::wall::INVERSE_BITS;
+use crate::math::Fixed;
+use crate::world::World;
+
+/// Everything that the drawing of masked things reads and writes.
+pub(super) struct Masked<'a> {
+    pub scene: &'a Scene,
+    pub view: &'a View,
+    pub camera: &'a Camera,
+    pub world: &'a World,
+    pub pictures: &'a [u32],
+    pub frame: &'a mut Frame,
+    pub silhouettes: &'a mut Silhouettes,
+    pub labels: &'a mut Labels,
+    /// Scratch: the open rows of the sprite at hand.
+    pub tops: &'a mut Vec<i16>,
+    pub bottoms: &'a mut Vec<i16>,
+}
+
+impl Masked<'_> {
+    /// Draws sprites, which are sorted far to near, with the masked textures between them.
+    pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &[SeenSprite]) {
+        for sprite in sprites {
+            self.sprite::<DEPTH, CLASS>(sprite);
+        }
+        for index in (0..self.silhouettes.list.len()).rev() {
+            let silhouette = self.silhouettes.list[index];
+            if silhouette.masked {
+                self.texture::<DEPTH, CLASS>(&silhouette, silhouette.first, silhouette.end);
+            }
+        }
+    }
+
+    /// Whether a sprite stands behind a silhouette where the two overlap.
+    fn is_behind(&self, sprite: &SeenSprite, silhouette: &Silhouette) -> bool {
+        let [far, near] = silhouette.inverses;
+        if near < sprite.inverse {
+            return false;
+        }
+        let seg = &self.scene.segs[silhouette.seg as usize];
+        let in_front = || sprite.x * seg.normal[0] + sprite.y * seg.normal[1] - seg.offset > 0;
+        far >= sprite.inverse || !in_front()
+    }
+
+    fn sprite<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &SeenSprite) {
+        let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else { return };
+        let columns = sprite.end - sprite.first;
+        self.tops.clear();
+        self.tops.resize(columns, 0);
+        self.bottoms.clear();
+        self.bottoms.resize(columns, self.view.view_rows as i16);
+        for index in (0..self.silhouettes.list.len()).rev() {
+            let silhouette = self.silhouettes.list[index];
+            let (first, end) = (silhouette.first.max(sprite.first), silhouette.end.min(sprite.end));
+            if first >= end {
+                continue;
+            }
+            if !self.is_behind(sprite, &silhouette) {
+                if silhouette.masked {
+                    self.texture::<DEPTH, CLASS>(&silhouette, first, end);
+                }
+                continue;
+            }
+            let own = first - sprite.first..end - sprite.first;
+            if silhouette.solid {
+                self.bottoms[own].fill(0);
+                continue;
+            }
+            let open = silhouette.rows + first - silhouette.first..silhouette.rows + end - silhouette.first;
+            if silhouette.floor.is_some_and(|height| sprite.bottom < height) {
+                for (row, &limit) in self.bottoms[own.clone()].iter_mut().zip(&self.silhouettes.bottoms[open.clone()]) {
+                    *row = (*row).min(limit);
+                }
+            }
+            if silhouette.ceiling.is_some_and(|height| sprite.top > height) {
+                for (row, &limit) in self.tops[own].iter_mut().zip(&self.silhouettes.tops[open]) {
+                    *row = (*row).max(limit);
+                }
+            }
+        }
+        let label = self.labels.next_class();
+        let open = (&self.tops[..], &self.bottoms[..]);
+        let covered = sprite.draw::<DEPTH, CLASS>(self.frame, self.view, self.scene, picture, open, label);
+        if CLASS && covered != Covered::NOTHING {
+            let [[left, right], [top, bottom]] = [covered.columns, covered.rows];
+            self.labels.list.push(Label {
+                kind: sprite.kind,
+                actor: self.world.id_of(usize::from(sprite.slot)),
+                class: label,
+                x: left as u16,
+                y: top as u16,
+                width: (right - left) as u16,
+                height: (bottom - top) as u16,
+            });
+        }
+    }
+
+    /// Draws the frame columns `first..end` of the masked texture of an opening, and marks them as drawn.
+    fn texture<const DEPTH: bool, const CLASS: bool>(&mut self, silhouette: &Silhouette, first: usize, end: usize) {
+        let scene = self.scene;
+        let seg = &scene.segs[silhouette.seg as usize];
+        let face = &scene.faces[seg.face as usize];
+        let Some(texture) = face.middle else { return };
+        let (Some(front), Some(back)) = (self.world.sectors.get(seg.front as usize), self.world.sectors.get(seg.back as usize))
+        else {
+            return;
+        };
+        let picture = &scene.textures.masked[self.pictures[usize::from(texture.0)] as usize];
+        let (floor, ceiling) = (front.floor.max(back.floor), front.ceiling.min(back.ceiling));
+        let height = Fixed::from_int(picture.height as i32);
+        let hung_from = i64::from(if face.lower_unpegged { floor + height } else { ceiling }.0) + face.v_offset;
+        // Of the texture, what is within the opening.
+        let top = hung_from.min(i64::from(ceiling.0)) - self.camera.z;
+        let bottom = (hung_from - i64::from(height.0)).max(i64::from(floor.0)) - self.camera.z;
+        let light = Light::new(self.camera, i32::from(front.light) + face.contrast);
+        let (upper, lower) =
+            (silhouette.line.edge(self.camera, self.view, top), silhouette.line.edge(self.camera, self.view, bottom));
+        for x in first..end {
+            let row_index = silhouette.rows + x - silhouette.first;
+            let (open_top, open_bottom) = (self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]);
+            let drawn = std::mem::replace(&mut self.silhouettes.drawn[row_index], true);
+            let (mut first_row, mut end_row) = ([0], [0]);
+            upper.rows(self.view, x, &mut first_row);
+            lower.rows(self.view, x, &mut end_row);
+            let rows = first_row[0].max(open_top)..end_row[0].min(open_bottom);
+            if drawn || rows.is_empty() {
+                continue;
+            }
+            let column = i64::from(self.view.columns[x]);
+            let distance = silhouette.line.distance_at(column);
+            let nearness = (silhouette.line.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+            let table = &scene.assets.light_tables[light.table(nearness)];
+            let u = silhouette.line.texture_at(column, distance) >> 16;
+            let texels = picture.column(u.rem_euclid(i64::from(picture.width)) as u32);
+            let step = (distance * self.view.inverse_focal_y) >> 16;
+            let at = ((hung_from - self.camera.z) << 16) + step / 2 - step * self.camera.horizon;
+            let depth = self.frame.capped_depth(distance);
+            for row in rows.start as usize..rows.end as usize {
+                let v = (at + step * i64::from(self.view.rows[row])) >> 32;
+                let texel = texels[v.clamp(0, i64::from(picture.height) - 1) as usize];
+                if texel & MaskedPicture::OPAQUE == 0 {
+                    continue;
+                }
+                let pixel = row * self.frame.width + x;
+                self.frame.colour[pixel] = table[usize::from(texel as u8)];
+                if DEPTH {
+                    self.frame.depth[pixel] = depth;
+                }
+                if CLASS {
+                    self.frame.class[pixel] = class::WALL;
+                }
+            }
+        }
+    }
+}

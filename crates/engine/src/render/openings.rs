@@ -1,0 +1,110 @@
+//! What of each column is still open while the world is drawn front to back.
+
+/// For each frame column, the rows that nothing has covered yet.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Openings {
+    /// First open row.
+    pub top: Vec<i16>,
+    /// One past the last open row.
+    pub bottom: Vec<i16>,
+    /// A bit for each column that has an open row.
+    open: Vec<u64>,
+    /// Whether any column has been closed.
+    any_closed: bool,
+}
+
+impl Openings {
+    /// Opens every column.
+    pub fn reset(&mut self, width: usize, rows: usize) {
+        self.top.clear();
+        self.top.resize(width, 0);
+        self.bottom.clear();
+        self.bottom.resize(width, rows as i16);
+        self.open.clear();
+        self.open.resize(width.div_ceil(64), u64::MAX);
+        if !width.is_multiple_of(64) {
+            self.open[width / 64] = (1 << (width % 64)) - 1;
+        }
+        self.any_closed = false;
+    }
+
+    /// Whether any column of `first..end` is open.
+    #[inline]
+    pub fn any_open(&self, first: usize, end: usize) -> bool {
+        if !self.any_closed {
+            return first < end;
+        }
+        let (mut word, last) = (first / 64, (end - 1) / 64);
+        let mut mask = u64::MAX << (first % 64);
+        while word < last {
+            if self.open[word] & mask != 0 {
+                return true;
+            }
+            mask = u64::MAX;
+            word += 1;
+        }
+        self.open[word] & mask & (u64::MAX >> (63 - (end - 1) % 64)) != 0
+    }
+
+    /// Whether every column is closed: nothing more can be seen.
+    #[inline]
+    pub fn all_closed(&self) -> bool {
+        self.any_closed && self.open.iter().all(|&word| word == 0)
+    }
+
+    /// Whether any column has been closed at all.
+    #[inline]
+    pub fn any_closed(&self) -> bool {
+        self.any_closed
+    }
+
+    /// Closes the columns `first..end`.
+    pub fn close(&mut self, first: usize, end: usize) {
+        for x in first..end {
+            self.close_column(x);
+        }
+    }
+
+    /// Closes a column.
+    #[inline]
+    pub fn close_column(&mut self, x: usize) {
+        self.bottom[x] = 0;
+        self.top[x] = 0;
+        self.open[x / 64] &= !(1 << (x % 64));
+        self.any_closed = true;
+    }
+
+    /// Notes which columns of `first..end` have no open row left.
+    #[inline]
+    pub fn note_closed(&mut self, first: usize, end: usize) {
+        for x in first..end {
+            if self.top[x] >= self.bottom[x] {
+                self.close_column(x);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_see_exactly_their_columns() {
+        let mut openings = Openings::default();
+        openings.reset(160, 100);
+        openings.close(0, 160);
+        assert!(openings.all_closed());
+        for column in 0..160 {
+            openings.reset(160, 100);
+            openings.close(0, column);
+            openings.close(column + 1, 160);
+            assert!(!openings.all_closed());
+            for (first, end) in [(0, 160), (column, column + 1), (0, column + 1), (column, 160)] {
+                assert!(openings.any_open(first, end), "{column} in {first}..{end}");
+            }
+            assert!(column == 0 || !openings.any_open(0, column));
+            assert!(column == 159 || !openings.any_open(column + 1, 160));
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! The renderer: draws what one player of a world sees.
+
+use super::camera::Camera;
+use super::frame::{Frame, class};
+use super::label::{Label, Labels};
+use super::masked::Masked;
+use super::openings::Openings;
+use super::palette::Tint;
+use super::plane::{PlaneShader, Planes};
+use super::scene::Scene;
+use super::silhouette::Silhouettes;
+use super::sky::SkyShader;
+use super::sprite::{self, SeenSprite};
+use super::status_bar::{BarState, StatusBar};
+use super::walk::{Walk, WalkScratch};
+use super::{Buffers, SegmentationColours, View, convert, weapon};
+use crate::world::World;
+use std::sync::Arc;
+
+/// Draws frames of one size of the worlds of one map; owns all memory that takes, so that drawing allocates nothing
+/// once every buffer has grown.
+#[derive(Clone, Debug)]
+pub struct Renderer {
+    scene: Arc<Scene>,
+    view: Arc<View>,
+    frame: Frame,
+    openings: Openings,
+    planes: Planes,
+    silhouettes: Silhouettes,
+    walk: WalkScratch,
+    /// Sectors that the frame entered.
+    entered: Vec<bool>,
+    /// Index of the picture that each texture shows.
+    pictures: Vec<u32>,
+    /// First column of each row's span.
+    span_starts: Vec<u16>,
+    /// Start of each column's texels in the sky's picture.
+    sky_columns: Vec<u32>,
+    sprites: Vec<SeenSprite>,
+    /// Rows that are open for the sprite at hand.
+    sprite_rows: [Vec<i16>; 2],
+    labels: Labels,
+    status_bar: StatusBar,
+    palette: [[u8; 3]; 256],
+    /// What tints `palette`.
+    tint: Tint,
+    options: RenderOptions,
+}
+
+/// What may be drawn otherwise.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct RenderOptions {
+    /// Light amplification (Infrared goggles) has a strong green hue, as the paper says; the published engine only
+    /// brightens.
+    pub green_goggles: bool,
+    /// Depth of walls, sprites and sky ends at `255 * height / 480` in frames less than 480 rows high, as the published
+    /// engine's does: at 63 in learners' frames.
+    pub published_depth: bool,
+}
+
+impl Renderer {
+    /// A renderer for worlds of the scene's map.
+    #[must_use]
+    pub fn new(scene: Arc<Scene>, view: Arc<View>) -> Renderer {
+        let (width, pixels) = (view.width(), view.size.pixels());
+        let mut walk = WalkScratch::default();
+        walk.resize(width);
+        // The status bar's rows keep their depth and class.
+        let frame = Frame {
+            width,
+            colour: vec![0; pixels],
+            depth: vec![0; pixels],
+            class: vec![class::STATUS_BAR; pixels],
+            depth_cap: 255,
+        };
+        Renderer {
+            frame,
+            openings: Openings::default(),
+            planes: Planes::default(),
+            silhouettes: Silhouettes::default(),
+            walk,
+            entered: vec![false; scene.sector_count],
+            pictures: Vec::new(),
+            span_starts: vec![0; view.view_rows],
+            sky_columns: vec![0; width],
+            sprites: Vec::new(),
+            sprite_rows: [Vec::new(), Vec::new()],
+            labels: Labels::default(),
+            status_bar: StatusBar::new(&scene.bar, &view),
+            palette: scene.assets.palette,
+            tint: Tint::default(),
+            options: RenderOptions::default(),
+            scene,
+            view,
+        }
+    }
+
+    /// Chooses what is drawn otherwise from the next frame on.
+    pub fn set_options(&mut self, options: RenderOptions) {
+        self.options = options;
+        let rows = self.view.base_rows();
+        let cap = if options.published_depth { (255 * rows / 480).min(255) } else { 255 };
+        self.frame.depth_cap = cap as u8;
+    }
+
+    /// Draws what player `player` of `world` sees. The result stays until the next call.
+    ///
+    /// # Panics
+    /// If the world is of another map than the scene, or has no such player.
+    pub fn render(&mut self, world: &World, player: usize, buffers: Buffers) {
+        assert_eq!(world.sectors.len(), self.scene.sector_count, "the world is of another map than the scene");
+        match (buffers.depth, buffers.labels) {
+            (false, false) => self.draw::<false, false>(world, player),
+            (true, false) => self.draw::<true, false>(world, player),
+            (false, true) => self.draw::<false, true>(world, player),
+            (true, true) => self.draw::<true, true>(world, player),
+        }
+    }
+
+    fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, world: &World, player: usize) {
+        let camera = Camera::of_player(world, player, &self.view);
+        self.animate(world.tic);
+        self.frame.clear::<DEPTH, CLASS>(self.view.view_rows, 0);
+        self.openings.reset(self.view.width(), self.view.view_rows);
+        self.planes.reset(self.view.width());
+        self.silhouettes.reset();
+        self.entered.fill(false);
+        let mut walk = Walk {
+            scene: &self.scene,
+            view: &self.view,
+            camera: &camera,
+            sectors: &world.sectors,
+            pictures: &self.pictures,
+            frame: &mut self.frame,
+            openings: &mut self.openings,
+            planes: &mut self.planes,
+            silhouettes: &mut self.silhouettes,
+            entered: &mut self.entered,
+            scratch: &mut self.walk,
+        };
+        walk.run::<DEPTH, CLASS>();
+        self.draw_planes::<DEPTH, CLASS>(&camera);
+        self.draw_masked::<DEPTH, CLASS>(&camera, world, player);
+        self.draw_overlay::<DEPTH, CLASS>(&camera, world, player);
+    }
+
+    fn draw_masked<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera, world: &World, player: usize) {
+        self.labels.list.clear();
+        sprite::collect(&mut self.sprites, &self.scene, &self.view, camera, world, player, &self.entered);
+        let [tops, bottoms] = &mut self.sprite_rows;
+        let mut masked = Masked {
+            scene: &self.scene,
+            view: &self.view,
+            camera,
+            world,
+            pictures: &self.pictures,
+            frame: &mut self.frame,
+            silhouettes: &mut self.silhouettes,
+            labels: &mut self.labels,
+            tops,
+            bottoms,
+        };
+        masked.draw::<DEPTH, CLASS>(&self.sprites);
+    }
+
+    /// What is drawn over the world: weapon, status bar, flashes.
+    fn draw_overlay<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera, world: &World, player: usize) {
+        let (scene, view) = (&self.scene, &self.view);
+        let state = BarState::of_player(world, player);
+        let player = &world.players[player];
+        let level =
+            world.get(player.actor).and_then(|body| world.sectors.get(body.sector.0 as usize)).map_or(0, |sector| sector.light);
+        weapon::draw::<DEPTH, CLASS>(&mut self.frame, scene, view, camera, player, i32::from(level));
+        self.status_bar.update(&mut self.frame, &scene.bar, view, state);
+        let tint = Tint::of_player(player, self.options.green_goggles);
+        if tint != self.tint {
+            self.tint = tint;
+            self.palette = tint.apply(&scene.assets.palette);
+        }
+    }
+
+    /// Chooses the frame of each animated texture.
+    fn animate(&mut self, tic: u32) {
+        let textures = &self.scene.textures.list;
+        self.pictures.clear();
+        self.pictures.extend(textures.iter().map(|texture| {
+            if texture.frames == 1 { texture.first } else { texture.first + tic / texture.tics % texture.frames }
+        }));
+    }
+
+    fn draw_planes<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera) {
+        let tables = &self.scene.assets.light_tables;
+        for plane in self.planes.used() {
+            if plane.first >= plane.end {
+                continue;
+            }
+            if plane.key.sky {
+                let shader = SkyShader {
+                    camera,
+                    view: &self.view,
+                    table: &tables[camera.fixed_table.unwrap_or(0)],
+                    picture: &self.scene.textures.walls[self.scene.sky],
+                };
+                shader.columns(&mut self.sky_columns, plane.first, plane.end);
+                plane.spans(&mut self.span_starts, |row, first, end| {
+                    shader.span::<DEPTH, CLASS>(&mut self.frame, &self.sky_columns, row, first, end);
+                });
+            } else {
+                let shader = PlaneShader::new(camera, &self.view, tables, plane.key);
+                let picture = self.pictures[usize::from(plane.key.texture.0)];
+                let flat = &self.scene.textures.flats[picture as usize];
+                plane.spans(&mut self.span_starts, |row, first, end| {
+                    shader.span::<DEPTH, CLASS>(&mut self.frame, flat, row, first, end);
+                });
+            }
+        }
+    }
+
+    /// The palette indices of the last frame, row by row.
+    #[must_use]
+    pub fn indices(&self) -> &[u8] {
+        &self.frame.colour
+    }
+
+    /// The colours of the palette indices, with the flashes of the last frame.
+    #[must_use]
+    pub fn palette(&self) -> &[[u8; 3]; 256] {
+        &self.palette
+    }
+
+    /// The depth of the last frame, if it was drawn: 0 near to 255 far, 7.3 map units a level; weapon and status bar 0.
+    #[must_use]
+    pub fn depth(&self) -> &[u8] {
+        &self.frame.depth
+    }
+
+    /// What each pixel of the last frame shows, if labels were drawn: a surface of [`class`], or
+    /// [`class::FIRST_ACTOR`] plus an index into [`Renderer::labels`].
+    #[must_use]
+    pub fn classes(&self) -> &[u16] {
+        &self.frame.class
+    }
+
+    /// The actors of which the last frame drew a pixel, if labels were drawn, far to near.
+    #[must_use]
+    pub fn labels(&self) -> &[Label] {
+        &self.labels.list
+    }
+
+    /// Size of the frames.
+    #[must_use]
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// Writes the last frame row by row, red, green and blue of each pixel in turn.
+    ///
+    /// # Panics
+    /// If `out` is not three times as long as a frame has pixels.
+    pub fn write_rgb_hwc(&self, out: &mut [u8]) {
+        assert_eq!(out.len(), self.frame.colour.len() * 3, "a buffer of height * width * 3 bytes is needed");
+        convert::rgb_interleaved(&self.palette, &self.frame.colour, out);
+    }
+
+    /// Writes the last frame as a plane of red, one of green, one of blue.
+    ///
+    /// # Panics
+    /// If `out` is not three times as long as a frame has pixels.
+    pub fn write_rgb_chw(&self, out: &mut [u8]) {
+        assert_eq!(out.len(), self.frame.colour.len() * 3, "a buffer of 3 * height * width bytes is needed");
+        convert::rgb_planes(&self.palette, &self.frame.colour, out);
+    }
+
+    /// Writes the last frame's luminance.
+    ///
+    /// # Panics
+    /// If `out` is not as long as a frame has pixels.
+    pub fn write_grey(&self, out: &mut [u8]) {
+        assert_eq!(out.len(), self.frame.colour.len(), "a buffer of height * width bytes is needed");
+        convert::grey(&self.palette, &self.frame.colour, out);
+    }
+
+    /// Writes the last frame's depth, which must have been asked for.
+    ///
+    /// # Panics
+    /// If `out` is not as long as a frame has pixels.
+    pub fn write_depth(&self, out: &mut [u8]) {
+        assert_eq!(out.len(), self.frame.depth.len(), "a buffer of height * width bytes is needed");
+        out.copy_from_slice(&self.frame.depth);
+    }
+
+    /// Writes the last frame with one colour per class, red, green and blue of each pixel in turn; labels must have been
+    /// asked for.
+    ///
+    /// # Panics
+    /// If `out` is not three times as long as a frame has pixels.
+    pub fn write_segmented_hwc(&self, colours: &SegmentationColours, out: &mut [u8]) {
+        assert_eq!(out.len(), self.frame.class.len() * 3, "a buffer of height * width * 3 bytes is needed");
+        convert::classes_interleaved(&self.class_colours(colours), &self.frame.class, out);
+    }
+
+    /// Writes the last frame with one colour per class as three planes; labels must have been asked for.
+    ///
+    /// # Panics
+    /// If `out` is not three times as long as a frame has pixels.
+    pub fn write_segmented_chw(&self, colours: &SegmentationColours, out: &mut [u8]) {
+        assert_eq!(out.len(), self.frame.class.len() * 3, "a buffer of 3 * height * width bytes is needed");
+        convert::classes_planes(&self.class_colours(colours), &self.frame.class, out);
+    }
+
+    /// Writes the last frame's labels as the published engine gives them: 0 for surfaces, the `n`th of `N` actors
+    /// `n * 255 / (N + 1)`, the weapon 255; labels must have been asked for.
+    ///
+    /// # Panics
+    /// If `out` is not as long as a frame has pixels.
+    pub fn write_labels(&self, out: &mut [u8]) {
+        assert_eq!(out.len(), self.frame.class.len(), "a buffer of height * width bytes is needed");
+        let count = self.labels.list.len() + 1;
+        let value = |class: u16| match class.checked_sub(class::FIRST_ACTOR) {
+            Some(index) => ((usize::from(index) + 1) * 255 / count) as u8,
+            None if class == class::WEAPON => 255,
+            None => 0,
+        };
+        out.iter_mut().zip(&self.frame.class).for_each(|(to, &class)| *to = value(class));
+    }
+
+    /// The colour of each value of the class buffer.
+    fn class_colours(&self, colours: &SegmentationColours) -> Vec<[u8; 3]> {
+        let surfaces = (0..class::FIRST_ACTOR).map(|class| colours.surface(class));
+        surfaces.chain(self.labels.list.iter().map(|label| colours.actor(label.kind))).collect()
+    }
+}

@@ -1,0 +1,220 @@
+//! A map made ready for drawing with a set of pictures.
+
+use super::picture::{MaskedPicture, Textures};
+use super::status_bar::BarArt;
+use crate::assets::{Assets, TextureEntry};
+use crate::map::{Map, Node, Seg, Side, TextureId, TextureName};
+use std::sync::Arc;
+
+/// The name of the ceiling texture that is the sky.
+const SKY_FLAT: TextureName = TextureName::new("F_SKY1");
+/// Names of sky pictures, the first that the map or the set has is taken.
+const SKY_NAMES: [&str; 2] = ["RSKY1", "SKY1"];
+/// The sector of the other side of a one-sided line.
+pub(super) const NO_SECTOR: u32 = u32::MAX;
+
+/// A seg as the renderer wants it.
+#[derive(Clone, Debug)]
+pub(super) struct SceneSeg {
+    /// Unit normal towards the seg's own sector, 28 fractional bits.
+    pub normal: [i64; 2],
+    /// The line's distance from the origin along the normal, 44 fractional bits.
+    pub offset: i64,
+    /// Ends, left to right as seen from its sector; 16.16.
+    pub ends: [[i64; 2]; 2],
+    /// Sector that it faces.
+    pub front: u32,
+    /// Sector behind, or [`NO_SECTOR`].
+    pub back: u32,
+    /// Index into [`Scene::faces`].
+    pub face: u32,
+}
+
+/// One side of a line: how its textures lie.
+#[derive(Clone, Debug)]
+pub(super) struct Face {
+    /// Horizontal texture position of the map's origin projected on the line; 44 fractional bits.
+    pub u_offset: i64,
+    /// Moves textures up, 16.16 map units.
+    pub v_offset: i64,
+    /// Texture above the opening.
+    pub top: Option<TextureId>,
+    /// Texture of a one-sided wall, or the masked one in the opening.
+    pub middle: Option<TextureId>,
+    /// Texture below the opening.
+    pub bottom: Option<TextureId>,
+    /// Upper texture starts at the higher ceiling.
+    pub upper_unpegged: bool,
+    /// Lower texture hangs from the higher ceiling; the middle one stands on the floor.
+    pub lower_unpegged: bool,
+    /// Added to the sector's light: walls along one axis are lighter, along the other darker.
+    pub contrast: i32,
+}
+
+/// A map and the pictures it is drawn with, worked out once and shared by every world of the map.
+#[derive(Debug)]
+pub struct Scene {
+    pub(super) assets: Arc<Assets>,
+    pub(super) segs: Vec<SceneSeg>,
+    pub(super) faces: Vec<Face>,
+    pub(super) nodes: Vec<Node>,
+    /// First seg, one past the last, sector.
+    pub(super) subsectors: Vec<[u32; 3]>,
+    pub(super) sector_count: usize,
+    pub(super) textures: Textures,
+    /// The ceiling texture that shows the sky.
+    pub(super) sky_flat: Option<TextureId>,
+    /// Index of the sky's picture in `textures.walls`.
+    pub(super) sky: usize,
+    /// The images that sprites use, by index into `Assets::images`.
+    pub(super) sprite_pictures: Vec<Option<MaskedPicture>>,
+    /// Index of the solid picture that fills what has no texture, in `textures.walls`.
+    pub(super) missing_picture: usize,
+    /// The status bar's pictures.
+    pub(super) bar: BarArt,
+    /// The colour halfway between each two: `blends[a * 256 + b]`.
+    blends: Box<[u8]>,
+}
+
+impl Scene {
+    /// Resolves every texture and sprite name of the map against the pictures.
+    #[must_use]
+    pub fn new(map: &Map, assets: Arc<Assets>) -> Scene {
+        let missing = nearest_colour(&assets.palette, [96, 96, 96]);
+        let mut textures = Textures::default();
+        for &name in &map.textures {
+            textures.add(&assets, assets.texture(name), missing);
+        }
+        let sky = textures.walls.len();
+        let sky_entry = SKY_NAMES.iter().find_map(|name| {
+            let name = TextureName::new(name);
+            let graphic = assets.graphics.get(&name).map(|&first| TextureEntry { first, frames: 1, tics: 1 });
+            assets.textures.get(&name).copied().or(graphic)
+        });
+        let no_entry = TextureEntry { first: u32::MAX, frames: 1, tics: 1 };
+        textures.add(&assets, sky_entry.unwrap_or(no_entry), missing);
+        let missing_picture = textures.walls.len();
+        textures.add(&assets, no_entry, missing);
+
+        let mut faces = vec![None; map.sides.len()];
+        for line in &map.lines {
+            let (dx, dy) = (i64::from(line.dx.0), i64::from(line.dy.0));
+            let contrast = if dx == 0 {
+                8
+            } else if dy == 0 {
+                -8
+            } else {
+                0
+            };
+            let unit = unit_vector(dx, dy);
+            let sides = [Some((line.front, line.v1, unit)), line.back.map(|back| (back, line.v2, [-unit[0], -unit[1]]))];
+            for (id, start, along) in sides.into_iter().flatten() {
+                let side: &Side = &map.sides[id.0 as usize];
+                let start = i64::from(start.x.0) * along[0] + i64::from(start.y.0) * along[1];
+                faces[id.0 as usize] = Some(Face {
+                    u_offset: (i64::from(side.offset_x.0) << 28) - start,
+                    v_offset: i64::from(side.offset_y.0),
+                    top: side.top,
+                    middle: side.middle,
+                    bottom: side.bottom,
+                    upper_unpegged: line.flags.upper_unpegged,
+                    lower_unpegged: line.flags.lower_unpegged,
+                    contrast,
+                });
+            }
+        }
+        let bare = Face {
+            u_offset: 0,
+            v_offset: 0,
+            top: None,
+            middle: None,
+            bottom: None,
+            upper_unpegged: false,
+            lower_unpegged: false,
+            contrast: 0,
+        };
+        Scene {
+            segs: map.segs.iter().map(|seg| scene_seg(map, seg)).collect(),
+            // A side that no line uses is never drawn.
+            faces: faces.into_iter().map(|face| face.unwrap_or_else(|| bare.clone())).collect(),
+            nodes: map.nodes.clone(),
+            subsectors: map.subsectors.iter().map(|s| [s.first_seg, s.first_seg + s.seg_count, s.sector.0]).collect(),
+            sector_count: map.sectors.len(),
+            sky_flat: map.textures.iter().position(|&name| name == SKY_FLAT).map(|i| TextureId(i as u16)),
+            sky,
+            sprite_pictures: sprite_pictures(&assets),
+            textures,
+            missing_picture,
+            bar: BarArt::new(&assets),
+            blends: blends(&assets.palette),
+            assets,
+        }
+    }
+
+    /// The palette index halfway between two.
+    #[inline]
+    pub(super) fn blend(&self, a: u8, b: u8) -> u8 {
+        self.blends[usize::from(a) * 256 + usize::from(b)]
+    }
+}
+
+fn scene_seg(map: &Map, seg: &Seg) -> SceneSeg {
+    let line = &map.lines[seg.line as usize];
+    let (mut dx, mut dy) = (i64::from(line.dx.0), i64::from(line.dy.0));
+    if line.back == Some(seg.side) {
+        (dx, dy) = (-dx, -dy);
+    }
+    let along = unit_vector(dx, dy);
+    let normal = [along[1], -along[0]];
+    let wide = |v: crate::map::Vertex| [i64::from(v.x.0), i64::from(v.y.0)];
+    let start = wide(line.v1);
+    SceneSeg {
+        normal,
+        offset: start[0] * normal[0] + start[1] * normal[1],
+        ends: [wide(seg.v1), wide(seg.v2)],
+        front: seg.front_sector.0,
+        back: seg.back_sector.map_or(NO_SECTOR, |sector| sector.0),
+        face: seg.side.0,
+    }
+}
+
+/// The direction of a vector with 28 fractional bits.
+fn unit_vector(dx: i64, dy: i64) -> [i64; 2] {
+    let square = u128::from(dx.unsigned_abs()).pow(2) + u128::from(dy.unsigned_abs()).pow(2);
+    // 8 more bits than the vector's own, so that rounding the length does not show.
+    let length = (square << 16).isqrt().max(1) as i128;
+    let part = |d: i64| {
+        let scaled = i128::from(d) << 36;
+        ((scaled + scaled.signum() * length / 2) / length) as i64
+    };
+    [part(dx), part(dy)]
+}
+
+fn sprite_pictures(assets: &Assets) -> Vec<Option<MaskedPicture>> {
+    let mut pictures = vec![None; assets.images.len()];
+    for index in assets.sprites.iter().flat_map(|sprite| &sprite.frames).flat_map(|frame| frame.images) {
+        if let Some(image) = assets.images.get(index as usize) {
+            pictures[index as usize] = Some(MaskedPicture::new(image));
+        }
+    }
+    pictures
+}
+
+/// The palette index nearest to a colour.
+pub(super) fn nearest_colour(palette: &[[u8; 3]; 256], colour: [u8; 3]) -> u8 {
+    let distance =
+        |candidate: &[u8; 3]| -> i32 { candidate.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum() };
+    (0..256).min_by_key(|&i| distance(&palette[i])).unwrap_or(0) as u8
+}
+
+fn blends(palette: &[[u8; 3]; 256]) -> Box<[u8]> {
+    // The nearest index of every colour reduced to 5 bits a channel, so that 65,536 pairs need 32,768 searches.
+    let nearest: Vec<u8> = (0..1usize << 15)
+        .map(|i| nearest_colour(palette, [10, 5, 0].map(|shift| ((i >> shift & 31) * 255 / 31) as u8)))
+        .collect();
+    let halfway = |a: usize, b: usize| {
+        let reduced = |i: usize| (usize::from(palette[a][i]) + usize::from(palette[b][i])) / 16;
+        nearest[reduced(0) << 10 | reduced(1) << 5 | reduced(2)]
+    };
+    (0..1 << 16).map(|i| halfway(i >> 8, i & 255)).collect()
+}

@@ -1,0 +1,58 @@
+//! The sky: a cylinder at infinite distance.
+
+use super::View;
+use super::camera::Camera;
+use super::frame::{Frame, class};
+use super::picture::WallPicture;
+
+/// Height of the cylinder in units of 1/200 screen height, whatever the picture's: enough to look all the way up.
+const SKY_UNITS: i64 = 228;
+/// Units of it above the horizon.
+const UNITS_ABOVE: i64 = 200;
+
+/// The sky as one frame sees it.
+pub(super) struct SkyShader<'a> {
+    pub camera: &'a Camera,
+    pub view: &'a View,
+    pub table: &'a [u8; 256],
+    pub picture: &'a WallPicture,
+}
+
+impl SkyShader<'_> {
+    /// Finds the texture column of each frame column `first..end`.
+    pub fn columns(&self, starts: &mut [u32], first: usize, end: usize) {
+        for (start, &angle) in starts[first..end].iter_mut().zip(&self.view.column_angles[first..end]) {
+            // 1024 texels around.
+            let u = i64::from((self.camera.angle + angle).0 >> 22);
+            *start = self.picture.column_start(u << 16) as u32;
+        }
+    }
+
+    /// Draws the frame columns `first..end` of a frame row.
+    pub fn span<const DEPTH: bool, const CLASS: bool>(
+        &self,
+        frame: &mut Frame,
+        starts: &[u32],
+        row: usize,
+        first: usize,
+        end: usize,
+    ) {
+        let below = 2 * (i64::from(self.view.rows[row]) - self.camera.horizon) + 1;
+        // The screen is 0.75 of its width high, whatever part of it is shown.
+        let units = below * 400 / (3 * i64::from(self.view.base_width)) + UNITS_ABOVE;
+        let height = i64::from(self.picture.height);
+        let v = (units * height / SKY_UNITS).clamp(0, height - 1) as usize;
+        let start = row * frame.width;
+        let pixels = frame.colour[start + first..start + end].iter_mut();
+        for (pixel, &column) in pixels.zip(&starts[first..end]) {
+            *pixel = self.table[usize::from(self.picture.pixels[column as usize + v])];
+        }
+        if DEPTH {
+            let depth = frame.depth_cap;
+            frame.depth[start + first..start + end].fill(depth);
+        }
+        if CLASS {
+            frame.class[start + first..start + end].fill(class::SKY);
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! Sprites: which actors are in view, where, and their drawing.
+
+use super::View;
+use super::camera::Camera;
+use super::frame::Frame;
+use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::picture::MaskedPicture;
+use super::scene::Scene;
+use super::wall::INVERSE_BITS;
+use crate::math::{Angle, Fixed};
+use crate::world::{Actor, ActorKind, World};
+
+/// Actors nearer than this, in 16.16 map units, are not drawn.
+const NEAREST: i64 = 4 << 16;
+/// Fractional bits of texture positions.
+const TEXEL_BITS: u32 = 32;
+
+/// An actor in view.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SeenSprite {
+    /// Its slot.
+    pub slot: u16,
+    /// What it is.
+    pub kind: ActorKind,
+    /// Index into [`Scene::sprite_pictures`].
+    pub picture: u32,
+    /// Drawn left to right reversed.
+    pub mirrored: bool,
+    /// Shines through by half.
+    pub translucent: bool,
+    /// Distance, 16.16.
+    pub distance: i64,
+    /// Inverse distance.
+    pub inverse: i64,
+    /// Light table.
+    pub table: usize,
+    /// Where it stands.
+    pub x: i64,
+    pub y: i64,
+    /// Height of the picture's upper and lower end.
+    pub top: Fixed,
+    pub bottom: Fixed,
+    /// Frame columns.
+    pub first: usize,
+    pub end: usize,
+    /// Frame rows before clipping.
+    pub first_row: i16,
+    pub end_row: i16,
+    /// Texture column at base column 0 and its change a column.
+    u: i64,
+    u_step: i64,
+    /// Texture row at the middle of base row 0 and its change a row.
+    v: i64,
+    v_step: i64,
+}
+
+/// Collects the actors that the frame may show, far to near.
+pub(super) fn collect(
+    seen: &mut Vec<SeenSprite>,
+    scene: &Scene,
+    view: &View,
+    camera: &Camera,
+    world: &World,
+    player: usize,
+    entered: &[bool],
+) {
+    seen.clear();
+    let own = usize::from(world.players[player].actor.slot);
+    for (slot, actor) in world.actors.iter().enumerate() {
+        let in_sight = entered.get(actor.sector.0 as usize).is_some_and(|&entered| entered);
+        if in_sight && !actor.removed && slot != own {
+            let level = i32::from(world.sectors[actor.sector.0 as usize].light);
+            seen.extend(see(scene, view, camera, actor, slot as u16, world.tic, level));
+        }
+    }
+    seen.sort_unstable_by_key(|sprite| (-sprite.distance, sprite.slot));
+}
+
+fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, tic: u32, level: i32) -> Option<SeenSprite> {
+    let (x, y) = (i64::from(actor.x.0), i64::from(actor.y.0));
+    let [left, right] = camera.edges(x, y);
+    let distance = (left + right) / 2;
+    if distance < NEAREST {
+        return None;
+    }
+    let shown = actor.picture(tic);
+    let frame = scene.assets.sprites.get(usize::from(shown.sprite))?.frames.get(usize::from(shown.frame))?;
+    let rotation = if frame.images.iter().all(|&image| image == frame.images[0]) { 0 } else { rotation(camera, actor, x, y) };
+    let index = frame.images[rotation];
+    let picture = scene.sprite_pictures.get(index as usize)?.as_ref()?;
+
+    let width = i64::from(view.base_width);
+    // The outermost rays are as far to the side as forward.
+    let u_step = (distance << (TEXEL_BITS - 15)) / width;
+    let across = (left - right) / 2;
+    let u = -u_step * (width - 1) / 2 - ((across - (i64::from(picture.offset_x) << 16)) << (TEXEL_BITS - 16));
+    let column = |texel: u32| {
+        let base = ((i64::from(texel) << TEXEL_BITS) - u + u_step - 1).div_euclid(u_step);
+        usize::from(view.first_column[base.clamp(0, width) as usize])
+    };
+    let (first, end) = (column(0), column(picture.width));
+    if first >= end {
+        return None;
+    }
+    let top = actor.z + Fixed::from_int(picture.offset_y);
+    let v_step = (distance * view.inverse_focal_y) >> (48 - TEXEL_BITS);
+    let above = i64::from(top.0) - camera.z;
+    let v = (above << (TEXEL_BITS - 16)) + v_step / 2 - v_step * camera.horizon;
+    let row = |texel: u32| {
+        let base = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
+        view.first_row[base.clamp(0, i64::from(view.base_view_rows)) as usize]
+    };
+    let (first_row, end_row) = (row(0), row(picture.height));
+    if first_row >= end_row {
+        return None;
+    }
+    let nearness = (ONE_TABLE_DISTANCE << 32) / distance;
+    let table = match (shown.bright, camera.fixed_table) {
+        (true, None) => 0,
+        _ => Light::new(camera, level).table(nearness),
+    };
+    Some(SeenSprite {
+        slot,
+        kind: actor.kind,
+        picture: index,
+        mirrored: frame.mirrored[rotation],
+        translucent: matches!(actor.kind, ActorKind::BulletPuff | ActorKind::BlurSphere),
+        distance,
+        inverse: (1 << (INVERSE_BITS + 16)) / distance,
+        table,
+        x,
+        y,
+        top,
+        bottom: top - Fixed::from_int(picture.height as i32),
+        first,
+        end,
+        first_row,
+        end_row,
+        u,
+        u_step,
+        v,
+        v_step,
+    })
+}
+
+/// Which of the 8 views of an actor the camera has: 0 from the front, then counter-clockwise around it.
+fn rotation(camera: &Camera, actor: &Actor, x: i64, y: i64) -> usize {
+    // Halved, so that differences fit.
+    let half = |difference: i64| Fixed((difference >> 1) as i32);
+    let towards = Angle::of_vector(half(x - camera.x), half(y - camera.y));
+    // Half a turn because 0 is the front, half an eighth so that each view is centred on its direction.
+    ((towards - actor.angle + Angle(0x9000_0000)).0 >> 29) as usize
+}
+
+/// The part of a frame that a sprite covered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Covered {
+    pub columns: [usize; 2],
+    pub rows: [usize; 2],
+}
+
+impl Covered {
+    pub const NOTHING: Covered = Covered { columns: [usize::MAX, 0], rows: [usize::MAX, 0] };
+
+    pub fn add(&mut self, x: usize, row: usize) {
+        self.columns = [self.columns[0].min(x), self.columns[1].max(x + 1)];
+        self.rows = [self.rows[0].min(row), self.rows[1].max(row + 1)];
+    }
+}
+
+impl SeenSprite {
+    /// Draws the rows `tops[i]..bottoms[i]` of its columns.
+    pub fn draw<const DEPTH: bool, const CLASS: bool>(
+        &self,
+        frame: &mut Frame,
+        view: &View,
+        scene: &Scene,
+        picture: &MaskedPicture,
+        open: (&[i16], &[i16]),
+        class: u16,
+    ) -> Covered {
+        let table = &scene.assets.light_tables[self.table];
+        let depth = frame.capped_depth(self.distance);
+        let mut covered = Covered::NOTHING;
+        for (x, (&top, &bottom)) in (self.first..self.end).zip(open.0.iter().zip(open.1)) {
+            let (top, bottom) = (top.max(self.first_row), bottom.min(self.end_row));
+            if top >= bottom {
+                continue;
+            }
+            let u = ((self.u + self.u_step * i64::from(view.columns[x])) >> TEXEL_BITS) as u32;
+            let u = if self.mirrored { picture.width - 1 - u } else { u };
+            let texels = picture.column(u);
+            let rows = top as usize..bottom as usize;
+            let start = rows.start * frame.width + x;
+            let pixels = frame.colour[start..].iter_mut().step_by(frame.width);
+            for (pixel, &row) in pixels.zip(&view.rows[rows.clone()]) {
+                let v = (self.v + self.v_step * i64::from(row)) >> TEXEL_BITS;
+                let texel = texels[v as usize];
+                let lit = table[usize::from(texel as u8)];
+                let lit = if self.translucent { scene.blend(lit, *pixel) } else { lit };
+                *pixel = if texel & MaskedPicture::OPAQUE != 0 { lit } else { *pixel };
+            }
+            if DEPTH || CLASS {
+                for row in rows {
+                    let v = (self.v + self.v_step * i64::from(view.rows[row])) >> TEXEL_BITS;
+                    if texels[v as usize] & MaskedPicture::OPAQUE == 0 {
+                        continue;
+                    }
+                    if DEPTH {
+                        frame.depth[row * frame.width + x] = depth;
+                    }
+                    if CLASS {
+                        frame.class[row * frame.width + x] = class;
+                        covered.add(x, row);
+                    }
+                }
+            }
+        }
+        covered
+    }
+}

@@ -1,0 +1,208 @@
+//! Tables that depend only on the frame's size.
+//!
+//! All per-pixel arithmetic is in the columns and rows of a *base* grid; the pixels that are drawn are samples of that
+//! grid. Usually the two are the same. At 128x72 the base is 160x120, of which every 1.25th column and 5/3rd row is
+//! drawn, so that the small frame equals the nearest-neighbour reduction of the large one by construction.
+
+use super::{FrameSize, SizeError};
+use crate::math::{Angle, Fixed};
+
+/// Height of the status bar's art, in its own pixels; its width is 320.
+pub(super) const BAR_ART_HEIGHT: u32 = 32;
+/// Width of the status bar's art.
+pub(super) const BAR_ART_WIDTH: u32 = 320;
+
+/// Steepest pitch that is drawn, beyond what a player can look: bounds the table of row slopes.
+const PITCH_LIMIT_DEGREES: i32 = 60;
+
+/// The tables of one frame size. Immutable; shared by every renderer of that size.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Size of the frame.
+    pub(super) size: FrameSize,
+    /// Width of the base grid.
+    pub(super) base_width: u32,
+    /// Rows of the base grid that show the world; the status bar is below.
+    pub(super) base_view_rows: u32,
+    /// Rows of the frame that show the world.
+    pub(super) view_rows: usize,
+    /// Base column of each frame column.
+    pub(super) columns: Box<[u32]>,
+    /// Base row of each frame row above the status bar.
+    pub(super) rows: Box<[u32]>,
+    /// For each base column 0..=width, the first frame column at or right of it.
+    pub(super) first_column: Box<[u16]>,
+    /// For each base row 0..=view rows, the first frame row at or below it.
+    pub(super) first_row: Box<[i16]>,
+    /// Vertical focal length in base rows, 16.16: 1.2 times the horizontal one, which is half the width.
+    pub(super) focal_y: i64,
+    /// `2^32 / vertical focal length`.
+    pub(super) inverse_focal_y: i64,
+    /// Distance of a floor one unit below the eye, in the row whose centre is n + 1/2 rows below the horizon; 16.16.
+    pub(super) row_slopes: Box<[i64]>,
+    /// Direction of each frame column relative to the view direction, for the sky.
+    pub(super) column_angles: Box<[Angle]>,
+    /// Column of the status bar's art in each frame column.
+    pub(super) bar_columns: Box<[u16]>,
+    /// Row of the status bar's art in each frame row of the bar.
+    pub(super) bar_rows: Box<[u16]>,
+    /// For each column of the art 0..=320, the first frame column that shows it or one to its right.
+    pub(super) first_bar_column: Box<[u16]>,
+    /// For each row of the art 0..=32, the first row of the bar that shows it or one below.
+    pub(super) first_bar_row: Box<[u16]>,
+}
+
+impl View {
+    /// The tables for frames of `size`.
+    ///
+    /// # Errors
+    /// If frames of that size cannot be drawn, see [`FrameSize::check`].
+    pub fn new(size: FrameSize) -> Result<View, SizeError> {
+        size.check()?;
+        let base = if size == FrameSize::LEARNER { FrameSize::CLASSIC } else { size };
+        Ok(View::sampled(size, base))
+    }
+
+    /// Frames of `size`, each pixel of which is the one of a frame of size `base` that lies at the same fraction.
+    fn sampled(size: FrameSize, base: FrameSize) -> View {
+        let (width, height) = (u32::from(base.width), u32::from(base.height));
+        let base_view_rows = height - bar_rows(width, height);
+        let columns: Box<[u32]> = (0..u32::from(size.width)).map(|x| x * width / u32::from(size.width)).collect();
+        let all_rows: Vec<u32> = (0..u32::from(size.height)).map(|y| y * height / u32::from(size.height)).collect();
+        let view_rows = all_rows.partition_point(|&row| row < base_view_rows);
+        let rows: Box<[u32]> = all_rows[..view_rows].into();
+        let first_column = (0..=width).map(|c| columns.partition_point(|&column| column < c) as u16).collect();
+        let first_row = (0..=base_view_rows).map(|r| rows.partition_point(|&row| row < r) as i16).collect();
+
+        let focal_y = i64::from(width) * 6 * 65536 / 10;
+        let steepest = Angle::from_turn_65536(PITCH_LIMIT_DEGREES * 65536 / 360).tan();
+        let farthest = i64::from(base_view_rows) + ((focal_y * i64::from(steepest.0)) >> 32) + 2;
+        let row_slopes = (0..farthest).map(|n| 2 * focal_y / (2 * n + 1)).collect();
+
+        let column_angles = columns
+            .iter()
+            .map(|&c| {
+                // To the left is positive. Half a base column is the unit.
+                let left = width as i32 - 2 * c as i32 - 1;
+                Angle::of_vector(Fixed::from_int(width as i32), Fixed::from_int(left))
+            })
+            .collect();
+        let bar_height = height - base_view_rows;
+        let bar_columns: Box<[u16]> = columns.iter().map(|&c| ((2 * c + 1) * BAR_ART_WIDTH / (2 * width)) as u16).collect();
+        let bar_rows: Box<[u16]> = all_rows[view_rows..]
+            .iter()
+            .map(|&r| ((2 * (r - base_view_rows) + 1) * BAR_ART_HEIGHT / (2 * bar_height)) as u16)
+            .collect();
+        let first_at = |samples: &[u16], art: u32| samples.partition_point(|&at| u32::from(at) < art) as u16;
+        View {
+            size,
+            first_bar_column: (0..=BAR_ART_WIDTH).map(|art| first_at(&bar_columns, art)).collect(),
+            first_bar_row: (0..=BAR_ART_HEIGHT).map(|art| first_at(&bar_rows, art)).collect(),
+            base_width: width,
+            base_view_rows,
+            view_rows,
+            columns,
+            rows,
+            first_column,
+            first_row,
+            focal_y,
+            inverse_focal_y: (1 << 48) / focal_y,
+            row_slopes,
+            column_angles,
+            bar_columns,
+            bar_rows,
+        }
+    }
+
+    /// Size of the frame.
+    #[must_use]
+    pub fn size(&self) -> FrameSize {
+        self.size
+    }
+
+    /// Rows of the frame that show the world; the status bar fills the rest.
+    #[must_use]
+    pub fn view_rows(&self) -> usize {
+        self.view_rows
+    }
+
+    /// Rows of the whole base grid, the status bar among them.
+    pub(super) fn base_rows(&self) -> u32 {
+        if self.size == FrameSize::LEARNER { u32::from(FrameSize::CLASSIC.height) } else { u32::from(self.size.height) }
+    }
+
+    /// Frame columns.
+    pub(super) fn width(&self) -> usize {
+        usize::from(self.size.width)
+    }
+
+    /// The base row of the horizon at a pitch (negative looks up): a shear, so that verticals stay vertical.
+    pub(super) fn horizon(&self, pitch: i32) -> i32 {
+        let limit = PITCH_LIMIT_DEGREES * 65536 / 360;
+        let pitch = (pitch >> 16).clamp(1 - limit, limit - 1);
+        let tangent = i64::from(Angle::from_turn_65536(pitch).tan().0);
+        let shift = (self.focal_y * tangent + (1 << 31)) >> 32;
+        (self.base_view_rows / 2) as i32 - shift as i32
+    }
+}
+
+/// Rows of the status bar: its art is stretched with the screen, by 1.2 more vertically, but never over more than
+/// 32 of 200 parts of the height; 320 columns show it as it is.
+fn bar_rows(width: u32, height: u32) -> u32 {
+    if width == BAR_ART_WIDTH { BAR_ART_HEIGHT } else { (width * 12).div_ceil(100).min((height * 16).div_ceil(100)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view(width: u16, height: u16) -> View {
+        View::new(FrameSize { width, height }).unwrap()
+    }
+
+    #[test]
+    fn the_bar_takes_the_measured_rows() {
+        for (width, height, view_rows, horizon) in
+            [(160, 120, 100, 50), (320, 240, 208, 104), (640, 480, 403, 201), (1280, 1024, 870, 435)]
+        {
+            let view = view(width, height);
+            assert_eq!((view.view_rows, view.horizon(0)), (view_rows, horizon), "{width}x{height}");
+        }
+    }
+
+    #[test]
+    fn pitch_shears_by_the_measured_rows() {
+        let view = view(160, 120);
+        let degrees = |d: f64| Angle::from_degrees(d).0 as i32;
+        assert_eq!(view.horizon(degrees(-32.0)), 50 + 60);
+        assert_eq!(view.horizon(degrees(56.0)), 50 - 142);
+    }
+
+    #[test]
+    fn the_learners_frame_samples_the_classic_one() {
+        let (small, large) = (view(128, 72), view(160, 120));
+        assert_eq!(small.columns[..6], [0, 1, 2, 3, 5, 6]);
+        assert_eq!(small.rows[..6], [0, 1, 3, 5, 6, 8]);
+        assert_eq!(small.base_view_rows, large.base_view_rows);
+        assert_eq!((small.view_rows, small.bar_rows.len()), (60, 12));
+    }
+
+    #[test]
+    fn every_row_of_every_pitch_has_a_slope() {
+        for (width, height) in [(64, 48), (1920, 1080), (64, 1080), (1920, 48), (128, 72)] {
+            let view = view(width, height);
+            for pitch in [i32::MIN, -(1 << 29), 0, 1 << 29, i32::MAX] {
+                let horizon = view.horizon(pitch);
+                let below = view.base_view_rows as i32 - 1 - horizon;
+                assert!(below < view.row_slopes.len() as i32 && horizon <= view.row_slopes.len() as i32);
+            }
+        }
+    }
+
+    #[test]
+    fn sizes_out_of_range_are_refused() {
+        for (width, height) in [(63, 48), (64, 47), (1921, 1080), (1920, 1081), (0, 0)] {
+            assert!(View::new(FrameSize { width, height }).is_err());
+        }
+    }
+}

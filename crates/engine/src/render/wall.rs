@@ -1,0 +1,154 @@
+//! Where a seg lies on the screen, and the drawing of its wall.
+
+use super::View;
+use super::camera::Camera;
+use super::frame::{Frame, class};
+use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::picture::WallPicture;
+use super::scene::{Face, SceneSeg};
+
+/// Fractional bits of screen rows.
+const ROW_BITS: u32 = 24;
+/// Fractional bits of the inverse of a distance.
+pub(super) const INVERSE_BITS: u32 = 44;
+/// The inverse of a distance beyond all maps, which keeps divisions in range.
+const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
+
+/// The plane of a line as the camera sees it: all that depends on the line is linear in the base column, so that the
+/// pieces into which the BSP cut a line fit together exactly.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SeenLine {
+    /// Inverse of the distance at base column 0, [`INVERSE_BITS`] fractional bits.
+    pub inverse: i64,
+    /// Its change a column.
+    pub inverse_step: i64,
+    /// Position along the line of the point nearest to the eye, 16.16.
+    along: i64,
+    /// Position along the line that a ray gains a unit of distance at base column 0, 60 fractional bits.
+    gain: i64,
+    /// Its change a column.
+    gain_step: i64,
+}
+
+/// The row of a height along a line; linear in the base column.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    at: i64,
+    step: i64,
+}
+
+impl SeenLine {
+    /// The line of a seg that faces the camera from `away`, the distance with 44 fractional bits.
+    #[inline]
+    pub fn new(camera: &Camera, seg: &SceneSeg, face: &Face, away: i64) -> SeenLine {
+        let [nx, ny] = seg.normal;
+        // Nearer than 1/256 unit counts as that far.
+        let reciprocal = (1i64 << 62) / (away >> 20).max(1 << 16);
+        let inverse = |ray: [i64; 2]| {
+            let towards = -(nx * ray[0] + ny * ray[1]);
+            ((i128::from(towards) * i128::from(reciprocal)) >> (98 - INVERSE_BITS)) as i64
+        };
+        let (tx, ty) = (-ny, nx);
+        SeenLine {
+            inverse: inverse(camera.ray),
+            inverse_step: inverse(camera.ray_step),
+            along: (camera.x * tx + camera.y * ty + face.u_offset) >> 28,
+            gain: tx * camera.ray[0] + ty * camera.ray[1],
+            gain_step: tx * camera.ray_step[0] + ty * camera.ray_step[1],
+        }
+    }
+
+    /// The inverse of the distance at a base column.
+    #[inline]
+    pub fn inverse_at(&self, column: i64) -> i64 {
+        (self.inverse + self.inverse_step * column).max(LEAST_INVERSE)
+    }
+
+    /// Distance at a base column, 16.16.
+    #[inline]
+    pub fn distance_at(&self, column: i64) -> i64 {
+        ((1u64 << (INVERSE_BITS + 16)) / self.inverse_at(column) as u64) as i64
+    }
+
+    /// Horizontal texture position at a base column where the distance is known, 16.16.
+    #[inline]
+    pub fn texture_at(&self, column: i64, distance: i64) -> i64 {
+        let gain = (self.gain + self.gain_step * column) >> 32;
+        self.along + ((distance * gain) >> 28)
+    }
+
+    /// Where a height, relative to the eye in 16.16, is seen.
+    #[inline]
+    pub fn edge(&self, camera: &Camera, view: &View, height: i64) -> Edge {
+        let scale = i128::from(height * view.focal_y);
+        let rows = |inverse: i64| ((scale * i128::from(inverse)) >> (32 + INVERSE_BITS - ROW_BITS)) as i64;
+        Edge { at: (camera.horizon << ROW_BITS) - rows(self.inverse), step: -rows(self.inverse_step) }
+    }
+}
+
+impl Edge {
+    /// The first frame row whose centre is below the edge, for each frame column from `first` on.
+    #[inline]
+    pub fn rows(&self, view: &View, first: usize, rows: &mut [i16]) {
+        let at = self.at + (1 << (ROW_BITS - 1)) - 1;
+        let limit = i64::from(view.base_view_rows);
+        let columns = &view.columns[first..first + rows.len()];
+        for (row, &column) in rows.iter_mut().zip(columns) {
+            let base = ((at + self.step * i64::from(column)) >> ROW_BITS).clamp(0, limit);
+            *row = view.first_row[base as usize];
+        }
+    }
+}
+
+/// A part of a wall that one texture covers.
+pub(super) struct WallShader<'a> {
+    pub camera: &'a Camera,
+    pub view: &'a View,
+    pub tables: &'a [[u8; 256]; 32],
+    pub line: &'a SeenLine,
+    pub picture: &'a WallPicture,
+    pub light: Light,
+    /// Height of the texture's top row, relative to the eye, 16.16.
+    pub hung_from: i64,
+}
+
+impl WallShader<'_> {
+    /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on.
+    pub fn draw<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
+        let picture = self.picture;
+        let start = (self.hung_from * picture.inverse_height) >> 16;
+        for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate() {
+            if top >= bottom {
+                continue;
+            }
+            let (top, bottom) = (top as usize, bottom as usize);
+            let x = first + i;
+            let column = i64::from(self.view.columns[x]);
+            let inverse = self.line.inverse_at(column);
+            let distance = self.line.distance_at(column);
+            let texels = picture.column(self.line.texture_at(column, distance));
+            let nearness = (inverse * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+            let table = &self.tables[self.light.table(nearness)];
+            // Rows of texture a base row, as a fraction of its height with 32 bits: what overflows is whole heights.
+            let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
+            let at = (start + step / 2 - step.wrapping_mul(self.camera.horizon)) as u32;
+            let step = step as u32;
+            let rows = &self.view.rows[top..bottom];
+            let pixels = frame.colour[top * frame.width + x..].iter_mut().step_by(frame.width);
+            for (pixel, &row) in pixels.zip(rows) {
+                let at = at.wrapping_add(step.wrapping_mul(row));
+                let texel = (u64::from(at) * u64::from(picture.height)) >> 32;
+                *pixel = table[usize::from(texels[texel as usize])];
+            }
+            if DEPTH {
+                let depth = frame.capped_depth(distance);
+                let pixels = frame.depth[top * frame.width + x..].iter_mut().step_by(frame.width);
+                pixels.take(bottom - top).for_each(|pixel| *pixel = depth);
+            }
+            if CLASS {
+                let pixels = frame.class[top * frame.width + x..].iter_mut().step_by(frame.width);
+                pixels.take(bottom - top).for_each(|pixel| *pixel = class::WALL);
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The player's own weapon in the lower part of the view, with its muzzle flash.
+
+use super::View;
+use super::camera::Camera;
+use super::frame::{Frame, class};
+use super::light::Light;
+use super::palette::power_shows;
+use super::picture::MaskedPicture;
+use super::scene::Scene;
+use crate::world::{Player, PlayerSprite};
+
+/// The screen that weapon positions are given on is 320 by 200 pixels; its middle row is that of the view.
+const SCREEN_WIDTH: i64 = 320;
+const MIDDLE_ROW: i64 = 100;
+/// Fractional bits of texture positions.
+const TEXEL_BITS: u32 = 32;
+
+/// Draws both layers of a player's weapon; `level` is the light of its sector.
+pub(super) fn draw<const DEPTH: bool, const CLASS: bool>(
+    frame: &mut Frame,
+    scene: &Scene,
+    view: &View,
+    camera: &Camera,
+    player: &Player,
+    level: i32,
+) {
+    for sprite in player.sprites.iter().flatten() {
+        let table = match (sprite.bright, camera.fixed_table) {
+            (true, None) => 0,
+            _ => Light::new(camera, level).table(0),
+        };
+        let table = &scene.assets.light_tables[table];
+        layer::<DEPTH, CLASS>(frame, scene, view, sprite, table, power_shows(player.blur_tics));
+    }
+}
+
+fn layer<const DEPTH: bool, const CLASS: bool>(
+    frame: &mut Frame,
+    scene: &Scene,
+    view: &View,
+    sprite: &PlayerSprite,
+    table: &[u8; 256],
+    translucent: bool,
+) {
+    let shown = scene.assets.sprites.get(usize::from(sprite.sprite));
+    let image = shown.and_then(|shown| shown.frames.get(usize::from(sprite.frame))).map(|frame| frame.images[0]);
+    let picture = image.and_then(|image| scene.sprite_pictures.get(image as usize)?.as_ref());
+    let Some(picture) = picture else { return };
+    let left = (i64::from(sprite.x.0) - (i64::from(picture.offset_x) << 16)) << (TEXEL_BITS - 16);
+    let top = (i64::from(sprite.y.0) - (i64::from(picture.offset_y) << 16)) << (TEXEL_BITS - 16);
+    let u_step = (SCREEN_WIDTH << TEXEL_BITS) / i64::from(view.base_width);
+    // Rows are 1.2 times as high as columns are wide.
+    let v_step = u_step * 10 / 12;
+    let u = u_step / 2 - left;
+    let v = v_step / 2 - v_step * i64::from(view.base_view_rows / 2) + (MIDDLE_ROW << TEXEL_BITS) - top;
+    // Frame columns and rows that show the picture at all.
+    let first = |at: i64, step: i64, texel: u32| ((i64::from(texel) << TEXEL_BITS) - at + step - 1).div_euclid(step);
+    let column = |texel| first(u, u_step, texel).clamp(0, i64::from(view.base_width)) as usize;
+    let row = |texel| first(v, v_step, texel).clamp(0, i64::from(view.base_view_rows)) as usize;
+    let columns = usize::from(view.first_column[column(0)])..usize::from(view.first_column[column(picture.width)]);
+    for row in view.first_row[row(0)] as usize..view.first_row[row(picture.height)] as usize {
+        let v = (v + v_step * i64::from(view.rows[row])) >> TEXEL_BITS;
+        let start = row * frame.width;
+        for x in columns.clone() {
+            let u = (u + u_step * i64::from(view.columns[x])) >> TEXEL_BITS;
+            let texel = picture.column(u as u32)[v as usize];
+            if texel & MaskedPicture::OPAQUE == 0 {
+                continue;
+            }
+            let pixel = &mut frame.colour[start + x];
+            let lit = table[usize::from(texel as u8)];
+            *pixel = if translucent { scene.blend(lit, *pixel) } else { lit };
+            if DEPTH {
+                frame.depth[start + x] = 0;
+            }
+            if CLASS {
+                frame.class[start + x] = class::WEAPON;
+            }
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! What a sweep runs.
+
+use crate::Job;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// Most runs that one sweep may expand to; more is surely a slip of the pen.
+const MAX_JOBS: usize = 100_000;
+
+/// Scenarios as environment ids spell them.
+pub(crate) const SCENARIOS: [&str; 6] =
+    ["ArmamentBurden", "VolcanicVenture", "RemedyRush", "CollateralDamage", "PrecipicePlunge", "DetonatorsDilemma"];
+
+/// A value of an option of `hasard train`.
+#[derive(Clone, PartialEq, Debug)]
+pub enum OptionValue {
+    /// A switch: given or not.
+    Switch(bool),
+    /// A text or number, as written on the command line.
+    Text(String),
+}
+
+/// All combinations of its lists are run.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Grid {
+    /// Scenario names (then every level is combined with each) or whole environment ids.
+    pub scenarios: Vec<String>,
+    /// Levels, for scenario names.
+    pub levels: Vec<u32>,
+    /// Algorithms.
+    pub algorithms: Vec<String>,
+    /// Seeds.
+    pub seeds: Vec<u64>,
+    /// Frames of each run.
+    pub frames: u64,
+    /// Options of `hasard train` without dashes, and their values: more than one value is a further axis.
+    pub options: Vec<(String, Vec<OptionValue>)>,
+}
+
+/// One or more grids and where their runs go.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Sweep {
+    /// Folder of the runs.
+    pub out: PathBuf,
+    /// Runs at a time.
+    pub parallel: usize,
+    /// The grids; a run that several ask for is made once.
+    pub grids: Vec<Grid>,
+}
+
+impl Sweep {
+    /// Expands the grids into jobs, environments first, then algorithms, options and seeds last, so that an interrupted
+    /// sweep has whole experiments.
+    ///
+    /// # Errors
+    /// When a list is empty, a value is unusable, or there are too many runs.
+    pub fn jobs(&self) -> Result<Vec<Job>, String> {
+        let mut jobs: Vec<Job> = Vec::new();
+        let mut seen = BTreeSet::new();
+        for grid in &self.grids {
+            let mut expanded = 1usize;
+            for length in [grid.environments().len(), grid.algorithms.len(), grid.seeds.len()]
+                .into_iter()
+                .chain(grid.options.iter().map(|o| o.1.len()))
+            {
+                expanded = expanded.saturating_mul(length);
+            }
+            if expanded.saturating_add(jobs.len()) > MAX_JOBS {
+                return Err(format!("more than {MAX_JOBS} runs; make the grid smaller"));
+            }
+            grid.check()?;
+            for environment in grid.environments() {
+                for algorithm in &grid.algorithms {
+                    for options in grid.option_combinations() {
+                        for &seed in &grid.seeds {
+                            let job = Job::new(&self.out, &environment, algorithm, grid.frames, seed, &options);
+                            if seen.insert(job.directory.clone()) {
+                                jobs.push(job);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        if jobs.is_empty() {
+            return Err("nothing to run; give scenarios, algorithms and seeds".into());
+        }
+        Ok(jobs)
+    }
+
+    /// Multiplies the frames of every run, to try an experiment in small; at least one frame remains.
+    pub fn scale_frames(&mut self, factor: f64) {
+        for grid in &mut self.grids {
+            grid.frames = ((grid.frames as f64 * factor).round() as u64).max(1);
+        }
+    }
+
+    /// Sets an option in every grid, over whatever values it had.
+    pub fn set_option(&mut self, name: &str, value: &OptionValue) {
+        for grid in &mut self.grids {
+            grid.options.retain(|(key, _)| key != name);
+            grid.options.insert(0, (name.to_owned(), vec![value.clone()]));
+        }
+    }
+}
+
+impl Grid {
+    /// Ids of the environments.
+    #[must_use]
+    pub fn environments(&self) -> Vec<String> {
+        self.scenarios
+            .iter()
+            .flat_map(|scenario| {
+                if SCENARIOS.contains(&scenario.as_str()) {
+                    self.levels.iter().map(|level| format!("{scenario}Level{level}-v0")).collect()
+                } else {
+                    vec![scenario.clone()]
+                }
+            })
+            .collect()
+    }
+
+    fn option_combinations(&self) -> Vec<Vec<(String, OptionValue)>> {
+        let mut combinations = vec![Vec::new()];
+        for (name, values) in &self.options {
+            combinations = combinations
+                .into_iter()
+                .flat_map(|before: Vec<(String, OptionValue)>| {
+                    values.iter().map(move |value| {
+                        let mut with = before.clone();
+                        with.push((name.clone(), value.clone()));
+                        with
+                    })
+                })
+                .collect();
+        }
+        combinations
+    }
+
+    fn check(&self) -> Result<(), String> {
+        for (name, empty) in [
+            ("scenarios", self.scenarios.is_empty()),
+            ("levels", self.levels.is_empty()),
+            ("algorithms", self.algorithms.is_empty()),
+            ("seeds", self.seeds.is_empty()),
+        ] {
+            if empty {
+                return Err(format!("`{name}` is empty; list at least one"));
+            }
+        }
+        if self.frames == 0 {
+            return Err("`frames` is 0; give the frames of each run, such as 2000000".into());
+        }
+        // They become parts of paths and command lines.
+        let plain = |text: &str| {
+            !text.is_empty()
+                && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
+                && !text.starts_with(['-', '.'])
+        };
+        for environment in &self.scenarios {
+            let like_an_id = environment.contains("-v") && plain(environment);
+            if !SCENARIOS.contains(&environment.as_str()) && !like_an_id {
+                return Err(format!(
+                    "unknown scenario `{environment}`; one of {}, or an id of `hasard envs`",
+                    SCENARIOS.join(", ")
+                ));
+            }
+        }
+        if let Some(level) = self.levels.iter().find(|level| !(1..=3).contains(*level)) {
+            return Err(format!("level {level} does not exist; levels are 1, 2, 3"));
+        }
+        if let Some(algorithm) = self.algorithms.iter().find(|algorithm| !plain(algorithm)) {
+            return Err(format!("`{algorithm}` is no name of an algorithm"));
+        }
+        for (name, values) in &self.options {
+            if !plain(name) {
+                return Err(format!("`{name}` is no option of `hasard train`; write it without dashes in front"));
+            }
+            if ["out", "seed", "algo", "frames", "resume"].contains(&name.as_str()) {
+                return Err(format!(
+                    "the option `{name}` is set by the sweep itself; use the keys out, seeds, algorithms, frames"
+                ));
+            }
+            if values.is_empty() {
+                return Err(format!("the option `{name}` has no value"));
+            }
+            if values
+                .iter()
+                .any(|value| matches!(value, OptionValue::Text(text) if text.is_empty() || text.contains(char::is_control)))
+            {
+                return Err(format!("the option `{name}` has an empty or unprintable value"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,153 @@
+use crate::*;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+#[test]
+fn a_grid_expands_to_every_combination_once() {
+    let text = "out = 'o'\nparallel = 3\nframes = 1_000\nseeds = [7, 8]\nlevels = [1, 3]\n\
+                scenarios = ['RemedyRush', 'VolcanicVentureLevel2-v0']\nalgorithms = 'PPO'\n\
+                [options]\nfull-actions = [false, true]\nobservation = ['rgb+depth']\n\
+                [[grid]]\n[[grid]]\nalgorithms = ['PPO', 'P3O']\nseeds = 7\n";
+    let sweep = Sweep::parse(text).unwrap();
+    assert_eq!((sweep.parallel, sweep.grids.len()), (3, 2));
+    let jobs = sweep.jobs().unwrap();
+    // 3 environments x 2 action spaces x 2 seeds, and P3O with one seed; PPO of the second grid is in the first.
+    assert_eq!(jobs.len(), 12 + 6);
+    let line = jobs[2].command_line("hasard");
+    assert_eq!(
+        line,
+        "hasard train RemedyRushLevel1-v0 --algo PPO --frames 1000 --seed 7 --full-actions --observation rgb+depth \
+         --out o/RemedyRushLevel1-v0/PPO/full-actions,observation=rgb+depth/seed7"
+    );
+    let mut directories: Vec<_> = jobs.iter().map(|job| job.directory.clone()).collect();
+    directories.sort();
+    directories.dedup();
+    assert_eq!(directories.len(), jobs.len());
+}
+
+#[test]
+fn the_papers_experiments_have_their_sizes() {
+    let count = |name: &str| paper::experiment(name).unwrap().jobs().unwrap().len();
+    let counts = paper::EXPERIMENTS.map(|(name, _)| (name, count(name)));
+    let expected = [540, 90, 120, 20, 90, 60, 10, 10, 90];
+    assert_eq!(counts.map(|(_, count)| count), expected, "{counts:?}");
+    let mut curriculum = paper::experiment("curriculum").unwrap();
+    curriculum.scale_frames(0.01);
+    let lines: Vec<String> = curriculum.jobs().unwrap().iter().map(|job| job.command_line("hasard")).collect();
+    assert!(lines[0].contains("--frames 3000000 --seed 1 --curriculum 1,2,3"), "{}", lines[0]);
+    assert!(lines.iter().any(|line| line.ends_with("--seed 1 --out runs/RemedyRushLevel3-v0/PPOPID/seed1")));
+    let error = paper::experiment("mian").unwrap_err();
+    assert!(error.contains("`mian`") && error.contains("main, safety-bounds"), "{error}");
+}
+
+#[test]
+fn a_file_may_change_an_experiment_of_the_paper() {
+    let mut sweep =
+        Sweep::parse("experiment = 'main'\nframes = 2_000_000\nseeds = [1]\nlevels = [1]\n[options]\nrules = 'released'")
+            .unwrap();
+    let jobs = sweep.jobs().unwrap();
+    assert_eq!(jobs.len(), 36);
+    assert!(jobs[0].command_line("h").contains("--frames 2000000 --seed 1 --rules released"));
+    sweep.set_option("rules", &OptionValue::Text("paper".into()));
+    sweep.set_option("device", &OptionValue::Text("cpu".into()));
+    let job = &sweep.jobs().unwrap()[0];
+    assert!(job.command_line("h").contains("--device cpu --rules paper"));
+    assert!(job.directory.ends_with("ArmamentBurdenLevel1-v0/PPO/rules=paper/seed1"), "{}", job.directory.display());
+}
+
+#[test]
+fn slips_of_the_pen_are_named() {
+    let base = "frames = 10\nscenarios = ['RemedyRush']\nalgorithms = ['PPO']\n";
+    for (text, part) in [
+        ("frames = = 3", "line 1, column 10"),
+        ("frmes = 3", "unknown key `frmes`"),
+        (&format!("{base}seeds = ['a']"), "`seeds` must be whole numbers"),
+        (&format!("{base}seeds = []"), "`seeds` is empty"),
+        (&format!("{base}levels = [4]"), "level 4 does not exist"),
+        (&format!("{base}parallel = 0"), "`parallel`"),
+        (&format!("{base}[options]\nseed = 3"), "set by the sweep itself"),
+        (&format!("{base}[options]\n'--rules' = 'paper'"), "without dashes"),
+        (&format!("{base}[options]\nx = {{ y = 1 }}"), "`x` must be a text"),
+        (&format!("{base}[options]\nx = []"), "`x` has no value"),
+        (&format!("{base}[[grid]]\nout = 'x'"), "grid 1: unknown key `out`"),
+        ("frames = 10\nscenarios = ['Lava']\nalgorithms = ['PPO']", "unknown scenario `Lava`"),
+        ("frames = 10\nscenarios = ['../../x-v0']\nalgorithms = ['PPO']", "unknown scenario"),
+        ("frames = 10\nscenarios = ['RemedyRush']\nalgorithms = ['a b']", "no name of an algorithm"),
+        ("scenarios = ['RemedyRush']\nalgorithms = ['PPO']", "`frames` is 0"),
+        (&format!("{base}seeds = [{}]\n[options]\na=[{}]", "1,".repeat(2000), "1,".repeat(2000)), "more than 100000 runs"),
+    ] {
+        let error = Sweep::parse(text).and_then(|sweep| sweep.jobs()).unwrap_err();
+        assert!(error.contains(part) && !error.contains('\n'), "{text}: {error}");
+    }
+}
+
+/// A folder that is gone after the test, with a stand-in for the trainer.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        let path = std::env::temp_dir().join(format!("hasard-sweep-{}-{name}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn jobs(out: &Path, seeds: &str) -> Vec<Job> {
+    let text =
+        format!("out = '{}'\nframes = 100\nscenarios = ['RemedyRush']\nalgorithms = ['PPO']\nseeds = {seeds}", out.display());
+    Sweep::parse(&text).unwrap().jobs().unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn jobs_run_are_resumed_and_skipped() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new("run");
+    let program = folder.0.join("trainer");
+    // The last argument but for --resume is the directory. Seed 2 stops half-way at first; seed 3 always fails.
+    let script = "#!/bin/sh\nfor a in \"$@\"; do case \"$a\" in */seed*) dir=$a;; --resume) resume=1;; esac; done\n\
+                  echo \"args $*\"\nmkdir -p \"$dir\"; echo '{}' > \"$dir/config.json\"\n\
+                  case \"$dir\" in\n*/seed2) if [ -z \"$resume\" ]; then echo '{\"frames\":50}' > \"$dir/metrics.jsonl\"; printf '{\"fra' >> \"$dir/metrics.jsonl\"; exit 1; fi;;\n\
+                  */seed3) echo 'out of luck' >&2; exit 2;; esac\necho '{\"frames\":100}' >> \"$dir/metrics.jsonl\"\n";
+    std::fs::write(&program, script).unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let jobs = jobs(&folder.0.join("out"), "[1, 2, 3]");
+    let first = run_jobs(&program, &jobs, 2, |_, _| {});
+    assert_eq!((first.skipped, first.finished, first.failed.len()), (0, 1, 2), "{first:?}");
+    assert!(first.failed[1].0.ends_with("seed3") && first.failed[1].1.ends_with("out of luck"), "{first:?}");
+    assert_eq!(jobs[1].state(), State::Unfinished(50));
+    let events = Mutex::new(Vec::new());
+    let second = run_jobs(&program, &jobs, 1, |job, event| events.lock().unwrap().push((job, event.clone())));
+    // The half-written line of seed 2 runs into the next one: a trainer mends that, this stand-in does not.
+    assert_eq!(second.skipped, 1, "{second:?}");
+    let events = events.into_inner().unwrap();
+    assert_eq!(events[0], (0, Event::AlreadyFinished));
+    assert_eq!(events[1], (1, Event::Started(State::Unfinished(50))));
+    let log = std::fs::read_to_string(jobs[1].log()).unwrap();
+    assert!(log.contains("--resume"), "{log}");
+}
+
+#[test]
+fn a_missing_program_is_a_failed_job() {
+    let folder = Folder::new("missing");
+    let jobs = jobs(&folder.0.join("out"), "[1]");
+    let summary = run_jobs(Path::new("/no/such/hasard"), &jobs, 8, |_, _| {});
+    assert!(summary.failed[0].1.contains("cannot run /no/such/hasard"), "{summary:?}");
+}
+
+#[test]
+fn words_are_quoted_for_a_shell() {
+    let text = "out = \"a b/it's\"\nframes = 1\nscenarios = ['RemedyRush']\nalgorithms = ['PPO']\n[options]\niwad = 'my file'";
+    let line = Sweep::parse(text).unwrap().jobs().unwrap()[0].command_line("hasard");
+    assert!(
+        line.contains("--iwad 'my file'") && line.contains("'a b/it'\\''s/RemedyRushLevel1-v0/PPO/iwad=my_file/seed1'"),
+        "{line}"
+    );
+}
