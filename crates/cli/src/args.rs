@@ -26,6 +26,14 @@ pub enum Command {
     Bench(BenchArgs),
     /// Draw a moment of an episode as PNG: colour, depth, segmentation or map
     Render(RenderArgs),
+    /// Write an episode as video, GIF, or as a file that `replay` plays again
+    Record(RecordArgs),
+    /// Play a recorded episode again, at any size
+    Replay(ReplayArgs),
+    /// Make tables, curves and heatmaps from run directories
+    Report(ReportArgs),
+    /// Run many trainings: a grid from a TOML file, or an experiment of the paper by name
+    Sweep(SweepArgs),
     /// Write an environment's map as a WAD that other engines load
     ExportWad(ExportWadArgs),
 }
@@ -64,6 +72,24 @@ pub struct EnvArgs {
     /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+}
+
+/// As the flags are when none is given.
+impl Default for EnvArgs {
+    fn default() -> EnvArgs {
+        EnvArgs {
+            rules: Rules::Paper,
+            hard: false,
+            full_actions: false,
+            frame_skip: 4,
+            size: None,
+            observation: Observation::Rgb,
+            frame_stack: 1,
+            published_depth: false,
+            published_colours: false,
+            iwad: None,
+        }
+    }
 }
 
 /// `--rules`.
@@ -222,6 +248,17 @@ pub enum Buffer {
     Segmented,
 }
 
+impl Buffer {
+    /// What stands below it.
+    pub fn caption(self) -> &'static str {
+        match self {
+            Buffer::Rgb => "view",
+            Buffer::Depth => "depth",
+            Buffer::Segmented => "segmented",
+        }
+    }
+}
+
 /// `hasard render`.
 #[derive(Args, Debug)]
 pub struct RenderArgs {
@@ -245,6 +282,99 @@ pub struct RenderArgs {
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
+}
+
+/// `hasard record`.
+#[derive(Args, Debug)]
+pub struct RecordArgs {
+    /// Environment id
+    pub env: String,
+    /// File to write: .mp4, .gif or .episode
+    #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
+    pub out: PathBuf,
+    /// random, sticky:K, noop, hold:BUTTONS, hold-after:K:BUTTONS
+    #[arg(long, default_value = "random")]
+    pub policy: String,
+    /// Other buffers beside the view
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub beside: Vec<Buffer>,
+    /// Most policy steps that are shown
+    #[arg(long, default_value_t = u32::MAX, hide_default_value = true)]
+    pub steps: u32,
+    /// Seed of the episode
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard replay`.
+#[derive(Args, Debug)]
+pub struct ReplayArgs {
+    /// Episode file, from `hasard record` or `hasard play`
+    pub file: PathBuf,
+    /// Video or GIF to write; without it the episode is played and its result checked
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Other buffers beside the view
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub beside: Vec<Buffer>,
+    /// Frame size
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    #[arg(long, value_name = "FILE")]
+    pub iwad: Option<PathBuf>,
+    /// Accepted for uniformity; the file holds its seed
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard report`.
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// Run directories, or folders that hold them
+    #[arg(required = true)]
+    pub runs: Vec<PathBuf>,
+    /// Folder to write
+    #[arg(short, long, value_name = "DIR", default_value = "report")]
+    pub out: PathBuf,
+    /// Title of the page
+    #[arg(long, default_value = "HASARD results")]
+    pub title: String,
+    /// One JSON object about what was written
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; bootstrap intervals have a fixed seed
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard sweep`.
+#[derive(Args, Debug)]
+pub struct SweepArgs {
+    /// TOML file, or an experiment of the paper: main, safety-bounds, cost-scale, curriculum, hard, full-actions, depth,
+    /// segmentation, trpo
+    pub what: String,
+    /// Folder of the runs
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Runs at a time
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub parallel: Option<u16>,
+    /// Frames of every run times this, to try an experiment in small
+    #[arg(long, value_name = "FACTOR")]
+    pub scale: Option<f64>,
+    /// Print the command lines and run nothing
+    #[arg(long)]
+    pub dry_run: bool,
+    /// One JSON object a job
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; a sweep lists its seeds
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
 }
 
 /// `hasard export-wad`.

@@ -1,5 +1,6 @@
 //! The program `hasard`: glue between the command line and the libraries.
 
+mod actor;
 mod args;
 mod commands;
 mod episode_lines;
@@ -22,6 +23,10 @@ fn main() -> ExitCode {
         Command::Trace(args) => commands::trace::run(&args),
         Command::Bench(args) => commands::bench::run(&args),
         Command::Render(args) => commands::render::run(&args),
+        Command::Record(args) => commands::record::run(&args),
+        Command::Replay(args) => commands::record::replay(&args),
+        Command::Report(args) => commands::report::run(&args),
+        Command::Sweep(args) => commands::sweep::run(&args),
         Command::ExportWad(args) => commands::export_wad::run(&args),
     };
     match outcome {

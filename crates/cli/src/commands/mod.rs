@@ -3,6 +3,9 @@
 pub mod bench;
 pub mod envs;
 pub mod export_wad;
+pub mod record;
 pub mod render;
+pub mod report;
 pub mod rollout;
+pub mod sweep;
 pub mod trace;
