@@ -1,10 +1,12 @@
 //! The program `hasard`: glue between the command line and the libraries.
 
+#[macro_use]
+mod failure;
+
 mod actor;
 mod args;
 mod commands;
 mod episode_lines;
-mod failure;
 mod settings;
 
 use args::{Cli, Command};

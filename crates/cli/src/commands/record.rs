@@ -5,8 +5,8 @@ use crate::args::{Buffer, EnvArgs, RecordArgs, ReplayArgs, Rules, Size};
 use crate::failure::{Failure, Outcome};
 use crate::{commands::render, settings};
 use hasard_envs::{Env, Policy, PolicyRun, RuleSet};
-use hasard_media::Picture;
 use hasard_media::AnimationWriter;
+use hasard_media::Picture;
 use hasard_media::compose::{Panel, side_by_side, with_footer};
 use hasard_media::episode::{self, EpisodeFile, Header};
 use std::collections::BTreeMap;
@@ -44,7 +44,7 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
         }
     }
     let episode = env.episode();
-    println!("{}: return {:.3}, cost {:.3}, {} steps", header.env, episode.episode_return, episode.cost, episode.length);
+    say!("{}: return {:.3}, cost {:.3}, {} steps", header.env, episode.episode_return, episode.cost, episode.length);
     match header.outcome {
         Some(outcome) if outcome.state_hash.is_some_and(|hash| hash != env.state_hash()) => Err(Failure::Negative(format!(
             "{}: recorded by hasard {} with return {} and cost {}, but it plays otherwise in this version: return {}, cost {}",
@@ -78,7 +78,7 @@ fn record_episode(env: &mut Env, mut actor: Actor, player: &str, seed: u64, out:
         state_hash: Some(env.state_hash()),
     });
     file.write(out).map_err(Failure::bad)?;
-    println!("{}: {} steps, return {:.3}, cost {:.3}", out.display(), played.length, played.episode_return, played.cost);
+    say!("{}: {} steps, return {:.3}, cost {:.3}", out.display(), played.length, played.episode_return, played.cost);
     Ok(())
 }
 
@@ -149,7 +149,7 @@ fn show(env: &mut Env, mut actor: Actor, out: &Path, beside: &[Buffer], most_ste
         }
     }
     writer.finish().map_err(Failure::bad)?;
-    println!("{}: {frames} frames of {}x{}", out.display(), first.width(), first.height());
+    say!("{}: {frames} frames of {}x{}", out.display(), first.width(), first.height());
     Ok(())
 }
 

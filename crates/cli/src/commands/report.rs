@@ -13,9 +13,9 @@ pub fn run(args: &ReportArgs) -> Outcome {
     if args.json {
         let files: Vec<String> = written.files.iter().map(|file| file.display().to_string()).collect();
         let page = written.page.display().to_string();
-        println!("{}", json!({ "page": page, "files": files, "runs": written.runs, "experiments": written.experiments }));
+        say!("{}", json!({ "page": page, "files": files, "runs": written.runs, "experiments": written.experiments }));
     } else {
-        println!(
+        say!(
             "{}: {} runs, {} experiments, {} files",
             written.page.display(),
             written.runs,

@@ -25,26 +25,26 @@ pub fn run(args: &SweepArgs) -> Outcome {
     if args.dry_run {
         for job in &jobs {
             if args.json {
-                println!(
-                    "{}",
-                    json!({ "directory": job.directory.display().to_string(), "command": job.command_line("hasard") })
-                );
+                say!("{}", json!({ "directory": job.directory.display().to_string(), "command": job.command_line("hasard") }));
             } else {
-                println!("{}", job.command_line("hasard"));
+                say!("{}", job.command_line("hasard"));
             }
         }
         return Ok(());
     }
     let program = std::env::current_exe().map_err(|error| Failure::bad(format!("this program's own path: {error}")))?;
     let total = jobs.len();
-    let summary = run_jobs(&program, &jobs, sweep.parallel, |index, event| tell(args.json, index, total, &jobs[index], event));
+    // A reader who goes away does not stop the runs.
+    let summary = run_jobs(&program, &jobs, sweep.parallel, |index, event| {
+        let _ = tell(args.json, index, total, &jobs[index], event);
+    });
     if args.json {
-        println!(
+        say!(
             "{}",
             json!({ "summary": { "skipped": summary.skipped, "finished": summary.finished, "failed": summary.failed.len() } })
         );
     } else {
-        println!("{} finished, {} had been finished before, {} failed", summary.finished, summary.skipped, summary.failed.len());
+        say!("{} finished, {} had been finished before, {} failed", summary.finished, summary.skipped, summary.failed.len());
     }
     match summary.failed.len() {
         0 => Ok(()),
@@ -63,7 +63,7 @@ fn description(what: &str) -> Result<Sweep, Failure> {
     Sweep::parse(&text).map_err(|error| Failure::bad(format!("{what}: {error}")))
 }
 
-fn tell(as_json: bool, index: usize, total: usize, job: &Job, event: &Event) {
+fn tell(as_json: bool, index: usize, total: usize, job: &Job, event: &Event) -> Outcome {
     let directory = job.directory.display().to_string();
     let (name, text) = match event {
         Event::AlreadyFinished => ("already_finished", "had been finished before".to_string()),
@@ -73,8 +73,9 @@ fn tell(as_json: bool, index: usize, total: usize, job: &Job, event: &Event) {
         Event::Failed(why) => ("failed", format!("failed: {why}")),
     };
     if as_json {
-        println!("{}", json!({ "job": index, "directory": directory, "event": name, "text": text }));
+        say!("{}", json!({ "job": index, "directory": directory, "event": name, "text": text }));
     } else {
-        println!("[{}/{total}] {directory}: {text}", index + 1);
+        say!("[{}/{total}] {directory}: {text}", index + 1);
     }
+    Ok(())
 }
