@@ -26,6 +26,10 @@ pub enum Command {
     Bench(BenchArgs),
     /// Draw a moment of an episode as PNG: colour, depth, segmentation or map
     Render(RenderArgs),
+    /// Train an agent
+    Train(TrainArgs),
+    /// Evaluate a trained agent
+    Eval(EvalArgs),
     /// Write an episode as video, GIF, or as a file that `replay` plays again
     Record(RecordArgs),
     /// Play a recorded episode again, at any size
@@ -282,6 +286,86 @@ pub struct RenderArgs {
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
+}
+
+/// `hasard train`.
+#[derive(Args, Debug)]
+pub struct TrainArgs {
+    /// Environment id
+    pub env: String,
+    /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
+    #[arg(long, default_value = "PPOLag")]
+    pub algo: String,
+    /// paper, released, or quick: settings that learn within minutes on a CPU
+    #[arg(long, default_value = "paper")]
+    pub preset: String,
+    /// Length of the run in frames (tics): policy steps times frame skip; the preset's if absent
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub frames: Option<u64>,
+    /// Run directory; runs/ENV-ALGO-seedSEED if absent
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Go on from the last checkpoint in the run directory, if there is one
+    #[arg(long)]
+    pub resume: bool,
+    /// Begin with the weights and pixel statistics of another run
+    #[arg(long, value_name = "RUN", conflicts_with = "resume")]
+    pub init_from: Option<PathBuf>,
+    /// Cost that an episode may have; TERM=COST for one named cost term, several times for several constraints
+    #[arg(long, value_name = "COST")]
+    pub safety_budget: Vec<String>,
+    /// PPOCost: factor of the cost in the reward
+    #[arg(long, value_name = "FACTOR")]
+    pub cost_scale: Option<f64>,
+    /// cpu, or vulkan / cuda where the program was built with that feature
+    #[arg(long, default_value = "cpu")]
+    pub device: String,
+    /// Sampling and learning take turns: slower, and bit-reproducible
+    #[arg(long)]
+    pub sync: bool,
+    /// Threads; all cores if absent
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+    /// Worlds
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub envs: Option<u32>,
+    /// Any setting of config.json, such as learning.rate=0.0003; may be given several times
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// One JSON object a report, as in metrics.jsonl, instead of the progress bar
+    #[arg(long)]
+    pub json: bool,
+    /// No progress bar
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard eval`.
+#[derive(Args, Debug)]
+pub struct EvalArgs {
+    /// Run directory
+    pub run: PathBuf,
+    /// Number of episodes
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    pub episodes: u32,
+    /// Episode i is seeded SEED + i
+    #[arg(long, default_value_t = 1_000_000)]
+    pub seed: u64,
+    /// Take each sub-action's likeliest choice instead of sampling
+    #[arg(long)]
+    pub greedy: bool,
+    /// The checkpoint with the best return within all budgets instead of the latest
+    #[arg(long)]
+    pub best: bool,
+    /// One JSON object an episode, then one with "summary"
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `hasard record`.

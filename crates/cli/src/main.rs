@@ -25,6 +25,8 @@ fn main() -> ExitCode {
         Command::Trace(args) => commands::trace::run(&args),
         Command::Bench(args) => commands::bench::run(&args),
         Command::Render(args) => commands::render::run(&args),
+        Command::Train(args) => commands::train::run(&args),
+        Command::Eval(args) => commands::eval::run(&args),
         Command::Record(args) => commands::record::run(&args),
         Command::Replay(args) => commands::record::replay(&args),
         Command::Report(args) => commands::report::run(&args),

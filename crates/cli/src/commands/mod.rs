@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod envs;
+pub mod eval;
 pub mod export_wad;
 pub mod record;
 pub mod render;
@@ -9,3 +10,4 @@ pub mod report;
 pub mod rollout;
 pub mod sweep;
 pub mod trace;
+pub mod train;
