@@ -19,6 +19,17 @@ struct SeenSeg<'a> {
     /// Frame columns.
     first: usize,
     end: usize,
+    /// First and last base column.
+    base_ends: [i64; 2],
+}
+
+/// The columns of a seg that faces the eye.
+struct SeenColumns {
+    /// Frame columns.
+    first: usize,
+    end: usize,
+    /// First and last base column: what depends on these is the same in every reduction of a frame.
+    base_ends: [i64; 2],
 }
 
 impl Walk<'_> {
@@ -37,10 +48,10 @@ impl Walk<'_> {
         if back.is_some_and(|back| same_planes(front, back)) && face.middle.is_none() {
             return;
         }
-        let Some((first, end)) = self.columns(seg) else { return };
+        let Some(SeenColumns { first, end, base_ends }) = self.columns(seg) else { return };
         let line = SeenLine::new(self.camera, seg, face, away);
         let light = Light::new(self.camera, i32::from(front.light) + face.contrast);
-        let seen = SeenSeg { index, face, line, light, first, end };
+        let seen = SeenSeg { index, face, line, light, first, end, base_ends };
         match back {
             None => self.solid::<DEPTH, CLASS>(&seen, front),
             Some(back) => self.opening::<DEPTH, CLASS>(&seen, front, back),
@@ -49,7 +60,7 @@ impl Walk<'_> {
 
     /// The frame columns of a seg that faces the eye, if any of them is open.
     #[inline]
-    fn columns(&self, seg: &SceneSeg) -> Option<(usize, usize)> {
+    fn columns(&self, seg: &SceneSeg) -> Option<SeenColumns> {
         let (camera, view) = (self.camera, self.view);
         let [left1, right1] = camera.edges(seg.ends[0][0], seg.ends[0][1]);
         let [left2, right2] = camera.edges(seg.ends[1][0], seg.ends[1][1]);
@@ -69,9 +80,10 @@ impl Walk<'_> {
         };
         let first = if left1 < 0 { 0 } else { column(left1, right1) };
         let end = if right2 < 0 { width as usize } else { column(left2, right2) };
+        let base_ends = [first as i64, end as i64 - 1];
         let first = usize::from(*view.first_column.get(first)?);
         let end = usize::from(*view.first_column.get(end)?);
-        (first < end && self.openings.any_open(first, end)).then_some((first, end))
+        (first < end && self.openings.any_open(first, end)).then_some(SeenColumns { first, end, base_ends })
     }
 
     /// A wall without another side.
@@ -224,7 +236,7 @@ impl Walk<'_> {
 
     fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {
         let range = seen.first..seen.end;
-        let ends = [range.start, range.end - 1].map(|x| seen.line.inverse_at(i64::from(self.view.columns[x])));
+        let ends = seen.base_ends.map(|column| seen.line.inverse_at(column));
         let silhouette = Silhouette {
             first: seen.first,
             end: seen.end,

@@ -106,14 +106,21 @@ impl World {
     /// little-endian platform and for every thread count.
     #[must_use]
     pub fn state_hash(&self) -> u64 {
-        let mut hasher = Fingerprint(0x9E37_79B9_7F4A_7C15);
+        let mut hasher = Fingerprint::default();
         self.hash(&mut hasher);
         hasher.finish()
     }
 }
 
 /// A word-wise multiply-and-rotate hash; fixed here, so that fingerprints do not change with the standard library.
-struct Fingerprint(u64);
+#[derive(Clone, Debug)]
+pub struct Fingerprint(u64);
+
+impl Default for Fingerprint {
+    fn default() -> Fingerprint {
+        Fingerprint(0x9E37_79B9_7F4A_7C15)
+    }
+}
 
 impl Fingerprint {
     fn word(&mut self, word: u64) {

@@ -42,6 +42,7 @@ pub use command::{Buttons, Command};
 pub use event::{DamageKind, Event};
 pub use explosion::BLAST;
 pub use face::{Face, FaceState};
+pub use hash::Fingerprint;
 pub use inventory::{BLUE_SKULL, YELLOW_CARD};
 pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};

@@ -4,7 +4,7 @@ mod handover;
 mod lane;
 mod worker;
 
-use crate::{ActionSpace, Batch, CostTerm, EnvError, Environment};
+use crate::{ActionSpace, Batch, CostTerm, Env, EnvError, EnvOptions, Environment};
 use handover::Slot;
 use lane::{Lane, LaneSlices, Manner, Outbox};
 use std::ops::Range;
@@ -129,6 +129,24 @@ enum Crew {
 /// Either all lanes step together ([`reset`](VecEnv::reset), [`step`](VecEnv::step)), or each group by itself
 /// ([`send`](VecEnv::send), [`recv`](VecEnv::recv)): then a policy works on one group while the others step. A lane's episodes
 /// depend on the batch's seed and the lane's number alone; the number of threads, the batch's width and the way of stepping change nothing.
+///
+/// ```
+/// use hasard_envs::{EnvOptions, VecEnv, VecOptions};
+/// let options = VecOptions { lanes: 4, threads: 2, groups: 2, ..VecOptions::default() };
+/// let mut worlds = VecEnv::new("VolcanicVentureLevel1-v0", &EnvOptions::default(), options)?;
+/// for group in 0..2 {
+///     let batch = worlds.batch(group);
+///     worlds.send_reset(group, batch)?;
+/// }
+/// for _ in 0..3 {
+///     for group in 0..2 {
+///         let mut batch = worlds.recv(group)?;
+///         batch.actions.fill(1); // what the policy says to batch.observations
+///         worlds.send(group, batch)?;
+///     }
+/// }
+/// # Ok::<(), hasard_envs::EnvError>(())
+/// ```
 pub struct VecEnv {
     space: ActionSpace,
     observation_shape: [usize; 3],
@@ -140,6 +158,12 @@ pub struct VecEnv {
 }
 
 impl VecEnv {
+    /// A batch of one environment of the benchmark; map, pictures and tables are shared by all lanes.
+    pub fn new(id: &str, env_options: &EnvOptions, options: VecOptions) -> Result<VecEnv, EnvError> {
+        let first = Env::new(id, env_options)?;
+        VecEnv::from_fn(options, |_| Ok(Box::new(first.sibling())))
+    }
+
     /// A batch of any environments; `make` is given the lane's index, and all must have the same shapes.
     pub fn from_fn(
         options: VecOptions,

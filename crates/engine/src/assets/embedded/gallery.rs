@@ -77,6 +77,13 @@ impl Gallery {
         self.assets.sprites[index].frames.push(frame);
     }
 
+    /// Appends a sprite's last frame once more.
+    pub(super) fn repeat_last(&mut self, name: &str) {
+        let index = SPRITE_NAMES.iter().position(|&known| known == name).expect("sprites are painted under listed names");
+        let frames = &mut self.assets.sprites[index].frames;
+        frames.extend(frames.last().copied());
+    }
+
     /// Appends a frame that looks the same from every side, standing on its anchor.
     pub(super) fn standing(&mut self, name: &str, canvas: &Canvas) {
         self.flat_frame(name, canvas, canvas.width / 2, canvas.height);

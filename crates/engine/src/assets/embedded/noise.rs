@@ -1,7 +1,7 @@
 //! Tileable noise: value noise summed over octaves, and cells around scattered points.
 
 /// A well mixed 32-bit hash of a lattice point.
-pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
+pub(super) const fn hash(x: i32, y: i32, seed: u32) -> u32 {
     let mut h = (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
     h ^= h >> 15;
     h = h.wrapping_mul(0x2C1B_3C6D);

@@ -13,6 +13,9 @@ pub const START_COLUMNS: usize = 2;
 /// Tag of tile (2, 0); tags go up row by row, then column by column.
 pub const FIRST_TAG: i32 = 128;
 
+/// Ceiling before it sinks.
+pub const CEILING: i32 = 128;
+
 /// The tag of a tile, 0 on the start platform.
 #[must_use]
 pub fn tag(column: usize, row: usize) -> i32 {
@@ -25,7 +28,7 @@ pub fn source(bottom: usize) -> MapSource {
     let mut builder = MapBuilder::new();
     let grid = TileGrid::new((0, 0), TILE, COLUMNS, ROWS, |column, row| Style {
         floor: 0,
-        ceiling: 128,
+        ceiling: CEILING,
         light: 260,
         floor_texture: if column < bottom { "FLAT5" } else { "AQF018" },
         ceiling_texture: "RROCK15",

@@ -1,0 +1,6 @@
+//! Remedy Rush: pick up health, leave everything else where it lies.
+
+pub mod levels;
+mod rules;
+
+pub use rules::{COST_TERMS, Rules};
