@@ -232,6 +232,8 @@ fn authored_maps_are_sound() {
             assert!(map.is_inside(thing.x, thing.y), "{name}: thing {} at ({}, {})", thing.kind, thing.x, thing.y);
             assert!(ActorKind::from_editor_number(thing.kind).is_some(), "{name}: thing {}", thing.kind);
         }
+    }
+}
 
 #[test]
 fn walls_of_tile_maps_are_in_pieces_of_a_tile() {
