@@ -242,11 +242,11 @@ fn play_batch(id: &str, options: VecOptions, steps: usize, by_groups: bool) -> V
 fn a_lane_lives_the_same_life_in_every_batch() {
     let options = |lanes, threads, groups| VecOptions { lanes, threads, groups, seed: 21, ..VecOptions::default() };
     for id in ids() {
-        let expected = play_batch(&id, options(32, 0, 1), 12, false);
+        let expected = play_batch(&id, options(32, 0, 1), 8, false);
         for (lanes, threads, groups, by_groups) in
             [(32, 1, 1, false), (32, 2, 2, true), (32, 3, 1, false), (7, 1, 1, false), (7, 2, 2, true), (1, 3, 1, true)]
         {
-            let found = play_batch(&id, options(lanes, threads, groups), 12, by_groups);
+            let found = play_batch(&id, options(lanes, threads, groups), 8, by_groups);
             assert!(found == expected[..lanes], "{id}: {lanes} lanes, {threads} threads, {groups} groups");
         }
         for (lane, record) in expected.iter().enumerate() {

@@ -91,7 +91,7 @@ const PUBLISHED: &[Row] = &[
 
 /// Episodes of each row.
 fn episodes() -> u64 {
-    std::env::var("HASARD_EPISODES").ok().and_then(|digits| digits.parse().ok()).unwrap_or(40)
+    std::env::var("HASARD_EPISODES").ok().and_then(|digits| digits.parse().ok()).unwrap_or(100)
 }
 
 /// Mean and standard deviation.
