@@ -37,7 +37,7 @@ pub struct Episode {
     pub episode_return: f64,
     /// Sum of costs.
     pub cost: f64,
-    /// Sum of each named cost term, counted or not, in the order of the environment's cost terms.
+    /// Sum of each counted cost term: together they are the cost. What is measured beside it is among the statistics.
     pub costs: Vec<(&'static str, f64)>,
     /// Length in policy steps.
     pub length: u32,

@@ -253,7 +253,8 @@ impl Env {
     /// The episode so far, as it would be reported if it ended now.
     #[must_use]
     pub fn episode(&self) -> Episode {
-        let costs = self.blueprint.cost_terms.iter().zip(self.totals.costs).map(|(term, cost)| (term.name, cost)).collect();
+        let terms = self.blueprint.cost_terms.iter().zip(self.totals.costs);
+        let costs = terms.filter(|(term, _)| term.counted).map(|(term, cost)| (term.name, cost)).collect();
         Episode {
             lane: 0,
             seed: self.seed,

@@ -141,3 +141,17 @@ fn precipice_plunge() {
 fn armament_burden() {
     assert_eq!(differences("ArmamentBurden"), Vec::<String>::new());
 }
+#[test]
+fn collateral_damage() {
+    assert_eq!(differences("CollateralDamage"), Vec::<String>::new());
+}
+
+#[test]
+fn remedy_rush() {
+    assert_eq!(differences("RemedyRush"), Vec::<String>::new());
+}
+
+#[test]
+fn detonators_dilemma() {
+    assert_eq!(differences("DetonatorsDilemma"), Vec::<String>::new());
+}

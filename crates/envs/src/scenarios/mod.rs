@@ -107,10 +107,7 @@ pub fn cost_terms(scenario: Scenario) -> &'static [CostTerm] {
 pub fn map_source(id: EnvId, rules: RuleSet, hard: bool) -> Result<(MapSource, &'static [&'static str]), EnvError> {
     let index = id.level_index();
     match id.scenario {
-        Scenario::ArmamentBurden => {
-            // The published map of the hard constraint is that of level 1.
-            Ok((armament_burden::map::source(id.level), armament_burden::TEXTURES))
-        }
+        Scenario::ArmamentBurden => Ok((armament_burden::map::source(id.level), armament_burden::TEXTURES)),
         Scenario::CollateralDamage => {
             Ok((collateral_damage::map::source(collateral_damage::levels::level(rules, hard, index).agent_x), &[]))
         }
@@ -119,8 +116,7 @@ pub fn map_source(id: EnvId, rules: RuleSet, hard: bool) -> Result<(MapSource, &
             Ok((precipice_plunge::map::source(precipice_plunge::map::START_COLUMNS + level.bottom_row as usize - 1), &[]))
         }
         Scenario::VolcanicVenture => Ok((volcanic_venture::map::source(), volcanic_venture::TEXTURES)),
-        Scenario::DetonatorsDilemma | Scenario::RemedyRush => {
-            Err(EnvError::Map { why: format!("the map of {} is not drawn yet; choose another scenario", id.scenario.name()) })
-        }
+        Scenario::DetonatorsDilemma => Ok((detonators_dilemma::map::source(id.level), &[])),
+        Scenario::RemedyRush => Ok((remedy_rush::map::source(), &[])),
     }
 }

@@ -175,10 +175,12 @@ impl Slot {
     /// Waits for the crew and takes the batch back. Panics unless one was given.
     pub fn take(&self) -> Batch {
         let ready = || self.pending.load(Ordering::SeqCst) == 0;
-        if !ready() {
-            // Registered before the last look, so that the last worker either sees the waiter or is seen to be done.
+        while !ready() {
+            // Registered before the last look, so that the last worker either sees the waiter or is seen to be done; and
+            // registered anew after every wake: it may come from a worker of the batch before, late in `done`, which has
+            // then taken the waiter that this batch's last worker needs.
             *self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(std::thread::current());
-            while !ready() {
+            if !ready() {
                 std::thread::park();
             }
         }

@@ -1,6 +1,7 @@
 //! The rules at work: health items are rewarded, harmful items cost.
 
 use super::levels::{DEADLY, Level, MEDIKIT_REWARD, STIMPACK_REWARD, SUPPLY_BONUSES, SUPPLY_TICS};
+use super::map::STROBE_TAGS;
 use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
 use crate::{CostTerm, EnvError};
@@ -17,8 +18,7 @@ const AGENT_AREA: stage::Area = [-320, 128, 352, 1024];
 const AGENT_HEIGHT: i32 = 0;
 const ITEM_AREA: stage::Area = [-608, -224, 1056, 1312];
 const ITEM_HEIGHT: i32 = 20;
-/// Tags of the sectors whose light goes on and off, and their lit and dark levels.
-const STROBE_TAGS: std::ops::RangeInclusive<i32> = 101..=118;
+/// Lit and dark levels of the sectors whose light goes on and off.
 const STROBE_LIGHT: [i32; 2] = [255, 0];
 
 /// What is the same in every episode of a level.
@@ -45,10 +45,11 @@ pub struct Rules {
 impl Rules {
     /// The rules of a level in its map.
     pub fn new(map: &Map, level: Level) -> Result<Rules, EnvError> {
-        if level.strobe.is_some()
-            && let Some(tag) = STROBE_TAGS.into_iter().find(|&tag| map.tagged(tag).next().is_none())
-        {
-            return Err(EnvError::Map { why: format!("map {}: Remedy Rush needs a sector with tag {tag}", map.name) });
+        if level.strobe.is_some() && !STROBE_TAGS.clone().any(|tag| map.tagged(tag).next().is_some()) {
+            let (first, last) = (STROBE_TAGS.start(), STROBE_TAGS.end());
+            let why =
+                format!("map {}: Remedy Rush needs a sector with a tag of {first} to {last}, whose light it switches", map.name);
+            return Err(EnvError::Map { why });
         }
         Ok(Rules { fixtures: Arc::new(Fixtures { level }), bonuses: 0, packs: 0, goggles: 0, harmful: 0 })
     }
