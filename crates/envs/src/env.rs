@@ -250,6 +250,24 @@ impl Env {
         stats
     }
 
+    /// Where the player stands, in whole map units.
+    #[must_use]
+    pub fn position(&self) -> [i32; 2] {
+        let world = &self.game.world;
+        world.get(world.players[0].actor).map_or([0, 0], |body| [body.x, body.y].map(|side| side.0 >> 16))
+    }
+
+    /// The map's extent: x from, y from, x to, y to in map units.
+    #[must_use]
+    pub fn extent(&self) -> [i32; 4] {
+        let mut extent = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
+        for vertex in &self.game.world.map.vertices {
+            let (x, y) = (vertex.x.0 >> 16, vertex.y.0 >> 16);
+            extent = [extent[0].min(x), extent[1].min(y), extent[2].max(x), extent[3].max(y)];
+        }
+        extent
+    }
+
     /// The episode so far, as it would be reported if it ended now.
     #[must_use]
     pub fn episode(&self) -> Episode {
@@ -332,6 +350,14 @@ impl Environment for Env {
 
     fn observe(&mut self, out: &mut [u8]) {
         Env::observe(self, out);
+    }
+
+    fn position(&self) -> [i32; 2] {
+        Env::position(self)
+    }
+
+    fn extent(&self) -> Option<[i32; 4]> {
+        Some(Env::extent(self))
     }
 
     fn episode(&self) -> Episode {

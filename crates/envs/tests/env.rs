@@ -236,3 +236,22 @@ fn a_lane_lives_the_same_life_in_every_batch() {
         assert!(expected[..lane].iter().all(|other| other != record), "lane {lane} repeats another");
     }
 }
+
+#[test]
+fn positions_lie_in_the_maps_extent_and_change() {
+    use hasard_envs::{Env, EnvId, EnvOptions};
+    for id in EnvId::all() {
+        let mut env = Env::new(&id.to_string(), &EnvOptions::default()).unwrap();
+        let [left, bottom, right, top] = env.extent();
+        let mut places = std::collections::BTreeSet::new();
+        env.reset(3);
+        for _ in 0..40 {
+            let [x, y] = env.position();
+            assert!((left..=right).contains(&x) && (bottom..=top).contains(&y), "{id}: {x},{y} in {:?}", env.extent());
+            places.insert([x, y]);
+            env.step_buttons(hasard_envs::parse_command("MOVE_FORWARD+TURN_LEFT").unwrap());
+        }
+        // In Collateral Damage the player stands on a spot and may turn only.
+        assert!(places.len() > 10 || id.to_string().starts_with("Collateral"), "{id}: {places:?}");
+    }
+}

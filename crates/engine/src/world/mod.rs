@@ -22,6 +22,8 @@ mod monster;
 mod movement;
 mod mover;
 mod patrol;
+#[cfg(test)]
+mod patrol_tests;
 mod pickup;
 mod player;
 mod sector;
