@@ -23,7 +23,10 @@ fn picture(width: u16, height: u16, skip: u8, rows: u8, colour: u8) -> Vec<u8> {
     out
 }
 
-fn texture_list(textures: &[(&str, u16, u16, &[(i16, i16, i16)])]) -> Vec<u8> {
+/// A wall texture: name, width, height, and patches (x, y, number).
+type Texture<'a> = (&'a str, u16, u16, &'a [(i16, i16, i16)]);
+
+fn texture_list(textures: &[Texture<'_>]) -> Vec<u8> {
     let mut out = (textures.len() as u32).to_le_bytes().to_vec();
     let mut start = 4 + 4 * textures.len();
     for (_, _, _, patches) in textures {
@@ -54,7 +57,7 @@ fn lumps() -> Vec<(&'static str, Vec<u8>)> {
     for name in ["BRICK", "MISSING", "bars"] {
         patch_names.extend(TextureName::new(name).0);
     }
-    let textures: [(&str, u16, u16, &[(i16, i16, i16)]); 3] = [
+    let textures: [Texture<'_>; 3] = [
         ("WALL", 4, 4, &[(0, 0, 0), (2, 0, 0), (3, -1, 2)]),
         ("FENCE", 4, 4, &[(1, 1, 2)]),
         ("HOLES", 2, 2, &[(0, 0, 1), (0, 0, -1)]),
@@ -194,7 +197,7 @@ fn what_is_missing_or_broken_is_named() {
 #[test]
 fn hostile_sizes_are_refused_before_memory_is_gone() {
     let patches = [(0, 0, 0); 4];
-    let many: Vec<(&str, u16, u16, &[(i16, i16, i16)])> = vec![("HUGE", 4096, 4096, &patches); 40];
+    let many: Vec<Texture<'_>> = vec![("HUGE", 4096, 4096, &patches); 40];
     let mut all = lumps();
     all.iter_mut().find(|(name, _)| *name == "TEXTURE1").unwrap().1 = texture_list(&many);
     assert_eq!(Assets::from_iwad(&iwad(&all)).map(|_| ()), Err(IwadError::TooLarge));
