@@ -76,7 +76,9 @@ pub struct World {
     pub rng: Rng,
     /// Completed tics; while a tic runs, its number.
     pub tic: u32,
-    /// What happened since the caller last cleared it, in order.
+    /// What happened since the caller last cleared it, in order. Clear it between the scripts and
+    /// [`World::finish_tic`]: what is new can act there already (a rocket that bursts in its first tic), and that is for
+    /// the scripts of the next tic.
     pub events: Vec<Event>,
     /// Monsters and weapons do not search for targets vertically or sideways (Collateral Damage).
     pub no_autoaim: bool,
