@@ -5,7 +5,7 @@ mod hall;
 use hall::{hall, run, units};
 use hasard_engine::map::SectorId;
 use hasard_engine::math::{Angle, Fixed, Rng};
-use hasard_engine::world::{ActorKind, Buttons, Command, Event, World};
+use hasard_engine::world::{ActorFlags, ActorKind, Buttons, Command, Event, World};
 
 const NOTHING: Buttons = Buttons(0);
 
@@ -77,22 +77,34 @@ fn the_touch_reaches_36_units_in_the_plane() {
 }
 
 #[test]
-fn a_jump_carries_a_runner_over_an_item_that_a_walker_meets() {
-    let pass = |buttons: Buttons, takeoff: i32| {
-        let mut world = ready(hall(12, 2, (64, 64), |_, _| 0));
-        world.spawn_checked(ActorKind::ArmorBonus, units(800), units(64), units(0), 0).unwrap();
-        while body(&world).x < units(900) {
-            let jump = if (takeoff..takeoff + 20).contains(&body(&world).x.floor()) { Buttons::JUMP } else { NOTHING };
-            run(&mut world, 1, buttons | jump);
-        }
-        pickups(&world)
-    };
-    let w: Vec<_> = (500..780).step_by(4).filter(|&x| pass(Buttons::MOVE_FORWARD, x) == 0).collect();
-    eprintln!("{w:?}");
-    let run_over = (500..780).step_by(4).filter(|&x| pass(Buttons::MOVE_FORWARD | Buttons::SPEED, x) == 0).count();
-    let walk_over = (500..780).step_by(4).filter(|&x| pass(Buttons::MOVE_FORWARD, x) == 0).count();
-    assert!(run_over > 0, "a runner can clear it");
-    assert_eq!(walk_over, 0, "a walker cannot");
+fn feet_at_an_items_top_pass_over_it() {
+    for (height, taken) in [(15, 1), (16, 0)] {
+        let mut world = ready(hall(4, 2, (64, 64), |_, _| 0));
+        world.spawn_checked(ActorKind::ArmorBonus, units(100), units(64), units(0), 0).unwrap();
+        assert!(world.set_position(world.players[0].actor, units(64), units(64), units(height)));
+        world.thrust_thing(world.players[0].actor, 0, 10);
+        run(&mut world, 1, NOTHING);
+        assert_eq!(pickups(&world), taken, "{height}");
+    }
+    // From below, an item is out of reach only above the head.
+    for (height, taken) in [(55, 1), (56, 0)] {
+        let mut world = ready(hall(4, 2, (64, 64), |_, _| 0));
+        let item = world.spawn_checked(ActorKind::ArmorBonus, units(64), units(64), units(height), 0).unwrap();
+        world.get_mut(item).unwrap().flags.set(ActorFlags::NO_GRAVITY, true);
+        run(&mut world, 1, Buttons::MOVE_FORWARD);
+        assert_eq!(pickups(&world), taken, "{height}");
+    }
+}
+
+#[test]
+fn a_moving_floor_hands_a_standing_player_what_he_touches() {
+    let mut world = ready(hall(4, 2, (64, 64), |_, _| 0));
+    world.spawn_checked(ActorKind::ArmorBonus, units(64), units(64), units(0), 0).unwrap();
+    run(&mut world, 5, NOTHING);
+    assert_eq!(pickups(&world), 0);
+    world.floor_move_to_value(1, 8, 4);
+    run(&mut world, 2, NOTHING);
+    assert_eq!(pickups(&world), 1);
 }
 
 #[test]
