@@ -193,7 +193,7 @@ pub struct RolloutArgs {
 pub struct TraceArgs {
     /// Environment id
     pub env: String,
-    /// Where the player is placed, at rest: X,Y,Z,ANGLE[,PITCH] in map units and degrees; the episode's own start if absent
+    /// Where the player is placed, at rest, in map units and degrees; the episode's own start if absent
     #[arg(long, value_name = "X,Y,Z,ANGLE[,PITCH]", allow_hyphen_values = true)]
     pub start: Option<String>,
     /// No-op tics before the player is placed
