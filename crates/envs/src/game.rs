@@ -31,8 +31,8 @@ impl Game {
         Game { world, rules, outcome: Outcome::default() }
     }
 
-    /// Runs one tic: players, actors and sector movers, then the scripts, then what came new. What the new ones do (a
-    /// rocket may burst in its first tic) is for the scripts of the next tic, as in the original.
+    /// Runs one tic: players, actors and sector movers, then the scripts, then what came new. What happens after the scripts is for
+    /// the scripts of the next tic: an item that lay in the way of a platform rising under the agent, say.
     pub fn tic(&mut self, command: Command) {
         self.world.run_thinkers(&[command]);
         self.rules.script(&mut self.world, &mut self.outcome);
