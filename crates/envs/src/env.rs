@@ -35,10 +35,15 @@ impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
         let id: EnvId = id.parse()?;
         options.check()?;
-        let (source, textures) = scenarios::map_source(id, options.rules, options.hard)?;
-        let map = Map::build(&source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
+        let (built_in, textures) = scenarios::map_source(id, options.rules, options.hard);
+        let source = options.map.as_deref().unwrap_or(&built_in);
+        let map = Map::build(source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
         let rules = Rules::new(id, options.rules, options.hard, &map)?;
         let scene = Scene::new(&map, options.assets.clone().unwrap_or_else(Assets::embedded));
+        let world = World::new(Arc::new(map), 0);
+        if world.players.is_empty() {
+            return Err(EnvError::Map { why: format!("the map of {id} has no player start; add a thing of type 1") });
+        }
         // Collateral Damage shows itself late, once the weapon is nearly up, and ends by the clock of the level.
         let (start_tic, end_tic) = match id.scenario {
             Scenario::CollateralDamage => (16, EPISODE_TICS),
@@ -51,7 +56,7 @@ impl Blueprint {
             cost_terms: scenarios::cost_terms(id.scenario),
             start_tic,
             end_tic,
-            template: Game::new(World::new(Arc::new(map), 0), rules),
+            template: Game::new(world, rules),
             scene: Arc::new(scene),
             view: Arc::new(view(options.size)?),
         })
