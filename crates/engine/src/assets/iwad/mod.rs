@@ -15,6 +15,7 @@ mod tests;
 mod wall_textures;
 
 pub use error::IwadError;
+pub(crate) use substitutes::STAND_INS;
 
 use super::{Assets, Image, TextureEntry};
 use crate::map::TextureName;

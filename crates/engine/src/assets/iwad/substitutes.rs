@@ -5,16 +5,21 @@ use crate::assets::{Assets, Image};
 use crate::map::TextureName;
 use std::collections::BTreeMap;
 
-/// (name, stand-in): the published maps brought these textures along; Freedoom has others of the same kind.
-const STAND_INS: [(&str, &str); 4] =
-    [("TILES6", "FLAT5_7"), ("BIGSTON3", "STONE3"), ("BRIKS20", "BRICK10"), ("CITY06", "BRWINDOW")];
+/// (name, stand-in, size): the published maps brought these textures along; the game files have others of the kind.
+/// Exported maps tell other engines the same.
+pub(crate) const STAND_INS: [(&str, &str, (u16, u16)); 4] = [
+    ("TILES6", "FLAT5_7", (64, 64)),
+    ("BIGSTON3", "STONE3", (64, 128)),
+    ("BRIKS20", "BRICK10", (64, 128)),
+    ("CITY06", "BRWINDOW", (64, 128)),
+];
 
 /// For any other name, one of these.
 const FALLBACKS: [&str; 6] = ["STONE3", "BIGBRIK1", "BROWN1", "GRAY4", "ZIMMER3", "STARGR2"];
 
 /// Gives missing textures a stand-in.
 pub(super) fn textures(set: &mut Assets) {
-    for (name, stand_in) in STAND_INS {
+    for (name, stand_in, _) in STAND_INS {
         if let Some(&entry) = set.textures.get(&TextureName::new(stand_in)) {
             set.textures.entry(TextureName::new(name)).or_insert(entry);
         }
