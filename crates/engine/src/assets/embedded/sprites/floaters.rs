@@ -112,14 +112,19 @@ pub(super) fn dying_soul(step: usize, count: usize) -> Model {
 
 /// Tongues of fire that stream back and up from a ball.
 fn flames(m: &mut Model, centre: Vector, size: f32, flicker: u32) {
-    let outer = Material::new(0xA02804, 0xD85808, 0xF08818).glowing();
-    let inner = Material::new(0xF08010, 0xFFB020, 0xFFE870).glowing();
+    let outer = Material::new(0xB03404, 0xF07010, 0xFFA830).glowing();
+    let inner = Material::new(0xFFA018, 0xFFD040, 0xFFFFB0).glowing();
     for i in 0..11 {
         let (cos, sin) = turn(i as f32 * 30.0 - 60.0);
         let long = 0.55 + 0.75 * unit(i, flicker as i32, 31);
         let root = centre + Vector(-0.45 * size, cos * size * 0.62, sin * size * 0.62);
         let tip = root + Vector(-0.85 * size * long, cos * size * 0.5, sin * size * 0.4 + size * 0.75 * long);
         m.limb(root, tip, (size * 0.34, 0.6), outer);
-        m.limb(root + Vector(0.1 * size, 0.0, 0.0), root.towards(tip, 0.7) + Vector(0.6, 0.0, 0.0), (size * 0.24, 0.4), inner);
+        m.limb(
+            root + Vector(0.22 * size, 0.0, 0.0),
+            root.towards(tip, 0.62) + Vector(0.2 * size, 0.0, 0.0),
+            (size * 0.22, 0.4),
+            inner,
+        );
     }
 }

@@ -86,7 +86,7 @@ fn pistol(gallery: &mut Gallery) {
     for (kick, drop) in [(0.0, 0), (1.0, 3), (0.5, 1), (0.2, 0), (0.0, 0)] {
         hold.frame(gallery, "PISG", &figure(kick), (0, drop));
     }
-    hold.flash(gallery, "PISF", Vector(60.0, 0.0, 56.0), 38, &FIRE, 61);
+    hold.flash(gallery, "PISF", Vector(60.0, 0.0, 56.0), 32, &FIRE, 61);
 }
 
 fn shotgun(gallery: &mut Gallery) {
@@ -159,7 +159,7 @@ fn launcher(gallery: &mut Gallery) {
     hand(&mut m, Vector(12.0, 24.0, 40.0), Vector(-56.0, 60.0, -36.0), 1.0, 2.0);
     hold.frame(gallery, "MISG", &m, (0, 0));
     hold.frame(gallery, "MISG", &m, (0, 7));
-    for (size, seed) in [(34, 68), (48, 69), (60, 70), (52, 71)] {
+    for (size, seed) in [(26, 68), (38, 69), (46, 70), (36, 71)] {
         hold.flash(gallery, "MISF", Vector(92.0, 0.0, 50.0), size, &FIRE, seed);
     }
 }

@@ -8,11 +8,11 @@ use crate::assets::embedded::surface::Surface;
 
 /// Paints the lamps.
 pub(super) fn paint(gallery: &mut Gallery) {
-    let red = [Colour::hex(0xFFF0E0), Colour::hex(0xFF9080), Colour::hex(0xE03028), Colour::hex(0x6C0C0C)];
+    let red = [Colour::hex(0xFFE8D8), Colour::hex(0xF05040), Colour::hex(0xC01C14), Colour::hex(0x5C0808)];
     let amber = [Colour::hex(0xFFFFF0), Colour::hex(0xFFF0A0), Colour::hex(0xE0B040), Colour::hex(0x704810)];
     gallery.texture("TLITE6_5", &round_lamps(&red, 501));
     gallery.texture("TLITE6_4", &round_lamps(&amber, 511));
-    gallery.texture("LITEBLU4", &strips(Colour::hex(0x1414D8), Colour::hex(0x5878FF), 16, 521));
+    gallery.texture("LITEBLU4", &strips(Colour::hex(0x0C0C88), Colour::hex(0x3848FF), 16, 521));
     gallery.texture("LITEBLU2", &strips(Colour::hex(0x2030A0), Colour::hex(0xA8C8FF), 32, 531));
     gallery.texture("LITERED1", &strips(Colour::hex(0xA01010), Colour::hex(0xFF8060), 32, 541));
     gallery.texture("LITEYEL3", &light_crate(551));
@@ -26,13 +26,13 @@ fn round_lamps(tones: &[Colour], seed: u32) -> Canvas {
         let (u, v) = (x % 32, y % 32);
         let edge = u.min(31 - u).min(v.min(31 - v)) as f32;
         let (dx, dy) = (u as f32 - 15.5, v as f32 - 15.5);
-        let ring = ((dx * dx + dy * dy).sqrt() - 11.5).abs();
+        let ring = ((dx * dx + dy * dy).sqrt() - 9.4).abs();
         let raise = (edge / 2.0).min(1.0) + if ring < 1.6 { 1.4 } else { 0.0 };
-        (Colour::hex(0x34302E) * (0.7 + 0.6 * grime.at(x, y)), raise)
+        (Colour::hex(0x26231F) * (0.7 + 0.6 * grime.at(x, y)), raise)
     });
     let mut canvas = plate.lit(0.4, 0.12, seed + 1).canvas();
     for (x, y) in [(16.0, 16.0), (48.0, 16.0), (16.0, 48.0), (48.0, 48.0)] {
-        canvas.ellipse((x, y), (9.6, 9.6), |u, v| {
+        canvas.ellipse((x, y), (7.6, 7.6), |u, v| {
             let out = (u * u + v * v).sqrt();
             // A ring of light around a dark bulb socket, as such lamps look from below.
             let level = if out < 0.34 { 0.45 - out } else { (out - 0.62).abs() * 2.2 };

@@ -18,7 +18,7 @@ fn rust_plates(seed: u32) -> Surface {
     let rust = Field::clouds(size, size, (4, 4), 5, seed);
     let drip = Field::clouds(size, size, (24, 3), 3, seed + 1);
     let tones =
-        [Colour::hex(0x3C3C3A), Colour::hex(0x4A4640), Colour::hex(0x5E4630), Colour::hex(0x74461E), Colour::hex(0x865420)];
+        [Colour::hex(0x3A3630), Colour::hex(0x4A443A), Colour::hex(0x5A4C3C), Colour::hex(0x6A4C30), Colour::hex(0x7C5028)];
     let mut surface = Surface::new(size, size, |x, y| {
         let (u, v) = (x % 64, y % 64);
         let edge = u.min(63 - u).min(v.min(63 - v)) as f32;
@@ -30,8 +30,8 @@ fn rust_plates(seed: u32) -> Surface {
         for plate_y in [0, 64] {
             for step in 0..4 {
                 let along = 7 + step * 16 + step / 2;
-                surface.rivet(plate_x + along, plate_y + 5, 1.5, Colour::hex(0x5C5850));
-                surface.rivet(plate_x + along, plate_y + 58, 1.5, Colour::hex(0x5C5040));
+                surface.rivet(plate_x + along, plate_y + 5, 1.5, Colour::hex(0x5E564A));
+                surface.rivet(plate_x + along, plate_y + 58, 1.5, Colour::hex(0x5A4E3E));
             }
         }
     }
