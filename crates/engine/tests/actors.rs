@@ -2,7 +2,9 @@
 
 use hasard_engine::map::{Map, MapBuilder, Style};
 use hasard_engine::math::{Angle, Fixed};
-use hasard_engine::world::{ActorFlags, ActorId, ActorKind, Buttons, Command, DamageKind, Event, Phase, Weapon, World, ammo};
+use hasard_engine::world::{
+    ActorFlags, ActorId, ActorKind, Buttons, Command, DamageKind, Event, Face, Phase, Weapon, World, ammo,
+};
 use std::sync::Arc;
 
 const STYLE: Style = Style {
@@ -637,4 +639,75 @@ fn items_at_rest_show_their_frames_by_the_tic_alone() {
     }
     let expected: Vec<u8> = (born + 1..=born + 36).map(|tic| [0, 1, 2, 3, 2, 1][((tic - born) / 6 % 6) as usize]).collect();
     assert_eq!(letters, expected);
+}
+
+#[test]
+fn a_rocket_that_bursts_in_its_first_tic_kills_after_the_scripts() {
+    let mut world = shooting_room(1);
+    arm(&mut world, Weapon::RocketLauncher, 1);
+    run(&mut world, 20, Buttons::default());
+    let imp = put(&mut world, ActorKind::DoomImp, -256 + 45, 0, 1);
+    for _ in 0..9 {
+        world.events.clear();
+        tic(&mut world, Buttons::ATTACK, |world| {
+            assert!(!world.events.iter().any(|event| matches!(event, Event::Died { .. })), "too early");
+            world.events.clear();
+        });
+    }
+    assert!(world.events.iter().any(|event| matches!(*event, Event::Died { victim, .. } if victim == imp)));
+    assert_eq!(world.get(imp).unwrap().phase, Phase::Death);
+}
+
+#[test]
+fn muzzle_flashes_light_the_view() {
+    let light = |weapon, tics: u32| -> Vec<u8> {
+        let mut world = shooting_room(1);
+        arm(&mut world, weapon, 10);
+        run(&mut world, 20, Buttons::default());
+        (0..tics)
+            .map(|tic| {
+                run(&mut world, 1, if tic == 0 { Buttons::ATTACK } else { Buttons::default() });
+                let lit = world.players[0].extra_light;
+                assert_eq!(world.players[0].sprites[1].is_some(), lit > 0);
+                lit
+            })
+            .collect()
+    };
+    // The flash starts with the tic of the shot, which already counts: 7 tics show 6 times after it.
+    assert_eq!(light(Weapon::Pistol, 12), [0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0]);
+    assert_eq!(light(Weapon::RocketLauncher, 16), [1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 0]);
+}
+
+#[test]
+fn the_face_glances_winces_grins_and_dies() {
+    let mut world = hall(1);
+    let body = world.players[0].actor;
+    let mut looks = std::collections::BTreeSet::new();
+    let mut changes = Vec::new();
+    // The grin at the pistol lasts 70 tics.
+    run(&mut world, 100, Buttons::default());
+    for _ in 0..400 {
+        let before = world.players[0].face_state.shown;
+        run(&mut world, 1, Buttons::default());
+        let shown = world.players[0].face_state.shown;
+        let Face::Glance(way) = shown else { panic!("{shown:?} for no reason") };
+        looks.insert(way);
+        if shown != before {
+            changes.push(world.tic);
+        }
+    }
+    assert!(changes.windows(2).all(|pair| (pair[1] - pair[0]) % 17 == 0), "{changes:?}");
+    assert_eq!(looks.into_iter().collect::<Vec<_>>(), [0, 1, 2]);
+    world.damage(body, None, None, 5, DamageKind::Script);
+    run(&mut world, 1, Buttons::default());
+    assert_eq!(world.players[0].face_state.shown, Face::Rage);
+    world.damage(body, None, None, 40, DamageKind::Script);
+    run(&mut world, 1, Buttons::default());
+    assert_eq!((world.players[0].face_state.shown, world.face_band(0)), (Face::Ouch, 2));
+    world.give_weapon(0, Weapon::Chaingun, false);
+    run(&mut world, 1, Buttons::default());
+    assert_eq!(world.players[0].face_state.shown, Face::Grin);
+    world.damage(body, None, None, 500, DamageKind::Script);
+    run(&mut world, 1, Buttons::default());
+    assert_eq!(world.players[0].face_state.shown, Face::Dead);
 }

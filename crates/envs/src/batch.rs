@@ -16,6 +16,8 @@ pub struct Batch {
     pub costs: Vec<f32>,
     /// Out: each cost term of the step, counted or not, `[lanes, terms]`.
     pub cost_terms: Vec<f32>,
+    /// Out: where the player stands at the end of the step, before any reset, in map units, `[lanes]`. For heatmaps.
+    pub positions: Vec<[i32; 2]>,
     /// Out: the episode ended by death or goal, `[lanes]`.
     pub terminated: Vec<bool>,
     /// Out: the episode ended by time-out, `[lanes]`.

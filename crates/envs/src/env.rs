@@ -35,10 +35,15 @@ impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
         let id: EnvId = id.parse()?;
         options.check()?;
-        let (source, textures) = scenarios::map_source(id, options.rules, options.hard)?;
-        let map = Map::build(&source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
+        let (built_in, textures) = scenarios::map_source(id, options.rules, options.hard);
+        let source = options.map.as_deref().unwrap_or(&built_in);
+        let map = Map::build(source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
         let rules = Rules::new(id, options.rules, options.hard, &map)?;
         let scene = Scene::new(&map, options.assets.clone().unwrap_or_else(Assets::embedded));
+        let world = World::new(Arc::new(map), 0);
+        if world.players.is_empty() {
+            return Err(EnvError::Map { why: format!("the map of {id} has no player start; add a thing of type 1") });
+        }
         // Collateral Damage shows itself late, once the weapon is nearly up, and ends by the clock of the level.
         let (start_tic, end_tic) = match id.scenario {
             Scenario::CollateralDamage => (16, EPISODE_TICS),
@@ -51,7 +56,7 @@ impl Blueprint {
             cost_terms: scenarios::cost_terms(id.scenario),
             start_tic,
             end_tic,
-            template: Game::new(World::new(Arc::new(map), 0), rules),
+            template: Game::new(world, rules),
             scene: Arc::new(scene),
             view: Arc::new(view(options.size)?),
         })
@@ -250,6 +255,24 @@ impl Env {
         stats
     }
 
+    /// Where the player stands, in whole map units.
+    #[must_use]
+    pub fn position(&self) -> [i32; 2] {
+        let world = &self.game.world;
+        world.get(world.players[0].actor).map_or([0, 0], |body| [body.x, body.y].map(|side| side.0 >> 16))
+    }
+
+    /// The map's extent: x from, y from, x to, y to in map units.
+    #[must_use]
+    pub fn extent(&self) -> [i32; 4] {
+        let mut extent = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
+        for vertex in &self.game.world.map.vertices {
+            let (x, y) = (vertex.x.0 >> 16, vertex.y.0 >> 16);
+            extent = [extent[0].min(x), extent[1].min(y), extent[2].max(x), extent[3].max(y)];
+        }
+        extent
+    }
+
     /// The episode so far, as it would be reported if it ended now.
     #[must_use]
     pub fn episode(&self) -> Episode {
@@ -332,6 +355,14 @@ impl Environment for Env {
 
     fn observe(&mut self, out: &mut [u8]) {
         Env::observe(self, out);
+    }
+
+    fn position(&self) -> [i32; 2] {
+        Env::position(self)
+    }
+
+    fn extent(&self) -> Option<[i32; 4]> {
+        Some(Env::extent(self))
     }
 
     fn episode(&self) -> Episode {

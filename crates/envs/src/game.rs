@@ -31,11 +31,12 @@ impl Game {
         Game { world, rules, outcome: Outcome::default() }
     }
 
-    /// Runs one tic: players, actors and sector movers, then the scripts, then what came new.
+    /// Runs one tic: players, actors and sector movers, then the scripts, then what came new. What happens after the scripts is for
+    /// the scripts of the next tic: an item that lay in the way of a platform rising under the agent, say.
     pub fn tic(&mut self, command: Command) {
-        self.world.events.clear();
         self.world.run_thinkers(&[command]);
         self.rules.script(&mut self.world, &mut self.outcome);
+        self.world.events.clear();
         self.world.finish_tic();
     }
 

@@ -59,6 +59,9 @@ pub struct EnvOptions {
     pub published_depth: bool,
     /// Segmented frames have the published colours, some of which several classes share.
     pub published_colours: bool,
+    /// A map to play in instead of the built-in one, such as a user's copy of the original: it needs a player start and the
+    /// sector tags that the scenario's rules change.
+    pub map: Option<std::sync::Arc<hasard_engine::map::MapSource>>,
     /// Pictures to draw with; the embedded set if `None`.
     pub assets: Option<std::sync::Arc<hasard_engine::assets::Assets>>,
 }
@@ -76,6 +79,7 @@ impl Default for EnvOptions {
             frame_stack: 1,
             published_depth: false,
             published_colours: false,
+            map: None,
             assets: None,
         }
     }

@@ -2,13 +2,12 @@
 
 use hasard_engine::math::Rng;
 use hasard_envs::{
-    ActionSpace, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, VecEnv, VecOptions,
+    ActionSpace, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, VecEnv, VecOptions, scenarios,
 };
+use std::sync::Arc;
 
-/// Every environment that can be made, at a small size.
 fn ids() -> Vec<String> {
-    let all: Vec<String> = EnvId::all().map(|id| id.to_string()).collect();
-    all.into_iter().filter(|id| Env::new(id, &EnvOptions::default()).is_ok()).collect()
+    EnvId::all().map(|id| id.to_string()).collect()
 }
 
 fn options() -> EnvOptions {
@@ -179,6 +178,24 @@ fn wrong_options_are_errors() {
     assert!(matches!(make("VolcanicVentureLevel1-v0", EnvOptions { size, ..options() }), Some(EnvError::Option { .. })));
 }
 
+#[test]
+fn a_map_of_ones_own_is_played_or_refused() {
+    let id: EnvId = "VolcanicVentureLevel1-v0".parse().unwrap();
+    let (source, _) = scenarios::map_source(id, RuleSet::Paper, false);
+    let make = |source| Env::new("VolcanicVentureLevel1-v0", &EnvOptions { map: Some(Arc::new(source)), ..options() });
+    let mut lower = source.clone();
+    lower.sectors.iter_mut().for_each(|sector| sector.ceiling = 200);
+    assert!(make(lower).unwrap().world().sectors.iter().all(|sector| sector.ceiling.floor() == 200));
+    let mut startless = source.clone();
+    startless.things.clear();
+    let mut untagged = source;
+    untagged.sectors[17].tag = 0;
+    for (wrong, what) in [(startless, "player start"), (untagged, "tag")] {
+        let error = make(wrong).err().expect(what).to_string();
+        assert!(error.contains(what), "{error}");
+    }
+}
+
 /// Everything that a batch gave in `steps` steps, lane by lane.
 fn play_batch(id: &str, options: VecOptions, steps: usize, by_groups: bool) -> Vec<Vec<u8>> {
     let mut worlds = VecEnv::new(id, &crate::options(), options).unwrap();
@@ -223,16 +240,36 @@ fn play_batch(id: &str, options: VecOptions, steps: usize, by_groups: bool) -> V
 
 #[test]
 fn a_lane_lives_the_same_life_in_every_batch() {
-    let id = "ArmamentBurdenLevel3-v0";
     let options = |lanes, threads, groups| VecOptions { lanes, threads, groups, seed: 21, ..VecOptions::default() };
-    let expected = play_batch(id, options(32, 0, 1), 60, false);
-    for (lanes, threads, groups, by_groups) in
-        [(32, 1, 1, false), (32, 2, 2, true), (32, 3, 1, false), (7, 1, 1, false), (7, 2, 2, true), (1, 3, 1, true)]
-    {
-        let found = play_batch(id, options(lanes, threads, groups), 60, by_groups);
-        assert!(found == expected[..lanes], "{lanes} lanes, {threads} threads, {groups} groups");
+    for id in ids() {
+        let expected = play_batch(&id, options(32, 0, 1), 8, false);
+        for (lanes, threads, groups, by_groups) in
+            [(32, 1, 1, false), (32, 2, 2, true), (32, 3, 1, false), (7, 1, 1, false), (7, 2, 2, true), (1, 3, 1, true)]
+        {
+            let found = play_batch(&id, options(lanes, threads, groups), 8, by_groups);
+            assert!(found == expected[..lanes], "{id}: {lanes} lanes, {threads} threads, {groups} groups");
+        }
+        for (lane, record) in expected.iter().enumerate() {
+            assert!(expected[..lane].iter().all(|other| other != record), "{id}: lane {lane} repeats another");
+        }
     }
-    for (lane, record) in expected.iter().enumerate() {
-        assert!(expected[..lane].iter().all(|other| other != record), "lane {lane} repeats another");
+}
+
+#[test]
+fn positions_lie_in_the_maps_extent_and_change() {
+    use hasard_envs::{Env, EnvId, EnvOptions};
+    for id in EnvId::all() {
+        let mut env = Env::new(&id.to_string(), &EnvOptions::default()).unwrap();
+        let [left, bottom, right, top] = env.extent();
+        let mut places = std::collections::BTreeSet::new();
+        env.reset(3);
+        for _ in 0..40 {
+            let [x, y] = env.position();
+            assert!((left..=right).contains(&x) && (bottom..=top).contains(&y), "{id}: {x},{y} in {:?}", env.extent());
+            places.insert([x, y]);
+            env.step_buttons(hasard_envs::parse_command("MOVE_FORWARD+TURN_LEFT").unwrap());
+        }
+        // In Collateral Damage the player stands on a spot and may turn only.
+        assert!(places.len() > 10 || id.to_string().starts_with("Collateral"), "{id}: {places:?}");
     }
 }

@@ -586,7 +586,7 @@ fn quicken(config: &mut TrainConfig) {
     config.learning.final_rate = 1e-4;
     config.learning.epochs = 2;
     config.learning.minibatches = 2;
-    config.algorithm_settings.multiplier_rate = 0.1;
+    config.algorithm_settings.multiplier_rate = 0.02;
     config.reporting.report_seconds = 5.0;
 }
 

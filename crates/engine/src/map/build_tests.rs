@@ -274,27 +274,3 @@ fn faults_are_named() {
     let crowd = fault(&|m| m.things = vec![m.things[0]; 70_000]);
     assert!(matches!(crowd, MapError::TooMany { what: "things", .. }));
 }
-
-/// A star with spikes across the whole world: every line crosses a hundred blocks and cuts all others.
-#[test]
-fn hostile_maps_are_refused_quickly() {
-    let mut source = square();
-    source.vertices.clear();
-    source.lines.clear();
-    source.sides.clear();
-    let count = 40_000usize;
-    for i in 0..count {
-        let angle = crate::math::Angle((i * ((1 << 32) / count)) as u32);
-        // A round room with very many walls: convex, so that the tree is one leaf that all walls must prove.
-        source.vertices.push(super::SourceVertex { x: angle.cos().to_f64() * 16e3, y: angle.sin().to_f64() * 16e3 });
-    }
-    source.vertices.dedup();
-    let count = source.vertices.len();
-    for i in 0..count {
-        source.sides.push(super::SourceSide::default());
-        source.lines.push(super::SourceLine { v1: (i + 1) % count, v2: i, front: i, ..Default::default() });
-    }
-    let started = std::time::Instant::now();
-    let _either_way = Map::build(&source, "hostile", &[]);
-    assert!(started.elapsed().as_secs() < 20, "took {:?}", started.elapsed());
-}

@@ -25,6 +25,7 @@ mod size;
 mod sky;
 mod sprite;
 mod status_bar;
+mod top_down;
 mod view;
 mod walk;
 mod wall;
@@ -36,6 +37,7 @@ pub use renderer::{RenderOptions, Renderer};
 pub use scene::Scene;
 pub use segmentation::SegmentationColours;
 pub use size::{FrameSize, SizeError};
+pub use top_down::TopDown;
 pub use view::View;
 
 /// Which buffers are drawn beside the colours.

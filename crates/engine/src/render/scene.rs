@@ -151,6 +151,25 @@ impl Scene {
         }
     }
 
+    /// The mean colour of a texture's first frame.
+    pub(super) fn mean_colour(&self, texture: TextureId) -> [u8; 3] {
+        let entry = &self.textures.list[usize::from(texture.0)];
+        let picture = &self.textures.walls[entry.first as usize];
+        mean(&self.assets.palette, picture.pixels.iter().copied())
+    }
+
+    /// The mean colour of a sprite from the front, brightened so that it shows on a map.
+    pub(super) fn sprite_colour(&self, sprite: u8, frame: u8) -> [u8; 3] {
+        let frames = self.assets.sprites.get(usize::from(sprite)).map(|sprite| &sprite.frames);
+        let image = frames.and_then(|frames| frames.get(usize::from(frame))).map(|frame| frame.images[0]);
+        let picture = image.and_then(|image| self.sprite_pictures.get(image as usize)?.as_ref());
+        let opaque = picture.iter().flat_map(|picture| picture.texels.iter());
+        let opaque = opaque.filter(|&&texel| texel & MaskedPicture::OPAQUE != 0).map(|&texel| texel as u8);
+        let colour = mean(&self.assets.palette, opaque);
+        let brightest = u32::from(colour.into_iter().max().unwrap_or(0)).max(1);
+        colour.map(|channel| (u32::from(channel) * 255 / brightest) as u8)
+    }
+
     /// The palette index halfway between two.
     #[inline]
     pub(super) fn blend(&self, a: u8, b: u8) -> u8 {
@@ -217,4 +236,15 @@ fn blends(palette: &[[u8; 3]; 256]) -> Box<[u8]> {
         nearest[reduced(0) << 10 | reduced(1) << 5 | reduced(2)]
     };
     (0..1 << 16).map(|i| halfway(i >> 8, i & 255)).collect()
+}
+
+/// The mean of some palette entries, grey if there are none.
+fn mean(palette: &[[u8; 3]; 256], indices: impl Iterator<Item = u8>) -> [u8; 3] {
+    let (mut sums, mut count) = ([0u64; 3], 0u64);
+    for index in indices {
+        let colour = palette[usize::from(index)];
+        sums = std::array::from_fn(|i| sums[i] + u64::from(colour[i]));
+        count += 1;
+    }
+    if count == 0 { [128; 3] } else { sums.map(|sum| (sum / count) as u8) }
 }

@@ -1,6 +1,7 @@
 //! The arena: actors by slot, their generations, who runs when, and the grid by which things find each other.
 
-use super::actor::NONE;
+use super::actor::{NO_BLOCK, NONE};
+use super::riders::Footing;
 use super::{Actor, ActorFlags, ActorId, ActorKind, Heading, Phase, World};
 use crate::math::{Angle, Fixed};
 
@@ -63,11 +64,14 @@ impl World {
             avoids_ledge: false,
             next_goal: 0,
             player: u8::MAX,
-            block: 0,
+            block: NO_BLOCK,
             block_next: NONE,
             block_previous: NONE,
         };
         self.link(slot);
+        if let Some(footing) = self.footings.get_mut(slot) {
+            *footing = Footing::UNKNOWN;
+        }
         let id = ActorId { slot: slot as u16, generation };
         self.fresh.push(id);
         self.start_animation(slot);
@@ -163,7 +167,7 @@ impl World {
     /// Takes an actor out of its block.
     pub(crate) fn unlink(&mut self, slot: usize) {
         let actor = &self.actors[slot];
-        if actor.flags.any(NOT_LISTED) {
+        if actor.block == NO_BLOCK {
             return;
         }
         let (block, next, previous) = (actor.block, actor.block_next, actor.block_previous);
@@ -175,10 +179,14 @@ impl World {
         if next != NONE {
             self.actors[usize::from(next)].block_previous = previous;
         }
+        self.actors[slot].block = NO_BLOCK;
     }
 
     /// Moves an actor in the plane, keeping the grid and its sector true; heights are the caller's.
     pub(crate) fn relocate(&mut self, slot: usize, x: Fixed, y: Fixed, sector: crate::map::SectorId) {
+        if let Some(footing) = self.footings.get_mut(slot) {
+            *footing = Footing::UNKNOWN;
+        }
         let same_block = self.block_of(x, y) == self.actors[slot].block;
         if !same_block {
             self.unlink(slot);
@@ -205,13 +213,9 @@ impl World {
     /// The slots of actors whose footprint may overlap the square of half side `reach` around (x, y): block by block,
     /// in each the most recently entered first. The caller compares distances.
     pub(crate) fn near(&self, x: Fixed, y: Fixed, reach: Fixed) -> Near<'_> {
-        self.near_box(x - reach, x + reach, y - reach, y + reach)
-    }
-
-    /// The same for a box.
-    pub(crate) fn near_box(&self, west: Fixed, east: Fixed, south: Fixed, north: Fixed) -> Near<'_> {
-        let (west, south) = self.clamped_block(west - LARGEST_RADIUS, south - LARGEST_RADIUS);
-        let (east, north) = self.clamped_block(east + LARGEST_RADIUS, north + LARGEST_RADIUS);
+        let reach = reach + LARGEST_RADIUS;
+        let (west, south) = self.clamped_block(x - reach, y - reach);
+        let (east, north) = self.clamped_block(x + reach, y + reach);
         let mut near = Near { world: self, west, east, north, column: west, row: south, next: NONE };
         near.next = near.head();
         near
@@ -258,7 +262,7 @@ impl Actor {
         avoids_ledge: false,
         next_goal: 0,
         player: u8::MAX,
-        block: 0,
+        block: NO_BLOCK,
         block_next: NONE,
         block_previous: NONE,
     };

@@ -1,6 +1,7 @@
 //! Snapshots and fingerprints of a world.
 
 use super::World;
+use super::riders::Riders;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
@@ -25,7 +26,8 @@ impl Clone for World {
             movers_run: self.movers_run,
             lights: self.lights.clone(),
             lights_run: self.lights_run,
-            touched: Vec::new(),
+            footings: self.footings.clone(),
+            riders: Riders::default(),
             scratch_crossings: Vec::new(),
             scratch_slots: Vec::new(),
         }
@@ -52,7 +54,8 @@ impl Clone for World {
             movers_run,
             lights,
             lights_run,
-            touched: _,
+            footings,
+            riders: _,
             scratch_crossings: _,
             scratch_slots: _,
         } = source;
@@ -76,6 +79,7 @@ impl Clone for World {
         self.movers_run = *movers_run;
         self.lights.clone_from(lights);
         self.lights_run = *lights_run;
+        self.footings.clone_from(footings);
     }
 }
 

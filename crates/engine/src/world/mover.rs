@@ -69,6 +69,11 @@ impl World {
 
     /// Runs the movers from number `first` on, and drops those that are done.
     pub(crate) fn run_movers(&mut self, first: usize) {
+        if first == self.movers.len() {
+            self.movers_run = first;
+            return;
+        }
+        self.list_riders();
         let mut kept = first;
         for index in first..self.movers.len() {
             let mut mover = self.movers[index];
@@ -120,33 +125,35 @@ impl World {
     /// Re-evaluates every actor that touches a sector whose floor or ceiling moved by `change`; false if one does not
     /// fit.
     fn adjust_actors(&mut self, sector: SectorId, ceiling: bool, change: Fixed) -> bool {
-        let [west, east, south, north] = self.map.sectors[sector.0 as usize].bounds;
-        let mut touched = std::mem::take(&mut self.touched);
-        touched.clear();
-        touched.extend(self.near_box(west, east, south, north).filter(|&slot| {
-            let Actor { x, y, radius, .. } = self.actors[slot];
-            x + radius > west && x - radius < east && y + radius > south && y - radius < north
-        }));
         let mut fits = true;
-        for &slot in &touched {
+        let mut next = self.riders.first(sector);
+        while let Some(entry) = next {
+            let slot;
+            (slot, next) = self.riders.entry(entry);
             // An item may have been picked up by the player before it.
             if !self.actors[slot].removed {
                 fits &= self.adjust_actor(slot, ceiling, change);
             }
         }
-        self.touched = touched;
         fits
     }
 
     /// Gives one actor its new floor and ceiling, and moves it with the floor; false if it does not fit.
     fn adjust_actor(&mut self, slot: usize, ceiling: bool, change: Fixed) -> bool {
-        let (x, y) = (self.actors[slot].x, self.actors[slot].y);
-        let position = self.check_position(slot, x, y);
-        self.touch_items(slot, &position);
+        let Actor { x, y, .. } = self.actors[slot];
+        let is_player = self.actors[slot].player_index().is_some();
+        let (floor_z, ceiling_z, dropoff_z) = match self.planes_under(slot) {
+            Some(planes) if !is_player => planes,
+            _ => {
+                let position = self.check_position(slot, x, y);
+                self.touch_items(slot, &position);
+                (position.floor_z, position.ceiling_z, position.dropoff_z)
+            }
+        };
         let old_z = self.actors[slot].z;
         let actor = &mut self.actors[slot];
-        let old_floor = std::mem::replace(&mut actor.floor_z, position.floor_z);
-        (actor.ceiling_z, actor.dropoff_z) = (position.ceiling_z, position.dropoff_z);
+        let old_floor = std::mem::replace(&mut actor.floor_z, floor_z);
+        (actor.ceiling_z, actor.dropoff_z) = (ceiling_z, dropoff_z);
         if !ceiling && old_floor != actor.floor_z {
             if change < Fixed::ZERO {
                 let falls = actor.vz == Fixed::ZERO && !actor.flags.any(ActorFlags::NO_GRAVITY);

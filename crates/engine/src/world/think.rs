@@ -43,6 +43,7 @@ impl World {
         player.thrust = thrust_of(command.buttons);
         if player.dead {
             self.calculate_view(index);
+            self.tick_face(index);
             self.count_down(index);
             return;
         }

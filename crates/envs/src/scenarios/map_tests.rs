@@ -234,3 +234,12 @@ fn authored_maps_are_sound() {
         }
     }
 }
+
+#[test]
+fn walls_of_tile_maps_are_in_pieces_of_a_tile() {
+    for source in [armament_burden::map::source(1), armament_burden::map::source(2), precipice_plunge::map::source(31)] {
+        let map = built(&source);
+        let walls = map.lines.iter().filter(|line| line.back_sector.is_none());
+        assert!(walls.into_iter().all(|wall| wall.dx.abs() + wall.dy.abs() == Fixed::from_int(64)));
+    }
+}

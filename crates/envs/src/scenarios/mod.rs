@@ -104,19 +104,20 @@ pub fn cost_terms(scenario: Scenario) -> &'static [CostTerm] {
 }
 
 /// The built-in map of an environment, and the textures beyond its own that its rules use.
-pub fn map_source(id: EnvId, rules: RuleSet, hard: bool) -> Result<(MapSource, &'static [&'static str]), EnvError> {
+#[must_use]
+pub fn map_source(id: EnvId, rules: RuleSet, hard: bool) -> (MapSource, &'static [&'static str]) {
     let index = id.level_index();
     match id.scenario {
-        Scenario::ArmamentBurden => Ok((armament_burden::map::source(id.level), armament_burden::TEXTURES)),
+        Scenario::ArmamentBurden => (armament_burden::map::source(id.level), armament_burden::TEXTURES),
         Scenario::CollateralDamage => {
-            Ok((collateral_damage::map::source(collateral_damage::levels::level(rules, hard, index).agent_x), &[]))
+            (collateral_damage::map::source(collateral_damage::levels::level(rules, hard, index).agent_x), &[])
         }
+        Scenario::DetonatorsDilemma => (detonators_dilemma::map::source(id.level), &[]),
         Scenario::PrecipicePlunge => {
             let level = precipice_plunge::levels::level(rules, hard, index);
-            Ok((precipice_plunge::map::source(precipice_plunge::map::START_COLUMNS + level.bottom_row as usize - 1), &[]))
+            (precipice_plunge::map::source(precipice_plunge::map::START_COLUMNS + level.bottom_row as usize - 1), &[])
         }
-        Scenario::VolcanicVenture => Ok((volcanic_venture::map::source(), volcanic_venture::TEXTURES)),
-        Scenario::DetonatorsDilemma => Ok((detonators_dilemma::map::source(id.level), &[])),
-        Scenario::RemedyRush => Ok((remedy_rush::map::source(), &[])),
+        Scenario::RemedyRush => (remedy_rush::map::source(), &[]),
+        Scenario::VolcanicVenture => (volcanic_venture::map::source(), volcanic_venture::TEXTURES),
     }
 }

@@ -28,6 +28,13 @@ pub fn scatter(world: &mut World, kind: ActorKind, area: Area, z: i32, tid: i32)
     None
 }
 
+/// Places an actor at a random point of an area if it happens to fit there: supplies that come during an episode have one try.
+/// (Trying until it fits gives the published random policy a seventh more items than it was measured to take.)
+pub fn try_scatter(world: &mut World, kind: ActorKind, area: Area, z: i32) {
+    let (x, y) = point_in(world, area);
+    world.spawn_checked(kind, x, y, Fixed::from_int(z), 0);
+}
+
 /// Moves the player's body to a random point of an area where it fits, at height `z`.
 pub fn scatter_player(world: &mut World, area: Area, z: i32) {
     for _ in 0..TRIES {

@@ -151,6 +151,7 @@ pub struct VecEnv {
     space: ActionSpace,
     observation_shape: [usize; 3],
     cost_terms: &'static [CostTerm],
+    extent: Option<[i32; 4]>,
     options: VecOptions,
     crew: Crew,
     /// An environment panicked; nothing can be trusted any more.
@@ -183,13 +184,14 @@ impl VecEnv {
         }
         let env = lanes[0].env();
         let (space, observation_shape, cost_terms) = (env.action_space().clone(), env.observation_shape(), env.cost_terms());
+        let extent = env.extent();
         let manner = Manner { autoreset: options.autoreset, final_observations: options.final_observations };
         let crew = if options.threads == 0 {
             Crew::Caller { lanes, ready: (0..=options.groups).map(|_| None).collect() }
         } else {
             hire(lanes, options, manner)
         };
-        Ok(VecEnv { space, observation_shape, cost_terms, options, crew, failed: None })
+        Ok(VecEnv { space, observation_shape, cost_terms, extent, options, crew, failed: None })
     }
 
     /// The action space of every lane.
@@ -208,6 +210,12 @@ impl VecEnv {
     #[must_use]
     pub const fn cost_terms(&self) -> &'static [CostTerm] {
         self.cost_terms
+    }
+
+    /// The map's extent: x from, y from, x to, y to in map units; `None` for environments without places.
+    #[must_use]
+    pub const fn extent(&self) -> Option<[i32; 4]> {
+        self.extent
     }
 
     /// Number of lanes.
@@ -239,6 +247,7 @@ impl VecEnv {
             rewards: vec![0.0; lanes],
             costs: vec![0.0; lanes],
             cost_terms: vec![0.0; lanes * self.cost_terms.len()],
+            positions: vec![[0, 0]; lanes],
             terminated: vec![false; lanes],
             truncated: vec![false; lanes],
             final_observations: Vec::new(),
@@ -329,6 +338,7 @@ impl VecEnv {
             ("rewards", batch.rewards.len(), lanes),
             ("costs", batch.costs.len(), lanes),
             ("cost_terms", batch.cost_terms.len(), lanes * self.cost_terms.len()),
+            ("positions", batch.positions.len(), lanes),
             ("terminated", batch.terminated.len(), lanes),
             ("truncated", batch.truncated.len(), lanes),
         ] {
@@ -512,6 +522,7 @@ fn slices(batch: &mut Batch) -> LaneSlices<'_> {
         rewards: &mut batch.rewards,
         costs: &mut batch.costs,
         cost_terms: &mut batch.cost_terms,
+        positions: &mut batch.positions,
         terminated: &mut batch.terminated,
         truncated: &mut batch.truncated,
     }

@@ -1,6 +1,6 @@
 //! The shaft of Precipice Plunge: a corridor of 58 x 7 tiles that the rules lower into a descending cave.
 
-use hasard_engine::map::{MapBuilder, MapSource, Style, TileGrid};
+use hasard_engine::map::{MapBuilder, MapSource, Mark, Style, TileGrid};
 
 /// Side of a tile, map units.
 pub const TILE: i32 = 64;
@@ -39,6 +39,18 @@ pub fn source(bottom: usize) -> MapSource {
         tag: tag(column, row),
     });
     grid.paint(&mut builder);
+    // The platform's walls are in pieces of a tile, as in the original: how a body in the air stops at a wall depends on
+    // its length.
+    let mut piece = |from: (usize, usize), to: (usize, usize)| {
+        builder.mark(Mark::default(), &[grid.corner(from.0, from.1), grid.corner(to.0, to.1)]);
+    };
+    for column in 0..START_COLUMNS {
+        piece((column, 0), (column + 1, 0));
+        piece((column, ROWS), (column + 1, ROWS));
+    }
+    for row in 0..ROWS {
+        piece((0, row), (0, row + 1));
+    }
     builder.thing(1, 32.0, 224.0, 0);
     builder.finish().expect("the tiles fit together")
 }

@@ -72,9 +72,11 @@ impl Rules {
             }
         }
         if world.tic.is_multiple_of(SUPPLY_TICS) {
-            new_items(world, ActorKind::HealthBonus, SUPPLY_BONUSES);
+            for _ in 0..SUPPLY_BONUSES {
+                stage::try_scatter(world, ActorKind::HealthBonus, ITEM_AREA, ITEM_HEIGHT);
+            }
             for kind in level.harmful {
-                new_items(world, kind, 1);
+                stage::try_scatter(world, kind, ITEM_AREA, ITEM_HEIGHT);
             }
         }
     }

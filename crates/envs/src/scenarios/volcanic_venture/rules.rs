@@ -120,7 +120,7 @@ impl Rules {
                 self.tend_tiles(world);
             }
             for _ in 0..self.fixtures.level.start_items {
-                new_item(world);
+                stage::scatter(world, ActorKind::ArmorBonus, ITEM_AREA, APPEARANCE_HEIGHT, 0);
             }
         }
         if world.tic == 1 {
@@ -274,5 +274,5 @@ fn tag(tile: usize) -> i32 {
 }
 
 fn new_item(world: &mut World) {
-    stage::scatter(world, ActorKind::ArmorBonus, ITEM_AREA, APPEARANCE_HEIGHT, 0);
+    stage::try_scatter(world, ActorKind::ArmorBonus, ITEM_AREA, APPEARANCE_HEIGHT);
 }
