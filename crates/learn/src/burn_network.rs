@@ -3,12 +3,14 @@
 //! The flat parameter vector stays on the host, where the optimiser and checkpoints are the same for all devices; a
 //! load uploads it and a backward pass downloads one gradient of its length.
 
+use std::sync::Arc;
+
 use burn::tensor::activation::{elu, sigmoid, tanh};
 use burn::tensor::module::conv2d;
 use burn::tensor::ops::ConvOptions;
 use burn::tensor::{Device, Int, Tensor, TensorData};
 
-use crate::model::{ActingNetwork, LearningNetwork, NetworkShape, PixelScale, Sequences};
+use crate::model::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences};
 
 /// One network on a burn device.
 pub struct BurnNetwork {
@@ -18,6 +20,8 @@ pub struct BurnNetwork {
     parameters: Vec<Tensor<1>>,
     /// Factor and summand of pixels, `[1, pixels]`.
     pixels: Option<(Tensor<2>, Tensor<2>)>,
+    /// What was loaded, as actors are given it.
+    host: (Arc<Vec<f32>>, Arc<PixelScale>),
     /// Outputs of the last forward pass, still attached to their graph.
     outputs: Option<Tensor<2>>,
 }
@@ -26,10 +30,17 @@ impl BurnNetwork {
     /// A network without weights yet.
     #[must_use]
     pub fn new(shape: &NetworkShape, device: &Device) -> BurnNetwork {
-        BurnNetwork { shape: shape.clone(), device: device.clone(), parameters: Vec::new(), pixels: None, outputs: None }
+        BurnNetwork {
+            shape: shape.clone(),
+            device: device.clone(),
+            parameters: Vec::new(),
+            pixels: None,
+            host: (Arc::default(), Arc::new(PixelScale::unit(0))),
+            outputs: None,
+        }
     }
 
-    fn load_on(&mut self, parameters: &[f32], pixels: &PixelScale, device: &Device, track: bool) {
+    fn load_on(&mut self, parameters: &[f32], device: &Device, track: bool) {
         self.parameters = self
             .shape
             .parameters()
@@ -40,6 +51,9 @@ impl BurnNetwork {
                 if track { tensor.require_grad() } else { tensor }
             })
             .collect();
+    }
+
+    fn load_pixels_on(&mut self, pixels: &PixelScale, device: &Device) {
         let row = |values: &[f32]| Tensor::<2>::from_data(TensorData::new(values.to_vec(), [1, values.len()]), device);
         self.pixels = Some((row(&pixels.scale), row(&pixels.shift)));
     }
@@ -130,9 +144,13 @@ fn to_vec(tensor: Tensor<2>) -> Vec<f32> {
 }
 
 impl ActingNetwork for BurnNetwork {
-    fn load(&mut self, parameters: &[f32], pixels: &PixelScale) {
+    fn load(&mut self, weights: &NetworkWeights) {
+        let NetworkWeights::Plain { parameters, pixels } = weights else {
+            unreachable!("weights packed for the processor are given to its own actors alone");
+        };
         let device = self.device.clone();
-        self.load_on(parameters, pixels, &device, false);
+        self.load_on(parameters, &device, false);
+        self.load_pixels_on(pixels, &device);
     }
 
     fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32]) {
@@ -159,9 +177,20 @@ impl LearningNetwork for BurnNetwork {
         &self.shape
     }
 
-    fn load(&mut self, parameters: &[f32], pixels: &PixelScale) {
+    fn load(&mut self, parameters: &[f32]) {
         let device = self.device.clone().autodiff();
-        self.load_on(parameters, pixels, &device, true);
+        self.load_on(parameters, &device, true);
+        self.host.0 = Arc::new(parameters.to_vec());
+    }
+
+    fn load_pixels(&mut self, pixels: &PixelScale) {
+        let device = self.device.clone().autodiff();
+        self.load_pixels_on(pixels, &device);
+        self.host.1 = Arc::new(pixels.clone());
+    }
+
+    fn publish(&self) -> NetworkWeights {
+        NetworkWeights::Plain { parameters: Arc::clone(&self.host.0), pixels: Arc::clone(&self.host.1) }
     }
 
     fn forward(&mut self, batch: &Sequences<'_>) -> Vec<f32> {

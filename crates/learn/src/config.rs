@@ -232,6 +232,8 @@ pub struct SamplingConfig {
     pub world_threads: usize,
     /// Groups of worlds of each sampler: with 2 and world threads, one half steps while the policy works on the other.
     pub groups: usize,
+    /// Lanes start their first episode after different numbers of random steps.
+    pub spread_out: bool,
     /// Sampling and learning take turns, bit-reproducibly; otherwise they run side by side.
     pub synchronous: bool,
     /// Rollouts that may wait for the learner when both run side by side.
@@ -435,7 +437,8 @@ impl TrainConfig {
                 samplers: samplers_for(cores, 32),
                 world_threads: 0,
                 groups: 1,
-                synchronous: false,
+                spread_out: true,
+                synchronous: true,
                 accumulated: 2,
                 max_policy_lag: 1000,
             },
@@ -543,6 +546,9 @@ impl TrainConfig {
             if !(low..=high).contains(&given) {
                 return refuse(name, &given, &format!("a number from {low} to {high}"));
             }
+        }
+        if self.algorithm.separates_networks() && !self.network.separate {
+            return refuse("separate networks", &"off", &format!("on for {}, whose steps are the policy's alone", self.algorithm));
         }
         if self.frames == 0 {
             return refuse("the number of frames", &self.frames, "at least 1");

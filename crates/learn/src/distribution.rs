@@ -74,6 +74,35 @@ impl ActionShape {
     }
 }
 
+impl ActionShape {
+    /// The Fisher matrix of each row's distribution, in its outputs, times a vector a row.
+    #[must_use]
+    pub fn fisher_times(&self, outputs: &[f32], vectors: &[f32]) -> Vec<f32> {
+        let mut products = vec![0.0; vectors.len()];
+        let width = self.parameters();
+        let rows = outputs.chunks_exact(width).zip(vectors.chunks_exact(width)).zip(products.chunks_exact_mut(width));
+        for ((row, vector), product) in rows {
+            let mut first = 0;
+            for &size in &self.sizes {
+                let (logits, vector) = (&row[first..first + size], &vector[first..first + size]);
+                let (largest, sum) = softmax_parts(logits);
+                let p = |index: usize| f64::from(logits[index] - largest).exp() / sum;
+                let mean: f64 = (0..size).map(|index| p(index) * f64::from(vector[index])).sum();
+                for index in 0..size {
+                    product[first + index] = (p(index) * (f64::from(vector[index]) - mean)) as f32;
+                }
+                first += size;
+            }
+            for at in (first..width).step_by(2) {
+                let log_deviation = row[at + 1].clamp(-LOG_DEVIATION, LOG_DEVIATION);
+                product[at] = vector[at] * (-2.0 * log_deviation).exp();
+                product[at + 1] = if log_deviation == row[at + 1] { 2.0 * vector[at + 1] } else { 0.0 };
+            }
+        }
+        products
+    }
+}
+
 fn softmax_parts(logits: &[f32]) -> (f32, f64) {
     let largest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     (largest, logits.iter().map(|&logit| f64::from(logit - largest).exp()).sum())

@@ -1,7 +1,6 @@
 //! A trained agent, acting.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use crate::checkpoint::{Loaded, Store};
 use crate::config::TrainConfig;
@@ -9,7 +8,7 @@ use crate::device::ComputeDevice;
 use crate::distribution::ActionShape;
 use crate::error::LearnError;
 use crate::learner::Learner;
-use crate::model::{Actor, ImageShape, ModelShape, Published};
+use crate::model::{Actor, ImageShape, ModelShape};
 use crate::random::{Purpose, Stream};
 use crate::run_directory::read_config;
 use crate::shaping::Shaping;
@@ -92,11 +91,7 @@ impl Agent {
         let mut learner = Learner::new(&config, &shape, &ComputeDevice::Processor);
         loaded.restore_weights(&mut learner)?;
         let mut actor = Actor::new(&shape, &ComputeDevice::Processor);
-        actor.load(&Published {
-            version: 0,
-            parameters: Arc::new(std::mem::take(&mut learner.parameters)),
-            pixels: Arc::new(learner.pixels.scale()),
-        });
+        actor.load(&learner.publish());
         Ok(Agent {
             state: shape.zero_state(lanes),
             safety: vec![1.0; lanes],

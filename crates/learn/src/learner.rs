@@ -1,7 +1,5 @@
 //! The learner: networks, optimiser and running statistics, and what an algorithm does with them.
 
-use std::sync::Arc;
-
 use burn::tensor::{Device, Tensor, TensorData};
 
 use crate::advantage::{Lane, generalised_advantages};
@@ -80,9 +78,24 @@ pub fn loss_device() -> Device {
     Device::flex().autodiff()
 }
 
-fn column(values: Vec<f32>, device: &Device) -> Tensor<1> {
+/// A vector as a tensor.
+#[must_use]
+pub fn column(values: Vec<f32>, device: &Device) -> Tensor<1> {
     let rows = values.len();
     Tensor::from_data(TensorData::new(values, [rows]), device)
+}
+
+/// Rows as a tensor on the losses' device.
+#[must_use]
+pub fn matrix(rows: Vec<f32>, width: usize) -> Tensor<2> {
+    let count = rows.len() / width;
+    Tensor::from_data(TensorData::new(rows, [count, width]), &loss_device())
+}
+
+/// A tensor's values, row by row.
+#[must_use]
+pub fn to_rows(tensor: Tensor<2>) -> Vec<f32> {
+    tensor.into_data().try_to_vec().expect("32-bit floats")
 }
 
 /// A tensor of one number.
@@ -110,8 +123,10 @@ pub struct Learner {
     /// Settings.
     pub config: TrainConfig,
     gradient: Vec<f32>,
-    /// The networks do not hold the present parameters and statistics yet.
+    /// The networks do not hold the present parameters yet.
     stale: bool,
+    /// Nor the present statistics of pixels.
+    stale_pixels: bool,
 }
 
 impl Learner {
@@ -136,6 +151,7 @@ impl Learner {
             parameters,
             shape: shape.clone(),
             stale: true,
+            stale_pixels: true,
         }
     }
 
@@ -146,15 +162,15 @@ impl Learner {
     }
 
     /// The present weights for samplers.
-    #[must_use]
-    pub fn publish(&self) -> Published {
-        Published { version: self.version, parameters: Arc::new(self.parameters.clone()), pixels: Arc::new(self.pixels.scale()) }
+    pub fn publish(&mut self) -> Published {
+        self.refresh();
+        self.networks.publish(self.version)
     }
 
     /// Takes over statistics of a rollout and computes its advantages and targets.
     pub fn prepare<'a>(&mut self, rollout: &'a Rollout) -> Prepared<'a> {
         self.pixels.update(&rollout.frames(), self.config.learning.threads);
-        self.stale = true;
+        self.stale_pixels = true;
         let (steps, lanes) = (rollout.steps(), rollout.lanes());
         let (width, first) = (self.shape.outputs(), self.shape.value_column());
         let constraints = self.config.constraints.len();
@@ -246,13 +262,11 @@ impl Learner {
         let initial_state = (0..shape.networks.len()).map(state).collect();
         let pick = |values: &Vec<f32>| -> Vec<f32> { rows().map(|(step, lane)| values[lane * steps + step]).collect() };
         let device = loss_device();
-        let count = steps * lanes.len();
-        let old_outputs = Tensor::from_data(TensorData::new(policy, [count, action.parameters()]), &device);
         Minibatch {
             batch: ModelSequences { sequences, initial_state },
             taken: Taken::new(action, &actions, &deltas, &device),
             old_log_probability: column(logs, &device),
-            old_policy: Policy::new(action, &old_outputs),
+            old_policy: Policy::new(action, &matrix(policy, action.parameters())),
             advantages: prepared.advantages.iter().map(pick).collect(),
             old_values: prepared.old_values.iter().map(|values| column(pick(values), &device)).collect(),
             targets: prepared.targets.iter().map(|values| column(pick(values), &device)).collect(),
@@ -262,8 +276,16 @@ impl Learner {
 
     fn refresh(&mut self) {
         if self.stale {
-            self.networks.load(&self.parameters, &Arc::new(self.pixels.scale()));
+            self.networks.load(&self.parameters);
             self.stale = false;
+        }
+        self.refresh_pixels();
+    }
+
+    fn refresh_pixels(&mut self) {
+        if self.stale_pixels {
+            self.networks.load_pixels(&self.pixels.scale());
+            self.stale_pixels = false;
         }
     }
 
@@ -275,23 +297,18 @@ impl Learner {
         Heads { policy: Policy::new(&self.shape.action, &policy), values: (0..=self.shape.cost_critics).map(value).collect() }
     }
 
-    /// Output rows for a minibatch under the present parameters.
-    pub fn outputs(&mut self, minibatch: &mut Minibatch<'_>) -> Tensor<2> {
-        self.refresh();
-        let rows = self.networks.forward(&mut minibatch.batch);
-        let width = self.shape.outputs();
-        let count = rows.len() / width;
-        Tensor::from_data(TensorData::new(rows, [count, width]), &loss_device())
-    }
-
-    /// The gradient of a loss in all parameters, and the loss's parts.
+    /// The gradient of a loss in the parameters of some networks, and the loss's parts. The loss must not depend on the
+    /// columns of the others.
     pub fn gradient(
         &mut self,
+        networks: std::ops::Range<usize>,
         minibatch: &mut Minibatch<'_>,
         loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
         means: &mut Means,
     ) -> Result<Vec<f32>, LearnError> {
-        let outputs = self.outputs(minibatch).require_grad();
+        self.refresh();
+        let rows = self.networks.forward(networks.clone(), &mut minibatch.batch);
+        let outputs = matrix(rows, self.shape.outputs()).require_grad();
         let loss = loss(&self.heads(&outputs), minibatch);
         for (name, part) in &loss.parts {
             means.add(name, scalar(part));
@@ -302,10 +319,9 @@ impl Learner {
             return Err(diverged("loss", total));
         }
         let gradients = loss.total.backward();
-        let rows = outputs.grad(&gradients).expect("the loss depends on the outputs");
-        let rows: Vec<f32> = rows.into_data().try_to_vec().expect("32-bit floats");
+        let rows = to_rows(outputs.grad(&gradients).expect("the loss depends on the outputs"));
         let mut gradient = std::mem::take(&mut self.gradient);
-        self.networks.backward(&mut minibatch.batch, &rows, &mut gradient);
+        self.networks.backward(networks, &mut minibatch.batch, &rows, &mut gradient);
         Ok(gradient)
     }
 
@@ -338,20 +354,33 @@ impl Learner {
         loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let gradient = self.gradient(minibatch, loss, means)?;
-        let networks = 0..self.shape.networks.len();
+        self.descend_networks(0..self.shape.networks.len(), minibatch, loss, means)
+    }
+
+    /// As [`Learner::descend`] for some of the networks.
+    pub fn descend_networks(
+        &mut self,
+        networks: std::ops::Range<usize>,
+        minibatch: &mut Minibatch<'_>,
+        loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        let gradient = self.gradient(networks.clone(), minibatch, loss, means)?;
         self.step(gradient, networks, means)
     }
 
-    /// Policy outputs of the policy's own network under other parameters of it. Only for models of separate networks.
+    /// The policy network's parameters. Only for models of separate networks, as all that follows.
+    #[must_use]
+    pub fn policy_parameters(&self) -> Vec<f32> {
+        self.parameters[self.shape.parameter_range(0)].to_vec()
+    }
+
+    /// Policy outputs under other parameters of the policy network.
     pub fn policy_outputs(&mut self, minibatch: &mut Minibatch<'_>, parameters: &[f32]) -> Tensor<2> {
+        self.refresh_pixels();
         self.stale = true;
-        let pixels = self.pixels.scale();
-        self.networks.load_network(0, parameters, &pixels);
-        let rows = self.networks.forward_network(0, &mut minibatch.batch);
-        let width = self.shape.action.parameters();
-        let count = rows.len() / width;
-        Tensor::from_data(TensorData::new(rows, [count, width]), &loss_device())
+        self.networks.load_network(0, parameters);
+        matrix(self.networks.forward_network(0, &mut minibatch.batch), self.shape.action.parameters())
     }
 
     /// The gradient in the policy network's parameters from that of its outputs of the last
@@ -371,7 +400,7 @@ impl Learner {
 
     /// Tells the learner that parameters or statistics were replaced from outside.
     pub fn replaced(&mut self) {
-        self.stale = true;
+        (self.stale, self.stale_pixels) = (true, true);
     }
 }
 

@@ -18,6 +18,8 @@ pub enum Purpose {
     Worlds = 4,
     /// Actions during evaluation; counters: episode, step.
     Evaluation = 5,
+    /// Random steps before a run's first episode; counter: lane.
+    FirstSteps = 6,
 }
 
 /// A stream of random numbers.

@@ -92,6 +92,28 @@ impl Sampler {
         self.worlds.lanes()
     }
 
+    /// Puts every lane somewhere else in its first episode: of all `total` lanes of the run, each starts after so many
+    /// random steps that their episodes end spread over the time of one. Otherwise all episodes of a scenario that always
+    /// runs into the clock would end at once, and constraints would hear of their cost once in an age.
+    pub fn spread_out(&mut self, total: usize, episode_steps: u32) -> Result<(), LearnError> {
+        let mut saved = self.save()?;
+        let action = &self.shape.action;
+        for (lane, world) in saved.worlds.iter_mut().enumerate() {
+            let number = self.first_lane + lane;
+            let steps = number as u64 * u64::from(episode_steps) / total as u64;
+            let mut stream = Stream::new(self.seed, Purpose::FirstSteps, number as u64, 0);
+            for _ in 0..steps {
+                for &size in &action.sizes {
+                    world.actions.push((stream.uniform() * size as f64) as u8);
+                }
+                for _ in 0..action.deltas {
+                    world.deltas.push((2.0 * stream.uniform() - 1.0) as f32);
+                }
+            }
+        }
+        self.restore(saved)
+    }
+
     /// Where everything is between two rollouts.
     pub fn save(&mut self) -> Result<SamplerState, LearnError> {
         Ok(SamplerState {

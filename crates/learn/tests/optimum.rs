@@ -60,6 +60,47 @@ fn constrained_algorithms_end_near_the_best_return_within_the_budget() {
     }
 }
 
+/// Second-order steps are large and few: two passes over a rollout would move twice as far as the trust region allows.
+fn second_order(algorithm: AlgorithmKind) -> TrainConfig {
+    let mut config = quick(algorithm);
+    config.learning.epochs = 1;
+    config.learning.minibatches = 1;
+    config.network.recurrent = None;
+    config.frames = 512 * 100;
+    config.algorithm_settings.trust_radius = 0.02;
+    config
+}
+
+#[test]
+fn second_order_algorithms_do_so_too() {
+    use AlgorithmKind::{Cpo, Trpo, TrpoLag, TrpoPid};
+    let (episode_return, cost, _) = outcome(second_order(Trpo), "TRPO");
+    assert!(episode_return > 6.3 && cost > 9.0, "the best is 7 at cost 10");
+    for algorithm in [TrpoLag, TrpoPid, Cpo] {
+        let (episode_return, cost, reports) = outcome(second_order(algorithm), algorithm.name());
+        assert!(cost < 4.6, "{algorithm}: cost {cost}");
+        assert!(episode_return > 3.3, "{algorithm}: return {episode_return}");
+        let loss = |report: &Report| report.learning.iter().find(|(name, _)| *name == "cost_value_loss").unwrap().1;
+        let (early, late) = (loss(&reports[2]), loss(reports.last().unwrap()));
+        assert!(late < early, "{algorithm}: the cost critic does not learn ({early} to {late})");
+    }
+}
+
+/// Under a penalty of 0.7 a unit of cost the rich risk is worth it and the poor one is not: cost 5, return 5.
+#[test]
+fn penalties_and_safety_states_shape_the_policy() {
+    let mut config = quick(AlgorithmKind::PpoCost);
+    config.algorithm_settings.penalty_scale = 0.7;
+    let (episode_return, cost, _) = outcome(config, "PPOCost");
+    assert!((4.5..5.6).contains(&cost), "cost {cost}");
+    assert!(episode_return > 4.4, "return {episode_return}");
+    let mut config = quick(AlgorithmKind::PpoSaute);
+    config.algorithm_settings.saute_unsafe_reward = -1.0;
+    let (episode_return, cost, _) = outcome(config, "PPOSaute");
+    assert!((2.5..4.6).contains(&cost), "cost {cost}");
+    assert!(episode_return > 2.4, "return {episode_return}");
+}
+
 #[test]
 fn the_released_presets_rules_work_too() {
     let mut config = quick(AlgorithmKind::PpoLag);

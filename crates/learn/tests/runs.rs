@@ -2,7 +2,10 @@
 
 mod tiny;
 
+use hasard_envs::{Environment, VecEnv};
 use hasard_learn::config::AlgorithmKind;
+use hasard_learn::distribution::ActionShape;
+use hasard_learn::evaluate::{Agent, Choice, Which};
 use hasard_learn::trainer::{Hooks, Start, train};
 use serde_json::Value;
 use std::fs;
@@ -246,4 +249,116 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
 fn truncate(path: &Path) {
     let bytes = fs::read(path).unwrap();
     fs::write(path, &bytes[..bytes.len() / 2]).unwrap();
+}
+
+/// An agent loaded from a run does what the run learned, the same for the same seed, whatever acts beside it.
+#[test]
+fn a_loaded_agent_acts_as_it_learned() {
+    let mut config = tiny::config(AlgorithmKind::Ppo);
+    config.frames = 80 * config.frames_per_rollout();
+    let path = tiny::directory("agent");
+    tiny::run(Start::Fresh(config), &path).0.unwrap();
+    let play = |choice: Choice, lanes: usize, first_seed: u64| -> Vec<(f64, f64)> {
+        let shape = ActionShape { sizes: vec![2, 3], deltas: 0 };
+        let observation = [tiny::SIDE, tiny::SIDE, 1];
+        let mut warn = |warning| panic!("{warning}");
+        let mut agent = Agent::load(&path, Which::Latest, choice, lanes, observation, shape, &mut warn).unwrap();
+        let mut worlds: Vec<tiny::Risk> = (0..lanes).map(|_| tiny::Risk::new(true)).collect();
+        for (lane, world) in worlds.iter_mut().enumerate() {
+            world.reset(first_seed + lane as u64);
+            agent.reset(lane, first_seed + lane as u64);
+        }
+        for _ in 0..tiny::STEPS {
+            let mut observations = vec![0; lanes * tiny::SIDE * tiny::SIDE];
+            for (world, out) in worlds.iter_mut().zip(observations.chunks_exact_mut(tiny::SIDE * tiny::SIDE)) {
+                world.observe(out);
+            }
+            for (lane, (world, action)) in worlds.iter_mut().zip(agent.act(&observations)).enumerate() {
+                let step = world.step(&action.actions, &action.deltas);
+                agent.observe_cost(lane, step.cost);
+            }
+        }
+        worlds.iter().map(|world| (world.episode().episode_return, world.episode().cost)).collect()
+    };
+    let together = play(Choice::Sampled, 4, 100);
+    let alone: Vec<_> = (100..104).flat_map(|seed| play(Choice::Sampled, 1, seed)).collect();
+    assert_eq!(together, alone);
+    assert!(together.iter().all(|(_, cost)| *cost >= 8.0), "{together:?}: PPO learns to take every risk");
+    assert!(play(Choice::Greedy, 3, 7).iter().all(|(_, cost)| *cost == 10.0));
+    let mut warn = |_| {};
+    let wrong = ActionShape { sizes: vec![9], deltas: 0 };
+    let Err(error) = Agent::load(&path, Which::Latest, Choice::Greedy, 1, [6, 6, 1], wrong, &mut warn) else {
+        panic!("weights of another shape were accepted")
+    };
+    assert!(error.to_string().contains("does not fit"), "{error}");
+    fs::remove_dir_all(path).unwrap();
+}
+
+#[test]
+fn first_episodes_end_spread_over_time() {
+    let count = |spread_out: bool| {
+        let mut config = tiny::config(AlgorithmKind::Ppo);
+        config.sampling.spread_out = spread_out;
+        config.sampling.rollout = 5;
+        config.frames = config.frames_per_rollout();
+        let path = tiny::directory(if spread_out { "spread" } else { "not-spread" });
+        let (_, reports, _) = tiny::run(Start::Fresh(config), &path);
+        fs::remove_dir_all(path).unwrap();
+        reports[0].episodes
+    };
+    assert_eq!(count(false), 0);
+    assert!((12..=20).contains(&count(true)), "about half of 32 episodes of 10 steps end within 5");
+}
+
+/// Weights carry over from one run to the next; counters, multipliers and optimisers start anew.
+#[test]
+fn a_curriculum_carries_weights_over() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.frames = 2 * config.frames_per_rollout();
+    let (first, second) = (tiny::directory("first-level"), tiny::directory("second-level"));
+    tiny::run(Start::Fresh(config.clone()), &first).0.unwrap();
+    config.learning.rate = 0.0;
+    config.learning.final_rate = 0.0;
+    let (result, reports, _) = tiny::run(Start::From(config, &first), &second);
+    assert_eq!(result.unwrap().last.updates, 8, "two rollouts of two epochs of two minibatches, counted from zero");
+    assert_eq!(reports.len(), 2);
+    // With a learning rate of zero the weights at the end are those at the start; the pixel statistics go on.
+    let weights = |run: &Path| last_files(run).0;
+    let (a, b) = (weights(&first), weights(&second));
+    let parameters = |bytes: &[u8]| {
+        let tensors = safetensors::SafeTensors::deserialize(bytes).unwrap();
+        let names = tensors.names().into_iter().filter(|name| name.starts_with("network")).collect::<Vec<_>>();
+        let mut all: Vec<(String, Vec<u8>)> =
+            names.iter().map(|name| (name.to_string(), tensors.tensor(name).unwrap().data().to_vec())).collect();
+        all.sort();
+        all
+    };
+    assert!(parameters(&a) == parameters(&b));
+    assert!(a != b, "the pixel statistics have gone on");
+    fs::remove_dir_all(first).unwrap();
+    fs::remove_dir_all(second).unwrap();
+}
+
+/// A world that panics ends the run with a clear error, and the checkpoints before it stay.
+#[test]
+fn a_panic_in_a_world_ends_the_run_with_an_error() {
+    let mut config = tiny::config(AlgorithmKind::Ppo);
+    config.reporting.checkpoint_seconds = 0.0;
+    config.frames = 50 * config.frames_per_rollout();
+    for world_threads in [0, 1] {
+        config.sampling.world_threads = world_threads;
+        let path = tiny::directory(&format!("panic-{world_threads}"));
+        let stop = AtomicBool::new(false);
+        let mut warn = |_| {};
+        let result = train(
+            Start::Fresh(config.clone()),
+            &path,
+            &|options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(60)))),
+            &mut Hooks { stop: &stop, report: &mut |_| {}, warn: &mut warn },
+        );
+        let message = result.unwrap_err().to_string();
+        assert!(message.contains("the floor gave way"), "{message}");
+        assert!(!checkpoints(&path).is_empty());
+        fs::remove_dir_all(path).unwrap();
+    }
 }

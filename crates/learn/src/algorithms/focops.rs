@@ -4,6 +4,7 @@
 //! towards it by its gradient: divergence from the policy that acted minus the ratio-weighted advantage over a
 //! temperature, on those samples alone whose divergence is still small.
 
+use burn::tensor::Tensor;
 use serde_json::Value;
 
 use super::multiplier::Lagrange;
@@ -11,7 +12,7 @@ use super::surrogate::{lagrangian_advantages, ratio, standardised, total};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Learner, Minibatch};
+use crate::learner::{Heads, Learner, Loss, Minibatch};
 use crate::metrics::Means;
 
 /// First-order constrained optimisation in policy space.
@@ -34,6 +35,13 @@ impl Focops {
             multipliers: Lagrange::all(settings, config.constraints.len(), Some(settings.multiplier_limit)),
         }
     }
+
+    pub(super) fn loss(&self, advantages: &Tensor<1>, heads: &Heads, batch: &Minibatch<'_>) -> Loss {
+        let divergence = heads.policy.divergence(&batch.old_policy);
+        let near = divergence.clone().lower_equal_scalar(self.eta).float().detach();
+        let gain = ratio(heads, batch) * advantages.clone() / self.temperature;
+        total(((divergence - gain) * near).mean(), heads, batch, &self.settings)
+    }
 }
 
 impl Algorithm for Focops {
@@ -50,12 +58,7 @@ impl Algorithm for Focops {
     ) -> Result<(), LearnError> {
         let advantages = standardised(lagrangian_advantages(minibatch, &self.multipliers()));
         let advantages = minibatch.tensor(advantages);
-        let loss = |heads: &crate::learner::Heads, batch: &Minibatch<'_>| {
-            let divergence = heads.policy.divergence(&batch.old_policy);
-            let near = divergence.clone().lower_equal_scalar(self.eta).float().detach();
-            let gain = ratio(heads, batch) * advantages.clone() / self.temperature;
-            total(((divergence - gain) * near).mean(), heads, batch, &self.settings)
-        };
+        let loss = |heads: &Heads, batch: &Minibatch<'_>| self.loss(&advantages, heads, batch);
         learner.descend(minibatch, loss, means)
     }
 

@@ -3,15 +3,22 @@
 //! An [`Algorithm`] is told what its constraints cost, moves its multipliers, and improves the policy on a minibatch.
 //! Gathering experience, advantages, targets and the optimiser are the same for all.
 
+mod cpo;
 mod cup;
 mod focops;
 mod ipo;
+#[cfg(test)]
+mod loss_tests;
 pub mod multiplier;
 mod p3o;
 mod ppo;
 mod ppo_lag;
 mod ppo_pid;
 mod surrogate;
+mod trpo;
+mod trpo_lag;
+mod trpo_pid;
+pub mod trust_region;
 
 use serde_json::Value;
 
@@ -82,9 +89,10 @@ pub trait Algorithm: Send {
 }
 
 /// The algorithm of a run.
-pub fn make(config: &TrainConfig) -> Result<Box<dyn Algorithm>, LearnError> {
+#[must_use]
+pub fn make(config: &TrainConfig) -> Box<dyn Algorithm> {
     use AlgorithmKind as Kind;
-    Ok(match config.algorithm {
+    match config.algorithm {
         Kind::Ppo | Kind::PpoCost | Kind::PpoSaute => Box::new(ppo::Ppo::new(config)),
         Kind::PpoLag => Box::new(ppo_lag::PpoLag::new(config)),
         Kind::PpoPid => Box::new(ppo_pid::PpoPid::new(config)),
@@ -92,8 +100,9 @@ pub fn make(config: &TrainConfig) -> Result<Box<dyn Algorithm>, LearnError> {
         Kind::Focops => Box::new(focops::Focops::new(config)),
         Kind::Cup => Box::new(cup::Cup::new(config)),
         Kind::Ipo => Box::new(ipo::Ipo::new(config)),
-        Kind::Trpo | Kind::TrpoLag | Kind::TrpoPid | Kind::Cpo => {
-            return Err(LearnError::Config(format!("{} is not built yet; use PPOLag", config.algorithm)));
-        }
-    })
+        Kind::Trpo => Box::new(trpo::Trpo::new(config)),
+        Kind::TrpoLag => Box::new(trpo_lag::TrpoLag::new(config)),
+        Kind::TrpoPid => Box::new(trpo_pid::TrpoPid::new(config)),
+        Kind::Cpo => Box::new(cpo::Cpo::new(config)),
+    }
 }

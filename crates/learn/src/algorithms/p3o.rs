@@ -13,7 +13,7 @@ use super::surrogate::{clip_ratio, clipped_policy_loss, ratio, standardised, tot
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Learner, Minibatch};
+use crate::learner::{Heads, Learner, Loss, Minibatch};
 use crate::metrics::Means;
 
 /// Penalised PPO.
@@ -42,6 +42,26 @@ impl P3o {
         };
         expected.clamp_min(0.0) * self.kappa
     }
+
+    /// PPO's loss and the penalty of each constraint.
+    pub(super) fn loss(
+        &self,
+        advantages: &Tensor<1>,
+        cost_advantages: &[Tensor<1>],
+        signals: &[Signal],
+        heads: &Heads,
+        batch: &Minibatch<'_>,
+    ) -> Loss {
+        let ratio = ratio(heads, batch);
+        let policy_loss = clipped_policy_loss(&ratio, advantages, self.settings.clip_ratio);
+        let mut loss = total(policy_loss, heads, batch, &self.settings);
+        for (advantages, signal) in cost_advantages.iter().zip(signals) {
+            let penalty = self.penalty(&ratio, advantages, signal);
+            loss.total = loss.total + penalty.clone();
+            loss.parts.push(("policy_cost_loss", penalty));
+        }
+        loss
+    }
 }
 
 impl Algorithm for P3o {
@@ -55,17 +75,7 @@ impl Algorithm for P3o {
         let advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
         let cost_advantages: Vec<_> =
             minibatch.advantages[1..].iter().map(|advantages| minibatch.tensor(standardised(advantages.clone()))).collect();
-        let loss = |heads: &_, batch: &Minibatch<'_>| {
-            let ratio = ratio(heads, batch);
-            let policy_loss = clipped_policy_loss(&ratio, &advantages, self.settings.clip_ratio);
-            let mut loss = total(policy_loss, heads, batch, &self.settings);
-            for (advantages, signal) in cost_advantages.iter().zip(signals) {
-                let penalty = self.penalty(&ratio, advantages, signal);
-                loss.total = loss.total + penalty.clone();
-                loss.parts.push(("policy_cost_loss", penalty));
-            }
-            loss
-        };
+        let loss = |heads: &Heads, batch: &Minibatch<'_>| self.loss(&advantages, &cost_advantages, signals, heads, batch);
         learner.descend(minibatch, loss, means)
     }
 }

@@ -22,6 +22,11 @@ pub struct ConvolutionPlan {
     grid_height: usize,
     /// Where each input pixel is stored, or [`NOWHERE`].
     pub places: Vec<usize>,
+    /// The same for runs of pixels that stay together, as (first value in the image, first stored value), all of
+    /// `run_length` values: bytes move faster a run at a time.
+    pub runs: Vec<(u32, u32)>,
+    /// Values of a run.
+    pub run_length: usize,
     /// Numbers of the stored input.
     pub stored: usize,
     /// Where each output pixel lies in the raw result.
@@ -57,6 +62,19 @@ impl ConvolutionPlan {
                 });
             }
         }
+        let (runs, run_length) = match blocks {
+            // Rows of a block stay together; what lies beyond the last block is not read at all.
+            Some(_) => {
+                let starts = (0..grid_height * stride).flat_map(|y| (0..grid_width).map(move |x| (y, x * stride)));
+                let inside = starts.filter(|&(y, x)| y < input.height && x + stride <= input.width);
+                let run = |(y, x): (usize, usize)| {
+                    let pixel = y * input.width + x;
+                    ((pixel * channels) as u32, places[pixel] as u32)
+                };
+                (inside.map(run).collect(), stride * channels)
+            }
+            None => (vec![(0, 0)], input.size()),
+        };
         let mut weight_rows = Vec::with_capacity(kernel * kernel * channels);
         match blocks {
             None => weight_rows.extend(0..kernel * kernel * channels),
@@ -83,6 +101,8 @@ impl ConvolutionPlan {
             grid_width,
             grid_height,
             places,
+            runs,
+            run_length,
             weight_rows,
         }
     }

@@ -5,12 +5,12 @@
 
 use super::convolution::ConvolutionPlan;
 use super::elementwise::{
-    NOWHERE, add_column_sums, bias_elu_rows, bias_elu_scatter, bias_rows, elu_backward_gather, elu_backward_rows, gru_gates,
+    add_column_sums, bias_elu_rows, bias_elu_scatter, bias_rows, elu_backward_gather, elu_backward_rows, gru_gates,
     gru_gates_backward, scale_pixels,
 };
 use super::product::{Left, Right, Size, multiply};
-use super::weights::{PackedWeights, Plan};
-use crate::model::{ImageShape, Parameter};
+use super::weights::{Backward, PackedWeights, Plan};
+use crate::model::{ImageShape, Parameter, PixelScale};
 
 /// Trajectories of one pass: rows `t * lanes + l`.
 pub struct Input<'a> {
@@ -26,6 +26,8 @@ pub struct Input<'a> {
     pub initial_state: &'a [f32],
     /// Rows before which the state is zeroed; empty if none.
     pub reset: &'a [bool],
+    /// How pixels enter, in the order of the first layer's stored input.
+    pub pixels: &'a PixelScale,
 }
 
 /// Buffers of a pass and what the forward one leaves for the backward one.
@@ -150,11 +152,11 @@ impl Pass {
         for (row, observation) in input.observations.iter().enumerate() {
             if plan.convolutions.is_empty() {
                 let to = &mut self.features[row * features..(row + 1) * features];
-                scale_pixels(observation, &weights.pixels.scale, &weights.pixels.shift, to);
+                scale_pixels(observation, &input.pixels.scale, &input.pixels.shift, to);
                 continue;
             }
             let image = sized(&mut self.scratch.image, plan.convolutions[0].stored);
-            store_pixels(plan.shape.image, &plan.convolutions[0], observation, weights, &mut self.scratch.pixels, image);
+            store_pixels(plan.shape.image, &plan.convolutions[0], observation, input.pixels, &mut self.scratch.pixels, image);
             for (layer, convolution) in plan.convolutions.iter().enumerate() {
                 let (earlier, rest) = self.activations.split_at_mut(layer);
                 let stored: &[f32] = match earlier.last() {
@@ -206,14 +208,13 @@ impl Pass {
     pub fn backward(
         &mut self,
         plan: &Plan,
-        weights: &PackedWeights,
+        back: &Backward,
         input: &Input<'_>,
         output_gradient: &[f32],
         gradient: &mut [f32],
     ) {
         let shape = &plan.shape;
         let rows = self.rows;
-        let back = weights.backward.as_ref().expect("weights packed for learning");
         let mut scratch = std::mem::take(&mut self.scratch);
 
         // Heads.
@@ -252,7 +253,7 @@ impl Pass {
         multiply(size, left, Right::panels(&back.heads, padded), from_heads, flowing, false);
 
         if let Some(units) = shape.recurrent {
-            self.recur_backward(plan, weights, input, units, &mut scratch, gradient);
+            self.recur_backward(plan, back, input, units, &mut scratch, gradient);
         }
         // Here `rows_b` holds the gradient of the last dense layer's output.
         for index in (0..shape.dense.len()).rev() {
@@ -276,7 +277,7 @@ impl Pass {
             std::mem::swap(&mut scratch.rows_a, &mut scratch.rows_b);
         }
         if !plan.convolutions.is_empty() {
-            self.encode_backward(plan, weights, input, &mut scratch, gradient);
+            self.encode_backward(plan, back, input, &mut scratch, gradient);
         }
         self.scratch = scratch;
     }
@@ -285,13 +286,12 @@ impl Pass {
     fn recur_backward(
         &mut self,
         plan: &Plan,
-        weights: &PackedWeights,
+        back: &Backward,
         input: &Input<'_>,
         units: usize,
         scratch: &mut Scratch,
         gradient: &mut [f32],
     ) {
-        let back = weights.backward.as_ref().expect("weights packed for learning");
         let (rows, lanes, inputs) = (self.rows, input.lanes, plan.shape.core_inputs());
         let after = &scratch.rows_b[..rows * units];
         let carry = sized(&mut scratch.carry, lanes * units);
@@ -326,12 +326,11 @@ impl Pass {
     fn encode_backward(
         &mut self,
         plan: &Plan,
-        weights: &PackedWeights,
+        back: &Backward,
         input: &Input<'_>,
         scratch: &mut Scratch,
         gradient: &mut [f32],
     ) {
-        let back = weights.backward.as_ref().expect("weights packed for learning");
         let layers = plan.convolutions.len();
         let features = plan.shape.features();
         for buffers in [&mut scratch.padded_gradient, &mut scratch.stored_gradient, &mut scratch.convolution_gradients] {
@@ -360,7 +359,7 @@ impl Pass {
                 add_column_sums(padded, &mut gradient[bias.range()]);
                 let stored: &[f32] = if layer == 0 {
                     let image = sized(&mut scratch.image, convolution.stored);
-                    store_pixels(plan.shape.image, convolution, observation, weights, &mut scratch.pixels, image);
+                    store_pixels(plan.shape.image, convolution, observation, input.pixels, &mut scratch.pixels, image);
                     &scratch.image
                 } else {
                     &self.activations[layer - 1][row * convolution.stored..][..convolution.stored]
@@ -394,32 +393,29 @@ fn store_pixels(
     shape: ImageShape,
     convolution: &ConvolutionPlan,
     observation: &[u8],
-    weights: &PackedWeights,
+    pixels: &PixelScale,
     bytes: &mut Vec<u8>,
     image: &mut [f32],
 ) {
     assert_eq!(observation.len(), shape.size(), "observation of the wrong size");
     bytes.resize(convolution.stored, 0);
-    match shape.channels {
-        3 => place_pixels::<3>(observation, &convolution.places, bytes),
-        4 => place_pixels::<4>(observation, &convolution.places, bytes),
-        channels => {
-            for (pixel, &place) in observation.chunks_exact(channels).zip(&convolution.places) {
-                if place != NOWHERE {
-                    bytes[place..place + channels].copy_from_slice(pixel);
-                }
+    match convolution.run_length {
+        12 => copy_runs::<12>(observation, &convolution.runs, bytes),
+        16 => copy_runs::<16>(observation, &convolution.runs, bytes),
+        length => {
+            for &(from, to) in &convolution.runs {
+                let (from, to) = (from as usize, to as usize);
+                bytes[to..to + length].copy_from_slice(&observation[from..from + length]);
             }
         }
     }
-    scale_pixels(bytes, &weights.pixels.scale, &weights.pixels.shift, image);
+    scale_pixels(bytes, &pixels.scale, &pixels.shift, image);
 }
 
-/// Copies pixels of a known number of channels, so that each is one move rather than a call.
-fn place_pixels<const CHANNELS: usize>(observation: &[u8], places: &[usize], bytes: &mut [u8]) {
-    let (pixels, _) = observation.as_chunks::<CHANNELS>();
-    for (pixel, &place) in pixels.iter().zip(places) {
-        if place != NOWHERE {
-            bytes[place..place + CHANNELS].copy_from_slice(pixel);
-        }
+/// Copies runs of a known length, so that each is a move or two rather than a call.
+fn copy_runs<const LENGTH: usize>(observation: &[u8], runs: &[(u32, u32)], bytes: &mut [u8]) {
+    for &(from, to) in runs {
+        let (from, to) = (from as usize, to as usize);
+        bytes[to..to + LENGTH].copy_from_slice(&observation[from..from + LENGTH]);
     }
 }

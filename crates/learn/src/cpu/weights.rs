@@ -88,13 +88,9 @@ pub struct PackedWeights {
     pub gru_biases: [Vec<f32>; 2],
     /// Biases of the heads, padded.
     pub head_biases: Vec<f32>,
-    /// Factor and summand of each stored pixel of the first layer's input.
-    pub pixels: PixelScale,
-    /// Transposes for the backward pass, present in learners only.
-    pub backward: Option<Backward>,
 }
 
-/// Transposed weights, which carry gradients back.
+/// Transposed weights, which carry gradients back: learners alone need them.
 #[derive(Clone, Debug, Default)]
 pub struct Backward {
     /// Convolutions; the first is empty, for nothing flows into the image.
@@ -109,12 +105,6 @@ pub struct Backward {
     pub heads: Vec<f32>,
 }
 
-impl Default for PixelScale {
-    fn default() -> PixelScale {
-        PixelScale::unit(0)
-    }
-}
-
 fn resized(buffer: &mut Vec<f32>, length: usize) -> &mut [f32] {
     buffer.resize(length, 0.0);
     buffer
@@ -122,7 +112,7 @@ fn resized(buffer: &mut Vec<f32>, length: usize) -> &mut [f32] {
 
 impl PackedWeights {
     /// Packs `parameters`, reusing this value's memory.
-    pub fn load(&mut self, plan: &Plan, parameters: &[f32], pixels: &PixelScale) {
+    pub fn load(&mut self, plan: &Plan, parameters: &[f32]) {
         let shape = &plan.shape;
         self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
         self.convolution_biases.resize_with(plan.convolutions.len(), Vec::new);
@@ -155,35 +145,31 @@ impl PackedWeights {
             self.head_biases.extend_from_slice(&parameters[plan.after(plan.head(index)).range()]);
         }
         self.head_biases.resize(plan.padded_outputs, 0.0);
-        self.load_pixels(plan, pixels);
-        if let Some(backward) = &mut self.backward {
-            backward.load(plan, parameters, &joined);
-        }
-    }
-
-    /// Takes over the pixel scale alone.
-    pub fn load_pixels(&mut self, plan: &Plan, pixels: &PixelScale) {
-        let channels = plan.shape.image.channels;
-        let stored = plan.convolutions.first().map_or(plan.shape.image.size(), |first| first.stored);
-        for (from, to) in [(&pixels.scale, &mut self.pixels.scale), (&pixels.shift, &mut self.pixels.shift)] {
-            to.resize(stored, 0.0);
-            match plan.convolutions.first() {
-                None => to.copy_from_slice(from),
-                Some(first) => {
-                    for (values, &place) in from.chunks_exact(channels).zip(&first.places) {
-                        if place != NOWHERE {
-                            to[place..place + channels].copy_from_slice(values);
-                        }
-                    }
-                }
-            }
-        }
     }
 }
 
+/// A pixel scale in the order of the first layer's stored input.
+#[must_use]
+pub fn stored_pixels(plan: &Plan, pixels: &PixelScale) -> PixelScale {
+    let Some(first) = plan.convolutions.first() else { return pixels.clone() };
+    let channels = plan.shape.image.channels;
+    let reorder = |from: &[f32]| {
+        let mut to = vec![0.0; first.stored];
+        for (values, &place) in from.chunks_exact(channels).zip(&first.places) {
+            if place != NOWHERE {
+                to[place..place + channels].copy_from_slice(values);
+            }
+        }
+        to
+    };
+    PixelScale { scale: reorder(&pixels.scale), shift: reorder(&pixels.shift) }
+}
+
 impl Backward {
-    fn load(&mut self, plan: &Plan, parameters: &[f32], joined_heads: &[f32]) {
+    /// Packs `parameters`, reusing this value's memory.
+    pub fn load(&mut self, plan: &Plan, parameters: &[f32]) {
         let shape = &plan.shape;
+        let joined_heads = joined_heads(plan, parameters);
         self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
         for (index, convolution) in plan.convolutions.iter().enumerate().skip(1) {
             let weights = plan.convolution(index);

@@ -6,6 +6,6 @@ mod shape;
 mod stack;
 
 pub use initialise::Initialisation;
-pub use network::{ActingNetwork, LearningNetwork, PixelScale, Published, Sequences};
+pub use network::{ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Published, Sequences};
 pub use shape::{Convolution, ImageShape, NetworkShape, Parameter, ParameterKind};
 pub use stack::{Actor, ModelSequences, ModelShape, Stack};

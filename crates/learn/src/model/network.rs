@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::shape::NetworkShape;
+use crate::cpu::weights::PackedWeights;
 
 /// What turns an 8-bit pixel into the network's input: `clamp(pixel * scale + shift, -5, 5)`, in the image's order.
 #[derive(Clone, PartialEq, Debug)]
@@ -46,21 +47,38 @@ impl Sequences<'_> {
     }
 }
 
-/// A set of weights that samplers may use: immutable, shared, numbered.
+/// Weights of one network for acting: immutable and shared.
+#[derive(Clone, Debug)]
+pub enum NetworkWeights {
+    /// As the processor's kernels read them.
+    Packed {
+        /// Weights.
+        weights: Arc<PackedWeights>,
+        /// How pixels enter, in the order of the first layer's stored input.
+        pixels: Arc<PixelScale>,
+    },
+    /// As a flat vector.
+    Plain {
+        /// Parameters.
+        parameters: Arc<Vec<f32>>,
+        /// How pixels enter, in the image's order.
+        pixels: Arc<PixelScale>,
+    },
+}
+
+/// A set of weights that samplers may use, numbered.
 #[derive(Clone, Debug)]
 pub struct Published {
     /// Number of the update that made it.
     pub version: u64,
-    /// The flat parameters of all networks of the model.
-    pub parameters: Arc<Vec<f32>>,
-    /// How pixels enter.
-    pub pixels: Arc<PixelScale>,
+    /// Weights of each network of the model.
+    pub networks: Vec<NetworkWeights>,
 }
 
 /// A network that acts: one step at a time, nothing kept for a backward pass.
 pub trait ActingNetwork: Send {
-    /// Takes over weights and pixel scale.
-    fn load(&mut self, parameters: &[f32], pixels: &PixelScale);
+    /// Takes over weights.
+    fn load(&mut self, weights: &NetworkWeights);
 
     /// Outputs for one step of some lanes; `state` is replaced by the state after.
     fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32]);
@@ -71,8 +89,14 @@ pub trait LearningNetwork: Send {
     /// Its shape.
     fn shape(&self) -> &NetworkShape;
 
-    /// Takes over weights and pixel scale.
-    fn load(&mut self, parameters: &[f32], pixels: &PixelScale);
+    /// Takes over weights.
+    fn load(&mut self, parameters: &[f32]);
+
+    /// Takes over how pixels enter.
+    fn load_pixels(&mut self, pixels: &PixelScale);
+
+    /// The weights for acting.
+    fn publish(&self) -> NetworkWeights;
 
     /// Outputs of all rows, `shape().outputs()` a row; what a backward pass needs is kept.
     fn forward(&mut self, batch: &Sequences<'_>) -> Vec<f32>;

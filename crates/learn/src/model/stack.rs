@@ -1,7 +1,6 @@
 //! The networks of a policy side by side, seen as one: one output row, one flat parameter vector.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use super::network::{ActingNetwork, LearningNetwork, PixelScale, Published, Sequences};
 use super::shape::{ImageShape, NetworkShape};
@@ -127,8 +126,8 @@ impl Actor {
             return;
         }
         self.version = Some(published.version);
-        for (index, network) in self.networks.iter_mut().enumerate() {
-            network.load(&published.parameters[self.shape.parameter_range(index)], &published.pixels);
+        for (network, weights) in self.networks.iter_mut().zip(&published.networks) {
+            network.load(weights);
         }
     }
 
@@ -177,30 +176,43 @@ impl Stack {
         Stack { networks: shape.networks.iter().map(network).collect(), shape: shape.clone() }
     }
 
-    /// Takes over weights and pixel scale.
-    pub fn load(&mut self, parameters: &[f32], pixels: &Arc<PixelScale>) {
+    /// Takes over weights.
+    pub fn load(&mut self, parameters: &[f32]) {
         for index in 0..self.networks.len() {
-            self.load_network(index, &parameters[self.shape.parameter_range(index)], pixels);
+            self.load_network(index, &parameters[self.shape.parameter_range(index)]);
         }
     }
 
     /// Takes over weights of one network.
-    pub fn load_network(&mut self, network: usize, parameters: &[f32], pixels: &PixelScale) {
-        self.networks[network].load(parameters, pixels);
+    pub fn load_network(&mut self, network: usize, parameters: &[f32]) {
+        self.networks[network].load(parameters);
     }
 
-    /// Output rows.
-    pub fn forward(&mut self, batch: &mut ModelSequences<'_>) -> Vec<f32> {
+    /// Takes over how pixels enter.
+    pub fn load_pixels(&mut self, pixels: &PixelScale) {
+        self.networks.iter_mut().for_each(|network| network.load_pixels(pixels));
+    }
+
+    /// The weights for acting.
+    #[must_use]
+    pub fn publish(&self, version: u64) -> Published {
+        Published { version, networks: self.networks.iter().map(|network| network.publish()).collect() }
+    }
+
+    /// Output rows; the columns of networks outside the range are zero.
+    pub fn forward(&mut self, networks: Range<usize>, batch: &mut ModelSequences<'_>) -> Vec<f32> {
         let width = self.shape.outputs();
         let mut rows = vec![0.0; batch.sequences.rows() * width];
         let mut first = 0;
         for index in 0..self.networks.len() {
-            let outputs = self.forward_network(index, batch);
             let count = self.shape.networks[index].outputs();
-            if count == width {
-                return outputs;
+            if networks.contains(&index) {
+                let outputs = self.forward_network(index, batch);
+                if count == width {
+                    return outputs;
+                }
+                place_columns(&mut rows, width, first, &outputs, count);
             }
-            place_columns(&mut rows, width, first, &outputs, count);
             first += count;
         }
         rows
@@ -212,14 +224,24 @@ impl Stack {
         self.networks[network].forward(&batch.sequences)
     }
 
-    /// The gradient of all parameters from that of the output rows of the last forward pass.
-    pub fn backward(&mut self, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+    /// The gradient of the parameters of some networks from that of the output rows of the last forward pass; what
+    /// `gradient` holds of the others is left as it is.
+    pub fn backward(
+        &mut self,
+        networks: Range<usize>,
+        batch: &mut ModelSequences<'_>,
+        rows: &[f32],
+        gradient: &mut [f32],
+    ) {
         let width = self.shape.outputs();
         let mut first = 0;
         for index in 0..self.networks.len() {
             let count = self.shape.networks[index].outputs();
-            let own: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
-            self.backward_network(index, batch, &own, &mut gradient[self.shape.parameter_range(index)]);
+            if networks.contains(&index) {
+                let own: Vec<f32> =
+                    rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
+                self.backward_network(index, batch, &own, &mut gradient[self.shape.parameter_range(index)]);
+            }
             first += count;
         }
     }

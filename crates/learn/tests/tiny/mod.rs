@@ -116,6 +116,53 @@ impl Environment for Risk {
     }
 }
 
+/// The task until a number of steps, then a panic.
+pub struct Broken {
+    task: Risk,
+    left: u32,
+}
+
+impl Broken {
+    pub fn after(steps: u32) -> Broken {
+        Broken { task: Risk::new(true), left: steps }
+    }
+}
+
+impl Environment for Broken {
+    fn action_space(&self) -> &ActionSpace {
+        self.task.action_space()
+    }
+
+    fn observation_shape(&self) -> [usize; 3] {
+        self.task.observation_shape()
+    }
+
+    fn cost_terms(&self) -> &'static [CostTerm] {
+        self.task.cost_terms()
+    }
+
+    fn reset(&mut self, seed: u64) {
+        self.task.reset(seed);
+    }
+
+    fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
+        self.left = self.left.checked_sub(1).expect("the floor gave way");
+        self.task.step(actions, deltas)
+    }
+
+    fn step_costs(&self) -> &[f64] {
+        self.task.step_costs()
+    }
+
+    fn observe(&mut self, out: &mut [u8]) {
+        self.task.observe(out);
+    }
+
+    fn episode(&self) -> Episode {
+        self.task.episode()
+    }
+}
+
 /// A batch of the task.
 pub fn worlds(options: VecOptions) -> Result<VecEnv, hasard_envs::EnvError> {
     VecEnv::from_fn(options, |_| Ok(Box::new(Risk::new(true))))
