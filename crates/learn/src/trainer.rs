@@ -14,6 +14,7 @@ use crate::device::ComputeDevice;
 use crate::distribution::ActionShape;
 use crate::error::LearnError;
 use crate::gather::{Gatherer, panic_text};
+use crate::heatmap::Heatmap;
 use crate::learner::Learner;
 use crate::metrics::Means;
 use crate::model::{Actor, ImageShape, ModelShape};
@@ -117,6 +118,8 @@ struct Trainer {
     algorithm: Box<dyn Algorithm>,
     gatherer: Gatherer,
     watch: Watch,
+    /// Where the agents have been, if the worlds have places.
+    heatmap: Option<Heatmap>,
     means: Means,
     frames: u64,
     rollouts: u64,
@@ -176,6 +179,7 @@ impl Trainer {
                 (seconds_before, best_feasible) = (progress.wall_seconds, progress.best_feasible);
             }
         }
+        let heatmap = worlds[0].extent().map(|extent| Heatmap::new(extent, sampling.lanes, config.frames, frames));
         let mut samplers = Vec::new();
         for (index, (worlds, state)) in worlds.into_iter().zip(states).enumerate() {
             let actor = Actor::new(&shape, &device);
@@ -194,6 +198,7 @@ impl Trainer {
             algorithm,
             gatherer,
             watch,
+            heatmap,
             means: Means::default(),
             frames,
             rollouts,
@@ -234,6 +239,10 @@ impl Trainer {
                 (hooks.report)(&report);
                 last = Some(report);
                 over = over || hooks.stop.load(Ordering::Relaxed);
+            }
+            if let Some(heatmap) = &mut self.heatmap {
+                heatmap.add(&rollout);
+                heatmap.line(self.frames, over).into_iter().for_each(|line| writer.heatmap(line));
             }
             writer.check()?;
             if over || last_checkpoint.elapsed().as_secs_f64() >= self.config.reporting.checkpoint_seconds {
