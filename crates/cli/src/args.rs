@@ -26,6 +26,18 @@ pub enum Command {
     Bench(BenchArgs),
     /// Draw a moment of an episode as PNG: colour, depth, segmentation or map
     Render(RenderArgs),
+    /// Train an agent
+    Train(TrainArgs),
+    /// Evaluate a trained agent
+    Eval(EvalArgs),
+    /// Write an episode as video, GIF, or as a file that `replay` plays again
+    Record(RecordArgs),
+    /// Play a recorded episode again, at any size
+    Replay(ReplayArgs),
+    /// Make tables, curves and heatmaps from run directories
+    Report(ReportArgs),
+    /// Run many trainings: a grid from a TOML file, or an experiment of the paper by name
+    Sweep(SweepArgs),
     /// Write an environment's map as a WAD that other engines load
     ExportWad(ExportWadArgs),
 }
@@ -64,6 +76,24 @@ pub struct EnvArgs {
     /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+}
+
+/// As the flags are when none is given.
+impl Default for EnvArgs {
+    fn default() -> EnvArgs {
+        EnvArgs {
+            rules: Rules::Paper,
+            hard: false,
+            full_actions: false,
+            frame_skip: 4,
+            size: None,
+            observation: Observation::Rgb,
+            frame_stack: 1,
+            published_depth: false,
+            published_colours: false,
+            iwad: None,
+        }
+    }
 }
 
 /// `--rules`.
@@ -222,6 +252,17 @@ pub enum Buffer {
     Segmented,
 }
 
+impl Buffer {
+    /// What stands below it.
+    pub fn caption(self) -> &'static str {
+        match self {
+            Buffer::Rgb => "view",
+            Buffer::Depth => "depth",
+            Buffer::Segmented => "segmented",
+        }
+    }
+}
+
 /// `hasard render`.
 #[derive(Args, Debug)]
 pub struct RenderArgs {
@@ -245,6 +286,179 @@ pub struct RenderArgs {
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
+}
+
+/// `hasard train`.
+#[derive(Args, Debug)]
+pub struct TrainArgs {
+    /// Environment id
+    pub env: String,
+    /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
+    #[arg(long, default_value = "PPOLag")]
+    pub algo: String,
+    /// paper, released, or quick: settings that learn within minutes on a CPU
+    #[arg(long, default_value = "paper")]
+    pub preset: String,
+    /// Length of the run in frames (tics): policy steps times frame skip; the preset's if absent
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub frames: Option<u64>,
+    /// Run directory; runs/ENV-ALGO-seedSEED if absent
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Go on from the last checkpoint in the run directory, if there is one
+    #[arg(long)]
+    pub resume: bool,
+    /// Begin with the weights and pixel statistics of another run
+    #[arg(long, value_name = "RUN", conflicts_with = "resume")]
+    pub init_from: Option<PathBuf>,
+    /// Cost that an episode may have; TERM=COST for one named cost term, several times for several constraints
+    #[arg(long, value_name = "COST")]
+    pub safety_budget: Vec<String>,
+    /// PPOCost: factor of the cost in the reward
+    #[arg(long, value_name = "FACTOR")]
+    pub cost_scale: Option<f64>,
+    /// cpu, or vulkan / cuda where the program was built with that feature
+    #[arg(long, default_value = "cpu")]
+    pub device: String,
+    /// Sampling and learning take turns: slower, and bit-reproducible
+    #[arg(long)]
+    pub sync: bool,
+    /// Threads; all cores if absent
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+    /// Worlds
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub envs: Option<u32>,
+    /// Any setting of config.json, such as learning.rate=0.0003; may be given several times
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// One JSON object a report, as in metrics.jsonl, instead of the progress bar
+    #[arg(long)]
+    pub json: bool,
+    /// No progress bar
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard eval`.
+#[derive(Args, Debug)]
+pub struct EvalArgs {
+    /// Run directory
+    pub run: PathBuf,
+    /// Number of episodes
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    pub episodes: u32,
+    /// Episode i is seeded SEED + i
+    #[arg(long, default_value_t = 1_000_000)]
+    pub seed: u64,
+    /// Take each sub-action's likeliest choice instead of sampling
+    #[arg(long)]
+    pub greedy: bool,
+    /// The checkpoint with the best return within all budgets instead of the latest
+    #[arg(long)]
+    pub best: bool,
+    /// One JSON object an episode, then one with "summary"
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `hasard record`.
+#[derive(Args, Debug)]
+pub struct RecordArgs {
+    /// Environment id
+    pub env: String,
+    /// File to write: .mp4, .gif or .episode
+    #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
+    pub out: PathBuf,
+    /// random, sticky:K, noop, hold:BUTTONS, hold-after:K:BUTTONS
+    #[arg(long, default_value = "random")]
+    pub policy: String,
+    /// Other buffers beside the view
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub beside: Vec<Buffer>,
+    /// Most policy steps that are shown
+    #[arg(long, default_value_t = u32::MAX, hide_default_value = true)]
+    pub steps: u32,
+    /// Seed of the episode
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard replay`.
+#[derive(Args, Debug)]
+pub struct ReplayArgs {
+    /// Episode file, from `hasard record` or `hasard play`
+    pub file: PathBuf,
+    /// Video or GIF to write; without it the episode is played and its result checked
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Other buffers beside the view
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub beside: Vec<Buffer>,
+    /// Frame size
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    #[arg(long, value_name = "FILE")]
+    pub iwad: Option<PathBuf>,
+    /// Accepted for uniformity; the file holds its seed
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard report`.
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// Run directories, or folders that hold them
+    #[arg(required = true)]
+    pub runs: Vec<PathBuf>,
+    /// Folder to write
+    #[arg(short, long, value_name = "DIR", default_value = "report")]
+    pub out: PathBuf,
+    /// Title of the page
+    #[arg(long, default_value = "HASARD results")]
+    pub title: String,
+    /// One JSON object about what was written
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; bootstrap intervals have a fixed seed
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard sweep`.
+#[derive(Args, Debug)]
+pub struct SweepArgs {
+    /// TOML file, or an experiment of the paper: main, safety-bounds, cost-scale, curriculum, hard, full-actions, depth,
+    /// segmentation, trpo
+    pub what: String,
+    /// Folder of the runs
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Runs at a time
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub parallel: Option<u16>,
+    /// Frames of every run times this, to try an experiment in small
+    #[arg(long, value_name = "FACTOR")]
+    pub scale: Option<f64>,
+    /// Print the command lines and run nothing
+    #[arg(long)]
+    pub dry_run: bool,
+    /// One JSON object a job
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; a sweep lists its seeds
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
 }
 
 /// `hasard export-wad`.

@@ -50,3 +50,12 @@ pub fn report_usage(error: &clap::Error) -> ExitCode {
     eprintln!("hasard: {} (see `hasard --help`)", line.strip_prefix("error: ").unwrap_or(&line));
     ExitCode::from(2)
 }
+
+/// Prints a line on standard output and returns from the calling command if that cannot be done: unlike `println!`, no panic
+/// when the reader has gone away.
+#[macro_export]
+macro_rules! say {
+    ($($argument:tt)*) => {
+        std::io::Write::write_fmt(&mut std::io::stdout().lock(), format_args!("{}\n", format_args!($($argument)*)))?
+    };
+}

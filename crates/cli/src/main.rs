@@ -1,9 +1,12 @@
 //! The program `hasard`: glue between the command line and the libraries.
 
+#[macro_use]
+mod failure;
+
+mod actor;
 mod args;
 mod commands;
 mod episode_lines;
-mod failure;
 mod settings;
 
 use args::{Cli, Command};
@@ -22,6 +25,12 @@ fn main() -> ExitCode {
         Command::Trace(args) => commands::trace::run(&args),
         Command::Bench(args) => commands::bench::run(&args),
         Command::Render(args) => commands::render::run(&args),
+        Command::Train(args) => commands::train::run(&args),
+        Command::Eval(args) => commands::eval::run(&args),
+        Command::Record(args) => commands::record::run(&args),
+        Command::Replay(args) => commands::record::replay(&args),
+        Command::Report(args) => commands::report::run(&args),
+        Command::Sweep(args) => commands::sweep::run(&args),
         Command::ExportWad(args) => commands::export_wad::run(&args),
     };
     match outcome {

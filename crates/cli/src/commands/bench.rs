@@ -27,9 +27,9 @@ pub fn run(args: &BenchArgs) -> Outcome {
             "labels": labels,
             "obs_bytes_per_step": report.observation_bytes,
         });
-        println!("{object}");
+        say!("{object}");
     } else {
-        println!(
+        say!(
             "{}: {:.0} policy steps/s ({:.0} tics/s), {} worlds, {} thread(s), {}, {} bytes an observation, {} resets",
             args.env,
             report.steps_per_second,

@@ -12,7 +12,7 @@ pub fn run(args: &ExportWadArgs) -> Outcome {
     let bytes = hasard_engine::wad::write_map("MAP01", &source);
     let path = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{id}.wad")));
     hasard_media::files::write_whole(&path, &bytes).map_err(Failure::bad)?;
-    println!(
+    say!(
         "{}: {} bytes, MAP01 with {} sectors and {} lines",
         path.display(),
         bytes.len(),

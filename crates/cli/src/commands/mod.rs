@@ -2,7 +2,12 @@
 
 pub mod bench;
 pub mod envs;
+pub mod eval;
 pub mod export_wad;
+pub mod record;
 pub mod render;
+pub mod report;
 pub mod rollout;
+pub mod sweep;
 pub mod trace;
+pub mod train;

@@ -25,7 +25,7 @@ pub fn run(args: &RenderArgs) -> Outcome {
     }
     let picture = picture(&mut env, args.buffer)?;
     hasard_media::png::write(&picture, &args.out).map_err(Failure::bad)?;
-    println!("{}: {}x{}", args.out.display(), picture.width(), picture.height());
+    say!("{}: {}x{}", args.out.display(), picture.width(), picture.height());
     Ok(())
 }
 

@@ -52,6 +52,11 @@ pub(super) struct Portrait {
 
 /// Takes the sprite of a model: cropped to what is seen, shaded, with the rim and the edges between near and far darkened.
 pub(super) fn portrait(model: &Model, view: View) -> Portrait {
+    portrait_above(model, view, f32::MIN)
+}
+
+/// As [`portrait`], but nothing lower than `lowest` (above the anchor, in texels) is drawn.
+pub(super) fn portrait_above(model: &Model, view: View, lowest: f32) -> Portrait {
     let solids: Vec<Solid> = model.parts.iter().map(|part| Solid::new(part, &view)).collect();
     let mut bounds = [f32::MAX, f32::MIN, f32::MAX, f32::MIN];
     for solid in &solids {
@@ -59,7 +64,7 @@ pub(super) fn portrait(model: &Model, view: View) -> Portrait {
         bounds = [bounds[0].min(b[0]), bounds[1].max(b[1]), bounds[2].min(b[2]), bounds[3].max(b[3])];
     }
     let (left, top) = (bounds[0].floor() as i32, bounds[3].ceil() as i32);
-    let (width, height) = ((bounds[1].ceil() as i32 - left).max(1), (top - bounds[2].floor() as i32).max(1));
+    let (width, height) = ((bounds[1].ceil() as i32 - left).max(1), (top - bounds[2].max(lowest).floor() as i32).max(1));
     let (columns, rows) = (width as usize * SAMPLES, height as usize * SAMPLES);
     let step = 1.0 / SAMPLES as f32;
     let right_of = |column: usize| left as f32 + (column as f32 + 0.5) * step;
@@ -69,7 +74,7 @@ pub(super) fn portrait(model: &Model, view: View) -> Portrait {
     for (part, solid) in solids.iter().enumerate() {
         let [_, _, from_y, to_y] = solid.bounds();
         let first_row = ((top as f32 - to_y) * SAMPLES as f32).max(0.0) as usize;
-        let last_row = (((top as f32 - from_y) * SAMPLES as f32) as usize + 1).min(rows);
+        let last_row = (((top as f32 - from_y) * SAMPLES as f32).max(0.0) as usize + 1).min(rows);
         for row in first_row..last_row {
             let line = Line { up: up_of(row), first_right: right_of(0), step, per_step: SAMPLES as f32 };
             solid.scan(&line, part as u16, &mut samples[row * columns..][..columns]);

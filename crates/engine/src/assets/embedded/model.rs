@@ -177,4 +177,34 @@ impl Model {
         });
         Model { parts: parts.collect() }
     }
+
+    /// The figure as an eye sees it that is `distance` behind the origin and `height` above it: what is farther ahead shrinks
+    /// towards the point that the eye looks at. Long boxes are cut up so that they taper.
+    pub(super) fn foreshortened(&self, distance: f32, height: f32) -> Model {
+        let scale = |p: Vector| distance / (distance + p.0).max(distance * 0.2);
+        let point = |p: Vector| Vector(p.0, p.1 * scale(p), (p.2 - height) * scale(p) + height);
+        let mut out = Model::new();
+        for &Part { shape, material } in &self.parts {
+            match shape {
+                Shape::Egg { centre, half, frame } => out.egg_in(frame, point(centre), half * scale(centre), material),
+                Shape::Limb { from, to, from_radius, to_radius } => {
+                    out.limb(point(from), point(to), (from_radius * scale(from), to_radius * scale(to)), material);
+                }
+                Shape::Tube { from, to, from_radius, to_radius } => {
+                    out.tube(point(from), point(to), (from_radius * scale(from), to_radius * scale(to)), material);
+                }
+                Shape::Block { centre, half, frame } => {
+                    let pieces = (half.0 / 4.0) as i32 + 1;
+                    let at = |cut: i32| centre + frame.forward * (half.0 * (2.0 * cut as f32 / pieces as f32 - 1.0));
+                    for piece in 0..pieces {
+                        let (from, to) = (point(at(piece)), point(at(piece + 1)));
+                        let shrink = scale(at(piece).towards(at(piece + 1), 0.5));
+                        let size = Vector((to - from).length() * 0.52, half.1 * shrink, half.2 * shrink);
+                        out.block_in(Frame::facing(to - from, frame.up), from.towards(to, 0.5), size, material);
+                    }
+                }
+            }
+        }
+        out
+    }
 }

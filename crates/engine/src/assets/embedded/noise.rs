@@ -121,6 +121,16 @@ impl Cells {
         Cells { size, count: (count.0 as i32, count.1 as i32), points }
     }
 
+    /// Six-sided cells: points on a grid whose odd rows are shifted by half a cell; the number of rows must be even.
+    pub(super) fn honeycomb(width: usize, height: usize, count: (usize, usize), seed: u32) -> Cells {
+        let mut cells = Cells::new(width, height, count, 0.0, seed);
+        for (i, point) in cells.points.iter_mut().enumerate() {
+            let shift = if (i / count.0).is_multiple_of(2) { -0.25 } else { 0.25 };
+            point.0 += shift * cells.size.0;
+        }
+        cells
+    }
+
     /// The cell that holds a point.
     pub(super) fn at(&self, x: f32, y: f32) -> CellPoint {
         let (column, row) = ((x / self.size.0) as i32, (y / self.size.1) as i32);

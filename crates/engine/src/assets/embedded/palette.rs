@@ -75,21 +75,29 @@ pub(super) fn colours() -> [[u8; 3]; 256] {
     out
 }
 
-/// The palette entry nearest to a colour; the eye's sensitivity weighs the channels.
-fn nearest(palette: &[[u8; 3]; 256], colour: [i32; 3]) -> u8 {
-    let mut best = (i32::MAX, 0);
-    for (index, entry) in palette.iter().enumerate() {
-        let d = [0, 1, 2].map(|c| colour[c] - i32::from(entry[c]));
-        let distance = 3 * d[0] * d[0] + 5 * d[1] * d[1] + 2 * d[2] * d[2];
-        if distance < best.0 {
-            best = (distance, index);
-        }
+/// The palette split by channel, for a search that the compiler can do several entries at a time.
+struct Channels([[i32; 256]; 3]);
+
+impl Channels {
+    fn new(palette: &[[u8; 3]; 256]) -> Channels {
+        Channels(std::array::from_fn(|channel| std::array::from_fn(|index| i32::from(palette[index][channel]))))
     }
-    best.1 as u8
+
+    /// The entry nearest to a colour, the first of equals; the eye's sensitivity weighs the channels.
+    fn nearest(&self, colour: [i32; 3]) -> u8 {
+        let mut least = i32::MAX;
+        for index in 0..256 {
+            let [r, g, b] = [0, 1, 2].map(|channel| colour[channel] - self.0[channel][index]);
+            // The largest distance is 650250, which leaves room for the index in the low byte.
+            least = least.min((3 * r * r + 5 * g * g + 2 * b * b) << 8 | index as i32);
+        }
+        least as u8
+    }
 }
 
 /// The 32 light tables: table `i` maps every colour to the nearest one of `(32 - i) / 32` of its brightness.
 pub(super) fn light_tables(palette: &[[u8; 3]; 256]) -> Box<[[u8; 256]; 32]> {
+    let channels = Channels::new(palette);
     let mut tables = Box::new([[0; 256]; 32]);
     for (level, table) in tables.iter_mut().enumerate() {
         let factor = 32 - level as i32;
@@ -98,7 +106,7 @@ pub(super) fn light_tables(palette: &[[u8; 3]; 256]) -> Box<[[u8; 256]; 32]> {
             *entry = if level == 0 {
                 index as u8
             } else {
-                nearest(palette, palette[index].map(|channel| (i32::from(channel) * factor + 16) / 32))
+                channels.nearest(palette[index].map(|channel| (i32::from(channel) * factor + 16) / 32))
             };
         }
     }
@@ -131,11 +139,12 @@ impl Quantiser {
         }
         centre[0] = 0;
         centre[STEPS - 1] = 250;
+        let channels = Channels::new(palette);
         let mut cube = Vec::with_capacity(STEPS * STEPS * STEPS);
         for red in centre {
             for green in centre {
                 for blue in centre {
-                    cube.push(nearest(palette, [red, green, blue]));
+                    cube.push(channels.nearest([red, green, blue]));
                 }
             }
         }

@@ -118,8 +118,8 @@ pub(super) fn launcher() -> Model {
     m.tube(Vector(18.0, 0.0, 12.0), Vector(30.0, 0.0, 12.0), (5.4, 6.2), GUN);
     m.tube(Vector(29.8, 0.0, 12.0), Vector(30.4, 0.0, 12.0), (4.8, 4.8), HOLE);
     m.tube(Vector(-29.0, 0.0, 12.0), Vector(-24.0, 0.0, 12.0), (5.6, 4.8), GUN);
-    for x in [-14.0, 0.0, 12.0] {
-        m.tube(Vector(x, 0.0, 12.0), Vector(x + 2.0, 0.0, 12.0), (5.1, 5.1), STEEL);
+    for x in [-17.0, 13.0] {
+        m.tube(Vector(x, 0.0, 12.0), Vector(x + 1.6, 0.0, 12.0), (4.9, 4.9), STEEL);
     }
     m.block(Vector(4.0, 0.0, 18.0), Vector(5.0, 1.4, 1.8), GUN);
     m.tube(Vector(-1.0, 0.0, 18.4), Vector(-0.2, 0.0, 18.4), (1.8, 1.8), Material::new(0x301010, 0xA02820, 0xF07050));

@@ -2,7 +2,7 @@
 
 use super::arsenal;
 use super::effects::fireball;
-use crate::assets::embedded::camera::{View, portrait};
+use crate::assets::embedded::camera::{View, portrait_above};
 use crate::assets::embedded::colour::Colour;
 use crate::assets::embedded::gallery::Gallery;
 use crate::assets::embedded::model::{Material, Model};
@@ -16,32 +16,31 @@ const FIRE: [Colour; 4] = [Colour::hex(0xC04808), Colour::hex(0xFF9018), Colour:
 const BLUE: [Colour; 4] = [Colour::hex(0x1838D0), Colour::hex(0x4890FF), Colour::hex(0xA0E8FF), Colour::hex(0xFFFFFF)];
 const GREEN: [Colour; 4] = [Colour::hex(0x188818), Colour::hex(0x48E040), Colour::hex(0xB0FF90), Colour::hex(0xFFFFFF)];
 
-/// How a weapon is held: where its model's origin lies in the 320 by 200 screen, and from how far above it is seen.
+/// Lowest row of the 320 by 200 screen that a view weapon can show: the status bar hides what is below.
+const LOWEST_ROW: i32 = 188;
+
+/// How a weapon is held: where its model's origin lies in the 320 by 200 screen, and how far the eye is behind and above it.
 #[derive(Clone, Copy)]
 struct Hold {
     at: (i32, i32),
-    above: f32,
-    /// Degrees that the weapon points to the left of straight ahead.
-    yaw: f32,
+    eye: (f32, f32),
 }
 
 impl Hold {
-    fn view(self) -> View {
-        View::new(180.0 - self.yaw, self.above)
-    }
-
     /// Adds a frame; `shift` moves the whole weapon on the screen (recoil, pumping).
     fn frame(self, gallery: &mut Gallery, name: &str, model: &Model, shift: (i32, i32)) {
-        let portrait = portrait(model, self.view());
         let (x, y) = (self.at.0 + shift.0, self.at.1 + shift.1);
+        let seen = model.foreshortened(self.eye.0, self.eye.1);
+        let portrait = portrait_above(&seen, View::new(180.0, 0.0), (y - LOWEST_ROW) as f32);
         // A view weapon rests at (1, 32) and lies that far minus its offset from the screen's corner.
         gallery.flat_frame(name, &portrait.canvas, 1 - x + portrait.offset_x, 32 - y + portrait.offset_y);
     }
 
     /// Adds a muzzle flash centred on a point of the model.
     fn flash(self, gallery: &mut Gallery, name: &str, muzzle: Vector, size: i32, tones: &[Colour], seed: u32) {
-        let seen = self.view().see(muzzle);
-        let (x, y) = (self.at.0 + seen.0 as i32, self.at.1 - seen.1 as i32);
+        let scale = self.eye.0 / (self.eye.0 + muzzle.0);
+        let x = self.at.0 - (muzzle.1 * scale) as i32;
+        let y = self.at.1 - ((muzzle.2 - self.eye.1) * scale + self.eye.1) as i32;
         let canvas = fireball(size, 0.95, tones, seed);
         gallery.flat_frame(name, &canvas, 1 - x + size / 2, 32 - y + size / 2);
     }
@@ -74,24 +73,24 @@ fn hand(m: &mut Model, grip: Vector, elbow: Vector, side: f32, size: f32) {
 }
 
 fn pistol(gallery: &mut Gallery) {
-    let hold = Hold { at: (166, 196), above: 26.0, yaw: 0.0 };
+    let hold = Hold { at: (164, 188), eye: (200.0, 150.0) };
     // Kick tilts the muzzle up and the slide back.
     let figure = |kick: f32| {
         let mut m = Model::new();
         let tilt = Frame::turned(-14.0 * kick, 0.0, 0.0);
-        m.attach(&arsenal::pistol().scaled(3.6), tilt, Vector(6.0 - 8.0 * kick, 0.0, 6.0));
-        hand(&mut m, Vector(-20.0, -2.0, 22.0), Vector(-60.0, -20.0, -40.0), -1.0, 1.9);
-        hand(&mut m, Vector(-16.0, 7.0, 17.0), Vector(-56.0, 40.0, -40.0), 1.0, 1.8);
+        m.attach(&arsenal::pistol().scaled(4.3), tilt, Vector(10.0 - 8.0 * kick, 0.0, 4.0));
+        hand(&mut m, Vector(-22.0, -3.0, 26.0), Vector(-90.0, -34.0, -30.0), -1.0, 2.1);
+        hand(&mut m, Vector(-16.0, 9.0, 20.0), Vector(-86.0, 50.0, -30.0), 1.0, 2.0);
         m
     };
     for (kick, drop) in [(0.0, 0), (1.0, 3), (0.5, 1), (0.2, 0), (0.0, 0)] {
         hold.frame(gallery, "PISG", &figure(kick), (0, drop));
     }
-    hold.flash(gallery, "PISF", Vector(48.0, 0.0, 54.0), 38, &FIRE, 61);
+    hold.flash(gallery, "PISF", Vector(60.0, 0.0, 56.0), 38, &FIRE, 61);
 }
 
 fn shotgun(gallery: &mut Gallery) {
-    let hold = Hold { at: (172, 196), above: 24.0, yaw: 7.0 };
+    let hold = Hold { at: (174, 188), eye: (200.0, 150.0) };
     // Pumping draws the fore-end back and lowers the gun.
     let figure = |pump: f32| {
         let mut m = Model::new();
@@ -111,7 +110,7 @@ fn shotgun(gallery: &mut Gallery) {
 }
 
 fn super_shotgun(gallery: &mut Gallery) {
-    let hold = Hold { at: (166, 196), above: 24.0, yaw: 4.0 };
+    let hold = Hold { at: (166, 190), eye: (200.0, 150.0) };
     // Opening breaks the barrels downwards and swings the gun aside.
     let figure = |open: f32| {
         let mut m = Model::new();
@@ -132,7 +131,7 @@ fn super_shotgun(gallery: &mut Gallery) {
 }
 
 fn chaingun(gallery: &mut Gallery) {
-    let hold = Hold { at: (160, 208), above: 25.0, yaw: 0.0 };
+    let hold = Hold { at: (160, 200), eye: (200.0, 150.0) };
     for (turned, drop) in [(0.0, 0), (30.0, 2)] {
         let mut m = Model::new();
         // The barrels turn about their own axis, 13 above the model's origin.
@@ -153,7 +152,7 @@ fn chaingun(gallery: &mut Gallery) {
 }
 
 fn launcher(gallery: &mut Gallery) {
-    let hold = Hold { at: (160, 214), above: 27.0, yaw: 0.0 };
+    let hold = Hold { at: (160, 206), eye: (200.0, 150.0) };
     let mut m = Model::new();
     m.attach(&arsenal::launcher().scaled(3.6), Frame::WORLD, Vector(-20.0, 0.0, 6.0));
     hand(&mut m, Vector(-2.0, -24.0, 40.0), Vector(-60.0, -58.0, -36.0), -1.0, 2.0);
@@ -166,7 +165,7 @@ fn launcher(gallery: &mut Gallery) {
 }
 
 fn plasma_rifle(gallery: &mut Gallery) {
-    let hold = Hold { at: (160, 204), above: 26.0, yaw: 0.0 };
+    let hold = Hold { at: (160, 198), eye: (200.0, 150.0) };
     for lowered in [0.0, 1.0] {
         let mut m = Model::new();
         let tilt = Frame::turned(10.0 * lowered, 12.0 * lowered, -10.0 * lowered);
@@ -181,7 +180,7 @@ fn plasma_rifle(gallery: &mut Gallery) {
 }
 
 fn bfg(gallery: &mut Gallery) {
-    let hold = Hold { at: (160, 216), above: 27.0, yaw: 0.0 };
+    let hold = Hold { at: (160, 208), eye: (200.0, 150.0) };
     let mut m = Model::new();
     m.attach(&arsenal::bfg().scaled(3.3), Frame::WORLD, Vector(0.0, 0.0, 6.0));
     hand(&mut m, Vector(-34.0, -20.0, 34.0), Vector(-66.0, -58.0, -36.0), -1.0, 2.0);
