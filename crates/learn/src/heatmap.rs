@@ -9,7 +9,7 @@ use crate::rollout::Rollout;
 /// Episodes that are counted.
 const EPISODES: usize = 1000;
 /// Cells along the longer side of the map.
-const LONGER_SIDE: i64 = 60;
+const LONGER_SIDE: u64 = 60;
 /// Moments of a run at which the counts are written.
 const MOMENTS: u64 = 20;
 
@@ -36,7 +36,7 @@ impl Heatmap {
     /// An empty grid over a map of some extent, for a run of `frames` frames that has made `done` of them.
     #[must_use]
     pub fn new(extent: [i32; 4], lanes: usize, frames: u64, done: u64) -> Heatmap {
-        let sides = [extent[2] - extent[0], extent[3] - extent[1]].map(|side| i64::from(side).max(1));
+        let sides = [extent[2] - extent[0], extent[3] - extent[1]].map(|side| u64::from(side.max(1).unsigned_abs()));
         let longer = sides[0].max(sides[1]);
         let [columns, rows] = sides.map(|side| (side * LONGER_SIDE).div_ceil(longer) as usize);
         let interval = (frames / MOMENTS).max(1);
@@ -56,8 +56,8 @@ impl Heatmap {
     pub fn add(&mut self, rollout: &Rollout) {
         let mut first_lane = 0;
         for part in &rollout.parts {
-            for row in 0..part.steps * part.lanes {
-                self.add_step(first_lane + row % part.lanes, part.positions[row], part.done[row]);
+            for (row, (&position, &done)) in part.positions.iter().zip(&part.done).enumerate() {
+                self.add_step(first_lane + row % part.lanes, position, done);
             }
             first_lane += part.lanes;
         }
