@@ -548,7 +548,11 @@ impl TrainConfig {
             }
         }
         if self.algorithm.separates_networks() && !self.network.separate {
-            return refuse("separate networks", &"off", &format!("on for {}, whose steps are the policy's alone", self.algorithm));
+            return refuse(
+                "separate networks",
+                &"off",
+                &format!("on for {}, whose steps are the policy's alone", self.algorithm),
+            );
         }
         if self.frames == 0 {
             return refuse("the number of frames", &self.frames, "at least 1");

@@ -12,6 +12,7 @@ pub mod distribution;
 pub mod error;
 pub mod evaluate;
 pub mod gather;
+pub mod heatmap;
 pub mod interrupt;
 pub mod learner;
 pub mod measure;

@@ -31,6 +31,8 @@ pub struct Part {
     pub rewards: Vec<f32>,
     /// Cost of each constraint, `constraints` a row.
     pub costs: Vec<f32>,
+    /// Where the player stood at the end of each step, map units.
+    pub positions: Vec<[i32; 2]>,
     /// The episode ended with the step.
     pub done: Vec<bool>,
     /// The episode was cut off by the clock: (row, output row for the true last observation).
@@ -57,6 +59,7 @@ impl Part {
         self.outputs.resize((rows + lanes) * shape.outputs(), 0.0);
         self.rewards.resize(rows, 0.0);
         self.costs.resize(rows * constraints, 0.0);
+        self.positions.resize(rows, [0, 0]);
         self.done.resize(rows, false);
         self.cut_off.clear();
         self.versions.resize(steps, 0);

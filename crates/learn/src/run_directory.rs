@@ -10,6 +10,9 @@ use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::tensorboard::EventFile;
 
+/// Where the agents have been, a line a moment.
+const HEATMAPS: &str = "heatmaps.jsonl";
+
 /// A run's directory, locked against a second trainer for as long as this value lives.
 pub struct RunDirectory {
     path: PathBuf,
@@ -60,10 +63,15 @@ impl RunDirectory {
         &self.path
     }
 
-    /// Drops the rows after `frames` from the metrics, for a run that goes on from there writes them again. Rows that are
-    /// no JSON are dropped too, and told to `warn`.
+    /// Drops the rows after `frames` from metrics and heatmaps, for a run that goes on from there writes them again. Rows
+    /// that are no JSON are dropped too, and told to `warn`.
     pub fn rewind_metrics(&self, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
-        let path = self.path.join("metrics.jsonl");
+        self.rewind("metrics.jsonl", frames, warn)?;
+        self.rewind(HEATMAPS, frames, warn)
+    }
+
+    fn rewind(&self, name: &str, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+        let path = self.path.join(name);
         let text = match fs::read(&path) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
@@ -125,6 +133,13 @@ impl MetricsLog {
         let path = run.join("metrics.jsonl");
         let lines = File::options().create(true).append(true).open(&path).map_err(LearnError::file(&path, "open"))?;
         Ok(MetricsLog { lines, events: EventFile::create(run)?, path })
+    }
+
+    /// Adds a line to the run's `heatmaps.jsonl`.
+    pub fn write_heatmap(&mut self, line: &Value) -> Result<(), LearnError> {
+        let path = self.path.with_file_name(HEATMAPS);
+        let mut file = File::options().create(true).append(true).open(&path).map_err(LearnError::file(&path, "open"))?;
+        file.write_all(format!("{line}\n").as_bytes()).map_err(LearnError::file(&path, "write"))
     }
 
     /// Writes a row.

@@ -239,6 +239,7 @@ impl Sampler {
             let (reward, safety) = self.shaping.step(self.safety[lane], batch.rewards[index], part.costs[row * count]);
             part.rewards[row] = reward.clamp(-1000.0, 1000.0);
             self.safety[lane] = safety;
+            part.positions[row] = batch.positions[index];
             part.done[row] = batch.terminated[index] || batch.truncated[index];
         }
         for (index, observation) in batch.final_observations.drain(..) {

@@ -51,6 +51,8 @@ pub struct Session {
     pub frames: u64,
     /// Rollouts learned from.
     pub rollouts: u64,
+    /// The map's extent, if the worlds have places: x from, y from, x to, y to in map units.
+    pub extent: Option<[i32; 4]>,
 }
 
 /// The model that an algorithm wants for some worlds.
@@ -82,6 +84,7 @@ impl Session {
             };
             worlds.push(make_worlds(options).map_err(|error| LearnError::Worlds(error.to_string()))?);
         }
+        let extent = worlds[0].extent();
         let shape = model_shape(&config, &worlds[0])?;
         let mut learner = Learner::new(&config, &shape, &device);
         let mut algorithm = algorithms::make(&config);
@@ -118,7 +121,7 @@ impl Session {
         }
         let ahead = if sampling.synchronous { 1 } else { sampling.accumulated + 1 };
         let gatherer = Gatherer::new(samplers, sampling.rollout, ahead, learner.publish());
-        Ok(Session { learner, algorithm, gatherer, watch, means: Means::default(), frames, rollouts, config })
+        Ok(Session { learner, algorithm, gatherer, watch, means: Means::default(), frames, rollouts, extent, config })
     }
 
     /// Waits for the next rollout and learns from it.
@@ -148,9 +151,7 @@ impl Session {
         let lag = self.learner.version.saturating_sub(rollout.oldest_version());
         self.means.add("policy_lag", lag as f64);
         if lag > self.config.sampling.max_policy_lag {
-            warn(format!(
-                "a rollout was {lag} updates old and was thrown away; raise the policy lag allowed, or use --sync"
-            ));
+            warn(format!("a rollout was {lag} updates old and was thrown away; raise the policy lag allowed, or use --sync"));
             return Ok(());
         }
         let learning = self.config.learning.clone();

@@ -9,6 +9,7 @@ use crate::checkpoint::{Checkpoint, Progress, Store};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::gather::panic_text;
+use crate::heatmap::Heatmap;
 use crate::metrics::Means;
 use crate::report::Report;
 use crate::run_directory::RunDirectory;
@@ -63,7 +64,11 @@ pub fn train(
         .unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))))
 }
 
-fn begin(start: Start<'_>, directory: &Path, hooks: &mut Hooks<'_>) -> Result<(RunDirectory, TrainConfig, Beginning), LearnError> {
+fn begin(
+    start: Start<'_>,
+    directory: &Path,
+    hooks: &mut Hooks<'_>,
+) -> Result<(RunDirectory, TrainConfig, Beginning), LearnError> {
     match start {
         Start::Fresh(config) => {
             config.check()?;
@@ -93,6 +98,8 @@ fn begin(start: Start<'_>, directory: &Path, hooks: &mut Hooks<'_>) -> Result<(R
 struct Trainer {
     run: RunDirectory,
     session: Session,
+    /// Where the agents have been, if the worlds have places.
+    heatmap: Option<Heatmap>,
     seconds_before: f64,
     started: Instant,
     best_feasible: Option<f64>,
@@ -110,7 +117,9 @@ impl Trainer {
             Beginning::Nothing | Beginning::Weights(_) => (0.0, None),
         };
         let session = Session::new(config, beginning, make_worlds)?;
-        Ok(Trainer { run, session, seconds_before, started: Instant::now(), best_feasible })
+        let config = &session.config;
+        let heatmap = session.extent.map(|extent| Heatmap::new(extent, config.sampling.lanes, config.frames, session.frames));
+        Ok(Trainer { run, session, heatmap, seconds_before, started: Instant::now(), best_feasible })
     }
 
     fn wall_seconds(&self) -> f64 {
@@ -137,6 +146,10 @@ impl Trainer {
                 last = Some(report);
                 over = over || hooks.stop.load(Ordering::Relaxed);
             }
+            if let Some(heatmap) = &mut self.heatmap {
+                heatmap.add(&rollout);
+                heatmap.line(self.session.frames, over).into_iter().for_each(|line| writer.heatmap(line));
+            }
             writer.check()?;
             if over || last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds {
                 let (checkpoint, best) = self.checkpoint()?;
@@ -157,7 +170,12 @@ impl Trainer {
     }
 
     fn report(&mut self, frames_per_second: f64) -> Report {
-        let mut report = Report::take(&self.session.config, &self.session.watch, &mut self.session.means, self.session.algorithm.multipliers());
+        let mut report = Report::take(
+            &self.session.config,
+            &self.session.watch,
+            &mut self.session.means,
+            self.session.algorithm.multipliers(),
+        );
         report.frames = self.session.frames;
         report.updates = self.session.learner.version;
         report.wall_seconds = self.wall_seconds();
@@ -170,7 +188,9 @@ impl Trainer {
         let report = Report::take(&self.session.config, &self.session.watch, &mut Means::default(), Vec::new());
         let best = match report.means {
             // A few episodes say little; and the window must be full of them before it may set a record.
-            Some((mean, ..)) if report.feasible() && self.session.watch.recent.len() >= self.session.config.reporting.window.min(30) => {
+            Some((mean, ..))
+                if report.feasible() && self.session.watch.recent.len() >= self.session.config.reporting.window.min(30) =>
+            {
                 self.best_feasible.is_none_or(|best| mean > best).then_some(mean)
             }
             _ => None,

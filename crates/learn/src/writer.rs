@@ -12,6 +12,7 @@ use crate::run_directory::MetricsLog;
 
 enum Job {
     Row(u64, Value),
+    Heatmap(Value),
     Checkpoint(Box<Checkpoint>, bool),
 }
 
@@ -35,6 +36,7 @@ impl Writer {
             for job in queue {
                 let result = match job {
                     Job::Row(frames, row) => log.write(frames, &row),
+                    Job::Heatmap(line) => log.write_heatmap(&line),
                     Job::Checkpoint(checkpoint, best) => store.write(&checkpoint, best),
                 };
                 if let Err(error) = result {
@@ -56,6 +58,13 @@ impl Writer {
         if let Some(jobs) = &self.jobs {
             // A writer that has ended leaves its error for `check`.
             let _ = jobs.send(Job::Row(frames, row));
+        }
+    }
+
+    /// Hands a line of heatmaps over.
+    pub fn heatmap(&self, line: Value) {
+        if let Some(jobs) = &self.jobs {
+            let _ = jobs.send(Job::Heatmap(line));
         }
     }
 

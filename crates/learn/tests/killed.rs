@@ -65,9 +65,9 @@ fn a_run_killed_three_times_equals_the_uninterrupted_one() {
     }
     println!("killed {kills} times before the end");
     assert!(weights(&straight) == weights(&broken), "weights differ after {kills} kills");
-    let partial = fs::read_dir(broken.join("checkpoints")).unwrap().filter(|entry| {
-        entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "partial")
-    });
+    let partial = fs::read_dir(broken.join("checkpoints"))
+        .unwrap()
+        .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "partial"));
     assert_eq!(partial.count(), 0, "half-written checkpoints are left behind");
     fs::remove_dir_all(straight).unwrap();
     fs::remove_dir_all(broken).unwrap();

@@ -4,8 +4,7 @@ use burn::tensor::Device;
 use hasard_learn::burn_network::BurnNetwork;
 use hasard_learn::cpu::network::{CpuActor, CpuLearner};
 use hasard_learn::model::{
-    ActingNetwork, Convolution, ImageShape, Initialisation, LearningNetwork, NetworkShape, NetworkWeights, PixelScale,
-    Sequences,
+    ActingNetwork, Convolution, ImageShape, Initialisation, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences,
 };
 use hasard_learn::random::{Purpose, Stream};
 use std::sync::Arc;
@@ -138,10 +137,7 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
             Box::new(CpuActor::new(&shape)),
         ];
         for (kind, mut actor) in actors.into_iter().enumerate() {
-            let plain = NetworkWeights::Plain {
-                parameters: Arc::new(parameters.clone()),
-                pixels: Arc::new(case.pixels.clone()),
-            };
+            let plain = NetworkWeights::Plain { parameters: Arc::new(parameters.clone()), pixels: Arc::new(case.pixels.clone()) };
             // The learner's own packed weights, or those that the actor packs or uploads itself.
             actor.load(&if kind == 0 { learner.publish() } else { plain });
             let mut state = case.state.clone();

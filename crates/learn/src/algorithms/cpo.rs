@@ -74,7 +74,13 @@ impl Plane {
         let active = |lambda: f64| lambda * c - r > 0.0;
         // Projects a lambda onto the stretch where the constraint is active, or where it is not.
         let project = |lambda: f64, want: bool| {
-            if active(lambda) == want { lambda.max(0.0) } else if edge.is_finite() { edge.max(0.0) } else { lambda.max(0.0) }
+            if active(lambda) == want {
+                lambda.max(0.0)
+            } else if edge.is_finite() {
+                edge.max(0.0)
+            } else {
+                lambda.max(0.0)
+            }
         };
         let value_active = |lambda: f64| -0.5 * (a / lambda.max(1e-12) + lambda * room) - r * c / s;
         let value_free = |lambda: f64| -0.5 * (q / lambda.max(1e-12) + 2.0 * lambda * radius);
@@ -106,11 +112,10 @@ impl Algorithm for Cpo {
         let costs = minibatch.tensor(centred(minibatch.advantages[1 + worst.unwrap_or(0)].clone()));
         let region = &self.region;
         let origin = region.origin(learner, minibatch);
-        let (g, reward_before) = region.gradient(learner, minibatch, &origin, |policy, batch| {
-            -(ratio(policy, batch) * advantages.clone()).mean()
-        });
-        let (b, cost_before) = region
-            .gradient(learner, minibatch, &origin, |policy, batch| (ratio(policy, batch) * costs.clone()).mean());
+        let (g, reward_before) =
+            region.gradient(learner, minibatch, &origin, |policy, batch| -(ratio(policy, batch) * advantages.clone()).mean());
+        let (b, cost_before) =
+            region.gradient(learner, minibatch, &origin, |policy, batch| (ratio(policy, batch) * costs.clone()).mean());
         let (x, y) = (region.solve(learner, minibatch, &origin, &g), region.solve(learner, minibatch, &origin, &b));
         // The surrogate's unit is a discounted step; an episode's excess is brought to it as in P3O.
         let excess = worst.map_or(-1.0, |index| (1.0 - self.gamma) * signals[index].episode_excess());
@@ -126,9 +131,7 @@ impl Algorithm for Cpo {
             let reward = scalar(&-(ratio.clone() * advantages.clone()).mean());
             let cost = scalar(&(ratio * costs.clone()).mean());
             // While above the budget the reward may fall; the cost may rise by what is left of the budget, no more.
-            (excess > 0.0 || reward <= reward_before)
-                && cost - cost_before <= allowed
-                && divergence <= 1.5 * region.radius
+            (excess > 0.0 || reward <= reward_before) && cost - cost_before <= allowed && divergence <= 1.5 * region.radius
         });
         note(learner, minibatch, share, means);
         let critics = 1 + learner.shape().cost_critics;

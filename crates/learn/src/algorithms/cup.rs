@@ -57,10 +57,8 @@ impl Algorithm for Cup {
         let advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
         learner.descend(minibatch, |heads, batch| ppo::loss(&advantages, heads, batch, &self.settings), means)?;
 
-        let costs: Vec<_> = minibatch.advantages[1..]
-            .iter()
-            .map(|advantages| minibatch.tensor(centred(advantages.clone())))
-            .collect();
+        let costs: Vec<_> =
+            minibatch.advantages[1..].iter().map(|advantages| minibatch.tensor(centred(advantages.clone()))).collect();
         let projection = |heads: &Heads, batch: &Minibatch<'_>| self.projection(&costs, heads, batch);
         learner.descend(minibatch, projection, &mut Means::default())
     }

@@ -34,8 +34,7 @@ impl Case {
         let mut old_outputs = Vec::new();
         let (mut actions, mut deltas, mut old_log) = (Vec::new(), Vec::new(), Vec::new());
         for row in outputs.chunks_exact(width) {
-            let old: Vec<f32> =
-                row[..shape.parameters()].iter().map(|value| value + (spread * stream.normal()) as f32).collect();
+            let old: Vec<f32> = row[..shape.parameters()].iter().map(|value| value + (spread * stream.normal()) as f32).collect();
             let (mut action, mut delta) = (vec![0; shape.sizes.len()], vec![0.0; shape.deltas]);
             old_log.push(shape.sample(&old, &mut stream, &mut action, &mut delta));
             actions.extend(action);
@@ -50,14 +49,7 @@ impl Case {
 
     fn minibatch(&self) -> Minibatch<'static> {
         let device = loss_device();
-        let empty = Sequences {
-            steps: 0,
-            lanes: 0,
-            observations: vec![],
-            extra: vec![],
-            initial_state: vec![],
-            reset: vec![],
-        };
+        let empty = Sequences { steps: 0, lanes: 0, observations: vec![], extra: vec![], initial_state: vec![], reset: vec![] };
         let old = matrix(self.old_outputs.clone(), self.shape.parameters());
         let columns = |values: &[Vec<f32>; 2]| values.iter().map(|values| column(values.clone(), &device)).collect();
         Minibatch {
@@ -301,8 +293,7 @@ fn focops_counts_near_samples_alone() {
     let case = Case::new(discrete(), 0.15);
     let (advantages, tensor) = standardised_tensor(&case, 0);
     let at: Vec<f64> = case.outputs.iter().map(|&v| f64::from(v)).collect();
-    let near: Vec<bool> =
-        (0..ROWS).map(|i| case.divergence_from(case.row(&at, i), &case.old_row(i)) <= 0.02).collect();
+    let near: Vec<bool> = (0..ROWS).map(|i| case.divergence_from(case.row(&at, i), &case.old_row(i)) <= 0.02).collect();
     assert!(near.contains(&true) && near.contains(&false), "samples of both kinds");
     case.compare(
         "FOCOPS",

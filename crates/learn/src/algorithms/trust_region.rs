@@ -104,8 +104,7 @@ impl TrustRegion {
         let step = DIFFERENCE / norm;
         let mut moved = |scale| to_rows(learner.policy_outputs(minibatch, &plus(&origin.parameters, scale, vector)).detach());
         let (ahead, behind) = (moved(step), moved(-step));
-        let change: Vec<f32> =
-            ahead.iter().zip(&behind).map(|(a, b)| (f64::from(a - b) / (2.0 * step)) as f32).collect();
+        let change: Vec<f32> = ahead.iter().zip(&behind).map(|(a, b)| (f64::from(a - b) / (2.0 * step)) as f32).collect();
         let mut rows = learner.shape().action.fisher_times(&origin.outputs, &change);
         let count = minibatch.batch.sequences.rows() as f32;
         rows.iter_mut().for_each(|value| *value /= count);
@@ -195,12 +194,7 @@ pub fn train_critics(
 }
 
 /// Reports a finished step.
-pub fn note(
-    learner: &mut Learner,
-    minibatch: &mut Minibatch<'_>,
-    share: f64,
-    means: &mut Means,
-) {
+pub fn note(learner: &mut Learner, minibatch: &mut Minibatch<'_>, share: f64, means: &mut Means) {
     let parameters = learner.policy_parameters();
     let outputs = learner.policy_outputs(minibatch, &parameters).detach();
     let heads = Heads { policy: Policy::new(&learner.shape().action, &outputs), values: vec![minibatch.old_values[0].clone()] };

@@ -89,7 +89,11 @@ impl CpuLearner {
     }
 
     /// Runs `work` for every shard, on a thread of its own but for the first.
-    fn each_shard(&mut self, batch: &Sequences<'_>, work: impl Fn(&Plan, &PackedWeights, &Backward, &mut Shard, &Cut<'_>) + Sync) {
+    fn each_shard(
+        &mut self,
+        batch: &Sequences<'_>,
+        work: impl Fn(&Plan, &PackedWeights, &Backward, &mut Shard, &Cut<'_>) + Sync,
+    ) {
         let cuts = cuts(&self.plan.shape, batch, &self.pixels, self.shards.len());
         let (plan, weights, backward, work) = (&*self.plan, &*self.weights, &self.backward, &work);
         std::thread::scope(|scope| {
@@ -236,15 +240,8 @@ impl ActingNetwork for CpuActor {
         let shape = &self.plan.shape;
         let observations: Vec<&[u8]> = observations.chunks_exact(shape.image.size()).collect();
         let lanes = observations.len();
-        let input = Input {
-            steps: 1,
-            lanes,
-            observations: &observations,
-            extra,
-            initial_state: state,
-            reset: &[],
-            pixels: &self.pixels,
-        };
+        let input =
+            Input { steps: 1, lanes, observations: &observations, extra, initial_state: state, reset: &[], pixels: &self.pixels };
         let rows = self.pass.forward(&self.plan, &self.weights, &input);
         let width = shape.outputs();
         for (to, from) in outputs.chunks_exact_mut(width).zip(rows.chunks_exact(self.plan.padded_outputs)) {

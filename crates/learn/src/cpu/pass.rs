@@ -205,14 +205,7 @@ impl Pass {
     }
 
     /// Adds to `gradient` that of the parameters, from the gradient of the (unpadded) outputs of the last forward pass.
-    pub fn backward(
-        &mut self,
-        plan: &Plan,
-        back: &Backward,
-        input: &Input<'_>,
-        output_gradient: &[f32],
-        gradient: &mut [f32],
-    ) {
+    pub fn backward(&mut self, plan: &Plan, back: &Backward, input: &Input<'_>, output_gradient: &[f32], gradient: &mut [f32]) {
         let shape = &plan.shape;
         let rows = self.rows;
         let mut scratch = std::mem::take(&mut self.scratch);
@@ -323,14 +316,7 @@ impl Pass {
     }
 
     /// Takes the gradient of the features from `rows_b` through the convolutions.
-    fn encode_backward(
-        &mut self,
-        plan: &Plan,
-        back: &Backward,
-        input: &Input<'_>,
-        scratch: &mut Scratch,
-        gradient: &mut [f32],
-    ) {
+    fn encode_backward(&mut self, plan: &Plan, back: &Backward, input: &Input<'_>, scratch: &mut Scratch, gradient: &mut [f32]) {
         let layers = plan.convolutions.len();
         let features = plan.shape.features();
         for buffers in [&mut scratch.padded_gradient, &mut scratch.stored_gradient, &mut scratch.convolution_gradients] {

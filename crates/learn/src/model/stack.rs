@@ -226,20 +226,13 @@ impl Stack {
 
     /// The gradient of the parameters of some networks from that of the output rows of the last forward pass; what
     /// `gradient` holds of the others is left as it is.
-    pub fn backward(
-        &mut self,
-        networks: Range<usize>,
-        batch: &mut ModelSequences<'_>,
-        rows: &[f32],
-        gradient: &mut [f32],
-    ) {
+    pub fn backward(&mut self, networks: Range<usize>, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
         let width = self.shape.outputs();
         let mut first = 0;
         for index in 0..self.networks.len() {
             let count = self.shape.networks[index].outputs();
             if networks.contains(&index) {
-                let own: Vec<f32> =
-                    rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
+                let own: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
                 self.backward_network(index, batch, &own, &mut gradient[self.shape.parameter_range(index)]);
             }
             first += count;
