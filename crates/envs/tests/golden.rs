@@ -21,7 +21,8 @@ use std::hash::Hasher;
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/goldens.txt");
 const STEPS: u32 = 300;
 const PARTS: [&str; 4] = ["frames", "rewards", "costs", "state"];
-const HEAD: &str = "# Written by tests/golden.rs, which tells how: id, rules, constraint, actions, then fingerprints of 300 steps.\n";
+const HEAD: &str =
+    "# Written by tests/golden.rs, which tells how: id, rules, constraint, actions, then fingerprints of 300 steps.\n";
 
 /// Fingerprints of the parts, in the order of [`PARTS`]. Each sub-action is held for a while, so that the agent gets about.
 fn play(id: &str, options: &EnvOptions) -> [u64; 4] {
@@ -76,11 +77,8 @@ fn fingerprints_are_as_recorded() {
                 for (full_actions, actions) in [(false, "simplified"), (true, "full")] {
                     let options = EnvOptions { rules, hard, full_actions, size: FrameSize::LEARNER, ..EnvOptions::default() };
                     let [frames, rewards, costs, state] = play(&id.to_string(), &options);
-                    writeln!(
-                        text,
-                        "{id} {name} {constraint} {actions} {frames:016x} {rewards:016x} {costs:016x} {state:016x}"
-                    )
-                    .unwrap();
+                    writeln!(text, "{id} {name} {constraint} {actions} {frames:016x} {rewards:016x} {costs:016x} {state:016x}")
+                        .unwrap();
                 }
             }
         }
