@@ -9,7 +9,7 @@ mod metrics;
 pub use config::{Config, TOLD, default_budget, scenario_and_level};
 pub use discover::{Found, discover};
 pub use episodes::{EpisodeResult, read_episode_lines};
-pub use heatmap::HeatmapData;
+pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
 
 use std::path::{Path, PathBuf};
