@@ -114,11 +114,12 @@ fn main() {
         for size in [(128, 72), (160, 120), (320, 240), (640, 480), (1920, 1080)].into_iter().take(sizes) {
             let size = FrameSize { width: size.0, height: size.1 };
             let mut renderer = Renderer::new(scene.clone(), Arc::new(View::new(size).unwrap()));
-            for (depth, labels) in [(false, false), (true, false), (false, true), (true, true)] {
+            let all = [(false, false), (true, false), (false, true), (true, true)];
+            for (depth, labels) in all.into_iter().take(if learner_only { 1 } else { 4 }) {
                 // The best of several runs at each place, which keeps out what else the machine does.
                 let frames = if size.width > 400 { 50 } else { 1000 };
                 let mut best = vec![f64::MAX; frames];
-                for _ in 0..9 {
+                for _ in 0..if learner_only { arguments[1].parse().unwrap_or(60) } else { 9 } {
                     let mut rng = Rng::new(9);
                     for best in &mut best {
                         let (x, y) = (rng.between(20, 2150), rng.between(84, 2220));

@@ -49,7 +49,7 @@ impl Masked<'_> {
             return false;
         }
         let seg = &self.scene.segs[silhouette.seg as usize];
-        let in_front = || sprite.x * seg.normal[0] + sprite.y * seg.normal[1] - seg.offset > 0;
+        let in_front = || seg.away(sprite.x, sprite.y) > 0;
         far >= sprite.inverse || !in_front()
     }
 
@@ -130,14 +130,12 @@ impl Masked<'_> {
             let row_index = silhouette.rows + x - silhouette.first;
             let (open_top, open_bottom) = (self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]);
             let drawn = std::mem::replace(&mut self.silhouettes.drawn[row_index], true);
-            let (mut first_row, mut end_row) = ([0], [0]);
-            upper.rows(self.view, x, &mut first_row);
-            lower.rows(self.view, x, &mut end_row);
-            let rows = first_row[0].max(open_top)..end_row[0].min(open_bottom);
+            let column = self.view.columns[x];
+            let rows = upper.row(self.view, column).max(open_top)..lower.row(self.view, column).min(open_bottom);
             if drawn || rows.is_empty() {
                 continue;
             }
-            let column = i64::from(self.view.columns[x]);
+            let column = i64::from(column);
             let distance = silhouette.line.distance_at(column);
             let nearness = (silhouette.line.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let table = &scene.assets.light_tables[light.table(nearness)];

@@ -9,8 +9,8 @@ pub(super) struct Openings {
     pub bottom: Vec<i16>,
     /// A bit for each column that has an open row.
     open: Vec<u64>,
-    /// Whether any column has been closed.
-    any_closed: bool,
+    /// Number of columns that are closed.
+    closed: usize,
 }
 
 impl Openings {
@@ -25,13 +25,13 @@ impl Openings {
         if !width.is_multiple_of(64) {
             self.open[width / 64] = (1 << (width % 64)) - 1;
         }
-        self.any_closed = false;
+        self.closed = 0;
     }
 
     /// Whether any column of `first..end` is open.
     #[inline]
     pub fn any_open(&self, first: usize, end: usize) -> bool {
-        if !self.any_closed {
+        if self.closed == 0 {
             return first < end;
         }
         let (mut word, last) = (first / 64, (end - 1) / 64);
@@ -49,13 +49,13 @@ impl Openings {
     /// Whether every column is closed: nothing more can be seen.
     #[inline]
     pub fn all_closed(&self) -> bool {
-        self.any_closed && self.open.iter().all(|&word| word == 0)
+        self.closed == self.top.len()
     }
 
-    /// Whether any column has been closed at all.
+    /// Whether so much is closed that it pays to ask what hides what.
     #[inline]
-    pub fn any_closed(&self) -> bool {
-        self.any_closed
+    pub fn many_closed(&self) -> bool {
+        self.closed * 4 > self.top.len()
     }
 
     /// Closes the columns `first..end`.
@@ -70,8 +70,9 @@ impl Openings {
     pub fn close_column(&mut self, x: usize) {
         self.bottom[x] = 0;
         self.top[x] = 0;
-        self.open[x / 64] &= !(1 << (x % 64));
-        self.any_closed = true;
+        let (word, bit) = (&mut self.open[x / 64], 1 << (x % 64));
+        self.closed += usize::from(*word & bit != 0);
+        *word &= !bit;
     }
 
     /// Notes which columns of `first..end` have no open row left.

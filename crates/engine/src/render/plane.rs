@@ -32,7 +32,7 @@ impl PlaneKey {
 const BUCKETS: usize = 64;
 /// No plane.
 const NONE: u16 = u16::MAX;
-/// `top` of a column that the plane does not have.
+/// `top` and `bottom` of a column that the plane does not have.
 pub(super) const UNUSED: i16 = i16::MAX;
 
 /// An area of one plane: at most one run of rows in each column.
@@ -45,9 +45,9 @@ pub(super) struct Plane {
     pub first: usize,
     /// One past the last column.
     pub end: usize,
-    /// First row by column, or [`UNUSED`].
+    /// First row by column, or [`UNUSED`]; one column more than the frame has.
     pub top: Vec<i16>,
-    /// One past the last row by column.
+    /// One past the last row by column, or [`UNUSED`].
     pub bottom: Vec<i16>,
 }
 
@@ -89,7 +89,7 @@ impl Planes {
 
     fn start(&mut self, key: PlaneKey) -> u16 {
         if self.used == self.list.len() {
-            let (top, bottom) = (vec![UNUSED; self.width], vec![0; self.width]);
+            let (top, bottom) = (vec![], vec![]);
             self.list.push(Plane { key, next: NONE, first: 0, end: 0, top, bottom });
         }
         let index = self.used;
@@ -98,49 +98,75 @@ impl Planes {
         plane.key = key;
         plane.next = std::mem::replace(&mut self.buckets[key.bucket()], index as u16);
         (plane.first, plane.end) = (self.width, 0);
-        plane.top.clear();
-        plane.top.resize(self.width, UNUSED);
-        plane.bottom.resize(self.width, 0);
+        // One more than there are columns ends the last span.
+        plane.top.resize(self.width + 1, UNUSED);
+        plane.bottom.resize(self.width + 1, UNUSED);
+        plane.top.fill(UNUSED);
+        plane.bottom.fill(UNUSED);
         index as u16
     }
 
-    /// Adds the rows `tops[i]..bottoms[i]` of the columns from `first` on; returns the plane that took them, which is
-    /// another one where `index` already has rows in one of the columns.
-    pub fn add(&mut self, index: u16, first: usize, tops: &[i16], bottoms: &[i16]) -> u16 {
-        let end = first + tops.len();
-        let plane = &self.list[usize::from(index)];
-        let taken = plane.top[first..end]
-            .iter()
-            .zip(tops.iter().zip(bottoms))
-            .fold(false, |taken, (&have, (&top, &bottom))| taken | ((have != UNUSED) & (top < bottom)));
-        let index = if taken { self.start(plane.key) } else { index };
+    /// The rows of the columns `first..end` of a plane: first and one past the last.
+    #[inline]
+    pub fn columns(&mut self, index: u16, first: usize, end: usize) -> (&mut [i16], &mut [i16]) {
         let plane = &mut self.list[usize::from(index)];
-        let columns = plane.top[first..end].iter_mut().zip(&mut plane.bottom[first..end]);
-        for ((plane_top, plane_bottom), (&top, &bottom)) in columns.zip(tops.iter().zip(bottoms)) {
-            let fill = top < bottom;
-            *plane_top = if fill { top } else { *plane_top };
-            *plane_bottom = if fill { bottom } else { *plane_bottom };
-        }
         plane.first = plane.first.min(first);
         plane.end = plane.end.max(end);
-        index
+        (&mut plane.top[first..end], &mut plane.bottom[first..end])
+    }
+
+    /// Another plane with the key of plane `index`, which has a run of rows already where another one is needed.
+    #[cold]
+    pub fn start_another(&mut self, index: u16) -> u16 {
+        self.start(self.list[usize::from(index)].key)
     }
 }
 
+/// A run of pixels of a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub row: u16,
+    /// First column.
+    pub first: u16,
+    /// One past the last.
+    pub end: u16,
+}
+
 impl Plane {
-    /// Calls `span(row, first column, one past the last column)` for every run of pixels of the plane; `starts` is
-    /// scratch of at least as many entries as there are rows.
-    pub fn spans(&self, starts: &mut [u16], mut span: impl FnMut(usize, usize, usize)) {
-        // A column without rows is UNUSED..UNUSED, so that it lies above and below of every other.
+    /// Whether the plane has any column.
+    pub fn is_empty(&self) -> bool {
+        self.first >= self.end
+    }
+
+    /// Lists every run of pixels of the plane; `starts` is scratch of at least as many entries as there are rows.
+    pub fn spans(&self, starts: &mut [u16], spans: &mut Vec<Span>) {
+        spans.clear();
+        // A column without rows is UNUSED..UNUSED, so that it lies above and below of every other. The one behind the
+        // last column is such a one.
         let (mut t1, mut b1) = (UNUSED, UNUSED);
-        for x in self.first..=self.end {
-            let (t2, b2) = if x < self.end { (self.top[x], self.bottom[x]) } else { (UNUSED, UNUSED) };
-            let b2 = if t2 == UNUSED { UNUSED } else { b2 };
-            for row in (t1..b1.min(t2)).chain(t1.max(b2)..b1) {
-                span(row as usize, usize::from(starts[row as usize]), x);
+        let columns = self.top[self.first..=self.end].iter().zip(&self.bottom[self.first..=self.end]);
+        for (x, (&t2, &b2)) in (self.first as u16..).zip(columns) {
+            if (t1, b1) == (t2, b2) {
+                continue;
             }
-            for row in (t2..b2.min(t1)).chain(t2.max(b1)..b2) {
-                starts[row as usize] = x as u16;
+            // Rows that end before this column, then rows that begin with it.
+            let (mut top, mut bottom) = (t1, b1);
+            while top < bottom && top < t2 {
+                spans.push(Span { row: top as u16, first: starts[top as usize], end: x });
+                top += 1;
+            }
+            while bottom > top && bottom > b2 {
+                bottom -= 1;
+                spans.push(Span { row: bottom as u16, first: starts[bottom as usize], end: x });
+            }
+            let (mut top, mut bottom) = (t2, b2);
+            while top < bottom && top < t1 {
+                starts[top as usize] = x;
+                top += 1;
+            }
+            while bottom > top && bottom > b1 {
+                bottom -= 1;
+                starts[bottom as usize] = x;
             }
             (t1, b1) = (t2, b2);
         }
@@ -182,14 +208,8 @@ impl<'a> PlaneShader<'a> {
 
     /// Draws the frame columns `first..end` of a frame row.
     #[inline]
-    pub fn span<const DEPTH: bool, const CLASS: bool>(
-        &self,
-        frame: &mut Frame,
-        flat: &FlatPicture,
-        row: usize,
-        first: usize,
-        end: usize,
-    ) {
+    pub fn span<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, flat: &FlatPicture, span: Span) {
+        let (row, first, end) = (usize::from(span.row), usize::from(span.first), usize::from(span.end));
         let below = i64::from(self.view.rows[row]) - self.camera.horizon;
         let away = if self.above { -1 - below } else { below }.max(0);
         let distance = (self.height * self.view.row_slopes[away as usize]) >> 16;
@@ -252,13 +272,18 @@ mod tests {
         let mut planes = Planes::default();
         planes.reset(columns.len());
         let index = planes.find(KEY);
-        let (tops, bottoms): (Vec<i16>, Vec<i16>) = columns.iter().copied().unzip();
-        planes.add(index, 0, &tops, &bottoms);
+        let (tops, bottoms) = planes.columns(index, 0, columns.len());
+        for (x, &(top, bottom)) in columns.iter().enumerate().filter(|(_, (top, bottom))| top < bottom) {
+            (tops[x], bottoms[x]) = (top, bottom);
+        }
         let mut pixels = vec![0; 8 * columns.len()];
-        planes.used()[0].spans(&mut [0; 8], |row, first, end| {
-            assert!(first < end);
-            pixels[row * columns.len() + first..row * columns.len() + end].iter_mut().for_each(|p| *p += 1);
-        });
+        let mut spans = Vec::new();
+        planes.used()[0].spans(&mut [0; 8], &mut spans);
+        for span in spans {
+            assert!(span.first < span.end);
+            let row = usize::from(span.row) * columns.len();
+            pixels[row + usize::from(span.first)..row + usize::from(span.end)].iter_mut().for_each(|p| *p += 1);
+        }
         pixels
     }
 
@@ -276,15 +301,13 @@ mod tests {
     }
 
     #[test]
-    fn a_column_that_is_taken_starts_another_plane() {
+    fn the_newest_plane_of_a_key_is_found() {
         let mut planes = Planes::default();
         planes.reset(4);
         let first = planes.find(KEY);
-        assert_eq!(planes.add(first, 0, &[2, 2], &[5, 5]), first);
-        assert_eq!(planes.add(first, 2, &[1, 1], &[3, 3]), first);
-        assert_eq!(planes.add(first, 1, &[4], &[4]), first, "an empty run takes nothing");
-        let second = planes.add(first, 1, &[0], &[1]);
-        assert_ne!(second, first);
+        let second = planes.start_another(first);
+        assert_ne!(first, second);
         assert_eq!(planes.find(KEY), second);
+        assert_ne!(planes.find(PlaneKey { light: 1, ..KEY }), second);
     }
 }

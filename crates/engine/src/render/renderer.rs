@@ -6,7 +6,7 @@ use super::label::{Label, Labels};
 use super::masked::Masked;
 use super::openings::Openings;
 use super::palette::Tint;
-use super::plane::{PlaneShader, Planes};
+use super::plane::{PlaneShader, Planes, Span};
 use super::scene::Scene;
 use super::silhouette::Silhouettes;
 use super::sky::SkyShader;
@@ -34,6 +34,8 @@ pub struct Renderer {
     pictures: Vec<u32>,
     /// First column of each row's span.
     span_starts: Vec<u16>,
+    /// Spans of the plane at hand.
+    spans: Vec<Span>,
     /// Start of each column's texels in the sky's picture.
     sky_columns: Vec<u32>,
     sprites: Vec<SeenSprite>,
@@ -82,6 +84,7 @@ impl Renderer {
             entered: vec![false; scene.sector_count],
             pictures: Vec::new(),
             span_starts: vec![0; view.view_rows],
+            spans: Vec::new(),
             sky_columns: vec![0; width],
             sprites: Vec::new(),
             sprite_rows: [Vec::new(), Vec::new()],
@@ -191,9 +194,10 @@ impl Renderer {
     fn draw_planes<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera) {
         let tables = &self.scene.assets.light_tables;
         for plane in self.planes.used() {
-            if plane.first >= plane.end {
+            if plane.is_empty() {
                 continue;
             }
+            plane.spans(&mut self.span_starts, &mut self.spans);
             if plane.key.sky {
                 let shader = SkyShader {
                     camera,
@@ -202,16 +206,16 @@ impl Renderer {
                     picture: &self.scene.textures.walls[self.scene.sky],
                 };
                 shader.columns(&mut self.sky_columns, plane.first, plane.end);
-                plane.spans(&mut self.span_starts, |row, first, end| {
-                    shader.span::<DEPTH, CLASS>(&mut self.frame, &self.sky_columns, row, first, end);
-                });
+                for &span in &self.spans {
+                    shader.span::<DEPTH, CLASS>(&mut self.frame, &self.sky_columns, span);
+                }
             } else {
                 let shader = PlaneShader::new(camera, &self.view, tables, plane.key);
                 let picture = self.pictures[usize::from(plane.key.texture.0)];
                 let flat = &self.scene.textures.flats[picture as usize];
-                plane.spans(&mut self.span_starts, |row, first, end| {
-                    shader.span::<DEPTH, CLASS>(&mut self.frame, flat, row, first, end);
-                });
+                for &span in &self.spans {
+                    shader.span::<DEPTH, CLASS>(&mut self.frame, flat, span);
+                }
             }
         }
     }

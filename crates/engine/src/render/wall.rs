@@ -41,7 +41,7 @@ impl SeenLine {
     /// The line of a seg that faces the camera from `away`, the distance with 44 fractional bits.
     #[inline]
     pub fn new(camera: &Camera, seg: &SceneSeg, face: &Face, away: i64) -> SeenLine {
-        let [nx, ny] = seg.normal;
+        let [nx, ny] = seg.normal.map(i64::from);
         // Nearer than 1/256 unit counts as that far.
         let reciprocal = (1i64 << 62) / (away >> 20).max(1 << 16);
         let inverse = |ray: [i64; 2]| {
@@ -87,16 +87,11 @@ impl SeenLine {
 }
 
 impl Edge {
-    /// The first frame row whose centre is below the edge, for each frame column from `first` on.
+    /// The first frame row whose centre is below the edge at a base column.
     #[inline]
-    pub fn rows(&self, view: &View, first: usize, rows: &mut [i16]) {
-        let at = self.at + (1 << (ROW_BITS - 1)) - 1;
-        let limit = i64::from(view.base_view_rows);
-        let columns = &view.columns[first..first + rows.len()];
-        for (row, &column) in rows.iter_mut().zip(columns) {
-            let base = ((at + self.step * i64::from(column)) >> ROW_BITS).clamp(0, limit);
-            *row = view.first_row[base as usize];
-        }
+    pub fn row(&self, view: &View, column: u32) -> i16 {
+        let at = self.at + self.step * i64::from(column) + (1 << (ROW_BITS - 1)) - 1;
+        view.first_row[(at >> ROW_BITS).clamp(0, i64::from(view.base_view_rows)) as usize]
     }
 }
 
@@ -132,13 +127,12 @@ impl WallShader<'_> {
             // Rows of texture a base row, as a fraction of its height with 32 bits: what overflows is whole heights.
             let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
             let at = (start + step / 2 - step.wrapping_mul(self.camera.horizon)) as u32;
-            let step = step as u32;
-            let rows = &self.view.rows[top..bottom];
-            let pixels = frame.colour[top * frame.width + x..].iter_mut().step_by(frame.width);
-            for (pixel, &row) in pixels.zip(rows) {
-                let at = at.wrapping_add(step.wrapping_mul(row));
-                let texel = (u64::from(at) * u64::from(picture.height)) >> 32;
-                *pixel = table[usize::from(texels[texel as usize])];
+            let column = Column { texels, table, at, step: step as u32 };
+            let (rows, first_pixel) = (&self.view.rows[top..bottom], top * frame.width + x);
+            match picture.height {
+                128 => column.draw::<7>(&mut frame.colour, frame.width, first_pixel, rows),
+                64 => column.draw::<6>(&mut frame.colour, frame.width, first_pixel, rows),
+                _ => column.draw_any_height(&mut frame.colour, frame.width, first_pixel, rows),
             }
             if DEPTH {
                 let depth = frame.capped_depth(distance);
@@ -149,6 +143,39 @@ impl WallShader<'_> {
                 let pixels = frame.class[top * frame.width + x..].iter_mut().step_by(frame.width);
                 pixels.take(bottom - top).for_each(|pixel| *pixel = class::WALL);
             }
+        }
+    }
+}
+
+/// A column of a wall on its way to the screen.
+struct Column<'a> {
+    texels: &'a [u8],
+    table: &'a [u8; 256],
+    /// Position in the texture at base row 0, as a fraction of its height.
+    at: u32,
+    /// Its change a base row.
+    step: u32,
+}
+
+impl Column<'_> {
+    /// For textures `2^BITS` texels high.
+    #[inline(always)]
+    fn draw<const BITS: u32>(&self, pixels: &mut [u8], width: usize, first: usize, rows: &[u32]) {
+        let texels = &self.texels[..1 << BITS];
+        let mut pixel = first;
+        for &row in rows {
+            let texel = self.at.wrapping_add(self.step.wrapping_mul(row)) >> (32 - BITS);
+            pixels[pixel] = self.table[usize::from(texels[texel as usize])];
+            pixel += width;
+        }
+    }
+
+    fn draw_any_height(&self, pixels: &mut [u8], width: usize, first: usize, rows: &[u32]) {
+        let mut pixel = first;
+        for &row in rows {
+            let texel = u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64 >> 32;
+            pixels[pixel] = self.table[usize::from(self.texels[texel as usize])];
+            pixel += width;
         }
     }
 }
