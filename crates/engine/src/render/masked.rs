@@ -9,7 +9,7 @@ use super::picture::MaskedPicture;
 use super::scene::Scene;
 use super::silhouette::{Silhouette, Silhouettes};
 use super::sprite::{Covered, SeenSprite};
-use super::wall::INVERSE_BITS;
+use super::wall::{INVERSE_BITS, TextureLine};
 use crate::math::Fixed;
 use crate::world::World;
 
@@ -124,6 +124,7 @@ impl Masked<'_> {
         let top = hung_from.min(i64::from(ceiling.0)) - self.camera.z;
         let bottom = (hung_from - i64::from(height.0)).max(i64::from(floor.0)) - self.camera.z;
         let light = Light::new(self.camera, i32::from(front.light) + face.contrast);
+        let along = TextureLine::new(self.camera, seg, face);
         let (upper, lower) =
             (silhouette.line.edge(self.camera, self.view, top), silhouette.line.edge(self.camera, self.view, bottom));
         for x in first..end {
@@ -139,7 +140,7 @@ impl Masked<'_> {
             let distance = silhouette.line.distance_at(column);
             let nearness = (silhouette.line.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let table = &scene.assets.light_tables[light.table(nearness)];
-            let u = silhouette.line.texture_at(column, distance) >> 16;
+            let u = along.at(column, distance) >> 16;
             let texels = picture.column(u.rem_euclid(i64::from(picture.width)) as u32);
             let step = (distance * self.view.inverse_focal_y) >> 16;
             let at = ((hung_from - self.camera.z) << 16) + step / 2 - step * self.camera.horizon;

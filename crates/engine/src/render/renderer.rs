@@ -65,8 +65,6 @@ impl Renderer {
     #[must_use]
     pub fn new(scene: Arc<Scene>, view: Arc<View>) -> Renderer {
         let (width, pixels) = (view.width(), view.size.pixels());
-        let mut walk = WalkScratch::default();
-        walk.resize(width);
         // The status bar's rows keep their depth and class.
         let frame = Frame {
             width,
@@ -80,7 +78,7 @@ impl Renderer {
             openings: Openings::default(),
             planes: Planes::default(),
             silhouettes: Silhouettes::default(),
-            walk,
+            walk: WalkScratch::new(&scene, width),
             entered: vec![false; scene.sector_count],
             pictures: Vec::new(),
             span_starts: vec![0; view.view_rows],

@@ -28,6 +28,8 @@ pub(super) struct SceneSeg {
     pub back: u32,
     /// Index into [`Scene::faces`].
     pub face: u32,
+    /// It has a masked texture in its opening.
+    pub masked: bool,
 }
 
 impl SceneSeg {
@@ -200,6 +202,7 @@ fn scene_seg(map: &Map, seg: &Seg) -> SceneSeg {
         front: seg.front_sector.0,
         back: seg.back_sector.map_or(NO_SECTOR, |sector| sector.0),
         face: seg.side.0,
+        masked: seg.back_sector.is_some() && map.sides[seg.side.0 as usize].middle.is_some(),
     }
 }
 

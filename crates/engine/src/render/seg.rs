@@ -5,7 +5,7 @@ use super::plane::{PlaneKey, UNUSED};
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
 use super::walk::Walk;
-use super::wall::{Edge, SeenLine, WallShader};
+use super::wall::{Edge, SeenLine, TextureLine, WallShader};
 use crate::map::TextureId;
 use crate::math::Fixed;
 use crate::world::SectorState;
@@ -13,6 +13,7 @@ use crate::world::SectorState;
 /// A seg in view, on its way through the stages.
 struct SeenSeg<'a> {
     index: u32,
+    seg: &'a SceneSeg,
     face: &'a Face,
     line: SeenLine,
     /// Frame columns.
@@ -32,28 +33,19 @@ struct Part {
 }
 
 impl Walk<'_> {
-    /// Draws a seg if it faces the eye and any of it may be seen.
+    /// Draws a seg that faces the eye from `away`, the distance of its line with 44 fractional bits, if any column shows it.
     #[inline]
-    pub fn seg<const DEPTH: bool, const CLASS: bool>(&mut self, index: u32, seg: &SceneSeg) {
-        let (scene, sectors) = (self.scene, self.sectors);
-        let away = seg.away(self.camera.x, self.camera.y);
-        if away <= 0 {
-            return;
-        }
-        let front = &sectors[seg.front as usize];
-        let face = &scene.faces[seg.face as usize];
+    pub fn seg<const DEPTH: bool, const CLASS: bool>(&mut self, index: u32, away: i64) {
+        let seg = &self.scene.segs[index as usize];
+        let Some((first, end)) = self.columns(seg) else { return };
+        let face = &self.scene.faces[seg.face as usize];
+        let line = SeenLine::new(self.camera, seg, away);
+        let seen = SeenSeg { index, seg, face, line, first, end };
+        let front = &self.sectors[seg.front as usize];
         if seg.back == NO_SECTOR {
-            let Some((first, end)) = self.columns(seg) else { return };
-            let line = SeenLine::new(self.camera, seg, face, away);
-            self.solid::<DEPTH, CLASS>(&SeenSeg { index, face, line, first, end }, front);
+            self.solid::<DEPTH, CLASS>(&seen, front);
         } else {
-            let back = &sectors[seg.back as usize];
-            if same_planes(front, back) && face.middle.is_none() {
-                return;
-            }
-            let Some((first, end)) = self.columns(seg) else { return };
-            let line = SeenLine::new(self.camera, seg, face, away);
-            self.opening::<DEPTH, CLASS>(&SeenSeg { index, face, line, first, end }, front, back);
+            self.opening::<DEPTH, CLASS>(&seen, front, &self.sectors[seg.back as usize]);
         }
     }
 
@@ -135,7 +127,7 @@ impl Walk<'_> {
         if shut {
             self.openings.close(seen.first, seen.end);
         }
-        if shut || below.is_some() || above.is_some() || face.middle.is_some() {
+        if shut || below.is_some() || above.is_some() || seen.seg.masked {
             self.silhouette(seen, below, above, shut);
         }
     }
@@ -259,6 +251,7 @@ impl Walk<'_> {
             view: self.view,
             tables: &self.scene.assets.light_tables,
             line: &seen.line,
+            texture: TextureLine::new(self.camera, seen.seg, seen.face),
             picture: &self.scene.textures.walls[self.picture(texture)],
             light: Light::new(self.camera, i32::from(front.light) + seen.face.contrast),
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
@@ -279,7 +272,7 @@ impl Walk<'_> {
             floor,
             ceiling,
             solid,
-            masked: !solid && seen.face.middle.is_some(),
+            masked: !solid && seen.seg.masked,
             rows: 0,
         };
         self.silhouettes.add(silhouette, &self.openings.top[range.clone()], &self.openings.bottom[range]);
@@ -296,13 +289,4 @@ impl Walk<'_> {
     fn texture_height(&self, texture: TextureId) -> Fixed {
         Fixed::from_int(self.scene.textures.walls[self.picture(Some(texture))].height as i32)
     }
-}
-
-/// Whether nothing of floor and ceiling changes from one sector to the other.
-#[inline]
-fn same_planes(a: &SectorState, b: &SectorState) -> bool {
-    // Without a branch in between: which of them differs is hard to foretell.
-    let heights = (a.floor.0 ^ b.floor.0) | (a.ceiling.0 ^ b.ceiling.0);
-    let looks = (a.floor_texture.0 ^ b.floor_texture.0) | (a.ceiling_texture.0 ^ b.ceiling_texture.0);
-    (heights == 0) & (looks == 0) & (a.light == b.light)
 }

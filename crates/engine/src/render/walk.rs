@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::frame::Frame;
 use super::openings::Openings;
 use super::plane::Planes;
-use super::scene::Scene;
+use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
 use crate::map::Node;
 use crate::math::Fixed;
@@ -29,10 +29,12 @@ pub(super) struct Walk<'a> {
 }
 
 /// Memory that the walk reuses.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct WalkScratch {
     /// Children to visit later: node index times two, plus the side.
     stack: Vec<u32>,
+    /// Segs of the subsector at hand that face the eye and matter, with their distance from it.
+    facing: Vec<(u32, i64)>,
     /// Rows of the upper end of the part of a wall that is being drawn.
     pub upper: Vec<i16>,
     /// Rows of its lower end.
@@ -40,10 +42,15 @@ pub(super) struct WalkScratch {
 }
 
 impl WalkScratch {
-    /// Makes room for frames of `width` columns.
-    pub fn resize(&mut self, width: usize) {
-        self.upper.resize(width, 0);
-        self.lower.resize(width, 0);
+    /// Room for frames of `width` columns of a scene.
+    pub fn new(scene: &Scene, width: usize) -> WalkScratch {
+        let most_segs = scene.subsectors.iter().map(|[first, end, _]| end - first).max().unwrap_or(0);
+        WalkScratch {
+            stack: vec![0; scene.nodes.len() + 2],
+            facing: vec![(0, 0); most_segs as usize + 1],
+            upper: vec![0; width],
+            lower: vec![0; width],
+        }
     }
 }
 
@@ -60,60 +67,58 @@ impl WedgeSide {
         WedgeSide { normal, corner: [usize::from(normal[0] > 0), 2 + usize::from(normal[1] > 0)] }
     }
 
+    /// Negative if the box lies wholly outside.
     #[inline]
-    fn may_hold(&self, camera: &Camera, bounds: &[Fixed; 4]) -> bool {
+    fn farthest_inside(&self, camera: &Camera, bounds: &[Fixed; 4]) -> i64 {
         let (x, y) = (bounds[self.corner[0]].0, bounds[self.corner[1]].0);
-        (i64::from(x) - camera.x) * self.normal[0] + (i64::from(y) - camera.y) * self.normal[1] >= 0
+        (i64::from(x) - camera.x) * self.normal[0] + (i64::from(y) - camera.y) * self.normal[1]
     }
 }
 
 impl Walk<'_> {
     /// Walks until everything is covered.
+    ///
+    /// Which child is near and which one is in view cannot be foretold, so that all of it is arithmetic without
+    /// branches: children that are out of view are written to the stack too, but not counted.
     pub fn run<const DEPTH: bool, const CLASS: bool>(&mut self) {
-        let [cos, sin] = self.camera.forward;
+        let (scene, camera) = (self.scene, self.camera);
+        let [cos, sin] = camera.forward;
         let wedge = [WedgeSide::new([cos + sin, sin - cos]), WedgeSide::new([cos - sin, sin + cos])];
-        let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
-        self.scratch.stack.clear();
-        let mut next = Some(match self.scene.nodes.len() {
+        let (x, y) = (Fixed(camera.x as i32), Fixed(camera.y as i32));
+        let mut stacked = 0;
+        let mut child = match scene.nodes.len() {
             0 => Node::SUBSECTOR,
             count => count as u32 - 1,
-        });
-        while let Some(mut child) = next {
-            while child & Node::SUBSECTOR == 0 {
-                let node = &self.scene.nodes[child as usize];
-                let near = usize::from(node.is_left(x, y));
-                let sees = |side: usize| wedge.iter().all(|w| w.may_hold(self.camera, &node.bounds[side]));
-                child = match (sees(near), sees(near ^ 1)) {
-                    (true, far) => {
-                        if far {
-                            self.scratch.stack.push(child * 2 + (near as u32 ^ 1));
-                        }
-                        node.children[near]
-                    }
-                    (false, true) => node.children[near ^ 1],
-                    (false, false) => break,
-                };
-            }
+        };
+        loop {
             if child & Node::SUBSECTOR != 0 {
                 self.subsector::<DEPTH, CLASS>((child & !Node::SUBSECTOR) as usize);
                 if self.openings.all_closed() {
                     return;
                 }
+            } else {
+                let node = &scene.nodes[child as usize];
+                let near = u32::from(node.is_left(x, y));
+                let inside = |bounds| wedge.iter().fold(0, |inside, side| inside | side.farthest_inside(camera, bounds));
+                let in_view = [inside(&node.bounds[0]) >= 0, inside(&node.bounds[1]) >= 0];
+                for side in [near ^ 1, near] {
+                    self.scratch.stack[stacked] = child * 2 + side;
+                    stacked += usize::from(in_view[side as usize]);
+                }
             }
-            next = self.pop();
+            // The next child that is not hidden.
+            child = loop {
+                if stacked == 0 {
+                    return;
+                }
+                stacked -= 1;
+                let entry = self.scratch.stack[stacked];
+                let (node, side) = (&scene.nodes[(entry / 2) as usize], (entry & 1) as usize);
+                if !self.openings.many_closed() || self.box_is_open(&node.bounds[side]) {
+                    break node.children[side];
+                }
+            };
         }
-    }
-
-    /// The next stacked child that is not hidden.
-    fn pop(&mut self) -> Option<u32> {
-        while let Some(entry) = self.scratch.stack.pop() {
-            let node = &self.scene.nodes[(entry / 2) as usize];
-            let side = (entry & 1) as usize;
-            if !self.openings.many_closed() || self.box_is_open(&node.bounds[side]) {
-                return Some(node.children[side]);
-            }
-        }
-        None
     }
 
     /// Whether an open column may show something of a box.
@@ -142,11 +147,32 @@ impl Walk<'_> {
     }
 
     fn subsector<const DEPTH: bool, const CLASS: bool>(&mut self, index: usize) {
-        let [first, end, sector] = self.scene.subsectors[index];
-        self.entered[sector as usize] = true;
         let scene = self.scene;
+        let [first, end, sector] = scene.subsectors[index];
+        self.entered[sector as usize] = true;
+        let own = &self.sectors[sector as usize];
+        // First those to draw, again without branches, then their drawing.
+        let mut found = 0;
         for (index, seg) in (first..end).zip(&scene.segs[first as usize..end as usize]) {
-            self.seg::<DEPTH, CLASS>(index, seg);
+            // A one-sided line differs from whatever its sector is compared with.
+            let one_sided = seg.back == NO_SECTOR;
+            let back = &self.sectors[if one_sided { sector } else { seg.back } as usize];
+            let matters = one_sided | seg.masked | !same_planes(own, back);
+            let away = seg.away(self.camera.x, self.camera.y);
+            self.scratch.facing[found] = (index, away);
+            found += usize::from(matters & (away > 0));
+        }
+        for i in 0..found {
+            let (index, away) = self.scratch.facing[i];
+            self.seg::<DEPTH, CLASS>(index, away);
         }
     }
+}
+
+/// Whether nothing of floor and ceiling changes from one sector to the other.
+#[inline]
+fn same_planes(a: &SectorState, b: &SectorState) -> bool {
+    let heights = (a.floor.0 ^ b.floor.0) | (a.ceiling.0 ^ b.ceiling.0);
+    let looks = (a.floor_texture.0 ^ b.floor_texture.0) | (a.ceiling_texture.0 ^ b.ceiling_texture.0);
+    (heights == 0) & (looks == 0) & (a.light == b.light)
 }

@@ -22,12 +22,37 @@ pub(super) struct SeenLine {
     pub inverse: i64,
     /// Its change a column.
     pub inverse_step: i64,
+}
+
+/// Horizontal texture positions on a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TextureLine {
     /// Position along the line of the point nearest to the eye, 16.16.
     along: i64,
     /// Position along the line that a ray gains a unit of distance at base column 0, 60 fractional bits.
     gain: i64,
     /// Its change a column.
     gain_step: i64,
+}
+
+impl TextureLine {
+    /// The texture positions of one side of a seg's line.
+    pub fn new(camera: &Camera, seg: &SceneSeg, face: &Face) -> TextureLine {
+        let [nx, ny] = seg.normal.map(i64::from);
+        let (tx, ty) = (-ny, nx);
+        TextureLine {
+            along: (camera.x * tx + camera.y * ty + face.u_offset) >> 28,
+            gain: tx * camera.ray[0] + ty * camera.ray[1],
+            gain_step: tx * camera.ray_step[0] + ty * camera.ray_step[1],
+        }
+    }
+
+    /// Horizontal texture position at a base column where the distance is known, 16.16.
+    #[inline]
+    pub fn at(&self, column: i64, distance: i64) -> i64 {
+        let gain = (self.gain + self.gain_step * column) >> 32;
+        self.along + ((distance * gain) >> 28)
+    }
 }
 
 /// The row of a height along a line; linear in the base column.
@@ -40,7 +65,7 @@ pub(super) struct Edge {
 impl SeenLine {
     /// The line of a seg that faces the camera from `away`, the distance with 44 fractional bits.
     #[inline]
-    pub fn new(camera: &Camera, seg: &SceneSeg, face: &Face, away: i64) -> SeenLine {
+    pub fn new(camera: &Camera, seg: &SceneSeg, away: i64) -> SeenLine {
         let [nx, ny] = seg.normal.map(i64::from);
         // Nearer than 1/256 unit counts as that far.
         let reciprocal = (1i64 << 62) / (away >> 20).max(1 << 16);
@@ -48,14 +73,7 @@ impl SeenLine {
             let towards = -(nx * ray[0] + ny * ray[1]);
             ((i128::from(towards) * i128::from(reciprocal)) >> (98 - INVERSE_BITS)) as i64
         };
-        let (tx, ty) = (-ny, nx);
-        SeenLine {
-            inverse: inverse(camera.ray),
-            inverse_step: inverse(camera.ray_step),
-            along: (camera.x * tx + camera.y * ty + face.u_offset) >> 28,
-            gain: tx * camera.ray[0] + ty * camera.ray[1],
-            gain_step: tx * camera.ray_step[0] + ty * camera.ray_step[1],
-        }
+        SeenLine { inverse: inverse(camera.ray), inverse_step: inverse(camera.ray_step) }
     }
 
     /// The inverse of the distance at a base column.
@@ -68,13 +86,6 @@ impl SeenLine {
     #[inline]
     pub fn distance_at(&self, column: i64) -> i64 {
         ((1u64 << (INVERSE_BITS + 16)) / self.inverse_at(column) as u64) as i64
-    }
-
-    /// Horizontal texture position at a base column where the distance is known, 16.16.
-    #[inline]
-    pub fn texture_at(&self, column: i64, distance: i64) -> i64 {
-        let gain = (self.gain + self.gain_step * column) >> 32;
-        self.along + ((distance * gain) >> 28)
     }
 
     /// Where a height, relative to the eye in 16.16, is seen.
@@ -101,6 +112,7 @@ pub(super) struct WallShader<'a> {
     pub view: &'a View,
     pub tables: &'a [[u8; 256]; 32],
     pub line: &'a SeenLine,
+    pub texture: TextureLine,
     pub picture: &'a WallPicture,
     pub light: Light,
     /// Height of the texture's top row, relative to the eye, 16.16.
@@ -121,7 +133,7 @@ impl WallShader<'_> {
             let column = i64::from(self.view.columns[x]);
             let inverse = self.line.inverse_at(column);
             let distance = self.line.distance_at(column);
-            let texels = picture.column(self.line.texture_at(column, distance));
+            let texels = picture.column(self.texture.at(column, distance));
             let nearness = (inverse * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let table = &self.tables[self.light.table(nearness)];
             // Rows of texture a base row, as a fraction of its height with 32 bits: what overflows is whole heights.
