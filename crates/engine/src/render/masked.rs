@@ -127,12 +127,13 @@ impl Masked<'_> {
         let along = TextureLine::new(self.camera, seg, face);
         let (upper, lower) =
             (silhouette.line.edge(self.camera, self.view, top), silhouette.line.edge(self.camera, self.view, bottom));
+        let first_rows = &self.view.first_row;
         for x in first..end {
             let row_index = silhouette.rows + x - silhouette.first;
             let (open_top, open_bottom) = (self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]);
             let drawn = std::mem::replace(&mut self.silhouettes.drawn[row_index], true);
             let column = self.view.columns[x];
-            let rows = upper.row(self.view, column).max(open_top)..lower.row(self.view, column).min(open_bottom);
+            let rows = upper.row(first_rows, column).max(open_top)..lower.row(first_rows, column).min(open_bottom);
             if drawn || rows.is_empty() {
                 continue;
             }

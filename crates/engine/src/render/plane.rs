@@ -1,10 +1,11 @@
 //! Floors and ceilings: collected as areas of equal height, texture and light, then drawn row by row.
 
 use super::camera::Camera;
+use super::depth_level;
 use super::frame::{Frame, class};
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::FlatPicture;
-use super::{View, depth_level};
+use super::view::{CHUNK, View};
 use crate::map::TextureId;
 use crate::math::Fixed;
 
@@ -32,8 +33,6 @@ impl PlaneKey {
 const BUCKETS: usize = 64;
 /// No plane.
 const NONE: u16 = u16::MAX;
-/// `top` and `bottom` of a column that the plane does not have.
-pub(super) const UNUSED: i16 = i16::MAX;
 
 /// An area of one plane: at most one run of rows in each column.
 #[derive(Clone, Debug)]
@@ -45,9 +44,9 @@ pub(super) struct Plane {
     pub first: usize,
     /// One past the last column.
     pub end: usize,
-    /// First row by column, or [`UNUSED`]; one column more than the frame has.
+    /// First row by column; one column more than the frame has.
     pub top: Vec<i16>,
-    /// One past the last row by column, or [`UNUSED`].
+    /// One past the last row by column; not below the first where the plane has no row.
     pub bottom: Vec<i16>,
 }
 
@@ -99,10 +98,9 @@ impl Planes {
         plane.next = std::mem::replace(&mut self.buckets[key.bucket()], index as u16);
         (plane.first, plane.end) = (self.width, 0);
         // One more than there are columns ends the last span.
-        plane.top.resize(self.width + 1, UNUSED);
-        plane.bottom.resize(self.width + 1, UNUSED);
-        plane.top.fill(UNUSED);
-        plane.bottom.fill(UNUSED);
+        plane.top.resize(self.width + 1, 0);
+        plane.bottom.resize(self.width + 1, 0);
+        plane.bottom.fill(i16::MIN);
         index as u16
     }
 
@@ -141,9 +139,8 @@ impl Plane {
     /// Lists every run of pixels of the plane; `starts` is scratch of at least as many entries as there are rows.
     pub fn spans(&self, starts: &mut [u16], spans: &mut Vec<Span>) {
         spans.clear();
-        // A column without rows is UNUSED..UNUSED, so that it lies above and below of every other. The one behind the
-        // last column is such a one.
-        let (mut t1, mut b1) = (UNUSED, UNUSED);
+        // The column behind the last one has no rows, which ends the last spans.
+        let (mut t1, mut b1) = (0, 0);
         let columns = self.top[self.first..=self.end].iter().zip(&self.bottom[self.first..=self.end]);
         for (x, (&t2, &b2)) in (self.first as u16..).zip(columns) {
             if (t1, b1) == (t2, b2) {
@@ -215,22 +212,16 @@ impl<'a> PlaneShader<'a> {
         let distance = (self.height * self.view.row_slopes[away as usize]) >> 16;
         let table = &self.tables[self.light.table((self.nearness * (2 * away + 1)) >> 24)];
         let start = row * frame.width;
-        let columns = &self.view.columns[first..end];
         let pixels = &mut frame.colour[start + first..start + end];
+        let columns = &self.view.columns[first..end];
         match flat {
             FlatPicture::Small(texels) => {
-                let (at, step) = self.walk::<6>(distance);
-                for (pixel, &column) in pixels.iter_mut().zip(columns) {
-                    let at = at.wrapping_add(step.wrapping_mul(u64::from(column)));
-                    *pixel = table[usize::from(texels[((at >> 52) & 0xFC0 | (at >> 26) & 0x3F) as usize])];
-                }
+                let fetch = |index: u32| table[usize::from(texels[index as usize & (64 * 64 - 1)])];
+                self.walk::<6>(distance).draw::<6>(pixels, columns, self.view.chunk_stride, fetch);
             }
             FlatPicture::Large(texels) => {
-                let (at, step) = self.walk::<7>(distance);
-                for (pixel, &column) in pixels.iter_mut().zip(columns) {
-                    let at = at.wrapping_add(step.wrapping_mul(u64::from(column)));
-                    *pixel = table[usize::from(texels[((at >> 50) & 0x3F80 | (at >> 25) & 0x7F) as usize])];
-                }
+                let fetch = |index: u32| table[usize::from(texels[index as usize & (128 * 128 - 1)])];
+                self.walk::<7>(distance).draw::<7>(pixels, columns, self.view.chunk_stride, fetch);
             }
         }
         if DEPTH {
@@ -241,24 +232,63 @@ impl<'a> PlaneShader<'a> {
         }
     }
 
-    /// Texture position at base column 0 and its change a column, for textures of side `2^BITS`: the horizontal
-    /// position in the upper half, the vertical one in the lower half, each as a fraction of the side. What the lower
-    /// half carries into the upper one is too little to matter.
+    /// The walk of a row over textures of side `2^BITS`.
     #[inline]
-    fn walk<const BITS: u32>(&self, distance: i64) -> (u64, u64) {
+    fn walk<const BITS: u32>(&self, distance: i64) -> TextureWalk {
         let camera = self.camera;
-        // 48 fractional bits; whole map units beyond the 16th bit wrap away, as they would in the texture.
-        let at = [
-            (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.ray[0])),
-            (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.ray[1])).wrapping_neg(),
-        ];
-        let step = [distance.wrapping_mul(camera.ray_step[0]), distance.wrapping_mul(camera.ray_step[1]).wrapping_neg()];
-        let shift = 16 - BITS;
-        let pack = |u: i64, v: i64| {
-            let high = (u << shift) as u64 & 0xFFFF_FFFF_0000_0000;
-            high.wrapping_add(((v << shift) >> 32) as u64)
+        // 48 fractional bits, of which the fraction of the side's 32 are kept; whole sides wrap away.
+        let part = |position: i64| (position >> (16 + BITS)) as u32;
+        let u = (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.ray[0]));
+        let v = (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.ray[1]));
+        TextureWalk {
+            u: part(u),
+            v: part(v.wrapping_neg()),
+            u_step: part(distance.wrapping_mul(camera.ray_step[0])),
+            v_step: part(distance.wrapping_mul(camera.ray_step[1]).wrapping_neg()),
+        }
+    }
+}
+
+/// Texture positions along a row, as fractions of the texture's side with 32 bits: linear in the base column.
+struct TextureWalk {
+    /// At base column 0, to the right.
+    u: u32,
+    /// At base column 0, down.
+    v: u32,
+    u_step: u32,
+    v_step: u32,
+}
+
+impl TextureWalk {
+    /// Fills the pixels of base columns `columns` with what `fetch` gives for an index into a square texture of side
+    /// `2^BITS`. Positions are worked out [`CHUNK`] at a time, which the compiler turns into vector arithmetic;
+    /// `stride` is what the base column rises by over a chunk.
+    #[inline(always)]
+    fn draw<const BITS: u32>(&self, pixels: &mut [u8], columns: &[u32], stride: u32, fetch: impl Fn(u32) -> u8) {
+        let index = |u: u32, v: u32| (u >> (32 - BITS)) << BITS | v >> (32 - BITS);
+        let at = |column: u32| {
+            let u = self.u.wrapping_add(self.u_step.wrapping_mul(column));
+            (u, self.v.wrapping_add(self.v_step.wrapping_mul(column)))
         };
-        (pack(at[0], at[1]), pack(step[0], step[1]))
+        let whole = pixels.len() / CHUNK * CHUNK;
+        let (chunks, rest) = pixels.split_at_mut(whole);
+        if whole > 0 {
+            let mut u: [u32; CHUNK] = std::array::from_fn(|i| at(columns[i]).0);
+            let mut v: [u32; CHUNK] = std::array::from_fn(|i| at(columns[i]).1);
+            let (u_stride, v_stride) = (self.u_step.wrapping_mul(stride), self.v_step.wrapping_mul(stride));
+            for chunk in chunks.chunks_exact_mut(CHUNK) {
+                let indices: [u32; CHUNK] = std::array::from_fn(|i| index(u[i], v[i]));
+                u = u.map(|u| u.wrapping_add(u_stride));
+                v = v.map(|v| v.wrapping_add(v_stride));
+                for (pixel, index) in chunk.iter_mut().zip(indices) {
+                    *pixel = fetch(index);
+                }
+            }
+        }
+        for (pixel, &column) in rest.iter_mut().zip(&columns[whole..]) {
+            let (u, v) = at(column);
+            *pixel = fetch(index(u, v));
+        }
     }
 }
 

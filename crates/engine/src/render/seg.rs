@@ -1,7 +1,7 @@
 //! What a seg does to the picture: it ends planes, has wall parts, and narrows or closes columns.
 
 use super::light::Light;
-use super::plane::{PlaneKey, UNUSED};
+use super::plane::PlaneKey;
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
 use super::walk::Walk;
@@ -164,6 +164,7 @@ impl Walk<'_> {
     ) -> bool {
         let (first, end) = (seen.first, seen.end);
         let columns = &self.view.columns[first..end];
+        let first_rows = &self.view.first_row[..];
         let tops = &mut self.openings.top[first..end];
         let bottoms = &mut self.openings.bottom[first..end];
         let uppers = &mut self.scratch.upper[first..end];
@@ -175,21 +176,19 @@ impl Walk<'_> {
                 if PLANE { self.planes.columns(plane, first, end) } else { (&mut [], &mut []) };
             while i < columns.len() {
                 let (top, bottom) = (tops[i], bottoms[i]);
-                let row = edge.row(self.view, columns[i]).max(top).min(bottom);
+                let row = edge.row(first_rows, columns[i]).max(top).min(bottom);
                 if PLANE {
                     let (from, to) = if FLOOR { (row, bottom) } else { (top, row) };
-                    let has_rows = from < to;
-                    let (old_from, old_to) = (plane_tops[i], plane_bottoms[i]);
-                    if has_rows & (old_from != UNUSED) {
+                    if plane_tops[i] >= plane_bottoms[i] {
+                        (plane_tops[i], plane_bottoms[i]) = (from, to);
+                    } else if from < to {
                         plane = self.planes.start_another(plane);
                         continue 'planes;
                     }
-                    plane_tops[i] = if has_rows { from } else { old_from };
-                    plane_bottoms[i] = if has_rows { to } else { old_to };
                 }
                 let mut open = row;
                 if WALL {
-                    let far = wall.row(self.view, columns[i]);
+                    let far = wall.row(first_rows, columns[i]);
                     open = if FLOOR { far.max(top).min(row) } else { far.max(row).min(bottom) };
                     (uppers[i], lowers[i]) = if FLOOR { (open, row) } else { (row, open) };
                     walled |= open != row;

@@ -55,10 +55,12 @@ impl TextureLine {
     }
 }
 
-/// The row of a height along a line; linear in the base column.
+/// The row of a height along a line, plus a half; linear in the base column.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
+    /// At base column 0.
     at: i64,
+    /// Its change a column.
     step: i64,
 }
 
@@ -93,16 +95,18 @@ impl SeenLine {
     pub fn edge(&self, camera: &Camera, view: &View, height: i64) -> Edge {
         let scale = i128::from(height * view.focal_y);
         let rows = |inverse: i64| ((scale * i128::from(inverse)) >> (32 + INVERSE_BITS - ROW_BITS)) as i64;
-        Edge { at: (camera.horizon << ROW_BITS) - rows(self.inverse), step: -rows(self.inverse_step) }
+        // Half a row more, as the middle of a row decides.
+        let horizon = (camera.horizon << ROW_BITS) + (1 << (ROW_BITS - 1)) - 1;
+        Edge { at: horizon - rows(self.inverse), step: -rows(self.inverse_step) }
     }
 }
 
 impl Edge {
-    /// The first frame row whose centre is below the edge at a base column.
+    /// The first frame row whose middle is below the edge at a base column; `first_rows` is [`View::first_row`].
     #[inline]
-    pub fn row(&self, view: &View, column: u32) -> i16 {
-        let at = self.at + self.step * i64::from(column) + (1 << (ROW_BITS - 1)) - 1;
-        view.first_row[(at >> ROW_BITS).clamp(0, i64::from(view.base_view_rows)) as usize]
+    pub fn row(&self, first_rows: &[i16], column: u32) -> i16 {
+        let base = ((self.at + self.step * i64::from(column)) >> ROW_BITS).max(0) as usize;
+        first_rows[base.min(first_rows.len() - 1)]
     }
 }
 
@@ -138,7 +142,7 @@ impl WallShader<'_> {
             let table = &self.tables[self.light.table(nearness)];
             // Rows of texture a base row, as a fraction of its height with 32 bits: what overflows is whole heights.
             let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
-            let at = (start + step / 2 - step.wrapping_mul(self.camera.horizon)) as u32;
+            let at = (start + (step >> 1) - step.wrapping_mul(self.camera.horizon)) as u32;
             let column = Column { texels, table, at, step: step as u32 };
             let (rows, first_pixel) = (&self.view.rows[top..bottom], top * frame.width + x);
             match picture.height {
