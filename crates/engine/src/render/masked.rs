@@ -61,11 +61,12 @@ impl Masked<'_> {
         self.bottoms.clear();
         self.bottoms.resize(columns, self.view.view_rows as i16);
         for index in (0..self.silhouettes.list.len()).rev() {
-            let silhouette = self.silhouettes.list[index];
+            let silhouette = &self.silhouettes.list[index];
             let (first, end) = (silhouette.first.max(sprite.first), silhouette.end.min(sprite.end));
             if first >= end {
                 continue;
             }
+            let silhouette = *silhouette;
             if !self.is_behind(sprite, &silhouette) {
                 if silhouette.masked {
                     self.texture::<DEPTH, CLASS>(&silhouette, first, end);
@@ -133,6 +134,7 @@ impl Masked<'_> {
             let (open_top, open_bottom) = (self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]);
             let drawn = std::mem::replace(&mut self.silhouettes.drawn[row_index], true);
             let column = self.view.columns[x];
+            let (open_top, open_bottom) = (i32::from(open_top), i32::from(open_bottom));
             let rows = upper.row(first_rows, column).max(open_top)..lower.row(first_rows, column).min(open_bottom);
             if drawn || rows.is_empty() {
                 continue;

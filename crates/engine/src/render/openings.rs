@@ -11,6 +11,10 @@ pub(super) struct Openings {
     open: Vec<u64>,
     /// Number of columns that are closed.
     closed: usize,
+    /// No column left of this one is open.
+    first: usize,
+    /// No column from this one on is open.
+    end: usize,
 }
 
 impl Openings {
@@ -26,6 +30,7 @@ impl Openings {
             self.open[width / 64] = (1 << (width % 64)) - 1;
         }
         self.closed = 0;
+        (self.first, self.end) = (0, width);
     }
 
     /// Whether any column of `first..end` is open.
@@ -52,10 +57,23 @@ impl Openings {
         self.closed == self.top.len()
     }
 
-    /// Whether so much is closed that it pays to ask what hides what.
+    /// The narrowest range that holds every open column.
     #[inline]
-    pub fn many_closed(&self) -> bool {
-        self.closed * 4 > self.top.len()
+    pub fn range(&mut self) -> (usize, usize) {
+        while self.first < self.end && self.top[self.first] >= self.bottom[self.first] {
+            self.first += 1;
+        }
+        while self.first < self.end && self.top[self.end - 1] >= self.bottom[self.end - 1] {
+            self.end -= 1;
+        }
+        (self.first, self.end)
+    }
+
+    /// Whether so much within the open range is closed that it pays to ask what hides what.
+    #[inline]
+    pub fn has_holes(&self) -> bool {
+        let outside = self.first + self.top.len() - self.end;
+        (self.closed - outside) * 4 > self.top.len()
     }
 
     /// Closes the columns `first..end`.
@@ -101,6 +119,7 @@ mod tests {
             openings.close(0, column);
             openings.close(column + 1, 160);
             assert!(!openings.all_closed());
+            assert_eq!(openings.range(), (column, column + 1));
             for (first, end) in [(0, 160), (column, column + 1), (0, column + 1), (column, 160)] {
                 assert!(openings.any_open(first, end), "{column} in {first}..{end}");
             }

@@ -1,11 +1,12 @@
 //! Floors and ceilings: collected as areas of equal height, texture and light, then drawn row by row.
 
+use super::View;
 use super::camera::Camera;
 use super::depth_level;
 use super::frame::{Frame, class};
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::FlatPicture;
-use super::view::{CHUNK, View};
+use super::row_walk::RowWalk;
 use crate::map::TextureId;
 use crate::math::Fixed;
 
@@ -121,7 +122,7 @@ impl Planes {
 }
 
 /// A run of pixels of a row.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Span {
     pub row: u16,
     /// First column.
@@ -136,37 +137,68 @@ impl Plane {
         self.first >= self.end
     }
 
-    /// Lists every run of pixels of the plane; `starts` is scratch of at least as many entries as there are rows.
-    pub fn spans(&self, starts: &mut [u16], spans: &mut Vec<Span>) {
-        spans.clear();
+    /// Lists every run of pixels of the plane in `spans` and returns how many there are. `starts` is scratch of one
+    /// entry more than the frame has rows.
+    ///
+    /// From column to column an end of the run of rows stays or moves by one, and which cannot be foretold: the first
+    /// row that comes or goes is handled without a branch, by writing it in any case, and more of them by loops.
+    pub fn spans(&self, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
+        let nowhere = starts.len() - 1;
+        let mut count = 0;
         // The column behind the last one has no rows, which ends the last spans.
-        let (mut t1, mut b1) = (0, 0);
+        let (mut top1, mut bottom1) = (0, i32::from(i16::MIN));
         let columns = self.top[self.first..=self.end].iter().zip(&self.bottom[self.first..=self.end]);
-        for (x, (&t2, &b2)) in (self.first as u16..).zip(columns) {
-            if (t1, b1) == (t2, b2) {
+        for (x, (&top2, &bottom2)) in (self.first as u16..).zip(columns) {
+            let (top2, bottom2) = (i32::from(top2), i32::from(bottom2));
+            if (top1, bottom1) == (top2, bottom2) {
                 continue;
             }
-            // Rows that end before this column, then rows that begin with it.
-            let (mut top, mut bottom) = (t1, b1);
-            while top < bottom && top < t2 {
-                spans.push(Span { row: top as u16, first: starts[top as usize], end: x });
-                top += 1;
+            if count + 2 * starts.len() > spans.len() {
+                spans.resize(count + 4 * starts.len(), Span::default());
             }
-            while bottom > top && bottom > b2 {
-                bottom -= 1;
-                spans.push(Span { row: bottom as u16, first: starts[bottom as usize], end: x });
+            // Rows of the last column that end before this one, from above and from below.
+            let upper_end = bottom1.min(top2);
+            let mut row = top1;
+            loop {
+                spans[count] = Span { row: row as u16, first: starts[row as usize], end: x };
+                count += usize::from(row < upper_end);
+                row += 1;
+                if row >= upper_end {
+                    break;
+                }
             }
-            let (mut top, mut bottom) = (t2, b2);
-            while top < bottom && top < t1 {
-                starts[top as usize] = x;
-                top += 1;
+            let lower_first = top1.max(bottom2).max(upper_end);
+            let mut row = bottom1 - 1;
+            loop {
+                spans[count] = Span { row: row as u16, first: starts[row.max(0) as usize], end: x };
+                count += usize::from(row >= lower_first);
+                row -= 1;
+                if row < lower_first {
+                    break;
+                }
             }
-            while bottom > top && bottom > b1 {
-                bottom -= 1;
-                starts[bottom as usize] = x;
+            // Rows that begin with this column.
+            let upper_end = bottom2.min(top1);
+            let mut row = top2;
+            loop {
+                starts[if row < upper_end { row as usize } else { nowhere }] = x;
+                row += 1;
+                if row >= upper_end {
+                    break;
+                }
             }
-            (t1, b1) = (t2, b2);
+            let lower_first = top2.max(bottom1).max(upper_end);
+            let mut row = bottom2 - 1;
+            loop {
+                starts[if row >= lower_first { row as usize } else { nowhere }] = x;
+                row -= 1;
+                if row < lower_first {
+                    break;
+                }
+            }
+            (top1, bottom1) = (top2, bottom2);
         }
+        count
     }
 }
 
@@ -216,11 +248,11 @@ impl<'a> PlaneShader<'a> {
         let columns = &self.view.columns[first..end];
         match flat {
             FlatPicture::Small(texels) => {
-                let fetch = |index: u32| table[usize::from(texels[index as usize & (64 * 64 - 1)])];
+                let fetch = |index: usize| table[usize::from(texels[index & (64 * 64 - 1)])];
                 self.walk::<6>(distance).draw::<6>(pixels, columns, self.view.chunk_stride, fetch);
             }
             FlatPicture::Large(texels) => {
-                let fetch = |index: u32| table[usize::from(texels[index as usize & (128 * 128 - 1)])];
+                let fetch = |index: usize| table[usize::from(texels[index & (128 * 128 - 1)])];
                 self.walk::<7>(distance).draw::<7>(pixels, columns, self.view.chunk_stride, fetch);
             }
         }
@@ -234,60 +266,17 @@ impl<'a> PlaneShader<'a> {
 
     /// The walk of a row over textures of side `2^BITS`.
     #[inline]
-    fn walk<const BITS: u32>(&self, distance: i64) -> TextureWalk {
+    fn walk<const BITS: u32>(&self, distance: i64) -> RowWalk {
         let camera = self.camera;
         // 48 fractional bits, of which the fraction of the side's 32 are kept; whole sides wrap away.
         let part = |position: i64| (position >> (16 + BITS)) as u32;
         let u = (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.ray[0]));
         let v = (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.ray[1]));
-        TextureWalk {
+        RowWalk {
             u: part(u),
             v: part(v.wrapping_neg()),
             u_step: part(distance.wrapping_mul(camera.ray_step[0])),
             v_step: part(distance.wrapping_mul(camera.ray_step[1]).wrapping_neg()),
-        }
-    }
-}
-
-/// Texture positions along a row, as fractions of the texture's side with 32 bits: linear in the base column.
-struct TextureWalk {
-    /// At base column 0, to the right.
-    u: u32,
-    /// At base column 0, down.
-    v: u32,
-    u_step: u32,
-    v_step: u32,
-}
-
-impl TextureWalk {
-    /// Fills the pixels of base columns `columns` with what `fetch` gives for an index into a square texture of side
-    /// `2^BITS`. Positions are worked out [`CHUNK`] at a time, which the compiler turns into vector arithmetic;
-    /// `stride` is what the base column rises by over a chunk.
-    #[inline(always)]
-    fn draw<const BITS: u32>(&self, pixels: &mut [u8], columns: &[u32], stride: u32, fetch: impl Fn(u32) -> u8) {
-        let index = |u: u32, v: u32| (u >> (32 - BITS)) << BITS | v >> (32 - BITS);
-        let at = |column: u32| {
-            let u = self.u.wrapping_add(self.u_step.wrapping_mul(column));
-            (u, self.v.wrapping_add(self.v_step.wrapping_mul(column)))
-        };
-        let whole = pixels.len() / CHUNK * CHUNK;
-        let (chunks, rest) = pixels.split_at_mut(whole);
-        if whole > 0 {
-            let mut u: [u32; CHUNK] = std::array::from_fn(|i| at(columns[i]).0);
-            let mut v: [u32; CHUNK] = std::array::from_fn(|i| at(columns[i]).1);
-            let (u_stride, v_stride) = (self.u_step.wrapping_mul(stride), self.v_step.wrapping_mul(stride));
-            for chunk in chunks.chunks_exact_mut(CHUNK) {
-                let indices: [u32; CHUNK] = std::array::from_fn(|i| index(u[i], v[i]));
-                u = u.map(|u| u.wrapping_add(u_stride));
-                v = v.map(|v| v.wrapping_add(v_stride));
-                for (pixel, index) in chunk.iter_mut().zip(indices) {
-                    *pixel = fetch(index);
-                }
-            }
-        }
-        for (pixel, &column) in rest.iter_mut().zip(&columns[whole..]) {
-            let (u, v) = at(column);
-            *pixel = fetch(index(u, v));
         }
     }
 }
@@ -303,13 +292,13 @@ mod tests {
         planes.reset(columns.len());
         let index = planes.find(KEY);
         let (tops, bottoms) = planes.columns(index, 0, columns.len());
-        for (x, &(top, bottom)) in columns.iter().enumerate().filter(|(_, (top, bottom))| top < bottom) {
+        for (x, &(top, bottom)) in columns.iter().enumerate().filter(|(_, (top, bottom))| top <= bottom) {
             (tops[x], bottoms[x]) = (top, bottom);
         }
         let mut pixels = vec![0; 8 * columns.len()];
         let mut spans = Vec::new();
-        planes.used()[0].spans(&mut [0; 8], &mut spans);
-        for span in spans {
+        let count = planes.used()[0].spans(&mut [0; 9], &mut spans);
+        for span in &spans[..count] {
             assert!(span.first < span.end);
             let row = usize::from(span.row) * columns.len();
             pixels[row + usize::from(span.first)..row + usize::from(span.end)].iter_mut().for_each(|p| *p += 1);

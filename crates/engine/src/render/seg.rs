@@ -175,12 +175,12 @@ impl Walk<'_> {
             let (plane_tops, plane_bottoms): (&mut [i16], &mut [i16]) =
                 if PLANE { self.planes.columns(plane, first, end) } else { (&mut [], &mut []) };
             while i < columns.len() {
-                let (top, bottom) = (tops[i], bottoms[i]);
+                let (top, bottom) = (i32::from(tops[i]), i32::from(bottoms[i]));
                 let row = edge.row(first_rows, columns[i]).max(top).min(bottom);
                 if PLANE {
                     let (from, to) = if FLOOR { (row, bottom) } else { (top, row) };
                     if plane_tops[i] >= plane_bottoms[i] {
-                        (plane_tops[i], plane_bottoms[i]) = (from, to);
+                        (plane_tops[i], plane_bottoms[i]) = (from as i16, to as i16);
                     } else if from < to {
                         plane = self.planes.start_another(plane);
                         continue 'planes;
@@ -190,15 +190,16 @@ impl Walk<'_> {
                 if WALL {
                     let far = wall.row(first_rows, columns[i]);
                     open = if FLOOR { far.max(top).min(row) } else { far.max(row).min(bottom) };
-                    (uppers[i], lowers[i]) = if FLOOR { (open, row) } else { (row, open) };
+                    let (upper, lower) = if FLOOR { (open, row) } else { (row, open) };
+                    (uppers[i], lowers[i]) = (upper as i16, lower as i16);
                     walled |= open != row;
                 }
                 if FLOOR {
-                    bottoms[i] = open;
-                    closed |= top >= open;
+                    bottoms[i] = open as i16;
+                    closed |= (top < bottom) & (top >= open);
                 } else {
-                    tops[i] = open;
-                    closed |= open >= bottom;
+                    tops[i] = open as i16;
+                    closed |= (top < bottom) & (open >= bottom);
                 }
                 i += 1;
             }

@@ -17,6 +17,8 @@ pub(super) struct Walk<'a> {
     pub view: &'a View,
     pub camera: &'a Camera,
     pub sectors: &'a [SectorState],
+    /// What [`look_of`] gives for each sector.
+    pub looks: &'a [[u64; 2]],
     /// Index of the picture that each texture shows now.
     pub pictures: &'a [u32],
     pub frame: &'a mut Frame,
@@ -57,21 +59,28 @@ impl WalkScratch {
 /// One side of the view's wedge, as a test for boxes.
 #[derive(Clone, Copy)]
 struct WedgeSide {
+    /// Points inwards.
     normal: [i64; 2],
+    /// Where the eye lies along it.
+    offset: i64,
     /// Which of (west, east) and (south, north) lies farthest inside.
     corner: [usize; 2],
 }
 
 impl WedgeSide {
-    fn new(normal: [i64; 2]) -> WedgeSide {
-        WedgeSide { normal, corner: [usize::from(normal[0] > 0), 2 + usize::from(normal[1] > 0)] }
+    fn new(camera: &Camera, normal: [i64; 2]) -> WedgeSide {
+        WedgeSide {
+            normal,
+            offset: camera.x * normal[0] + camera.y * normal[1],
+            corner: [usize::from(normal[0] > 0), 2 + usize::from(normal[1] > 0)],
+        }
     }
 
-    /// Negative if the box lies wholly outside.
+    /// Negative if a box lies wholly outside.
     #[inline]
-    fn farthest_inside(&self, camera: &Camera, bounds: &[Fixed; 4]) -> i64 {
+    fn inside(&self, bounds: &[Fixed; 4]) -> i64 {
         let (x, y) = (bounds[self.corner[0]].0, bounds[self.corner[1]].0);
-        (i64::from(x) - camera.x) * self.normal[0] + (i64::from(y) - camera.y) * self.normal[1]
+        i64::from(x) * self.normal[0] + i64::from(y) * self.normal[1] - self.offset
     }
 }
 
@@ -81,10 +90,10 @@ impl Walk<'_> {
     /// Which child is near and which one is in view cannot be foretold, so that all of it is arithmetic without
     /// branches: children that are out of view are written to the stack too, but not counted.
     pub fn run<const DEPTH: bool, const CLASS: bool>(&mut self) {
-        let (scene, camera) = (self.scene, self.camera);
-        let [cos, sin] = camera.forward;
-        let wedge = [WedgeSide::new([cos + sin, sin - cos]), WedgeSide::new([cos - sin, sin + cos])];
-        let (x, y) = (Fixed(camera.x as i32), Fixed(camera.y as i32));
+        let scene = self.scene;
+        let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
+        let mut open = self.openings.range();
+        let mut wedge = self.wedge(open);
         let mut stacked = 0;
         let mut child = match scene.nodes.len() {
             0 => Node::SUBSECTOR,
@@ -93,17 +102,22 @@ impl Walk<'_> {
         loop {
             if child & Node::SUBSECTOR != 0 {
                 self.subsector::<DEPTH, CLASS>((child & !Node::SUBSECTOR) as usize);
-                if self.openings.all_closed() {
+                let now_open = self.openings.range();
+                if now_open.0 >= now_open.1 {
                     return;
+                }
+                if now_open != open {
+                    open = now_open;
+                    wedge = self.wedge(open);
                 }
             } else {
                 let node = &scene.nodes[child as usize];
                 let near = u32::from(node.is_left(x, y));
-                let inside = |bounds| wedge.iter().fold(0, |inside, side| inside | side.farthest_inside(camera, bounds));
-                let in_view = [inside(&node.bounds[0]) >= 0, inside(&node.bounds[1]) >= 0];
                 for side in [near ^ 1, near] {
+                    let bounds = &node.bounds[side as usize];
+                    let inside = wedge[0].inside(bounds) | wedge[1].inside(bounds);
                     self.scratch.stack[stacked] = child * 2 + side;
-                    stacked += usize::from(in_view[side as usize]);
+                    stacked += usize::from(inside >= 0);
                 }
             }
             // The next child that is not hidden.
@@ -114,20 +128,33 @@ impl Walk<'_> {
                 stacked -= 1;
                 let entry = self.scratch.stack[stacked];
                 let (node, side) = (&scene.nodes[(entry / 2) as usize], (entry & 1) as usize);
-                if !self.openings.many_closed() || self.box_is_open(&node.bounds[side]) {
-                    break node.children[side];
+                let (child, bounds) = (node.children[side], &node.bounds[side]);
+                // For a single subsector the second question costs more than it saves.
+                let hidden = wedge[0].inside(bounds) | wedge[1].inside(bounds) < 0
+                    || (child & Node::SUBSECTOR == 0 && self.openings.has_holes() && !self.box_is_open(bounds));
+                if !hidden {
+                    break child;
                 }
             };
         }
+    }
+
+    /// The wedge between the outermost rays of a range of frame columns.
+    fn wedge(&self, (first, end): (usize, usize)) -> [WedgeSide; 2] {
+        let camera = self.camera;
+        // From edge to edge of the pixels, half a column beyond their middles.
+        let ray = |half_columns: i64| [0, 1].map(|axis| (camera.ray[axis] + camera.ray_step[axis] * half_columns / 2) >> 16);
+        let left = ray(2 * i64::from(self.view.columns[first]) - 1);
+        let right = ray(2 * i64::from(self.view.columns[end - 1]) + 1);
+        [WedgeSide::new(camera, [left[1], -left[0]]), WedgeSide::new(camera, [-right[1], right[0]])]
     }
 
     /// Whether an open column may show something of a box.
     fn box_is_open(&self, bounds: &[Fixed; 4]) -> bool {
         let width = self.view.base_width;
         let (mut first, mut end) = (width, 0);
-        let [west, east, south, north] = bounds.map(|side| i64::from(side.0));
-        for (x, y) in [(west, south), (east, south), (west, north), (east, north)] {
-            let [left, right] = self.camera.edges(x, y);
+        for corner in 0..4 {
+            let [left, right] = self.camera.edges(i64::from(bounds[corner & 1].0), i64::from(bounds[2 + corner / 2].0));
             if left < 0 {
                 first = 0;
             }
@@ -150,17 +177,17 @@ impl Walk<'_> {
         let scene = self.scene;
         let [first, end, sector] = scene.subsectors[index];
         self.entered[sector as usize] = true;
-        let own = &self.sectors[sector as usize];
+        let own = self.looks[sector as usize];
         // First those to draw, again without branches, then their drawing.
         let mut found = 0;
         for (index, seg) in (first..end).zip(&scene.segs[first as usize..end as usize]) {
             // A one-sided line differs from whatever its sector is compared with.
             let one_sided = seg.back == NO_SECTOR;
-            let back = &self.sectors[if one_sided { sector } else { seg.back } as usize];
-            let matters = one_sided | seg.masked | !same_planes(own, back);
+            let back = self.looks[if one_sided { sector } else { seg.back } as usize];
+            let differs = (own[0] ^ back[0]) | (own[1] ^ back[1]) | u64::from(one_sided | seg.masked);
             let away = seg.away(self.camera.x, self.camera.y);
             self.scratch.facing[found] = (index, away);
-            found += usize::from(matters & (away > 0));
+            found += usize::from((differs != 0) & (away > 0));
         }
         for i in 0..found {
             let (index, away) = self.scratch.facing[i];
@@ -169,10 +196,9 @@ impl Walk<'_> {
     }
 }
 
-/// Whether nothing of floor and ceiling changes from one sector to the other.
-#[inline]
-fn same_planes(a: &SectorState, b: &SectorState) -> bool {
-    let heights = (a.floor.0 ^ b.floor.0) | (a.ceiling.0 ^ b.ceiling.0);
-    let looks = (a.floor_texture.0 ^ b.floor_texture.0) | (a.ceiling_texture.0 ^ b.ceiling_texture.0);
-    (heights == 0) & (looks == 0) & (a.light == b.light)
+/// All that is drawn of a sector, so that two look the same if these are equal.
+pub(super) fn look_of(sector: &SectorState) -> [u64; 2] {
+    let textures = u64::from(sector.floor_texture.0) | u64::from(sector.ceiling_texture.0) << 16;
+    let heights = u64::from(sector.floor.0 as u32) | u64::from(sector.ceiling.0 as u32) << 32;
+    [heights, textures | u64::from(sector.light as u16) << 32]
 }

@@ -104,9 +104,9 @@ impl SeenLine {
 impl Edge {
     /// The first frame row whose middle is below the edge at a base column; `first_rows` is [`View::first_row`].
     #[inline]
-    pub fn row(&self, first_rows: &[i16], column: u32) -> i16 {
+    pub fn row(&self, first_rows: &[i16], column: u32) -> i32 {
         let base = ((self.at + self.step * i64::from(column)) >> ROW_BITS).max(0) as usize;
-        first_rows[base.min(first_rows.len() - 1)]
+        i32::from(first_rows[base.min(first_rows.len() - 1)])
     }
 }
 
@@ -144,20 +144,20 @@ impl WallShader<'_> {
             let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
             let at = (start + (step >> 1) - step.wrapping_mul(self.camera.horizon)) as u32;
             let column = Column { texels, table, at, step: step as u32 };
-            let (rows, first_pixel) = (&self.view.rows[top..bottom], top * frame.width + x);
+            let rows = &self.view.rows[top..bottom];
+            let lines = top * frame.width..bottom * frame.width;
+            let pixels = frame.colour[lines.clone()].chunks_exact_mut(frame.width).map(|line| &mut line[x]);
             match picture.height {
-                128 => column.draw::<7>(&mut frame.colour, frame.width, first_pixel, rows),
-                64 => column.draw::<6>(&mut frame.colour, frame.width, first_pixel, rows),
-                _ => column.draw_any_height(&mut frame.colour, frame.width, first_pixel, rows),
+                128 => column.draw::<7>(pixels.zip(rows)),
+                64 => column.draw::<6>(pixels.zip(rows)),
+                _ => column.draw_any_height(pixels.zip(rows)),
             }
             if DEPTH {
                 let depth = frame.capped_depth(distance);
-                let pixels = frame.depth[top * frame.width + x..].iter_mut().step_by(frame.width);
-                pixels.take(bottom - top).for_each(|pixel| *pixel = depth);
+                frame.depth[lines.clone()].chunks_exact_mut(frame.width).for_each(|line| line[x] = depth);
             }
             if CLASS {
-                let pixels = frame.class[top * frame.width + x..].iter_mut().step_by(frame.width);
-                pixels.take(bottom - top).for_each(|pixel| *pixel = class::WALL);
+                frame.class[lines].chunks_exact_mut(frame.width).for_each(|line| line[x] = class::WALL);
             }
         }
     }
@@ -174,24 +174,20 @@ struct Column<'a> {
 }
 
 impl Column<'_> {
-    /// For textures `2^BITS` texels high.
+    /// For textures `2^BITS` texels high: fills pixels, each given with its base row.
     #[inline(always)]
-    fn draw<const BITS: u32>(&self, pixels: &mut [u8], width: usize, first: usize, rows: &[u32]) {
+    fn draw<'p, const BITS: u32>(&self, pixels: impl Iterator<Item = (&'p mut u8, &'p u32)>) {
         let texels = &self.texels[..1 << BITS];
-        let mut pixel = first;
-        for &row in rows {
+        for (pixel, &row) in pixels {
             let texel = self.at.wrapping_add(self.step.wrapping_mul(row)) >> (32 - BITS);
-            pixels[pixel] = self.table[usize::from(texels[texel as usize])];
-            pixel += width;
+            *pixel = self.table[usize::from(texels[texel as usize])];
         }
     }
 
-    fn draw_any_height(&self, pixels: &mut [u8], width: usize, first: usize, rows: &[u32]) {
-        let mut pixel = first;
-        for &row in rows {
-            let texel = u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64 >> 32;
-            pixels[pixel] = self.table[usize::from(self.texels[texel as usize])];
-            pixel += width;
+    fn draw_any_height<'p>(&self, pixels: impl Iterator<Item = (&'p mut u8, &'p u32)>) {
+        for (pixel, &row) in pixels {
+            let texel = (u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64) >> 32;
+            *pixel = self.table[usize::from(self.texels[texel as usize])];
         }
     }
 }
