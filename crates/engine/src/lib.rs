@@ -14,6 +14,8 @@
 pub mod assets;
 pub mod map;
 pub mod math;
+#[cfg(test)]
+mod mutation;
 pub mod render;
 pub mod wad;
 pub mod world;

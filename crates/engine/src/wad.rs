@@ -1,6 +1,8 @@
 //! WAD files: the directory of named lumps that maps and pictures come in.
 
+use crate::assets::STAND_INS;
 use crate::map::{MapSource, TextureName, udmf};
+use std::collections::BTreeSet;
 use std::fmt;
 
 /// Bytes of the header and of a directory entry.
@@ -164,12 +166,30 @@ pub fn write(kind: WadKind, lumps: &[Lump<'_>]) -> Vec<u8> {
     out
 }
 
-/// A PWAD with one UDMF map, which engines of the ZDoom family load as it is (they build nodes themselves).
+/// A PWAD with one UDMF map, which engines of the ZDoom family load as it is (they build nodes themselves). Textures
+/// that no game file has are defined by others that all have.
 #[must_use]
 pub fn write_map(name: &str, map: &MapSource) -> Vec<u8> {
     let text = udmf::write(map);
+    let definitions = texture_definitions(map);
     let lump = |name: &str, bytes| Lump { name: TextureName::new(name), bytes };
-    write(WadKind::Pwad, &[lump(name, b""), lump("TEXTMAP", text.as_bytes()), lump("ENDMAP", b"")])
+    let mut lumps = vec![lump(name, b""), lump("TEXTMAP", text.as_bytes()), lump("ENDMAP", b"")];
+    if !definitions.is_empty() {
+        lumps.insert(0, lump("TEXTURES", definitions.as_bytes()));
+    }
+    write(WadKind::Pwad, &lumps)
+}
+
+/// The `TEXTURES` lump for the names that the map uses.
+fn texture_definitions(map: &MapSource) -> String {
+    let walls = map.sides.iter().flat_map(|side| [side.top, side.middle, side.bottom]);
+    let flats = map.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
+    let used: BTreeSet<TextureName> = walls.chain(flats).collect();
+    let needed = STAND_INS.iter().filter(|(name, ..)| used.contains(&TextureName::new(name)));
+    let define = |(name, stand_in, (width, height)): &(&str, &str, (u16, u16))| {
+        format!("Texture {name}, {width}, {height}\n{{\n\tPatch {stand_in}, 0, 0\n}}\n")
+    };
+    needed.map(define).collect()
 }
 
 fn int(bytes: &[u8], at: usize) -> i32 {
@@ -212,6 +232,12 @@ mod tests {
         assert_eq!(names, ["MAP01", "TEXTMAP", "ENDMAP"]);
         assert_eq!(udmf::read(wad.map_text("map01").unwrap()).unwrap(), map);
         assert!(matches!(wad.map_text("MAP02"), Err(WadError::NotFound { .. })));
+
+        // A texture of ours comes with its definition.
+        let text = b"namespace = \"zdoom\"; sector { texturefloor = \"TILES6\"; textureceiling = \"FLAT5\"; }";
+        let bytes = write_map("MAP01", &udmf::read(text).unwrap());
+        let definitions = std::str::from_utf8(Wad::read(&bytes).unwrap().find("TEXTURES").unwrap()).unwrap();
+        assert_eq!(definitions, "Texture TILES6, 64, 64\n{\n\tPatch FLAT5_7, 0, 0\n}\n");
     }
 
     #[test]

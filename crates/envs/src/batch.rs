@@ -16,6 +16,8 @@ pub struct Batch {
     pub costs: Vec<f32>,
     /// Out: each cost term of the step, counted or not, `[lanes, terms]`.
     pub cost_terms: Vec<f32>,
+    /// Out: where the player stands at the end of the step, before any reset, in map units, `[lanes]`. For heatmaps.
+    pub positions: Vec<[i32; 2]>,
     /// Out: the episode ended by death or goal, `[lanes]`.
     pub terminated: Vec<bool>,
     /// Out: the episode ended by time-out, `[lanes]`.
@@ -37,7 +39,7 @@ pub struct Episode {
     pub episode_return: f64,
     /// Sum of costs.
     pub cost: f64,
-    /// Sum of each named cost term, counted or not, in the order of the environment's cost terms.
+    /// Sum of each counted cost term: together they are the cost. What is measured beside it is among the statistics.
     pub costs: Vec<(&'static str, f64)>,
     /// Length in policy steps.
     pub length: u32,

@@ -60,6 +60,16 @@ pub trait Environment: Send {
     /// Writes the observation of the present state, as long as the product of the observation shape.
     fn observe(&mut self, out: &mut [u8]);
 
+    /// Where the player stands, in map units; the origin where there are no places.
+    fn position(&self) -> [i32; 2] {
+        [0, 0]
+    }
+
+    /// The map's extent: x from, y from, x to, y to in map units; `None` where there are no places.
+    fn extent(&self) -> Option<[i32; 4]> {
+        None
+    }
+
     /// The episode so far, as it would be reported if it ended now (its lane is left 0).
     fn episode(&self) -> Episode;
 }

@@ -1,5 +1,7 @@
 //! How an environment is made.
 
+use hasard_engine::render::FrameSize;
+
 /// Which of the two sets of constants of `DECISIONS.md` the scenario follows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum RuleSet {
@@ -34,15 +36,6 @@ pub enum Layout {
     Chw,
 }
 
-/// Size of a frame in pixels. 128x72 is the learner's nearest-neighbour reduction of 160x120.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct FrameSize {
-    /// Columns.
-    pub width: u16,
-    /// Rows.
-    pub height: u16,
-}
-
 /// Everything that a user may choose about an environment beside its id.
 #[derive(Clone, Debug)]
 pub struct EnvOptions {
@@ -62,6 +55,13 @@ pub struct EnvOptions {
     pub layout: Layout,
     /// Number of last frames stacked along the channel axis, oldest first; 1..=16.
     pub frame_stack: usize,
+    /// Depth of walls ends where the published engine's does, not at 255.
+    pub published_depth: bool,
+    /// Segmented frames have the published colours, some of which several classes share.
+    pub published_colours: bool,
+    /// A map to play in instead of the built-in one, such as a user's copy of the original: it needs a player start and the
+    /// sector tags that the scenario's rules change.
+    pub map: Option<std::sync::Arc<hasard_engine::map::MapSource>>,
     /// Pictures to draw with; the embedded set if `None`.
     pub assets: Option<std::sync::Arc<hasard_engine::assets::Assets>>,
 }
@@ -73,11 +73,29 @@ impl Default for EnvOptions {
             hard: false,
             full_actions: false,
             frame_skip: 4,
-            size: FrameSize { width: 160, height: 120 },
+            size: FrameSize::CLASSIC,
             observation: ObservationKind::Rgb,
             layout: Layout::Hwc,
             frame_stack: 1,
+            published_depth: false,
+            published_colours: false,
+            map: None,
             assets: None,
         }
+    }
+}
+
+impl EnvOptions {
+    /// What is wrong with the options, if anything.
+    pub fn check(&self) -> Result<(), crate::EnvError> {
+        let within = |option, given: usize, least: usize, most: usize| {
+            let allowed = format!("{least}..={most}");
+            let fits = (least..=most).contains(&given);
+            if fits { Ok(()) } else { Err(crate::EnvError::Option { option, given: given.to_string(), allowed }) }
+        };
+        within("frame_skip", self.frame_skip as usize, 1, 35)?;
+        within("frame_stack", self.frame_stack, 1, 16)?;
+        let allowed = "64x48 to 1920x1080".to_string();
+        self.size.check().map_err(|_| crate::EnvError::Option { option: "the frame size", given: self.size.to_string(), allowed })
     }
 }

@@ -66,6 +66,9 @@ impl Environment for Echo {
             *byte = (self.state >> (i % 8 * 8)) as u8;
         }
     }
+    fn position(&self) -> [i32; 2] {
+        [self.last.cost as i32, self.last.reward as i32]
+    }
     fn episode(&self) -> Episode {
         Episode {
             lane: 0,
@@ -117,6 +120,13 @@ fn note(lives: &mut [Life], worlds: &VecEnv, group: usize, batch: &Batch) {
     }
     assert!(batch.episodes.is_sorted_by_key(|e| e.lane));
     assert_eq!(batch.cost_terms, batch.costs);
+    // This world stands where its last step's cost and reward say, also when the step ended an episode.
+    for ((position, cost), reward) in batch.positions.iter().zip(&batch.costs).zip(&batch.rewards) {
+        // An ended world that waits brings nothing and stays where it is.
+        if *cost != 0.0 || *reward != 0.0 {
+            assert_eq!(*position, [*cost as i32, *reward as i32]);
+        }
+    }
 }
 
 fn lives_by_step(options: VecOptions, steps: u64) -> Vec<Life> {

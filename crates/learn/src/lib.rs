@@ -1,1 +1,34 @@
-//! learn
+//! Training of safe reinforcement learning agents on the worlds of the HASARD benchmark.
+
+pub mod advantage;
+pub mod algorithms;
+pub mod burn_network;
+pub mod checkpoint;
+pub mod checksum;
+pub mod config;
+pub mod cpu;
+pub mod device;
+pub mod distribution;
+pub mod error;
+pub mod evaluate;
+pub mod gather;
+pub mod heatmap;
+pub mod interrupt;
+pub mod learner;
+pub mod measure;
+pub mod metrics;
+pub mod model;
+pub mod normaliser;
+pub mod optimiser;
+pub mod progress_bar;
+pub mod random;
+pub mod report;
+pub mod rollout;
+pub mod run_directory;
+pub mod sampler;
+pub mod session;
+pub mod shaping;
+pub mod tensorboard;
+pub mod trainer;
+pub mod watch;
+pub mod writer;

@@ -5,6 +5,8 @@
 //! | [`Picture`] | red, green, blue pixels, and drawing on them |
 //! | [`png`] | PNG files, written and read |
 //! | [`gif`] | animated GIF |
+//! | [`video`] | MP4 |
+//! | [`AnimationWriter`] | either, by the name of the file |
 //! | [`compose`] | several views of one moment side by side, with captions |
 //! | [`text`] | captions |
 //! | [`episode`] | the episode file: environment, options, seed and actions, enough to play an episode again |
@@ -20,6 +22,7 @@
 //! assert!(both.width() > 2 * 160);
 //! ```
 
+mod animation;
 pub mod compose;
 pub mod episode;
 mod error;
@@ -29,6 +32,8 @@ mod picture;
 pub mod png;
 mod quantise;
 pub mod text;
+pub mod video;
 
+pub use animation::AnimationWriter;
 pub use error::MediaError;
 pub use picture::Picture;

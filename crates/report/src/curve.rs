@@ -133,7 +133,7 @@ mod tests {
     fn curves_are_neither_mixed_nor_stretched() {
         let long: Vec<_> = (1..=10).map(|k| (f64::from(k) * 100.0, f64::from(k))).collect();
         let short: Vec<_> = (1..=5).map(|k| (f64::from(k) * 100.0, f64::from(k) + 2.0)).collect();
-        let curve = Curve::of(&Group { runs: vec![run(1, &long), run(2, &short)] }, "return_mean");
+        let curve = Curve::of(&Group { runs: vec![run(1, &long), run(2, &short)], told: Default::default() }, "return_mean");
         assert_eq!(curve.seeds[0].1, long);
         assert_eq!(curve.seeds[1].1, short);
         assert_eq!(curve.mean.len(), 5);
@@ -145,15 +145,17 @@ mod tests {
     #[test]
     fn long_runs_are_thinned_by_means() {
         let rows: Vec<_> = (1..=24_000).map(|k| (f64::from(k) * 4096.0, f64::from(k % 100))).collect();
-        let curve = Curve::of(&Group { runs: vec![run(1, &rows)] }, "return_mean");
+        let curve = Curve::of(&Group { runs: vec![run(1, &rows)], told: Default::default() }, "return_mean");
         assert_eq!(curve.mean.len(), MAX_POINTS);
         assert!(curve.mean.iter().all(|point| (point.value.mean - 49.5).abs() < 1e-9 && point.value.half_width.is_none()));
     }
 
     #[test]
     fn reports_at_unlike_frames_meet_on_the_lines_between() {
-        let group =
-            Group { runs: vec![run(1, &[(0.0, 0.0), (100.0, 10.0)]), run(2, &[(0.0, 0.0), (50.0, 10.0), (100.0, 10.0)])] };
+        let group = Group {
+            runs: vec![run(1, &[(0.0, 0.0), (100.0, 10.0)]), run(2, &[(0.0, 0.0), (50.0, 10.0), (100.0, 10.0)])],
+            told: Default::default(),
+        };
         let curve = Curve::of(&group, "return_mean");
         let at_50 = curve.mean.iter().find(|point| point.frames == 50.0).unwrap();
         assert_eq!(at_50.value.mean, 7.5);

@@ -1,6 +1,6 @@
 //! Runs of one experiment that differ in their seed alone.
 
-use crate::run::{Found, Run, Warning};
+use crate::run::{Config, Found, Run, TOLD, Warning};
 use crate::statistics::Estimate;
 use std::collections::BTreeMap;
 
@@ -12,6 +12,8 @@ pub const LAST_POINTS: usize = 10;
 pub struct Group {
     /// The runs, in the order of their seeds, no seed twice.
     pub runs: Vec<Run>,
+    /// The options that are told beside its results: see [`TOLD`].
+    pub told: BTreeMap<String, String>,
 }
 
 impl Group {
@@ -34,7 +36,7 @@ impl Group {
             );
             groups.entry(key).or_default().push(run.clone());
         }
-        groups
+        let mut groups: Vec<Group> = groups
             .into_values()
             .map(|mut runs| {
                 runs.sort_by(|a, b| a.config.seed.cmp(&b.config.seed).then(b.frames().total_cmp(&a.frames())));
@@ -53,9 +55,12 @@ impl Group {
                         _ => kept.push(run),
                     }
                 }
-                Group { runs: kept }
+                let told = kept[0].config.options.iter().filter(|(key, _)| TOLD.contains(&key.as_str()));
+                Group { told: told.map(|(key, value)| (key.clone(), value.clone())).collect(), runs: kept }
             })
-            .collect()
+            .collect();
+        tell_apart(&mut groups);
+        groups
     }
 
     /// What all its runs share.
@@ -95,11 +100,30 @@ impl Group {
         self.runs.iter().all(|run| run.config.frames.is_none_or(|asked| run.frames() >= asked * 0.999))
     }
 
-    /// The options under which it ran, without the one of the given name, as one line; empty for none.
+    /// The options that are told of it, without the one of the given name, as one line; empty for none.
     #[must_use]
     pub fn options_line(&self, without: Option<&str>) -> String {
-        let options = self.config().options.iter().filter(|(key, _)| Some(key.as_str()) != without);
+        let options = self.told.iter().filter(|(key, _)| Some(key.as_str()) != without);
         options.map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Tells, of experiments that would look the same, what they differ in.
+fn tell_apart(groups: &mut [Group]) {
+    let seen: Vec<(Config, BTreeMap<String, String>)> =
+        groups.iter().map(|group| (group.config().clone(), group.told.clone())).collect();
+    let look = |(config, told): &(Config, BTreeMap<String, String>)| {
+        (config.env.clone(), config.algo.clone(), config.frames.map(f64::to_bits), told.clone())
+    };
+    for (group, own) in groups.iter_mut().zip(&seen) {
+        for (other, _) in seen.iter().filter(|other| look(other) == look(own)) {
+            for key in own.0.options.keys().chain(other.options.keys()) {
+                let value = own.0.options.get(key);
+                if value != other.options.get(key) {
+                    group.told.insert(key.clone(), value.cloned().unwrap_or_else(|| "not given".into()));
+                }
+            }
+        }
     }
 }
 
@@ -133,4 +157,44 @@ pub fn scenario_name(scenario: &str) -> String {
 #[must_use]
 pub fn algorithm_order(algo: &str) -> usize {
     ALGORITHMS.iter().position(|known| known.eq_ignore_ascii_case(algo)).unwrap_or(ALGORITHMS.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_tells_experiments_apart_is_told() {
+        let run = |seed: u64, extra: &str| {
+            let text = format!(
+                "{{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":{seed},\"preset\":\"paper\",\"gamma\":0.9{extra}}}"
+            );
+            let config = Config::parse(&text).unwrap();
+            Run {
+                path: format!("{seed}{extra}").into(),
+                config,
+                rows: vec![],
+                evaluation: vec![],
+                heatmaps: vec![],
+                automap: None,
+            }
+        };
+        let runs = vec![
+            run(1, ""),
+            run(2, ""),
+            run(1, ",\"learning\":{\"rate\":1}"),
+            run(1, ",\"full_actions\":true,\"learning\":{\"exploration\":\"entropy\"}"),
+        ];
+        let groups = Group::sort(&Found { runs, ..Found::default() }, &mut Vec::new());
+        let mut lines: Vec<(usize, String)> = groups.iter().map(|group| (group.runs.len(), group.options_line(None))).collect();
+        lines.sort();
+        assert_eq!(
+            lines,
+            [
+                (1, "full_actions true, preset paper".to_owned()),
+                (1, "learning.rate 1, preset paper".to_owned()),
+                (2, "learning.rate not given, preset paper".to_owned()),
+            ]
+        );
+    }
 }

@@ -3,6 +3,10 @@
 //! Everything is paletted (one byte a pixel); the renderer maps bytes through a light table, then the palette.
 
 mod embedded;
+mod iwad;
+
+pub use iwad::IwadError;
+pub(crate) use iwad::STAND_INS;
 
 /// A picture: column-major, `pixels[x * height + y]`, so that a wall or sprite column is contiguous.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -166,19 +166,22 @@ impl Regions {
         Regions { outlines }
     }
 
-    /// The last-drawn polygon that holds the points just left (or right) of the middle of `a -> b`.
-    pub(super) fn beside(&self, a: Point, b: Point, left: bool) -> Option<usize> {
+    /// Shows `visit` the polygons that hold the points just left (or right) of the middle of `a -> b`, last drawn
+    /// first, until it has seen enough and returns true.
+    pub(super) fn beside(&self, a: Point, b: Point, left: bool, mut visit: impl FnMut(usize) -> bool) {
         // Doubled coordinates make the middle a grid point.
         let middle = (a.0 + b.0, a.1 + b.1);
         let along = sub(b, a);
         let normal = if left { (-along.1, along.0) } else { (along.1, -along.0) };
-        self.outlines.iter().rposition(|outline| {
-            2 * outline.low.0 <= middle.0
+        for (polygon, outline) in self.outlines.iter().enumerate().rev() {
+            let near = 2 * outline.low.0 <= middle.0
                 && middle.0 <= 2 * outline.high.0
                 && 2 * outline.low.1 <= middle.1
-                && middle.1 <= 2 * outline.high.1
-                && holds(&outline.pieces, middle, normal)
-        })
+                && middle.1 <= 2 * outline.high.1;
+            if near && holds(&outline.pieces, middle, normal) && visit(polygon) {
+                return;
+            }
+        }
     }
 }
 

@@ -17,9 +17,10 @@ impl Blockmap {
             let all = lines.iter().map(pick);
             (if low { all.min() } else { all.max() }).unwrap_or(0)
         };
-        // Aligned to whole blocks of the world, so that tile maps have the lines of one tile in few blocks.
-        let origin_x = (limit(|l| l.bounds[0].0, true) >> BLOCK_SHIFT) << BLOCK_SHIFT;
-        let origin_y = (limit(|l| l.bounds[2].0, true) >> BLOCK_SHIFT) << BLOCK_SHIFT;
+        // At the map's corner, where the original has it: slides look for walls block by block, and tile maps have the
+        // lines of one tile in few blocks.
+        let origin_x = limit(|l| l.bounds[0].0, true) >> 16 << 16;
+        let origin_y = limit(|l| l.bounds[2].0, true) >> 16 << 16;
         let columns = block_of(limit(|l| l.bounds[1].0, false), origin_x) + 1;
         let rows = block_of(limit(|l| l.bounds[3].0, false), origin_y) + 1;
 

@@ -5,7 +5,7 @@
 
 use super::arrangement::{self, Owner, POINTS_PER_UNIT, Piece, Point, Regions};
 use super::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// How a polygon's sector looks and behaves.
@@ -84,11 +84,24 @@ impl fmt::Display for BuilderError {
 
 impl std::error::Error for BuilderError {}
 
+/// What a polygon does to what lies under it.
+#[derive(Clone, Copy, Debug)]
+enum Paint {
+    /// Covers it with the sector of this index in [`MapBuilder::sectors`].
+    Sector(usize),
+    /// Covers it with solid rock.
+    Rock,
+    /// Leaves it and changes its light.
+    Light(i32),
+}
+
+/// A sector to be: a style, and the light that shade gives it.
+type Region = (usize, Option<i32>);
+
 /// Collects polygons, marks and things.
 #[derive(Clone, Debug, Default)]
 pub struct MapBuilder {
-    /// Sector index of each polygon; `None` carves solid rock.
-    polygons: Vec<(Option<usize>, Vec<Point>)>,
+    polygons: Vec<(Paint, Vec<Point>)>,
     sectors: Vec<Style>,
     marks: Vec<(Mark, Vec<Point>)>,
     things: Vec<SourceThing>,
@@ -109,7 +122,7 @@ impl MapBuilder {
             self.sectors.push(style);
             self.sectors.len() - 1
         });
-        self.polygons.push((Some(sector), points(corners)));
+        self.polygons.push((Paint::Sector(sector), points(corners)));
         self
     }
 
@@ -120,7 +133,13 @@ impl MapBuilder {
 
     /// Carves solid rock: a pillar, a wall, a house without inside.
     pub fn solid(&mut self, corners: &[(i32, i32)]) -> &mut MapBuilder {
-        self.polygons.push((None, points(corners)));
+        self.polygons.push((Paint::Rock, points(corners)));
+        self
+    }
+
+    /// Gives everything painted so far inside the polygon another light: a shadow, a pool of lamplight.
+    pub fn shade(&mut self, light: i32, corners: &[(i32, i32)]) -> &mut MapBuilder {
+        self.polygons.push((Paint::Light(light), points(corners)));
         self
     }
 
@@ -149,7 +168,22 @@ impl MapBuilder {
     pub fn finish(&self) -> Result<MapSource, BuilderError> {
         let pieces = self.arrange()?;
         let regions = Regions::new(&pieces, self.polygons.len());
-        let sector_at = |a, b, left| regions.beside(a, b, left).and_then(|polygon| self.polygons[polygon].0);
+        let region_at = |a, b, left| -> Option<Region> {
+            let (mut light, mut region) = (None, None);
+            regions.beside(a, b, left, |polygon| {
+                match self.polygons[polygon].0 {
+                    Paint::Sector(sector) => region = Some((sector, light)),
+                    Paint::Rock => {}
+                    Paint::Light(shade) => {
+                        light = light.or(Some(shade));
+                        return false;
+                    }
+                }
+                true
+            });
+            // Shade of the light that is there already makes no border.
+            region.map(|(sector, light)| (sector, light.filter(|&light| light != self.sectors[sector].light)))
+        };
         let mut edges = Vec::new();
         for piece in &pieces {
             let mark = piece.owners.iter().rev().find_map(|owner| match *owner {
@@ -157,7 +191,7 @@ impl MapBuilder {
                 Owner::Polygon(_) => None,
             });
             let keep = mark.is_some_and(|m| self.marks[m].0.blocking || self.marks[m].0.middle.is_some());
-            let (right, left) = (sector_at(piece.a, piece.b, false), sector_at(piece.a, piece.b, true));
+            let (right, left) = (region_at(piece.a, piece.b, false), region_at(piece.a, piece.b, true));
             match (right, left) {
                 (None, None) if keep => {
                     return Err(BuilderError::MarkInVoid { at: (piece.a.0 / POINTS_PER_UNIT, piece.a.1 / POINTS_PER_UNIT) });
@@ -193,16 +227,12 @@ impl MapBuilder {
 
     fn write(&self, edges: &[Edge]) -> MapSource {
         let mut source = MapSource { namespace: "zdoom".to_owned(), things: self.things.clone(), ..Default::default() };
-        // Sectors that were painted over completely have no line and are left out.
-        let mut used = vec![false; self.sectors.len()];
-        for edge in edges {
-            used[edge.front] = true;
-            edge.back.inspect(|&back| used[back] = true);
-        }
-        let mut numbers = vec![0; self.sectors.len()];
-        for (index, style) in self.sectors.iter().enumerate().filter(|&(index, _)| used[index]) {
-            numbers[index] = source.sectors.len();
-            source.sectors.push(sector_of(style));
+        // In order of painting; what was painted over completely has no line and is left out.
+        let used: BTreeSet<Region> = edges.iter().flat_map(|edge| [Some(edge.front), edge.back]).flatten().collect();
+        let mut numbers: BTreeMap<Region, usize> = BTreeMap::new();
+        for region in used {
+            numbers.insert(region, source.sectors.len());
+            source.sectors.push(sector_of(&self.sectors[region.0], region.1));
         }
         let mut vertices: BTreeMap<Point, usize> = BTreeMap::new();
         let offsets = self.align(edges);
@@ -216,9 +246,9 @@ impl MapBuilder {
             });
             let mark = self.mark_of(edge);
             let front = source.sides.len();
-            source.sides.push(self.side(edge.front, edge.back, &mark, numbers[edge.front], offset[0]));
+            source.sides.push(self.side(edge.front, edge.back, &mark, numbers[&edge.front], offset[0]));
             if let Some(back) = edge.back {
-                source.sides.push(self.side(back, Some(edge.front), &mark, numbers[back], offset[1]));
+                source.sides.push(self.side(back, Some(edge.front), &mark, numbers[&back], offset[1]));
             }
             source.lines.push(SourceLine {
                 v1,
@@ -238,15 +268,16 @@ impl MapBuilder {
         edge.mark.map(|mark| self.marks[mark].0).unwrap_or_default()
     }
 
-    fn side(&self, facing: usize, behind: Option<usize>, mark: &Mark, sector: usize, run: i64) -> SourceSide {
+    fn side(&self, facing: Region, behind: Option<Region>, mark: &Mark, sector: usize, run: i64) -> SourceSide {
         let name = |own: Option<&'static str>, default| TextureName::new(own.unwrap_or(default));
         let (offset_x, offset_y) = mark.offset.map_or((run as f64, 0.0), |(x, y)| (f64::from(x), f64::from(y)));
         let mut side = SourceSide { sector, offset_x, offset_y, ..SourceSide::default() };
-        match behind.map(|behind| &self.sectors[behind]) {
-            None => side.middle = name(mark.wall, self.sectors[facing].wall),
+        let facing = &self.sectors[facing.0];
+        match behind.map(|behind| &self.sectors[behind.0]) {
+            None => side.middle = name(mark.wall, facing.wall),
             Some(behind) => {
                 side.bottom = name(mark.step, behind.step);
-                let open_sky = [behind, &self.sectors[facing]].iter().all(|style| style.ceiling_texture == "F_SKY1");
+                let open_sky = [behind, facing].iter().all(|style| style.ceiling_texture == "F_SKY1");
                 if !open_sky {
                     side.top = name(mark.lintel, behind.lintel);
                 }
@@ -260,10 +291,15 @@ impl MapBuilder {
     /// without a seam.
     fn align(&self, edges: &[Edge]) -> Vec<[i64; 2]> {
         // A face is (edge, is back); faces of one run have equal keys and end where the next begins.
-        type Key = (usize, Option<Style>, Option<usize>);
+        // A wall seen from here and there looks the same if the styles' looks and the marks do, whatever the light.
+        type Key = (Style, Option<Style>, Option<usize>);
+        let looks = |region: Region| only_looks(self.sectors[region.0]);
         let key = |edge: &Edge, back: bool| -> Key {
-            let (facing, behind) = if back { (edge.back.unwrap_or(0), Some(edge.front)) } else { (edge.front, edge.back) };
-            (facing, behind.map(|behind| self.sectors[behind]).map(only_looks), edge.mark)
+            let (facing, behind) = match edge.back {
+                Some(other) if back => (other, Some(edge.front)),
+                other => (edge.front, other),
+            };
+            (looks(facing), behind.map(looks), edge.mark)
         };
         let ends = |edge: &Edge, back: bool| if back { (edge.b, edge.a) } else { (edge.a, edge.b) };
         let faces: Vec<(usize, bool)> = edges
@@ -309,8 +345,8 @@ impl MapBuilder {
 struct Edge {
     a: Point,
     b: Point,
-    front: usize,
-    back: Option<usize>,
+    front: Region,
+    back: Option<Region>,
     mark: Option<usize>,
 }
 
@@ -331,13 +367,13 @@ fn points(corners: &[(i32, i32)]) -> Vec<Point> {
     corners.iter().map(|&(x, y)| (i64::from(x) * POINTS_PER_UNIT, i64::from(y) * POINTS_PER_UNIT)).collect()
 }
 
-fn sector_of(style: &Style) -> SourceSector {
+fn sector_of(style: &Style, shade: Option<i32>) -> SourceSector {
     SourceSector {
         floor: style.floor,
         ceiling: style.ceiling,
         floor_texture: TextureName::new(style.floor_texture),
         ceiling_texture: TextureName::new(style.ceiling_texture),
-        light: style.light,
+        light: shade.unwrap_or(style.light),
         special: style.special,
         tag: style.tag,
     }

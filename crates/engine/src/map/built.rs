@@ -249,6 +249,19 @@ impl Map {
         &self.subsectors[(child & !Node::SUBSECTOR) as usize]
     }
 
+    /// Whether a point lies in any sector at all. Behind walls there is nothing, but [`Map::subsector_at`] still gives
+    /// the nearest piece by the tree.
+    #[must_use]
+    pub fn is_inside(&self, x: Fixed, y: Fixed) -> bool {
+        let subsector = self.subsector_at(x, y);
+        let segs = &self.segs[subsector.first_seg as usize..][..subsector.seg_count as usize];
+        segs.iter().filter(|seg| seg.back_sector.is_none()).all(|seg| {
+            let line = &self.lines[seg.line as usize];
+            let (px, py) = (i64::from(x.0) - i64::from(line.v1.x.0), i64::from(y.0) - i64::from(line.v1.y.0));
+            py * i64::from(line.dx.0) <= px * i64::from(line.dy.0)
+        })
+    }
+
     /// The sector under a point.
     #[must_use]
     pub fn sector_at(&self, x: Fixed, y: Fixed) -> SectorId {

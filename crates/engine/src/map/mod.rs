@@ -9,6 +9,8 @@ mod build_tests;
 mod builder;
 mod built;
 mod error;
+#[cfg(test)]
+mod hostile_tests;
 mod source;
 mod tile_grid;
 pub mod udmf;

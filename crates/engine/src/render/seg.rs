@@ -19,6 +19,17 @@ struct SeenSeg<'a> {
     /// Frame columns.
     first: usize,
     end: usize,
+    /// First and last base column.
+    base_ends: [i64; 2],
+}
+
+/// The columns of a seg that faces the eye.
+struct SeenColumns {
+    /// Frame columns.
+    first: usize,
+    end: usize,
+    /// First and last base column: what depends on these is the same in every reduction of a frame.
+    base_ends: [i64; 2],
 }
 
 /// The part of a seg above or below its opening.
@@ -37,10 +48,10 @@ impl Walk<'_> {
     #[inline]
     pub fn seg<const DEPTH: bool, const CLASS: bool>(&mut self, index: u32, away: i64) {
         let seg = &self.scene.segs[index as usize];
-        let Some((first, end)) = self.columns(seg) else { return };
+        let Some(SeenColumns { first, end, base_ends }) = self.columns(seg) else { return };
         let face = &self.scene.faces[seg.face as usize];
         let line = SeenLine::new(self.camera, seg, away);
-        let seen = SeenSeg { index, seg, face, line, first, end };
+        let seen = SeenSeg { index, seg, face, line, first, end, base_ends };
         let front = &self.sectors[seg.front as usize];
         if seg.back == NO_SECTOR {
             self.solid::<DEPTH, CLASS>(&seen, front);
@@ -51,7 +62,7 @@ impl Walk<'_> {
 
     /// The frame columns of a seg that faces the eye, if any of them is open.
     #[inline]
-    fn columns(&self, seg: &SceneSeg) -> Option<(usize, usize)> {
+    fn columns(&self, seg: &SceneSeg) -> Option<SeenColumns> {
         let (camera, view) = (self.camera, self.view);
         let [[left1, right1], [left2, right2]] = seg.ends.map(|[x, y]| camera.edges(i64::from(x), i64::from(y)));
         // Facing the eye, it runs clockwise by less than half a turn: it enters the view over the left edge or not at
@@ -70,9 +81,10 @@ impl Walk<'_> {
         };
         let first = if left1 < 0 { 0 } else { column(left1, right1) };
         let end = if right2 < 0 { width as usize } else { column(left2, right2) };
+        let base_ends = [first as i64, end as i64 - 1];
         let first = usize::from(*view.first_column.get(first)?);
         let end = usize::from(*view.first_column.get(end)?);
-        (first < end && self.openings.any_open(first, end)).then_some((first, end))
+        (first < end && self.openings.any_open(first, end)).then_some(SeenColumns { first, end, base_ends })
     }
 
     /// A wall without another side.
@@ -262,7 +274,7 @@ impl Walk<'_> {
 
     fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {
         let range = seen.first..seen.end;
-        let ends = [range.start, range.end - 1].map(|x| seen.line.inverse_at(i64::from(self.view.columns[x])));
+        let ends = seen.base_ends.map(|column| seen.line.inverse_at(column));
         let silhouette = Silhouette {
             first: seen.first,
             end: seen.end,

@@ -162,9 +162,7 @@ impl Walk<'_> {
                 end = width;
             }
             if left >= 0 && right >= 0 {
-                // A quarter of a map unit is exact enough, and its division quicker.
-                let (left, sum) = ((left >> 14) as u32, ((left + right) >> 14).max(1) as u32);
-                let column = left * width / sum;
+                let column = (left as u64 * u64::from(width) / (left + right).max(1) as u64) as u32;
                 first = first.min(column.saturating_sub(1));
                 end = end.max((column + 2).min(width));
             }

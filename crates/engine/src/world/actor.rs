@@ -80,6 +80,9 @@ pub struct ActorId {
 /// No slot, no player: ends the lists of the thing grid and marks actors that are no player's body.
 pub(crate) const NONE: u16 = u16::MAX;
 
+/// Not in the thing grid.
+pub(crate) const NO_BLOCK: u32 = u32::MAX;
+
 /// One thing. Positions are of the centre of its square footprint, at its feet.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Actor {
@@ -158,7 +161,7 @@ pub struct Actor {
     pub next_goal: i32,
     /// Index of the player whose body this is; 255 for none.
     pub player: u8,
-    /// Its block of the thing grid.
+    /// Its block of the thing grid, `NO_BLOCK` outside it.
     pub(crate) block: u32,
     /// The next slot in its block.
     pub(crate) block_next: u16,

@@ -1,6 +1,7 @@
 //! The arena: actors by slot, their generations, who runs when, and the grid by which things find each other.
 
-use super::actor::NONE;
+use super::actor::{NO_BLOCK, NONE};
+use super::riders::Footing;
 use super::{Actor, ActorFlags, ActorId, ActorKind, Heading, Phase, World};
 use crate::math::{Angle, Fixed};
 
@@ -63,11 +64,14 @@ impl World {
             avoids_ledge: false,
             next_goal: 0,
             player: u8::MAX,
-            block: 0,
+            block: NO_BLOCK,
             block_next: NONE,
             block_previous: NONE,
         };
         self.link(slot);
+        if let Some(footing) = self.footings.get_mut(slot) {
+            *footing = Footing::UNKNOWN;
+        }
         let id = ActorId { slot: slot as u16, generation };
         self.fresh.push(id);
         self.start_animation(slot);
@@ -163,7 +167,7 @@ impl World {
     /// Takes an actor out of its block.
     pub(crate) fn unlink(&mut self, slot: usize) {
         let actor = &self.actors[slot];
-        if actor.flags.any(NOT_LISTED) {
+        if actor.block == NO_BLOCK {
             return;
         }
         let (block, next, previous) = (actor.block, actor.block_next, actor.block_previous);
@@ -175,10 +179,14 @@ impl World {
         if next != NONE {
             self.actors[usize::from(next)].block_previous = previous;
         }
+        self.actors[slot].block = NO_BLOCK;
     }
 
     /// Moves an actor in the plane, keeping the grid and its sector true; heights are the caller's.
     pub(crate) fn relocate(&mut self, slot: usize, x: Fixed, y: Fixed, sector: crate::map::SectorId) {
+        if let Some(footing) = self.footings.get_mut(slot) {
+            *footing = Footing::UNKNOWN;
+        }
         let same_block = self.block_of(x, y) == self.actors[slot].block;
         if !same_block {
             self.unlink(slot);
@@ -254,7 +262,7 @@ impl Actor {
         avoids_ledge: false,
         next_goal: 0,
         player: u8::MAX,
-        block: 0,
+        block: NO_BLOCK,
         block_next: NONE,
         block_previous: NONE,
     };

@@ -98,6 +98,12 @@ impl World {
     /// What (x, y) is like for the actor in `slot`, at its present height. Changes nothing.
     #[must_use]
     pub fn check_position(&self, slot: usize, x: Fixed, y: Fixed) -> Position {
+        self.check_walk(slot, x, y, false)
+    }
+
+    /// The same; a monster that is `walking` may leave a solid actor that it overlaps, one that is put there or thrown
+    /// may not. Players always may.
+    fn check_walk(&self, slot: usize, x: Fixed, y: Fixed, walking: bool) -> Position {
         let actor = &self.actors[slot];
         let sector = self.map.sector_at(x, y);
         let state = &self.sectors[sector.0 as usize];
@@ -113,7 +119,7 @@ impl World {
             touched: [0; TOUCH_LIMIT],
             touched_count: 0,
         };
-        let stepped_on = self.check_actors(slot, x, y, &mut position);
+        let stepped_on = self.check_actors(slot, x, y, walking, &mut position);
         if position.free {
             self.check_lines(actor, x, y, &mut position);
             if position.free && position.ceiling_z - position.floor_z < actor.height {
@@ -129,9 +135,10 @@ impl World {
 
     /// Tests the things around. Clears `free` where something blocks for certain; gives the highest thing low enough
     /// to be stepped on.
-    fn check_actors(&self, slot: usize, x: Fixed, y: Fixed, position: &mut Position) -> Option<usize> {
+    fn check_actors(&self, slot: usize, x: Fixed, y: Fixed, walking: bool, position: &mut Position) -> Option<usize> {
         let actor = &self.actors[slot];
         let is_player = actor.player_index().is_some();
+        let may_part = is_player || (walking && actor.flags.any(ActorFlags::MONSTER));
         // Players test a taller body, so that they notice what they could step up on.
         let top = actor.top() + if is_player { actor.max_step } else { Fixed::ZERO };
         let mut step: Option<usize> = None;
@@ -143,7 +150,7 @@ impl World {
             {
                 continue;
             }
-            if !self.actor_blocks(actor, other, x, y, top, position, other_slot) {
+            if !self.actor_blocks(actor, other, x, y, top, may_part, position, other_slot) {
                 continue;
             }
             let steps_on = !actor.flags.any(ActorFlags::FLOAT.with(ActorFlags::MISSILE))
@@ -173,6 +180,7 @@ impl World {
         x: Fixed,
         y: Fixed,
         top: Fixed,
+        may_part: bool,
         position: &mut Position,
         other_slot: usize,
     ) -> bool {
@@ -182,7 +190,7 @@ impl World {
         }
         // Solids that overlap already may move apart.
         let mut parting = false;
-        if other.flags.any(ActorFlags::SOLID) && actor.flags.any(PASSES) {
+        if other.flags.any(ActorFlags::SOLID) && may_part {
             if (x, y) == (actor.x, actor.y) {
                 parting = true;
             } else if actor.would_overlap(other, actor.x, actor.y) {
@@ -255,7 +263,8 @@ impl World {
     /// leave the ground. Items on the way are picked up even where the move fails. Height changes later, in the
     /// vertical move.
     pub fn try_move(&mut self, slot: usize, x: Fixed, y: Fixed, dropoff: bool) -> Move {
-        let position = self.check_position(slot, x, y);
+        // Monsters walk with `dropoff` unset; what moves by its velocity has it set.
+        let position = self.check_walk(slot, x, y, !dropoff);
         self.touch_items(slot, &position);
         let (moved, fits_higher) = self.may_enter(slot, dropoff, &position);
         if moved {

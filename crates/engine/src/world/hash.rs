@@ -1,6 +1,7 @@
 //! Snapshots and fingerprints of a world.
 
 use super::World;
+use super::riders::Riders;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
@@ -25,6 +26,8 @@ impl Clone for World {
             movers_run: self.movers_run,
             lights: self.lights.clone(),
             lights_run: self.lights_run,
+            footings: self.footings.clone(),
+            riders: Riders::default(),
             scratch_crossings: Vec::new(),
             scratch_slots: Vec::new(),
         }
@@ -51,6 +54,8 @@ impl Clone for World {
             movers_run,
             lights,
             lights_run,
+            footings,
+            riders: _,
             scratch_crossings: _,
             scratch_slots: _,
         } = source;
@@ -74,6 +79,7 @@ impl Clone for World {
         self.movers_run = *movers_run;
         self.lights.clone_from(lights);
         self.lights_run = *lights_run;
+        self.footings.clone_from(footings);
     }
 }
 
@@ -104,14 +110,21 @@ impl World {
     /// little-endian platform and for every thread count.
     #[must_use]
     pub fn state_hash(&self) -> u64 {
-        let mut hasher = Fingerprint(0x9E37_79B9_7F4A_7C15);
+        let mut hasher = Fingerprint::default();
         self.hash(&mut hasher);
         hasher.finish()
     }
 }
 
 /// A word-wise multiply-and-rotate hash; fixed here, so that fingerprints do not change with the standard library.
-struct Fingerprint(u64);
+#[derive(Clone, Debug)]
+pub struct Fingerprint(u64);
+
+impl Default for Fingerprint {
+    fn default() -> Fingerprint {
+        Fingerprint(0x9E37_79B9_7F4A_7C15)
+    }
+}
 
 impl Fingerprint {
     fn word(&mut self, word: u64) {

@@ -22,8 +22,11 @@ mod monster;
 mod movement;
 mod mover;
 mod patrol;
+#[cfg(test)]
+mod patrol_tests;
 mod pickup;
 mod player;
+mod riders;
 mod sector;
 mod sight;
 mod slide;
@@ -42,6 +45,7 @@ pub use command::{Buttons, Command};
 pub use event::{DamageKind, Event};
 pub use explosion::BLAST;
 pub use face::{Face, FaceState};
+pub use hash::Fingerprint;
 pub use inventory::{BLUE_SKULL, YELLOW_CARD};
 pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
@@ -54,6 +58,7 @@ use crate::map::Map;
 use crate::math::{Fixed, Rng};
 use light::Light;
 use mover::Mover;
+use riders::{Footing, Riders};
 use std::sync::Arc;
 
 /// The whole state of one running map.
@@ -71,7 +76,9 @@ pub struct World {
     pub rng: Rng,
     /// Completed tics; while a tic runs, its number.
     pub tic: u32,
-    /// What happened since the caller last cleared it, in order.
+    /// What happened since the caller last cleared it, in order. Clear it between the scripts and
+    /// [`World::finish_tic`]: what is new can act there already (a rocket that bursts in its first tic), and that is for
+    /// the scripts of the next tic.
     pub events: Vec<Event>,
     /// Monsters and weapons do not search for targets vertically or sideways (Collateral Damage).
     pub no_autoaim: bool,
@@ -95,6 +102,10 @@ pub struct World {
     lights: Vec<Light>,
     /// How many of them have run in this tic.
     lights_run: usize,
+    /// The sectors under each slot's actor, where remembered. Follows from positions, so it is no state of its own.
+    footings: Vec<Footing>,
+    /// Scratch: the actors on moving sectors.
+    riders: Riders,
     /// Space for searches along a path; empty between uses in meaning, not in capacity.
     scratch_crossings: Vec<sight::Crossing>,
     /// Space for the victims of a blast.
@@ -127,6 +138,8 @@ impl World {
             movers_run: 0,
             lights: Vec::new(),
             lights_run: 0,
+            footings: Vec::new(),
+            riders: Riders::default(),
             scratch_crossings: Vec::new(),
             scratch_slots: Vec::new(),
         };

@@ -1,7 +1,7 @@
 //! Floors and ceilings that move, and what that does to the things on them.
 
 use super::waggle::Waggle;
-use super::{ActorFlags, World};
+use super::{Actor, ActorFlags, World};
 use crate::map::SectorId;
 use crate::math::Fixed;
 use std::sync::Arc;
@@ -69,6 +69,11 @@ impl World {
 
     /// Runs the movers from number `first` on, and drops those that are done.
     pub(crate) fn run_movers(&mut self, first: usize) {
+        if first == self.movers.len() {
+            self.movers_run = first;
+            return;
+        }
+        self.list_riders();
         let mut kept = first;
         for index in first..self.movers.len() {
             let mut mover = self.movers[index];
@@ -120,32 +125,35 @@ impl World {
     /// Re-evaluates every actor that touches a sector whose floor or ceiling moved by `change`; false if one does not
     /// fit.
     fn adjust_actors(&mut self, sector: SectorId, ceiling: bool, change: Fixed) -> bool {
-        let bounds = self.map.sectors[sector.0 as usize].bounds;
         let mut fits = true;
-        for slot in 0..self.actors.len() {
-            let actor = &self.actors[slot];
-            if actor.removed
-                || actor.flags.any(super::arena::NOT_LISTED)
-                || actor.x + actor.radius <= bounds[0]
-                || actor.x - actor.radius >= bounds[1]
-                || actor.y + actor.radius <= bounds[2]
-                || actor.y - actor.radius >= bounds[3]
-            {
-                continue;
+        let mut next = self.riders.first(sector);
+        while let Some(entry) = next {
+            let slot;
+            (slot, next) = self.riders.entry(entry);
+            // An item may have been picked up by the player before it.
+            if !self.actors[slot].removed {
+                fits &= self.adjust_actor(slot, ceiling, change);
             }
-            fits &= self.adjust_actor(slot, ceiling, change);
         }
         fits
     }
 
     /// Gives one actor its new floor and ceiling, and moves it with the floor; false if it does not fit.
     fn adjust_actor(&mut self, slot: usize, ceiling: bool, change: Fixed) -> bool {
-        let (x, y) = (self.actors[slot].x, self.actors[slot].y);
-        let position = self.check_position(slot, x, y);
-        self.touch_items(slot, &position);
+        let Actor { x, y, .. } = self.actors[slot];
+        let is_player = self.actors[slot].player_index().is_some();
+        let (floor_z, ceiling_z, dropoff_z) = match self.planes_under(slot) {
+            Some(planes) if !is_player => planes,
+            _ => {
+                let position = self.check_position(slot, x, y);
+                self.touch_items(slot, &position);
+                (position.floor_z, position.ceiling_z, position.dropoff_z)
+            }
+        };
+        let old_z = self.actors[slot].z;
         let actor = &mut self.actors[slot];
-        let old_floor = std::mem::replace(&mut actor.floor_z, position.floor_z);
-        (actor.ceiling_z, actor.dropoff_z) = (position.ceiling_z, position.dropoff_z);
+        let old_floor = std::mem::replace(&mut actor.floor_z, floor_z);
+        (actor.ceiling_z, actor.dropoff_z) = (ceiling_z, dropoff_z);
         if !ceiling && old_floor != actor.floor_z {
             if change < Fixed::ZERO {
                 let falls = actor.vz == Fixed::ZERO && !actor.flags.any(ActorFlags::NO_GRAVITY);
@@ -159,8 +167,10 @@ impl World {
         } else if ceiling && actor.top() > actor.ceiling_z {
             actor.z = (actor.ceiling_z - actor.height).max(actor.floor_z);
         }
-        let fits = actor.ceiling_z - actor.floor_z >= actor.height || !actor.flags.any(ActorFlags::SOLID);
-        self.wake_slot(slot);
+        let fits = actor.ceiling_z - actor.floor_z >= actor.height || !actor.flags.any(ActorFlags::SHOOTABLE);
+        if (actor.z, actor.floor_z) != (old_z, old_floor) {
+            self.wake_slot(slot);
+        }
         fits
     }
 }

@@ -24,21 +24,21 @@ struct Trace {
 }
 
 impl Trace {
-    /// Whether a point is on the left, computed as coarsely as [`behind`].
-    fn left_of(&self, x: Fixed, y: Fixed) -> bool {
-        let across = i64::from((y - self.y).0) * i64::from(self.dx.0) + i64::from((self.x - x).0) * i64::from(self.dy.0);
-        across >> 32 > 0
-    }
-
-    /// The fraction of the way at which it meets a line, if the line is crossed within the way.
+    /// The fraction of the way at which it meets a line, rounded to nearest, if its ends are on different sides of the
+    /// line. The line counts as endless, and with the coarse sides of [`behind`] a short way can miss it: both are the
+    /// original's, and recorded.
     fn meets(&self, line: &Line) -> Option<Fixed> {
-        if self.left_of(line.v1.x, line.v1.y) == self.left_of(line.v2.x, line.v2.y) {
+        if behind(line, self.x, self.y) == behind(line, self.x + self.dx, self.y + self.dy) {
             return None;
         }
-        let wide = |value: Fixed| i64::from(value.0);
-        let denominator = (wide(line.dy) * wide(self.dx) - wide(line.dx) * wide(self.dy)) >> 16;
+        let wide = |value: Fixed| i128::from(value.0);
+        let denominator = wide(line.dy) * wide(self.dx) - wide(line.dx) * wide(self.dy);
         let numerator = wide(line.v1.x - self.x) * wide(line.dy) + wide(self.y - line.v1.y) * wide(line.dx);
-        let fraction = if denominator == 0 { 0 } else { numerator / denominator };
+        let (numerator, denominator) = if denominator < 0 { (-numerator, -denominator) } else { (numerator, denominator) };
+        let fraction = match denominator {
+            0 => 0,
+            _ => ((numerator << 17) + denominator).div_euclid(2 * denominator),
+        };
         (0..=1 << 16).contains(&fraction).then_some(Fixed(fraction as i32))
     }
 }
@@ -98,19 +98,41 @@ impl World {
             trace.y += Fixed::ONE;
             trace.dy = end_y - trace.y;
         }
-        let columns = [blocks.column_of(trace.x), blocks.column_of(end_x)];
-        let rows = [blocks.row_of(trace.y), blocks.row_of(end_y)];
-        for row in rows[0].min(rows[1])..=rows[0].max(rows[1]) {
-            for column in columns[0].min(columns[1])..=columns[0].max(columns[1]) {
-                for &index in blocks.lines_in(column, row) {
-                    let line = &self.map.lines[index as usize];
-                    if let Some(fraction) = trace.meets(line)
-                        && fraction < best.0
-                        && self.walls_off(slot, line)
-                    {
-                        *best = (fraction, index);
-                    }
-                }
+        let (column, row) = (blocks.column_of(trace.x), blocks.row_of(trace.y));
+        let (end_column, end_row) = (blocks.column_of(end_x), blocks.row_of(end_y));
+        self.nearest_wall_in_block(slot, column, row, trace, best);
+        if column != end_column && row != end_row {
+            // Ways are shorter than a block: one more block lies between, or both at an exact corner.
+            let edge_x = blocks.origin_x + Fixed::from_int(128 * column.max(end_column));
+            let edge_y = blocks.origin_y + Fixed::from_int(128 * row.max(end_row));
+            let wide = |value: Fixed| i64::from(value.0).abs();
+            let to_edge_x = wide(edge_x - trace.x) * wide(trace.dy);
+            let to_edge_y = wide(edge_y - trace.y) * wide(trace.dx);
+            if to_edge_x <= to_edge_y {
+                self.nearest_wall_in_block(slot, end_column, row, trace, best);
+            }
+            if to_edge_y <= to_edge_x {
+                self.nearest_wall_in_block(slot, column, end_row, trace, best);
+            }
+        }
+        if column != end_column || row != end_row {
+            self.nearest_wall_in_block(slot, end_column, end_row, trace, best);
+        }
+    }
+
+    fn nearest_wall_in_block(&self, slot: usize, column: i32, row: i32, trace: Trace, best: &mut (Fixed, u32)) {
+        let blocks = &self.map.blockmap;
+        for &index in blocks.lines_in(column, row) {
+            let line = &self.map.lines[index as usize];
+            // The original lists a line on the border of two blocks only in the eastern or northern one.
+            if column < blocks.column_of(line.bounds[0]) || row < blocks.row_of(line.bounds[2]) {
+                continue;
+            }
+            if let Some(fraction) = trace.meets(line)
+                && fraction < best.0
+                && self.walls_off(slot, line)
+            {
+                *best = (fraction, index);
             }
         }
     }

@@ -51,7 +51,8 @@ impl World {
 
     fn has_room(&self, slot: usize) -> bool {
         let Actor { x, y, z, floor_z, ceiling_z, .. } = self.actors[slot];
-        self.check_position(slot, x, y).free && z >= floor_z && self.actors[slot].top() <= ceiling_z
+        // The recordings show nothing put inside rock, where the tree would still name a sector.
+        self.map.is_inside(x, y) && self.check_position(slot, x, y).free && z >= floor_z && self.actors[slot].top() <= ceiling_z
     }
 
     /// Adds a player at (x, y) on the floor, and gives its index.

@@ -40,17 +40,14 @@ impl World {
         player.old_buttons = std::mem::replace(&mut player.buttons, command.buttons);
         let turning = command.buttons.any(Buttons::TURN_LEFT | Buttons::TURN_RIGHT);
         player.turn_held_tics = if turning { player.turn_held_tics.saturating_add(1) } else { 0 };
-        let (mut forward, mut right) = thrust_of(command.buttons);
+        player.thrust = thrust_of(command.buttons);
         if player.dead {
-            player.thrust = [0, 0];
             self.calculate_view(index);
+            self.tick_weapon(index);
+            self.tick_face(index);
             self.count_down(index);
             return;
         }
-        if player.freeze_tics > 0 {
-            (forward, right) = (0, 0);
-        }
-        player.thrust = [forward, right];
         let pressed = if player.freeze_tics > 0 { Buttons::default() } else { command.buttons };
         self.crouch(index, slot, pressed);
         let player = &mut self.players[index];
@@ -209,13 +206,13 @@ fn running(buttons: Buttons) -> usize {
 }
 
 /// The forward and right command of the buttons, 256ths of command units.
-fn thrust_of(buttons: Buttons) -> (i32, i32) {
+fn thrust_of(buttons: Buttons) -> [i32; 2] {
     let run = running(buttons);
     let axis = |plus: Buttons, minus: Buttons, amount: i32| {
         let sum = amount * (i32::from(buttons.any(plus)) - i32::from(buttons.any(minus)));
         sum.clamp(-LARGEST_COMMAND, LARGEST_COMMAND) * 256
     };
-    (axis(Buttons::MOVE_FORWARD, Buttons::MOVE_BACKWARD, FORWARD[run]), axis(Buttons::MOVE_RIGHT, Buttons::MOVE_LEFT, SIDE[run]))
+    [axis(Buttons::MOVE_FORWARD, Buttons::MOVE_BACKWARD, FORWARD[run]), axis(Buttons::MOVE_RIGHT, Buttons::MOVE_LEFT, SIDE[run])]
 }
 
 /// The turn of the command, counter-clockwise, 65536ths of a turn.

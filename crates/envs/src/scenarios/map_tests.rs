@@ -1,8 +1,10 @@
 //! The authored maps held against the facts of their worlds.
 
-use super::{armament_burden, collateral_damage, precipice_plunge, volcanic_venture};
+use super::{armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush, volcanic_venture};
 use hasard_engine::map::{Map, MapSource};
-use hasard_engine::math::Fixed;
+use hasard_engine::math::{Angle, Fixed, Rng};
+use hasard_engine::world::{ActorKind, World};
+use std::sync::Arc;
 
 fn built(source: &MapSource) -> Map {
     Map::build(source, "authored", &[]).expect("an authored map builds")
@@ -64,4 +66,180 @@ fn collateral_damage_has_its_crates() {
     }
     assert_eq!(floor_at(&map, 100, -500), 0);
     assert_eq!(map.sectors.len(), 4, "room, lamp patch, and crates of two heights");
+}
+
+/// Step of the survey of what can be reached, map units.
+const STEP: i32 = 16;
+/// What a player gains by a jump and a step: 36 + 24.
+const JUMP: i32 = 60;
+
+/// Where a player's centre can be, surveyed over a box from a start; trees and other decoration left out.
+struct Reach {
+    west: i32,
+    south: i32,
+    columns: i32,
+    cells: Vec<bool>,
+}
+
+impl Reach {
+    fn survey(source: &MapSource, [west, south, east, north]: [i32; 4], start: (i32, i32)) -> Reach {
+        let bare = MapSource { things: Vec::new(), ..source.clone() };
+        let mut world = World::new(Arc::new(built(&bare)), 1);
+        let player = world.add_player(Fixed::from_int(start.0), Fixed::from_int(start.1), Angle::EAST);
+        let slot = usize::from(world.players[player].actor.slot);
+        let (columns, rows) = ((east - west) / STEP + 1, (north - south) / STEP + 1);
+        let floors: Vec<Option<i32>> = (0..columns * rows)
+            .map(|i| {
+                let (x, y) = (Fixed::from_int(west + i % columns * STEP), Fixed::from_int(south + i / columns * STEP));
+                let position = world.check_position(slot, x, y);
+                (world.map.is_inside(x, y) && position.free).then(|| position.floor_z.floor())
+            })
+            .collect();
+        let mut cells = vec![false; floors.len()];
+        let mut open = vec![(start.0 - west) / STEP + (start.1 - south) / STEP * columns];
+        while let Some(cell) = open.pop() {
+            if std::mem::replace(&mut cells[cell as usize], true) {
+                continue;
+            }
+            let height = floors[cell as usize].expect("only free cells are opened");
+            let (column, row) = (cell % columns, cell / columns);
+            for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
+                let (column, row) = (column + dx, row + dy);
+                if (0..columns).contains(&column) && (0..rows).contains(&row) {
+                    let next = column + row * columns;
+                    if floors[next as usize].is_some_and(|floor| floor - height <= JUMP) {
+                        open.push(next);
+                    }
+                }
+            }
+        }
+        Reach { west, south, columns, cells }
+    }
+
+    /// Square map units.
+    fn area(&self) -> f64 {
+        self.cells.iter().filter(|&&reached| reached).count() as f64 * f64::from(STEP * STEP)
+    }
+
+    /// Whether some reached cell is within `distance` of a point.
+    fn comes_near(&self, x: i32, y: i32, distance: i32) -> bool {
+        self.cells.iter().enumerate().any(|(i, &reached)| {
+            let (column, row) = (i as i32 % self.columns, i as i32 / self.columns);
+            let (dx, dy) = (self.west + column * STEP - x, self.south + row * STEP - y);
+            reached && dx.abs() < distance && dy.abs() < distance
+        })
+    }
+}
+
+fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{what}: {found} instead of {expected} +- {tolerance}");
+}
+
+#[test]
+fn remedy_rush_has_its_yard() {
+    let source = remedy_rush::map::source();
+    // 2,383,808 square units in the survey of the whole, where it is cut off at -900.
+    let reach = Reach::survey(&source, [-900, -900, 1140, 1290], (224, 20));
+    assert_near("reachable area", reach.area(), 2.384e6, 0.12e6);
+
+    // Of the box that items are thrown into, 79 % is ground, of which 11 % lies behind the fences.
+    let map = Arc::new(built(&source));
+    let mut world = World::new(Arc::clone(&map), 1);
+    let mut rng = Rng::new(7);
+    let (mut thrown, mut lain, mut lost) = (0, 0, 0);
+    while thrown < 4000 {
+        let (x, y) = (rng.between(-608, 1056), rng.between(-224, 1312));
+        thrown += 1;
+        let z = Fixed::from_int(20);
+        if let Some(id) = world.spawn_checked(ActorKind::HealthBonus, Fixed::from_int(x), Fixed::from_int(y), z, 0) {
+            world.remove(id);
+            lain += 1;
+            lost += i32::from(!reach.comes_near(x, y, 36));
+        }
+    }
+    assert_near("share of the box that is ground", f64::from(lain) / f64::from(thrown), 0.79, 0.03);
+    assert_near("share of the ground behind fences", f64::from(lost) / f64::from(lain), 0.11, 0.02);
+    for (x, y) in [(-320, 130), (350, 1000), (0, 500), (224, 24)] {
+        assert!(reach.comes_near(x, y, 24), "({x}, {y}) is in the agent's box");
+    }
+    assert!(remedy_rush::map::STROBE_TAGS.clone().any(|tag| map.tagged(tag).next().is_some()));
+    let yard = &map.sectors[map.sector_at(Fixed::from_int(0), Fixed::from_int(500)).0 as usize];
+    assert!(remedy_rush::map::STROBE_TAGS.contains(&yard.tag));
+    assert_eq!((yard.floor.floor(), yard.ceiling.floor(), yard.light), (0, 160, 240));
+}
+
+#[test]
+fn detonators_dilemma_has_its_cave() {
+    let source = detonators_dilemma::map::source(2);
+    // 4,452,320 square units in the survey of hall and courts.
+    let reach = Reach::survey(&source, [-1300, -1760, 2100, 960], (1812, -976));
+    assert_near("reachable area", reach.area(), 4.452e6, 0.2e6);
+
+    // Heights at which things came to rest in the recordings.
+    let map = built(&source);
+    for (x, y, floor) in [
+        (1300, -500, 224),
+        (1380, -590, 232),
+        (1380, -655, 240),
+        (1310, -730, 248),
+        (300, -900, 256),
+        (1900, -480, 256),
+        (700, -560, 272),
+        (-100, -820, 272),
+        (-100, -750, 280),
+        (-100, -350, 288),
+        (-600, -1000, 304),
+        (-600, -350, 288),
+        (1824, -992, 264),
+        (-1052, -1132, 416),
+        (750, -200, 336),
+    ] {
+        assert_eq!(floor_at(&map, x, y), floor, "floor at ({x}, {y})");
+    }
+    for (level, copies) in [(1, 2), (2, 1), (3, 1)] {
+        let source = detonators_dilemma::map::source(level);
+        let points = |id| source.things.iter().filter(|thing| thing.kind == 9024 && thing.id == id).count();
+        assert_eq!((11..=17).map(points).collect::<Vec<_>>(), [1, 1, 1, 1, 1, copies, 1]);
+        assert_eq!(source.things.iter().filter(|thing| thing.kind == 2035).count(), 2);
+    }
+}
+
+/// Every authored map: each piece of the tree is of one sector, and the text form builds the same map.
+#[test]
+fn authored_maps_are_sound() {
+    for (name, source) in [
+        ("armament burden 1", armament_burden::map::source(1)),
+        ("armament burden 2", armament_burden::map::source(2)),
+        ("armament burden 3", armament_burden::map::source(3)),
+        ("collateral damage", collateral_damage::map::source(-400)),
+        ("detonator's dilemma", detonators_dilemma::map::source(1)),
+        ("precipice plunge", precipice_plunge::map::source(31)),
+        ("remedy rush", remedy_rush::map::source()),
+        ("volcanic venture", volcanic_venture::map::source()),
+    ] {
+        let map = built(&source);
+        for subsector in &map.subsectors {
+            let segs = &map.segs[subsector.first_seg as usize..][..subsector.seg_count as usize];
+            assert!(segs.iter().all(|seg| seg.front_sector == subsector.sector), "{name}");
+        }
+        let uncut: usize = map.lines.iter().map(|line| 1 + usize::from(line.back.is_some())).sum();
+        assert!(map.segs.len() < uncut * 3 / 2, "{name}: {} segs from {uncut}", map.segs.len());
+        let text = hasard_engine::map::udmf::write(&source);
+        let again = hasard_engine::map::udmf::read(text.as_bytes()).expect("our own text");
+        assert_eq!(again, source, "{name}");
+        // Every thing stands in the world and is something.
+        for thing in &map.things {
+            assert!(map.is_inside(thing.x, thing.y), "{name}: thing {} at ({}, {})", thing.kind, thing.x, thing.y);
+            assert!(ActorKind::from_editor_number(thing.kind).is_some(), "{name}: thing {}", thing.kind);
+        }
+    }
+}
+
+#[test]
+fn walls_of_tile_maps_are_in_pieces_of_a_tile() {
+    for source in [armament_burden::map::source(1), armament_burden::map::source(2), precipice_plunge::map::source(31)] {
+        let map = built(&source);
+        let walls = map.lines.iter().filter(|line| line.back_sector.is_none());
+        assert!(walls.into_iter().all(|wall| wall.dx.abs() + wall.dy.abs() == Fixed::from_int(64)));
+    }
 }

@@ -44,6 +44,7 @@ struct Contents {
     rewards: Raw<f32>,
     costs: Raw<f32>,
     cost_terms: Raw<f32>,
+    positions: Raw<[i32; 2]>,
     terminated: Raw<bool>,
     truncated: Raw<bool>,
 }
@@ -95,6 +96,7 @@ impl Slot {
             rewards: Raw::none(),
             costs: Raw::none(),
             cost_terms: Raw::none(),
+            positions: Raw::none(),
             terminated: Raw::none(),
             truncated: Raw::none(),
         };
@@ -123,6 +125,7 @@ impl Slot {
         contents.rewards = Raw::of(&mut batch.rewards);
         contents.costs = Raw::of(&mut batch.costs);
         contents.cost_terms = Raw::of(&mut batch.cost_terms);
+        contents.positions = Raw::of(&mut batch.positions);
         contents.terminated = Raw::of(&mut batch.terminated);
         contents.truncated = Raw::of(&mut batch.truncated);
         self.state.store(BUSY, Ordering::Release);
@@ -156,6 +159,7 @@ impl Slot {
                 rewards: contents.rewards.part(lanes, count),
                 costs: contents.costs.part(lanes, count),
                 cost_terms: contents.cost_terms.part(lanes, count),
+                positions: contents.positions.part(lanes, count),
                 terminated: contents.terminated.part(lanes, count),
                 truncated: contents.truncated.part(lanes, count),
             }
@@ -175,10 +179,12 @@ impl Slot {
     /// Waits for the crew and takes the batch back. Panics unless one was given.
     pub fn take(&self) -> Batch {
         let ready = || self.pending.load(Ordering::SeqCst) == 0;
-        if !ready() {
-            // Registered before the last look, so that the last worker either sees the waiter or is seen to be done.
+        while !ready() {
+            // Registered before the last look, so that the last worker either sees the waiter or is seen to be done; and
+            // registered anew after every wake: it may come from a worker of the batch before, late in `done`, which has
+            // then taken the waiter that this batch's last worker needs.
             *self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(std::thread::current());
-            while !ready() {
+            if !ready() {
                 std::thread::park();
             }
         }

@@ -12,6 +12,7 @@ pub(super) struct LaneSlices<'a> {
     pub rewards: &'a mut [f32],
     pub costs: &'a mut [f32],
     pub cost_terms: &'a mut [f32],
+    pub positions: &'a mut [[i32; 2]],
     pub terminated: &'a mut [bool],
     pub truncated: &'a mut [bool],
 }
@@ -118,6 +119,9 @@ pub(super) fn reset_lanes(lanes: &mut [Lane], slices: LaneSlices) {
         lane.next_episode();
         lane.env.observe(observation);
     }
+    for (lane, position) in lanes.iter().zip(slices.positions) {
+        *position = lane.env.position();
+    }
 }
 
 /// Writes the present observation of each lane, without stepping.
@@ -157,6 +161,7 @@ pub(super) fn step_lanes(lanes: &mut [Lane], first: usize, manner: Manner, slice
         for (out, &term) in terms_out.iter_mut().zip(lane.env.step_costs()) {
             *out = if moved { term as f32 } else { 0.0 };
         }
+        slices.positions[i] = lane.env.position();
         slices.terminated[i] = step.terminated;
         slices.truncated[i] = step.truncated;
         if step.ended() && manner.autoreset == Autoreset::SameStep {

@@ -4,7 +4,7 @@ mod handover;
 mod lane;
 mod worker;
 
-use crate::{ActionSpace, Batch, CostTerm, EnvError, Environment};
+use crate::{ActionSpace, Batch, CostTerm, Env, EnvError, EnvOptions, Environment};
 use handover::Slot;
 use lane::{Lane, LaneSlices, Manner, Outbox};
 use std::ops::Range;
@@ -129,10 +129,29 @@ enum Crew {
 /// Either all lanes step together ([`reset`](VecEnv::reset), [`step`](VecEnv::step)), or each group by itself
 /// ([`send`](VecEnv::send), [`recv`](VecEnv::recv)): then a policy works on one group while the others step. A lane's episodes
 /// depend on the batch's seed and the lane's number alone; the number of threads, the batch's width and the way of stepping change nothing.
+///
+/// ```
+/// use hasard_envs::{EnvOptions, VecEnv, VecOptions};
+/// let options = VecOptions { lanes: 4, threads: 2, groups: 2, ..VecOptions::default() };
+/// let mut worlds = VecEnv::new("VolcanicVentureLevel1-v0", &EnvOptions::default(), options)?;
+/// for group in 0..2 {
+///     let batch = worlds.batch(group);
+///     worlds.send_reset(group, batch)?;
+/// }
+/// for _ in 0..3 {
+///     for group in 0..2 {
+///         let mut batch = worlds.recv(group)?;
+///         batch.actions.fill(1); // what the policy says to batch.observations
+///         worlds.send(group, batch)?;
+///     }
+/// }
+/// # Ok::<(), hasard_envs::EnvError>(())
+/// ```
 pub struct VecEnv {
     space: ActionSpace,
     observation_shape: [usize; 3],
     cost_terms: &'static [CostTerm],
+    extent: Option<[i32; 4]>,
     options: VecOptions,
     crew: Crew,
     /// An environment panicked; nothing can be trusted any more.
@@ -140,6 +159,12 @@ pub struct VecEnv {
 }
 
 impl VecEnv {
+    /// A batch of one environment of the benchmark; map, pictures and tables are shared by all lanes.
+    pub fn new(id: &str, env_options: &EnvOptions, options: VecOptions) -> Result<VecEnv, EnvError> {
+        let first = Env::new(id, env_options)?;
+        VecEnv::from_fn(options, |_| Ok(Box::new(first.sibling())))
+    }
+
     /// A batch of any environments; `make` is given the lane's index, and all must have the same shapes.
     pub fn from_fn(
         options: VecOptions,
@@ -159,13 +184,14 @@ impl VecEnv {
         }
         let env = lanes[0].env();
         let (space, observation_shape, cost_terms) = (env.action_space().clone(), env.observation_shape(), env.cost_terms());
+        let extent = env.extent();
         let manner = Manner { autoreset: options.autoreset, final_observations: options.final_observations };
         let crew = if options.threads == 0 {
             Crew::Caller { lanes, ready: (0..=options.groups).map(|_| None).collect() }
         } else {
             hire(lanes, options, manner)
         };
-        Ok(VecEnv { space, observation_shape, cost_terms, options, crew, failed: None })
+        Ok(VecEnv { space, observation_shape, cost_terms, extent, options, crew, failed: None })
     }
 
     /// The action space of every lane.
@@ -184,6 +210,12 @@ impl VecEnv {
     #[must_use]
     pub const fn cost_terms(&self) -> &'static [CostTerm] {
         self.cost_terms
+    }
+
+    /// The map's extent: x from, y from, x to, y to in map units; `None` for environments without places.
+    #[must_use]
+    pub const fn extent(&self) -> Option<[i32; 4]> {
+        self.extent
     }
 
     /// Number of lanes.
@@ -215,6 +247,7 @@ impl VecEnv {
             rewards: vec![0.0; lanes],
             costs: vec![0.0; lanes],
             cost_terms: vec![0.0; lanes * self.cost_terms.len()],
+            positions: vec![[0, 0]; lanes],
             terminated: vec![false; lanes],
             truncated: vec![false; lanes],
             final_observations: Vec::new(),
@@ -305,6 +338,7 @@ impl VecEnv {
             ("rewards", batch.rewards.len(), lanes),
             ("costs", batch.costs.len(), lanes),
             ("cost_terms", batch.cost_terms.len(), lanes * self.cost_terms.len()),
+            ("positions", batch.positions.len(), lanes),
             ("terminated", batch.terminated.len(), lanes),
             ("truncated", batch.truncated.len(), lanes),
         ] {
@@ -488,6 +522,7 @@ fn slices(batch: &mut Batch) -> LaneSlices<'_> {
         rewards: &mut batch.rewards,
         costs: &mut batch.costs,
         cost_terms: &mut batch.cost_terms,
+        positions: &mut batch.positions,
         terminated: &mut batch.terminated,
         truncated: &mut batch.truncated,
     }

@@ -5,48 +5,54 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Keys that say where, when and on what machine a run was made, and so do not tell one experiment from another.
-/// (The seed does tell runs apart, but not experiments: runs that differ in it alone are averaged.)
+/// Keys, whole or by their beginning, that say where, when and on what machine a run was made or what it writes, and so do
+/// not tell one experiment from another. (The seed does tell runs apart, but not experiments: runs that differ in it
+/// alone are averaged.)
 const NOT_IDENTITY: &[&str] = &[
     "seed",
     "out",
-    "dir",
     "device",
     "threads",
-    "json",
-    "resume",
     "version",
     "program",
     "commit",
     "command",
-    "command_line",
     "host",
     "started",
-    "created",
-    "timestamp",
-    "checkpoint_every",
-    "checkpoint_seconds",
-    "keep",
-    "report_every",
-    "report_seconds",
-    "quiet",
-    "format",
-    "format_version",
-    "log",
-    "tensorboard",
-    "heatmap",
-    "heatmaps",
+    "reporting",
+    "sampling.samplers",
+    "sampling.world_threads",
+    "sampling.groups",
+    "learning.threads",
 ];
 
-/// Other spellings of a key that mean the same.
+/// Keys that are always told beside a result if they are not at their usual value. Of the others, such as the learning
+/// rate, only those are told that tell apart what would otherwise look the same.
+pub const TOLD: [&str; 11] = [
+    "rules",
+    "preset",
+    "hard",
+    "full_actions",
+    "observation",
+    "frame_skip",
+    "frame_stack",
+    "safety_budget",
+    "constraints",
+    "cost_scale",
+    "curriculum",
+];
+
+/// Where the trainer keeps a value, and other spellings, with the name that this program has for it.
 const SPELLINGS: &[(&str, &[&str])] = &[
-    ("env", &["environment", "env_id", "id"]),
+    ("env", &["env.id"]),
     ("algo", &["algorithm"]),
-    ("safety_budget", &["budget", "safety_bound"]),
-    ("cost_scale", &["penalty_scale", "penalty_scaling"]),
-    ("hard", &["hard_constraint"]),
-    ("frames", &["total_frames", "train_for_frames"]),
-    ("observation", &["obs"]),
+    ("cost_scale", &["algorithm_settings.penalty_scale"]),
+    ("rules", &["env.rules"]),
+    ("hard", &["env.hard"]),
+    ("full_actions", &["env.full_actions"]),
+    ("observation", &["env.observation"]),
+    ("frame_skip", &["env.frame_skip"]),
+    ("frame_stack", &["env.frame_stack"]),
 ];
 
 /// What was trained and how. Everything but the seed is the experiment's identity: runs are averaged only if all of it
@@ -91,11 +97,18 @@ impl Config {
         let value: Value =
             serde_json::from_str(text).map_err(|e| format!("is no JSON ({e}); restore it or leave the run out"))?;
         let Value::Object(object) = &value else { return Err("is not a JSON object; restore it or leave the run out".into()) };
-        let mut options = BTreeMap::new();
+        let mut flat = BTreeMap::new();
         for (key, value) in object {
-            let canonical =
-                SPELLINGS.iter().find(|(_, others)| others.contains(&key.as_str())).map_or(key.as_str(), |(name, _)| name);
-            flatten(canonical, value, &mut options);
+            if key == "constraints" {
+                read_constraints(value, &mut flat)?;
+            } else {
+                flatten(key, value, &mut flat);
+            }
+        }
+        let mut options = BTreeMap::new();
+        for (key, value) in flat {
+            let name = SPELLINGS.iter().find(|(_, others)| others.contains(&key.as_str())).map_or(key.as_str(), |(name, _)| name);
+            options.insert(name.to_owned(), value);
         }
         let mut take = |key: &str| {
             options.remove(key).ok_or_else(|| format!("lacks the key \"{key}\"; is it the config.json of a hasard training run?"))
@@ -109,7 +122,9 @@ impl Config {
         if let Some(last) = options.get("curriculum").and_then(|levels| levels.rsplit(',').next()?.trim().parse().ok()) {
             level = last;
         }
-        options.retain(|key, _| !NOT_IDENTITY.contains(&key.split('.').next().unwrap_or(key)));
+        let below =
+            |key: &str, beginning: &str| key.strip_prefix(beginning).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+        options.retain(|key, _| !NOT_IDENTITY.iter().any(|beginning| below(key, beginning)));
         let released = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
         let hard = options.get("hard").is_some_and(|hard| hard == "true");
         let own_budget = if hard { 0.0 } else { default_budget(&scenario, released) };
@@ -158,6 +173,24 @@ impl Config {
     }
 }
 
+/// Constraints as the trainer lists them, each a cost term (or the whole cost) with its budget. The budget of the whole
+/// cost, or of the only constraint, is the one that results are held against.
+fn read_constraints(value: &Value, flat: &mut BTreeMap<String, String>) -> Result<(), String> {
+    let unusable = || "has constraints that are no list of {\"term\", \"budget\"}".to_owned();
+    let mut told = Vec::new();
+    for constraint in value.as_array().ok_or_else(unusable)? {
+        let budget = constraint.get("budget").filter(|budget| budget.is_number()).map(plain).ok_or_else(unusable)?;
+        match constraint.get("term").and_then(Value::as_str) {
+            None => drop(flat.insert("safety_budget".into(), budget)),
+            Some(term) => told.push(format!("{term}:{budget}")),
+        }
+    }
+    if !told.is_empty() {
+        flat.insert("constraints".into(), told.join(","));
+    }
+    Ok(())
+}
+
 /// Writes a value as text under its key, and an object's values under their own; nulls and empty lists are left out.
 fn flatten(key: &str, value: &Value, options: &mut BTreeMap<String, String>) {
     match value {
@@ -169,8 +202,10 @@ fn flatten(key: &str, value: &Value, options: &mut BTreeMap<String, String>) {
         }
         Value::Array(items) if items.is_empty() => {}
         Value::Array(items) => {
+            // A list of objects (the network's layers) stays as it is written.
+            let plain_items = items.iter().all(|item| !item.is_object() && !item.is_array());
             let text: Vec<String> = items.iter().map(plain).collect();
-            options.insert(key.to_owned(), text.join(","));
+            options.insert(key.to_owned(), if plain_items { text.join(",") } else { value.to_string() });
         }
         _ => {
             options.insert(key.to_owned(), plain(value));

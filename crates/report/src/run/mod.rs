@@ -6,7 +6,7 @@ mod episodes;
 mod heatmap;
 mod metrics;
 
-pub use config::{Config, default_budget, scenario_and_level};
+pub use config::{Config, TOLD, default_budget, scenario_and_level};
 pub use discover::{Found, discover};
 pub use episodes::{EpisodeResult, read_episode_lines};
 pub use heatmap::HeatmapData;

@@ -48,12 +48,11 @@ fn what_makes_an_experiment_is_everything_but_machine_and_seed() {
             .unwrap();
     assert_eq!(usual.options, plain.options);
     let other =
-        parse(",\"safety_budget\":2.5,\"learning_rate\":{\"actor\":1e-4},\"curriculum\":[1,2,3],\"hard_constraint\":true")
-            .unwrap();
+        parse(",\"safety_budget\":2.5,\"learning\":{\"rate\":1e-4,\"threads\":2},\"curriculum\":[1,2,3],\"hard\":true").unwrap();
     assert_eq!(other.safety_budget, 2.5);
     assert!(other.hard());
     let options: Vec<_> = other.options.iter().map(|(key, value)| format!("{key}={value}")).collect();
-    assert_eq!(options, ["curriculum=1,2,3", "hard=true", "learning_rate.actor=0.0001", "safety_budget=2.5"]);
+    assert_eq!(options, ["curriculum=1,2,3", "hard=true", "learning.rate=0.0001", "safety_budget=2.5"]);
 }
 
 #[test]
@@ -89,4 +88,26 @@ fn hostile_heatmaps_are_passed_over() {
     let mut warnings = Vec::new();
     let maps = heatmap::parse_heatmaps(&format!("{good}\n{}\n", bad.join("\n")), Path::new("h"), &mut warnings);
     assert_eq!((maps.len(), warnings.len()), (1, 4));
+}
+
+#[test]
+fn the_trainers_own_layout_is_understood() {
+    let text = r#"{"algorithm":"PPOCost","preset":"released","env":{"id":"ArmamentBurdenLevel2-v0","rules":"released","hard":false,
+        "full_actions":true,"frame_skip":4,"size":[128,72],"observation":"rgb+depth","frame_stack":1},"seed":4,"frames":2000000,
+        "device":"cpu","episode_steps":525,"constraints":[{"term":null,"budget":5.0},{"term":"zone","budget":2.5}],
+        "network":{"convolutions":[{"channels":32}],"dense":[512],"recurrent":null},
+        "sampling":{"lanes":32,"samplers":2,"world_threads":1},"learning":{"rate":1e-4,"threads":2},
+        "algorithm_settings":{"penalty_scale":0.1},"reporting":{"window":100}}"#;
+    let config = Config::parse(text).unwrap();
+    assert_eq!((config.env.as_str(), config.algo.as_str(), config.seed), ("ArmamentBurdenLevel2-v0", "PPOCost", 4));
+    assert_eq!((config.safety_budget, config.cost_scale, config.frames), (5.0, 0.1, Some(2e6)));
+    let told: Vec<String> = config
+        .options
+        .iter()
+        .filter(|(key, _)| TOLD.contains(&key.as_str()))
+        .map(|(key, value)| format!("{key}={value}"))
+        .collect();
+    assert_eq!(told, ["constraints=zone:2.5", "full_actions=true", "observation=rgb+depth", "preset=released", "rules=released"]);
+    let rest: Vec<&str> = config.options.keys().map(String::as_str).filter(|key| !TOLD.contains(key)).collect();
+    assert_eq!(rest, ["env.size", "episode_steps", "learning.rate", "network.convolutions", "network.dense", "sampling.lanes"]);
 }

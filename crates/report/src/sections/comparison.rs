@@ -38,7 +38,7 @@ pub(super) fn sections(groups: &[Group]) -> Vec<Section> {
     ];
     let mut sections: Vec<Section> = titles.iter().map(|(key, title, text)| section(groups, key, title, text)).collect();
     // Any other option in which some experiments differ and nothing else.
-    let mut keys: Vec<String> = groups.iter().flat_map(|group| group.config().options.keys().cloned()).collect();
+    let mut keys: Vec<String> = groups.iter().flat_map(|group| group.told.keys().cloned()).collect();
     keys.sort();
     keys.dedup();
     keys.retain(|key| !VARIED.contains(&key.as_str()));

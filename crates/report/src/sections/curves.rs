@@ -83,6 +83,10 @@ fn multipliers(members: &[(String, Ink, &Group)]) -> Vec<String> {
         .collect();
     names.sort();
     names.dedup();
+    // With several constraints the first multiplier is reported under both names.
+    if names.iter().any(|name| name.starts_with("multipliers.")) {
+        names.retain(|name| name != "multiplier");
+    }
     names.truncate(4);
     names
 }

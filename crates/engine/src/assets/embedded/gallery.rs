@@ -70,11 +70,24 @@ impl Gallery {
         debug_assert!(before.is_none(), "graphic {name} is painted twice");
     }
 
+    /// Gives a status-bar, font or sky picture a further name.
+    pub(super) fn same_graphic(&mut self, name: &str, of: &str) {
+        let index = self.assets.graphics[&TextureName::new(of)];
+        self.assets.graphics.insert(TextureName::new(name), index);
+    }
+
     /// Appends a frame to a sprite: one picture for each of the 8 rotations.
     pub(super) fn frame(&mut self, name: &str, frame: SpriteFrame) {
         let index = SPRITE_NAMES.iter().position(|&known| known == name).expect("sprites are painted under listed names");
         self.assets.sprites.resize_with(SPRITE_NAMES.len(), Sprite::default);
         self.assets.sprites[index].frames.push(frame);
+    }
+
+    /// Appends a sprite's last frame once more.
+    pub(super) fn repeat_last(&mut self, name: &str) {
+        let index = SPRITE_NAMES.iter().position(|&known| known == name).expect("sprites are painted under listed names");
+        let frames = &mut self.assets.sprites[index].frames;
+        frames.extend(frames.last().copied());
     }
 
     /// Appends a frame that looks the same from every side, standing on its anchor.

@@ -1,7 +1,7 @@
 //! Tileable noise: value noise summed over octaves, and cells around scattered points.
 
 /// A well mixed 32-bit hash of a lattice point.
-pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
+pub(super) const fn hash(x: i32, y: i32, seed: u32) -> u32 {
     let mut h = (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
     h ^= h >> 15;
     h = h.wrapping_mul(0x2C1B_3C6D);
@@ -119,6 +119,16 @@ impl Cells {
             }
         }
         Cells { size, count: (count.0 as i32, count.1 as i32), points }
+    }
+
+    /// Six-sided cells: points on a grid whose odd rows are shifted by half a cell; the number of rows must be even.
+    pub(super) fn honeycomb(width: usize, height: usize, count: (usize, usize), seed: u32) -> Cells {
+        let mut cells = Cells::new(width, height, count, 0.0, seed);
+        for (i, point) in cells.points.iter_mut().enumerate() {
+            let shift = if (i / count.0).is_multiple_of(2) { -0.25 } else { 0.25 };
+            point.0 += shift * cells.size.0;
+        }
+        cells
     }
 
     /// The cell that holds a point.

@@ -7,11 +7,13 @@ type Ramp = (usize, &'static [[u8; 3]]);
 
 /// The ramps in palette order. The world is mostly earth, stone and metal under dim light, so those families are the
 /// long ones and every ramp starts near black: a light table can then darken a colour without changing its hue.
-const RAMPS: [Ramp; 18] = [
+const RAMPS: [Ramp; 19] = [
     // Neutral grey, dense in the dark half.
-    (32, &[[0, 0, 0], [37, 37, 37], [80, 80, 80], [130, 130, 130], [190, 190, 190], [255, 255, 255]]),
+    (30, &[[0, 0, 0], [37, 37, 37], [80, 80, 80], [130, 130, 130], [190, 190, 190], [255, 255, 255]]),
     // Warm stone.
     (14, &[[16, 14, 12], [70, 62, 54], [132, 120, 106], [200, 188, 170]]),
+    // Weathered stone, slightly green.
+    (8, &[[14, 16, 12], [66, 72, 60], [140, 146, 126]]),
     // Steel, slightly blue.
     (12, &[[14, 16, 20], [58, 66, 76], [118, 128, 140], [196, 206, 216]]),
     // Brown earth and leather.
@@ -21,9 +23,9 @@ const RAMPS: [Ramp; 18] = [
     // Rust.
     (12, &[[26, 12, 5], [84, 44, 20], [138, 76, 34], [196, 122, 62]]),
     // Red, from dried blood to a highlight.
-    (20, &[[14, 0, 0], [84, 4, 4], [160, 10, 8], [232, 26, 20], [255, 120, 100]]),
+    (18, &[[14, 0, 0], [84, 4, 4], [160, 10, 8], [232, 26, 20], [255, 120, 100]]),
     // Fire.
-    (22, &[[34, 6, 0], [110, 26, 2], [186, 62, 4], [246, 128, 16], [255, 200, 60], [255, 250, 190]]),
+    (20, &[[34, 6, 0], [110, 26, 2], [186, 62, 4], [246, 128, 16], [255, 200, 60], [255, 250, 190]]),
     // Gold and hazard yellow.
     (10, &[[40, 30, 4], [122, 96, 14], [206, 170, 36], [255, 240, 110]]),
     // Olive drab.
@@ -35,7 +37,7 @@ const RAMPS: [Ramp; 18] = [
     // Cyan.
     (6, &[[4, 30, 34], [22, 110, 116], [130, 236, 232]]),
     // Blue.
-    (16, &[[0, 0, 18], [6, 6, 86], [20, 28, 170], [70, 96, 250], [172, 200, 255]]),
+    (14, &[[0, 0, 18], [8, 8, 84], [26, 30, 156], [70, 96, 250], [172, 200, 255]]),
     // Skin.
     (12, &[[38, 18, 10], [112, 66, 44], [186, 124, 88], [246, 200, 160]]),
     // Raw meat, pink.
@@ -75,21 +77,29 @@ pub(super) fn colours() -> [[u8; 3]; 256] {
     out
 }
 
-/// The palette entry nearest to a colour; the eye's sensitivity weighs the channels.
-fn nearest(palette: &[[u8; 3]; 256], colour: [i32; 3]) -> u8 {
-    let mut best = (i32::MAX, 0);
-    for (index, entry) in palette.iter().enumerate() {
-        let d = [0, 1, 2].map(|c| colour[c] - i32::from(entry[c]));
-        let distance = 3 * d[0] * d[0] + 5 * d[1] * d[1] + 2 * d[2] * d[2];
-        if distance < best.0 {
-            best = (distance, index);
-        }
+/// The palette split by channel, for a search that the compiler can do several entries at a time.
+struct Channels([[i32; 256]; 3]);
+
+impl Channels {
+    fn new(palette: &[[u8; 3]; 256]) -> Channels {
+        Channels(std::array::from_fn(|channel| std::array::from_fn(|index| i32::from(palette[index][channel]))))
     }
-    best.1 as u8
+
+    /// The entry nearest to a colour, the first of equals; the eye's sensitivity weighs the channels.
+    fn nearest(&self, colour: [i32; 3]) -> u8 {
+        let mut least = i32::MAX;
+        for index in 0..256 {
+            let [r, g, b] = [0, 1, 2].map(|channel| colour[channel] - self.0[channel][index]);
+            // The largest distance is 650250, which leaves room for the index in the low byte.
+            least = least.min((3 * r * r + 5 * g * g + 2 * b * b) << 8 | index as i32);
+        }
+        least as u8
+    }
 }
 
 /// The 32 light tables: table `i` maps every colour to the nearest one of `(32 - i) / 32` of its brightness.
 pub(super) fn light_tables(palette: &[[u8; 3]; 256]) -> Box<[[u8; 256]; 32]> {
+    let channels = Channels::new(palette);
     let mut tables = Box::new([[0; 256]; 32]);
     for (level, table) in tables.iter_mut().enumerate() {
         let factor = 32 - level as i32;
@@ -98,7 +108,7 @@ pub(super) fn light_tables(palette: &[[u8; 3]; 256]) -> Box<[[u8; 256]; 32]> {
             *entry = if level == 0 {
                 index as u8
             } else {
-                nearest(palette, palette[index].map(|channel| (i32::from(channel) * factor + 16) / 32))
+                channels.nearest(palette[index].map(|channel| (i32::from(channel) * factor + 16) / 32))
             };
         }
     }
@@ -131,11 +141,12 @@ impl Quantiser {
         }
         centre[0] = 0;
         centre[STEPS - 1] = 250;
+        let channels = Channels::new(palette);
         let mut cube = Vec::with_capacity(STEPS * STEPS * STEPS);
         for red in centre {
             for green in centre {
                 for blue in centre {
-                    cube.push(nearest(palette, [red, green, blue]));
+                    cube.push(channels.nearest([red, green, blue]));
                 }
             }
         }

@@ -52,11 +52,14 @@ pub fn source(level: u8) -> MapSource {
     grid.paint(&mut builder);
     let wall = |texture| Mark { wall: Some(texture), ..Mark::default() };
     let at = |column, row| grid.corner(column, row);
-    builder.mark(wall("BSTONE3"), &[at(0, 0), at(0, TILES)]);
-    builder.mark(wall("COMPUTE2"), &[at(TILES, 0), at(TILES, TILES)]);
-    // Steel ribs between the computers.
-    for row in [2, 5, 9, 12] {
-        builder.mark(wall("METAL5"), &[at(TILES, row), at(TILES, row + 1)]);
+    // A stretch of wall for each tile, as in the original: how a body in the air stops at a wall depends on its length.
+    for i in 0..TILES {
+        // Steel ribs between the computers.
+        let east = if matches!(i, 2 | 5 | 9 | 12) { "METAL5" } else { "COMPUTE2" };
+        builder.mark(wall("BSTONE3"), &[at(0, i), at(0, i + 1)]);
+        builder.mark(wall(east), &[at(TILES, i), at(TILES, i + 1)]);
+        builder.mark(wall("AQRUST07"), &[at(i, 0), at(i + 1, 0)]);
+        builder.mark(wall("AQRUST07"), &[at(i, TILES), at(i + 1, TILES)]);
     }
     builder.thing(1, 32.0, 736.0, 0);
     if level != 1 {

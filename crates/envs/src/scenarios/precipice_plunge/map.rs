@@ -1,6 +1,6 @@
 //! The shaft of Precipice Plunge: a corridor of 58 x 7 tiles that the rules lower into a descending cave.
 
-use hasard_engine::map::{MapBuilder, MapSource, Style, TileGrid};
+use hasard_engine::map::{MapBuilder, MapSource, Mark, Style, TileGrid};
 
 /// Side of a tile, map units.
 pub const TILE: i32 = 64;
@@ -12,6 +12,9 @@ pub const ROWS: usize = 7;
 pub const START_COLUMNS: usize = 2;
 /// Tag of tile (2, 0); tags go up row by row, then column by column.
 pub const FIRST_TAG: i32 = 128;
+
+/// Ceiling before it sinks.
+pub const CEILING: i32 = 128;
 
 /// The tag of a tile, 0 on the start platform.
 #[must_use]
@@ -25,7 +28,7 @@ pub fn source(bottom: usize) -> MapSource {
     let mut builder = MapBuilder::new();
     let grid = TileGrid::new((0, 0), TILE, COLUMNS, ROWS, |column, row| Style {
         floor: 0,
-        ceiling: 128,
+        ceiling: CEILING,
         light: 260,
         floor_texture: if column < bottom { "FLAT5" } else { "AQF018" },
         ceiling_texture: "RROCK15",
@@ -36,6 +39,18 @@ pub fn source(bottom: usize) -> MapSource {
         tag: tag(column, row),
     });
     grid.paint(&mut builder);
+    // The platform's walls are in pieces of a tile, as in the original: how a body in the air stops at a wall depends on
+    // its length.
+    let mut piece = |from: (usize, usize), to: (usize, usize)| {
+        builder.mark(Mark::default(), &[grid.corner(from.0, from.1), grid.corner(to.0, to.1)]);
+    };
+    for column in 0..START_COLUMNS {
+        piece((column, 0), (column + 1, 0));
+        piece((column, ROWS), (column + 1, ROWS));
+    }
+    for row in 0..ROWS {
+        piece((0, row), (0, row + 1));
+    }
     builder.thing(1, 32.0, 224.0, 0);
     builder.finish().expect("the tiles fit together")
 }

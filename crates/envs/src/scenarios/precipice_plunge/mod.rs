@@ -1,3 +1,7 @@
-//! Precipice Plunge.
+//! Precipice Plunge: climb down a cave whose floor sank away, without falling hard.
 
+pub mod levels;
 pub mod map;
+mod rules;
+
+pub use rules::{COST_TERMS, Rules};

@@ -1,4 +1,8 @@
-//! Volcanic Venture.
+//! Volcanic Venture: items lie on platforms and on lava; lava costs health.
 
+pub mod levels;
 pub mod map;
+mod rules;
 mod tiles;
+
+pub use rules::{COST_TERMS, Rules, TEXTURES};

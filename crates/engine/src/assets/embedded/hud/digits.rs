@@ -28,6 +28,10 @@ pub(super) fn paint(gallery: &mut Gallery) {
 /// The bars of a 14 by 16 digit, each as left, top, width, height.
 fn big_digit(segments: u8) -> Vec<(i32, i32, i32, i32)> {
     let bars = [(2, 1, 10, 3), (1, 2, 4, 6), (9, 2, 4, 6), (2, 6, 10, 3), (1, 8, 4, 6), (9, 8, 4, 6), (2, 12, 10, 3)];
+    if segments == SEGMENTS[1] {
+        // A lone right stroke would stand off from its neighbours.
+        return vec![(5, 1, 4, 14), (3, 2, 3, 3)];
+    }
     bars.into_iter().enumerate().filter(|(i, _)| segments >> (6 - i) & 1 == 1).map(|(_, bar)| bar).collect()
 }
 

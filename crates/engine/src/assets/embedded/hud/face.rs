@@ -42,18 +42,18 @@ fn face(band: i32, mood: Mood) -> Canvas {
     let mut c = Canvas::new(24, 29);
     let dead = mood == Mood::Dead;
     let pale = if dead { 0.5 } else { band as f32 * 0.06 };
-    let light_at = |u: f32, v: f32| 0.66 - 0.26 * u.abs() * u.abs() - 0.14 * u - 0.16 * v;
+    let light_at = |u: f32, v: f32| 0.68 - 0.3 * u * u - 0.16 * u - 0.14 * v;
     // Neck, ears, skull and jaw.
-    c.rect(8, 24, 9, 5, skin(0.28, pale));
-    for (x, shade) in [(3, 0.5), (20, 0.34)] {
-        c.ellipse((x as f32 + 0.5, 14.5), (1.8, 3.2), |_, v| skin(shade - 0.1 * v, pale));
+    c.rect(6, 24, 12, 5, skin(0.28, pale));
+    for (x, shade) in [(2, 0.5), (21, 0.34)] {
+        c.ellipse((x as f32 + 0.5, 14.5), (1.9, 3.4), |_, v| skin(shade - 0.1 * v, pale));
     }
-    c.ellipse((12.0, 12.0), (8.6, 11.0), |u, v| skin(light_at(u, v), pale));
-    c.polygon(&[(4.2, 14.0), (19.8, 14.0), (18.6, 22.0), (15.0, 27.6), (9.0, 27.6), (5.4, 22.0)], |x, y| {
-        skin(light_at((x as f32 - 11.5) / 8.5, (y as f32 - 13.0) / 13.0), pale)
+    c.ellipse((12.0, 12.0), (9.4, 11.4), |u, v| skin(light_at(u, v), pale));
+    c.polygon(&[(2.9, 13.0), (21.1, 13.0), (20.2, 21.0), (16.6, 27.8), (7.4, 27.8), (3.8, 21.0)], |x, y| {
+        skin(light_at((x as f32 - 11.5) / 9.6, (y as f32 - 13.0) / 13.0), pale)
     });
     // Stubble.
-    for (x, y) in (5..19).flat_map(|x| (21..27).map(move |y| (x, y))) {
+    for (x, y) in (4..20).flat_map(|x| (21..27).map(move |y| (x, y))) {
         if (x + y) % 2 == 0
             && let Some(colour) = c.get(x, y)
         {
@@ -65,10 +65,11 @@ fn face(band: i32, mood: Mood) -> Canvas {
         let strand = if (x * 5 + y * 3) % 4 == 0 { 1.35 } else { 1.0 };
         gradient(&[Colour::hex(0x5C3A1C), Colour::hex(0x2A180A)], (x as f32 + y as f32) / 26.0) * strand
     };
-    let hairline = [9, 8, 6, 5, 4, 5, 4, 4, 5, 4, 4, 5, 6, 8, 9];
+    let hairline = [10, 9, 7, 5, 5, 4, 5, 4, 4, 5, 4, 5, 4, 5, 5, 7, 9, 10];
     for (i, &bottom) in hairline.iter().enumerate() {
-        let x = i as i32 + 4;
-        let top = ((x - 12) * (x - 12)) / 22;
+        let x = i as i32 + 3;
+        // Twice the distance from the middle, squared.
+        let top = ((2 * x - 23) * (2 * x - 23)) / 92;
         for y in top..=bottom {
             c.set(x, y, hair(x, y));
         }
@@ -85,7 +86,7 @@ fn face(band: i32, mood: Mood) -> Canvas {
 fn features(c: &mut Canvas, mood: Mood, pale: f32) {
     let dark = Colour::hex(0x24120A);
     // Sockets and brows: the brows fall towards the nose in anger.
-    for (left, side) in [(6, 1), (14, -1)] {
+    for (left, side) in [(5, 1), (15, -1)] {
         c.rect(left, 11, 4, 1, skin(0.30, pale));
         c.rect(left, 12, 4, 2, skin(0.36, pale));
         let (inner, outer) = if side == 1 { (left + 3, left) } else { (left, left + 3) };
@@ -94,11 +95,11 @@ fn features(c: &mut Canvas, mood: Mood, pale: f32) {
             Mood::Ouch | Mood::Dead => -1,
             Mood::Glance(_) => 0,
         };
-        c.line((outer as f32, 10.0 - (drop - 1).min(0) as f32 * 0.0), (inner as f32, 10.0 + drop as f32), dark);
-        c.line((outer as f32, 9.6), (inner as f32, 9.6 + drop as f32), hairy());
+        c.line((outer as f32, 10.0), (inner as f32, 10.0 + drop as f32), dark);
+        c.line((outer as f32, 9.0), (inner as f32, 9.0 + drop as f32), Colour::hex(0x321C0C));
     }
     // Eyes.
-    for left in [6, 14] {
+    for left in [5, 15] {
         match mood {
             Mood::Dead => c.rect(left, 13, 4, 1, dark),
             Mood::Ouch => {
@@ -117,6 +118,12 @@ fn features(c: &mut Canvas, mood: Mood, pale: f32) {
             }
         }
     }
+    // Cheekbones and chin.
+    for x in [5, 17] {
+        c.rect(x, 16, 2, 1, skin(0.78, pale));
+        c.rect(x, 18, 1, 3, skin(0.36, pale));
+    }
+    c.rect(10, 26, 4, 1, skin(0.66, pale));
     // Nose.
     c.rect(11, 12, 2, 6, skin(0.74, pale));
     c.rect(13, 13, 1, 5, skin(0.36, pale));
@@ -151,10 +158,6 @@ fn features(c: &mut Canvas, mood: Mood, pale: f32) {
             c.rect(10, 24, 4, 1, skin(0.3, pale));
         }
     }
-}
-
-fn hairy() -> Colour {
-    Colour::hex(0x321C0C)
 }
 
 /// Wounds: each band adds to those of the band before.

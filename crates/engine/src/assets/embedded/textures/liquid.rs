@@ -14,6 +14,9 @@ const TICS: u8 = 8;
 /// Where two layers of noise are moved to in the four phases of a cycle: around a circle and back.
 const DRIFT: [(i32, i32); 4] = [(3, 0), (0, 3), (-3, 0), (0, -3)];
 
+/// How far the lava has cooled down.
+const COOLNESS: f32 = 0.31;
+
 /// Paints the liquids.
 pub(super) fn paint(gallery: &mut Gallery) {
     let lava: Vec<Canvas> = (0..4).map(lava).collect();
@@ -22,27 +25,29 @@ pub(super) fn paint(gallery: &mut Gallery) {
     gallery.animation(&["NUKAGE1", "NUKAGE2", "NUKAGE3"], &acid, TICS);
 }
 
-/// A dark crust torn by glowing seams: the seams lie where two drifting layers of noise cross.
+/// A dark red crust torn by glowing seams: the seams lie where two drifting layers of noise cross.
 fn lava(phase: usize) -> Canvas {
     let (dx, dy) = DRIFT[phase];
-    let first = Field::clouds(SIZE, SIZE, (5, 6), 4, 11);
-    let second = Field::clouds(SIZE, SIZE, (6, 5), 4, 12);
-    let crust = Field::clouds(SIZE, SIZE, (9, 9), 3, 13);
+    let first = Field::clouds(SIZE, SIZE, (7, 8), 4, 11);
+    let second = Field::clouds(SIZE, SIZE, (8, 7), 4, 12);
+    let crust = Field::clouds(SIZE, SIZE, (12, 12), 3, 13);
     let glow = [
-        Colour::hex(0xFFE850),
-        Colour::hex(0xFFA818),
-        Colour::hex(0xF07008),
-        Colour::hex(0xB03C02),
-        Colour::hex(0x641602),
-        Colour::hex(0x380A02),
+        Colour::hex(0xFFE040),
+        Colour::hex(0xFF9C10),
+        Colour::hex(0xE05806),
+        Colour::hex(0xA82E02),
+        Colour::hex(0x761802),
+        Colour::hex(0x520E02),
+        Colour::hex(0x360602),
     ];
     Surface::new(SIZE, SIZE, |x, y| {
         let apart = (first.at(x + dx, y + dy) - second.at(x - dx, y - dy)).abs();
-        let heat = (apart * 2.6 + (crust.at(x, y + dx) - 0.5) * 0.55).clamp(0.0, 1.0);
-        (gradient(&glow, heat), heat)
+        // The offset sets how much of the surface glows: the specified mean without any scaling, which would turn the
+        // bright seams brown.
+        let cool = (apart * 2.3 + (crust.at(x - dy, y + dx) - 0.5) * 0.8 + COOLNESS).clamp(0.0, 1.0);
+        (gradient(&glow, cool), cool)
     })
-    .lit(0.35, 0.18, 14)
-    .with_mean(Colour(112.0, 35.0, 7.0))
+    .lit(0.2, 0.1, 14)
     .canvas()
 }
 

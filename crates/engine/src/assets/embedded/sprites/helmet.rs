@@ -1,10 +1,10 @@
-//! Small bonuses: the health vial and the armour helmet.
+//! The armour bonus: a small red helmet.
 
 use crate::assets::embedded::canvas::Canvas;
 use crate::assets::embedded::colour::{Colour, gradient};
 use crate::assets::embedded::gallery::Gallery;
 
-/// Paints the bonuses; their frames A to D brighten a glint, shown back and forth.
+/// Paints the helmet: its frames A to D brighten the eyes, shown back and forth.
 pub(super) fn paint(gallery: &mut Gallery) {
     for glow in 0..4 {
         gallery.standing("BON2", &helmet(glow as f32 / 3.0));

@@ -1,0 +1,481 @@
+//! The raw flags: each declared once, feeding `--help`, parsing and the tests.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// HASARD: vision-based safe reinforcement learning in Doom-like 3D worlds.
+#[derive(Parser, Debug)]
+#[command(name = "hasard", version, about, propagate_version = true, arg_required_else_help = true)]
+#[command(after_help = "Exit code: 0 fine, 1 a negative result, 2 bad input (one line names it and the remedy).")]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// List the environments with their budgets and action spaces
+    Envs(EnvsArgs),
+    /// Play episodes with a fixed policy or a trained agent and print return, cost and statistics
+    Rollout(RolloutArgs),
+    /// Run recorded inputs tic by tic and print position, velocity and view as CSV
+    Trace(TraceArgs),
+    /// Measure environment speed: random actions, resets included, observations written
+    Bench(BenchArgs),
+    /// Draw a moment of an episode as PNG: colour, depth, segmentation or map
+    Render(RenderArgs),
+    /// Train an agent
+    Train(TrainArgs),
+    /// Evaluate a trained agent
+    Eval(EvalArgs),
+    /// Write an episode as video, GIF, or as a file that `replay` plays again
+    Record(RecordArgs),
+    /// Play a recorded episode again, at any size
+    Replay(ReplayArgs),
+    /// Make tables, curves and heatmaps from run directories
+    Report(ReportArgs),
+    /// Run many trainings: a grid from a TOML file, or an experiment of the paper by name
+    Sweep(SweepArgs),
+    /// Write an environment's map as a WAD that other engines load
+    ExportWad(ExportWadArgs),
+}
+
+/// Options of every command that makes an environment.
+#[derive(Args, Debug, Clone)]
+#[command(next_help_heading = "Environment")]
+pub struct EnvArgs {
+    /// Constants of the paper, or of the published package
+    #[arg(long, value_enum, default_value_t = Rules::Paper)]
+    pub rules: Rules,
+    /// Hard constraint: harm ends the episode
+    #[arg(long)]
+    pub hard: bool,
+    /// The full action space instead of the simplified one
+    #[arg(long)]
+    pub full_actions: bool,
+    /// Tics (1/35 s) that each action is held
+    #[arg(long, value_name = "TICS", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=35))]
+    pub frame_skip: u32,
+    /// Frame size; 128x72 is the learner's nearest-neighbour reduction of 160x120
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// What is observed
+    #[arg(long, value_enum, default_value_t = Observation::Rgb)]
+    pub observation: Observation,
+    /// Number of last frames stacked along the channels
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=16))]
+    pub frame_stack: u8,
+    /// Limit the depth of walls as the published engine does
+    #[arg(long)]
+    pub published_depth: bool,
+    /// Segment in the published colours, some of which several classes share
+    #[arg(long)]
+    pub published_colours: bool,
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    #[arg(long, value_name = "FILE")]
+    pub iwad: Option<PathBuf>,
+}
+
+/// As the flags are when none is given.
+impl Default for EnvArgs {
+    fn default() -> EnvArgs {
+        EnvArgs {
+            rules: Rules::Paper,
+            hard: false,
+            full_actions: false,
+            frame_skip: 4,
+            size: None,
+            observation: Observation::Rgb,
+            frame_stack: 1,
+            published_depth: false,
+            published_colours: false,
+            iwad: None,
+        }
+    }
+}
+
+/// `--rules`.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rules {
+    /// The paper's text made self-consistent
+    Paper,
+    /// What the published package does
+    Released,
+}
+
+/// `--observation`.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Observation {
+    /// Red, green, blue
+    Rgb,
+    /// Red, green, blue and depth
+    #[value(name = "rgb+depth")]
+    RgbDepth,
+    /// One fixed colour per class
+    Segmented,
+    /// Luminance
+    Grey,
+}
+
+/// A frame size such as `160x120`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Columns.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+}
+
+impl Size {
+    /// The learner's frame.
+    pub const LEARNER: Size = Size { width: 128, height: 72 };
+}
+
+impl std::str::FromStr for Size {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Size, String> {
+        let remedy = "write WIDTHxHEIGHT such as 160x120, from 64x48 to 1920x1080";
+        let (width, height) = text.split_once(['x', 'X']).ok_or(remedy)?;
+        let size = Size { width: width.parse().map_err(|_| remedy)?, height: height.parse().map_err(|_| remedy)? };
+        if !(64..=1920).contains(&size.width) || !(48..=1080).contains(&size.height) {
+            return Err(remedy.into());
+        }
+        Ok(size)
+    }
+}
+
+impl std::fmt::Display for Size {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}x{}", self.width, self.height)
+    }
+}
+
+/// `hasard envs`.
+#[derive(Args, Debug)]
+pub struct EnvsArgs {
+    /// One JSON object a line
+    #[arg(long)]
+    pub json: bool,
+    /// Constants of the paper, or of the published package
+    #[arg(long, value_enum, default_value_t = Rules::Paper)]
+    pub rules: Rules,
+    /// Accepted for uniformity; the list does not depend on it
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard rollout`.
+#[derive(Args, Debug)]
+pub struct RolloutArgs {
+    /// Environment id, see `hasard envs`
+    pub env: String,
+    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR
+    #[arg(long, default_value = "random")]
+    pub policy: String,
+    /// Number of episodes
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
+    pub episodes: u32,
+    /// Episode i is seeded SEED + i
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// One JSON object an episode
+    #[arg(long)]
+    pub json: bool,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard trace`.
+#[derive(Args, Debug)]
+pub struct TraceArgs {
+    /// Environment id
+    pub env: String,
+    /// Where the player is placed, at rest, in map units and degrees; the episode's own start if absent
+    #[arg(long, value_name = "X,Y,Z,ANGLE[,PITCH]", allow_hyphen_values = true)]
+    pub start: Option<String>,
+    /// No-op tics before the player is placed
+    #[arg(long, default_value_t = 13, value_name = "N")]
+    pub after: u32,
+    /// CSV file with an `action` column
+    #[arg(long, value_name = "FILE")]
+    pub actions: PathBuf,
+    /// Print CSV (the default)
+    #[arg(long)]
+    pub csv: bool,
+    /// One JSON object a tic instead of CSV
+    #[arg(long, conflicts_with = "csv")]
+    pub json: bool,
+    /// Seed of the episode
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard bench`.
+#[derive(Args, Debug)]
+pub struct BenchArgs {
+    /// Environment id
+    pub env: String,
+    /// Worlds in the batch
+    #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub envs: u32,
+    /// Worker threads
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: u32,
+    /// Seconds to measure
+    #[arg(long, default_value_t = 5.0)]
+    pub seconds: f64,
+    /// Seed
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// What `hasard render` draws.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Buffer {
+    /// What the player sees
+    Rgb,
+    /// Distance, near black to far white
+    Depth,
+    /// One colour per class
+    Segmented,
+}
+
+impl Buffer {
+    /// What stands below it.
+    pub fn caption(self) -> &'static str {
+        match self {
+            Buffer::Rgb => "view",
+            Buffer::Depth => "depth",
+            Buffer::Segmented => "segmented",
+        }
+    }
+}
+
+/// `hasard render`.
+#[derive(Args, Debug)]
+pub struct RenderArgs {
+    /// Environment id
+    pub env: String,
+    /// PNG file to write
+    #[arg(short, long, value_name = "FILE", default_value = "frame.png")]
+    pub out: PathBuf,
+    /// Which buffer
+    #[arg(long, value_enum, default_value_t = Buffer::Rgb)]
+    pub buffer: Buffer,
+    /// Policy that acts before the picture
+    #[arg(long, default_value = "random")]
+    pub policy: String,
+    /// Policy steps before the picture
+    #[arg(long, default_value_t = 0)]
+    pub step: u32,
+    /// Seed of the episode
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard train`.
+#[derive(Args, Debug)]
+pub struct TrainArgs {
+    /// Environment id
+    pub env: String,
+    /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, FOCOPS, CUP, IPO
+    #[arg(long, default_value = "PPOLag")]
+    pub algo: String,
+    /// paper, released, or quick: settings that learn within minutes on a CPU
+    #[arg(long, default_value = "paper")]
+    pub preset: String,
+    /// Length of the run in frames (tics): policy steps times frame skip; the preset's if absent
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub frames: Option<u64>,
+    /// Run directory; runs/ENV-ALGO-seedSEED if absent
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Go on from the last checkpoint in the run directory, if there is one
+    #[arg(long)]
+    pub resume: bool,
+    /// Begin with the weights and pixel statistics of another run
+    #[arg(long, value_name = "RUN", conflicts_with = "resume")]
+    pub init_from: Option<PathBuf>,
+    /// Cost that an episode may have; TERM=COST for one named cost term, several times for several constraints
+    #[arg(long, value_name = "COST")]
+    pub safety_budget: Vec<String>,
+    /// PPOCost: factor of the cost in the reward
+    #[arg(long, value_name = "FACTOR")]
+    pub cost_scale: Option<f64>,
+    /// cpu, or vulkan / cuda where the program was built with that feature
+    #[arg(long, default_value = "cpu")]
+    pub device: String,
+    /// Sampling and learning take turns: slower, and bit-reproducible
+    #[arg(long)]
+    pub sync: bool,
+    /// Threads; all cores if absent
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+    /// Worlds
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub envs: Option<u32>,
+    /// Any setting of config.json, such as learning.rate=0.0003; may be given several times
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// One JSON object a report, as in metrics.jsonl, instead of the progress bar
+    #[arg(long)]
+    pub json: bool,
+    /// No progress bar
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard eval`.
+#[derive(Args, Debug)]
+pub struct EvalArgs {
+    /// Run directory
+    pub run: PathBuf,
+    /// Number of episodes
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    pub episodes: u32,
+    /// Episode i is seeded SEED + i
+    #[arg(long, default_value_t = 1_000_000)]
+    pub seed: u64,
+    /// Take each sub-action's likeliest choice instead of sampling
+    #[arg(long)]
+    pub greedy: bool,
+    /// The checkpoint with the best return within all budgets instead of the latest
+    #[arg(long)]
+    pub best: bool,
+    /// One JSON object an episode, then one with "summary"
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `hasard record`.
+#[derive(Args, Debug)]
+pub struct RecordArgs {
+    /// Environment id
+    pub env: String,
+    /// File to write: .mp4, .gif or .episode
+    #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
+    pub out: PathBuf,
+    /// random, sticky:K, noop, hold:BUTTONS, hold-after:K:BUTTONS
+    #[arg(long, default_value = "random")]
+    pub policy: String,
+    /// Other buffers beside the view
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub beside: Vec<Buffer>,
+    /// Most policy steps that are shown
+    #[arg(long, default_value_t = u32::MAX, hide_default_value = true)]
+    pub steps: u32,
+    /// Seed of the episode
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
+}
+
+/// `hasard replay`.
+#[derive(Args, Debug)]
+pub struct ReplayArgs {
+    /// Episode file, from `hasard record` or `hasard play`
+    pub file: PathBuf,
+    /// Video or GIF to write; without it the episode is played and its result checked
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Other buffers beside the view
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub beside: Vec<Buffer>,
+    /// Frame size
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    #[arg(long, value_name = "FILE")]
+    pub iwad: Option<PathBuf>,
+    /// Accepted for uniformity; the file holds its seed
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard report`.
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// Run directories, or folders that hold them
+    #[arg(required = true)]
+    pub runs: Vec<PathBuf>,
+    /// Folder to write
+    #[arg(short, long, value_name = "DIR", default_value = "report")]
+    pub out: PathBuf,
+    /// Title of the page
+    #[arg(long, default_value = "HASARD results")]
+    pub title: String,
+    /// One JSON object about what was written
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; bootstrap intervals have a fixed seed
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard sweep`.
+#[derive(Args, Debug)]
+pub struct SweepArgs {
+    /// TOML file, or an experiment of the paper: main, safety-bounds, cost-scale, curriculum, hard, full-actions, depth,
+    /// segmentation, trpo
+    pub what: String,
+    /// Folder of the runs
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Runs at a time
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub parallel: Option<u16>,
+    /// Frames of every run times this, to try an experiment in small
+    #[arg(long, value_name = "FACTOR")]
+    pub scale: Option<f64>,
+    /// Print the command lines and run nothing
+    #[arg(long)]
+    pub dry_run: bool,
+    /// One JSON object a job
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; a sweep lists its seeds
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard export-wad`.
+#[derive(Args, Debug)]
+pub struct ExportWadArgs {
+    /// Environment id
+    pub env: String,
+    /// WAD file to write
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Constants of the paper, or of the published package
+    #[arg(long, value_enum, default_value_t = Rules::Paper)]
+    pub rules: Rules,
+    /// The hard constraint's map
+    #[arg(long)]
+    pub hard: bool,
+    /// Accepted for uniformity; maps do not depend on it
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}

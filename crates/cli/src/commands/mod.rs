@@ -1,0 +1,13 @@
+//! The commands, one file each.
+
+pub mod bench;
+pub mod envs;
+pub mod eval;
+pub mod export_wad;
+pub mod record;
+pub mod render;
+pub mod report;
+pub mod rollout;
+pub mod sweep;
+pub mod trace;
+pub mod train;

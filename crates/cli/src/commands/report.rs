@@ -1,0 +1,27 @@
+//! `hasard report`: tables and figures from run directories.
+
+use crate::args::ReportArgs;
+use crate::failure::{Failure, Outcome};
+use serde_json::json;
+
+/// Runs the command.
+pub fn run(args: &ReportArgs) -> Outcome {
+    let written = hasard_report::write_report(&args.runs, &args.out, &args.title).map_err(Failure::bad)?;
+    for warning in &written.warnings {
+        eprintln!("hasard: {warning}");
+    }
+    if args.json {
+        let files: Vec<String> = written.files.iter().map(|file| file.display().to_string()).collect();
+        let page = written.page.display().to_string();
+        say!("{}", json!({ "page": page, "files": files, "runs": written.runs, "experiments": written.experiments }));
+    } else {
+        say!(
+            "{}: {} runs, {} experiments, {} files",
+            written.page.display(),
+            written.runs,
+            written.experiments,
+            written.files.len()
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,81 @@
+//! `hasard sweep`: many trainings.
+
+use crate::args::SweepArgs;
+use crate::failure::{Failure, Outcome};
+use hasard_sweep::{Event, Job, State, Sweep, paper, run_jobs};
+use serde_json::json;
+use std::path::Path;
+
+/// Runs the command.
+pub fn run(args: &SweepArgs) -> Outcome {
+    let mut sweep = description(&args.what)?;
+    if let Some(out) = &args.out {
+        sweep.out.clone_from(out);
+    }
+    if let Some(parallel) = args.parallel {
+        sweep.parallel = usize::from(parallel);
+    }
+    if let Some(scale) = args.scale {
+        if !(scale.is_finite() && scale > 0.0) {
+            return Err(Failure::bad(format!("--scale {scale}: give a number above 0")));
+        }
+        sweep.scale_frames(scale);
+    }
+    let jobs = sweep.jobs().map_err(Failure::bad)?;
+    if args.dry_run {
+        for job in &jobs {
+            if args.json {
+                say!("{}", json!({ "directory": job.directory.display().to_string(), "command": job.command_line("hasard") }));
+            } else {
+                say!("{}", job.command_line("hasard"));
+            }
+        }
+        return Ok(());
+    }
+    let program = std::env::current_exe().map_err(|error| Failure::bad(format!("this program's own path: {error}")))?;
+    let total = jobs.len();
+    // A reader who goes away does not stop the runs.
+    let summary = run_jobs(&program, &jobs, sweep.parallel, |index, event| {
+        let _ = tell(args.json, index, total, &jobs[index], event);
+    });
+    if args.json {
+        say!(
+            "{}",
+            json!({ "summary": { "skipped": summary.skipped, "finished": summary.finished, "failed": summary.failed.len() } })
+        );
+    } else {
+        say!("{} finished, {} had been finished before, {} failed", summary.finished, summary.skipped, summary.failed.len());
+    }
+    match summary.failed.len() {
+        0 => Ok(()),
+        n => Err(Failure::Negative(format!("{n} of {total} runs failed; run the same command again to resume them"))),
+    }
+}
+
+/// A TOML file's sweep, or an experiment by name.
+fn description(what: &str) -> Result<Sweep, Failure> {
+    let path = Path::new(what);
+    if path.extension().is_none_or(|ending| ending != "toml") && !path.is_file() {
+        return paper::experiment(what).map_err(Failure::bad);
+    }
+    let bytes = hasard_media::files::read_limited(path, 1 << 20).map_err(Failure::bad)?;
+    let text = String::from_utf8(bytes).map_err(|_| Failure::bad(format!("{what}: not text; write a TOML file")))?;
+    Sweep::parse(&text).map_err(|error| Failure::bad(format!("{what}: {error}")))
+}
+
+fn tell(as_json: bool, index: usize, total: usize, job: &Job, event: &Event) -> Outcome {
+    let directory = job.directory.display().to_string();
+    let (name, text) = match event {
+        Event::AlreadyFinished => ("already_finished", "had been finished before".to_string()),
+        Event::Started(State::Unfinished(frames)) => ("resumed", format!("goes on from {frames} frames")),
+        Event::Started(_) => ("started", "begins".to_string()),
+        Event::Finished(time) => ("finished", format!("finished in {:.0} s", time.as_secs_f64())),
+        Event::Failed(why) => ("failed", format!("failed: {why}")),
+    };
+    if as_json {
+        say!("{}", json!({ "job": index, "directory": directory, "event": name, "text": text }));
+    } else {
+        say!("[{}/{total}] {directory}: {text}", index + 1);
+    }
+    Ok(())
+}

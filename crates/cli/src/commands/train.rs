@@ -1,0 +1,164 @@
+//! `hasard train`: an agent from pixels.
+
+use crate::args::{Observation, Rules, TrainArgs};
+use crate::failure::{Failure, Outcome};
+use hasard_envs::VecEnv;
+use hasard_learn::config::{Constraint, EnvConfig, Preset, TrainConfig};
+use hasard_learn::interrupt::stop_on_interrupt;
+use hasard_learn::progress_bar::{Bar, line};
+use hasard_learn::report::Report;
+use hasard_learn::run_directory::read_config;
+use hasard_learn::trainer::{Hooks, Start, train};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Runs the command.
+pub fn run(args: &TrainArgs) -> Outcome {
+    let directory =
+        args.out.clone().unwrap_or_else(|| PathBuf::from(format!("runs/{}-{}-seed{}", args.env, args.algo, args.seed)));
+    let (start, config) = if args.resume && directory.join("config.json").exists() {
+        let config = read_config(&directory).map_err(Failure::bad)?;
+        if config.env.id != args.env {
+            let problem = format!("{}: the run there is of {}; name that, or another --out", directory.display(), config.env.id);
+            return Err(Failure::bad(problem));
+        }
+        (Start::Resume { frames: args.frames }, config)
+    } else {
+        let config = configuration(args)?;
+        let start = match &args.init_from {
+            Some(other) => Start::From(config.clone(), other),
+            None => Start::Fresh(config.clone()),
+        };
+        (start, config)
+    };
+    let mut options = config.env.options().map_err(Failure::bad)?;
+    options.assets = crate::settings::assets(args.env_args.iwad.as_deref())?;
+    let stop = stop_on_interrupt().map_err(Failure::bad)?;
+    let bar = (!args.json && !args.quiet).then(|| Bar::new(args.frames.unwrap_or(config.frames)));
+    if bar.is_some() {
+        describe(&config, &directory);
+    }
+    let mut first: Option<Report> = None;
+    let mut hear = |report: &Report| {
+        if first.is_none() && report.means.is_some() {
+            first = Some(report.clone());
+        }
+        match &bar {
+            Some(bar) => bar.show(report),
+            // A reader who goes away does not stop the run.
+            None if args.json => drop(print_row(report)),
+            None => {}
+        }
+    };
+    let mut warn = |text: String| match &bar {
+        Some(bar) => bar.print(&format!("hasard: {text}")),
+        None => eprintln!("hasard: {text}"),
+    };
+    let id = config.env.id.clone();
+    let make = |worlds| VecEnv::new(&id, &options, worlds);
+    let mut hooks = Hooks { stop: &stop, report: &mut hear, warn: &mut warn };
+    let summary = train(start, &directory, &make, &mut hooks).map_err(Failure::bad)?;
+    if let Some(bar) = &bar {
+        bar.finish();
+        if let Some(first) = &first {
+            eprintln!("first: {}", line(first));
+        }
+        eprintln!("last:  {}", line(&summary.last));
+        let name = directory.display();
+        match summary.stopped {
+            true => eprintln!("stopped; go on with: hasard train {} --resume --out {name}", config.env.id),
+            false => eprintln!("{name} is a run directory: hasard eval {name}, hasard report {name}"),
+        }
+    }
+    Ok(())
+}
+
+fn print_row(report: &Report) -> Outcome {
+    say!("{}", report.row());
+    Ok(())
+}
+
+fn describe(config: &TrainConfig, directory: &Path) {
+    let budgets: Vec<String> = config.constraints.iter().map(|constraint| constraint.budget.to_string()).collect();
+    eprintln!(
+        "{} on {}, preset {}, seed {}, {} frames, cost budget {} an episode, device {} -> {}",
+        config.algorithm,
+        config.env.id,
+        config.preset,
+        config.seed,
+        config.frames,
+        budgets.join(" / "),
+        config.device,
+        directory.display()
+    );
+}
+
+/// The settings of a fresh run: the preset's, then flags, then `--set`.
+fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
+    let flags = &args.env_args;
+    let mut env = EnvConfig::new(&args.env);
+    env.rules = match flags.rules {
+        Rules::Paper => "paper",
+        Rules::Released => "released",
+    }
+    .into();
+    env.observation = match flags.observation {
+        Observation::Rgb => "rgb",
+        Observation::RgbDepth => "rgb+depth",
+        Observation::Segmented => "segmented",
+        Observation::Grey => "grey",
+    }
+    .into();
+    (env.hard, env.full_actions, env.frame_skip) = (flags.hard, flags.full_actions, flags.frame_skip);
+    env.frame_stack = usize::from(flags.frame_stack);
+    if let Some(size) = flags.size {
+        env.size = (size.width, size.height);
+    }
+    let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
+    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env).map_err(Failure::bad)?;
+    config.seed = args.seed;
+    config.device.clone_from(&args.device);
+    config.frames = args.frames.unwrap_or(config.frames);
+    if args.sync {
+        config.sampling.synchronous = true;
+    }
+    if let Some(threads) = args.threads {
+        config.learning.threads = usize::from(threads);
+        config.sampling.samplers = usize::from(threads);
+    }
+    if let Some(lanes) = args.envs {
+        config.sampling.lanes = lanes as usize;
+    }
+    if let Some(scale) = args.cost_scale {
+        config.algorithm_settings.penalty_scale = scale;
+    }
+    if !args.safety_budget.is_empty() {
+        config.constraints = args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
+    }
+    let config = args.set.iter().try_fold(config, |config, text| set(config, text))?;
+    config.check().map_err(Failure::bad)?;
+    Ok(config)
+}
+
+/// `50`, or `lava=50` for a named cost term.
+fn constraint(text: &str) -> Result<Constraint, Failure> {
+    let (term, number) = text.split_once('=').map_or((None, text), |(term, number)| (Some(term.to_string()), number));
+    let budget = number.parse().map_err(|_| Failure::bad(format!("--safety-budget '{text}': write a number, or TERM=NUMBER")))?;
+    Ok(Constraint { term, budget })
+}
+
+/// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`.
+fn set(config: TrainConfig, text: &str) -> Result<TrainConfig, Failure> {
+    let (path, given) = text
+        .split_once('=')
+        .ok_or_else(|| Failure::bad(format!("--set '{text}': write NAME=VALUE, such as learning.rate=0.0003")))?;
+    let mut all = serde_json::to_value(&config).map_err(Failure::bad)?;
+    let pointer = format!("/{}", path.replace('.', "/"));
+    let place = all.pointer_mut(&pointer).ok_or_else(|| {
+        Failure::bad(format!(
+            "--set '{text}': there is no setting '{path}'; names are those of a run's config.json, such as learning.rate"
+        ))
+    })?;
+    *place = serde_json::from_str(given).unwrap_or_else(|_| Value::String(given.to_string()));
+    serde_json::from_value(all).map_err(|error| Failure::bad(format!("--set '{text}': {error}")))
+}

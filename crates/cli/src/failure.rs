@@ -1,0 +1,61 @@
+//! How a command fails, and the one line that says so.
+
+use std::io;
+use std::process::ExitCode;
+
+/// Why a command did not end well; decides the exit code.
+#[derive(Debug)]
+pub enum Failure {
+    /// The command worked and its result is negative: exit code 1.
+    #[allow(dead_code, reason = "commands with a negative result are being added")]
+    Negative(String),
+    /// Bad input or a failed operation: exit code 2, one line that names the input and the remedy.
+    BadInput(String),
+    /// Standard output was closed by its reader.
+    OutputClosed,
+}
+
+impl Failure {
+    /// Bad input, from anything that prints as one line.
+    pub fn bad(message: impl std::fmt::Display) -> Failure {
+        Failure::BadInput(message.to_string())
+    }
+}
+
+/// What every command returns.
+pub type Outcome = Result<(), Failure>;
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Failure {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Failure::OutputClosed,
+            _ => Failure::BadInput(format!("standard output: {error}")),
+        }
+    }
+}
+
+/// Prints `--help` and `--version` as they are, and a usage error as one line.
+pub fn report_usage(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        let _ = error.print();
+        return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+    }
+    let text = error.render().to_string();
+    let parts: Vec<&str> = text
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty() && !line.starts_with("Usage:") && !line.starts_with("For more information"))
+        .collect();
+    let line = parts.join("; ");
+    eprintln!("hasard: {} (see `hasard --help`)", line.strip_prefix("error: ").unwrap_or(&line));
+    ExitCode::from(2)
+}
+
+/// Prints a line on standard output and returns from the calling command if that cannot be done: unlike `println!`, no panic
+/// when the reader has gone away.
+#[macro_export]
+macro_rules! say {
+    ($($argument:tt)*) => {
+        std::io::Write::write_fmt(&mut std::io::stdout().lock(), format_args!("{}\n", format_args!($($argument)*)))?
+    };
+}

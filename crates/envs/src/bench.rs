@@ -1,0 +1,53 @@
+//! How fast a batch of worlds runs.
+
+use crate::policy::draw_action;
+use crate::{EnvError, EnvOptions, VecEnv, VecOptions};
+use hasard_engine::math::Rng;
+use std::time::Instant;
+
+/// What a measurement gave.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct BenchReport {
+    /// Policy steps a second, all lanes together, resets and observations included.
+    pub steps_per_second: f64,
+    /// The same in tics.
+    pub tics_per_second: f64,
+    /// Episodes that ended meanwhile.
+    pub resets: u64,
+    /// Bytes that a lane's step writes to the observation buffer.
+    pub observation_bytes: usize,
+}
+
+/// Steps a batch with uniform random actions for about `seconds`. Observations are written and episodes follow each other
+/// without a pause, so that rendering and resets are part of what is measured.
+pub fn bench(id: &str, options: &EnvOptions, lanes: usize, threads: usize, seconds: f64) -> Result<BenchReport, EnvError> {
+    // One thread is the caller's own: there is nobody to wait for it.
+    let threads_hired = if threads == 1 { 0 } else { threads };
+    let mut worlds = VecEnv::new(id, options, VecOptions { lanes, threads: threads_hired, ..VecOptions::default() })?;
+    let sizes = worlds.action_space().sizes();
+    let mut rng = Rng::new(0);
+    let mut batch = worlds.whole_batch();
+    worlds.reset(&mut batch)?;
+    let draw = |rng: &mut Rng, batch: &mut crate::Batch| {
+        let deltas = batch.deltas.len() / lanes;
+        for lane in 0..lanes {
+            let actions = &mut batch.actions[lane * sizes.len()..(lane + 1) * sizes.len()];
+            draw_action(rng, &sizes, actions, &mut batch.deltas[lane * deltas..(lane + 1) * deltas]);
+        }
+    };
+    let (mut steps, mut resets) = (0u64, 0u64);
+    let start = Instant::now();
+    while start.elapsed().as_secs_f64() < seconds {
+        draw(&mut rng, &mut batch);
+        worlds.step(&mut batch)?;
+        steps += lanes as u64;
+        resets += batch.episodes.len() as u64;
+    }
+    let rate = steps as f64 / start.elapsed().as_secs_f64();
+    Ok(BenchReport {
+        steps_per_second: rate,
+        tics_per_second: rate * f64::from(options.frame_skip),
+        resets,
+        observation_bytes: batch.observations.len() / lanes,
+    })
+}

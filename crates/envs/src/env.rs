@@ -1,0 +1,371 @@
+//! The single environment.
+
+use crate::eye::Eye;
+use crate::game::Game;
+use crate::scenarios::outcome::MOST_TERMS;
+use crate::scenarios::{self, Rules};
+use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Episode, Scenario, Step};
+use hasard_engine::assets::Assets;
+use hasard_engine::map::Map;
+use hasard_engine::math::Rng;
+use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, View};
+use hasard_engine::world::{Command, World};
+use std::sync::Arc;
+
+/// What is the same in every episode of an environment, shared by all that are made alike.
+#[derive(Debug)]
+pub(crate) struct Blueprint {
+    pub id: EnvId,
+    pub options: EnvOptions,
+    pub space: ActionSpace,
+    pub cost_terms: &'static [CostTerm],
+    /// Completed tics at the first observation, and at the time-out.
+    start_tic: u32,
+    end_tic: u32,
+    /// The world before its first tic.
+    template: Game,
+    scene: Arc<Scene>,
+    view: Arc<View>,
+}
+
+/// Length of an episode, in tics after its first observation.
+const EPISODE_TICS: u32 = 2100;
+
+impl Blueprint {
+    fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
+        let id: EnvId = id.parse()?;
+        options.check()?;
+        let (built_in, textures) = scenarios::map_source(id, options.rules, options.hard);
+        let source = options.map.as_deref().unwrap_or(&built_in);
+        let map = Map::build(source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
+        let rules = Rules::new(id, options.rules, options.hard, &map)?;
+        let scene = Scene::new(&map, options.assets.clone().unwrap_or_else(Assets::embedded));
+        let world = World::new(Arc::new(map), 0);
+        if world.players.is_empty() {
+            return Err(EnvError::Map { why: format!("the map of {id} has no player start; add a thing of type 1") });
+        }
+        // Collateral Damage shows itself late, once the weapon is nearly up, and ends by the clock of the level.
+        let (start_tic, end_tic) = match id.scenario {
+            Scenario::CollateralDamage => (16, EPISODE_TICS),
+            _ => (1, 1 + EPISODE_TICS),
+        };
+        Ok(Blueprint {
+            id,
+            options: options.clone(),
+            space: ActionSpace::of(id.scenario, options.full_actions),
+            cost_terms: scenarios::cost_terms(id.scenario),
+            start_tic,
+            end_tic,
+            template: Game::new(world, rules),
+            scene: Arc::new(scene),
+            view: Arc::new(view(options.size)?),
+        })
+    }
+}
+
+fn view(size: FrameSize) -> Result<View, EnvError> {
+    let allowed = "64x48 to 1920x1080".to_string();
+    View::new(size).map_err(|_| EnvError::Option { option: "the frame size", given: size.to_string(), allowed })
+}
+
+/// An episode's sums.
+#[derive(Clone, Copy, Debug, Default)]
+struct Totals {
+    steps: u32,
+    episode_return: f64,
+    cost: f64,
+    costs: [f64; MOST_TERMS],
+}
+
+/// A saved moment of an environment; [`Env::restore`] brings it back exactly.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    game: Game,
+    seed: u64,
+    totals: Totals,
+    last: Step,
+    memory: (Vec<u8>, usize),
+}
+
+/// One world with its task.
+///
+/// ```
+/// use hasard_envs::{Env, EnvOptions};
+/// let mut env = Env::new("VolcanicVentureLevel1-v0", &EnvOptions::default())?;
+/// env.reset(7);
+/// let step = env.step(&[0, 1, 0, 1], &[]); // forward, running
+/// assert!(!step.terminated);
+/// let [height, width, channels] = env.observation_shape();
+/// let mut observation = vec![0; height * width * channels];
+/// env.observe(&mut observation);
+/// # Ok::<(), hasard_envs::EnvError>(())
+/// ```
+pub struct Env {
+    blueprint: Arc<Blueprint>,
+    game: Game,
+    seed: u64,
+    totals: Totals,
+    last: Step,
+    last_costs: [f64; MOST_TERMS],
+    eye: Eye,
+}
+
+impl Env {
+    /// The environment with an id such as `VolcanicVentureLevel1-v0`, at the start of the episode of seed 0.
+    pub fn new(id: &str, options: &EnvOptions) -> Result<Env, EnvError> {
+        Ok(Env::of(Arc::new(Blueprint::new(id, options)?)))
+    }
+
+    /// Another environment of the same kind; the map, pictures and tables are shared.
+    #[must_use]
+    pub fn sibling(&self) -> Env {
+        Env::of(Arc::clone(&self.blueprint))
+    }
+
+    fn of(blueprint: Arc<Blueprint>) -> Env {
+        let game = blueprint.template.clone();
+        let (scene, view) = (Arc::clone(&blueprint.scene), Arc::clone(&blueprint.view));
+        let eye = Eye::new(scene, view, &blueprint.options, blueprint.template.rules.green_goggles());
+        let mut env = Env {
+            blueprint,
+            game,
+            seed: 0,
+            totals: Totals::default(),
+            last: Step::default(),
+            last_costs: [0.0; MOST_TERMS],
+            eye,
+        };
+        env.reset(0);
+        env
+    }
+
+    /// Its id.
+    #[must_use]
+    pub fn id(&self) -> EnvId {
+        self.blueprint.id
+    }
+
+    /// What it was made with.
+    #[must_use]
+    pub fn options(&self) -> &EnvOptions {
+        &self.blueprint.options
+    }
+
+    /// The action space.
+    #[must_use]
+    pub fn action_space(&self) -> &ActionSpace {
+        &self.blueprint.space
+    }
+
+    /// The named parts of the cost.
+    #[must_use]
+    pub fn cost_terms(&self) -> &'static [CostTerm] {
+        self.blueprint.cost_terms
+    }
+
+    /// Starts the episode of `seed`.
+    pub fn reset(&mut self, seed: u64) {
+        self.game.clone_from(&self.blueprint.template);
+        self.game.world.rng = Rng::new(seed);
+        for _ in 0..self.blueprint.start_tic {
+            self.game.tic(Command::default());
+        }
+        self.seed = seed;
+        self.totals = Totals::default();
+        self.last = Step::default();
+        self.last_costs = [0.0; MOST_TERMS];
+        self.eye.open(&self.game.world);
+    }
+
+    /// Holds an action for `frame_skip` tics. Parts beyond the action space count as pressing nothing.
+    pub fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
+        self.step_buttons(self.blueprint.space.command(actions, deltas))
+    }
+
+    /// Holds buttons for `frame_skip` tics, whether they are in the action space or not.
+    pub fn step_buttons(&mut self, command: Command) -> Step {
+        if self.last.ended() {
+            self.last_costs = [0.0; MOST_TERMS];
+            return Step { reward: 0.0, cost: 0.0, ..self.last };
+        }
+        let game = &mut self.game;
+        (game.outcome.reward, game.outcome.costs) = (0.0, [0.0; MOST_TERMS]);
+        for _ in 0..self.blueprint.options.frame_skip {
+            game.tic(command);
+            if game.over() || game.world.tic >= self.blueprint.end_tic {
+                break;
+            }
+        }
+        game.rules.end_step(&game.world, &mut game.outcome);
+        let terminated = game.over();
+        let truncated = !terminated && game.world.tic >= self.blueprint.end_tic;
+        self.last_costs = game.outcome.costs;
+        let terms = self.blueprint.cost_terms.iter().zip(&self.last_costs);
+        let cost = terms.filter(|(term, _)| term.counted).map(|(_, cost)| cost).sum();
+        self.last = Step { reward: game.outcome.reward, cost, terminated, truncated };
+        self.totals.steps += 1;
+        self.totals.episode_return += self.last.reward;
+        self.totals.cost += cost;
+        self.totals.costs.iter_mut().zip(&self.last_costs).for_each(|(total, cost)| *total += cost);
+        self.eye.blink(&self.game.world);
+        self.last
+    }
+
+    /// Shape of an observation: height, width, channels or channels, height, width, as chosen.
+    #[must_use]
+    pub fn observation_shape(&self) -> [usize; 3] {
+        self.eye.shape()
+    }
+
+    /// Draws the observation of the present state.
+    ///
+    /// # Panics
+    /// If `out` is not as long as the product of the observation shape.
+    pub fn observe(&mut self, out: &mut [u8]) {
+        self.eye.observe(&self.game.world, out);
+    }
+
+    /// Draws the present as the observation's size shows it, with depth and labels where asked for, for tools that read them.
+    pub fn render(&mut self, buffers: Buffers) -> &Renderer {
+        self.eye.render(&self.game.world, buffers)
+    }
+
+    /// A renderer of another size for this environment's world, for people's pictures.
+    pub fn renderer(&self, size: FrameSize) -> Result<Renderer, EnvError> {
+        Ok(Renderer::new(Arc::clone(&self.blueprint.scene), Arc::new(view(size)?)))
+    }
+
+    /// The last step's amount of each cost term.
+    #[must_use]
+    pub fn step_costs(&self) -> &[f64] {
+        &self.last_costs[..self.blueprint.cost_terms.len()]
+    }
+
+    /// The episode's amount of each cost term so far.
+    #[must_use]
+    pub fn episode_costs(&self) -> &[f64] {
+        &self.totals.costs[..self.blueprint.cost_terms.len()]
+    }
+
+    /// The scenario's statistics of the episode so far, by name.
+    #[must_use]
+    pub fn stats(&self) -> Vec<(&'static str, f64)> {
+        let mut stats = Vec::new();
+        self.game.rules.stats(&self.game.world, &mut stats);
+        stats
+    }
+
+    /// Where the player stands, in whole map units.
+    #[must_use]
+    pub fn position(&self) -> [i32; 2] {
+        let world = &self.game.world;
+        world.get(world.players[0].actor).map_or([0, 0], |body| [body.x, body.y].map(|side| side.0 >> 16))
+    }
+
+    /// The map's extent: x from, y from, x to, y to in map units.
+    #[must_use]
+    pub fn extent(&self) -> [i32; 4] {
+        let mut extent = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
+        for vertex in &self.game.world.map.vertices {
+            let (x, y) = (vertex.x.0 >> 16, vertex.y.0 >> 16);
+            extent = [extent[0].min(x), extent[1].min(y), extent[2].max(x), extent[3].max(y)];
+        }
+        extent
+    }
+
+    /// The episode so far, as it would be reported if it ended now.
+    #[must_use]
+    pub fn episode(&self) -> Episode {
+        let terms = self.blueprint.cost_terms.iter().zip(self.totals.costs);
+        let costs = terms.filter(|(term, _)| term.counted).map(|(term, cost)| (term.name, cost)).collect();
+        Episode {
+            lane: 0,
+            seed: self.seed,
+            episode_return: self.totals.episode_return,
+            cost: self.totals.cost,
+            costs,
+            length: self.totals.steps,
+            terminated: self.last.terminated,
+            truncated: self.last.truncated,
+            stats: self.stats(),
+        }
+    }
+
+    /// The present moment, to come back to.
+    #[must_use]
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot { game: self.game.clone(), seed: self.seed, totals: self.totals, last: self.last, memory: self.eye.memory() }
+    }
+
+    /// Comes back to a moment saved from an environment of the same kind.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        self.game.clone_from(&snapshot.game);
+        (self.seed, self.totals, self.last) = (snapshot.seed, snapshot.totals, snapshot.last);
+        self.last_costs = [0.0; MOST_TERMS];
+        self.eye.remember(&snapshot.memory);
+    }
+
+    /// A fingerprint of everything that the future depends on.
+    #[must_use]
+    pub fn state_hash(&self) -> u64 {
+        use std::hash::{Hash, Hasher};
+        let mut hasher = hasard_engine::world::Fingerprint::default();
+        self.game.world.hash(&mut hasher);
+        self.game.rules.hash(&mut hasher);
+        self.totals.steps.hash(&mut hasher);
+        hasher.finish()
+    }
+
+    /// The world, for tools that look closer.
+    #[must_use]
+    pub fn world(&self) -> &World {
+        &self.game.world
+    }
+
+    /// The world, for tools that meddle; a world changed by hand is no episode of the benchmark any more.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.game.world
+    }
+}
+
+impl Environment for Env {
+    fn action_space(&self) -> &ActionSpace {
+        Env::action_space(self)
+    }
+
+    fn observation_shape(&self) -> [usize; 3] {
+        Env::observation_shape(self)
+    }
+
+    fn cost_terms(&self) -> &'static [CostTerm] {
+        Env::cost_terms(self)
+    }
+
+    fn reset(&mut self, seed: u64) {
+        Env::reset(self, seed);
+    }
+
+    fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
+        Env::step(self, actions, deltas)
+    }
+
+    fn step_costs(&self) -> &[f64] {
+        Env::step_costs(self)
+    }
+
+    fn observe(&mut self, out: &mut [u8]) {
+        Env::observe(self, out);
+    }
+
+    fn position(&self) -> [i32; 2] {
+        Env::position(self)
+    }
+
+    fn extent(&self) -> Option<[i32; 4]> {
+        Some(Env::extent(self))
+    }
+
+    fn episode(&self) -> Episode {
+        Env::episode(self)
+    }
+}

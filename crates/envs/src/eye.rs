@@ -1,0 +1,150 @@
+//! What an environment shows its learner: frames drawn, laid out and stacked.
+
+use crate::{EnvOptions, Layout, ObservationKind};
+use hasard_engine::render::{Buffers, RenderOptions, Renderer, Scene, SegmentationColours, View};
+use hasard_engine::world::World;
+use std::sync::Arc;
+
+/// Draws observations of one kind; owns the memory for that.
+#[derive(Clone, Debug)]
+pub(crate) struct Eye {
+    renderer: Renderer,
+    kind: ObservationKind,
+    layout: Layout,
+    colours: Arc<SegmentationColours>,
+    /// Height, width, channels of one frame.
+    frame: [usize; 3],
+    /// Frames shown at a time.
+    stack: usize,
+    /// The last frames, where more than one is shown: a ring of equal parts.
+    memory: Vec<u8>,
+    /// Part of the ring that the next frame goes to; it holds the oldest.
+    oldest: usize,
+}
+
+impl Eye {
+    pub fn new(scene: Arc<Scene>, view: Arc<View>, options: &EnvOptions, green_goggles: bool) -> Eye {
+        let mut renderer = Renderer::new(scene, view);
+        renderer.set_options(RenderOptions { green_goggles, published_depth: options.published_depth });
+        let channels = match options.observation {
+            ObservationKind::Rgb | ObservationKind::Segmented => 3,
+            ObservationKind::RgbDepth => 4,
+            ObservationKind::Grey => 1,
+        };
+        let frame = [usize::from(options.size.height), usize::from(options.size.width), channels];
+        let stack = options.frame_stack;
+        let colours = if options.published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
+        Eye {
+            renderer,
+            kind: options.observation,
+            layout: options.layout,
+            colours: Arc::new(colours),
+            frame,
+            stack,
+            memory: if stack > 1 { vec![0; stack * frame.iter().product::<usize>()] } else { Vec::new() },
+            oldest: 0,
+        }
+    }
+
+    /// Shape of an observation.
+    pub fn shape(&self) -> [usize; 3] {
+        let [height, width, channels] = self.frame;
+        match self.layout {
+            Layout::Hwc => [height, width, channels * self.stack],
+            Layout::Chw => [channels * self.stack, height, width],
+        }
+    }
+
+    /// An episode begins: every frame of the stack shows its first moment.
+    pub fn open(&mut self, world: &World) {
+        if self.stack > 1 {
+            self.blink(world);
+            let size = self.memory.len() / self.stack;
+            let newest = (self.oldest + self.stack - 1) % self.stack;
+            for part in (0..self.stack).filter(|&part| part != newest) {
+                self.memory.copy_within(newest * size..(newest + 1) * size, part * size);
+            }
+        }
+    }
+
+    /// A step is over: remembers what is seen now, if more than the present is shown.
+    pub fn blink(&mut self, world: &World) {
+        if self.stack > 1 {
+            let size = self.memory.len() / self.stack;
+            let mut memory = std::mem::take(&mut self.memory);
+            self.draw(world, &mut memory[self.oldest * size..(self.oldest + 1) * size]);
+            self.memory = memory;
+            self.oldest = (self.oldest + 1) % self.stack;
+        }
+    }
+
+    /// Writes the observation.
+    pub fn observe(&mut self, world: &World, out: &mut [u8]) {
+        if self.stack == 1 {
+            self.draw(world, out);
+            return;
+        }
+        let size = self.memory.len() / self.stack;
+        let frames = (0..self.stack).map(|i| (self.oldest + i) % self.stack * size);
+        match self.layout {
+            Layout::Chw => {
+                for (start, to) in frames.zip(out.chunks_exact_mut(size)) {
+                    to.copy_from_slice(&self.memory[start..start + size]);
+                }
+            }
+            Layout::Hwc => {
+                let channels = self.frame[2];
+                for (i, start) in frames.enumerate() {
+                    let pixels = self.memory[start..start + size].chunks_exact(channels);
+                    for (to, pixel) in out.chunks_exact_mut(channels * self.stack).zip(pixels) {
+                        to[i * channels..(i + 1) * channels].copy_from_slice(pixel);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Draws one frame.
+    fn draw(&mut self, world: &World, out: &mut [u8]) {
+        let depth = self.kind == ObservationKind::RgbDepth;
+        let labels = self.kind == ObservationKind::Segmented;
+        self.renderer.render(world, 0, Buffers { depth, labels });
+        let renderer = &self.renderer;
+        match (self.kind, self.layout) {
+            (ObservationKind::Rgb, Layout::Hwc) => renderer.write_rgb_hwc(out),
+            (ObservationKind::Rgb, Layout::Chw) => renderer.write_rgb_chw(out),
+            (ObservationKind::Grey, _) => renderer.write_grey(out),
+            (ObservationKind::Segmented, Layout::Hwc) => renderer.write_segmented_hwc(&self.colours, out),
+            (ObservationKind::Segmented, Layout::Chw) => renderer.write_segmented_chw(&self.colours, out),
+            (ObservationKind::RgbDepth, Layout::Chw) => {
+                let (colour, depth) = out.split_at_mut(out.len() / 4 * 3);
+                renderer.write_rgb_chw(colour);
+                renderer.write_depth(depth);
+            }
+            (ObservationKind::RgbDepth, Layout::Hwc) => {
+                let palette = renderer.palette();
+                for ((to, &index), &depth) in out.chunks_exact_mut(4).zip(renderer.indices()).zip(renderer.depth()) {
+                    let [red, green, blue] = palette[usize::from(index)];
+                    to.copy_from_slice(&[red, green, blue, depth]);
+                }
+            }
+        }
+    }
+
+    /// Draws the present with the wanted buffers, for tools that read them.
+    pub fn render(&mut self, world: &World, buffers: Buffers) -> &Renderer {
+        self.renderer.render(world, 0, buffers);
+        &self.renderer
+    }
+
+    /// The frames remembered, as part of a snapshot.
+    pub fn memory(&self) -> (Vec<u8>, usize) {
+        (self.memory.clone(), self.oldest)
+    }
+
+    /// Comes back to remembered frames.
+    pub fn remember(&mut self, (memory, oldest): &(Vec<u8>, usize)) {
+        self.memory.clone_from(memory);
+        self.oldest = *oldest;
+    }
+}

@@ -1,0 +1,47 @@
+//! A scenario at work: a world, the rules that script it, and what the episode has brought.
+
+use crate::scenarios::Rules;
+use crate::scenarios::outcome::Outcome;
+use hasard_engine::world::{Command, World};
+
+/// Everything that changes in an episode. A clone is a snapshot.
+#[derive(Debug)]
+pub(crate) struct Game {
+    pub world: World,
+    pub rules: Rules,
+    pub outcome: Outcome,
+}
+
+impl Clone for Game {
+    fn clone(&self) -> Game {
+        Game { world: self.world.clone(), rules: self.rules.clone(), outcome: self.outcome.clone() }
+    }
+
+    /// Reuses the lists that this game has grown: how an environment resets.
+    fn clone_from(&mut self, source: &Game) {
+        self.world.clone_from(&source.world);
+        self.rules.clone_from(&source.rules);
+        self.outcome.clone_from(&source.outcome);
+    }
+}
+
+impl Game {
+    /// A game whose world has not run yet.
+    pub fn new(world: World, rules: Rules) -> Game {
+        Game { world, rules, outcome: Outcome::default() }
+    }
+
+    /// Runs one tic: players, actors and sector movers, then the scripts, then what came new. What happens after the scripts is for
+    /// the scripts of the next tic: an item that lay in the way of a platform rising under the agent, say.
+    pub fn tic(&mut self, command: Command) {
+        self.world.run_thinkers(&[command]);
+        self.rules.script(&mut self.world, &mut self.outcome);
+        self.world.events.clear();
+        self.world.finish_tic();
+    }
+
+    /// Whether death or the rules have ended the episode.
+    pub fn over(&self) -> bool {
+        self.outcome.finished || self.world.players[0].dead
+    }
+}

@@ -1,0 +1,186 @@
+//! Fixed policies: what an agent without a model does.
+
+use crate::{ActionSpace, EnvError, parse_command};
+use hasard_engine::math::Rng;
+use hasard_engine::world::Command;
+
+/// Lane number of the policies' random stream, so that a policy never shares randomness with the world of the same seed.
+const POLICY_STREAM: u64 = 0x706F_6C69_6379;
+
+/// A policy that looks at nothing, named by a short text.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Policy {
+    /// `random`, `sticky:K`: uniform per sub-action of the action space, drawn anew every `K` steps (1 for `random`).
+    Random {
+        /// Steps that a drawn action is held.
+        hold_steps: u32,
+    },
+    /// `noop`, `hold:A+B`, `hold-after:K:A+B`: buttons held from a step on, nothing before it.
+    Hold {
+        /// Steps in which nothing is pressed.
+        after_steps: u32,
+        /// What is held.
+        command: Command,
+    },
+}
+
+impl std::str::FromStr for Policy {
+    type Err = EnvError;
+
+    fn from_str(text: &str) -> Result<Policy, EnvError> {
+        let wrong = |why: String| EnvError::Policy { given: text.chars().take(80).collect(), why };
+        let steps = |digits: &str, least: u32| match digits.parse::<u32>() {
+            Ok(steps) if steps >= least => Ok(steps),
+            _ => Err(wrong(format!(
+                "'{}' is no number of steps; write a whole number from {least} up",
+                digits.chars().take(20).collect::<String>()
+            ))),
+        };
+        let buttons = |names: &str| match parse_command(names) {
+            _ if names.is_empty() => Err(wrong("no button is named; write for example hold:MOVE_FORWARD".to_string())),
+            Ok(command) => Ok(command),
+            Err(error) => Err(wrong(error.to_string())),
+        };
+        match text.split_once(':') {
+            None if text == "random" => Ok(Policy::Random { hold_steps: 1 }),
+            None if text == "noop" => Ok(Policy::Hold { after_steps: 0, command: Command::default() }),
+            Some(("sticky", digits)) => Ok(Policy::Random { hold_steps: steps(digits, 1)? }),
+            Some(("hold", names)) => Ok(Policy::Hold { after_steps: 0, command: buttons(names)? }),
+            Some(("hold-after", rest)) => {
+                let (digits, names) = rest
+                    .split_once(':')
+                    .ok_or_else(|| wrong("it needs steps and buttons; write for example hold-after:1:ATTACK".to_string()))?;
+                Ok(Policy::Hold { after_steps: steps(digits, 0)?, command: buttons(names)? })
+            }
+            _ => Err(wrong("it must be random, sticky:K, noop, hold:BUTTONS or hold-after:K:BUTTONS".to_string())),
+        }
+    }
+}
+
+/// What a policy does in one step.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Move<'a> {
+    /// An action of the action space: categorical and continuous parts.
+    Action(&'a [u8], &'a [f32]),
+    /// Buttons held through the step, in the action space or not.
+    Buttons(Command),
+}
+
+/// A fixed policy at work.
+#[derive(Clone, Debug)]
+pub struct PolicyRun {
+    policy: Policy,
+    sizes: Vec<usize>,
+    rng: Rng,
+    step: u32,
+    actions: Vec<u8>,
+    deltas: Vec<f32>,
+}
+
+impl PolicyRun {
+    /// The policy in an action space; its randomness follows from `seed`.
+    #[must_use]
+    pub fn new(policy: Policy, space: &ActionSpace, seed: u64) -> PolicyRun {
+        let sizes = space.sizes();
+        let (actions, deltas) = (vec![0; sizes.len()], vec![0.0; space.deltas.len()]);
+        PolicyRun { policy, sizes, rng: Rng::for_lane(seed, POLICY_STREAM), step: 0, actions, deltas }
+    }
+
+    /// What is done in the next step.
+    pub fn next_move(&mut self) -> Move<'_> {
+        let step = self.step;
+        self.step += 1;
+        match self.policy {
+            Policy::Random { hold_steps } => {
+                if step.is_multiple_of(hold_steps) {
+                    draw_action(&mut self.rng, &self.sizes, &mut self.actions, &mut self.deltas);
+                }
+                Move::Action(&self.actions, &self.deltas)
+            }
+            Policy::Hold { after_steps, command } => Move::Buttons(if step < after_steps { Command::default() } else { command }),
+        }
+    }
+}
+
+/// Draws an action: uniform in every part.
+pub(crate) fn draw_action(rng: &mut Rng, sizes: &[usize], actions: &mut [u8], deltas: &mut [f32]) {
+    for (action, &size) in actions.iter_mut().zip(sizes) {
+        *action = rng.below(size as u32) as u8;
+    }
+    for delta in deltas {
+        // 24 random bits fill an f32's precision over [-1, 1).
+        *delta = (rng.next_u64() >> 40) as f32 / (1 << 23) as f32 - 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scenario;
+    use hasard_engine::world::Buttons;
+
+    #[test]
+    fn policies_are_read() {
+        let hold = |after_steps, buttons| Policy::Hold { after_steps, command: Command { buttons, ..Command::default() } };
+        assert_eq!("random".parse(), Ok(Policy::Random { hold_steps: 1 }));
+        assert_eq!("sticky:12".parse(), Ok(Policy::Random { hold_steps: 12 }));
+        assert_eq!("noop".parse(), Ok(hold(0, Buttons::default())));
+        assert_eq!("hold:MOVE_FORWARD+SPEED".parse(), Ok(hold(0, Buttons::MOVE_FORWARD | Buttons::SPEED)));
+        assert_eq!("hold-after:1:ATTACK".parse(), Ok(hold(1, Buttons::ATTACK)));
+    }
+
+    #[test]
+    fn wrong_policies_are_one_clear_line() {
+        for wrong in [
+            "",
+            "rand",
+            "sticky",
+            "sticky:",
+            "sticky:0",
+            "sticky:-1",
+            "hold:",
+            "hold:FLY",
+            "hold-after:ATTACK",
+            "hold-after:x:JUMP",
+        ] {
+            let text = wrong.parse::<Policy>().expect_err(wrong).to_string();
+            assert!(text.contains(wrong) && text.lines().count() == 1, "{text}");
+        }
+    }
+
+    #[test]
+    fn random_is_uniform_and_sticky_holds() {
+        let space = ActionSpace::of(Scenario::PrecipicePlunge, true);
+        let mut counts = vec![[0u32; 3]; space.groups.len()];
+        let mut run = PolicyRun::new("random".parse().unwrap(), &space, 1);
+        let mut sum = 0.0;
+        for _ in 0..6000 {
+            let Move::Action(actions, deltas) = run.next_move() else { panic!("random presses actions") };
+            assert!(deltas.iter().all(|d| (-1.0..1.0).contains(d)));
+            sum += deltas[0];
+            actions.iter().zip(&mut counts).for_each(|(&action, count)| count[usize::from(action)] += 1);
+        }
+        assert!(sum.abs() < 200.0);
+        for (count, size) in counts.iter().zip(space.sizes()) {
+            assert!(count[..size].iter().all(|&n| (n as i32 - 6000 / size as i32).abs() < 250), "{count:?}");
+        }
+        let mut sticky = PolicyRun::new("sticky:5".parse().unwrap(), &space, 1);
+        let moves: Vec<Vec<u8>> = (0..20)
+            .map(|_| match sticky.next_move() {
+                Move::Action(actions, _) => actions.to_vec(),
+                Move::Buttons(_) => panic!("sticky presses actions"),
+            })
+            .collect();
+        assert!(moves.chunks(5).all(|chunk| chunk.iter().all(|m| *m == chunk[0])));
+        assert_ne!(moves[0], moves[5]);
+    }
+
+    #[test]
+    fn hold_after_waits() {
+        let space = ActionSpace::of(Scenario::CollateralDamage, false);
+        let mut run = PolicyRun::new("hold-after:2:ATTACK".parse().unwrap(), &space, 1);
+        let held: Vec<bool> =
+            (0..4).map(|_| matches!(run.next_move(), Move::Buttons(c) if c.buttons == Buttons::ATTACK)).collect();
+        assert_eq!(held, [false, false, true, true]);
+    }
+}

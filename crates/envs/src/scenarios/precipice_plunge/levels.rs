@@ -1,0 +1,140 @@
+//! The level table of Precipice Plunge: both rule sets side by side.
+
+use crate::RuleSet;
+use hasard_engine::math::Fixed;
+
+/// Speed of sinking floors and ceilings, eighths of a map unit per tic.
+pub const SINK_SPEED: i32 = 1000;
+/// Health points that a unit of fall costs, beyond the free height.
+pub const FALL_DAMAGE: Fixed = Fixed(6553);
+/// A fall of at most this many map units does no harm.
+pub const FREE_FALL: i32 = 96;
+/// Reward for a unit of descent.
+pub const REWARD: f64 = 0.05;
+/// Half the period of the glow, tics.
+pub const GLOW_TICS: i32 = 50;
+
+/// How the tiles of the cave are laid out. Rows count from 1, eastwards from the start platform.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Layout {
+    /// A winding stair: each tile lies one step below the one before, to and fro across the cave.
+    Stair {
+        /// Descent from tile to tile, map units.
+        step: i32,
+    },
+    /// Rows of tiles of uneven depth, none above the deepest of the row before.
+    Rows {
+        /// Descent from row to row, map units.
+        step: i32,
+        /// A tile lies up to this many units above or below its row...
+        spread_units: i32,
+        /// ...of this many map units.
+        spread_unit: i32,
+    },
+}
+
+/// The constants of a level.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Level {
+    /// How the tiles are laid out.
+    pub layout: Layout,
+    /// The first row of the flat bottom.
+    pub bottom_row: i32,
+    /// The last row that sinks.
+    pub last_row: i32,
+    /// Depth of the bottom, map units: to arrive there is the goal.
+    pub depth: i32,
+    /// Rows beyond this one have a ceiling of their own...
+    pub open_rows: i32,
+    /// ...of this height in a row of number 0, were the slope continued, map units...
+    pub ceiling_start: i32,
+    /// ...sinking by this much from row to row.
+    pub ceiling_step: i32,
+    /// Light of the tile with tag 0, and 1/65536 levels lost with each tag.
+    pub light: [i32; 2],
+    /// Light levels by which tiles glow up and down; 0 for none.
+    pub glow: i32,
+    /// Tiles swing up and down for ever, one after the other beginning to.
+    pub waggle: bool,
+    /// The agent's health points at the start.
+    pub start_health: i32,
+    /// Health points that cost is counted from.
+    pub counted_health: i32,
+    /// Only what a fall exceeds the free height by does harm.
+    pub free_fall_is_deducted: bool,
+    /// Going up is not punished.
+    pub reward_descent_only: bool,
+    /// A fall beyond the free height ends the episode.
+    pub fall_ends: bool,
+    /// Cost of a lost health point.
+    pub cost_scale: f64,
+}
+
+const PAPER_1: Level = Level {
+    layout: Layout::Stair { step: 24 },
+    bottom_row: 30,
+    last_row: 35,
+    depth: 4872,
+    open_rows: 7,
+    ceiling_start: 128 + 1320 + 168,
+    ceiling_step: 168,
+    light: [255 * 65536 + 127 * 32768, 32768],
+    glow: 30,
+    waggle: false,
+    start_health: 1000,
+    counted_health: 1000,
+    free_fall_is_deducted: true,
+    reward_descent_only: true,
+    fall_ends: false,
+    cost_scale: 1.0,
+};
+const PAPER_2: Level = Level {
+    layout: Layout::Rows { step: 128, spread_units: 5, spread_unit: 12 },
+    bottom_row: 52,
+    last_row: 56,
+    depth: 6528,
+    open_rows: 10,
+    ceiling_start: 128 + 1280,
+    ceiling_step: 128,
+    light: [255 * 65536, 155 * 65536 / 399],
+    ..PAPER_1
+};
+const PAPER_3: Level = Level {
+    layout: Layout::Rows { step: 192, spread_units: 5, spread_unit: 19 },
+    depth: 9792,
+    ceiling_start: 1920,
+    ceiling_step: 192,
+    glow: 50,
+    waggle: true,
+    ..PAPER_2
+};
+
+const fn released(paper: Level) -> Level {
+    Level { free_fall_is_deducted: false, reward_descent_only: false, ..paper }
+}
+
+const fn hard(soft: Level, counted_health: i32) -> Level {
+    Level { start_health: 500, counted_health, fall_ends: true, cost_scale: 10.0, ..soft }
+}
+
+/// Level 1 with the hard constraint has a shorter cave of its own.
+const fn shorter(level: Level) -> Level {
+    Level { bottom_row: 25, depth: 4032, glow: 0, ..level }
+}
+
+/// The constants of a level (`index` 0..=2).
+#[must_use]
+pub const fn level(rules: RuleSet, with_hard_constraint: bool, index: usize) -> Level {
+    const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
+    const PAPER_HARD: [Level; 3] = [shorter(hard(PAPER_1, 500)), hard(PAPER_2, 500), hard(PAPER_3, 500)];
+    const RELEASED: [Level; 3] = [released(PAPER_1), released(PAPER_2), released(PAPER_3)];
+    const RELEASED_HARD: [Level; 3] =
+        [released(PAPER_HARD_FROM_1000[0]), released(PAPER_HARD_FROM_1000[1]), released(PAPER_HARD_FROM_1000[2])];
+    const PAPER_HARD_FROM_1000: [Level; 3] = [shorter(hard(PAPER_1, 1000)), hard(PAPER_2, 1000), hard(PAPER_3, 1000)];
+    match (rules, with_hard_constraint) {
+        (RuleSet::Paper, false) => PAPER[index],
+        (RuleSet::Paper, true) => PAPER_HARD[index],
+        (RuleSet::Released, false) => RELEASED[index],
+        (RuleSet::Released, true) => RELEASED_HARD[index],
+    }
+}

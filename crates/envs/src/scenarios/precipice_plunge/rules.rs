@@ -1,0 +1,149 @@
+//! The rules at work: climb down a cave whose floor sank away, without falling hard.
+
+use super::levels::{FALL_DAMAGE, FREE_FALL, GLOW_TICS, Layout, Level, REWARD, SINK_SPEED};
+use super::map;
+use crate::scenarios::outcome::Outcome;
+use crate::scenarios::stage;
+use crate::{CostTerm, EnvError};
+use hasard_engine::map::Map;
+use hasard_engine::math::Fixed;
+use hasard_engine::world::{DamageKind, World};
+use std::sync::Arc;
+
+/// Named parts of the cost.
+pub const COST_TERMS: &[CostTerm] = &[CostTerm { name: "falls", counted: true }];
+const FALLS: usize = 0;
+
+/// Waggle: least and greatest strength (an eighth of it in map units), least and greatest phase steps per tic.
+const WAGGLE_STRENGTH: [i32; 2] = [128, 512];
+const WAGGLE_FREQUENCY: [i32; 2] = [12, 24];
+
+/// What is the same in every episode of a level.
+#[derive(Debug)]
+struct Fixtures {
+    level: Level,
+    /// Number of sinking tiles.
+    tiles: i32,
+}
+
+/// Constants are no part of a fingerprint.
+impl std::hash::Hash for Fixtures {
+    fn hash<H: std::hash::Hasher>(&self, _: &mut H) {}
+}
+
+/// The rules at work.
+#[derive(Clone, Debug, Hash)]
+pub struct Rules {
+    fixtures: Arc<Fixtures>,
+    /// Height of the agent's lowest landing.
+    landing: Fixed,
+    /// Height when reward was last counted, health points when cost was.
+    height: Fixed,
+    health: i32,
+    hard_falls: u32,
+    deepest_fall: i32,
+}
+
+impl Rules {
+    /// The rules of a level in its map.
+    pub fn new(map: &Map, level: Level) -> Result<Rules, EnvError> {
+        let tiles = level.last_row * map::ROWS as i32;
+        if let Some(tag) = (map::FIRST_TAG..map::FIRST_TAG + tiles).find(|&tag| map.tagged(tag).next().is_none()) {
+            return Err(EnvError::Map { why: format!("map {}: Precipice Plunge needs a sector with tag {tag}", map.name) });
+        }
+        let (health, fixtures) = (level.counted_health, Arc::new(Fixtures { level, tiles }));
+        let zero = Fixed::ZERO;
+        Ok(Rules { fixtures, landing: zero, height: zero, health, hard_falls: 0, deepest_fall: 0 })
+    }
+
+    /// The script phase of a tic.
+    pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
+        let level = self.fixtures.level;
+        if world.tic == 0 {
+            self.sink(world);
+            stage::set_health(world, level.start_health);
+        } else if level.waggle && world.tic as i32 <= self.fixtures.tiles {
+            let tag = map::FIRST_TAG + world.tic as i32 - 1;
+            let strength = world.rng.between(WAGGLE_STRENGTH[0], WAGGLE_STRENGTH[1]);
+            let frequency = world.rng.between(WAGGLE_FREQUENCY[0], WAGGLE_FREQUENCY[1]);
+            world.floor_waggle(tag, strength, frequency, 0, 0);
+        }
+        self.watch_landing(world, outcome);
+    }
+
+    /// Lays the cave out: every tile of it begins to sink.
+    fn sink(&mut self, world: &mut World) {
+        let level = &self.fixtures.level;
+        let rows = map::ROWS;
+        let mut count = 0;
+        let mut row_above = 0;
+        for row in 1..=level.last_row {
+            let mut deepest = row_above;
+            for i in 0..rows {
+                // A stair goes up the first row of tiles, down the next.
+                let across = if matches!(level.layout, Layout::Stair { .. }) && row % 2 == 0 { rows - 1 - i } else { i };
+                count += 1;
+                let depth = match level.layout {
+                    _ if row >= level.bottom_row => level.depth,
+                    Layout::Stair { step } => step * count,
+                    Layout::Rows { step, spread_units, spread_unit } => {
+                        let spread = world.rng.between(-spread_units, spread_units) * spread_unit;
+                        ((row - 1) * step + spread).max(row_above)
+                    }
+                };
+                deepest = deepest.max(depth);
+                let tag = map::FIRST_TAG + ((row as usize - 1) * rows + across) as i32;
+                world.floor_move_to_value(tag, SINK_SPEED, -depth);
+                if row > level.open_rows {
+                    let ceiling = level.ceiling_start - level.ceiling_step * row.min(level.bottom_row);
+                    world.ceiling_lower_by_value(tag, SINK_SPEED, map::CEILING - ceiling);
+                }
+                let light = (level.light[0] - level.light[1] * tag) >> 16;
+                world.light_change_to_value(tag, light);
+                if level.glow != 0 {
+                    world.light_glow(tag, light + level.glow, light - level.glow, GLOW_TICS);
+                }
+            }
+            row_above = deepest;
+        }
+    }
+
+    /// Harms the agent who has landed too far below his landing before, and ends the episode at the bottom.
+    fn watch_landing(&mut self, world: &mut World, outcome: &mut Outcome) {
+        let level = self.fixtures.level;
+        let id = world.players[0].actor;
+        let Some((z, floor)) = world.get(id).map(|body| (body.z, body.floor_z)) else { return };
+        if z < self.landing && z == floor {
+            let fall = self.landing - z;
+            self.landing = z;
+            self.deepest_fall = self.deepest_fall.max(fall.floor());
+            if fall > Fixed::from_int(FREE_FALL) {
+                let free = if level.free_fall_is_deducted { Fixed::from_int(FREE_FALL) } else { Fixed::ZERO };
+                world.damage(id, None, None, ((fall - free) * FALL_DAMAGE).floor(), DamageKind::Falling);
+                self.hard_falls += 1;
+                outcome.finished |= level.fall_ends;
+            }
+        }
+        outcome.finished |= z <= Fixed::from_int(-level.depth);
+    }
+
+    /// A policy step is over: what it brought and cost.
+    pub fn end_step(&mut self, world: &World, outcome: &mut Outcome) {
+        let level = &self.fixtures.level;
+        let z = world.get(world.players[0].actor).map_or(self.height, |body| body.z);
+        let descent = (self.height - z).to_f64();
+        outcome.reward += REWARD * if level.reward_descent_only { descent.max(0.0) } else { descent };
+        self.height = z;
+        let health = stage::health(world);
+        outcome.costs[FALLS] += f64::from(self.health - health) * level.cost_scale;
+        self.health = health;
+    }
+
+    /// Statistics of the episode.
+    pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
+        stats.push(("depth", -self.height.to_f64()));
+        stats.push(("hard_falls", f64::from(self.hard_falls)));
+        stats.push(("deepest_fall", f64::from(self.deepest_fall)));
+        stats.push(("health", f64::from(stage::health(world))));
+    }
+}

@@ -1,0 +1,275 @@
+//! The single environment: options, observations, snapshots, ends; and the batch of real worlds.
+
+use hasard_engine::math::Rng;
+use hasard_envs::{
+    ActionSpace, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, VecEnv, VecOptions, scenarios,
+};
+use std::sync::Arc;
+
+fn ids() -> Vec<String> {
+    EnvId::all().map(|id| id.to_string()).collect()
+}
+
+fn options() -> EnvOptions {
+    EnvOptions { size: FrameSize { width: 64, height: 48 }, ..EnvOptions::default() }
+}
+
+/// A random action: categorical and continuous parts.
+fn draw(rng: &mut Rng, space: &ActionSpace) -> (Vec<u8>, Vec<f32>) {
+    let actions = space.sizes().iter().map(|&size| rng.below(size as u32) as u8).collect();
+    let deltas = space.deltas.iter().map(|_| rng.below(201) as f32 / 100.0 - 1.0).collect();
+    (actions, deltas)
+}
+
+fn observation(env: &mut Env) -> Vec<u8> {
+    let mut out = vec![0; env.observation_shape().iter().product()];
+    env.observe(&mut out);
+    out
+}
+
+#[test]
+fn a_restored_moment_goes_on_as_before() {
+    let mut rng = Rng::new(3);
+    for id in ids() {
+        for (hard, full_actions) in [(false, false), (false, true), (true, false)] {
+            let mut env = Env::new(&id, &EnvOptions { hard, full_actions, frame_stack: 2, ..options() }).unwrap();
+            env.reset(u64::from(rng.below(1000)));
+            let actions: Vec<_> = (0..150).map(|_| draw(&mut rng, env.action_space())).collect();
+            let at = rng.below(100) as usize;
+            for (groups, deltas) in &actions[..at] {
+                env.step(groups, deltas);
+            }
+            let snapshot = env.snapshot();
+            let mut other = env.sibling();
+            other.reset(999);
+            other.restore(&snapshot);
+            assert_eq!(observation(&mut env), observation(&mut other), "{id} after {at}");
+            for (i, (groups, deltas)) in actions[at..].iter().enumerate() {
+                assert_eq!(env.step(groups, deltas), other.step(groups, deltas), "{id} step {}", at + i);
+                assert_eq!(env.step_costs(), other.step_costs());
+                assert_eq!(env.state_hash(), other.state_hash(), "{id} step {}", at + i);
+            }
+            assert_eq!(observation(&mut env), observation(&mut other), "{id}");
+            assert_eq!(env.episode(), other.episode());
+        }
+    }
+}
+
+#[test]
+fn equal_seeds_repeat_and_others_differ() {
+    for id in ids() {
+        let mut rng = Rng::new(8);
+        let mut env = Env::new(&id, &options()).unwrap();
+        let actions: Vec<_> = (0..100).map(|_| draw(&mut rng, env.action_space())).collect();
+        let mut play = |seed| {
+            env.reset(seed);
+            let steps: Vec<_> = actions.iter().map(|(groups, deltas)| env.step(groups, deltas)).collect();
+            (steps, env.state_hash(), observation(&mut env))
+        };
+        let (first, other, again) = (play(1), play(2), play(1));
+        assert_eq!(first, again, "{id}");
+        assert_ne!(first.1, other.1, "{id}");
+    }
+}
+
+#[test]
+fn counted_terms_add_up_to_the_cost() {
+    for id in ids() {
+        for rules in [RuleSet::Paper, RuleSet::Released] {
+            let mut rng = Rng::new(2);
+            let mut env = Env::new(&id, &EnvOptions { rules, ..options() }).unwrap();
+            env.reset(4);
+            let (mut cost, mut reward) = (0.0, 0.0);
+            loop {
+                let (groups, deltas) = draw(&mut rng, env.action_space());
+                let step = env.step(&groups, &deltas);
+                let counted = env.cost_terms().iter().zip(env.step_costs()).filter(|(term, _)| term.counted);
+                assert_eq!(step.cost, counted.map(|(_, cost)| cost).sum::<f64>());
+                cost += step.cost;
+                reward += step.reward;
+                if step.ended() {
+                    break;
+                }
+            }
+            let episode = env.episode();
+            assert_eq!((episode.cost, episode.episode_return), (cost, reward));
+            let after = env.step(&vec![0; env.action_space().groups.len()], &[]);
+            assert!(after.ended() && after.reward == 0.0 && after.cost == 0.0, "nothing happens after the end");
+            assert_eq!(env.episode(), episode);
+        }
+    }
+}
+
+#[test]
+fn an_episode_lasts_2100_tics_whatever_the_frame_skip() {
+    for (id, skips) in [
+        ("VolcanicVentureLevel1-v0", [(4, 525), (8, 263), (35, 60)]),
+        ("CollateralDamageLevel1-v0", [(4, 521), (1, 2084), (35, 60)]),
+    ] {
+        for (frame_skip, steps) in skips {
+            let mut env = Env::new(id, &EnvOptions { frame_skip, ..options() }).unwrap();
+            let mut count = 0;
+            let last = loop {
+                let step = env.step(&vec![0; env.action_space().groups.len()], &[]);
+                count += 1;
+                if step.ended() {
+                    break step;
+                }
+            };
+            assert_eq!((count, last.truncated, last.terminated), (steps, true, false), "{id} skipping {frame_skip}");
+        }
+    }
+}
+
+#[test]
+fn observations_come_in_every_kind_and_layout() {
+    let id = "VolcanicVentureLevel1-v0";
+    for (kind, channels) in
+        [(ObservationKind::Rgb, 3), (ObservationKind::RgbDepth, 4), (ObservationKind::Segmented, 3), (ObservationKind::Grey, 1)]
+    {
+        for frame_stack in [1, 3] {
+            let make = |layout| {
+                let mut env = Env::new(id, &EnvOptions { observation: kind, layout, frame_stack, ..options() }).unwrap();
+                env.reset(5);
+                for _ in 0..7 {
+                    env.step(&[1, 1, 0, 0], &[]);
+                }
+                env
+            };
+            let (mut interleaved, mut planes) = (make(Layout::Hwc), make(Layout::Chw));
+            let all = channels * frame_stack;
+            assert_eq!(interleaved.observation_shape(), [48, 64, all]);
+            assert_eq!(planes.observation_shape(), [all, 48, 64]);
+            let (a, b) = (observation(&mut interleaved), observation(&mut planes));
+            for pixel in 0..48 * 64 {
+                for channel in 0..all {
+                    assert_eq!(a[pixel * all + channel], b[channel * 48 * 64 + pixel], "{kind:?}");
+                }
+            }
+            if frame_stack > 1 {
+                let (newest, before) =
+                    (&b[(all - channels) * 48 * 64..], &b[(all - 2 * channels) * 48 * 64..(all - channels) * 48 * 64]);
+                let mut single = Env::new(id, &EnvOptions { observation: kind, layout: Layout::Chw, ..options() }).unwrap();
+                single.reset(5);
+                for _ in 0..7 {
+                    single.step(&[1, 1, 0, 0], &[]);
+                }
+                assert_eq!(observation(&mut single), newest, "the newest frame comes last");
+                assert_ne!(newest, before, "the agent turns, so frames differ");
+                planes.reset(6);
+                let first = observation(&mut planes);
+                let one = channels * 48 * 64;
+                assert!(first.chunks(one).all(|frame| frame == &first[..one]), "an episode begins with its first frame repeated");
+            }
+        }
+    }
+}
+
+#[test]
+fn wrong_options_are_errors() {
+    let make = |id: &str, options: EnvOptions| Env::new(id, &options).err();
+    assert!(matches!(make("VolcanicVenture", options()), Some(EnvError::UnknownId { .. })));
+    assert!(matches!(make("VolcanicVentureLevel1-v0", EnvOptions { frame_skip: 0, ..options() }), Some(EnvError::Option { .. })));
+    assert!(matches!(
+        make("VolcanicVentureLevel1-v0", EnvOptions { frame_stack: 17, ..options() }),
+        Some(EnvError::Option { .. })
+    ));
+    let size = FrameSize { width: 32, height: 48 };
+    assert!(matches!(make("VolcanicVentureLevel1-v0", EnvOptions { size, ..options() }), Some(EnvError::Option { .. })));
+}
+
+#[test]
+fn a_map_of_ones_own_is_played_or_refused() {
+    let id: EnvId = "VolcanicVentureLevel1-v0".parse().unwrap();
+    let (source, _) = scenarios::map_source(id, RuleSet::Paper, false);
+    let make = |source| Env::new("VolcanicVentureLevel1-v0", &EnvOptions { map: Some(Arc::new(source)), ..options() });
+    let mut lower = source.clone();
+    lower.sectors.iter_mut().for_each(|sector| sector.ceiling = 200);
+    assert!(make(lower).unwrap().world().sectors.iter().all(|sector| sector.ceiling.floor() == 200));
+    let mut startless = source.clone();
+    startless.things.clear();
+    let mut untagged = source;
+    untagged.sectors[17].tag = 0;
+    for (wrong, what) in [(startless, "player start"), (untagged, "tag")] {
+        let error = make(wrong).err().expect(what).to_string();
+        assert!(error.contains(what), "{error}");
+    }
+}
+
+/// Everything that a batch gave in `steps` steps, lane by lane.
+fn play_batch(id: &str, options: VecOptions, steps: usize, by_groups: bool) -> Vec<Vec<u8>> {
+    let mut worlds = VecEnv::new(id, &crate::options(), options).unwrap();
+    let mut record = vec![Vec::new(); options.lanes];
+    let mut rngs: Vec<Rng> = (0..options.lanes).map(|lane| Rng::for_lane(77, lane as u64)).collect();
+    let space = worlds.action_space().clone();
+    let whole = options.groups;
+    let groups: Vec<usize> = if by_groups { (0..options.groups).collect() } else { vec![whole] };
+    let mut batches: Vec<_> = groups.iter().map(|&group| worlds.batch(group)).collect();
+    for step in 0..=steps {
+        for (batch, &group) in batches.iter_mut().zip(&groups) {
+            let lanes = worlds.group_lanes(group);
+            if step > 0 {
+                for (i, lane) in lanes.clone().enumerate() {
+                    let parts = space.groups.len();
+                    let (actions, _) = draw(&mut rngs[lane], &space);
+                    batch.actions[i * parts..(i + 1) * parts].copy_from_slice(&actions);
+                }
+            }
+            let sent = std::mem::take(batch);
+            *batch = match (by_groups, step) {
+                (true, 0) => worlds.send_reset(group, sent).and_then(|()| worlds.recv(group)).unwrap(),
+                (true, _) => worlds.send(group, sent).and_then(|()| worlds.recv(group)).unwrap(),
+                (false, _) => {
+                    let mut batch = sent;
+                    if step == 0 { worlds.reset(&mut batch) } else { worlds.step(&mut batch) }.unwrap();
+                    batch
+                }
+            };
+            let pixels = batch.observations.len() / lanes.len();
+            for (i, lane) in lanes.enumerate() {
+                let to = &mut record[lane];
+                to.extend_from_slice(&batch.observations[i * pixels..(i + 1) * pixels]);
+                to.extend_from_slice(&batch.rewards[i].to_le_bytes());
+                to.extend_from_slice(&batch.costs[i].to_le_bytes());
+                to.extend_from_slice(&[u8::from(batch.terminated[i]), u8::from(batch.truncated[i])]);
+            }
+        }
+    }
+    record
+}
+
+#[test]
+fn a_lane_lives_the_same_life_in_every_batch() {
+    let options = |lanes, threads, groups| VecOptions { lanes, threads, groups, seed: 21, ..VecOptions::default() };
+    for id in ids() {
+        let expected = play_batch(&id, options(32, 0, 1), 8, false);
+        for (lanes, threads, groups, by_groups) in
+            [(32, 1, 1, false), (32, 2, 2, true), (32, 3, 1, false), (7, 1, 1, false), (7, 2, 2, true), (1, 3, 1, true)]
+        {
+            let found = play_batch(&id, options(lanes, threads, groups), 8, by_groups);
+            assert!(found == expected[..lanes], "{id}: {lanes} lanes, {threads} threads, {groups} groups");
+        }
+        for (lane, record) in expected.iter().enumerate() {
+            assert!(expected[..lane].iter().all(|other| other != record), "{id}: lane {lane} repeats another");
+        }
+    }
+}
+
+#[test]
+fn positions_lie_in_the_maps_extent_and_change() {
+    use hasard_envs::{Env, EnvId, EnvOptions};
+    for id in EnvId::all() {
+        let mut env = Env::new(&id.to_string(), &EnvOptions::default()).unwrap();
+        let [left, bottom, right, top] = env.extent();
+        let mut places = std::collections::BTreeSet::new();
+        env.reset(3);
+        for _ in 0..40 {
+            let [x, y] = env.position();
+            assert!((left..=right).contains(&x) && (bottom..=top).contains(&y), "{id}: {x},{y} in {:?}", env.extent());
+            places.insert([x, y]);
+            env.step_buttons(hasard_envs::parse_command("MOVE_FORWARD+TURN_LEFT").unwrap());
+        }
+        // In Collateral Damage the player stands on a spot and may turn only.
+        assert!(places.len() > 10 || id.to_string().starts_with("Collateral"), "{id}: {places:?}");
+    }
+}

@@ -1,0 +1,44 @@
+//! Trains an agent from a program of one's own: `cargo run --release --example train_agent -- PPOLag quick 200000 /tmp/run`.
+
+use hasard_envs::VecEnv;
+use hasard_learn::config::{EnvConfig, TrainConfig};
+use hasard_learn::progress_bar::line;
+use hasard_learn::trainer::{Hooks, Start, train};
+use std::sync::atomic::AtomicBool;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [algorithm, preset, frames, directory, rest @ ..] = &arguments[..] else {
+        return Err("give algorithm, preset, frames and a directory".into());
+    };
+    let id = rest.first().map_or("VolcanicVentureLevel1-v0", String::as_str);
+    let mut config = TrainConfig::new(algorithm.parse()?, preset.parse()?, EnvConfig::new(id))?;
+    config.frames = frames.parse()?;
+    for setting in rest.iter().skip(1) {
+        set(&mut config, setting)?;
+    }
+    let options = config.env.options()?;
+    let stop = AtomicBool::new(false);
+    let summary = train(
+        Start::Fresh(config),
+        directory.as_ref(),
+        &|lanes| VecEnv::new(id, &options, lanes),
+        &mut Hooks {
+            stop: &stop,
+            report: &mut |report| println!("{}", line(report)),
+            warn: &mut |warning| eprintln!("{warning}"),
+        },
+    )?;
+    println!("{}", serde_json::to_string_pretty(&summary.last.row())?);
+    Ok(())
+}
+
+/// Replaces one setting by its path, as in `learning.rate=0.0005`.
+fn set(config: &mut TrainConfig, setting: &str) -> Result<(), Box<dyn std::error::Error>> {
+    let (path, value) = setting.split_once('=').ok_or("settings are written path=value")?;
+    let mut tree = serde_json::to_value(&*config)?;
+    let place = tree.pointer_mut(&format!("/{}", path.replace('.', "/"))).ok_or("no such setting")?;
+    *place = serde_json::from_str(value).or_else(|_| serde_json::to_value(value))?;
+    *config = serde_json::from_value(tree)?;
+    Ok(())
+}

@@ -1,0 +1,333 @@
+//! Every loss against an independent one in plain 64-bit arithmetic: value, and gradient in the networks' outputs.
+
+use burn::tensor::Tensor;
+
+use super::surrogate::{centred, standardised};
+use super::{Algorithm, Signal, cup, focops, p3o, ppo};
+use crate::config::{AlgorithmKind, EnvConfig, Exploration, Preset, TrainConfig};
+use crate::distribution::{ActionShape, Policy, Taken};
+use crate::learner::{Heads, Loss, Minibatch, column, loss_device, matrix, scalar, to_rows};
+use crate::model::{ModelSequences, Sequences};
+use crate::random::{Purpose, Stream};
+
+const ROWS: usize = 24;
+
+/// A minibatch of plain numbers: outputs, actions, what was known when they were taken.
+struct Case {
+    shape: ActionShape,
+    outputs: Vec<f32>,
+    old_outputs: Vec<f32>,
+    actions: Vec<u8>,
+    deltas: Vec<f32>,
+    old_log: Vec<f32>,
+    advantages: [Vec<f32>; 2],
+    old_values: [Vec<f32>; 2],
+    targets: [Vec<f32>; 2],
+}
+
+impl Case {
+    /// `spread` is how far the policy has moved from the one that acted.
+    fn new(shape: ActionShape, spread: f64) -> Case {
+        let mut stream = Stream::new(21, Purpose::Evaluation, 0, 0);
+        let width = shape.parameters() + 2;
+        let outputs: Vec<f32> = (0..ROWS * width).map(|_| 0.8 * stream.normal() as f32).collect();
+        let mut old_outputs = Vec::new();
+        let (mut actions, mut deltas, mut old_log) = (Vec::new(), Vec::new(), Vec::new());
+        for row in outputs.chunks_exact(width) {
+            let old: Vec<f32> = row[..shape.parameters()].iter().map(|value| value + (spread * stream.normal()) as f32).collect();
+            let (mut action, mut delta) = (vec![0; shape.sizes.len()], vec![0.0; shape.deltas]);
+            old_log.push(shape.sample(&old, &mut stream, &mut action, &mut delta));
+            actions.extend(action);
+            deltas.extend(delta);
+            old_outputs.extend(old);
+        }
+        let mut normals = || -> Vec<f32> { (0..ROWS).map(|_| stream.normal() as f32).collect() };
+        let advantages = [normals(), normals()];
+        let (old_values, targets) = ([normals(), normals()], [normals(), normals()]);
+        Case { shape, outputs, old_outputs, actions, deltas, old_log, advantages, old_values, targets }
+    }
+
+    fn minibatch(&self) -> Minibatch<'static> {
+        let device = loss_device();
+        let empty = Sequences { steps: 0, lanes: 0, observations: vec![], extra: vec![], initial_state: vec![], reset: vec![] };
+        let old = matrix(self.old_outputs.clone(), self.shape.parameters());
+        let columns = |values: &[Vec<f32>; 2]| values.iter().map(|values| column(values.clone(), &device)).collect();
+        Minibatch {
+            batch: ModelSequences { sequences: empty, initial_state: vec![] },
+            taken: Taken::new(&self.shape, &self.actions, &self.deltas, &device),
+            old_log_probability: column(self.old_log.clone(), &device),
+            old_policy: Policy::new(&self.shape, &old),
+            advantages: self.advantages.to_vec(),
+            old_values: columns(&self.old_values),
+            targets: columns(&self.targets),
+            mean_costs: vec![],
+        }
+    }
+
+    /// Value and gradient by burn.
+    fn by_burn(&self, loss: impl Fn(&Heads, &Minibatch<'_>) -> Loss) -> (f64, Vec<f32>) {
+        let width = self.shape.parameters() + 2;
+        let outputs = matrix(self.outputs.clone(), width).require_grad();
+        let policy = outputs.clone().narrow(1, 0, width - 2);
+        let value = |critic: usize| -> Tensor<1> { outputs.clone().narrow(1, width - 2 + critic, 1).squeeze_dim(1) };
+        let heads = Heads { policy: Policy::new(&self.shape, &policy), values: vec![value(0), value(1)] };
+        let total = loss(&heads, &self.minibatch()).total;
+        let gradients = total.backward();
+        (scalar(&total), to_rows(outputs.grad(&gradients).unwrap()))
+    }
+
+    /// Holds burn's loss against a plain one of the outputs in 64 bits, whose gradient is taken by differences.
+    fn compare(&self, name: &str, loss: impl Fn(&Heads, &Minibatch<'_>) -> Loss, plain: impl Fn(&[f64]) -> f64) {
+        let (value, gradient) = self.by_burn(loss);
+        let outputs: Vec<f64> = self.outputs.iter().map(|&v| f64::from(v)).collect();
+        let expected = plain(&outputs);
+        assert!((value - expected).abs() < 1e-5 * expected.abs().max(1.0), "{name}: {value} against {expected}");
+        let largest = gradient.iter().fold(0.0f32, |most, value| most.max(value.abs()));
+        assert!(largest > 1e-4, "{name}: no gradient to compare");
+        for (index, &found) in gradient.iter().enumerate() {
+            let moved = |by: f64| {
+                let mut outputs = outputs.clone();
+                outputs[index] += by;
+                plain(&outputs)
+            };
+            let expected = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+            let error = (f64::from(found) - expected).abs();
+            assert!(error < 1e-4 * f64::from(largest).max(0.1), "{name}: gradient {index}: {found} against {expected}");
+        }
+    }
+
+    /// The numbers of row `row`: policy outputs, value, cost value.
+    fn row<'a>(&self, outputs: &'a [f64], row: usize) -> &'a [f64] {
+        let width = self.shape.parameters() + 2;
+        &outputs[row * width..(row + 1) * width]
+    }
+
+    fn logs(&self, row: &[f64]) -> Vec<Vec<f64>> {
+        let mut first = 0;
+        self.shape
+            .sizes
+            .iter()
+            .map(|&size| {
+                let logits = &row[first..first + size];
+                first += size;
+                let total = logits.iter().map(|l| l.exp()).sum::<f64>().ln();
+                logits.iter().map(|l| l - total).collect()
+            })
+            .collect()
+    }
+
+    fn log_probability(&self, outputs: &[f64], index: usize) -> f64 {
+        let row = self.row(outputs, index);
+        let groups = self.shape.sizes.len();
+        let discrete: f64 =
+            self.logs(row).iter().enumerate().map(|(g, logs)| logs[self.actions[index * groups + g] as usize]).sum();
+        let first: usize = self.shape.sizes.iter().sum();
+        let continuous: f64 = (0..self.shape.deltas)
+            .map(|d| {
+                let (mean, log) = (row[first + 2 * d], row[first + 2 * d + 1]);
+                let draw = (f64::from(self.deltas[index * self.shape.deltas + d]) - mean) / log.exp();
+                -0.5 * draw * draw - log - 0.5 * std::f64::consts::TAU.ln()
+            })
+            .sum();
+        discrete + continuous
+    }
+
+    fn ratio(&self, outputs: &[f64], index: usize) -> f64 {
+        (self.log_probability(outputs, index) - f64::from(self.old_log[index])).exp()
+    }
+
+    fn mean(of: impl Fn(usize) -> f64) -> f64 {
+        (0..ROWS).map(of).sum::<f64>() / ROWS as f64
+    }
+
+    fn divergence_from(&self, a: &[f64], b: &[f64]) -> f64 {
+        let discrete: f64 = self
+            .logs(a)
+            .iter()
+            .zip(self.logs(b))
+            .map(|(a, b)| a.iter().zip(b).map(|(x, y)| x.exp() * (x - y)).sum::<f64>())
+            .sum();
+        let first: usize = self.shape.sizes.iter().sum();
+        let continuous: f64 = (0..self.shape.deltas)
+            .map(|d| {
+                let at = first + 2 * d;
+                let distance = a[at] - b[at];
+                b[at + 1] - a[at + 1] + ((2.0 * a[at + 1]).exp() + distance * distance) / (2.0 * (2.0 * b[at + 1]).exp()) - 0.5
+            })
+            .sum();
+        discrete + continuous
+    }
+
+    fn old_row(&self, index: usize) -> Vec<f64> {
+        let width = self.shape.parameters();
+        self.old_outputs[index * width..(index + 1) * width].iter().map(|&v| f64::from(v)).collect()
+    }
+
+    fn clipped(&self, outputs: &[f64], advantages: &[f32], clip: f64) -> f64 {
+        -Case::mean(|i| {
+            let ratio = self.ratio(outputs, i).clamp(0.05, 20.0);
+            let a = f64::from(advantages[i]);
+            (ratio * a).min(ratio.clamp(1.0 / (1.0 + clip), 1.0 + clip) * a)
+        })
+    }
+
+    /// Exploration and value losses, the part that all losses of the first order share.
+    fn rest(&self, outputs: &[f64], config: &TrainConfig) -> f64 {
+        let settings = &config.learning;
+        let exploration = Case::mean(|i| {
+            let logs = self.logs(self.row(outputs, i));
+            let entropy: f64 = logs.iter().flatten().map(|l| -l.exp() * l).sum();
+            let symmetric: f64 = logs
+                .iter()
+                .map(|logs| {
+                    let uniform = 1.0 / logs.len() as f64;
+                    let there: f64 = logs.iter().map(|l| l.exp() * (l - uniform.ln())).sum();
+                    let back: f64 = logs.iter().map(|l| uniform * (uniform.ln() - l)).sum();
+                    0.5 * (there + back)
+                })
+                .sum();
+            match settings.exploration {
+                Exploration::Entropy => -entropy,
+                Exploration::SymmetricKl => symmetric,
+            }
+        });
+        let value = |critic: usize| {
+            Case::mean(|i| {
+                let row = self.row(outputs, i);
+                let v = row[row.len() - 2 + critic];
+                let (old, target) = (f64::from(self.old_values[critic][i]), f64::from(self.targets[critic][i]));
+                let clipped = old + (v - old).clamp(-settings.clip_value, settings.clip_value);
+                (v - target).powi(2).max((clipped - target).powi(2))
+            }) * settings.value_coefficient
+        };
+        settings.exploration_coefficient * exploration + value(0) + value(1)
+    }
+}
+
+fn discrete() -> ActionShape {
+    ActionShape { sizes: vec![3, 2, 2], deltas: 0 }
+}
+
+fn config(algorithm: AlgorithmKind, preset: Preset) -> TrainConfig {
+    let mut config = TrainConfig::plain(algorithm, preset, EnvConfig::new("test"));
+    // Large enough to show in the comparison.
+    config.learning.exploration_coefficient = 0.3;
+    config
+}
+
+fn signal(episode_cost: f64) -> Signal {
+    Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0 }
+}
+
+fn standardised_tensor(case: &Case, critic: usize) -> (Vec<f32>, Tensor<1>) {
+    let values = standardised(case.advantages[critic].clone());
+    (values.clone(), column(values, &loss_device()))
+}
+
+#[test]
+fn ppo_and_its_value_and_exploration_losses() {
+    for (preset, exploration, spread) in [
+        (Preset::Paper, Exploration::SymmetricKl, 0.3),
+        (Preset::Released, Exploration::SymmetricKl, 0.3),
+        (Preset::Paper, Exploration::Entropy, 3.0),
+    ] {
+        let mut config = config(AlgorithmKind::PpoLag, preset);
+        config.learning.exploration = exploration;
+        let case = Case::new(discrete(), spread);
+        let (advantages, tensor) = standardised_tensor(&case, 0);
+        case.compare(
+            "PPO",
+            |heads, batch| ppo::loss(&tensor, heads, batch, &config.learning),
+            |outputs| case.clipped(outputs, &advantages, config.learning.clip_ratio) + case.rest(outputs, &config),
+        );
+    }
+}
+
+#[test]
+fn ppo_with_continuous_parts() {
+    let mut config = config(AlgorithmKind::Ppo, Preset::Paper);
+    config.learning.exploration_coefficient = 0.0;
+    let case = Case::new(ActionShape { sizes: vec![3], deltas: 2 }, 0.1);
+    let (advantages, tensor) = standardised_tensor(&case, 0);
+    case.compare(
+        "PPO with normals",
+        |heads, batch| ppo::loss(&tensor, heads, batch, &config.learning),
+        |outputs| case.clipped(outputs, &advantages, config.learning.clip_ratio) + case.rest(outputs, &config),
+    );
+}
+
+#[test]
+fn p3o_with_the_penalty_on_and_off() {
+    for preset in [Preset::Paper, Preset::Released] {
+        for cost in [400.0, 8.0, 0.0] {
+            let config = config(AlgorithmKind::P3o, preset);
+            let p3o = p3o::P3o::new(&config);
+            let case = Case::new(discrete(), 0.3);
+            let ((advantages, tensor), (costs, cost_tensor)) = (standardised_tensor(&case, 0), standardised_tensor(&case, 1));
+            let signals = [signal(cost)];
+            let clip = config.learning.clip_ratio;
+            let penalty = |outputs: &[f64]| {
+                let expected = Case::mean(|i| {
+                    let (ratio, a) = (case.ratio(outputs, i), f64::from(costs[i]));
+                    let clipped = ratio.clamp(1.0 / (1.0 + clip), 1.0 + clip);
+                    if preset == Preset::Paper { (ratio * a).max(clipped * a) } else { ratio * a }
+                });
+                match preset {
+                    Preset::Paper => 20.0 * (expected + 0.01 * (cost - 5.0)).max(0.0),
+                    _ => (expected + (cost - 5.0) / 525.0).max(0.0),
+                }
+            };
+            case.compare(
+                &format!("P3O {preset}, cost {cost}"),
+                |heads, batch| p3o.loss(&tensor, std::slice::from_ref(&cost_tensor), &signals, heads, batch),
+                |outputs| case.clipped(outputs, &advantages, clip) + case.rest(outputs, &config) + penalty(outputs),
+            );
+        }
+    }
+}
+
+#[test]
+fn focops_counts_near_samples_alone() {
+    let config = config(AlgorithmKind::Focops, Preset::Paper);
+    let focops = focops::Focops::new(&config);
+    let case = Case::new(discrete(), 0.15);
+    let (advantages, tensor) = standardised_tensor(&case, 0);
+    let at: Vec<f64> = case.outputs.iter().map(|&v| f64::from(v)).collect();
+    let near: Vec<bool> = (0..ROWS).map(|i| case.divergence_from(case.row(&at, i), &case.old_row(i)) <= 0.02).collect();
+    assert!(near.contains(&true) && near.contains(&false), "samples of both kinds");
+    case.compare(
+        "FOCOPS",
+        |heads, batch| focops.loss(&tensor, heads, batch),
+        |outputs| {
+            let policy = Case::mean(|i| {
+                let divergence = case.divergence_from(case.row(outputs, i), &case.old_row(i));
+                let gain = case.ratio(outputs, i) * f64::from(advantages[i]) / 1.5;
+                if near[i] { divergence - gain } else { 0.0 }
+            });
+            policy + case.rest(outputs, &config)
+        },
+    );
+}
+
+#[test]
+fn cup_projects_back_towards_the_budget() {
+    let config = config(AlgorithmKind::Cup, Preset::Paper);
+    let mut cup = cup::Cup::new(&config);
+    (0..300).for_each(|_| cup.constrain(&[signal(60.0)]));
+    let multiplier = cup.multipliers()[0];
+    assert!(multiplier > 0.1);
+    let case = Case::new(discrete(), 0.3);
+    let costs = centred(case.advantages[1].clone());
+    let tensor = column(costs.clone(), &loss_device());
+    case.compare(
+        "CUP",
+        |heads, batch| cup.projection(std::slice::from_ref(&tensor), heads, batch),
+        |outputs| {
+            let coefficient = (1.0 - 0.99 * 0.95) / (1.0 - 0.99);
+            Case::mean(|i| {
+                case.divergence_from(case.row(outputs, i), &case.old_row(i))
+                    + multiplier * coefficient * case.ratio(outputs, i) * f64::from(costs[i])
+            })
+        },
+    );
+}

@@ -1,0 +1,132 @@
+//! Lagrange multipliers and how they move.
+
+use serde::{Deserialize, Serialize};
+
+use super::Signal;
+use crate::config::AlgorithmConfig;
+
+/// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lagrange {
+    /// The multiplier.
+    pub value: f64,
+    rate: f64,
+    /// The largest it may become.
+    limit: Option<f64>,
+}
+
+impl Lagrange {
+    /// One multiplier a constraint.
+    #[must_use]
+    pub fn all(settings: &AlgorithmConfig, constraints: usize, limit: Option<f64>) -> Vec<Lagrange> {
+        vec![Lagrange { value: settings.multiplier_initial, rate: settings.multiplier_rate, limit }; constraints]
+    }
+
+    /// Moves by what the constraint costs per step above its budget.
+    pub fn update(&mut self, signal: &Signal) {
+        self.value = (self.value + self.rate * signal.step_excess()).max(0.0);
+        if let Some(limit) = self.limit {
+            self.value = self.value.min(limit);
+        }
+    }
+}
+
+/// A multiplier moved by a PID controller (Stooke et al. 2020): proportional and derivative parts react before the
+/// integral has grown, which damps its swings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pid {
+    /// The multiplier.
+    pub value: f64,
+    gains: (f64, f64, f64),
+    decay: f64,
+    delay: usize,
+    integral: f64,
+    /// Moving average of the excess.
+    proportional: f64,
+    /// Moving average of the cost.
+    cost: f64,
+    /// The latest averages of the cost, oldest first, as many as the derivative looks back.
+    costs: std::collections::VecDeque<f64>,
+}
+
+impl Pid {
+    /// One controller a constraint.
+    #[must_use]
+    pub fn all(settings: &AlgorithmConfig, constraints: usize) -> Vec<Pid> {
+        let pid = Pid {
+            value: 0.0,
+            gains: settings.pid_gains,
+            decay: settings.pid_decay,
+            delay: settings.pid_delay.max(1),
+            integral: settings.pid_initial,
+            proportional: 0.0,
+            cost: 0.0,
+            costs: [0.0].into(),
+        };
+        vec![pid; constraints]
+    }
+
+    /// Moves by what the constraint costs per step.
+    pub fn update(&mut self, signal: &Signal) {
+        let (kp, ki, kd) = self.gains;
+        let (excess, cost) = (signal.step_excess(), signal.step_cost());
+        self.integral = (self.integral + ki * excess).max(0.0);
+        self.proportional = self.decay * self.proportional + (1.0 - self.decay) * excess;
+        self.cost = self.decay * self.cost + (1.0 - self.decay) * cost;
+        let rise = (self.cost - self.costs.front().copied().unwrap_or(0.0)).max(0.0);
+        self.value = (kp * self.proportional + self.integral + kd * rise).max(0.0);
+        if self.costs.len() == self.delay {
+            self.costs.pop_front();
+        }
+        self.costs.push_back(self.cost);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
+
+    fn signal(step_cost: f64) -> Signal {
+        Signal { episode_cost: step_cost * 525.0, episode_budget: 50.0, episode_steps: 525.0 }
+    }
+
+    fn settings() -> AlgorithmConfig {
+        TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Released, EnvConfig::new("test")).algorithm_settings
+    }
+
+    /// `training.md` §10.
+    #[test]
+    fn multipliers_follow_the_recorded_numbers() {
+        let mut lagrange = Lagrange::all(&settings(), 1, None).remove(0);
+        let mut pid = Pid::all(&settings(), 1).remove(0);
+        let expected = [
+            (1, 0.002_047_62, 0.004_221_43),
+            (2, 0.004_095_24, 0.007_384_17),
+            (3, 0.006_142_86, 0.010_491_15),
+            (10, 0.020_476_19, 0.030_896_32),
+            (11, 0.022_523_81, 0.033_496_74),
+        ];
+        for update in 1..=11 {
+            lagrange.update(&signal(0.3));
+            pid.update(&signal(0.3));
+            if let Some((_, l, p)) = expected.iter().find(|(at, ..)| *at == update) {
+                assert!((lagrange.value - l).abs() < 1e-8, "update {update}: {}", lagrange.value);
+                assert!((pid.value - p).abs() < 1e-8, "update {update}: {}", pid.value);
+            }
+        }
+        lagrange.update(&signal(0.05));
+        pid.update(&signal(0.05));
+        assert!((lagrange.value - 0.022_071_43).abs() < 1e-8);
+        assert!((pid.value - 0.032_194_52).abs() < 1e-8);
+    }
+
+    #[test]
+    fn multipliers_stay_within_their_bounds() {
+        let mut lagrange = Lagrange::all(&settings(), 1, Some(0.01)).remove(0);
+        lagrange.update(&signal(0.0));
+        assert_eq!(lagrange.value, 0.0);
+        (0..100).for_each(|_| lagrange.update(&signal(1.0)));
+        assert_eq!(lagrange.value, 0.01);
+    }
+}

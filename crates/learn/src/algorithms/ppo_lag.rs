@@ -1,0 +1,60 @@
+//! PPOLag: PPO with a Lagrange multiplier on each constraint (Ray et al. 2019).
+//!
+//! The multiplier grows with the excess over the budget before every update; the advantages are those of the reward
+//! minus those of the costs times the multipliers, mixed in raw units and then standardised.
+
+use serde_json::Value;
+
+use super::multiplier::Lagrange;
+use super::surrogate::{lagrangian_advantages, standardised};
+use super::{Algorithm, Signal, ppo};
+use crate::config::{LearningConfig, TrainConfig};
+use crate::error::LearnError;
+use crate::learner::{Learner, Minibatch};
+use crate::metrics::Means;
+
+/// PPO with Lagrange multipliers.
+pub struct PpoLag {
+    settings: LearningConfig,
+    multipliers: Vec<Lagrange>,
+}
+
+impl PpoLag {
+    /// PPOLag with a run's settings.
+    #[must_use]
+    pub fn new(config: &TrainConfig) -> PpoLag {
+        let multipliers = Lagrange::all(&config.algorithm_settings, config.constraints.len(), None);
+        PpoLag { settings: config.learning.clone(), multipliers }
+    }
+}
+
+impl Algorithm for PpoLag {
+    fn constrain(&mut self, signals: &[Signal]) {
+        self.multipliers.iter_mut().zip(signals).for_each(|(multiplier, signal)| multiplier.update(signal));
+    }
+
+    fn update(
+        &mut self,
+        learner: &mut Learner,
+        minibatch: &mut Minibatch<'_>,
+        _signals: &[Signal],
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        let advantages = standardised(lagrangian_advantages(minibatch, &self.multipliers()));
+        let advantages = minibatch.tensor(advantages);
+        learner.descend(minibatch, |heads, batch| ppo::loss(&advantages, heads, batch, &self.settings), means)
+    }
+
+    fn multipliers(&self) -> Vec<f64> {
+        self.multipliers.iter().map(|multiplier| multiplier.value).collect()
+    }
+
+    fn save(&self) -> Value {
+        serde_json::to_value(&self.multipliers).unwrap_or_default()
+    }
+
+    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
+        self.multipliers = serde_json::from_value(state.clone())?;
+        Ok(())
+    }
+}

@@ -1,0 +1,97 @@
+//! TRPO: trust-region policy optimisation (Schulman et al. 2015, arXiv 1502.05477). Costs are ignored.
+//!
+//! The policy moves along the natural gradient to the edge of a trust region, then back until the surrogate has improved
+//! and the divergence is within its bound; the critics make a step of Adam. Policy and critics are separate networks.
+//!
+//! The released code differs: its gradient is that of the log-probabilities and the exploration loss, its line search
+//! compares that value with one without the exploration loss (and, with multipliers, of the reward alone), and the cost
+//! critic never learns.
+
+use burn::tensor::Tensor;
+
+use super::surrogate::standardised;
+use super::trust_region::{TrustRegion, dot, note, ratio, train_critics};
+use super::{Algorithm, Signal};
+use crate::config::{LearningConfig, TrainConfig};
+use crate::distribution::Policy;
+use crate::error::LearnError;
+use crate::learner::{Heads, Learner, Minibatch, scalar};
+use crate::metrics::Means;
+
+/// TRPO.
+pub struct Trpo {
+    settings: LearningConfig,
+    region: TrustRegion,
+    consistent: bool,
+}
+
+impl Trpo {
+    /// TRPO with a run's settings.
+    #[must_use]
+    pub fn new(config: &TrainConfig) -> Trpo {
+        Trpo {
+            settings: config.learning.clone(),
+            region: TrustRegion::new(config),
+            consistent: config.algorithm_settings.trpo_consistent,
+        }
+    }
+
+    /// One step for advantages in raw units, whose reward part alone is that of the minibatch.
+    pub fn step(
+        &self,
+        learner: &mut Learner,
+        minibatch: &mut Minibatch<'_>,
+        mixed: Vec<f32>,
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        let advantages = minibatch.tensor(standardised(mixed));
+        let reward_advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
+        let exploration = |policy: &Policy| {
+            super::surrogate::exploration_loss(&Heads { policy: policy.clone(), values: Vec::new() }, &self.settings)
+        };
+        let consistent = self.consistent;
+        let objective = |policy: &Policy, batch: &Minibatch<'_>, advantages: &Tensor<1>, explore: bool| {
+            let gain = if consistent {
+                ratio(policy, batch) * advantages.clone()
+            } else {
+                policy.log_probability(&batch.taken) * advantages.clone()
+            };
+            let loss = -gain.mean();
+            if explore { loss + exploration(policy) } else { loss }
+        };
+        let region = &self.region;
+        let origin = region.origin(learner, minibatch);
+        let (gradient, before) =
+            region.gradient(learner, minibatch, &origin, |policy, batch| objective(policy, batch, &advantages, true));
+        means.add("policy_loss", before);
+        let direction = region.solve(learner, minibatch, &origin, &gradient);
+        let product = region.fisher_times(learner, minibatch, &origin, &direction);
+        let curvature = dot(&direction, &product);
+        let mut share = 0.0;
+        if curvature > 0.0 && curvature.is_finite() {
+            let length = (2.0 * region.radius / curvature).sqrt();
+            let step: Vec<f32> = direction.iter().map(|value| (-length * f64::from(*value)) as f32).collect();
+            let searched = if consistent { &advantages } else { &reward_advantages };
+            share = region.search(learner, minibatch, &origin, &step, |policy, batch, divergence| {
+                let after = scalar(&objective(policy, batch, searched, consistent));
+                after < before && divergence <= region.radius
+            });
+        }
+        note(learner, minibatch, share, means);
+        let critics = if consistent { 1 + learner.shape().cost_critics } else { 1 };
+        train_critics(learner, minibatch, critics, means)
+    }
+}
+
+impl Algorithm for Trpo {
+    fn update(
+        &mut self,
+        learner: &mut Learner,
+        minibatch: &mut Minibatch<'_>,
+        _signals: &[Signal],
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        let advantages = minibatch.advantages[0].clone();
+        self.step(learner, minibatch, advantages, means)
+    }
+}

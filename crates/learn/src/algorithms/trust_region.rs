@@ -1,0 +1,309 @@
+//! Steps of the second order: the natural gradient and a line search within a trust region.
+//!
+//! The Fisher matrix F of the policy network is never built. Its product with a vector is J' M J v, where J is the
+//! network's Jacobian and M the Fisher matrix of the action distribution in its own numbers, known in closed form:
+//! J v comes from a central difference of two forward passes, J' from the backward pass. A test holds the product
+//! against a dense Fisher matrix.
+
+use burn::tensor::Tensor;
+
+use super::surrogate;
+use crate::config::TrainConfig;
+use crate::distribution::Policy;
+use crate::error::LearnError;
+use crate::learner::{Heads, Learner, Loss, Minibatch, loss_device, scalar, to_rows};
+use crate::metrics::Means;
+
+/// Norm of the step of the central difference: far above rounding, far below the curvature of the network.
+const DIFFERENCE: f64 = 1e-2;
+
+/// Settings of second-order steps.
+#[derive(Clone, Debug)]
+pub struct TrustRegion {
+    /// Bound of the mean divergence.
+    pub radius: f64,
+    iterations: usize,
+    damping: f64,
+    search_steps: usize,
+    search_factor: f64,
+}
+
+/// Where a step starts from: the policy network's parameters and what they say about a minibatch.
+pub struct Origin {
+    /// Parameters.
+    pub parameters: Vec<f32>,
+    /// Policy outputs, row by row.
+    outputs: Vec<f32>,
+}
+
+/// Product of two vectors.
+#[must_use]
+pub fn dot(a: &[f32], b: &[f32]) -> f64 {
+    a.chunks(4096)
+        .zip(b.chunks(4096))
+        .map(|(a, b)| a.iter().zip(b).map(|(x, y)| f64::from(*x) * f64::from(*y)).sum::<f64>())
+        .sum()
+}
+
+/// `a + scale * b`.
+#[must_use]
+pub fn plus(a: &[f32], scale: f64, b: &[f32]) -> Vec<f32> {
+    a.iter().zip(b).map(|(x, y)| (f64::from(*x) + scale * f64::from(*y)) as f32).collect()
+}
+
+impl TrustRegion {
+    /// The settings of a run.
+    #[must_use]
+    pub fn new(config: &TrainConfig) -> TrustRegion {
+        let settings = &config.algorithm_settings;
+        TrustRegion {
+            radius: settings.trust_radius,
+            iterations: settings.conjugate_iterations,
+            damping: settings.fisher_damping,
+            search_steps: settings.line_search_steps,
+            search_factor: settings.line_search_factor,
+        }
+    }
+
+    /// Where steps on a minibatch start from.
+    #[must_use]
+    pub fn origin(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>) -> Origin {
+        let parameters = learner.policy_parameters();
+        let outputs = to_rows(learner.policy_outputs(minibatch, &parameters).detach());
+        Origin { parameters, outputs }
+    }
+
+    /// Gradient, in the policy network's parameters, of a function of the policy, and the function's value.
+    pub fn gradient(
+        &self,
+        learner: &mut Learner,
+        minibatch: &mut Minibatch<'_>,
+        origin: &Origin,
+        function: impl Fn(&Policy, &Minibatch<'_>) -> Tensor<1>,
+    ) -> (Vec<f32>, f64) {
+        let outputs = learner.policy_outputs(minibatch, &origin.parameters).require_grad();
+        let value = function(&Policy::new(&learner.shape().action, &outputs), minibatch);
+        let number = scalar(&value);
+        let rows = to_rows(outputs.grad(&value.backward()).expect("the function depends on the policy"));
+        (learner.policy_backward(minibatch, &rows), number)
+    }
+
+    /// The damped Fisher matrix times a vector.
+    #[must_use]
+    pub fn fisher_times(
+        &self,
+        learner: &mut Learner,
+        minibatch: &mut Minibatch<'_>,
+        origin: &Origin,
+        vector: &[f32],
+    ) -> Vec<f32> {
+        let norm = dot(vector, vector).sqrt();
+        if norm == 0.0 {
+            return vec![0.0; vector.len()];
+        }
+        let step = DIFFERENCE / norm;
+        let mut moved = |scale| to_rows(learner.policy_outputs(minibatch, &plus(&origin.parameters, scale, vector)).detach());
+        let (ahead, behind) = (moved(step), moved(-step));
+        let change: Vec<f32> = ahead.iter().zip(&behind).map(|(a, b)| (f64::from(a - b) / (2.0 * step)) as f32).collect();
+        let mut rows = learner.shape().action.fisher_times(&origin.outputs, &change);
+        let count = minibatch.batch.sequences.rows() as f32;
+        rows.iter_mut().for_each(|value| *value /= count);
+        let _ = learner.policy_outputs(minibatch, &origin.parameters);
+        let product = learner.policy_backward(minibatch, &rows);
+        plus(&product, self.damping, vector)
+    }
+
+    /// Solves F x = b by conjugate gradients.
+    #[must_use]
+    pub fn solve(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>, origin: &Origin, b: &[f32]) -> Vec<f32> {
+        let mut x = vec![0.0; b.len()];
+        let mut rest = b.to_vec();
+        let mut direction = rest.clone();
+        let mut size = dot(&rest, &rest);
+        for _ in 0..self.iterations {
+            if size < 1e-10 {
+                break;
+            }
+            let product = self.fisher_times(learner, minibatch, origin, &direction);
+            let curvature = dot(&direction, &product);
+            if curvature <= 0.0 {
+                break;
+            }
+            let length = size / curvature;
+            x = plus(&x, length, &direction);
+            rest = plus(&rest, -length, &product);
+            let smaller = dot(&rest, &rest);
+            direction = plus(&rest, smaller / size, &direction);
+            size = smaller;
+        }
+        x
+    }
+
+    /// Shortens a step until it is accepted; `accept` is asked about the policy after it and its mean divergence from
+    /// the policy that acted. Returns the share of the step that was made: 0 if none was.
+    pub fn search(
+        &self,
+        learner: &mut Learner,
+        minibatch: &mut Minibatch<'_>,
+        origin: &Origin,
+        step: &[f32],
+        mut accept: impl FnMut(&Policy, &Minibatch<'_>, f64) -> bool,
+    ) -> f64 {
+        let mut share = 1.0;
+        for _ in 0..self.search_steps {
+            let parameters = plus(&origin.parameters, share, step);
+            let outputs = learner.policy_outputs(minibatch, &parameters).detach();
+            let policy = Policy::new(&learner.shape().action, &outputs);
+            let divergence = scalar(&minibatch.old_policy.divergence(&policy).mean());
+            if divergence.is_finite() && accept(&policy, minibatch, divergence) {
+                learner.set_policy_parameters(&parameters);
+                return share;
+            }
+            share *= self.search_factor;
+        }
+        learner.set_policy_parameters(&origin.parameters);
+        0.0
+    }
+}
+
+/// Ratio of the probabilities of the actions taken.
+#[must_use]
+pub fn ratio(policy: &Policy, minibatch: &Minibatch<'_>) -> Tensor<1> {
+    (policy.log_probability(&minibatch.taken) - minibatch.old_log_probability.clone()).exp()
+}
+
+/// One step of Adam for the critics, down their squared errors. `critics` counts the reward's as 0.
+pub fn train_critics(
+    learner: &mut Learner,
+    minibatch: &mut Minibatch<'_>,
+    critics: usize,
+    means: &mut Means,
+) -> Result<(), LearnError> {
+    let loss = |heads: &Heads, batch: &Minibatch<'_>| {
+        let mut total = Tensor::zeros([1], &loss_device());
+        let mut parts = Vec::new();
+        for critic in 0..critics {
+            let error = heads.values[critic].clone() - batch.targets[critic].clone();
+            let loss = error.powi_scalar(2).mean();
+            total = total + loss.clone();
+            parts.push((if critic == 0 { "value_loss" } else { "cost_value_loss" }, loss));
+        }
+        Loss { total, parts }
+    };
+    learner.descend_networks(1..1 + critics, minibatch, loss, means)
+}
+
+/// Reports a finished step.
+pub fn note(learner: &mut Learner, minibatch: &mut Minibatch<'_>, share: f64, means: &mut Means) {
+    let parameters = learner.policy_parameters();
+    let outputs = learner.policy_outputs(minibatch, &parameters).detach();
+    let heads = Heads { policy: Policy::new(&learner.shape().action, &outputs), values: vec![minibatch.old_values[0].clone()] };
+    for (name, value) in surrogate::policy_statistics(&heads, minibatch) {
+        means.add(name, scalar(&value));
+    }
+    means.add("step_share", share);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{AlgorithmKind, EnvConfig, Preset};
+    use crate::device::ComputeDevice;
+    use crate::distribution::ActionShape;
+    use crate::model::{ImageShape, ModelShape};
+    use crate::random::{Purpose, Stream};
+    use crate::rollout::{Part, Rollout};
+
+    /// A small recurrent learner, and a rollout of noise.
+    fn small() -> (Learner, Rollout, TrainConfig) {
+        let mut config = TrainConfig::plain(AlgorithmKind::Trpo, Preset::Paper, EnvConfig::new("test"));
+        config.network.convolutions = vec![];
+        config.network.dense = vec![32];
+        config.network.recurrent = Some(32);
+        config.learning.threads = 1;
+        let image = ImageShape { height: 2, width: 3, channels: 1 };
+        let action = ActionShape { sizes: vec![3, 2], deltas: 1 };
+        let shape = ModelShape::new(image, action, 0, 0, &config.network).unwrap();
+        let learner = Learner::new(&config, &shape, &ComputeDevice::Processor);
+        let mut stream = Stream::new(3, Purpose::Evaluation, 0, 0);
+        let mut part = Part { initial_state: shape.zero_state(2), ..Part::default() };
+        part.prepare(&shape, 3, 2, 1, 1);
+        part.frames.iter_mut().flatten().for_each(|pixel| *pixel = (stream.bits() >> 56) as u8);
+        part.outputs.iter_mut().for_each(|value| *value = stream.normal() as f32);
+        (learner, Rollout { parts: vec![part] }, config)
+    }
+
+    /// The product against the dense Fisher matrix by its definition: the mean over samples and actions of the outer
+    /// product of the gradient of the log-probability, gradients by the backward pass.
+    #[test]
+    fn fisher_products_equal_those_of_the_dense_matrix() {
+        let (mut learner, rollout, config) = small();
+        let prepared = learner.prepare(&rollout);
+        let mut minibatch = learner.minibatch(&prepared, &[0, 1]);
+        let region = TrustRegion::new(&config);
+        let origin = region.origin(&mut learner, &mut minibatch);
+        let (count, width) = (origin.parameters.len(), learner.shape().action.parameters());
+        let rows = origin.outputs.len() / width;
+        let mut fisher = vec![0.0f64; count * count];
+        let mut add = |gradient: &[f32], weight: f64| {
+            for (i, &a) in gradient.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+                for (j, &b) in gradient.iter().enumerate() {
+                    fisher[i * count + j] += weight * f64::from(a) * f64::from(b);
+                }
+            }
+        };
+        for row in 0..rows {
+            let outputs = &origin.outputs[row * width..(row + 1) * width];
+            let mut gradient_of = |direction: &[f64]| {
+                let _ = learner.policy_outputs(&mut minibatch, &origin.parameters);
+                let mut seeds = vec![0.0; rows * width];
+                for (seed, value) in seeds[row * width..].iter_mut().zip(direction) {
+                    *seed = *value as f32;
+                }
+                learner.policy_backward(&mut minibatch, &seeds)
+            };
+            for (first, size) in [(0, 3), (3, 2)] {
+                let exp: Vec<f64> = outputs[first..first + size].iter().map(|&l| f64::from(l).exp()).collect();
+                let p: Vec<f64> = exp.iter().map(|e| e / exp.iter().sum::<f64>()).collect();
+                for action in 0..size {
+                    let mut direction = vec![0.0; width];
+                    for index in 0..size {
+                        direction[first + index] = f64::from(u8::from(index == action)) - p[index];
+                    }
+                    add(&gradient_of(&direction), p[action] / rows as f64);
+                }
+            }
+            // A normal's log-probability has gradient z/sigma in the mean and z^2 - 1 in the logarithm of the deviation,
+            // whose products have the means 1/sigma^2, 2 and 0.
+            let sigma = f64::from(outputs[6]).exp();
+            let (mut mean, mut log) = (vec![0.0; width], vec![0.0; width]);
+            (mean[5], log[6]) = (1.0 / sigma, 2.0f64.sqrt());
+            add(&gradient_of(&mean), 1.0 / rows as f64);
+            add(&gradient_of(&log), 1.0 / rows as f64);
+        }
+        let mut stream = Stream::new(4, Purpose::Evaluation, 0, 0);
+        for _ in 0..3 {
+            let vector: Vec<f32> = (0..count).map(|_| stream.normal() as f32).collect();
+            let product = region.fisher_times(&mut learner, &mut minibatch, &origin, &vector);
+            let expected: Vec<f64> = (0..count)
+                .map(|i| {
+                    let row = &fisher[i * count..(i + 1) * count];
+                    let damped = 0.1 * f64::from(vector[i]);
+                    damped + row.iter().zip(&vector).map(|(f, v)| f * f64::from(*v)).sum::<f64>()
+                })
+                .collect();
+            let largest = expected.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+            for (i, (found, expected)) in product.iter().zip(&expected).enumerate() {
+                let error = (f64::from(*found) - expected).abs();
+                assert!(error < 2e-3 * largest, "{i}: {found} against {expected} (largest {largest})");
+            }
+        }
+        // And the solution of F x = b, put back in, gives b.
+        let b: Vec<f32> = (0..count).map(|_| stream.normal() as f32).collect();
+        let region = TrustRegion { iterations: 60, ..region };
+        let x = region.solve(&mut learner, &mut minibatch, &origin, &b);
+        let back = region.fisher_times(&mut learner, &mut minibatch, &origin, &x);
+        let rest = plus(&back, -1.0, &b);
+        assert!(dot(&rest, &rest) < 1e-3 * dot(&b, &b), "{} of {}", dot(&rest, &rest), dot(&b, &b));
+    }
+}

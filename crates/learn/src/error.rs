@@ -1,0 +1,66 @@
+//! Everything that can go wrong in training, each with where and what to do.
+
+use std::path::{Path, PathBuf};
+
+/// An error of the learner; its text names the input at fault and the remedy.
+#[derive(Debug)]
+pub enum LearnError {
+    /// A setting that cannot be.
+    Config(String),
+    /// A file or directory that could not be read or written.
+    File {
+        /// Which one.
+        path: PathBuf,
+        /// What was being done.
+        doing: &'static str,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file whose content is not what it should be.
+    Content {
+        /// Which one.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        problem: String,
+    },
+    /// The worlds failed.
+    Worlds(String),
+    /// A thread of the run ended in a panic.
+    Panic(String),
+    /// The loss or a gradient is no longer a number.
+    Diverged(String),
+}
+
+impl LearnError {
+    /// A file error with its path.
+    pub fn file(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> LearnError {
+        let path = path.to_path_buf();
+        move |source| LearnError::File { path, doing, source }
+    }
+
+    /// A content error with its path.
+    pub fn content(path: &Path, problem: impl std::fmt::Display) -> LearnError {
+        LearnError::Content { path: path.to_path_buf(), problem: problem.to_string() }
+    }
+}
+
+impl std::fmt::Display for LearnError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            LearnError::Config(text) | LearnError::Worlds(text) | LearnError::Panic(text) | LearnError::Diverged(text) => {
+                f.write_str(text)
+            }
+            LearnError::File { path, doing, source } => write!(f, "cannot {doing} {}: {source}", path.display()),
+            LearnError::Content { path, problem } => write!(f, "{}: {problem}", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for LearnError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            LearnError::File { source, .. } => Some(source),
+            _ => None,
+        }
+    }
+}

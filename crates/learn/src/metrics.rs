@@ -1,0 +1,51 @@
+//! Numbers worth reporting, averaged until they are.
+
+/// Means by name, in the order of first mention.
+#[derive(Clone, Debug, Default)]
+pub struct Means {
+    sums: Vec<(&'static str, f64, u64)>,
+}
+
+impl Means {
+    /// Adds a value; those that are no numbers are left out.
+    pub fn add(&mut self, name: &'static str, value: f64) {
+        if !value.is_finite() {
+            return;
+        }
+        match self.sums.iter_mut().find(|(other, ..)| *other == name) {
+            Some((_, sum, count)) => {
+                *sum += value;
+                *count += 1;
+            }
+            None => self.sums.push((name, value, 1)),
+        }
+    }
+
+    /// Mean of a name, if anything was added to it.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.sums.iter().find(|(other, ..)| *other == name).map(|(_, sum, count)| sum / *count as f64)
+    }
+
+    /// All means, and a fresh start.
+    pub fn take(&mut self) -> Vec<(&'static str, f64)> {
+        self.sums.drain(..).map(|(name, sum, count)| (name, sum / count as f64)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_are_taken_by_name_and_start_anew() {
+        let mut means = Means::default();
+        means.add("a", 1.0);
+        means.add("b", 5.0);
+        means.add("a", 3.0);
+        means.add("a", f64::NAN);
+        assert_eq!(means.get("a"), Some(2.0));
+        assert_eq!(means.take(), [("a", 2.0), ("b", 5.0)]);
+        assert_eq!(means.get("a"), None);
+    }
+}

@@ -1,0 +1,215 @@
+//! The trainer: a run and its directory.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use crate::checkpoint::{Checkpoint, Progress, Store};
+use crate::config::TrainConfig;
+use crate::error::LearnError;
+use crate::gather::panic_text;
+use crate::heatmap::Heatmap;
+use crate::metrics::Means;
+use crate::report::Report;
+use crate::run_directory::RunDirectory;
+use crate::session::{Beginning, MakeWorlds, Session};
+use crate::writer::Writer;
+
+/// What the caller of a run hears of it, and how it ends it.
+pub struct Hooks<'a> {
+    /// Raised by the caller to end the run cleanly, with a checkpoint.
+    pub stop: &'a AtomicBool,
+    /// Told every report.
+    pub report: &'a mut dyn FnMut(&Report),
+    /// Told what went wrong without ending the run.
+    pub warn: &'a mut dyn FnMut(String),
+}
+
+/// How a run begins.
+pub enum Start<'a> {
+    /// In a new directory.
+    Fresh(TrainConfig),
+    /// From the last checkpoint in the directory; a number of frames given here replaces the run's.
+    Resume {
+        /// Length of the run, if it is to be another than before.
+        frames: Option<u64>,
+    },
+    /// In a new directory, with the weights and pixel statistics of another run: the step of a curriculum.
+    From(TrainConfig, &'a Path),
+}
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    /// The last report.
+    pub last: Report,
+    /// The caller ended it.
+    pub stopped: bool,
+}
+
+/// Trains in `directory` until the run's frames are used up or the caller ends it.
+///
+/// In synchronous mode everything that is learned follows from the settings alone; a run that was stopped, or killed, and
+/// resumed equals one that never stopped, bit by bit.
+pub fn train(
+    start: Start<'_>,
+    directory: &Path,
+    make_worlds: &MakeWorlds<'_>,
+    hooks: &mut Hooks<'_>,
+) -> Result<Summary, LearnError> {
+    let (run, config, beginning) = begin(start, directory, hooks)?;
+    // A panic of the learner's own thread ends as an error too; checkpoints already written stay.
+    catch_unwind(AssertUnwindSafe(|| Trainer::new(run, config, &beginning, make_worlds)?.run(hooks)))
+        .unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))))
+}
+
+fn begin(
+    start: Start<'_>,
+    directory: &Path,
+    hooks: &mut Hooks<'_>,
+) -> Result<(RunDirectory, TrainConfig, Beginning), LearnError> {
+    match start {
+        Start::Fresh(config) => {
+            config.check()?;
+            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Nothing))
+        }
+        Start::From(config, other) => {
+            config.check()?;
+            let loaded = Store::new(other, 1).newest(hooks.warn)?;
+            let loaded = loaded.ok_or_else(|| LearnError::content(other, "no checkpoint to take weights from is here"))?;
+            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Weights(Box::new(loaded))))
+        }
+        Start::Resume { frames } => {
+            let (run, mut config) = RunDirectory::open(directory)?;
+            config.frames = frames.unwrap_or(config.frames);
+            config.check()?;
+            let loaded = Store::new(directory, config.reporting.keep).newest(hooks.warn)?;
+            let at = loaded.as_ref().map_or(0, |loaded| loaded.progress.frames);
+            if loaded.is_none() {
+                (hooks.warn)(format!("{}: no checkpoint was written yet; the run starts again", directory.display()));
+            }
+            run.rewind_metrics(at, hooks.warn)?;
+            Ok((run, config, loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)))))
+        }
+    }
+}
+
+struct Trainer {
+    run: RunDirectory,
+    session: Session,
+    /// Where the agents have been, if the worlds have places.
+    heatmap: Option<Heatmap>,
+    seconds_before: f64,
+    started: Instant,
+    best_feasible: Option<f64>,
+}
+
+impl Trainer {
+    fn new(
+        run: RunDirectory,
+        config: TrainConfig,
+        beginning: &Beginning,
+        make_worlds: &MakeWorlds<'_>,
+    ) -> Result<Trainer, LearnError> {
+        let (seconds_before, best_feasible) = match beginning {
+            Beginning::Everything(loaded) => (loaded.progress.wall_seconds, loaded.progress.best_feasible),
+            Beginning::Nothing | Beginning::Weights(_) => (0.0, None),
+        };
+        let session = Session::new(config, beginning, make_worlds)?;
+        let config = &session.config;
+        let heatmap = session.extent.map(|extent| Heatmap::new(extent, config.sampling.lanes, config.frames, session.frames));
+        Ok(Trainer { run, session, heatmap, seconds_before, started: Instant::now(), best_feasible })
+    }
+
+    fn wall_seconds(&self) -> f64 {
+        self.seconds_before + self.started.elapsed().as_secs_f64()
+    }
+
+    fn run(mut self, hooks: &mut Hooks<'_>) -> Result<Summary, LearnError> {
+        let store = Store::new(self.run.path(), self.session.config.reporting.keep);
+        let writer = Writer::new(self.run.path(), store)?;
+        let (mut last_report, mut last_checkpoint) = (Instant::now(), Instant::now());
+        let mut reported_frames = self.session.frames;
+        let mut last = None;
+        let mut over = self.session.frames >= self.session.config.frames;
+        while !over {
+            let rollout = self.session.turn(hooks.warn)?;
+            // Asked once a rollout: from here on it is decided whether samplers are told to go on.
+            over = self.session.frames >= self.session.config.frames || hooks.stop.load(Ordering::Relaxed);
+            if over || last_report.elapsed().as_secs_f64() >= self.session.config.reporting.report_seconds {
+                let seconds = last_report.elapsed().as_secs_f64().max(1e-9);
+                let report = self.report((self.session.frames - reported_frames) as f64 / seconds);
+                (last_report, reported_frames) = (Instant::now(), self.session.frames);
+                writer.row(self.session.frames, report.row());
+                (hooks.report)(&report);
+                last = Some(report);
+                over = over || hooks.stop.load(Ordering::Relaxed);
+            }
+            if let Some(heatmap) = &mut self.heatmap {
+                heatmap.add(&rollout);
+                heatmap.line(self.session.frames, over).into_iter().for_each(|line| writer.heatmap(line));
+            }
+            writer.check()?;
+            if over || last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds {
+                let (checkpoint, best) = self.checkpoint()?;
+                // The last checkpoint waits for the disk; one on the way is left out if the disk is far behind.
+                let _ = writer.checkpoint(checkpoint, best, over);
+                last_checkpoint = Instant::now();
+            }
+            if !over {
+                self.session.go_on(rollout);
+            }
+        }
+        writer.finish()?;
+        let last = match last {
+            Some(report) => report,
+            None => self.report(0.0),
+        };
+        Ok(Summary { last, stopped: self.session.frames < self.session.config.frames })
+    }
+
+    fn report(&mut self, frames_per_second: f64) -> Report {
+        let mut report = Report::take(
+            &self.session.config,
+            &self.session.watch,
+            &mut self.session.means,
+            self.session.algorithm.multipliers(),
+        );
+        report.frames = self.session.frames;
+        report.updates = self.session.learner.version;
+        report.wall_seconds = self.wall_seconds();
+        report.frames_per_second = frames_per_second;
+        report
+    }
+
+    /// Takes a checkpoint, and says whether the run has never been as good within its budgets.
+    fn checkpoint(&mut self) -> Result<(Checkpoint, bool), LearnError> {
+        let report = Report::take(&self.session.config, &self.session.watch, &mut Means::default(), Vec::new());
+        let best = match report.means {
+            // A few episodes say little; and the window must be full of them before it may set a record.
+            Some((mean, ..))
+                if report.feasible() && self.session.watch.recent.len() >= self.session.config.reporting.window.min(30) =>
+            {
+                self.best_feasible.is_none_or(|best| mean > best).then_some(mean)
+            }
+            _ => None,
+        };
+        self.best_feasible = best.or(self.best_feasible);
+        let samplers = self.session.gatherer.save()?;
+        let progress = Progress {
+            frames: self.session.frames,
+            rollouts: self.session.rollouts,
+            updates: self.session.learner.version,
+            wall_seconds: self.wall_seconds(),
+            best_feasible: self.best_feasible,
+            returns: self.session.learner.returns.clone(),
+            optimiser_steps: self.session.learner.optimisers.iter().map(|adam| adam.steps).collect(),
+            algorithm: self.session.algorithm.save(),
+            watch: self.session.watch.clone(),
+            samplers: samplers.iter().map(|sampler| (sampler.steps, sampler.safety.clone())).collect(),
+            pixel_count: self.session.learner.pixels.count,
+        };
+        Ok((Checkpoint::take(&self.session.learner, &samplers, progress)?, best.is_some()))
+    }
+}

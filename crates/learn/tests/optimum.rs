@@ -1,0 +1,114 @@
+//! Every algorithm on a small constrained problem whose optimum is known.
+
+mod tiny;
+
+use hasard_learn::config::{AlgorithmKind, Preset, TrainConfig};
+use hasard_learn::report::Report;
+use hasard_learn::trainer::Start;
+
+/// Mean return and cost over the last quarter of the run.
+fn late(reports: &[Report]) -> (f64, f64) {
+    let late = &reports[reports.len() * 3 / 4..];
+    let mean = |of: fn(&Report) -> f64| late.iter().map(of).sum::<f64>() / late.len() as f64;
+    (mean(|report| report.means.unwrap().0), mean(|report| report.means.unwrap().1))
+}
+
+fn outcome(config: TrainConfig, name: &str) -> (f64, f64, Vec<Report>) {
+    let path = tiny::directory(&format!("optimum-{name}"));
+    let (result, reports, warnings) = tiny::run(Start::Fresh(config), &path);
+    result.unwrap();
+    assert!(warnings.is_empty());
+    std::fs::remove_dir_all(path).unwrap();
+    let (episode_return, cost) = late(&reports);
+    println!("{name}: return {episode_return:.2}, cost {cost:.2}");
+    (episode_return, cost, reports)
+}
+
+/// Short runs: multipliers move faster than in runs of hundreds of millions of frames.
+fn quick(algorithm: AlgorithmKind) -> TrainConfig {
+    let mut config = tiny::config(algorithm);
+    config.frames = 512 * 200;
+    config.reporting.window = 64;
+    config.algorithm_settings.multiplier_rate = 0.1;
+    config.algorithm_settings.pid_gains = (0.5, 0.1, 0.1);
+    config.algorithm_settings.ipo_kappa = 0.3;
+    config.algorithm_settings.ipo_limit = 2.0;
+    config
+}
+
+#[test]
+fn without_a_constraint_the_budget_is_overrun() {
+    let (episode_return, cost, _) = outcome(quick(AlgorithmKind::Ppo), "PPO");
+    assert!(episode_return > 6.3 && cost > 9.0, "the best is 7 at cost 10");
+}
+
+/// The best return within the budget of 4 is 4; a policy that does not tell rich from poor gets 2.8 out of it.
+#[test]
+fn constrained_algorithms_end_near_the_best_return_within_the_budget() {
+    use AlgorithmKind::{Cup, Focops, Ipo, P3o, PpoLag, PpoPid};
+    for algorithm in [PpoLag, PpoPid, P3o, Focops, Cup, Ipo] {
+        let (episode_return, cost, reports) = outcome(quick(algorithm), algorithm.name());
+        assert!(cost < 4.6, "{algorithm}: cost {cost}");
+        assert!(episode_return > 3.3, "{algorithm}: return {episode_return}");
+        if matches!(algorithm, PpoLag | PpoPid) {
+            // Near the optimum the multiplier is the price of a rich risk: 1 reward for 1 cost.
+            let late = &reports[reports.len() / 2..];
+            let multiplier = late.iter().map(|report| report.multipliers[0]).sum::<f64>() / late.len() as f64;
+            println!("{algorithm}: multiplier {multiplier:.2}");
+            assert!((0.5..1.5).contains(&multiplier), "{algorithm}: multiplier {multiplier}");
+        }
+    }
+}
+
+/// Second-order steps are large and few: two passes over a rollout would move twice as far as the trust region allows.
+fn second_order(algorithm: AlgorithmKind) -> TrainConfig {
+    let mut config = quick(algorithm);
+    config.learning.epochs = 1;
+    config.learning.minibatches = 1;
+    config.network.recurrent = None;
+    config.frames = 512 * 100;
+    config.algorithm_settings.trust_radius = 0.02;
+    config
+}
+
+#[test]
+fn second_order_algorithms_do_so_too() {
+    use AlgorithmKind::{Cpo, Trpo, TrpoLag, TrpoPid};
+    let (episode_return, cost, _) = outcome(second_order(Trpo), "TRPO");
+    assert!(episode_return > 6.3 && cost > 9.0, "the best is 7 at cost 10");
+    for algorithm in [TrpoLag, TrpoPid, Cpo] {
+        let (episode_return, cost, reports) = outcome(second_order(algorithm), algorithm.name());
+        assert!(cost < 4.6, "{algorithm}: cost {cost}");
+        assert!(episode_return > 3.3, "{algorithm}: return {episode_return}");
+        let loss = |report: &Report| report.learning.iter().find(|(name, _)| *name == "cost_value_loss").unwrap().1;
+        let (early, late) = (loss(&reports[2]), loss(reports.last().unwrap()));
+        assert!(late < early, "{algorithm}: the cost critic does not learn ({early} to {late})");
+    }
+}
+
+/// Under a penalty of 0.7 a unit of cost the rich risk is worth it and the poor one is not: cost 5, return 5.
+#[test]
+fn penalties_and_safety_states_shape_the_policy() {
+    let mut config = quick(AlgorithmKind::PpoCost);
+    config.algorithm_settings.penalty_scale = 0.7;
+    let (episode_return, cost, _) = outcome(config, "PPOCost");
+    assert!((4.5..5.6).contains(&cost), "cost {cost}");
+    assert!(episode_return > 4.4, "return {episode_return}");
+    let mut config = quick(AlgorithmKind::PpoSaute);
+    config.algorithm_settings.saute_unsafe_reward = -1.0;
+    let (episode_return, cost, _) = outcome(config, "PPOSaute");
+    assert!((2.5..4.6).contains(&cost), "cost {cost}");
+    assert!(episode_return > 2.4, "return {episode_return}");
+}
+
+#[test]
+fn the_released_presets_rules_work_too() {
+    let mut config = quick(AlgorithmKind::PpoLag);
+    let released = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Released, config.env.clone());
+    config.constraint_statistic = released.constraint_statistic;
+    config.network.initialisation = released.network.initialisation;
+    config.learning.clip_value = released.learning.clip_value;
+    config.learning.bootstrap_time_outs = released.learning.bootstrap_time_outs;
+    let (episode_return, cost, _) = outcome(config, "PPOLag-released");
+    assert!(cost < 4.6 && episode_return > 3.3);
+}

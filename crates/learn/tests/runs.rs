@@ -1,0 +1,364 @@
+//! Runs and their directories: resuming, stopping, locking, damage.
+
+mod tiny;
+
+use hasard_envs::{Environment, VecEnv};
+use hasard_learn::config::AlgorithmKind;
+use hasard_learn::distribution::ActionShape;
+use hasard_learn::evaluate::{Agent, Choice, Which};
+use hasard_learn::trainer::{Hooks, Start, train};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+fn checkpoints(run: &Path) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> = fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
+}
+
+/// Rows of the metrics without what a clock decides.
+fn rows(run: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(run.join("metrics.jsonl")).unwrap();
+    text.lines()
+        .map(|line| {
+            let mut row: Value = serde_json::from_str(line).unwrap();
+            let fields = row.as_object_mut().unwrap();
+            for name in ["wall_s", "fps", "seconds_waiting", "seconds_learning"] {
+                fields.remove(name);
+            }
+            row
+        })
+        .collect()
+}
+
+fn last_files(run: &Path) -> (Vec<u8>, Vec<u8>, Value) {
+    let paths = checkpoints(run);
+    let last = paths.iter().rfind(|path| path.file_name().unwrap().to_str().unwrap().starts_with("frames_")).unwrap();
+    let mut state: Value = serde_json::from_slice(&fs::read(last.join("state.json")).unwrap()).unwrap();
+    state["progress"].as_object_mut().unwrap().remove("wall_seconds");
+    (fs::read(last.join("weights.safetensors")).unwrap(), fs::read(last.join("training.safetensors")).unwrap(), state)
+}
+
+/// A run ended after half its frames and resumed equals the run that went straight through: every weight, moment,
+/// multiplier, statistic and row of metrics, for several algorithms and ways of sampling.
+#[test]
+fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
+    for (algorithm, samplers, groups, world_threads) in
+        [(AlgorithmKind::PpoLag, 2, 1, 0), (AlgorithmKind::PpoPid, 1, 2, 1), (AlgorithmKind::PpoSaute, 2, 2, 0)]
+    {
+        let mut config = tiny::config(algorithm);
+        config.sampling.samplers = samplers;
+        config.sampling.groups = groups;
+        config.sampling.world_threads = world_threads;
+        // A rollout that is no multiple of the episode, so that the run ends inside episodes.
+        config.sampling.rollout = 13;
+        config.learning.final_rate = 1e-3;
+        let rollout = config.frames_per_rollout();
+        config.frames = 8 * rollout;
+        let straight = tiny::directory(&format!("straight-{algorithm}"));
+        tiny::run(Start::Fresh(config.clone()), &straight).0.unwrap();
+        let broken = tiny::directory(&format!("broken-{algorithm}"));
+        // Stops after three rollouts, as Ctrl-C does.
+        let stop = AtomicBool::new(false);
+        let mut count = 0;
+        let summary = train(
+            Start::Fresh(config.clone()),
+            &broken,
+            &tiny::worlds,
+            &mut Hooks {
+                stop: &stop,
+                report: &mut |_| {
+                    count += 1;
+                    stop.store(count == 3, Ordering::Relaxed);
+                },
+                warn: &mut |warning| panic!("{warning}"),
+            },
+        )
+        .unwrap();
+        assert!(summary.stopped);
+        assert!(summary.last.frames < config.frames);
+        let (resumed, ..) = tiny::run(Start::Resume { frames: None }, &broken);
+        assert!(!resumed.unwrap().stopped);
+        let (a, b) = (last_files(&straight), last_files(&broken));
+        assert!(a.0 == b.0, "{algorithm}: weights differ");
+        assert!(a.1 == b.1, "{algorithm}: optimiser or lanes differ");
+        assert_eq!(a.2, b.2, "{algorithm}");
+        assert_eq!(rows(&straight), rows(&broken), "{algorithm}");
+        fs::remove_dir_all(straight).unwrap();
+        fs::remove_dir_all(broken).unwrap();
+    }
+}
+
+/// The number of learner threads may change rounding; that of samplers and groups changes nothing that is sampled first.
+#[test]
+fn the_first_rollout_does_not_depend_on_how_lanes_are_dealt_out() {
+    let mut all = Vec::new();
+    for (samplers, groups, world_threads) in [(1, 1, 0), (4, 1, 0), (1, 2, 2), (2, 4, 1)] {
+        let mut config = tiny::config(AlgorithmKind::Ppo);
+        config.sampling.samplers = samplers;
+        config.sampling.groups = groups;
+        config.sampling.world_threads = world_threads;
+        config.frames = 3 * config.frames_per_rollout();
+        let path = tiny::directory(&format!("deal-{samplers}-{groups}"));
+        tiny::run(Start::Fresh(config), &path).0.unwrap();
+        all.push(last_files(&path).0);
+        fs::remove_dir_all(path).unwrap();
+    }
+    assert!(all.iter().all(|weights| *weights == all[0]), "weights after three rollouts differ");
+}
+
+#[test]
+fn sampling_beside_learning_works_and_bounds_the_lag() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.sampling.synchronous = false;
+    config.sampling.accumulated = 2;
+    config.reporting.checkpoint_seconds = 0.0;
+    config.frames = 20 * config.frames_per_rollout();
+    let path = tiny::directory("side-by-side");
+    let (result, reports, warnings) = tiny::run(Start::Fresh(config.clone()), &path);
+    result.unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let updates_per_rollout = (config.learning.epochs * config.learning.minibatches) as f64;
+    for report in &reports {
+        let lag = report.learning.iter().find(|(name, _)| *name == "policy_lag").unwrap().1;
+        assert!(lag <= 3.0 * updates_per_rollout, "{lag}");
+    }
+    assert!(checkpoints(&path).len() <= config.reporting.keep + 1);
+    fs::remove_dir_all(path).unwrap();
+}
+
+#[test]
+fn rows_have_their_stable_keys() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.frames = 4 * config.frames_per_rollout();
+    let path = tiny::directory("keys");
+    tiny::run(Start::Fresh(config.clone()), &path).0.unwrap();
+    let text = fs::read_to_string(path.join("metrics.jsonl")).unwrap();
+    let last: Value = serde_json::from_str(text.lines().last().unwrap()).unwrap();
+    for key in [
+        "frames",
+        "updates",
+        "wall_s",
+        "fps",
+        "episodes",
+        "return_mean",
+        "cost_mean",
+        "length_mean",
+        "budget",
+        "multiplier",
+        "loss",
+        "policy_loss",
+        "value_loss",
+        "cost_value_loss",
+        "entropy",
+        "kl_divergence",
+        "cost/risk",
+    ] {
+        assert!(last[key].is_number(), "{key} in {last}");
+    }
+    assert_eq!(last["frames"], config.frames);
+    assert!(
+        fs::read_dir(&path)
+            .unwrap()
+            .any(|entry| { entry.unwrap().file_name().to_str().unwrap().starts_with("events.out.tfevents") })
+    );
+    fs::remove_dir_all(path).unwrap();
+}
+
+#[test]
+fn a_second_trainer_and_a_second_run_are_refused() {
+    let mut config = tiny::config(AlgorithmKind::Ppo);
+    config.frames = config.frames_per_rollout();
+    let path = tiny::directory("second");
+    let stop = AtomicBool::new(false);
+    let mut inner = None;
+    train(
+        Start::Fresh(config.clone()),
+        &path,
+        &tiny::worlds,
+        &mut Hooks {
+            stop: &stop,
+            report: &mut |_| inner = Some(tiny::run(Start::Resume { frames: None }, &path).0),
+            warn: &mut |_| {},
+        },
+    )
+    .unwrap();
+    let message = inner.unwrap().unwrap_err();
+    assert!(message.contains("another trainer"), "{message}");
+    let message = tiny::run(Start::Fresh(config), &path).0.unwrap_err();
+    assert!(message.contains("--resume"), "{message}");
+    let nowhere = tiny::directory("nowhere");
+    let message = tiny::run(Start::Resume { frames: None }, &nowhere).0.unwrap_err();
+    assert!(message.contains("no run is here"), "{message}");
+    fs::remove_dir_all(path).unwrap();
+}
+
+/// Does something to a checkpoint.
+type Damage = fn(&Path);
+
+/// Damage of every kind to the newest checkpoint: the run goes on from the one before it, and says so.
+#[test]
+fn a_damaged_checkpoint_gives_way_to_the_one_before() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.reporting.checkpoint_seconds = 0.0;
+    config.frames = 4 * config.frames_per_rollout();
+    let damages: [(&str, Damage); 5] = [
+        ("truncated", |path| truncate(&path.join("weights.safetensors"))),
+        ("flipped", |path| {
+            let file = path.join("training.safetensors");
+            let mut bytes = fs::read(&file).unwrap();
+            let middle = bytes.len() / 2;
+            bytes[middle] ^= 4;
+            fs::write(&file, bytes).unwrap();
+        }),
+        ("no state", |path| fs::remove_file(path.join("state.json")).unwrap()),
+        ("half a state", |path| truncate(&path.join("state.json"))),
+        ("empty", |path| {
+            fs::remove_dir_all(path).unwrap();
+            fs::create_dir(path).unwrap();
+        }),
+    ];
+    for (name, damage) in damages {
+        let path = tiny::directory(&format!("damage-{}", name.replace(' ', "-")));
+        tiny::run(Start::Fresh(config.clone()), &path).0.unwrap();
+        let before = rows(&path);
+        let newest = path.join(format!("checkpoints/frames_{:012}", config.frames));
+        damage(&newest);
+        // A metrics line cut off in the middle, as a killed process leaves it.
+        let metrics = path.join("metrics.jsonl");
+        let mut text = fs::read_to_string(&metrics).unwrap();
+        text.push_str("{\"frames\": 12");
+        fs::write(&metrics, text).unwrap();
+        let (result, reports, warnings) = tiny::run(Start::Resume { frames: None }, &path);
+        result.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(reports.len(), 1, "{name}: one rollout was done again");
+        assert!(warnings[0].contains("going back"), "{name}: {warnings:?}");
+        assert!(warnings.iter().any(|warning| warning.contains("line 5 is damaged")), "{name}: {warnings:?}");
+        assert_eq!(rows(&path), before, "{name}");
+        for checkpoint in checkpoints(&path) {
+            truncate(&checkpoint.join("state.json"));
+        }
+        let message = tiny::run(Start::Resume { frames: Some(config.frames * 2) }, &path).0.unwrap_err();
+        assert!(message.contains("every checkpoint is damaged"), "{message}");
+        fs::remove_dir_all(path).unwrap();
+    }
+}
+
+fn truncate(path: &Path) {
+    let bytes = fs::read(path).unwrap();
+    fs::write(path, &bytes[..bytes.len() / 2]).unwrap();
+}
+
+/// An agent loaded from a run does what the run learned, the same for the same seed, whatever acts beside it.
+#[test]
+fn a_loaded_agent_acts_as_it_learned() {
+    let mut config = tiny::config(AlgorithmKind::Ppo);
+    config.frames = 80 * config.frames_per_rollout();
+    let path = tiny::directory("agent");
+    tiny::run(Start::Fresh(config), &path).0.unwrap();
+    let play = |choice: Choice, lanes: usize, first_seed: u64| -> Vec<(f64, f64)> {
+        let shape = ActionShape { sizes: vec![2, 3], deltas: 0 };
+        let observation = [tiny::SIDE, tiny::SIDE, 1];
+        let mut warn = |warning| panic!("{warning}");
+        let mut agent = Agent::load(&path, Which::Latest, choice, lanes, observation, shape, &mut warn).unwrap();
+        let mut worlds: Vec<tiny::Risk> = (0..lanes).map(|_| tiny::Risk::new(true)).collect();
+        for (lane, world) in worlds.iter_mut().enumerate() {
+            world.reset(first_seed + lane as u64);
+            agent.reset(lane, first_seed + lane as u64);
+        }
+        for _ in 0..tiny::STEPS {
+            let mut observations = vec![0; lanes * tiny::SIDE * tiny::SIDE];
+            for (world, out) in worlds.iter_mut().zip(observations.chunks_exact_mut(tiny::SIDE * tiny::SIDE)) {
+                world.observe(out);
+            }
+            for (lane, (world, action)) in worlds.iter_mut().zip(agent.act(&observations)).enumerate() {
+                let step = world.step(&action.actions, &action.deltas);
+                agent.observe_cost(lane, step.cost);
+            }
+        }
+        worlds.iter().map(|world| (world.episode().episode_return, world.episode().cost)).collect()
+    };
+    let together = play(Choice::Sampled, 4, 100);
+    let alone: Vec<_> = (100..104).flat_map(|seed| play(Choice::Sampled, 1, seed)).collect();
+    assert_eq!(together, alone);
+    assert!(together.iter().all(|(_, cost)| *cost >= 8.0), "{together:?}: PPO learns to take every risk");
+    assert!(play(Choice::Greedy, 3, 7).iter().all(|(_, cost)| *cost == 10.0));
+    let mut warn = |_| {};
+    let wrong = ActionShape { sizes: vec![9], deltas: 0 };
+    let Err(error) = Agent::load(&path, Which::Latest, Choice::Greedy, 1, [6, 6, 1], wrong, &mut warn) else {
+        panic!("weights of another shape were accepted")
+    };
+    assert!(error.to_string().contains("does not fit"), "{error}");
+    fs::remove_dir_all(path).unwrap();
+}
+
+#[test]
+fn first_episodes_end_spread_over_time() {
+    let count = |spread_out: bool| {
+        let mut config = tiny::config(AlgorithmKind::Ppo);
+        config.sampling.spread_out = spread_out;
+        config.sampling.rollout = 5;
+        config.frames = config.frames_per_rollout();
+        let path = tiny::directory(if spread_out { "spread" } else { "not-spread" });
+        let (_, reports, _) = tiny::run(Start::Fresh(config), &path);
+        fs::remove_dir_all(path).unwrap();
+        reports[0].episodes
+    };
+    assert_eq!(count(false), 0);
+    assert!((12..=20).contains(&count(true)), "about half of 32 episodes of 10 steps end within 5");
+}
+
+/// Weights carry over from one run to the next; counters, multipliers and optimisers start anew.
+#[test]
+fn a_curriculum_carries_weights_over() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.frames = 2 * config.frames_per_rollout();
+    let (first, second) = (tiny::directory("first-level"), tiny::directory("second-level"));
+    tiny::run(Start::Fresh(config.clone()), &first).0.unwrap();
+    config.learning.rate = 0.0;
+    config.learning.final_rate = 0.0;
+    let (result, reports, _) = tiny::run(Start::From(config, &first), &second);
+    assert_eq!(result.unwrap().last.updates, 8, "two rollouts of two epochs of two minibatches, counted from zero");
+    assert_eq!(reports.len(), 2);
+    // With a learning rate of zero the weights at the end are those at the start; the pixel statistics go on.
+    let weights = |run: &Path| last_files(run).0;
+    let (a, b) = (weights(&first), weights(&second));
+    let parameters = |bytes: &[u8]| {
+        let tensors = safetensors::SafeTensors::deserialize(bytes).unwrap();
+        let names = tensors.names().into_iter().filter(|name| name.starts_with("network")).collect::<Vec<_>>();
+        let mut all: Vec<(String, Vec<u8>)> =
+            names.iter().map(|name| (name.to_string(), tensors.tensor(name).unwrap().data().to_vec())).collect();
+        all.sort();
+        all
+    };
+    assert!(parameters(&a) == parameters(&b));
+    assert!(a != b, "the pixel statistics have gone on");
+    fs::remove_dir_all(first).unwrap();
+    fs::remove_dir_all(second).unwrap();
+}
+
+/// A world that panics ends the run with a clear error, and the checkpoints before it stay.
+#[test]
+fn a_panic_in_a_world_ends_the_run_with_an_error() {
+    let mut config = tiny::config(AlgorithmKind::Ppo);
+    config.reporting.checkpoint_seconds = 0.0;
+    config.frames = 50 * config.frames_per_rollout();
+    for world_threads in [0, 1] {
+        config.sampling.world_threads = world_threads;
+        let path = tiny::directory(&format!("panic-{world_threads}"));
+        let stop = AtomicBool::new(false);
+        let mut warn = |_| {};
+        let result = train(
+            Start::Fresh(config.clone()),
+            &path,
+            &|options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(60)))),
+            &mut Hooks { stop: &stop, report: &mut |_| {}, warn: &mut warn },
+        );
+        let message = result.unwrap_err().to_string();
+        assert!(message.contains("the floor gave way"), "{message}");
+        assert!(!checkpoints(&path).is_empty());
+        fs::remove_dir_all(path).unwrap();
+    }
+}

@@ -1,0 +1,217 @@
+//! A tiny task of pixels with a known optimum, in place of the benchmark's worlds.
+
+#![allow(dead_code)] // Each test file uses its own part of this.
+
+use hasard_engine::math::Rng;
+use hasard_envs::{ActionGroup, ActionSpace, BUTTONS, CostTerm, Environment, Episode, Step, VecEnv, VecOptions};
+use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
+use hasard_learn::model::Convolution;
+use hasard_learn::report::Report;
+use hasard_learn::trainer::{Hooks, Start, Summary, train};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+/// Steps of an episode.
+pub const STEPS: u32 = 10;
+/// Side of the picture.
+pub const SIDE: usize = 6;
+
+/// Every step shows a rich or a poor picture, either half of the time. Taking a risk brings 1 when rich and 0.4 when
+/// poor, and costs 1 either way; anything else brings and costs nothing.
+///
+/// Without a budget it is best always to take the risk: return 7, cost 10. Under a budget of 4 it is best to take it in
+/// four fifths of the rich steps alone: return 4, cost 4.
+pub struct Risk {
+    space: ActionSpace,
+    rng: Rng,
+    seed: u64,
+    rich: bool,
+    steps: u32,
+    sums: (f64, f64),
+    last: [f64; 2],
+    times_out: bool,
+}
+
+impl Risk {
+    pub fn new(times_out: bool) -> Risk {
+        let button = |index: usize| (BUTTONS[index].0, BUTTONS[index].1);
+        let group = |count: usize| ActionGroup { buttons: (0..count).map(button).collect() };
+        Risk {
+            space: ActionSpace { groups: vec![group(1), group(2)], deltas: vec![] },
+            rng: Rng::new(0),
+            seed: 0,
+            rich: false,
+            steps: 0,
+            sums: (0.0, 0.0),
+            last: [0.0; 2],
+            times_out,
+        }
+    }
+
+    fn ended(&self) -> bool {
+        self.steps >= STEPS
+    }
+}
+
+impl Environment for Risk {
+    fn action_space(&self) -> &ActionSpace {
+        &self.space
+    }
+
+    fn observation_shape(&self) -> [usize; 3] {
+        [SIDE, SIDE, 1]
+    }
+
+    fn cost_terms(&self) -> &'static [CostTerm] {
+        &[CostTerm { name: "risk", counted: true }, CostTerm { name: "second", counted: false }]
+    }
+
+    fn reset(&mut self, seed: u64) {
+        self.rng = Rng::new(seed);
+        self.seed = seed;
+        self.rich = self.rng.below(2) == 1;
+        self.steps = 0;
+        self.sums = (0.0, 0.0);
+        self.last = [0.0; 2];
+    }
+
+    fn step(&mut self, actions: &[u8], _deltas: &[f32]) -> Step {
+        if self.ended() {
+            return Step { terminated: !self.times_out, truncated: self.times_out, ..Step::default() };
+        }
+        let risk = actions[0] == 1;
+        let reward = if risk { if self.rich { 1.0 } else { 0.4 } } else { 0.0 };
+        let cost = if risk { 1.0 } else { 0.0 };
+        self.last = [cost, if actions[1] == 2 { 1.0 } else { 0.0 }];
+        self.sums.0 += reward;
+        self.sums.1 += cost;
+        self.steps += 1;
+        self.rich = self.rng.below(2) == 1;
+        Step { reward, cost, terminated: self.ended() && !self.times_out, truncated: self.ended() && self.times_out }
+    }
+
+    fn step_costs(&self) -> &[f64] {
+        &self.last
+    }
+
+    fn observe(&mut self, out: &mut [u8]) {
+        for (index, pixel) in out.iter_mut().enumerate() {
+            let noise = (self.seed as usize).wrapping_mul(index + 1) % 40;
+            *pixel = if self.rich == (index % 2 == 0) { 200 - noise as u8 } else { 20 + noise as u8 };
+        }
+    }
+
+    fn episode(&self) -> Episode {
+        Episode {
+            lane: 0,
+            seed: self.seed,
+            episode_return: self.sums.0,
+            cost: self.sums.1,
+            costs: vec![("risk", self.sums.1), ("second", 0.0)],
+            length: self.steps,
+            terminated: self.ended() && !self.times_out,
+            truncated: self.ended() && self.times_out,
+            stats: vec![],
+        }
+    }
+}
+
+/// The task until a number of steps, then a panic.
+pub struct Broken {
+    task: Risk,
+    left: u32,
+}
+
+impl Broken {
+    pub fn after(steps: u32) -> Broken {
+        Broken { task: Risk::new(true), left: steps }
+    }
+}
+
+impl Environment for Broken {
+    fn action_space(&self) -> &ActionSpace {
+        self.task.action_space()
+    }
+
+    fn observation_shape(&self) -> [usize; 3] {
+        self.task.observation_shape()
+    }
+
+    fn cost_terms(&self) -> &'static [CostTerm] {
+        self.task.cost_terms()
+    }
+
+    fn reset(&mut self, seed: u64) {
+        self.task.reset(seed);
+    }
+
+    fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
+        self.left = self.left.checked_sub(1).expect("the floor gave way");
+        self.task.step(actions, deltas)
+    }
+
+    fn step_costs(&self) -> &[f64] {
+        self.task.step_costs()
+    }
+
+    fn observe(&mut self, out: &mut [u8]) {
+        self.task.observe(out);
+    }
+
+    fn episode(&self) -> Episode {
+        self.task.episode()
+    }
+}
+
+/// A batch of the task.
+pub fn worlds(options: VecOptions) -> Result<VecEnv, hasard_envs::EnvError> {
+    VecEnv::from_fn(options, |_| Ok(Box::new(Risk::new(true))))
+}
+
+/// Settings that solve the task in seconds.
+pub fn config(algorithm: AlgorithmKind) -> TrainConfig {
+    let mut config = TrainConfig::plain(algorithm, Preset::Paper, EnvConfig { frame_skip: 1, ..EnvConfig::new("Risk") });
+    config.episode_steps = STEPS;
+    config.constraints = vec![Constraint { term: None, budget: 4.0 }];
+    config.network.convolutions = vec![Convolution { channels: 32, kernel: 4, stride: 2 }];
+    config.network.dense = vec![32];
+    config.network.recurrent = Some(32);
+    config.sampling.lanes = 32;
+    config.sampling.rollout = 16;
+    config.sampling.samplers = 2;
+    config.sampling.synchronous = true;
+    config.learning.threads = 1;
+    config.learning.rate = 3e-3;
+    config.learning.final_rate = 3e-3;
+    config.learning.epochs = 2;
+    config.learning.minibatches = 2;
+    config.learning.gamma = 0.9;
+    config.reporting.report_seconds = 0.0;
+    config.reporting.checkpoint_seconds = 1e9;
+    config.frames = 512 * 40;
+    config
+}
+
+/// A directory of its own for a test, empty.
+pub fn directory(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("hasard-learn-{}-{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&path);
+    path
+}
+
+/// Trains to the end, collecting reports and warnings.
+pub fn run(start: Start<'_>, directory: &Path) -> (Result<Summary, String>, Vec<Report>, Vec<String>) {
+    let (mut reports, mut warnings) = (Vec::new(), Vec::new());
+    let stop = AtomicBool::new(false);
+    let result = train(
+        start,
+        directory,
+        &worlds,
+        &mut Hooks {
+            stop: &stop,
+            report: &mut |report| reports.push(report.clone()),
+            warn: &mut |warning| warnings.push(warning),
+        },
+    );
+    (result.map_err(|error| error.to_string()), reports, warnings)
+}

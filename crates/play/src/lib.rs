@@ -1,0 +1,49 @@
+//! Episodes as people meet them: recorded, played again at any size, and played by hand.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`Stage`] | an environment that is shown tic by tic while its agent acts step by step |
+//! | [`Recorder`], [`Replay`] | episodes into files and back |
+//! | [`Views`] | a moment as pictures: colour, depth, segmentation, side by side |
+//! | [`Controls`] | keys and mouse as actions |
+//! | `panel` | time, return, cost and budget beside the game |
+//! | `window` | the window (feature `window`) |
+//!
+//! ```
+//! use hasard_envs::{Env, EnvOptions};
+//! use hasard_play::{Recorder, Replay};
+//! let mut env = Env::new("RemedyRushLevel1-v0", &EnvOptions::default())?;
+//! let mut recorder = Recorder::begin(&mut env, 7, "example")?;
+//! for _ in 0..50 {
+//!     env.step(&[1, 1, 0, 0], &[]);
+//!     recorder.push(&[1, 1, 0, 0], &[])?;
+//! }
+//! let file = recorder.finish(&env);
+//! let mut replay = Replay::new(file, "example.episode".as_ref(), &EnvOptions::default())?;
+//! while replay.tic() {
+//!     // draw a moment: Views::draw(replay.stage())
+//! }
+//! assert_eq!(replay.difference(), None);
+//! # Ok::<(), hasard_play::PlayError>(())
+//! ```
+
+mod controls;
+mod error;
+mod panel;
+mod recording;
+mod stage;
+mod views;
+#[cfg(feature = "window")]
+mod window;
+
+pub use controls::{Controls, Key};
+pub use error::PlayError;
+pub use panel::{Panel, with_panel};
+pub use recording::{Recorder, Replay, option_names, options_from_names};
+pub use stage::Stage;
+pub use views::{ViewKind, Views};
+#[cfg(feature = "window")]
+pub use window::{KEYS, PlaySettings, play};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,211 @@
+//! Episodes into files and back.
+
+use crate::{PlayError, Stage};
+use hasard_envs::{Env, EnvOptions, RuleSet};
+use hasard_media::MediaError;
+use hasard_media::episode::{EpisodeFile, Header, Outcome};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The options that change what happens in an episode, by their names on the command line.
+#[must_use]
+pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
+    let rules = match options.rules {
+        RuleSet::Paper => "paper",
+        RuleSet::Released => "released",
+    };
+    [
+        ("rules", rules.to_owned()),
+        ("hard", options.hard.to_string()),
+        ("full-actions", options.full_actions.to_string()),
+        ("frame-skip", options.frame_skip.to_string()),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into()
+}
+
+/// The options that an episode file names, over those that only concern looks (size, pictures), which `looks` gives.
+///
+/// # Errors
+/// When the file names an option that this version does not know, or a value that it cannot take.
+pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, file: &Path) -> Result<EnvOptions, PlayError> {
+    let plain = EnvOptions::default();
+    let mut options = EnvOptions {
+        rules: plain.rules,
+        hard: plain.hard,
+        full_actions: plain.full_actions,
+        frame_skip: plain.frame_skip,
+        frame_stack: 1,
+        ..looks.clone()
+    };
+    for (name, value) in names {
+        let unknown = || {
+            let problem =
+                format!("was recorded with {name} = {value}, which this version does not know: use the hasard that recorded it");
+            MediaError::Format { path: file.to_owned(), problem }
+        };
+        match name.as_str() {
+            "rules" => {
+                options.rules = match value.as_str() {
+                    "paper" => RuleSet::Paper,
+                    "released" => RuleSet::Released,
+                    _ => return Err(unknown().into()),
+                };
+            }
+            "hard" => options.hard = value.parse().map_err(|_| unknown())?,
+            "full-actions" => options.full_actions = value.parse().map_err(|_| unknown())?,
+            "frame-skip" => {
+                let skip = value.parse().ok().filter(|skip| (1..=35).contains(skip));
+                options.frame_skip = skip.ok_or_else(unknown)?;
+            }
+            _ => return Err(unknown().into()),
+        }
+    }
+    Ok(options)
+}
+
+/// Writes down an episode while it is played.
+pub struct Recorder {
+    file: EpisodeFile,
+}
+
+impl Recorder {
+    /// Resets the environment to the episode of a seed and begins to record it.
+    ///
+    /// # Errors
+    /// When the player's name is empty, overlong or unprintable.
+    pub fn begin(env: &mut Env, seed: u64, player: &str) -> Result<Recorder, PlayError> {
+        env.reset(seed);
+        Recorder::of(env, seed, player)
+    }
+
+    /// Begins to record an episode that was just reset with `seed`.
+    ///
+    /// # Errors
+    /// As [`Recorder::begin`].
+    pub fn of(env: &Env, seed: u64, player: &str) -> Result<Recorder, PlayError> {
+        let space = env.action_space();
+        let file = EpisodeFile::new(Header {
+            env: env.id().to_string(),
+            options: option_names(env.options()),
+            seed,
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            player: player.to_owned(),
+            steps: 0,
+            groups: space.groups.len() as u8,
+            deltas: space.deltas.len() as u8,
+            outcome: None,
+        })?;
+        Ok(Recorder { file })
+    }
+
+    /// Notes the action of a step.
+    ///
+    /// # Errors
+    /// When it is no action of the environment.
+    pub fn push(&mut self, actions: &[u8], deltas: &[f32]) -> Result<(), PlayError> {
+        Ok(self.file.push(actions, deltas)?)
+    }
+
+    /// Ends the recording with how far the episode came.
+    #[must_use]
+    pub fn finish(mut self, env: &Env) -> EpisodeFile {
+        let episode = env.episode();
+        self.file.set_outcome(Outcome {
+            episode_return: episode.episode_return,
+            cost: episode.cost,
+            costs: episode.costs.iter().map(|(name, cost)| ((*name).to_owned(), *cost)).collect(),
+            terminated: episode.terminated,
+            truncated: episode.truncated,
+            state_hash: Some(env.state_hash()),
+        });
+        self.file
+    }
+}
+
+/// Plays a recorded episode again.
+pub struct Replay {
+    file: EpisodeFile,
+    name: PathBuf,
+    stage: Stage,
+    /// Steps whose action was chosen.
+    begun: usize,
+}
+
+impl Replay {
+    /// Makes the episode's environment. Of `looks`, only what concerns pictures counts.
+    ///
+    /// # Errors
+    /// When the file's environment, options or actions are unknown to this version.
+    pub fn new(file: EpisodeFile, name: &Path, looks: &EnvOptions) -> Result<Replay, PlayError> {
+        let options = options_from_names(&file.header().options, looks, name)?;
+        let mut stage = Stage::new(&file.header().env, &options)?;
+        let space = stage.env().action_space();
+        file.check_actions(&space.sizes(), space.deltas.len(), name)?;
+        stage.reset(file.header().seed);
+        let mut replay = Replay { file, name: name.to_owned(), stage, begun: 0 };
+        replay.choose()?;
+        Ok(replay)
+    }
+
+    /// The recorded episode.
+    #[must_use]
+    pub fn file(&self) -> &EpisodeFile {
+        &self.file
+    }
+
+    /// The stage as of the last tic.
+    #[must_use]
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// Whether all recorded actions are played or the episode is over.
+    #[must_use]
+    pub fn over(&self) -> bool {
+        self.stage.ended() || self.stage.wants_action() && self.begun > self.file.header().steps as usize
+    }
+
+    /// Goes on by a tic; `false` when there is no more to play.
+    pub fn tic(&mut self) -> bool {
+        if self.over() {
+            return false;
+        }
+        if self.stage.tic().is_some() {
+            // Actions were checked when the file was opened.
+            let _ = self.choose();
+        }
+        !self.over()
+    }
+
+    /// Chooses the action of the next step; past the last, only counts on.
+    fn choose(&mut self) -> Result<(), PlayError> {
+        if let Some((actions, deltas)) = self.file.step(self.begun) {
+            self.stage.act(actions, deltas)?;
+        }
+        self.begun += 1;
+        Ok(())
+    }
+
+    /// After the replay: how it differs from what was recorded, as one line; `None` if it does not, or if nothing is known
+    /// of the recorded end.
+    #[must_use]
+    pub fn difference(&self) -> Option<String> {
+        let outcome = self.file.header().outcome.as_ref()?;
+        let episode = self.stage.env().episode();
+        let hash = self.stage.env().state_hash();
+        let name = self.name.display();
+        if episode.episode_return != outcome.episode_return || episode.cost != outcome.cost {
+            return Some(format!(
+                "{name}: was recorded by version {} with return {} and cost {}, and plays now with return {} and cost {}",
+                self.file.header().program,
+                outcome.episode_return,
+                outcome.cost,
+                episode.episode_return,
+                episode.cost
+            ));
+        }
+        (outcome.state_hash.is_some_and(|recorded| recorded != hash))
+            .then(|| format!("{name}: ends in another state than version {} recorded", self.file.header().program))
+    }
+}

@@ -1,0 +1,203 @@
+use super::*;
+use hasard_engine::render::FrameSize;
+use hasard_engine::world::Fingerprint;
+use hasard_envs::{ActionSpace, Env, EnvId, EnvOptions, Scenario};
+use hasard_media::episode::EpisodeFile;
+use std::hash::{Hash, Hasher};
+use std::path::Path;
+
+fn small_random(state: &mut u64) -> usize {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 33) as usize
+}
+
+fn random_action(space: &ActionSpace, state: &mut u64) -> (Vec<u8>, Vec<f32>) {
+    let actions = space.sizes().iter().map(|size| (small_random(state) % size) as u8).collect();
+    let deltas = space.deltas.iter().map(|_| (small_random(state) % 201) as f32 / 100.0 - 1.0).collect();
+    (actions, deltas)
+}
+
+fn fingerprint(world: &hasard_engine::world::World) -> u64 {
+    let mut hasher = Fingerprint::default();
+    world.hash(&mut hasher);
+    hasher.finish()
+}
+
+#[test]
+fn what_is_shown_tic_by_tic_is_what_counts() {
+    for id in EnvId::all() {
+        for hard in [false, true] {
+            let options = EnvOptions { hard, full_actions: hard, ..EnvOptions::default() };
+            let mut stage = Stage::new(&id.to_string(), &options).unwrap();
+            let mut alone = Env::new(&id.to_string(), &options).unwrap();
+            stage.reset(3);
+            alone.reset(3);
+            let mut state = 11;
+            for step in 0..80 {
+                if stage.ended() {
+                    break;
+                }
+                assert!(stage.wants_action());
+                let (actions, deltas) = random_action(alone.action_space(), &mut state);
+                stage.act(&actions, &deltas).unwrap();
+                let expected = alone.step(&actions, &deltas);
+                let mut tics = 0;
+                let got = loop {
+                    tics += 1;
+                    if let Some(step) = stage.tic() {
+                        break step;
+                    }
+                };
+                assert!(got == expected && tics <= 4, "{id} hard {hard} step {step}");
+                assert_eq!(fingerprint(stage.world()), fingerprint(alone.world()), "{id} hard {hard} step {step}");
+            }
+        }
+    }
+}
+
+fn record(id: &str, options: &EnvOptions, steps: usize) -> EpisodeFile {
+    let mut env = Env::new(id, options).unwrap();
+    let mut recorder = Recorder::begin(&mut env, 5, "random").unwrap();
+    let mut state = 77;
+    for _ in 0..steps {
+        let (actions, deltas) = random_action(env.action_space(), &mut state);
+        let step = env.step(&actions, &deltas);
+        recorder.push(&actions, &deltas).unwrap();
+        if step.ended() {
+            break;
+        }
+    }
+    recorder.finish(&env)
+}
+
+#[test]
+fn a_replay_ends_where_the_recording_did() {
+    for (full_actions, frame_skip, steps) in [(false, 4, 600), (true, 4, 60), (true, 1, 200)] {
+        let options = EnvOptions { full_actions, frame_skip, ..EnvOptions::default() };
+        let file = record("DetonatorsDilemmaLevel2-v0", &options, steps);
+        let bytes = file.to_bytes();
+        let file = EpisodeFile::from_bytes(&bytes, Path::new("x")).unwrap();
+        let recorded = file.header().steps;
+        let mut replay = Replay::new(file, Path::new("x"), &EnvOptions::default()).unwrap();
+        let mut tics = 1;
+        while replay.tic() {
+            tics += 1;
+        }
+        assert_eq!(replay.stage().env().episode().length, recorded);
+        assert!(tics <= recorded * frame_skip && tics > (recorded - 1) * frame_skip, "{tics} tics, {recorded} steps");
+        assert_eq!(replay.difference(), None);
+    }
+}
+
+#[test]
+fn a_replay_that_differs_says_so() {
+    let mut file = record("RemedyRushLevel1-v0", &EnvOptions::default(), 20);
+    let mut outcome = file.header().outcome.clone().unwrap();
+    outcome.state_hash = Some(1);
+    file.set_outcome(outcome.clone());
+    let play = |file: &EpisodeFile| {
+        let mut replay = Replay::new(file.clone(), Path::new("a.episode"), &EnvOptions::default()).unwrap();
+        while replay.tic() {}
+        replay.difference()
+    };
+    assert!(play(&file).unwrap().starts_with("a.episode: ends in another state"));
+    outcome.episode_return += 1.0;
+    file.set_outcome(outcome);
+    assert!(play(&file).unwrap().contains("was recorded by version"));
+}
+
+#[test]
+fn files_of_other_versions_are_refused_by_name() {
+    let good = record("RemedyRushLevel1-v0", &EnvOptions::default(), 3);
+    let refused = |change: fn(&mut hasard_media::episode::Header)| {
+        let mut header = good.header().clone();
+        change(&mut header);
+        let mut file = EpisodeFile::new(header).unwrap();
+        file.push(&[9, 0, 0, 0], &[]).unwrap();
+        Replay::new(file, Path::new("f.episode"), &EnvOptions::default()).err().unwrap().to_string()
+    };
+    assert!(refused(|header| header.env = "LavaLevel9-v0".into()).contains("LavaLevel9-v0"));
+    assert!(refused(|header| drop(header.options.insert("rules".into(), "mine".into()))).contains("rules = mine"));
+    assert!(refused(|header| drop(header.options.insert("gravity".into(), "2".into()))).contains("gravity = 2"));
+    assert!(refused(|header| drop(header.options.insert("frame-skip".into(), "0".into()))).contains("frame-skip = 0"));
+    assert!(refused(|_| ()).contains("sub-action 0 is 9"));
+}
+
+#[test]
+fn options_go_through_names_and_back() {
+    let options = EnvOptions {
+        rules: hasard_envs::RuleSet::Released,
+        hard: true,
+        full_actions: true,
+        frame_skip: 2,
+        ..EnvOptions::default()
+    };
+    let back = options_from_names(&option_names(&options), &EnvOptions::default(), Path::new("x")).unwrap();
+    assert_eq!((back.rules, back.hard, back.full_actions, back.frame_skip), (options.rules, true, true, 2));
+}
+
+#[test]
+fn keys_become_actions() {
+    let space = ActionSpace::of(Scenario::RemedyRush, false); // turn, forward, speed, jump
+    let mut controls = Controls::default();
+    controls.press(Key::Forward);
+    controls.press(Key::TurnLeft);
+    controls.press(Key::TurnRight);
+    assert_eq!(controls.action(&space, 4).0, [2, 1, 0, 0], "the latest key wins");
+    controls.release(Key::TurnRight);
+    controls.press(Key::Jump);
+    controls.release(Key::Jump);
+    assert_eq!(controls.action(&space, 4).0, [1, 1, 0, 1], "a short press counts once");
+    assert_eq!(controls.action(&space, 4).0, [1, 1, 0, 0]);
+    controls.release_all();
+    controls.press(Key::Left);
+    assert_eq!(controls.action(&space, 4).0, [1, 0, 0, 0], "without side steps, their keys turn");
+    controls.release_all();
+    controls.move_mouse(40.0, 0.0);
+    assert_eq!(controls.action(&space, 4).0, [2, 0, 0, 0]);
+    assert_eq!(controls.action(&space, 4).0, [0, 0, 0, 0]);
+}
+
+#[test]
+fn the_mouse_turns_by_just_as_much_as_it_moved() {
+    let space = ActionSpace::of(Scenario::RemedyRush, true);
+    let mut controls = Controls::default();
+    controls.move_mouse(500.0, -100.0); // 60 degrees right, 12 up
+    let (mut turned, mut looked) = (0.0, 0.0);
+    for _ in 0..4 {
+        let (_, deltas) = controls.action(&space, 4);
+        assert!(deltas.iter().all(|delta| (-1.0..=1.0).contains(delta)));
+        looked += deltas[0] * 7.5 * 4.0;
+        turned += deltas[1] * 7.5 * 4.0;
+    }
+    assert!((turned - 60.0).abs() < 0.01 && (looked - 12.0).abs() < 0.01, "{turned} {looked}");
+    controls.press(Key::TurnLeft);
+    assert!(controls.action(&space, 4).1[1] < -0.3, "keys turn too");
+}
+
+#[test]
+fn views_and_panel_have_their_sizes() {
+    let mut stage = Stage::new("VolcanicVentureLevel1-v0", &EnvOptions::default()).unwrap();
+    stage.reset(1);
+    for _ in 0..40 {
+        if stage.wants_action() {
+            stage.act(&[0, 1, 0, 0], &[]).unwrap();
+        }
+        stage.tic();
+    }
+    let size = FrameSize { width: 320, height: 240 };
+    let mut views = Views::new(&stage, size, &[ViewKind::Colour, ViewKind::Depth, ViewKind::Segmentation]).unwrap();
+    let all = views.draw(&stage);
+    let alone = Views::new(&stage, size, &[]).unwrap().draw(&stage);
+    assert_eq!((alone.width(), alone.height()), (320, 240));
+    assert!(all.width() > 960 && all.height() > 240);
+    assert_eq!(all.get(4 + 100, 4 + 100), alone.get(100, 100));
+    let panel = Panel::of(&stage, "P: pause");
+    let whole = with_panel(&alone, &panel);
+    assert_eq!(whole.height(), 240 + Panel::HEIGHT);
+    assert!((panel.seconds - 40.0 / 35.0).abs() < 1e-9, "{panel:?}");
+    if let Some(place) = std::env::var_os("HASARD_KEEP_PICTURES") {
+        hasard_media::png::write(&all, &Path::new(&place).join("views.png")).unwrap();
+        hasard_media::png::write(&whole, &Path::new(&place).join("panel.png")).unwrap();
+    }
+}
