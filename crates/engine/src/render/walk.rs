@@ -56,6 +56,9 @@ impl WalkScratch {
     }
 }
 
+/// Base columns by which the view's wedge is wider than what is open.
+const WEDGE_MARGIN: i64 = 2;
+
 /// One side of the view's wedge, as a test for boxes.
 #[derive(Clone, Copy)]
 struct WedgeSide {
@@ -139,13 +142,13 @@ impl Walk<'_> {
         }
     }
 
-    /// The wedge between the outermost rays of a range of frame columns.
+    /// The wedge between the outermost rays of a range of frame columns, and a little more: sprites stand out of their
+    /// sectors, so that those just out of view are entered too.
     fn wedge(&self, (first, end): (usize, usize)) -> [WedgeSide; 2] {
         let camera = self.camera;
-        // From edge to edge of the pixels, half a column beyond their middles.
         let ray = |half_columns: i64| [0, 1].map(|axis| (camera.ray[axis] + camera.ray_step[axis] * half_columns / 2) >> 16);
-        let left = ray(2 * i64::from(self.view.columns[first]) - 1);
-        let right = ray(2 * i64::from(self.view.columns[end - 1]) + 1);
+        let left = ray(2 * (i64::from(self.view.columns[first]) - WEDGE_MARGIN) - 1);
+        let right = ray(2 * (i64::from(self.view.columns[end - 1]) + WEDGE_MARGIN) + 1);
         [WedgeSide::new(camera, [left[1], -left[0]]), WedgeSide::new(camera, [-right[1], right[0]])]
     }
 
