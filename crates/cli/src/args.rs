@@ -225,11 +225,18 @@ pub struct BenchArgs {
     #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub envs: u32,
     /// Worker threads
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
     pub threads: u32,
     /// Seconds to measure
     #[arg(long, default_value_t = 5.0)]
     pub seconds: f64,
+    /// Measure the whole training loop (worlds, inference, learning; one epoch) and what the processor's matrix products
+    /// would allow, in turns
+    #[arg(long)]
+    pub learn: bool,
+    /// With --learn: the algorithm
+    #[arg(long, default_value = "PPOLag", requires = "learn")]
+    pub algo: String,
     /// Seed
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
