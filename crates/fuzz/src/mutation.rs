@@ -3,7 +3,7 @@
 use hasard_engine::math::Rng;
 
 /// Longest input that is tried.
-pub const LONGEST: usize = 1 << 18;
+pub const LONGEST: usize = 1 << 19;
 
 /// Numbers that break arithmetic.
 const SHARP: [i64; 20] = [
@@ -83,7 +83,13 @@ fn spoil(rng: &mut Rng, out: &mut Vec<u8>, words: &[&str], others: &[Vec<u8>]) {
         out.push(rng.next_u64() as u8);
         return;
     }
-    let at = rng.below(out.len() as u32) as usize;
+    let mut at = rng.below(out.len() as u32) as usize;
+    // Where a file mixes text and numbers, its text says what the numbers mean: that is more worth spoiling.
+    for _ in 0..rng.below(6) {
+        if !out[at].is_ascii_graphic() {
+            at = rng.below(out.len() as u32) as usize;
+        }
+    }
     let end = (at + 1 + rng.below(64) as usize).min(out.len());
     let sharp = SHARP[rng.below(SHARP.len() as u32) as usize];
     match rng.below(18) {
