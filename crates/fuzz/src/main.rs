@@ -2,7 +2,7 @@
 //! prints a line each: inputs tried, accepted, kept, edges reached, processor seconds, findings. `--try FILE TARGET` tries one file.
 
 use hasard_fuzz::targets::{self, Target};
-use hasard_fuzz::verdict::try_input;
+use hasard_fuzz::verdict::{listen, try_input};
 use hasard_fuzz::{supervisor, worker};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -58,6 +58,7 @@ fn run() -> Result<bool, String> {
         let fault = |error: std::io::Error| format!("{}: {error}", target.name);
         if let Some(file) = &arguments.file {
             let bytes = std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
+            listen();
             println!("{}: {:?}", target.name, try_input(target, &bytes));
         } else if arguments.worker {
             let (seconds, seed) = (arguments.seconds, arguments.seed);
