@@ -31,7 +31,7 @@ impl SegmentationColours {
     /// No two classes alike, nor nearly so: some channel differs by more than [`NEARLY_ALIKE`].
     #[must_use]
     pub fn distinct() -> SegmentationColours {
-        let surfaces = [[0, 0, 0], [60, 60, 60], [128, 128, 128], [150, 200, 255], [30, 30, 80], [255, 255, 255]];
+        let surfaces = [[0, 0, 0], [60, 60, 60], [128, 128, 128], [150, 200, 255], [20, 30, 100], [255, 255, 255]];
         // A walk through a 5 x 5 x 5 cube of colours that comes by each once and makes neighbours unlike; what is nearly
         // the colour of a surface is passed over.
         let cube =
