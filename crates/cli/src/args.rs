@@ -327,9 +327,12 @@ pub struct TrainArgs {
     /// cpu, or vulkan / cuda where the program was built with that feature
     #[arg(long, default_value = "cpu")]
     pub device: String,
-    /// Sampling and learning take turns: slower, and bit-reproducible
+    /// Sampling and learning take turns, bit-reproducibly; the default on the CPU, where both want the same cores
     #[arg(long)]
     pub sync: bool,
+    /// Sampling and learning run side by side; the default on a graphics card
+    #[arg(long = "async", conflicts_with = "sync")]
+    pub asynchronous: bool,
     /// Threads; all cores if absent
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,

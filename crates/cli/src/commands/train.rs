@@ -101,9 +101,7 @@ fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     config.seed = args.seed;
     config.device.clone_from(&args.device);
     config.frames = args.frames.unwrap_or(config.frames);
-    if args.sync {
-        config.sampling.synchronous = true;
-    }
+    config.sampling.synchronous = args.sync || (args.device == "cpu" && !args.asynchronous);
     if let Some(threads) = args.threads {
         config.learning.threads = usize::from(threads);
         config.sampling.samplers = usize::from(threads);
