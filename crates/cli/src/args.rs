@@ -302,7 +302,7 @@ pub struct RenderArgs {
 pub struct TrainArgs {
     /// Environment id
     pub env: String,
-    /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, FOCOPS, CUP, IPO
+    /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
     #[arg(long, default_value = "PPOLag")]
     pub algo: String,
     /// paper, released, or quick: settings that learn within minutes on a CPU
