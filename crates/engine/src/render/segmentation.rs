@@ -32,10 +32,11 @@ impl SegmentationColours {
     #[must_use]
     pub fn distinct() -> SegmentationColours {
         let surfaces = [[0, 0, 0], [60, 60, 60], [128, 128, 128], [150, 200, 255], [20, 30, 100], [255, 255, 255]];
-        // A walk through a 5 x 5 x 5 cube of colours that comes by each once and makes neighbours unlike; what is dark, as
-        // walls and floors are, or nearly the colour of a surface is passed over.
-        let cube =
-            (0..125).map(|i| (i * 37 + 12) % 125).map(|at| [at / 25, at / 5 % 5, at % 5].map(|level| 20 + 55 * level as u8));
+        // A walk through a 5 x 5 x 5 cube of colours that comes by each once; its stride and start are those of all that
+        // leave the classes of a scenario farthest apart. What is dark, as walls and floors are, or nearly the colour of
+        // a surface is passed over.
+        let walk = (0..125).map(|i| (i * 123 + 124) % 125);
+        let cube = walk.map(|at| [at / 25, at / 5 % 5, at % 5].map(|level| 20 + 55 * level as u8));
         let bright = cube.filter(|colour| colour.iter().any(|&channel| channel > 128));
         let mut free = bright.filter(|&colour| surfaces.iter().all(|&surface| difference(surface, colour) > NEARLY_ALIKE));
         let actors = std::array::from_fn(|_| free.next().expect("the cube has more colours than there are kinds"));
