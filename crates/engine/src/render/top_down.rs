@@ -224,3 +224,62 @@ impl Canvas<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::Assets;
+    use crate::map::{MapBuilder, Style};
+    use crate::math::Angle;
+
+    fn room() -> (TopDown, World) {
+        let style = Style {
+            floor: 0,
+            ceiling: 128,
+            light: 200,
+            floor_texture: "LAVA1",
+            ceiling_texture: "FLAT5_5",
+            wall: "A-BROK28",
+            step: "A-BROK28",
+            lintel: "A-BROK28",
+            special: 0,
+            tag: 0,
+        };
+        let mut builder = MapBuilder::new();
+        builder.rectangle(style, -300, 0, 500, 400);
+        builder.rectangle(Style { floor: 16, floor_texture: "FLOOR0_5", ..style }, 100, 100, 300, 300);
+        let map = Arc::new(Map::build(&builder.finish().unwrap(), "room", &[]).unwrap());
+        let mut world = World::new(map.clone(), 1);
+        world.add_player(Fixed::from_int(-200), Fixed::from_int(50), Angle::EAST);
+        (TopDown::new(map.clone(), Arc::new(Scene::new(&map, Assets::embedded())), 200, 160), world)
+    }
+
+    #[test]
+    fn pixels_and_positions_are_inverse() {
+        let (top_down, _) = room();
+        for (column, row) in [(0, 0), (199, 159), (100, 80), (37, 121)] {
+            let (x, y) = top_down.position_of(column, row);
+            assert_eq!(top_down.pixel_of(x, y), (column as i64, row as i64));
+        }
+        let (west, north) =
+            (top_down.pixel_of(Fixed::from_int(-300), Fixed::ZERO).0, top_down.pixel_of(Fixed::ZERO, Fixed::from_int(400)).1);
+        assert!(west >= 0 && north >= 0, "the whole map is in the picture");
+    }
+
+    #[test]
+    fn floors_walls_and_players_show() {
+        let (top_down, world) = room();
+        let mut picture = vec![0; 200 * 160 * 3];
+        top_down.draw(&world, &mut picture);
+        let at = |x: i32, y: i32| {
+            let (column, row) = top_down.pixel_of(Fixed::from_int(x), Fixed::from_int(y));
+            let at = (row as usize * 200 + column as usize) * 3;
+            [picture[at], picture[at + 1], picture[at + 2]]
+        };
+        assert_eq!(picture[..3], OUTSIDE);
+        assert_eq!([at(-300, 200), at(200, 0)], [WALL, WALL]);
+        assert_eq!(at(-200, 50), PLAYER);
+        let (lava, slab) = (at(0, 200), at(200, 200));
+        assert!(lava[0] > 2 * lava[2] && lava != slab, "lava is red: {lava:?}, slab {slab:?}");
+    }
+}
