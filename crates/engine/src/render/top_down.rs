@@ -16,8 +16,10 @@ const PLAYER: [u8; 3] = [60, 150, 255];
 const MARGIN: i64 = 4;
 /// Smallest half width of a thing, pixels.
 const LEAST_THING: i64 = 2;
-/// Smallest half length of a player's arrow, pixels.
+/// Smallest half length of a player's and a creature's arrow, pixels, and as a share of the picture's shorter side.
 const LEAST_PLAYER: i64 = 5;
+/// See above.
+const PLAYER_SHARE: i64 = 60;
 
 /// A picture of a map from above at one size: what does not change is worked out once.
 #[derive(Clone, Debug)]
@@ -102,7 +104,9 @@ impl TopDown {
     pub fn draw(&self, world: &World, out: &mut [u8]) {
         assert_eq!(out.len(), self.width * self.height * 3, "a buffer of height * width * 3 bytes is needed");
         assert_eq!(world.sectors.len(), self.map.sectors.len(), "the world is of another map");
-        let colours: Vec<[u8; 3]> = (0..world.sectors.len()).map(|sector| self.floor_colour(world, sector)).collect();
+        let floors = || world.sectors.iter().map(|sector| i64::from(sector.floor.floor()));
+        let range = [floors().min().unwrap_or(0), floors().max().unwrap_or(0)];
+        let colours: Vec<[u8; 3]> = (0..world.sectors.len()).map(|sector| self.floor_colour(world, sector, range)).collect();
         for (pixel, &sector) in out.chunks_exact_mut(3).zip(&self.ground) {
             pixel.copy_from_slice(colours.get(sector as usize).unwrap_or(&OUTSIDE));
         }
@@ -128,10 +132,12 @@ impl TopDown {
         }
     }
 
-    /// A floor's colour: the mean of its texture, lighter the higher it lies.
-    fn floor_colour(&self, world: &World, sector: usize) -> [u8; 3] {
+    /// A floor's colour: the mean of its texture, lighter the higher it lies among the others.
+    fn floor_colour(&self, world: &World, sector: usize, [lowest, highest]: [i64; 2]) -> [u8; 3] {
         let state = &world.sectors[sector];
-        let step = (i64::from(state.floor.0) >> 16).clamp(-400, 400);
+        // Maps of gentle slopes keep their colours, in deep ones the whole range is used.
+        let above_middle = i64::from(state.floor.floor()) - (lowest + highest) / 2;
+        let step = above_middle * 400 / ((highest - lowest) / 2).max(400);
         let mean = self.scene.mean_colour(state.floor_texture);
         mean.map(|channel| (i64::from(channel) * (600 + step) / 600).clamp(0, 255) as u8)
     }
@@ -154,7 +160,7 @@ impl TopDown {
             canvas.rectangle(column - half, row - half, column + half, row + half, colour);
             return;
         }
-        let half = half.max(LEAST_PLAYER);
+        let half = half.max(LEAST_PLAYER).max(self.width.min(self.height) as i64 / PLAYER_SHARE);
         // Tip and both tails, in units of half.
         let (cos, sin) = (i64::from(actor.angle.cos().0), i64::from(actor.angle.sin().0));
         let corner = |along: i64, aside: i64| {
