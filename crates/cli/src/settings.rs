@@ -4,6 +4,7 @@ use crate::args::{EnvArgs, Observation, Rules, Size};
 use crate::failure::Failure;
 use hasard_engine::assets::Assets;
 use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet};
+use hasard_learn::config::EnvConfig;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -43,6 +44,29 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
         map: None,
         assets: assets(args.iwad.as_deref())?,
     })
+}
+
+/// The environment of a training run from flags, in the words of its `config.json`.
+pub fn env_config(id: &str, args: &EnvArgs) -> EnvConfig {
+    let mut env = EnvConfig::new(id);
+    env.rules = match args.rules {
+        Rules::Paper => "paper",
+        Rules::Released => "released",
+    }
+    .into();
+    env.observation = match args.observation {
+        Observation::Rgb => "rgb",
+        Observation::RgbDepth => "rgb+depth",
+        Observation::Segmented => "segmented",
+        Observation::Grey => "grey",
+    }
+    .into();
+    (env.hard, env.full_actions, env.frame_skip) = (args.hard, args.full_actions, args.frame_skip);
+    env.frame_stack = usize::from(args.frame_stack);
+    if let Some(size) = args.size {
+        env.size = (size.width, size.height);
+    }
+    env
 }
 
 /// Where Debian's package puts Freedoom, for `--iwad auto`.

@@ -1,9 +1,9 @@
 //! `hasard train`: an agent from pixels.
 
-use crate::args::{Observation, Rules, TrainArgs};
+use crate::args::TrainArgs;
 use crate::failure::{Failure, Outcome};
 use hasard_envs::VecEnv;
-use hasard_learn::config::{Constraint, EnvConfig, Preset, TrainConfig};
+use hasard_learn::config::{Constraint, Preset, TrainConfig};
 use hasard_learn::interrupt::stop_on_interrupt;
 use hasard_learn::progress_bar::{Bar, line};
 use hasard_learn::report::Report;
@@ -95,33 +95,13 @@ fn describe(config: &TrainConfig, directory: &Path) {
 
 /// The settings of a fresh run: the preset's, then flags, then `--set`.
 fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
-    let flags = &args.env_args;
-    let mut env = EnvConfig::new(&args.env);
-    env.rules = match flags.rules {
-        Rules::Paper => "paper",
-        Rules::Released => "released",
-    }
-    .into();
-    env.observation = match flags.observation {
-        Observation::Rgb => "rgb",
-        Observation::RgbDepth => "rgb+depth",
-        Observation::Segmented => "segmented",
-        Observation::Grey => "grey",
-    }
-    .into();
-    (env.hard, env.full_actions, env.frame_skip) = (flags.hard, flags.full_actions, flags.frame_skip);
-    env.frame_stack = usize::from(flags.frame_stack);
-    if let Some(size) = flags.size {
-        env.size = (size.width, size.height);
-    }
+    let env = crate::settings::env_config(&args.env, &args.env_args);
     let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
     let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env).map_err(Failure::bad)?;
     config.seed = args.seed;
     config.device.clone_from(&args.device);
     config.frames = args.frames.unwrap_or(config.frames);
-    if args.sync {
-        config.sampling.synchronous = true;
-    }
+    config.sampling.synchronous = args.sync || (args.device == "cpu" && !args.asynchronous);
     if let Some(threads) = args.threads {
         config.learning.threads = usize::from(threads);
         config.sampling.samplers = usize::from(threads);
