@@ -6,7 +6,7 @@
 #[path = "../tests/published_figures/mod.rs"]
 mod published_figures;
 
-use published_figures::{COLUMNS, allowed, ours, published};
+use published_figures::{COLUMNS, allowed, ours, published, standard_error};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
@@ -28,7 +28,7 @@ fn main() {
             let (theirs, mine) = (row.columns[column], measured[column]);
             let bound = allowed(theirs, row.episodes, mine, episodes as f64);
             let difference = mine[0] - theirs[0];
-            let error = (theirs[1].powi(2) / row.episodes + mine[1].powi(2) / episodes as f64).sqrt();
+            let error = standard_error(theirs, row.episodes, mine, episodes as f64);
             let deviation = if error > 0.0 { format!("{:+.1}", difference / error) } else { "0".to_string() };
             let within = difference.abs() <= bound;
             compared += 1;

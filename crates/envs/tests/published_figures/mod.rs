@@ -61,9 +61,10 @@ fn play(env: &mut Env, policy: Policy, seed: u64) -> [f64; COLUMNS.len()] {
             return [episode.episode_return, episode.cost, f64::from(episode.length), path, farthest, lowest, highest, health];
         }
         let ([x, y, z], points) = look(env);
-        path += (x - last_x).hypot(y - last_y);
+        let distance = |x: f64, y: f64| (x * x + y * y).sqrt();
+        path += distance(x - last_x, y - last_y);
         (last_x, last_y) = (x, y);
-        farthest = farthest.max((x - start_x).hypot(y - start_y));
+        farthest = farthest.max(distance(x - start_x, y - start_y));
         (lowest, highest, health) = (lowest.min(z), highest.max(z), health.min(points));
     }
 }
@@ -82,9 +83,17 @@ pub fn ours(published: &Published, episodes: u64) -> [[f64; 2]; COLUMNS.len()] {
     })
 }
 
-/// How far two means may lie apart: three standard errors of both together or a tenth of the published one, whichever is
-/// larger. The tiny rest is for figures that were written with four decimals.
+/// The standard error of the difference of two means, each with its deviation and its number of episodes, if both measure the
+/// same thing: from the deviation of all episodes together. (Twenty episodes without an event say little about how
+/// rare it is.)
+pub fn standard_error(published: [f64; 2], published_episodes: f64, ours: [f64; 2], episodes: f64) -> f64 {
+    let squares = published[1].powi(2) * published_episodes + ours[1].powi(2) * episodes;
+    (squares / (published_episodes + episodes) * (1.0 / published_episodes + 1.0 / episodes)).sqrt()
+}
+
+/// How far two means may lie apart: three standard errors or a tenth of the published one, whichever is larger. The tiny rest
+/// is for figures that were written with four decimals.
 pub fn allowed(published: [f64; 2], published_episodes: f64, ours: [f64; 2], episodes: f64) -> f64 {
-    let error = (published[1].powi(2) / published_episodes + ours[1].powi(2) / episodes).sqrt();
+    let error = standard_error(published, published_episodes, ours, episodes);
     (3.0 * error).max(0.1 * published[0].abs()) + 1e-3
 }
