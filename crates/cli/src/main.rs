@@ -6,6 +6,7 @@ mod failure;
 mod actor;
 mod args;
 mod commands;
+mod contact_sheet;
 mod episode_lines;
 mod settings;
 
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Command::Report(args) => commands::report::run(&args),
         Command::Sweep(args) => commands::sweep::run(&args),
         Command::ExportWad(args) => commands::export_wad::run(&args),
+        Command::ContactSheet(args) => commands::contact_sheet::run(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
