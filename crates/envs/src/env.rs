@@ -8,7 +8,7 @@ use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Epi
 use hasard_engine::assets::Assets;
 use hasard_engine::map::Map;
 use hasard_engine::math::Rng;
-use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, View};
+use hasard_engine::render::{Buffers, FrameSize, RenderOptions, Renderer, Scene, TopDown, View};
 use hasard_engine::world::{Command, World};
 use std::sync::Arc;
 
@@ -60,6 +60,13 @@ impl Blueprint {
             scene: Arc::new(scene),
             view: Arc::new(view(options.size)?),
         })
+    }
+}
+
+impl Blueprint {
+    /// What every renderer of this environment draws in its own way.
+    fn render_options(&self) -> RenderOptions {
+        RenderOptions { green_goggles: self.template.rules.green_goggles(), published_depth: self.options.published_depth }
     }
 }
 
@@ -125,7 +132,7 @@ impl Env {
     fn of(blueprint: Arc<Blueprint>) -> Env {
         let game = blueprint.template.clone();
         let (scene, view) = (Arc::clone(&blueprint.scene), Arc::clone(&blueprint.view));
-        let eye = Eye::new(scene, view, &blueprint.options, blueprint.template.rules.green_goggles());
+        let eye = Eye::new(scene, view, &blueprint.options, blueprint.render_options());
         let mut env = Env {
             blueprint,
             game,
@@ -232,7 +239,27 @@ impl Env {
 
     /// A renderer of another size for this environment's world, for people's pictures.
     pub fn renderer(&self, size: FrameSize) -> Result<Renderer, EnvError> {
-        Ok(Renderer::new(Arc::clone(&self.blueprint.scene), Arc::new(view(size)?)))
+        let mut renderer = Renderer::new(Arc::clone(&self.blueprint.scene), Arc::new(view(size)?));
+        renderer.set_options(self.blueprint.render_options());
+        Ok(renderer)
+    }
+
+    /// The whole map from above, in a picture of `width` by `height` pixels.
+    #[must_use]
+    pub fn top_down(&self, width: usize, height: usize) -> TopDown {
+        TopDown::new(Arc::clone(&self.game.world.map), Arc::clone(&self.blueprint.scene), width, height)
+    }
+
+    /// The map's extent from above, to its very edges, so that positions can be drawn on it: its longer side takes `side`
+    /// pixels. With the picture's width and height.
+    #[must_use]
+    pub fn top_down_of_extent(&self, side: usize) -> (TopDown, usize, usize) {
+        let [west, south, east, north] = self.extent();
+        let lengths = [east - west, north - south].map(|length| length.max(1).unsigned_abs() as usize);
+        let longer = lengths[0].max(lengths[1]);
+        let [width, height] = lengths.map(|length| (length * side).div_ceil(longer).max(16));
+        let (map, scene) = (Arc::clone(&self.game.world.map), Arc::clone(&self.blueprint.scene));
+        (TopDown::of_area(map, scene, [west, east, south, north], width, height), width, height)
     }
 
     /// The last step's amount of each cost term.

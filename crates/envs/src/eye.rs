@@ -23,9 +23,9 @@ pub(crate) struct Eye {
 }
 
 impl Eye {
-    pub fn new(scene: Arc<Scene>, view: Arc<View>, options: &EnvOptions, green_goggles: bool) -> Eye {
+    pub fn new(scene: Arc<Scene>, view: Arc<View>, options: &EnvOptions, looks: RenderOptions) -> Eye {
         let mut renderer = Renderer::new(scene, view);
-        renderer.set_options(RenderOptions { green_goggles, published_depth: options.published_depth });
+        renderer.set_options(looks);
         let channels = match options.observation {
             ObservationKind::Rgb | ObservationKind::Segmented => 3,
             ObservationKind::RgbDepth => 4,

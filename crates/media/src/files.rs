@@ -21,6 +21,10 @@ impl WholeFile {
         let Some(name) = path.file_name() else {
             return Err(MediaError::format(path, "is not the name of a file; give one, such as out.png"));
         };
+        let kind = std::fs::metadata(path);
+        if kind.as_ref().is_ok_and(std::fs::Metadata::is_dir) {
+            return Err(MediaError::format(path, "is a folder; name a file in it"));
+        }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder {
             std::fs::create_dir_all(folder).map_err(|e| MediaError::io(folder, "make this folder", e))?;

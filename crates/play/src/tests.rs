@@ -186,7 +186,7 @@ fn views_and_panel_have_their_sizes() {
         stage.tic();
     }
     let size = FrameSize { width: 320, height: 240 };
-    let mut views = Views::new(&stage, size, &[ViewKind::Colour, ViewKind::Depth, ViewKind::Segmentation]).unwrap();
+    let mut views = Views::new(&stage, size, &[ViewKind::Colour, ViewKind::Depth, ViewKind::Segmented]).unwrap();
     let all = views.draw(&stage);
     let alone = Views::new(&stage, size, &[]).unwrap().draw(&stage);
     assert_eq!((alone.width(), alone.height()), (320, 240));

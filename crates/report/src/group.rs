@@ -176,7 +176,6 @@ mod tests {
                 rows: vec![],
                 evaluation: vec![],
                 heatmaps: vec![],
-                automap: None,
             }
         };
         let runs = vec![

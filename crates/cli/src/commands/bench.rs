@@ -11,7 +11,7 @@ pub fn run(args: &BenchArgs) -> Outcome {
     if !(args.seconds.is_finite() && args.seconds > 0.0 && args.seconds <= 86_400.0) {
         return Err(Failure::bad(format!("--seconds {}: give a number above 0, at most 86400", args.seconds)));
     }
-    let options = settings::env_options(&args.env_args, Size::LEARNER)?;
+    let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
     let report = bench(&args.env, &options, args.envs as usize, args.threads as usize, args.seconds).map_err(Failure::bad)?;
     let (depth, labels) = (options.observation == ObservationKind::RgbDepth, options.observation == ObservationKind::Segmented);
     if args.json {

@@ -4,6 +4,7 @@ pub mod bench;
 pub mod envs;
 pub mod eval;
 pub mod export_wad;
+pub mod play;
 pub mod record;
 pub mod render;
 pub mod report;
