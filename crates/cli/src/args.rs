@@ -273,9 +273,11 @@ pub enum View {
 
 /// `hasard play`.
 #[derive(Args, Debug)]
-#[command(after_help = "Keys: WASD move, arrows turn and look, the mouse turns (click to catch it, Esc frees it), Space jump, E use, C crouch,\n\
+#[command(
+    after_help = "Keys: WASD move, arrows turn and look, the mouse turns (click to catch it, Esc frees it), Space jump, E use, C crouch,\n\
                         Shift run, Ctrl or left button attack, Q and wheel weapons, T turn round, P pause, R restart, N next episode, Esc quit.\n\
-                        Only what the action space has does something; --full-actions gives everything.")]
+                        Only what the action space has does something; --full-actions gives everything."
+)]
 pub struct PlayArgs {
     /// Environment id, see `hasard envs`
     pub env: String,

@@ -25,7 +25,9 @@ const MOST_LESSONS: usize = 16;
 /// Understands `1,2,3`, where every level has an equal share of `frames`, or `1:400000,2:300000,3:300000`.
 pub fn parse_curriculum(text: &str, frames: u64) -> Result<Vec<Lesson>, LearnError> {
     let wrong = |why: &str| {
-        LearnError::Config(format!("curriculum '{text}': {why}; write levels such as 1,2,3, or LEVEL:FRAMES such as 1:400000,2:600000"))
+        LearnError::Config(format!(
+            "curriculum '{text}': {why}; write levels such as 1,2,3, or LEVEL:FRAMES such as 1:400000,2:600000"
+        ))
     };
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     if parts.len() > MOST_LESSONS {

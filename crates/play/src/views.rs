@@ -57,8 +57,7 @@ impl Views {
         let kinds = if kinds.is_empty() { vec![ViewKind::Colour] } else { kinds.to_vec() };
         let env = stage.shown();
         let options = env.options();
-        let colours =
-            if options.published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
+        let colours = if options.published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
         let automap = kinds.contains(&ViewKind::Automap).then(|| {
             let height = usize::from(size.height);
             let width = match kinds[..] {

@@ -79,7 +79,10 @@ fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions)
         return Err(Failure::bad(problem));
     }
     if args.policy.is_some() || args.env_args.changes_task() {
-        return Err(Failure::bad(format!("{}: a recorded episode has its own environment and actions; leave those options out", args.what)));
+        return Err(Failure::bad(format!(
+            "{}: a recorded episode has its own environment and actions; leave those options out",
+            args.what
+        )));
     }
     let mut replay = open(file, looks)?;
     let film = play_out(&mut replay, &args.out, looks.size, &args.film, args.steps)?;

@@ -24,8 +24,7 @@ pub fn run(args: &RenderArgs) -> Outcome {
     let picture = views.draw(stage);
     hasard_media::png::write(&picture, &args.out).map_err(Failure::bad)?;
     if args.json {
-        let labelled =
-            [args.buffer].iter().chain(&args.beside).any(|view| matches!(view, View::Labels | View::Segmented));
+        let labelled = [args.buffer].iter().chain(&args.beside).any(|view| matches!(view, View::Labels | View::Segmented));
         let labels = if labelled { labels(&views) } else { Value::Null };
         let file = args.out.display().to_string();
         say!("{}", json!({ "file": file, "width": picture.width(), "height": picture.height(), "labels": labels }));

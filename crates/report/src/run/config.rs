@@ -121,7 +121,9 @@ impl Config {
         let seed = seed.parse().map_err(|_| format!("has the seed {seed}, which is no whole number from 0 on"))?;
         let (scenario, mut level) = scenario_and_level(&env);
         // A curriculum ends in its last level, and that is what its results are results of.
-        if let Some(last) = options.get("curriculum").and_then(|levels| levels.rsplit(',').next()?.split(':').next()?.trim().parse().ok()) {
+        if let Some(last) =
+            options.get("curriculum").and_then(|levels| levels.rsplit(',').next()?.split(':').next()?.trim().parse().ok())
+        {
             level = last;
         }
         let below =

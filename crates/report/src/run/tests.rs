@@ -58,9 +58,7 @@ fn what_makes_an_experiment_is_everything_but_machine_and_seed() {
 #[test]
 fn the_lessons_of_a_curriculum_are_told_by_their_levels() {
     let parse = |lessons: &str| {
-        let text = format!(
-            "{{\"env\":\"RemedyRushLevel3-v0\",\"algo\":\"PPOPID\",\"seed\":1,\"curriculum\":{lessons}}}"
-        );
+        let text = format!("{{\"env\":\"RemedyRushLevel3-v0\",\"algo\":\"PPOPID\",\"seed\":1,\"curriculum\":{lessons}}}");
         Config::parse(&text).map(|config| (config.options["curriculum"].clone(), config.level))
     };
     let equal = r#"[{"level":1,"frames":33},{"level":2,"frames":33},{"level":3,"frames":34}]"#;
