@@ -4,7 +4,7 @@ use crate::commands::eval::Player;
 use crate::failure::Failure;
 use crate::settings;
 use hasard_engine::world::Command;
-use hasard_envs::{ActionSpace, EnvOptions, Move, Policy, PolicyRun, Step};
+use hasard_envs::{ActionSpace, EnvOptions, Move, PolicyRun, Step};
 use hasard_learn::evaluate::{Agent, Choice, Which, run_config};
 use hasard_play::{Recorder, Stage};
 use std::path::Path;
@@ -31,7 +31,7 @@ impl Performance {
         if let Some(run) = policy.strip_prefix("run:").map(Path::new) {
             return Performance::of_agent(id, run, &agent_options(run, looks)?, looks, seed);
         }
-        let policy: Policy = policy.parse().map_err(Failure::bad)?;
+        let policy = settings::policy(policy)?;
         let mut stage = Stage::new(id, looks).map_err(Failure::bad)?;
         stage.reset(seed);
         let actor = Actor::Fixed(Box::new(PolicyRun::new(policy, stage.env().action_space(), seed)));

@@ -233,11 +233,18 @@ pub struct BenchArgs {
     #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub envs: u32,
     /// Worker threads
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
     pub threads: u32,
     /// Seconds to measure
     #[arg(long, default_value_t = 5.0)]
     pub seconds: f64,
+    /// Measure the whole training loop (worlds, inference, learning; one epoch) and what the processor's matrix products
+    /// would allow, in turns
+    #[arg(long)]
+    pub learn: bool,
+    /// With --learn: the algorithm
+    #[arg(long, default_value = "PPOLag", requires = "learn")]
+    pub algo: String,
     /// Seed
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
@@ -337,7 +344,7 @@ pub struct RenderArgs {
 pub struct TrainArgs {
     /// Environment id
     pub env: String,
-    /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, FOCOPS, CUP, IPO
+    /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
     #[arg(long, default_value = "PPOLag")]
     pub algo: String,
     /// paper, released, or quick: settings that learn within minutes on a CPU
@@ -368,9 +375,12 @@ pub struct TrainArgs {
     /// cpu, or vulkan / cuda where the program was built with that feature
     #[arg(long, default_value = "cpu")]
     pub device: String,
-    /// Sampling and learning take turns: slower, and bit-reproducible
+    /// Sampling and learning take turns, bit-reproducibly; the default on the CPU, where both want the same cores
     #[arg(long)]
     pub sync: bool,
+    /// Sampling and learning run side by side; the default on a graphics card
+    #[arg(long = "async", conflicts_with = "sync")]
+    pub asynchronous: bool,
     /// Threads; all cores if absent
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,

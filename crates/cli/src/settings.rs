@@ -3,7 +3,7 @@
 use crate::args::{EnvArgs, LooksArgs, Observation, ObservationArgs, Rules, Size, View};
 use crate::failure::Failure;
 use hasard_engine::assets::Assets;
-use hasard_envs::{EnvId, EnvOptions, FrameSize, ObservationKind, RuleSet};
+use hasard_envs::{EnvError, EnvId, EnvOptions, FrameSize, ObservationKind, Policy, RuleSet};
 use hasard_learn::config::EnvConfig;
 use hasard_play::ViewKind;
 use std::path::Path;
@@ -34,6 +34,12 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
         assets: assets(args.iwad.as_deref())?,
         ..EnvOptions::default()
     })
+}
+
+/// A policy that looks at nothing, by its text.
+pub fn policy(text: &str) -> Result<Policy, Failure> {
+    let beside = "; run:DIR is the agent of a training run";
+    text.parse().map_err(|error: EnvError| Failure::bad(format!("{error}{beside}")))
 }
 
 /// The options with what a learner sees.
@@ -81,6 +87,32 @@ pub fn views(first: View, beside: &[View]) -> Vec<ViewKind> {
 pub fn trained_options(env: &EnvConfig) -> Result<EnvOptions, Failure> {
     let options = env.options().map_err(Failure::bad)?;
     Ok(EnvOptions { assets: assets(env.iwad.as_deref().map(Path::new))?, ..options })
+}
+
+/// The environment of a training run from flags, in the words of its `config.json`.
+pub fn env_config(id: &str, args: &EnvArgs, observation: &ObservationArgs) -> EnvConfig {
+    let mut env = EnvConfig::new(id);
+    env.rules = match args.rules {
+        Rules::Paper => "paper",
+        Rules::Released => "released",
+    }
+    .into();
+    env.observation = match observation.observation {
+        Observation::Rgb => "rgb",
+        Observation::RgbDepth => "rgb+depth",
+        Observation::Segmented => "segmented",
+        Observation::Grey => "grey",
+    }
+    .into();
+    (env.hard, env.full_actions, env.frame_skip) = (args.hard, args.full_actions, args.frame_skip);
+    env.frame_stack = usize::from(observation.frame_stack);
+    let looks = &observation.looks;
+    (env.published_depth, env.published_colours) = (looks.published_depth, looks.published_colours);
+    env.iwad = args.iwad.as_ref().map(|path| path.display().to_string());
+    if let Some(size) = args.size {
+        env.size = (size.width, size.height);
+    }
+    env
 }
 
 /// Where Debian's package puts Freedoom, for `--iwad auto`.

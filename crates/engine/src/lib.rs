@@ -11,6 +11,8 @@
 //!
 //! The engine knows no reward, no scenario, no thread and no file system.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods, clippy::disallowed_types, reason = "tests compare with the exact functions"))]
+
 pub mod assets;
 pub mod map;
 pub mod math;

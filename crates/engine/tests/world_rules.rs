@@ -311,7 +311,7 @@ fn a_crouched_player_stays_down_under_a_low_ceiling() {
     }
     run(&mut world, 20, NOTHING);
     // He rises as far as the room allows.
-    assert_eq!(world.players[0].crouch.to_f64().mul_add(12.0, 0.5).floor(), 8.0);
+    assert_eq!((world.players[0].crouch.to_f64() * 12.0 + 0.5).floor(), 8.0);
     while body(&world).x < units(320) {
         run(&mut world, 1, Buttons::MOVE_FORWARD | Buttons::SPEED);
     }

@@ -91,6 +91,7 @@ pub struct Snapshot {
     seed: u64,
     totals: Totals,
     last: Step,
+    last_costs: [f64; MOST_TERMS],
     memory: (Vec<u8>, usize),
 }
 
@@ -321,14 +322,21 @@ impl Env {
     /// The present moment, to come back to.
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot { game: self.game.clone(), seed: self.seed, totals: self.totals, last: self.last, memory: self.eye.memory() }
+        Snapshot {
+            game: self.game.clone(),
+            seed: self.seed,
+            totals: self.totals,
+            last: self.last,
+            last_costs: self.last_costs,
+            memory: self.eye.memory(),
+        }
     }
 
     /// Comes back to a moment saved from an environment of the same kind.
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.game.clone_from(&snapshot.game);
-        (self.seed, self.totals, self.last) = (snapshot.seed, snapshot.totals, snapshot.last);
-        self.last_costs = [0.0; MOST_TERMS];
+        (self.seed, self.totals) = (snapshot.seed, snapshot.totals);
+        (self.last, self.last_costs) = (snapshot.last, snapshot.last_costs);
         self.eye.remember(&snapshot.memory);
     }
 

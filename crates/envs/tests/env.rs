@@ -1,9 +1,7 @@
-//! The single environment: options, observations, snapshots, ends; and the batch of real worlds.
+//! The single environment: options, observations, ends.
 
 use hasard_engine::math::Rng;
-use hasard_envs::{
-    ActionSpace, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, VecEnv, VecOptions, scenarios,
-};
+use hasard_envs::{ActionSpace, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, scenarios};
 use std::sync::Arc;
 
 fn ids() -> Vec<String> {
@@ -25,51 +23,6 @@ fn observation(env: &mut Env) -> Vec<u8> {
     let mut out = vec![0; env.observation_shape().iter().product()];
     env.observe(&mut out);
     out
-}
-
-#[test]
-fn a_restored_moment_goes_on_as_before() {
-    let mut rng = Rng::new(3);
-    for id in ids() {
-        for (hard, full_actions) in [(false, false), (false, true), (true, false)] {
-            let mut env = Env::new(&id, &EnvOptions { hard, full_actions, frame_stack: 2, ..options() }).unwrap();
-            env.reset(u64::from(rng.below(1000)));
-            let actions: Vec<_> = (0..150).map(|_| draw(&mut rng, env.action_space())).collect();
-            let at = rng.below(100) as usize;
-            for (groups, deltas) in &actions[..at] {
-                env.step(groups, deltas);
-            }
-            let snapshot = env.snapshot();
-            let mut other = env.sibling();
-            other.reset(999);
-            other.restore(&snapshot);
-            assert_eq!(observation(&mut env), observation(&mut other), "{id} after {at}");
-            for (i, (groups, deltas)) in actions[at..].iter().enumerate() {
-                assert_eq!(env.step(groups, deltas), other.step(groups, deltas), "{id} step {}", at + i);
-                assert_eq!(env.step_costs(), other.step_costs());
-                assert_eq!(env.state_hash(), other.state_hash(), "{id} step {}", at + i);
-            }
-            assert_eq!(observation(&mut env), observation(&mut other), "{id}");
-            assert_eq!(env.episode(), other.episode());
-        }
-    }
-}
-
-#[test]
-fn equal_seeds_repeat_and_others_differ() {
-    for id in ids() {
-        let mut rng = Rng::new(8);
-        let mut env = Env::new(&id, &options()).unwrap();
-        let actions: Vec<_> = (0..100).map(|_| draw(&mut rng, env.action_space())).collect();
-        let mut play = |seed| {
-            env.reset(seed);
-            let steps: Vec<_> = actions.iter().map(|(groups, deltas)| env.step(groups, deltas)).collect();
-            (steps, env.state_hash(), observation(&mut env))
-        };
-        let (first, other, again) = (play(1), play(2), play(1));
-        assert_eq!(first, again, "{id}");
-        assert_ne!(first.1, other.1, "{id}");
-    }
 }
 
 #[test]
@@ -193,65 +146,6 @@ fn a_map_of_ones_own_is_played_or_refused() {
     for (wrong, what) in [(startless, "player start"), (untagged, "tag")] {
         let error = make(wrong).err().expect(what).to_string();
         assert!(error.contains(what), "{error}");
-    }
-}
-
-/// Everything that a batch gave in `steps` steps, lane by lane.
-fn play_batch(id: &str, options: VecOptions, steps: usize, by_groups: bool) -> Vec<Vec<u8>> {
-    let mut worlds = VecEnv::new(id, &crate::options(), options).unwrap();
-    let mut record = vec![Vec::new(); options.lanes];
-    let mut rngs: Vec<Rng> = (0..options.lanes).map(|lane| Rng::for_lane(77, lane as u64)).collect();
-    let space = worlds.action_space().clone();
-    let whole = options.groups;
-    let groups: Vec<usize> = if by_groups { (0..options.groups).collect() } else { vec![whole] };
-    let mut batches: Vec<_> = groups.iter().map(|&group| worlds.batch(group)).collect();
-    for step in 0..=steps {
-        for (batch, &group) in batches.iter_mut().zip(&groups) {
-            let lanes = worlds.group_lanes(group);
-            if step > 0 {
-                for (i, lane) in lanes.clone().enumerate() {
-                    let parts = space.groups.len();
-                    let (actions, _) = draw(&mut rngs[lane], &space);
-                    batch.actions[i * parts..(i + 1) * parts].copy_from_slice(&actions);
-                }
-            }
-            let sent = std::mem::take(batch);
-            *batch = match (by_groups, step) {
-                (true, 0) => worlds.send_reset(group, sent).and_then(|()| worlds.recv(group)).unwrap(),
-                (true, _) => worlds.send(group, sent).and_then(|()| worlds.recv(group)).unwrap(),
-                (false, _) => {
-                    let mut batch = sent;
-                    if step == 0 { worlds.reset(&mut batch) } else { worlds.step(&mut batch) }.unwrap();
-                    batch
-                }
-            };
-            let pixels = batch.observations.len() / lanes.len();
-            for (i, lane) in lanes.enumerate() {
-                let to = &mut record[lane];
-                to.extend_from_slice(&batch.observations[i * pixels..(i + 1) * pixels]);
-                to.extend_from_slice(&batch.rewards[i].to_le_bytes());
-                to.extend_from_slice(&batch.costs[i].to_le_bytes());
-                to.extend_from_slice(&[u8::from(batch.terminated[i]), u8::from(batch.truncated[i])]);
-            }
-        }
-    }
-    record
-}
-
-#[test]
-fn a_lane_lives_the_same_life_in_every_batch() {
-    let options = |lanes, threads, groups| VecOptions { lanes, threads, groups, seed: 21, ..VecOptions::default() };
-    for id in ids() {
-        let expected = play_batch(&id, options(32, 0, 1), 8, false);
-        for (lanes, threads, groups, by_groups) in
-            [(32, 1, 1, false), (32, 2, 2, true), (32, 3, 1, false), (7, 1, 1, false), (7, 2, 2, true), (1, 3, 1, true)]
-        {
-            let found = play_batch(&id, options(lanes, threads, groups), 8, by_groups);
-            assert!(found == expected[..lanes], "{id}: {lanes} lanes, {threads} threads, {groups} groups");
-        }
-        for (lane, record) in expected.iter().enumerate() {
-            assert!(expected[..lane].iter().all(|other| other != record), "{id}: lane {lane} repeats another");
-        }
     }
 }
 

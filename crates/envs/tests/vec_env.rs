@@ -181,7 +181,7 @@ fn threads_width_and_halves_change_nothing() {
 fn seeds_lanes_and_episodes_differ() {
     let options = VecOptions { lanes: 16, seed: 1, ..VecOptions::default() };
     let (one, other) = (lives_by_step(options, 40), lives_by_step(VecOptions { seed: 2, ..options }, 40));
-    let mut seeds = std::collections::HashSet::new();
+    let mut seeds = std::collections::BTreeSet::new();
     for life in one.iter().chain(&other) {
         let episodes: Vec<&Episode> = life.iter().filter_map(|row| row.6.as_ref()).collect();
         assert!(!episodes.is_empty());

@@ -1,5 +1,6 @@
 //! Everything that can go wrong in training, each with where and what to do.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// An error of the learner; its text names the input at fault and the remedy.
@@ -50,7 +51,19 @@ impl std::fmt::Display for LearnError {
             LearnError::Config(text) | LearnError::Worlds(text) | LearnError::Panic(text) | LearnError::Diverged(text) => {
                 f.write_str(text)
             }
-            LearnError::File { path, doing, source } => write!(f, "cannot {doing} {}: {source}", path.display()),
+            LearnError::File { path, doing, source } => {
+                write!(f, "cannot {doing} {}: {source}", path.display())?;
+                match source.kind() {
+                    ErrorKind::StorageFull | ErrorKind::QuotaExceeded => f.write_str("; make room and go on with --resume"),
+                    ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+                        f.write_str("; choose a place that you may write to")
+                    }
+                    ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+                        f.write_str("; a file is in the way, name a folder of its own for the run")
+                    }
+                    _ => Ok(()),
+                }
+            }
             LearnError::Content { path, problem } => write!(f, "{}: {problem}", path.display()),
         }
     }

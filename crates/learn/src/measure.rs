@@ -42,13 +42,13 @@ impl Measurement {
 /// Side of the products that the bound is taken from.
 const SIDE: usize = 1024;
 
-/// Measures the training loop and the products in turns, so that whatever else the machine does meets both alike.
+/// Measures the training loop, about `seconds` in each round, and the products in turns, so that whatever else the machine does meets both alike.
 /// Nothing is written to the disk.
 pub fn measure(
     config: &TrainConfig,
     make_worlds: &MakeWorlds<'_>,
     rounds: usize,
-    rollouts: usize,
+    seconds: f64,
     round_done: &mut dyn FnMut(usize),
 ) -> Result<Measurement, LearnError> {
     let mut session = Session::new(config.clone(), &Beginning::Nothing, make_worlds)?;
@@ -66,7 +66,7 @@ pub fn measure(
         burn_products.push(burn_product_rate());
         let start = Instant::now();
         let mut steps = 0;
-        for _ in 0..rollouts.max(1) {
+        while steps == 0 || start.elapsed().as_secs_f64() < seconds {
             session.go_on(rollout);
             rollout = session.turn(&mut warn)?;
             steps += rollout.rows();

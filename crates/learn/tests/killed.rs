@@ -88,6 +88,7 @@ fn a_full_disk_ends_the_run_with_an_error_and_loses_nothing() {
     let (result, ..) = tiny::run(Start::Fresh(config.clone()), &path);
     let message = result.unwrap_err();
     assert!(message.contains("metrics.jsonl") && message.contains("No space left"), "{message}");
+    assert!(message.contains("--resume"), "{message}");
     fs::remove_file(&log).unwrap();
     let (result, _, warnings) = tiny::run(Start::Resume { frames: Some(2 * config.frames) }, &path);
     assert_eq!(result.unwrap().last.frames, 2 * config.frames);

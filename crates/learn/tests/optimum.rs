@@ -6,9 +6,10 @@ use hasard_learn::config::{AlgorithmKind, Preset, TrainConfig};
 use hasard_learn::report::Report;
 use hasard_learn::trainer::Start;
 
-/// Mean return and cost over the last quarter of the run.
+/// Mean return and cost over the last half of the run. A multiplier that follows the gradient circles around the optimum
+/// (the best action jumps where the price crosses 1), and it is the mean of a circle that lies there.
 fn late(reports: &[Report]) -> (f64, f64) {
-    let late = &reports[reports.len() * 3 / 4..];
+    let late = &reports[reports.len() / 2..];
     let mean = |of: fn(&Report) -> f64| late.iter().map(of).sum::<f64>() / late.len() as f64;
     (mean(|report| report.means.unwrap().0), mean(|report| report.means.unwrap().1))
 }
@@ -29,7 +30,8 @@ fn quick(algorithm: AlgorithmKind) -> TrainConfig {
     let mut config = tiny::config(algorithm);
     config.frames = 512 * 200;
     config.reporting.window = 64;
-    config.algorithm_settings.multiplier_rate = 0.1;
+    config.algorithm_settings.multiplier_rate =
+        if matches!(algorithm, AlgorithmKind::PpoLag | AlgorithmKind::Focops) { 0.03 } else { 0.1 };
     config.algorithm_settings.pid_gains = (0.5, 0.1, 0.1);
     config.algorithm_settings.ipo_kappa = 0.3;
     config.algorithm_settings.ipo_limit = 2.0;

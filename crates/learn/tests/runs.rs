@@ -417,3 +417,25 @@ fn a_curriculum_stopped_at_every_moment_equals_the_uninterrupted_one() {
         fs::remove_dir_all(path).unwrap();
     }
 }
+
+/// A panic in the learner's own thread ends the run with an error too, and the run goes on from its last checkpoint.
+#[test]
+fn a_panic_of_the_learner_ends_the_run_with_an_error_and_it_goes_on() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.reporting.checkpoint_seconds = 0.0;
+    config.frames = 6 * config.frames_per_rollout();
+    let straight = tiny::directory("never-panicked");
+    tiny::run(Start::Fresh(config.clone()), &straight).0.unwrap();
+    let path = tiny::directory("learner-panic");
+    let stop = AtomicBool::new(false);
+    let third = 3 * config.frames_per_rollout();
+    let mut hear = |report: &hasard_learn::report::Report| assert!(report.frames < third, "the tape tore");
+    let result =
+        train(Start::Fresh(config), &path, &tiny::worlds, &mut Hooks { stop: &stop, report: &mut hear, warn: &mut |_| {} });
+    let message = result.unwrap_err().to_string();
+    assert!(message.contains("the learner") && message.contains("the tape tore"), "{message}");
+    tiny::run(Start::Resume { frames: None }, &path).0.unwrap();
+    assert_eq!(rows(&path), rows(&straight));
+    fs::remove_dir_all(straight).unwrap();
+    fs::remove_dir_all(path).unwrap();
+}

@@ -107,6 +107,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MediaError> {
 /// When it cannot be read or is larger.
 pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, MediaError> {
     use std::io::Read;
+    if path.is_dir() {
+        return Err(MediaError::format(path, "is a folder; name a file"));
+    }
     let file = std::fs::File::open(path).map_err(|e| MediaError::io(path, "read", e))?;
     let mut bytes = Vec::new();
     file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| MediaError::io(path, "read", e))?;

@@ -1,15 +1,20 @@
-//! `hasard bench`: policy steps per second of a batch of worlds.
+//! `hasard bench`: policy steps per second of a batch of worlds, or of the whole training loop.
 
 use crate::args::{BenchArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
-use hasard_envs::{ObservationKind, bench};
+use hasard_envs::{ObservationKind, VecEnv, bench};
+use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
+use hasard_learn::measure::measure;
 use serde_json::json;
 
 /// Runs the command.
 pub fn run(args: &BenchArgs) -> Outcome {
     if !(args.seconds.is_finite() && args.seconds > 0.0 && args.seconds <= 86_400.0) {
         return Err(Failure::bad(format!("--seconds {}: give a number above 0, at most 86400", args.seconds)));
+    }
+    if args.learn {
+        return learn(args);
     }
     let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
     let report = bench(&args.env, &options, args.envs as usize, args.threads as usize, args.seconds).map_err(Failure::bad)?;
@@ -41,5 +46,62 @@ pub fn run(args: &BenchArgs) -> Outcome {
             report.resets
         );
     }
+    Ok(())
+}
+
+/// Seconds that a round of products and training takes, about; a measurement has at least [`LEAST_ROUNDS`].
+const ROUND_SECONDS: f64 = 5.0;
+const LEAST_ROUNDS: usize = 3;
+
+fn learn(args: &BenchArgs) -> Outcome {
+    let env = settings::env_config(&args.env, &args.env_args, &args.observation);
+    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, Preset::Paper, env).map_err(Failure::bad)?;
+    let threads = args.threads as usize;
+    config.seed = args.seed;
+    config.sampling.lanes = args.envs as usize;
+    (config.learning.threads, config.sampling.samplers) = (threads, threads);
+    config.check().map_err(Failure::bad)?;
+    let options = settings::trained_options(&config.env)?;
+    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
+    let rounds = ((args.seconds / ROUND_SECONDS).ceil() as usize).max(LEAST_ROUNDS);
+    let measured = measure(&config, &make, rounds, args.seconds / rounds as f64, &mut |round| {
+        if !args.json {
+            eprintln!("round {round} of {rounds}");
+        }
+    })
+    .map_err(Failure::bad)?;
+    if args.json {
+        let object = json!({
+            "env": args.env,
+            "algorithm": config.algorithm.name(),
+            "learning_steps_per_second": measured.steps_per_second,
+            "product_flops": measured.product_rate,
+            "burn_product_flops": measured.burn_product_rate,
+            "flop_per_step": measured.flop_per_step,
+            "bound_steps_per_second": measured.bound(),
+            "share": measured.share(),
+            "envs": args.envs,
+            "threads": measured.threads,
+            "rounds": measured.rounds,
+        });
+        say!("{object}");
+        return Ok(());
+    }
+    say!(
+        "{} on {}: {:.0} policy steps/s of worlds, inference and learning (1 epoch), {} worlds, {} thread(s)",
+        config.algorithm,
+        args.env,
+        measured.steps_per_second,
+        args.envs,
+        measured.threads
+    );
+    say!(
+        "{:.1} GFLOP/s in large matrix products (burn's: {:.1}) / {:.1} MFLOP a step = {:.0} steps/s: {:.1} % of that bound",
+        measured.product_rate / 1e9,
+        measured.burn_product_rate / 1e9,
+        measured.flop_per_step / 1e6,
+        measured.bound(),
+        100.0 * measured.share()
+    );
     Ok(())
 }

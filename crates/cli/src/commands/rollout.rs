@@ -5,7 +5,7 @@ use crate::actor::agent_options;
 use crate::args::{RolloutArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::{episode_lines, settings};
-use hasard_envs::{Env, Policy, rollout};
+use hasard_envs::{Env, rollout};
 use hasard_learn::evaluate::{Choice, Which};
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub fn run(args: &RolloutArgs) -> Outcome {
         player.play(&args.env, &options, args.episodes, args.seed, &mut lines)?;
         return lines.summary(false);
     }
-    let policy: Policy = args.policy.parse().map_err(Failure::bad)?;
+    let policy = settings::policy(&args.policy)?;
     let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
     for i in 0..args.episodes {
         let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i)));

@@ -1,6 +1,6 @@
 //! `hasard train`: an agent from pixels.
 
-use crate::args::{Observation, Rules, TrainArgs};
+use crate::args::TrainArgs;
 use crate::automap;
 use crate::failure::{Failure, Outcome};
 use hasard_envs::{EnvId, VecEnv};
@@ -112,36 +112,13 @@ fn describe(config: &TrainConfig, directory: &Path) {
 
 /// The settings of a fresh run: the preset's, then flags, then `--set`.
 fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
-    let flags = &args.env_args;
-    let mut env = EnvConfig::new(&args.env);
-    env.rules = match flags.rules {
-        Rules::Paper => "paper",
-        Rules::Released => "released",
-    }
-    .into();
-    env.observation = match args.observation.observation {
-        Observation::Rgb => "rgb",
-        Observation::RgbDepth => "rgb+depth",
-        Observation::Segmented => "segmented",
-        Observation::Grey => "grey",
-    }
-    .into();
-    (env.hard, env.full_actions, env.frame_skip) = (flags.hard, flags.full_actions, flags.frame_skip);
-    env.frame_stack = usize::from(args.observation.frame_stack);
-    let looks = &args.observation.looks;
-    (env.published_depth, env.published_colours) = (looks.published_depth, looks.published_colours);
-    env.iwad = flags.iwad.as_ref().map(|path| path.display().to_string());
-    if let Some(size) = flags.size {
-        env.size = (size.width, size.height);
-    }
+    let env = crate::settings::env_config(&args.env, &args.env_args, &args.observation);
     let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
     let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env).map_err(Failure::bad)?;
     config.seed = args.seed;
     config.device.clone_from(&args.device);
     config.frames = args.frames.unwrap_or(config.frames);
-    if args.sync {
-        config.sampling.synchronous = true;
-    }
+    config.sampling.synchronous = args.sync || (args.device == "cpu" && !args.asynchronous);
     if let Some(threads) = args.threads {
         config.learning.threads = usize::from(threads);
         config.sampling.samplers = usize::from(threads);

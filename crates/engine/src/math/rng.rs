@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn lanes_and_seeds_differ() {
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = std::collections::BTreeSet::new();
         for seed in 0..64 {
             for lane in 0..64 {
                 assert!(seen.insert(Rng::for_lane(seed, lane).next_u64()), "seed {seed} lane {lane}");

@@ -4,6 +4,9 @@
 //! are immutable and shared. A [`Renderer`] owns the memory of one drawing thread. All arithmetic is on integers, so
 //! that the same world gives the same pixels everywhere.
 
+// Physics and pixels are whole numbers: a floating-point operation here is a mistake.
+#![cfg_attr(not(test), deny(clippy::float_arithmetic))]
+
 mod camera;
 mod convert;
 mod frame;

@@ -124,7 +124,7 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
         kind: actor.kind,
         picture: index,
         mirrored: frame.mirrored[rotation],
-        translucent: matches!(actor.kind, ActorKind::BulletPuff | ActorKind::BlurSphere),
+        translucent: matches!(actor.kind, ActorKind::BulletPuff | ActorKind::RocketSmokeTrail | ActorKind::BlurSphere),
         distance,
         inverse: (1 << (INVERSE_BITS + 16)) / distance,
         table,

@@ -238,3 +238,16 @@ fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedPicture>, x: i32,
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_embedded_bar_is_complete() {
+        let art = BarArt::new(&Assets::embedded());
+        let single = [&art.bar, &art.arms, &art.percent, &art.dead_face];
+        let many = art.big_digits.iter().chain(&art.grey_digits).chain(&art.yellow_digits).chain(&art.keys);
+        assert!(single.into_iter().chain(many).chain(art.faces.iter().flatten()).all(Option::is_some));
+    }
+}

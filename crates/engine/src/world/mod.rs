@@ -4,6 +4,9 @@
 //! [`World::finish_tic`] (what was created during the tic is run once, and time advances): the order of work of the
 //! original engine, with the scripts in the caller's hands.
 
+// Physics and pixels are whole numbers: a floating-point operation here is a mistake.
+#![cfg_attr(not(test), deny(clippy::float_arithmetic))]
+
 mod actor;
 mod actor_info;
 mod arena;

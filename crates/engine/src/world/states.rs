@@ -449,3 +449,23 @@ impl Actor {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::{Assets, SPRITE_NAMES};
+
+    #[test]
+    fn every_frame_of_every_animation_is_painted() {
+        let assets = Assets::embedded();
+        for kind in ActorKind::all() {
+            for phase in [Phase::Idle, Phase::Walk, Phase::Pain, Phase::Death] {
+                for shown in animation(kind, phase).frames.iter().filter(|shown| shown.sprite != u8::MAX) {
+                    let painted = assets.sprites[usize::from(shown.sprite)].frames.len();
+                    let name = SPRITE_NAMES[usize::from(shown.sprite)];
+                    assert!(usize::from(shown.frame) < painted, "{kind:?} {phase:?}: {name} lacks frame {}", shown.frame);
+                }
+            }
+        }
+    }
+}

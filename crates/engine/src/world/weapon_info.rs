@@ -247,3 +247,23 @@ impl Weapon {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::Assets;
+
+    #[test]
+    fn every_frame_of_every_weapon_is_painted() {
+        let assets = Assets::embedded();
+        for weapon in Weapon::ALL {
+            let info = weapon.info();
+            let fire = info.fire.iter().map(|shown| (info.sprite, shown.frame));
+            let flashes = info.flashes.iter().copied().flatten().map(|shown| (info.flash_sprite, shown.frame));
+            // The first frame is the weapon at rest.
+            for (sprite, frame) in fire.chain(flashes).chain([(info.sprite, 0)]) {
+                assert!(usize::from(frame) < assets.sprites[usize::from(sprite)].frames.len(), "{weapon:?}: frame {frame}");
+            }
+        }
+    }
+}

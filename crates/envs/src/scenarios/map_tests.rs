@@ -1,7 +1,10 @@
 //! The authored maps held against the facts of their worlds.
 
+use super::map_source;
 use super::{armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush, volcanic_venture};
-use hasard_engine::map::{Map, MapSource};
+use crate::{EnvId, RuleSet};
+use hasard_engine::assets::Assets;
+use hasard_engine::map::{Map, MapSource, TextureName};
 use hasard_engine::math::{Angle, Fixed, Rng};
 use hasard_engine::world::{ActorKind, World};
 use std::sync::Arc;
@@ -241,5 +244,50 @@ fn walls_of_tile_maps_are_in_pieces_of_a_tile() {
         let map = built(&source);
         let walls = map.lines.iter().filter(|line| line.back_sector.is_none());
         assert!(walls.into_iter().all(|wall| wall.dx.abs() + wall.dy.abs() == Fixed::from_int(64)));
+    }
+}
+
+#[test]
+fn every_texture_that_a_map_or_its_rules_name_is_painted() {
+    let assets = Assets::embedded();
+    assert!(assets.graphics.contains_key(&TextureName::new("RSKY1")), "the sky is no texture");
+    for id in EnvId::all() {
+        for (rules, hard) in
+            [(RuleSet::Paper, false), (RuleSet::Paper, true), (RuleSet::Released, false), (RuleSet::Released, true)]
+        {
+            let (source, beyond) = map_source(id, rules, hard);
+            let walls = source.sides.iter().flat_map(|side| [side.top, side.middle, side.bottom]);
+            let flats = source.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
+            let mut lacking: Vec<TextureName> = walls
+                .chain(flats)
+                .chain(beyond.iter().map(|name| TextureName::new(name)))
+                .filter(|name| name.is_some() && *name != TextureName::new("F_SKY1") && !assets.textures.contains_key(name))
+                .collect();
+            lacking.sort_unstable();
+            lacking.dedup();
+            assert!(lacking.is_empty(), "{id} {rules:?} hard {hard}: nobody painted {lacking:?}");
+        }
+    }
+}
+
+#[test]
+fn every_wall_that_can_be_seen_has_a_texture() {
+    let sky = TextureName::new("F_SKY1");
+    for id in EnvId::all() {
+        let (source, _) = map_source(id, RuleSet::Paper, false);
+        for line in &source.lines {
+            let front = &source.sides[line.front];
+            let Some(back) = line.back.map(|back| &source.sides[back]) else {
+                assert!(front.middle.is_some(), "{id}: a bare wall from {:?}", source.vertices[line.v1]);
+                continue;
+            };
+            for (side, beyond) in [(front, back), (back, front)] {
+                let (near, far) = (&source.sectors[side.sector], &source.sectors[beyond.sector]);
+                let at = source.vertices[line.v1];
+                assert!(near.floor >= far.floor || side.bottom.is_some(), "{id}: a bare step from {at:?}");
+                let open_sky = near.ceiling_texture == sky && far.ceiling_texture == sky;
+                assert!(near.ceiling <= far.ceiling || open_sky || side.top.is_some(), "{id}: a bare lintel from {at:?}");
+            }
+        }
     }
 }

@@ -3,21 +3,19 @@
 //! Two steps on every minibatch: first PPO on the reward alone, then a projection back towards the constraints that
 //! lowers the costs' surrogates, weighted by multipliers, while staying near the policy that acted.
 
-use burn::tensor::Tensor;
-use serde_json::Value;
-
-use super::multiplier::Lagrange;
+use super::multiplier::{Lagrange, Multipliers};
 use super::surrogate::{centred, ratio, standardised};
 use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learner::{Heads, Learner, Loss, Minibatch};
 use crate::metrics::Means;
+use burn::tensor::Tensor;
 
 /// Constrained update projection.
 pub struct Cup {
     settings: LearningConfig,
-    multipliers: Vec<Lagrange>,
+    multipliers: Multipliers,
 }
 
 impl Cup {
@@ -43,10 +41,6 @@ impl Cup {
 }
 
 impl Algorithm for Cup {
-    fn constrain(&mut self, signals: &[Signal]) {
-        self.multipliers.iter_mut().zip(signals).for_each(|(multiplier, signal)| multiplier.update(signal));
-    }
-
     fn update(
         &mut self,
         learner: &mut Learner,
@@ -63,16 +57,11 @@ impl Algorithm for Cup {
         learner.descend(minibatch, projection, &mut Means::default())
     }
 
-    fn multipliers(&self) -> Vec<f64> {
-        self.multipliers.iter().map(|multiplier| multiplier.value).collect()
+    fn weights(&self) -> Option<&Multipliers> {
+        Some(&self.multipliers)
     }
 
-    fn save(&self) -> Value {
-        serde_json::to_value(&self.multipliers).unwrap_or_default()
-    }
-
-    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
-        self.multipliers = serde_json::from_value(state.clone())?;
-        Ok(())
+    fn weights_mut(&mut self) -> Option<&mut Multipliers> {
+        Some(&mut self.multipliers)
     }
 }

@@ -4,23 +4,21 @@
 //! towards it by its gradient: divergence from the policy that acted minus the ratio-weighted advantage over a
 //! temperature, on those samples alone whose divergence is still small.
 
-use burn::tensor::Tensor;
-use serde_json::Value;
-
-use super::multiplier::Lagrange;
+use super::multiplier::{Lagrange, Multipliers};
 use super::surrogate::{lagrangian_advantages, ratio, standardised, total};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learner::{Heads, Learner, Loss, Minibatch};
 use crate::metrics::Means;
+use burn::tensor::Tensor;
 
 /// First-order constrained optimisation in policy space.
 pub struct Focops {
     settings: LearningConfig,
     eta: f64,
     temperature: f64,
-    multipliers: Vec<Lagrange>,
+    multipliers: Multipliers,
 }
 
 impl Focops {
@@ -45,10 +43,6 @@ impl Focops {
 }
 
 impl Algorithm for Focops {
-    fn constrain(&mut self, signals: &[Signal]) {
-        self.multipliers.iter_mut().zip(signals).for_each(|(multiplier, signal)| multiplier.update(signal));
-    }
-
     fn update(
         &mut self,
         learner: &mut Learner,
@@ -62,16 +56,11 @@ impl Algorithm for Focops {
         learner.descend(minibatch, loss, means)
     }
 
-    fn multipliers(&self) -> Vec<f64> {
-        self.multipliers.iter().map(|multiplier| multiplier.value).collect()
+    fn weights(&self) -> Option<&Multipliers> {
+        Some(&self.multipliers)
     }
 
-    fn save(&self) -> Value {
-        serde_json::to_value(&self.multipliers).unwrap_or_default()
-    }
-
-    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
-        self.multipliers = serde_json::from_value(state.clone())?;
-        Ok(())
+    fn weights_mut(&mut self) -> Option<&mut Multipliers> {
+        Some(&mut self.multipliers)
     }
 }

@@ -26,6 +26,7 @@ use crate::config::{AlgorithmKind, TrainConfig};
 use crate::error::LearnError;
 use crate::learner::{Learner, Minibatch};
 use crate::metrics::Means;
+use multiplier::Multipliers;
 
 /// What a constraint costs at present.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,9 +61,6 @@ impl Signal {
 
 /// An algorithm: what it does with what the worlds brought.
 pub trait Algorithm: Send {
-    /// Told once a minibatch, before its update, what each constraint costs.
-    fn constrain(&mut self, _signals: &[Signal]) {}
-
     /// Improves the policy and the critics on a minibatch. `signals` is empty while no episode has ended yet.
     fn update(
         &mut self,
@@ -72,18 +70,42 @@ pub trait Algorithm: Send {
         means: &mut Means,
     ) -> Result<(), LearnError>;
 
-    /// Multiplier or penalty of each constraint; empty for algorithms without.
-    fn multipliers(&self) -> Vec<f64> {
-        Vec::new()
+    /// Its multipliers, if it has some: all that the next update depends on beside the networks.
+    fn weights(&self) -> Option<&Multipliers> {
+        None
     }
 
-    /// Everything that the next update depends on beside the networks.
+    /// The same, to be moved.
+    fn weights_mut(&mut self) -> Option<&mut Multipliers> {
+        None
+    }
+
+    /// Told once a minibatch, before its update, what each constraint costs.
+    fn constrain(&mut self, signals: &[Signal]) {
+        if let Some(weights) = self.weights_mut() {
+            weights.update(signals);
+        }
+    }
+
+    /// Multiplier or penalty of each constraint; empty for algorithms without.
+    fn multipliers(&self) -> Vec<f64> {
+        self.weights().map_or_else(Vec::new, Multipliers::values)
+    }
+
+    /// Its multipliers for a checkpoint.
     fn save(&self) -> Value {
-        Value::Null
+        self.weights().map_or(Value::Null, |weights| serde_json::to_value(weights).unwrap_or_default())
     }
 
     /// Goes on from a saved state.
-    fn load(&mut self, _state: &Value) -> Result<(), serde_json::Error> {
+    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
+        if let Some(weights) = self.weights_mut() {
+            let saved: Multipliers = serde_json::from_value(state.clone())?;
+            if !saved.is_like(weights) {
+                return Err(serde::de::Error::custom("they are another algorithm's, or of another number of constraints"));
+            }
+            *weights = saved;
+        }
         Ok(())
     }
 }

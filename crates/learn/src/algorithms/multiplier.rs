@@ -18,8 +18,9 @@ pub struct Lagrange {
 impl Lagrange {
     /// One multiplier a constraint.
     #[must_use]
-    pub fn all(settings: &AlgorithmConfig, constraints: usize, limit: Option<f64>) -> Vec<Lagrange> {
-        vec![Lagrange { value: settings.multiplier_initial, rate: settings.multiplier_rate, limit }; constraints]
+    pub fn all(settings: &AlgorithmConfig, constraints: usize, limit: Option<f64>) -> Multipliers {
+        let one = Lagrange { value: settings.multiplier_initial, rate: settings.multiplier_rate, limit };
+        Multipliers::Lagrange(vec![one; constraints])
     }
 
     /// Moves by what the constraint costs per step above its budget.
@@ -52,7 +53,7 @@ pub struct Pid {
 impl Pid {
     /// One controller a constraint.
     #[must_use]
-    pub fn all(settings: &AlgorithmConfig, constraints: usize) -> Vec<Pid> {
+    pub fn all(settings: &AlgorithmConfig, constraints: usize) -> Multipliers {
         let pid = Pid {
             value: 0.0,
             gains: settings.pid_gains,
@@ -63,7 +64,7 @@ impl Pid {
             cost: 0.0,
             costs: [0.0].into(),
         };
-        vec![pid; constraints]
+        Multipliers::Pid(vec![pid; constraints])
     }
 
     /// Moves by what the constraint costs per step.
@@ -79,6 +80,41 @@ impl Pid {
             self.costs.pop_front();
         }
         self.costs.push_back(self.cost);
+    }
+}
+
+/// The multipliers of a run's constraints, one each.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Multipliers {
+    /// Moved by the excess.
+    Lagrange(Vec<Lagrange>),
+    /// Moved by PID controllers.
+    Pid(Vec<Pid>),
+}
+
+impl Multipliers {
+    /// Told what each constraint costs.
+    pub fn update(&mut self, signals: &[Signal]) {
+        match self {
+            Multipliers::Lagrange(all) => all.iter_mut().zip(signals).for_each(|(one, signal)| one.update(signal)),
+            Multipliers::Pid(all) => all.iter_mut().zip(signals).for_each(|(one, signal)| one.update(signal)),
+        }
+    }
+
+    /// As many as the others, and moved by the same rule.
+    #[must_use]
+    pub fn is_like(&self, others: &Multipliers) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(others) && self.values().len() == others.values().len()
+    }
+
+    /// Their values.
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        match self {
+            Multipliers::Lagrange(all) => all.iter().map(|one| one.value).collect(),
+            Multipliers::Pid(all) => all.iter().map(|one| one.value).collect(),
+        }
     }
 }
 
@@ -98,8 +134,8 @@ mod tests {
     /// `training.md` §10.
     #[test]
     fn multipliers_follow_the_recorded_numbers() {
-        let mut lagrange = Lagrange::all(&settings(), 1, None).remove(0);
-        let mut pid = Pid::all(&settings(), 1).remove(0);
+        let mut lagrange = Lagrange::all(&settings(), 1, None);
+        let mut pid = Pid::all(&settings(), 1);
         let expected = [
             (1, 0.002_047_62, 0.004_221_43),
             (2, 0.004_095_24, 0.007_384_17),
@@ -108,25 +144,37 @@ mod tests {
             (11, 0.022_523_81, 0.033_496_74),
         ];
         for update in 1..=11 {
-            lagrange.update(&signal(0.3));
-            pid.update(&signal(0.3));
+            lagrange.update(&[signal(0.3)]);
+            pid.update(&[signal(0.3)]);
             if let Some((_, l, p)) = expected.iter().find(|(at, ..)| *at == update) {
-                assert!((lagrange.value - l).abs() < 1e-8, "update {update}: {}", lagrange.value);
-                assert!((pid.value - p).abs() < 1e-8, "update {update}: {}", pid.value);
+                assert!((lagrange.values()[0] - l).abs() < 1e-8, "update {update}: {}", lagrange.values()[0]);
+                assert!((pid.values()[0] - p).abs() < 1e-8, "update {update}: {}", pid.values()[0]);
             }
         }
-        lagrange.update(&signal(0.05));
-        pid.update(&signal(0.05));
-        assert!((lagrange.value - 0.022_071_43).abs() < 1e-8);
-        assert!((pid.value - 0.032_194_52).abs() < 1e-8);
+        lagrange.update(&[signal(0.05)]);
+        pid.update(&[signal(0.05)]);
+        assert!((lagrange.values()[0] - 0.022_071_43).abs() < 1e-8);
+        assert!((pid.values()[0] - 0.032_194_52).abs() < 1e-8);
     }
 
     #[test]
     fn multipliers_stay_within_their_bounds() {
-        let mut lagrange = Lagrange::all(&settings(), 1, Some(0.01)).remove(0);
-        lagrange.update(&signal(0.0));
-        assert_eq!(lagrange.value, 0.0);
-        (0..100).for_each(|_| lagrange.update(&signal(1.0)));
-        assert_eq!(lagrange.value, 0.01);
+        let mut lagrange = Lagrange::all(&settings(), 1, Some(0.01));
+        lagrange.update(&[signal(0.0)]);
+        assert_eq!(lagrange.values()[0], 0.0);
+        (0..100).for_each(|_| lagrange.update(&[signal(1.0)]));
+        assert_eq!(lagrange.values()[0], 0.01);
+    }
+
+    #[test]
+    fn saved_multipliers_come_back_as_what_they_were() {
+        for mut multipliers in [Lagrange::all(&settings(), 2, None), Pid::all(&settings(), 2)] {
+            multipliers.update(&[signal(0.3), signal(0.1)]);
+            let saved = serde_json::to_value(&multipliers).unwrap();
+            let loaded: Multipliers = serde_json::from_value(saved).unwrap();
+            assert_eq!(loaded, multipliers);
+            assert!(loaded.is_like(&multipliers));
+            assert!(!loaded.is_like(&Pid::all(&settings(), 1)) && !loaded.is_like(&Lagrange::all(&settings(), 1, None)));
+        }
     }
 }

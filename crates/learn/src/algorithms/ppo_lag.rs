@@ -3,9 +3,7 @@
 //! The multiplier grows with the excess over the budget before every update; the advantages are those of the reward
 //! minus those of the costs times the multipliers, mixed in raw units and then standardised.
 
-use serde_json::Value;
-
-use super::multiplier::Lagrange;
+use super::multiplier::{Lagrange, Multipliers};
 use super::surrogate::{lagrangian_advantages, standardised};
 use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
@@ -16,7 +14,7 @@ use crate::metrics::Means;
 /// PPO with Lagrange multipliers.
 pub struct PpoLag {
     settings: LearningConfig,
-    multipliers: Vec<Lagrange>,
+    multipliers: Multipliers,
 }
 
 impl PpoLag {
@@ -29,10 +27,6 @@ impl PpoLag {
 }
 
 impl Algorithm for PpoLag {
-    fn constrain(&mut self, signals: &[Signal]) {
-        self.multipliers.iter_mut().zip(signals).for_each(|(multiplier, signal)| multiplier.update(signal));
-    }
-
     fn update(
         &mut self,
         learner: &mut Learner,
@@ -45,16 +39,11 @@ impl Algorithm for PpoLag {
         learner.descend(minibatch, |heads, batch| ppo::loss(&advantages, heads, batch, &self.settings), means)
     }
 
-    fn multipliers(&self) -> Vec<f64> {
-        self.multipliers.iter().map(|multiplier| multiplier.value).collect()
+    fn weights(&self) -> Option<&Multipliers> {
+        Some(&self.multipliers)
     }
 
-    fn save(&self) -> Value {
-        serde_json::to_value(&self.multipliers).unwrap_or_default()
-    }
-
-    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
-        self.multipliers = serde_json::from_value(state.clone())?;
-        Ok(())
+    fn weights_mut(&mut self) -> Option<&mut Multipliers> {
+        Some(&mut self.multipliers)
     }
 }

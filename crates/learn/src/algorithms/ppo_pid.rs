@@ -2,9 +2,7 @@
 //!
 //! As PPOLag, but the multiplier also reacts to the excess itself and to its rise.
 
-use serde_json::Value;
-
-use super::multiplier::Pid;
+use super::multiplier::{Multipliers, Pid};
 use super::surrogate::{lagrangian_advantages, standardised};
 use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
@@ -15,23 +13,19 @@ use crate::metrics::Means;
 /// PPO with PID-controlled multipliers.
 pub struct PpoPid {
     settings: LearningConfig,
-    controllers: Vec<Pid>,
+    multipliers: Multipliers,
 }
 
 impl PpoPid {
     /// PPOPID with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> PpoPid {
-        let controllers = Pid::all(&config.algorithm_settings, config.constraints.len());
-        PpoPid { settings: config.learning.clone(), controllers }
+        let multipliers = Pid::all(&config.algorithm_settings, config.constraints.len());
+        PpoPid { settings: config.learning.clone(), multipliers }
     }
 }
 
 impl Algorithm for PpoPid {
-    fn constrain(&mut self, signals: &[Signal]) {
-        self.controllers.iter_mut().zip(signals).for_each(|(controller, signal)| controller.update(signal));
-    }
-
     fn update(
         &mut self,
         learner: &mut Learner,
@@ -45,16 +39,11 @@ impl Algorithm for PpoPid {
         learner.descend(minibatch, |heads, batch| ppo::loss(&advantages, heads, batch, &self.settings), means)
     }
 
-    fn multipliers(&self) -> Vec<f64> {
-        self.controllers.iter().map(|controller| controller.value).collect()
+    fn weights(&self) -> Option<&Multipliers> {
+        Some(&self.multipliers)
     }
 
-    fn save(&self) -> Value {
-        serde_json::to_value(&self.controllers).unwrap_or_default()
-    }
-
-    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
-        self.controllers = serde_json::from_value(state.clone())?;
-        Ok(())
+    fn weights_mut(&mut self) -> Option<&mut Multipliers> {
+        Some(&mut self.multipliers)
     }
 }

@@ -1,8 +1,6 @@
 //! TRPOLag: TRPO with a Lagrange multiplier on each constraint (Ray et al. 2019).
 
-use serde_json::Value;
-
-use super::multiplier::Lagrange;
+use super::multiplier::{Lagrange, Multipliers};
 use super::surrogate::lagrangian_advantages;
 use super::trpo::Trpo;
 use super::{Algorithm, Signal};
@@ -14,7 +12,7 @@ use crate::metrics::Means;
 /// TRPO with Lagrange multipliers.
 pub struct TrpoLag {
     trpo: Trpo,
-    multipliers: Vec<Lagrange>,
+    multipliers: Multipliers,
 }
 
 impl TrpoLag {
@@ -27,10 +25,6 @@ impl TrpoLag {
 }
 
 impl Algorithm for TrpoLag {
-    fn constrain(&mut self, signals: &[Signal]) {
-        self.multipliers.iter_mut().zip(signals).for_each(|(multiplier, signal)| multiplier.update(signal));
-    }
-
     fn update(
         &mut self,
         learner: &mut Learner,
@@ -42,16 +36,11 @@ impl Algorithm for TrpoLag {
         self.trpo.step(learner, minibatch, advantages, means)
     }
 
-    fn multipliers(&self) -> Vec<f64> {
-        self.multipliers.iter().map(|multiplier| multiplier.value).collect()
+    fn weights(&self) -> Option<&Multipliers> {
+        Some(&self.multipliers)
     }
 
-    fn save(&self) -> Value {
-        serde_json::to_value(&self.multipliers).unwrap_or_default()
-    }
-
-    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
-        self.multipliers = serde_json::from_value(state.clone())?;
-        Ok(())
+    fn weights_mut(&mut self) -> Option<&mut Multipliers> {
+        Some(&mut self.multipliers)
     }
 }

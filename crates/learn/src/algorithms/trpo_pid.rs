@@ -1,8 +1,6 @@
 //! TRPOPID: TRPO with multipliers moved by PID controllers (Stooke et al. 2020, arXiv 2007.03964).
 
-use serde_json::Value;
-
-use super::multiplier::Pid;
+use super::multiplier::{Multipliers, Pid};
 use super::surrogate::lagrangian_advantages;
 use super::trpo::Trpo;
 use super::{Algorithm, Signal};
@@ -14,23 +12,19 @@ use crate::metrics::Means;
 /// TRPO with PID-controlled multipliers.
 pub struct TrpoPid {
     trpo: Trpo,
-    controllers: Vec<Pid>,
+    multipliers: Multipliers,
 }
 
 impl TrpoPid {
     /// TRPOPID with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> TrpoPid {
-        let controllers = Pid::all(&config.algorithm_settings, config.constraints.len());
-        TrpoPid { trpo: Trpo::new(config), controllers }
+        let multipliers = Pid::all(&config.algorithm_settings, config.constraints.len());
+        TrpoPid { trpo: Trpo::new(config), multipliers }
     }
 }
 
 impl Algorithm for TrpoPid {
-    fn constrain(&mut self, signals: &[Signal]) {
-        self.controllers.iter_mut().zip(signals).for_each(|(controller, signal)| controller.update(signal));
-    }
-
     fn update(
         &mut self,
         learner: &mut Learner,
@@ -42,16 +36,11 @@ impl Algorithm for TrpoPid {
         self.trpo.step(learner, minibatch, advantages, means)
     }
 
-    fn multipliers(&self) -> Vec<f64> {
-        self.controllers.iter().map(|controller| controller.value).collect()
+    fn weights(&self) -> Option<&Multipliers> {
+        Some(&self.multipliers)
     }
 
-    fn save(&self) -> Value {
-        serde_json::to_value(&self.controllers).unwrap_or_default()
-    }
-
-    fn load(&mut self, state: &Value) -> Result<(), serde_json::Error> {
-        self.controllers = serde_json::from_value(state.clone())?;
-        Ok(())
+    fn weights_mut(&mut self) -> Option<&mut Multipliers> {
+        Some(&mut self.multipliers)
     }
 }

@@ -6,9 +6,9 @@ use crate::assets::embedded::gallery::Gallery;
 use crate::assets::embedded::model::{Material, Model};
 use crate::assets::embedded::vector::{Frame, Vector, turn};
 
-const GUN: Material = Material::new(0x121416, 0x40464C, 0x98A4AC).polished(0.8);
+const GUN: Material = Material::new(0x181C20, 0x586068, 0xB4C0C8).polished(0.8);
 const STEEL: Material = Material::new(0x20262C, 0x68747E, 0xC8D4DC).polished(0.9);
-const WOOD: Material = Material::new(0x2C1608, 0x7C4820, 0xC08448).mottled(0.25, 2.0);
+const WOOD: Material = Material::new(0x3C1C08, 0xB06424, 0xF0A858).mottled(0.25, 2.0);
 const GRIP: Material = Material::new(0x100C0A, 0x302824, 0x605650);
 const BRASS: Material = Material::new(0x54380A, 0xC08C20, 0xFFE880).polished(0.9);
 const HOLE: Material = Material::new(0x000000, 0x080808, 0x101010);
@@ -16,16 +16,17 @@ const HOLE: Material = Material::new(0x000000, 0x080808, 0x101010);
 /// Paints the pick-ups, seen from the side and a little from above.
 pub(super) fn paint(gallery: &mut Gallery) {
     let side = View::new(-78.0, 16.0);
-    for (name, weapon) in [
-        ("PIST", pistol as fn() -> Model),
-        ("SHOT", shotgun),
-        ("SGN2", super_shotgun),
-        ("MGUN", chaingun),
-        ("LAUN", launcher),
-        ("PLAS", plasma_rifle),
-        ("BFUG", bfg),
+    // The slender ones lie there larger than life, else nothing is left of them a few steps away.
+    for (name, weapon, size) in [
+        ("PIST", pistol as fn() -> Model, 1.5),
+        ("SHOT", shotgun, 1.5),
+        ("SGN2", super_shotgun, 1.35),
+        ("MGUN", chaingun, 1.1),
+        ("LAUN", launcher, 1.0),
+        ("PLAS", plasma_rifle, 1.1),
+        ("BFUG", bfg, 1.05),
     ] {
-        ahead_from(gallery, name, &weapon(), side);
+        ahead_from(gallery, name, &weapon().scaled(size), side);
     }
 }
 
@@ -57,7 +58,7 @@ pub(super) fn shotgun() -> Model {
 
 /// The double-barrelled shotgun: 43 long, two thick blued barrels, red-brown furniture.
 pub(super) fn super_shotgun() -> Model {
-    let cherry = Material::new(0x300A06, 0x84281A, 0xCC6044).polished(0.5);
+    let cherry = Material::new(0x480A06, 0xB83420, 0xF07858).polished(0.5);
     let mut m = Model::new();
     for y in [-1.9, 1.9] {
         m.tube(Vector(-3.0, y, 9.2), Vector(22.0, y, 9.2), (2.0, 2.0), STEEL);

@@ -223,8 +223,10 @@ fn scattered_bones() -> Model {
 }
 
 /// An explosive barrel, its lid showing what it holds.
-fn barrel(glow: bool) -> Model {
-    let body = Material::new(0x16181A, 0x5C6264, 0xB8C0C0).polished(0.5).mottled(0.14, 2.6);
+pub(super) fn barrel(glow: bool) -> Model {
+    let body = Material::new(0x202426, 0x70787C, 0xC8D0D0).polished(0.5).mottled(0.14, 2.6);
+    // A painted band tells a barrel from everything else that is grey, as far as it can be seen.
+    let paint = Material::new(0x6C5008, 0xE0B818, 0xFFF070).mottled(0.2, 2.2);
     let slime = if glow {
         Material::new(0x30A020, 0x68E848, 0xC8FF90).glowing()
     } else {
@@ -232,14 +234,18 @@ fn barrel(glow: bool) -> Model {
     };
     let mut m = Model::new();
     m.tube(Vector(0.0, 0.0, 0.5), Vector(0.0, 0.0, 30.0), (10.4, 10.4), body);
+    m.tube(Vector(0.0, 0.0, 11.0), Vector(0.0, 0.0, 20.0), (10.7, 10.7), paint);
     for z in [0.5, 10.0, 19.5, 28.4] {
         m.tube(Vector(0.0, 0.0, z), Vector(0.0, 0.0, z + 1.8), (11.2, 11.2), STEEL);
     }
     m.tube(Vector(0.0, 0.0, 29.8), Vector(0.0, 0.0, 30.3), (9.2, 9.2), slime);
-    // Hazard sign.
-    let sign = Material::new(0x6C3408, 0xE88C18, 0xFFC850);
-    m.egg(Vector(9.0, 0.0, 15.2), Vector(2.4, 4.6, 4.4), sign);
-    m.egg(Vector(11.0, 0.0, 15.2), Vector(0.8, 1.6, 1.6), Material::new(0x080808, 0x101010, 0x181818).fine());
+    // Hazard sign: three leaves around a dot.
+    let sign = Material::new(0x080808, 0x141210, 0x242018);
+    m.egg(Vector(10.6, 0.0, 15.6), Vector(0.8, 0.9, 0.9), sign);
+    for i in 0..3 {
+        let (cos, sin) = turn(90.0 + i as f32 * 120.0);
+        m.egg(Vector(10.4, cos * 2.6, 15.6 + sin * 2.6), Vector(0.8, 1.5, 1.5), sign);
+    }
     m.limb(Vector(10.6, 4.0, 26.0), Vector(10.6, 4.6, 22.0), (1.3, 0.7), slime);
     m
 }

@@ -1,6 +1,7 @@
 //! Fire, smoke, blood and shots in flight.
 
 use super::creatures::{ahead_from, seen_around};
+use super::decorations::barrel;
 use crate::assets::embedded::camera::View;
 use crate::assets::embedded::canvas::Canvas;
 use crate::assets::embedded::colour::{Colour, gradient};
@@ -29,10 +30,10 @@ pub(super) fn paint(gallery: &mut Gallery) {
         centred(gallery, "MISL", &fireball(size, heat, &FIRE, seed));
     }
     barrel_blast(gallery);
-    for (i, size) in [5, 7, 10, 13].into_iter().enumerate() {
+    for (i, size) in [5, 9, 13, 17].into_iter().enumerate() {
         // A: the spark; B-D: smoke that spreads and thins.
-        let tones: &[Colour] = if i == 0 { &FIRE } else { &SMOKE };
-        centred(gallery, "PUFF", &fireball(size, 0.85 - 0.12 * i as f32, tones, 20 + i as u32));
+        let canvas = if i == 0 { fireball(size, 0.85, &FIRE, 20) } else { smoke(size, i as u32) };
+        centred(gallery, "PUFF", &canvas);
     }
     for (i, size) in [9, 8, 6].into_iter().enumerate() {
         let blood = [Colour::hex(0x400404), Colour::hex(0x980C08), Colour::hex(0xE02818)];
@@ -92,31 +93,40 @@ pub(super) fn fireball(size: i32, heat: f32, tones: &[Colour], seed: u32) -> Can
     canvas
 }
 
-/// The barrel bursting: hull split by light, then fire that grows, then smoke.
-fn barrel_blast(gallery: &mut Gallery) {
-    let hull = Material::new(0x16181A, 0x5C6264, 0xB8C0C0);
-    let hot = Material::new(0xD05008, 0xFFB030, 0xFFFFC0).glowing();
-    for step in 0..2 {
-        let mut m = Model::new();
-        let bulge = 1.5 + 2.5 * step as f32;
-        m.limb(Vector(0.0, 0.0, 8.0), Vector(0.0, 0.0, 24.0), (8.0 + bulge, 8.0 + bulge), hot);
-        for i in 0..7 {
-            let (cos, sin) = turn(i as f32 * 51.0);
-            let away = 8.5 + bulge * 1.4;
-            let lean = Vector(cos, sin, 0.0) * (3.0 * step as f32);
-            m.limb(Vector(cos * away, sin * away, 2.0), Vector(cos * away, sin * away, 27.0) + lean, (3.2, 2.4), hull);
+/// A wisp of smoke: curls with gaps between them, thinner with every `age`.
+fn smoke(size: i32, age: u32) -> Canvas {
+    let mut canvas = Canvas::new(size, size);
+    let curls = Field::clouds(size as usize, size as usize, (size as usize / 3, size as usize / 3), 2, 20 + age);
+    let radius = size as f32 / 2.0;
+    for x in 0..size {
+        for y in 0..size {
+            let (u, v) = ((x as f32 + 0.5) / radius - 1.0, (y as f32 + 0.5) / radius - 1.0);
+            let level = curls.at(x, y);
+            if (u * u + v * v).sqrt() + (0.42 + 0.08 * age as f32 - level) < 0.85 {
+                canvas.set(x, y, gradient(&SMOKE, 0.25 + 0.75 * level - 0.3 * v));
+            }
         }
-        m.ball(Vector(0.0, 0.0, 30.0), 6.0 + 3.0 * step as f32, hot);
-        ahead_from(gallery, "BEXP", &m, View::new(0.0, 12.0));
     }
-    for (size, heat, seed) in [(58, 1.0, 11), (72, 0.8, 12), (76, 0.5, 13)] {
+    canvas
+}
+
+/// The barrel bursting: light breaks out of its seams and lid, then fire that grows and breaks up.
+fn barrel_blast(gallery: &mut Gallery) {
+    let hot = Material::new(0xD05008, 0xFFB030, 0xFFFFC0).glowing();
+    let mut swollen = barrel(true).scaled(1.06);
+    for z in [5.0, 9.5, 20.5, 25.0] {
+        swollen.tube(Vector(0.0, 0.0, z), Vector(0.0, 0.0, z + 2.0), (12.2, 12.2), hot);
+    }
+    swollen.limb(Vector(0.0, 0.0, 31.0), Vector(0.0, 0.0, 40.0), (8.0, 3.0), hot);
+    ahead_from(gallery, "BEXP", &swollen, View::new(0.0, 16.0));
+    for (size, heat, seed) in [(48, 1.1, 10), (60, 1.0, 11), (72, 0.8, 12), (76, 0.55, 13)] {
         let mut canvas = fireball(size, heat, &FIRE, seed);
         // Splinters.
         for i in 0..9 {
             let (cos, sin) = turn(i as f32 * 40.0 + seed as f32 * 13.0);
             let away = size as f32 * (0.28 + 0.2 * unit(i, 1, seed));
             let (x, y) = ((size as f32 / 2.0 + cos * away) as i32, (size as f32 / 2.0 + sin * away) as i32);
-            canvas.bevel(x, y, 3, 3, Colour::hex(0x4C5052), 0.5);
+            canvas.bevel(x, y, 3, 3, Colour::hex(0x5C6062), 0.5);
         }
         gallery.flat_frame("BEXP", &canvas, size / 2, size / 2 + 18);
     }

@@ -43,8 +43,8 @@ fn claws(model: &mut Model, hand: Vector, ahead: Vector, size: f32, material: Ma
 
 /// The imp: lean, brown, hunched, with spikes on shoulders and elbows, long arms and burning eyes.
 pub(super) fn imp(deed: Deed) -> Model {
-    let skin = Material::new(0x28140A, 0x70482A, 0xB07C50).mottled(0.45, 2.0);
-    let dark_skin = Material::new(0x1C0E08, 0x4C2E1C, 0x7C5438).mottled(0.4, 1.8);
+    let skin = Material::new(0x34180A, 0x945428, 0xD89860).mottled(0.45, 2.0);
+    let dark_skin = Material::new(0x26120A, 0x663A20, 0x9C6840).mottled(0.4, 1.8);
     let (mut pose, roll) = pose_of(deed, 24.0, 5.2, 7.5, 4);
     pose.lean[0] += 14.0;
     let mut m = Model::new();

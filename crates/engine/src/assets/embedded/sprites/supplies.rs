@@ -21,7 +21,7 @@ pub(super) fn paint(gallery: &mut Gallery) {
     for glint in 0..4 {
         ahead_from(gallery, "BON1", &vial(glint as f32 / 3.0), front);
     }
-    ahead_from(gallery, "STIM", &first_aid(6.5, 4.0, 4.2), items);
+    ahead_from(gallery, "STIM", &first_aid(7.0, 4.0, 6.0), items);
     ahead_from(gallery, "MEDI", &first_aid(10.5, 6.0, 8.0), items);
     ahead_from(gallery, "ROCK", &rocket_round(), front);
     ahead_from(gallery, "SHEL", &shells(), items);
@@ -44,20 +44,20 @@ pub(super) fn paint(gallery: &mut Gallery) {
     }
 }
 
-/// A glass vial of bright green tonic.
+/// A glass vial of tonic, brighter than any grass: it is what one looks for.
 fn vial(glint: f32) -> Model {
     let mut m = Model::new();
     let tonic = if glint > 0.6 {
-        Material::new(0x0C700C, 0x38E830, 0xC8FFB0)
+        Material::new(0x24B81C, 0x70F850, 0xE8FFD8)
     } else if glint > 0.3 {
-        Material::new(0x0A5C0A, 0x2CCC28, 0xA0FF88)
+        Material::new(0x1CA018, 0x58F03C, 0xD0FFB8)
     } else {
-        Material::new(0x084C08, 0x24B020, 0x80F868)
+        Material::new(0x188C14, 0x48E030, 0xB8FF98)
     };
-    m.ball(Vector(0.0, 0.0, 5.0), 5.0, tonic.polished(1.0));
-    m.tube(Vector(0.0, 0.0, 8.5), Vector(0.0, 0.0, 12.0), (2.2, 1.9), Material::new(0x305030, 0x84B484, 0xE8FFE8).polished(0.6));
-    m.tube(Vector(0.0, 0.0, 11.5), Vector(0.0, 0.0, 14.6), (2.4, 2.0), Material::new(0x3C2410, 0x845428, 0xC88C54));
-    m.ball(Vector(4.0, -1.6, 6.8), 0.9, Material::new(0xC0FFC0, 0xF0FFF0, 0xFFFFFF).glowing().fine());
+    m.ball(Vector(0.0, 0.0, 6.4), 6.4, tonic.polished(1.0));
+    m.tube(Vector(0.0, 0.0, 11.0), Vector(0.0, 0.0, 15.0), (2.7, 2.3), Material::new(0x508050, 0xA8DCA8, 0xF0FFF0).polished(0.6));
+    m.tube(Vector(0.0, 0.0, 14.5), Vector(0.0, 0.0, 18.0), (2.9, 2.4), Material::new(0x4C2C10, 0xA06830, 0xE0A868));
+    m.ball(Vector(5.2, -2.0, 8.8), 1.1, Material::new(0xC0FFC0, 0xF0FFF0, 0xFFFFFF).glowing().fine());
     m
 }
 
@@ -74,7 +74,7 @@ fn first_aid(wide: f32, deep: f32, high: f32) -> Model {
         m.block(face, tall, CROSS);
         m.block(face, Vector(if flat { 0.3 } else { arm * 0.28 }, broad, if flat { arm * 0.34 } else { 0.3 }), CROSS);
     }
-    if high > 6.0 {
+    if high > 7.0 {
         m.limb(Vector(0.0, -3.0, high + 0.6), Vector(0.0, 3.0, high + 0.6), (0.8, 0.8), DARK_STEEL);
     }
     m
@@ -83,12 +83,12 @@ fn first_aid(wide: f32, deep: f32, high: f32) -> Model {
 /// A rocket standing on its fins.
 fn rocket_round() -> Model {
     let mut m = Model::new();
-    m.tube(Vector(0.0, 0.0, 3.0), Vector(0.0, 0.0, 15.0), (3.3, 3.3), STEEL);
-    m.tube(Vector(0.0, 0.0, 14.8), Vector(0.0, 0.0, 16.4), (3.5, 3.5), Material::new(0x5C4808, 0xD4B020, 0xFFF078));
-    m.limb(Vector(0.0, 0.0, 16.6), Vector(0.0, 0.0, 23.0), (3.0, 0.7), Material::new(0x580404, 0xC01810, 0xFF5840).polished(0.7));
+    m.tube(Vector(0.0, 0.0, 3.0), Vector(0.0, 0.0, 15.0), (4.0, 4.0), Material::new(0x484C50, 0xA0A8B0, 0xF0F4F8).polished(0.9));
+    m.tube(Vector(0.0, 0.0, 14.8), Vector(0.0, 0.0, 16.4), (4.3, 4.3), Material::new(0x5C4808, 0xD4B020, 0xFFF078));
+    m.limb(Vector(0.0, 0.0, 16.6), Vector(0.0, 0.0, 25.0), (3.7, 0.8), Material::new(0x800808, 0xE82418, 0xFF7860).polished(0.7));
     for i in 0..4 {
         let (cos, sin) = turn(45.0 + i as f32 * 90.0);
-        m.limb(Vector(cos * 3.0, sin * 3.0, 6.0), Vector(cos * 4.6, sin * 4.6, 1.0), (1.0, 1.2), DARK_STEEL);
+        m.limb(Vector(cos * 3.0, sin * 3.0, 6.0), Vector(cos * 5.8, sin * 5.8, 1.2), (1.2, 1.5), STEEL);
     }
     m.tube(Vector(0.0, 0.0, 0.6), Vector(0.0, 0.0, 3.0), (2.0, 2.6), DARK_STEEL);
     m
@@ -96,11 +96,11 @@ fn rocket_round() -> Model {
 
 /// Four shotgun shells: orange cases, brass feet.
 fn shells() -> Model {
-    let case = Material::new(0x702808, 0xE86C14, 0xFFB458);
+    let case = Material::new(0x8C3408, 0xFF8018, 0xFFC468);
     let mut m = Model::new();
-    for (x, y) in [(0.0, -4.6), (1.4, -1.5), (0.0, 1.6), (1.4, 4.7)] {
-        m.tube(Vector(x, y, 2.6), Vector(x, y, 9.4), (1.55, 1.5), case);
-        m.tube(Vector(x, y, 0.0), Vector(x, y, 2.8), (1.75, 1.75), BRASS);
+    for (x, y) in [(0.0, -5.6), (1.6, -1.9), (0.0, 1.8), (1.6, 5.5)] {
+        m.tube(Vector(x, y, 3.0), Vector(x, y, 11.0), (1.9, 1.85), case);
+        m.tube(Vector(x, y, 0.0), Vector(x, y, 3.2), (2.1, 2.1), BRASS);
     }
     m
 }
@@ -121,8 +121,8 @@ fn cell() -> Model {
 /// A magazine with a round on top.
 fn clip() -> Model {
     let mut m = Model::new();
-    m.block(Vector(0.0, 0.0, 5.0), Vector(2.2, 3.2, 5.0), DARK_STEEL);
-    m.limb(Vector(0.0, -2.6, 10.8), Vector(0.0, 2.6, 10.8), (1.3, 0.7), BRASS);
+    m.block(Vector(0.0, 0.0, 5.0), Vector(2.6, 3.8, 5.4), STEEL);
+    m.limb(Vector(0.0, -3.2, 11.8), Vector(0.0, 3.2, 11.8), (1.6, 1.0), BRASS);
     m
 }
 
@@ -147,7 +147,7 @@ fn goggles(lit: bool) -> Model {
 fn blur_sphere(phase: usize) -> Model {
     let mut m = Model::new();
     let centre = Vector(0.0, 0.0, 15.0);
-    m.ball(centre, 14.4, Material::new(0x1C0C38, 0x5C3C90, 0xC0A0E8).mottled(0.6, 4.0).polished(1.0));
+    m.ball(centre, 14.4, Material::new(0x3C0C60, 0x8C3CD8, 0xE0B0FF).mottled(0.5, 4.0).polished(1.0));
     for i in 0..5 {
         let (cos, sin) = turn(phase as f32 * 18.0 + i as f32 * 72.0);
         let spark = Material::new(0x4060F0, 0x88A8FF, 0xF0F8FF).glowing().fine();
@@ -229,7 +229,7 @@ fn key_card(lit: bool) -> Model {
 /// A blue skull key.
 fn key_skull(lit: bool) -> Model {
     let mut m = Model::new();
-    let blue = Material::new(0x08104C, 0x2848D0, 0x90B0FF).polished(0.8);
+    let blue = Material::new(0x1020A0, 0x4870FF, 0xB8D0FF).polished(0.8);
     m.egg(Vector(0.0, 0.0, 10.4), Vector(5.6, 5.4, 5.6), blue);
     m.egg(Vector(2.2, 0.0, 4.6), Vector(3.2, 3.4, 3.4), blue);
     let eye = if lit {

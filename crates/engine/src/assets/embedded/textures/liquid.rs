@@ -15,7 +15,7 @@ const TICS: u8 = 8;
 const DRIFT: [(i32, i32); 4] = [(3, 0), (0, 3), (-3, 0), (0, -3)];
 
 /// How far the lava has cooled down.
-const COOLNESS: f32 = 0.31;
+const COOLNESS: f32 = 0.34;
 
 /// Paints the liquids.
 pub(super) fn paint(gallery: &mut Gallery) {
