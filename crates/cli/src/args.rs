@@ -42,6 +42,8 @@ pub enum Command {
     Sweep(SweepArgs),
     /// Write an environment's map as a WAD that other engines load
     ExportWad(ExportWadArgs),
+    /// Draw the scenarios' contact sheets: every level at moments of scripted episodes, in every view
+    ContactSheet(ContactSheetArgs),
 }
 
 /// Options of every command that makes an environment.
@@ -564,4 +566,24 @@ pub struct ExportWadArgs {
     /// Accepted for uniformity; maps do not depend on it
     #[arg(long, hide = true, default_value_t = 0)]
     pub seed: u64,
+}
+
+/// `hasard contact-sheet`.
+#[derive(Args, Debug)]
+pub struct ContactSheetArgs {
+    /// Scenarios such as RemedyRush; all six if absent
+    #[arg(value_name = "SCENARIO")]
+    pub scenarios: Vec<String>,
+    /// Folder to write: for each scenario its sheet, and one moment of it at 640x480
+    #[arg(short, long, value_name = "DIR", default_value = "docs/pictures")]
+    pub out: PathBuf,
+    /// Added to the seed of every moment; 0 draws the moments that were chosen for the documentation
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    #[arg(long, value_name = "FILE")]
+    pub iwad: Option<PathBuf>,
+    /// One JSON object a file
+    #[arg(long)]
+    pub json: bool,
 }

@@ -7,6 +7,7 @@ mod actor;
 mod args;
 mod automap;
 mod commands;
+mod contact_sheet;
 mod episode_lines;
 mod settings;
 
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Report(args) => commands::report::run(&args),
         Command::Sweep(args) => commands::sweep::run(&args),
         Command::ExportWad(args) => commands::export_wad::run(&args),
+        Command::ContactSheet(args) => commands::contact_sheet::run(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

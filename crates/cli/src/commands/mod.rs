@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 pub mod bench;
+pub mod contact_sheet;
 pub mod envs;
 pub mod eval;
 pub mod export_wad;

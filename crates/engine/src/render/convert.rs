@@ -1,5 +1,8 @@
 //! From palette indices to what callers want, written once into their own buffer.
 
+#[cfg(target_arch = "x86_64")]
+use super::convert_wide::Wide;
+
 /// Weight of red, green and blue in luminance, in 256ths.
 const LUMINANCE: [u32; 3] = [77, 150, 29];
 
@@ -9,13 +12,21 @@ pub(super) fn luminance(colour: [u8; 3]) -> u8 {
     (sum >> 8) as u8
 }
 
-/// One channel of a palette.
-fn channel(palette: &[[u8; 3]; 256], index: usize) -> [u8; 256] {
-    std::array::from_fn(|i| palette[i][index])
+/// The channels of a palette, a table each.
+fn channels(palette: &[[u8; 3]; 256]) -> [[u8; 256]; 3] {
+    std::array::from_fn(|channel| std::array::from_fn(|i| palette[i][channel]))
 }
 
 /// Looks every index up.
 fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    let done = Wide::detect().map_or(0, |wide| wide.look_up(table, indices, out));
+    #[cfg(not(target_arch = "x86_64"))]
+    let done = 0;
+    look_up_plainly(table, &indices[done..], &mut out[done..]);
+}
+
+fn look_up_plainly(table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
     for (to, &index) in out.iter_mut().zip(indices) {
         *to = table[usize::from(index)];
     }
@@ -23,6 +34,14 @@ fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
 
 /// Red, green, blue of each pixel in turn.
 pub(super) fn rgb_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    let done = Wide::detect().map_or(0, |wide| wide.interleaved(&channels(palette), indices, out));
+    #[cfg(not(target_arch = "x86_64"))]
+    let done = 0;
+    rgb_interleaved_plainly(palette, &indices[done..], &mut out[done * 3..]);
+}
+
+fn rgb_interleaved_plainly(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
     for (to, &index) in out.chunks_exact_mut(3).zip(indices) {
         to.copy_from_slice(&palette[usize::from(index)]);
     }
@@ -30,8 +49,8 @@ pub(super) fn rgb_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], out: &mu
 
 /// A plane of red, one of green, one of blue.
 pub(super) fn rgb_planes(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
-    for (i, plane) in out.chunks_exact_mut(indices.len()).enumerate() {
-        look_up(&channel(palette, i), indices, plane);
+    for (table, plane) in channels(palette).iter().zip(out.chunks_exact_mut(indices.len())) {
+        look_up(table, indices, plane);
     }
 }
 
@@ -40,16 +59,45 @@ pub(super) fn grey(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
     look_up(&palette.map(luminance), indices, out);
 }
 
+/// The colour of a class; those beyond the table share its last one.
+#[inline]
+fn colour_of<const N: usize>(colours: &[[u8; 3]; N], class: u16) -> [u8; 3] {
+    colours[usize::from(class).min(N - 1)]
+}
+
 /// The colour of each class, pixel by pixel.
-pub(super) fn classes_interleaved(colours: &[[u8; 3]], classes: &[u16], out: &mut [u8]) {
+pub(super) fn classes_interleaved<const N: usize>(colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
     for (to, &class) in out.chunks_exact_mut(3).zip(classes) {
-        to.copy_from_slice(&colours[usize::from(class)]);
+        to.copy_from_slice(&colour_of(colours, class));
     }
 }
 
 /// The colour of each class, as three planes.
-pub(super) fn classes_planes(colours: &[[u8; 3]], classes: &[u16], out: &mut [u8]) {
+pub(super) fn classes_planes<const N: usize>(colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
     for (i, plane) in out.chunks_exact_mut(classes.len()).enumerate() {
-        plane.iter_mut().zip(classes).for_each(|(to, &class)| *to = colours[usize::from(class)][i]);
+        plane.iter_mut().zip(classes).for_each(|(to, &class)| *to = colour_of(colours, class)[i]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    #[test]
+    fn wide_and_plain_look_ups_agree() {
+        let mut rng = Rng::new(3);
+        let palette: [[u8; 3]; 256] = std::array::from_fn(|_| [0; 3].map(|_| rng.byte() as u8));
+        for length in [0, 1, 63, 64, 65, 192, 1000, 9216] {
+            let indices: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
+            let (mut wide, mut plain) = (vec![0; length], vec![0; length]);
+            look_up(&channels(&palette)[1], &indices, &mut wide);
+            look_up_plainly(&channels(&palette)[1], &indices, &mut plain);
+            assert_eq!(wide, plain);
+            let (mut wide, mut plain) = (vec![0; length * 3], vec![0; length * 3]);
+            rgb_interleaved(&palette, &indices, &mut wide);
+            rgb_interleaved_plainly(&palette, &indices, &mut plain);
+            assert_eq!(wide, plain);
+        }
     }
 }

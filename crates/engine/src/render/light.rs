@@ -12,24 +12,24 @@ pub(super) const ONE_TABLE_DISTANCE: i64 = 1280;
 pub(super) struct Light {
     /// Table at infinite distance, 16.16; negative is brighter than full.
     base: i64,
-    /// Table regardless of distance.
-    fixed: Option<u8>,
+    /// Tables by which nearness brightens at most, 16.16: 0 where the table is the same at every distance.
+    most: i64,
 }
 
 impl Light {
     /// The light of a surface in a sector of light `level`.
     pub fn new(camera: &Camera, level: i32) -> Light {
+        if let Some(table) = camera.fixed_table {
+            return Light { base: (table as i64) << 16, most: 0 };
+        }
         let level = i64::from(level) + 12 + 16 * i64::from(camera.extra_light);
-        Light { base: (64 << 16) - (level << 14), fixed: camera.fixed_table.map(|table| table as u8) }
+        Light { base: (64 << 16) - (level << 14), most: NEAREST }
     }
 
     /// The table where `nearness` is [`ONE_TABLE_DISTANCE`] divided by the distance, 16.16.
     #[inline]
     pub fn table(self, nearness: i64) -> usize {
-        match self.fixed {
-            Some(table) => usize::from(table) & 31,
-            None => ((self.base - nearness.min(NEAREST)) >> 16).clamp(0, 31) as usize,
-        }
+        ((self.base - nearness.min(self.most)) >> 16).clamp(0, 31) as usize
     }
 }
 

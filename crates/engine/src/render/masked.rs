@@ -9,7 +9,7 @@ use super::picture::MaskedPicture;
 use super::scene::Scene;
 use super::silhouette::{Silhouette, Silhouettes};
 use super::sprite::{Covered, SeenSprite};
-use super::wall::INVERSE_BITS;
+use super::wall::{INVERSE_BITS, TextureLine};
 use crate::math::Fixed;
 use crate::world::World;
 
@@ -49,7 +49,7 @@ impl Masked<'_> {
             return false;
         }
         let seg = &self.scene.segs[silhouette.seg as usize];
-        let in_front = || sprite.x * seg.normal[0] + sprite.y * seg.normal[1] - seg.offset > 0;
+        let in_front = || seg.away(sprite.x, sprite.y) > 0;
         far >= sprite.inverse || !in_front()
     }
 
@@ -61,11 +61,12 @@ impl Masked<'_> {
         self.bottoms.clear();
         self.bottoms.resize(columns, self.view.view_rows as i16);
         for index in (0..self.silhouettes.list.len()).rev() {
-            let silhouette = self.silhouettes.list[index];
+            let silhouette = &self.silhouettes.list[index];
             let (first, end) = (silhouette.first.max(sprite.first), silhouette.end.min(sprite.end));
             if first >= end {
                 continue;
             }
+            let silhouette = *silhouette;
             if !self.is_behind(sprite, &silhouette) {
                 if silhouette.masked {
                     self.texture::<DEPTH, CLASS>(&silhouette, first, end);
@@ -124,24 +125,25 @@ impl Masked<'_> {
         let top = hung_from.min(i64::from(ceiling.0)) - self.camera.z;
         let bottom = (hung_from - i64::from(height.0)).max(i64::from(floor.0)) - self.camera.z;
         let light = Light::new(self.camera, i32::from(front.light) + face.contrast);
+        let along = TextureLine::new(self.camera, seg, face);
         let (upper, lower) =
             (silhouette.line.edge(self.camera, self.view, top), silhouette.line.edge(self.camera, self.view, bottom));
+        let first_rows = &self.view.first_row;
         for x in first..end {
             let row_index = silhouette.rows + x - silhouette.first;
             let (open_top, open_bottom) = (self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]);
             let drawn = std::mem::replace(&mut self.silhouettes.drawn[row_index], true);
-            let (mut first_row, mut end_row) = ([0], [0]);
-            upper.rows(self.view, x, &mut first_row);
-            lower.rows(self.view, x, &mut end_row);
-            let rows = first_row[0].max(open_top)..end_row[0].min(open_bottom);
+            let column = self.view.columns[x];
+            let (open_top, open_bottom) = (i32::from(open_top), i32::from(open_bottom));
+            let rows = upper.row(first_rows, column).max(open_top)..lower.row(first_rows, column).min(open_bottom);
             if drawn || rows.is_empty() {
                 continue;
             }
-            let column = i64::from(self.view.columns[x]);
+            let column = i64::from(column);
             let distance = silhouette.line.distance_at(column);
             let nearness = (silhouette.line.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let table = &scene.assets.light_tables[light.table(nearness)];
-            let u = silhouette.line.texture_at(column, distance) >> 16;
+            let u = along.at(column, distance) >> 16;
             let texels = picture.column(u.rem_euclid(i64::from(picture.width)) as u32);
             let step = (distance * self.view.inverse_focal_y) >> 16;
             let at = ((hung_from - self.camera.z) << 16) + step / 2 - step * self.camera.horizon;

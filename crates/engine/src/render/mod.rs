@@ -9,6 +9,8 @@
 
 mod camera;
 mod convert;
+#[cfg(target_arch = "x86_64")]
+mod convert_wide;
 mod frame;
 mod label;
 mod light;
@@ -20,6 +22,7 @@ mod plane;
 #[cfg(test)]
 mod render_tests;
 mod renderer;
+mod row_walk;
 mod scene;
 mod seg;
 mod segmentation;

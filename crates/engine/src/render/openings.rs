@@ -9,8 +9,12 @@ pub(super) struct Openings {
     pub bottom: Vec<i16>,
     /// A bit for each column that has an open row.
     open: Vec<u64>,
-    /// Whether any column has been closed.
-    any_closed: bool,
+    /// Number of columns that are closed.
+    closed: usize,
+    /// No column left of this one is open.
+    first: usize,
+    /// No column from this one on is open.
+    end: usize,
 }
 
 impl Openings {
@@ -25,13 +29,14 @@ impl Openings {
         if !width.is_multiple_of(64) {
             self.open[width / 64] = (1 << (width % 64)) - 1;
         }
-        self.any_closed = false;
+        self.closed = 0;
+        (self.first, self.end) = (0, width);
     }
 
     /// Whether any column of `first..end` is open.
     #[inline]
     pub fn any_open(&self, first: usize, end: usize) -> bool {
-        if !self.any_closed {
+        if self.closed == 0 {
             return first < end;
         }
         let (mut word, last) = (first / 64, (end - 1) / 64);
@@ -46,16 +51,23 @@ impl Openings {
         self.open[word] & mask & (u64::MAX >> (63 - (end - 1) % 64)) != 0
     }
 
-    /// Whether every column is closed: nothing more can be seen.
+    /// The narrowest range that holds every open column.
     #[inline]
-    pub fn all_closed(&self) -> bool {
-        self.any_closed && self.open.iter().all(|&word| word == 0)
+    pub fn range(&mut self) -> (usize, usize) {
+        while self.first < self.end && self.top[self.first] >= self.bottom[self.first] {
+            self.first += 1;
+        }
+        while self.first < self.end && self.top[self.end - 1] >= self.bottom[self.end - 1] {
+            self.end -= 1;
+        }
+        (self.first, self.end)
     }
 
-    /// Whether any column has been closed at all.
+    /// Whether so much within the open range is closed that it pays to ask what hides what.
     #[inline]
-    pub fn any_closed(&self) -> bool {
-        self.any_closed
+    pub fn has_holes(&self) -> bool {
+        let outside = self.first + self.top.len() - self.end;
+        (self.closed - outside) * 4 > self.top.len()
     }
 
     /// Closes the columns `first..end`.
@@ -70,8 +82,9 @@ impl Openings {
     pub fn close_column(&mut self, x: usize) {
         self.bottom[x] = 0;
         self.top[x] = 0;
-        self.open[x / 64] &= !(1 << (x % 64));
-        self.any_closed = true;
+        let (word, bit) = (&mut self.open[x / 64], 1 << (x % 64));
+        self.closed += usize::from(*word & bit != 0);
+        *word &= !bit;
     }
 
     /// Notes which columns of `first..end` have no open row left.
@@ -94,12 +107,13 @@ mod tests {
         let mut openings = Openings::default();
         openings.reset(160, 100);
         openings.close(0, 160);
-        assert!(openings.all_closed());
+        let (first, end) = openings.range();
+        assert!(first >= end);
         for column in 0..160 {
             openings.reset(160, 100);
             openings.close(0, column);
             openings.close(column + 1, 160);
-            assert!(!openings.all_closed());
+            assert_eq!(openings.range(), (column, column + 1));
             for (first, end) in [(0, 160), (column, column + 1), (0, column + 1), (column, 160)] {
                 assert!(openings.any_open(first, end), "{column} in {first}..{end}");
             }

@@ -12,6 +12,8 @@ pub(super) struct WallPicture {
     pub height: u32,
     /// `2^32 / height`, rounded up so that whole heights come out whole.
     pub inverse_height: i64,
+    /// `width - 1` where that masks a column number, otherwise 0.
+    column_mask: u32,
     /// Palette indices, column by column.
     pub pixels: Arc<[u8]>,
 }
@@ -25,6 +27,7 @@ impl WallPicture {
             width,
             height,
             inverse_height: ((1 << 32) + i64::from(height) - 1) / i64::from(height),
+            column_mask: if width.is_power_of_two() { width - 1 } else { 0 },
             pixels: pixels.into(),
         }
     }
@@ -40,8 +43,7 @@ impl WallPicture {
     #[inline]
     pub fn column_start(&self, u: i64) -> usize {
         let u = (u >> 16) as i32;
-        let column =
-            if self.width.is_power_of_two() { u as u32 & (self.width - 1) } else { u.rem_euclid(self.width as i32) as u32 };
+        let column = if self.column_mask != 0 { u as u32 & self.column_mask } else { u.rem_euclid(self.width as i32) as u32 };
         (column * self.height) as usize
     }
 }

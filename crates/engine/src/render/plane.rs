@@ -1,10 +1,12 @@
 //! Floors and ceilings: collected as areas of equal height, texture and light, then drawn row by row.
 
+use super::View;
 use super::camera::Camera;
+use super::depth_level;
 use super::frame::{Frame, class};
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::FlatPicture;
-use super::{View, depth_level};
+use super::row_walk::RowWalk;
 use crate::map::TextureId;
 use crate::math::Fixed;
 
@@ -32,8 +34,6 @@ impl PlaneKey {
 const BUCKETS: usize = 64;
 /// No plane.
 const NONE: u16 = u16::MAX;
-/// `top` of a column that the plane does not have.
-pub(super) const UNUSED: i16 = i16::MAX;
 
 /// An area of one plane: at most one run of rows in each column.
 #[derive(Clone, Debug)]
@@ -45,9 +45,9 @@ pub(super) struct Plane {
     pub first: usize,
     /// One past the last column.
     pub end: usize,
-    /// First row by column, or [`UNUSED`].
+    /// First row by column; one column more than the frame has.
     pub top: Vec<i16>,
-    /// One past the last row by column.
+    /// One past the last row by column; not below the first where the plane has no row.
     pub bottom: Vec<i16>,
 }
 
@@ -89,7 +89,7 @@ impl Planes {
 
     fn start(&mut self, key: PlaneKey) -> u16 {
         if self.used == self.list.len() {
-            let (top, bottom) = (vec![UNUSED; self.width], vec![0; self.width]);
+            let (top, bottom) = (vec![], vec![]);
             self.list.push(Plane { key, next: NONE, first: 0, end: 0, top, bottom });
         }
         let index = self.used;
@@ -98,52 +98,107 @@ impl Planes {
         plane.key = key;
         plane.next = std::mem::replace(&mut self.buckets[key.bucket()], index as u16);
         (plane.first, plane.end) = (self.width, 0);
-        plane.top.clear();
-        plane.top.resize(self.width, UNUSED);
-        plane.bottom.resize(self.width, 0);
+        // One more than there are columns ends the last span.
+        plane.top.resize(self.width + 1, 0);
+        plane.bottom.resize(self.width + 1, 0);
+        plane.bottom.fill(i16::MIN);
         index as u16
     }
 
-    /// Adds the rows `tops[i]..bottoms[i]` of the columns from `first` on; returns the plane that took them, which is
-    /// another one where `index` already has rows in one of the columns.
-    pub fn add(&mut self, index: u16, first: usize, tops: &[i16], bottoms: &[i16]) -> u16 {
-        let end = first + tops.len();
-        let plane = &self.list[usize::from(index)];
-        let taken = plane.top[first..end]
-            .iter()
-            .zip(tops.iter().zip(bottoms))
-            .fold(false, |taken, (&have, (&top, &bottom))| taken | ((have != UNUSED) & (top < bottom)));
-        let index = if taken { self.start(plane.key) } else { index };
+    /// The rows of the columns `first..end` of a plane: first and one past the last.
+    #[inline]
+    pub fn columns(&mut self, index: u16, first: usize, end: usize) -> (&mut [i16], &mut [i16]) {
         let plane = &mut self.list[usize::from(index)];
-        let columns = plane.top[first..end].iter_mut().zip(&mut plane.bottom[first..end]);
-        for ((plane_top, plane_bottom), (&top, &bottom)) in columns.zip(tops.iter().zip(bottoms)) {
-            let fill = top < bottom;
-            *plane_top = if fill { top } else { *plane_top };
-            *plane_bottom = if fill { bottom } else { *plane_bottom };
-        }
         plane.first = plane.first.min(first);
         plane.end = plane.end.max(end);
-        index
+        (&mut plane.top[first..end], &mut plane.bottom[first..end])
+    }
+
+    /// Another plane with the key of plane `index`, which has a run of rows already where another one is needed.
+    #[cold]
+    pub fn start_another(&mut self, index: u16) -> u16 {
+        self.start(self.list[usize::from(index)].key)
     }
 }
 
+/// A run of pixels of a row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Span {
+    pub row: u16,
+    /// First column.
+    pub first: u16,
+    /// One past the last.
+    pub end: u16,
+}
+
 impl Plane {
-    /// Calls `span(row, first column, one past the last column)` for every run of pixels of the plane; `starts` is
-    /// scratch of at least as many entries as there are rows.
-    pub fn spans(&self, starts: &mut [u16], mut span: impl FnMut(usize, usize, usize)) {
-        // A column without rows is UNUSED..UNUSED, so that it lies above and below of every other.
-        let (mut t1, mut b1) = (UNUSED, UNUSED);
-        for x in self.first..=self.end {
-            let (t2, b2) = if x < self.end { (self.top[x], self.bottom[x]) } else { (UNUSED, UNUSED) };
-            let b2 = if t2 == UNUSED { UNUSED } else { b2 };
-            for row in (t1..b1.min(t2)).chain(t1.max(b2)..b1) {
-                span(row as usize, usize::from(starts[row as usize]), x);
+    /// Whether the plane has any column.
+    pub fn is_empty(&self) -> bool {
+        self.first >= self.end
+    }
+
+    /// Lists every run of pixels of the plane in `spans` and returns how many there are. `starts` is scratch of one
+    /// entry more than the frame has rows.
+    ///
+    /// From column to column an end of the run of rows stays or moves by one, and which cannot be foretold: the first
+    /// row that comes or goes is handled without a branch, by writing it in any case, and more of them by loops.
+    pub fn spans(&self, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
+        let nowhere = starts.len() - 1;
+        let mut count = 0;
+        // The column behind the last one has no rows, which ends the last spans.
+        let (mut top1, mut bottom1) = (0, i32::from(i16::MIN));
+        let columns = self.top[self.first..=self.end].iter().zip(&self.bottom[self.first..=self.end]);
+        for (x, (&top2, &bottom2)) in (self.first as u16..).zip(columns) {
+            let (top2, bottom2) = (i32::from(top2), i32::from(bottom2));
+            if (top1, bottom1) == (top2, bottom2) {
+                continue;
             }
-            for row in (t2..b2.min(t1)).chain(t2.max(b1)..b2) {
-                starts[row as usize] = x as u16;
+            if count + 2 * starts.len() > spans.len() {
+                spans.resize(count + 4 * starts.len(), Span::default());
             }
-            (t1, b1) = (t2, b2);
+            // Rows of the last column that end before this one, from above and from below.
+            let upper_end = bottom1.min(top2);
+            let mut row = top1;
+            loop {
+                spans[count] = Span { row: row as u16, first: starts[row as usize], end: x };
+                count += usize::from(row < upper_end);
+                row += 1;
+                if row >= upper_end {
+                    break;
+                }
+            }
+            let lower_first = top1.max(bottom2).max(upper_end);
+            let mut row = bottom1 - 1;
+            loop {
+                spans[count] = Span { row: row as u16, first: starts[row.max(0) as usize], end: x };
+                count += usize::from(row >= lower_first);
+                row -= 1;
+                if row < lower_first {
+                    break;
+                }
+            }
+            // Rows that begin with this column.
+            let upper_end = bottom2.min(top1);
+            let mut row = top2;
+            loop {
+                starts[if row < upper_end { row as usize } else { nowhere }] = x;
+                row += 1;
+                if row >= upper_end {
+                    break;
+                }
+            }
+            let lower_first = top2.max(bottom1).max(upper_end);
+            let mut row = bottom2 - 1;
+            loop {
+                starts[if row >= lower_first { row as usize } else { nowhere }] = x;
+                row -= 1;
+                if row < lower_first {
+                    break;
+                }
+            }
+            (top1, bottom1) = (top2, bottom2);
         }
+        count
     }
 }
 
@@ -182,35 +237,23 @@ impl<'a> PlaneShader<'a> {
 
     /// Draws the frame columns `first..end` of a frame row.
     #[inline]
-    pub fn span<const DEPTH: bool, const CLASS: bool>(
-        &self,
-        frame: &mut Frame,
-        flat: &FlatPicture,
-        row: usize,
-        first: usize,
-        end: usize,
-    ) {
+    pub fn span<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, flat: &FlatPicture, span: Span) {
+        let (row, first, end) = (usize::from(span.row), usize::from(span.first), usize::from(span.end));
         let below = i64::from(self.view.rows[row]) - self.camera.horizon;
         let away = if self.above { -1 - below } else { below }.max(0);
         let distance = (self.height * self.view.row_slopes[away as usize]) >> 16;
         let table = &self.tables[self.light.table((self.nearness * (2 * away + 1)) >> 24)];
         let start = row * frame.width;
-        let columns = &self.view.columns[first..end];
         let pixels = &mut frame.colour[start + first..start + end];
+        let columns = &self.view.columns[first..end];
         match flat {
             FlatPicture::Small(texels) => {
-                let (at, step) = self.walk::<6>(distance);
-                for (pixel, &column) in pixels.iter_mut().zip(columns) {
-                    let at = at.wrapping_add(step.wrapping_mul(u64::from(column)));
-                    *pixel = table[usize::from(texels[((at >> 52) & 0xFC0 | (at >> 26) & 0x3F) as usize])];
-                }
+                let fetch = |index: usize| table[usize::from(texels[index & (64 * 64 - 1)])];
+                self.walk::<6>(distance).draw::<6>(pixels, columns, self.view.chunk_stride, fetch);
             }
             FlatPicture::Large(texels) => {
-                let (at, step) = self.walk::<7>(distance);
-                for (pixel, &column) in pixels.iter_mut().zip(columns) {
-                    let at = at.wrapping_add(step.wrapping_mul(u64::from(column)));
-                    *pixel = table[usize::from(texels[((at >> 50) & 0x3F80 | (at >> 25) & 0x7F) as usize])];
-                }
+                let fetch = |index: usize| table[usize::from(texels[index & (128 * 128 - 1)])];
+                self.walk::<7>(distance).draw::<7>(pixels, columns, self.view.chunk_stride, fetch);
             }
         }
         if DEPTH {
@@ -221,24 +264,20 @@ impl<'a> PlaneShader<'a> {
         }
     }
 
-    /// Texture position at base column 0 and its change a column, for textures of side `2^BITS`: the horizontal
-    /// position in the upper half, the vertical one in the lower half, each as a fraction of the side. What the lower
-    /// half carries into the upper one is too little to matter.
+    /// The walk of a row over textures of side `2^BITS`.
     #[inline]
-    fn walk<const BITS: u32>(&self, distance: i64) -> (u64, u64) {
+    fn walk<const BITS: u32>(&self, distance: i64) -> RowWalk {
         let camera = self.camera;
-        // 48 fractional bits; whole map units beyond the 16th bit wrap away, as they would in the texture.
-        let at = [
-            (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.ray[0])),
-            (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.ray[1])).wrapping_neg(),
-        ];
-        let step = [distance.wrapping_mul(camera.ray_step[0]), distance.wrapping_mul(camera.ray_step[1]).wrapping_neg()];
-        let shift = 16 - BITS;
-        let pack = |u: i64, v: i64| {
-            let high = (u << shift) as u64 & 0xFFFF_FFFF_0000_0000;
-            high.wrapping_add(((v << shift) >> 32) as u64)
-        };
-        (pack(at[0], at[1]), pack(step[0], step[1]))
+        // 48 fractional bits, of which the fraction of the side's 32 are kept; whole sides wrap away.
+        let part = |position: i64| (position >> (16 + BITS)) as u32;
+        let u = (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.ray[0]));
+        let v = (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.ray[1]));
+        RowWalk {
+            u: part(u),
+            v: part(v.wrapping_neg()),
+            u_step: part(distance.wrapping_mul(camera.ray_step[0])),
+            v_step: part(distance.wrapping_mul(camera.ray_step[1]).wrapping_neg()),
+        }
     }
 }
 
@@ -252,13 +291,18 @@ mod tests {
         let mut planes = Planes::default();
         planes.reset(columns.len());
         let index = planes.find(KEY);
-        let (tops, bottoms): (Vec<i16>, Vec<i16>) = columns.iter().copied().unzip();
-        planes.add(index, 0, &tops, &bottoms);
+        let (tops, bottoms) = planes.columns(index, 0, columns.len());
+        for (x, &(top, bottom)) in columns.iter().enumerate().filter(|(_, (top, bottom))| top <= bottom) {
+            (tops[x], bottoms[x]) = (top, bottom);
+        }
         let mut pixels = vec![0; 8 * columns.len()];
-        planes.used()[0].spans(&mut [0; 8], |row, first, end| {
-            assert!(first < end);
-            pixels[row * columns.len() + first..row * columns.len() + end].iter_mut().for_each(|p| *p += 1);
-        });
+        let mut spans = Vec::new();
+        let count = planes.used()[0].spans(&mut [0; 9], &mut spans);
+        for span in &spans[..count] {
+            assert!(span.first < span.end);
+            let row = usize::from(span.row) * columns.len();
+            pixels[row + usize::from(span.first)..row + usize::from(span.end)].iter_mut().for_each(|p| *p += 1);
+        }
         pixels
     }
 
@@ -276,15 +320,13 @@ mod tests {
     }
 
     #[test]
-    fn a_column_that_is_taken_starts_another_plane() {
+    fn the_newest_plane_of_a_key_is_found() {
         let mut planes = Planes::default();
         planes.reset(4);
         let first = planes.find(KEY);
-        assert_eq!(planes.add(first, 0, &[2, 2], &[5, 5]), first);
-        assert_eq!(planes.add(first, 2, &[1, 1], &[3, 3]), first);
-        assert_eq!(planes.add(first, 1, &[4], &[4]), first, "an empty run takes nothing");
-        let second = planes.add(first, 1, &[0], &[1]);
-        assert_ne!(second, first);
+        let second = planes.start_another(first);
+        assert_ne!(first, second);
         assert_eq!(planes.find(KEY), second);
+        assert_ne!(planes.find(PlaneKey { light: 1, ..KEY }), second);
     }
 }

@@ -6,13 +6,13 @@ use super::label::{Label, Labels};
 use super::masked::Masked;
 use super::openings::Openings;
 use super::palette::Tint;
-use super::plane::{PlaneShader, Planes};
+use super::plane::{PlaneShader, Planes, Span};
 use super::scene::Scene;
 use super::silhouette::Silhouettes;
 use super::sky::SkyShader;
 use super::sprite::{self, SeenSprite};
 use super::status_bar::{BarState, StatusBar};
-use super::walk::{Walk, WalkScratch};
+use super::walk::{Walk, WalkScratch, look_of};
 use super::{Buffers, SegmentationColours, View, convert, weapon};
 use crate::world::World;
 use std::sync::Arc;
@@ -28,12 +28,16 @@ pub struct Renderer {
     planes: Planes,
     silhouettes: Silhouettes,
     walk: WalkScratch,
+    /// What is drawn of each sector, for comparison.
+    looks: Vec<[u64; 2]>,
     /// Sectors that the frame entered.
     entered: Vec<bool>,
     /// Index of the picture that each texture shows.
     pictures: Vec<u32>,
-    /// First column of each row's span.
+    /// First column of each row's span, and one entry that nobody reads.
     span_starts: Vec<u16>,
+    /// Spans of the plane at hand.
+    spans: Vec<Span>,
     /// Start of each column's texels in the sky's picture.
     sky_columns: Vec<u32>,
     sprites: Vec<SeenSprite>,
@@ -46,6 +50,9 @@ pub struct Renderer {
     tint: Tint,
     options: RenderOptions,
 }
+
+/// Values of the class buffer that get a colour: more actors than any frame shows.
+const CLASS_COLOURS: usize = 1024;
 
 /// What may be drawn otherwise.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -63,8 +70,6 @@ impl Renderer {
     #[must_use]
     pub fn new(scene: Arc<Scene>, view: Arc<View>) -> Renderer {
         let (width, pixels) = (view.width(), view.size.pixels());
-        let mut walk = WalkScratch::default();
-        walk.resize(width);
         // The status bar's rows keep their depth and class.
         let frame = Frame {
             width,
@@ -78,10 +83,12 @@ impl Renderer {
             openings: Openings::default(),
             planes: Planes::default(),
             silhouettes: Silhouettes::default(),
-            walk,
+            walk: WalkScratch::new(&scene, width),
+            looks: Vec::new(),
             entered: vec![false; scene.sector_count],
             pictures: Vec::new(),
-            span_starts: vec![0; view.view_rows],
+            span_starts: vec![0; view.view_rows + 1],
+            spans: Vec::new(),
             sky_columns: vec![0; width],
             sprites: Vec::new(),
             sprite_rows: [Vec::new(), Vec::new()],
@@ -125,11 +132,14 @@ impl Renderer {
         self.planes.reset(self.view.width());
         self.silhouettes.reset();
         self.entered.fill(false);
+        self.looks.clear();
+        self.looks.extend(world.sectors.iter().map(look_of));
         let mut walk = Walk {
             scene: &self.scene,
             view: &self.view,
             camera: &camera,
             sectors: &world.sectors,
+            looks: &self.looks,
             pictures: &self.pictures,
             frame: &mut self.frame,
             openings: &mut self.openings,
@@ -191,9 +201,11 @@ impl Renderer {
     fn draw_planes<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera) {
         let tables = &self.scene.assets.light_tables;
         for plane in self.planes.used() {
-            if plane.first >= plane.end {
+            if plane.is_empty() {
                 continue;
             }
+            let count = plane.spans(&mut self.span_starts, &mut self.spans);
+            let spans = &self.spans[..count];
             if plane.key.sky {
                 let shader = SkyShader {
                     camera,
@@ -202,16 +214,16 @@ impl Renderer {
                     picture: &self.scene.textures.walls[self.scene.sky],
                 };
                 shader.columns(&mut self.sky_columns, plane.first, plane.end);
-                plane.spans(&mut self.span_starts, |row, first, end| {
-                    shader.span::<DEPTH, CLASS>(&mut self.frame, &self.sky_columns, row, first, end);
-                });
+                for &span in spans {
+                    shader.span::<DEPTH, CLASS>(&mut self.frame, &self.sky_columns, span);
+                }
             } else {
                 let shader = PlaneShader::new(camera, &self.view, tables, plane.key);
                 let picture = self.pictures[usize::from(plane.key.texture.0)];
                 let flat = &self.scene.textures.flats[picture as usize];
-                plane.spans(&mut self.span_starts, |row, first, end| {
-                    shader.span::<DEPTH, CLASS>(&mut self.frame, flat, row, first, end);
-                });
+                for &span in spans {
+                    shader.span::<DEPTH, CLASS>(&mut self.frame, flat, span);
+                }
             }
         }
     }
@@ -325,8 +337,11 @@ impl Renderer {
     }
 
     /// The colour of each value of the class buffer.
-    fn class_colours(&self, colours: &SegmentationColours) -> Vec<[u8; 3]> {
+    fn class_colours(&self, colours: &SegmentationColours) -> [[u8; 3]; CLASS_COLOURS] {
         let surfaces = (0..class::FIRST_ACTOR).map(|class| colours.surface(class));
-        surfaces.chain(self.labels.list.iter().map(|label| colours.actor(label.kind))).collect()
+        let actors = self.labels.list.iter().map(|label| colours.actor(label.kind));
+        let mut table = [[0; 3]; CLASS_COLOURS];
+        table.iter_mut().zip(surfaces.chain(actors)).for_each(|(to, colour)| *to = colour);
+        table
     }
 }

@@ -16,18 +16,28 @@ pub(super) const NO_SECTOR: u32 = u32::MAX;
 /// A seg as the renderer wants it.
 #[derive(Clone, Debug)]
 pub(super) struct SceneSeg {
-    /// Unit normal towards the seg's own sector, 28 fractional bits.
-    pub normal: [i64; 2],
     /// The line's distance from the origin along the normal, 44 fractional bits.
     pub offset: i64,
+    /// Unit normal towards the seg's own sector, 28 fractional bits.
+    pub normal: [i32; 2],
     /// Ends, left to right as seen from its sector; 16.16.
-    pub ends: [[i64; 2]; 2],
+    pub ends: [[i32; 2]; 2],
     /// Sector that it faces.
     pub front: u32,
     /// Sector behind, or [`NO_SECTOR`].
     pub back: u32,
     /// Index into [`Scene::faces`].
     pub face: u32,
+    /// It has a masked texture in its opening.
+    pub masked: bool,
+}
+
+impl SceneSeg {
+    /// Distance of a point in 16.16 from the line, positive on the seg's side; 44 fractional bits.
+    #[inline]
+    pub fn away(&self, x: i64, y: i64) -> i64 {
+        x * i64::from(self.normal[0]) + y * i64::from(self.normal[1]) - self.offset
+    }
 }
 
 /// One side of a line: how its textures lie.
@@ -185,15 +195,14 @@ fn scene_seg(map: &Map, seg: &Seg) -> SceneSeg {
     }
     let along = unit_vector(dx, dy);
     let normal = [along[1], -along[0]];
-    let wide = |v: crate::map::Vertex| [i64::from(v.x.0), i64::from(v.y.0)];
-    let start = wide(line.v1);
     SceneSeg {
-        normal,
-        offset: start[0] * normal[0] + start[1] * normal[1],
-        ends: [wide(seg.v1), wide(seg.v2)],
+        offset: i64::from(line.v1.x.0) * normal[0] + i64::from(line.v1.y.0) * normal[1],
+        normal: normal.map(|part| part as i32),
+        ends: [[seg.v1.x.0, seg.v1.y.0], [seg.v2.x.0, seg.v2.y.0]],
         front: seg.front_sector.0,
         back: seg.back_sector.map_or(NO_SECTOR, |sector| sector.0),
         face: seg.side.0,
+        masked: seg.back_sector.is_some() && map.sides[seg.side.0 as usize].middle.is_some(),
     }
 }
 

@@ -4,8 +4,8 @@ use super::light::Light;
 use super::plane::PlaneKey;
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
-use super::walk::{Walk, WalkScratch};
-use super::wall::{SeenLine, WallShader};
+use super::walk::Walk;
+use super::wall::{Edge, SeenLine, TextureLine, WallShader};
 use crate::map::TextureId;
 use crate::math::Fixed;
 use crate::world::SectorState;
@@ -13,9 +13,9 @@ use crate::world::SectorState;
 /// A seg in view, on its way through the stages.
 struct SeenSeg<'a> {
     index: u32,
+    seg: &'a SceneSeg,
     face: &'a Face,
     line: SeenLine,
-    light: Light,
     /// Frame columns.
     first: usize,
     end: usize,
@@ -32,29 +32,31 @@ struct SeenColumns {
     base_ends: [i64; 2],
 }
 
+/// The part of a seg above or below its opening.
+#[derive(Clone, Copy)]
+struct Part {
+    /// The plane that ends at the seg, if the eye sees it.
+    plane: Option<u16>,
+    /// Where it ends.
+    edge: Edge,
+    /// Where the wall between it and the opening ends, if there is one.
+    wall: Option<Edge>,
+}
+
 impl Walk<'_> {
-    /// Draws a seg if it faces the eye and any of it may be seen.
+    /// Draws a seg that faces the eye from `away`, the distance of its line with 44 fractional bits, if any column shows it.
     #[inline]
-    pub fn seg<const DEPTH: bool, const CLASS: bool>(&mut self, index: u32) {
-        let (scene, sectors) = (self.scene, self.sectors);
-        let seg = &scene.segs[index as usize];
-        let away = self.camera.x * seg.normal[0] + self.camera.y * seg.normal[1] - seg.offset;
-        if away <= 0 {
-            return;
-        }
-        let front = &sectors[seg.front as usize];
-        let back = (seg.back != NO_SECTOR).then(|| &sectors[seg.back as usize]);
-        let face = &scene.faces[seg.face as usize];
-        if back.is_some_and(|back| same_planes(front, back)) && face.middle.is_none() {
-            return;
-        }
+    pub fn seg<const DEPTH: bool, const CLASS: bool>(&mut self, index: u32, away: i64) {
+        let seg = &self.scene.segs[index as usize];
         let Some(SeenColumns { first, end, base_ends }) = self.columns(seg) else { return };
-        let line = SeenLine::new(self.camera, seg, face, away);
-        let light = Light::new(self.camera, i32::from(front.light) + face.contrast);
-        let seen = SeenSeg { index, face, line, light, first, end, base_ends };
-        match back {
-            None => self.solid::<DEPTH, CLASS>(&seen, front),
-            Some(back) => self.opening::<DEPTH, CLASS>(&seen, front, back),
+        let face = &self.scene.faces[seg.face as usize];
+        let line = SeenLine::new(self.camera, seg, away);
+        let seen = SeenSeg { index, seg, face, line, first, end, base_ends };
+        let front = &self.sectors[seg.front as usize];
+        if seg.back == NO_SECTOR {
+            self.solid::<DEPTH, CLASS>(&seen, front);
+        } else {
+            self.opening::<DEPTH, CLASS>(&seen, front, &self.sectors[seg.back as usize]);
         }
     }
 
@@ -62,8 +64,7 @@ impl Walk<'_> {
     #[inline]
     fn columns(&self, seg: &SceneSeg) -> Option<SeenColumns> {
         let (camera, view) = (self.camera, self.view);
-        let [left1, right1] = camera.edges(seg.ends[0][0], seg.ends[0][1]);
-        let [left2, right2] = camera.edges(seg.ends[1][0], seg.ends[1][1]);
+        let [[left1, right1], [left2, right2]] = seg.ends.map(|[x, y]| camera.edges(i64::from(x), i64::from(y)));
         // Facing the eye, it runs clockwise by less than half a turn: it enters the view over the left edge or not at
         // all, and leaves it over the right one.
         if (left1 < 0 && left2 < 0) || (right1 < 0 && right2 < 0) {
@@ -88,54 +89,48 @@ impl Walk<'_> {
 
     /// A wall without another side.
     fn solid<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenSeg, front: &SectorState) {
-        self.upper_edge(seen, front.ceiling, EdgeOf::Opening);
-        self.mark_ceiling(seen, front);
-        let range = seen.first..seen.end;
-        self.openings.top[range.clone()].copy_from_slice(&self.scratch.upper[range]);
-        self.lower_edge(seen, front.floor, EdgeOf::Opening);
-        self.mark_floor(seen, front);
+        let (ceiling, floor) = (self.edge(seen, front.ceiling), self.edge(seen, front.floor));
+        // As if there were an opening without height where the floor is.
+        let above = Part { plane: self.ceiling_plane(front), edge: ceiling, wall: Some(floor) };
+        let below = Part { plane: self.floor_plane(front), edge: floor, wall: None };
         let hung_from = match seen.face.middle {
             Some(texture) if seen.face.lower_unpegged => front.floor + self.texture_height(texture),
             _ => front.ceiling,
         };
-        self.wall::<DEPTH, CLASS>(seen, seen.face.middle, hung_from);
+        if self.above(seen, above) {
+            self.wall::<DEPTH, CLASS>(seen, front, seen.face.middle, hung_from);
+        }
+        self.below(seen, below);
         self.openings.close(seen.first, seen.end);
         self.silhouette(seen, None, None, true);
     }
 
     /// A line with a sector on its other side.
     fn opening<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenSeg, front: &SectorState, back: &SectorState) {
-        let (face, range) = (seen.face, seen.first..seen.end);
+        let face = seen.face;
         let shut = back.ceiling <= front.floor || back.floor >= front.ceiling || back.floor >= back.ceiling;
         // Between two skies there is no wall: the sky goes on.
         let both_sky = self.is_sky(front.ceiling_texture) && self.is_sky(back.ceiling_texture);
         let other_light = front.light != back.light;
         let ceiling = if both_sky { back.ceiling } else { front.ceiling };
-        if shut || ceiling != back.ceiling || front.ceiling_texture != back.ceiling_texture || (other_light && !both_sky) {
-            self.upper_edge(seen, ceiling, EdgeOf::Opening);
-            let marked = self.mark_ceiling(seen, front);
-            if back.ceiling < ceiling {
-                self.lower_edge(seen, back.ceiling, EdgeOf::Wall);
+        let other_texture = front.ceiling_texture != back.ceiling_texture;
+        if shut || ceiling != back.ceiling || other_texture || (other_light && !both_sky) {
+            let wall = (back.ceiling < ceiling).then(|| self.edge(seen, back.ceiling));
+            let part = Part { plane: self.ceiling_plane(front), edge: self.edge(seen, ceiling), wall };
+            if self.above(seen, part) {
                 let hung_from = match face.top {
                     Some(texture) if !face.upper_unpegged => back.ceiling + self.texture_height(texture),
                     _ => ceiling,
                 };
-                self.wall::<DEPTH, CLASS>(seen, face.top, hung_from);
-                self.openings.top[range.clone()].copy_from_slice(&self.scratch.lower[range.clone()]);
-            } else if marked {
-                self.openings.top[range.clone()].copy_from_slice(&self.scratch.upper[range.clone()]);
+                self.wall::<DEPTH, CLASS>(seen, front, face.top, hung_from);
             }
         }
         if shut || front.floor != back.floor || front.floor_texture != back.floor_texture || other_light {
-            self.lower_edge(seen, front.floor, EdgeOf::Opening);
-            let marked = self.mark_floor(seen, front);
-            if back.floor > front.floor {
-                self.upper_edge(seen, back.floor, EdgeOf::Wall);
+            let wall = (back.floor > front.floor).then(|| self.edge(seen, back.floor));
+            let part = Part { plane: self.floor_plane(front), edge: self.edge(seen, front.floor), wall };
+            if self.below(seen, part) {
                 let hung_from = if face.lower_unpegged { front.ceiling.max(back.ceiling) } else { back.floor };
-                self.wall::<DEPTH, CLASS>(seen, face.bottom, hung_from);
-                self.openings.bottom[range.clone()].copy_from_slice(&self.scratch.upper[range.clone()]);
-            } else if marked {
-                self.openings.bottom[range.clone()].copy_from_slice(&self.scratch.lower[range]);
+                self.wall::<DEPTH, CLASS>(seen, front, face.bottom, hung_from);
             }
         }
         let eye = Fixed(self.camera.z as i32);
@@ -143,92 +138,135 @@ impl Walk<'_> {
         let above = if ceiling < back.ceiling { Some(ceiling) } else { (back.ceiling < eye && !both_sky).then_some(Fixed::MIN) };
         if shut {
             self.openings.close(seen.first, seen.end);
-        } else {
-            self.openings.note_closed(seen.first, seen.end);
         }
-        if shut || below.is_some() || above.is_some() || face.middle.is_some() {
+        if shut || below.is_some() || above.is_some() || seen.seg.masked {
             self.silhouette(seen, below, above, shut);
         }
     }
 
-    /// Puts the rows of a height into the upper scratch.
-    fn upper_edge(&mut self, seen: &SeenSeg, height: Fixed, of: EdgeOf) {
-        let range = seen.first..seen.end;
-        let WalkScratch { upper, lower, .. } = &mut *self.scratch;
-        let upper = &mut upper[range.clone()];
-        let edge = seen.line.edge(self.camera, self.view, i64::from(height.0) - self.camera.z);
-        edge.rows(self.view, seen.first, upper);
-        let tops = &self.openings.top[range.clone()];
-        let bottoms = match of {
-            EdgeOf::Opening => &self.openings.bottom[range],
-            EdgeOf::Wall => &lower[range],
-        };
-        for (row, (&top, &bottom)) in upper.iter_mut().zip(tops.iter().zip(bottoms)) {
-            *row = (*row).max(top).min(bottom);
+    /// Ends the ceiling at the seg and narrows the columns from above. Returns whether any of the part's wall is to be
+    /// seen; its rows are then in the scratch.
+    fn above(&mut self, seen: &SeenSeg, part: Part) -> bool {
+        match (part.plane, part.wall) {
+            (Some(plane), None) => self.narrow::<false, true, false>(seen, plane, part.edge, part.edge),
+            (Some(plane), Some(wall)) => self.narrow::<false, true, true>(seen, plane, part.edge, wall),
+            (None, Some(wall)) => self.narrow::<false, false, true>(seen, 0, part.edge, wall),
+            (None, None) => false,
         }
     }
 
-    /// Puts the rows of a height into the lower scratch.
-    fn lower_edge(&mut self, seen: &SeenSeg, height: Fixed, of: EdgeOf) {
-        let range = seen.first..seen.end;
-        let WalkScratch { upper, lower, .. } = &mut *self.scratch;
-        let lower = &mut lower[range.clone()];
-        let edge = seen.line.edge(self.camera, self.view, i64::from(height.0) - self.camera.z);
-        edge.rows(self.view, seen.first, lower);
-        let tops = match of {
-            EdgeOf::Opening => &self.openings.top[range.clone()],
-            EdgeOf::Wall => &upper[range.clone()],
-        };
-        for (row, (&top, &bottom)) in lower.iter_mut().zip(tops.iter().zip(&self.openings.bottom[range])) {
-            *row = (*row).max(top).min(bottom);
+    /// Ends the floor at the seg and narrows the columns from below, as [`Walk::above`] does.
+    fn below(&mut self, seen: &SeenSeg, part: Part) -> bool {
+        match (part.plane, part.wall) {
+            (Some(plane), None) => self.narrow::<true, true, false>(seen, plane, part.edge, part.edge),
+            (Some(plane), Some(wall)) => self.narrow::<true, true, true>(seen, plane, part.edge, wall),
+            (None, Some(wall)) => self.narrow::<true, false, true>(seen, 0, part.edge, wall),
+            (None, None) => false,
         }
     }
 
-    /// Gives the open rows above the upper scratch to the ceiling, if the eye sees it.
-    fn mark_ceiling(&mut self, seen: &SeenSeg, front: &SectorState) -> bool {
-        let sky = self.is_sky(front.ceiling_texture);
-        if !sky && i64::from(front.ceiling.0) <= self.camera.z {
-            return false;
+    /// One pass over the seg's columns: the plane takes the rows up to `edge`, the wall those from there to `wall`, and
+    /// what is left stays open. One pass, because most segs are so narrow that the beginnings and ends of loops count.
+    fn narrow<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+        &mut self,
+        seen: &SeenSeg,
+        mut plane: u16,
+        edge: Edge,
+        wall: Edge,
+    ) -> bool {
+        let (first, end) = (seen.first, seen.end);
+        let columns = &self.view.columns[first..end];
+        let first_rows = &self.view.first_row[..];
+        let tops = &mut self.openings.top[first..end];
+        let bottoms = &mut self.openings.bottom[first..end];
+        let uppers = &mut self.scratch.upper[first..end];
+        let lowers = &mut self.scratch.lower[first..end];
+        let (mut walled, mut closed) = (false, false);
+        let mut i = 0;
+        'planes: loop {
+            let (plane_tops, plane_bottoms): (&mut [i16], &mut [i16]) =
+                if PLANE { self.planes.columns(plane, first, end) } else { (&mut [], &mut []) };
+            while i < columns.len() {
+                let (top, bottom) = (i32::from(tops[i]), i32::from(bottoms[i]));
+                let row = edge.row(first_rows, columns[i]).max(top).min(bottom);
+                if PLANE {
+                    let (from, to) = if FLOOR { (row, bottom) } else { (top, row) };
+                    if plane_tops[i] >= plane_bottoms[i] {
+                        (plane_tops[i], plane_bottoms[i]) = (from as i16, to as i16);
+                    } else if from < to {
+                        plane = self.planes.start_another(plane);
+                        continue 'planes;
+                    }
+                }
+                let mut open = row;
+                if WALL {
+                    let far = wall.row(first_rows, columns[i]);
+                    open = if FLOOR { far.max(top).min(row) } else { far.max(row).min(bottom) };
+                    let (upper, lower) = if FLOOR { (open, row) } else { (row, open) };
+                    (uppers[i], lowers[i]) = (upper as i16, lower as i16);
+                    walled |= open != row;
+                }
+                if FLOOR {
+                    bottoms[i] = open as i16;
+                    closed |= (top < bottom) & (top >= open);
+                } else {
+                    tops[i] = open as i16;
+                    closed |= (top < bottom) & (open >= bottom);
+                }
+                i += 1;
+            }
+            break;
         }
-        let key = if sky {
-            PlaneKey { height: Fixed::ZERO, texture: front.ceiling_texture, light: 0, sky }
-        } else {
-            PlaneKey { height: front.ceiling, texture: front.ceiling_texture, light: front.light, sky }
-        };
-        let range = seen.first..seen.end;
-        let plane = self.planes.find(key);
-        self.planes.add(plane, seen.first, &self.openings.top[range.clone()], &self.scratch.upper[range]);
-        true
+        if closed {
+            self.openings.note_closed(first, end);
+        }
+        walled
     }
 
-    /// Gives the open rows below the lower scratch to the floor, if the eye sees it.
-    fn mark_floor(&mut self, seen: &SeenSeg, front: &SectorState) -> bool {
-        let sky = self.is_sky(front.floor_texture);
-        if !sky && i64::from(front.floor.0) >= self.camera.z {
-            return false;
+    /// The plane of a sector's ceiling, if the eye sees it.
+    fn ceiling_plane(&mut self, sector: &SectorState) -> Option<u16> {
+        if self.is_sky(sector.ceiling_texture) {
+            return Some(self.sky_plane(sector.ceiling_texture));
         }
-        let key = if sky {
-            PlaneKey { height: Fixed::ZERO, texture: front.floor_texture, light: 0, sky }
-        } else {
-            PlaneKey { height: front.floor, texture: front.floor_texture, light: front.light, sky }
-        };
-        let range = seen.first..seen.end;
-        let plane = self.planes.find(key);
-        self.planes.add(plane, seen.first, &self.scratch.lower[range.clone()], &self.openings.bottom[range]);
-        true
+        let key = PlaneKey { height: sector.ceiling, texture: sector.ceiling_texture, light: sector.light, sky: false };
+        (i64::from(sector.ceiling.0) > self.camera.z).then(|| self.planes.find(key))
     }
 
-    /// Draws what is between the upper and the lower scratch.
-    fn wall<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenSeg, texture: Option<TextureId>, top: Fixed) {
+    /// The plane of a sector's floor, if the eye sees it.
+    fn floor_plane(&mut self, sector: &SectorState) -> Option<u16> {
+        if self.is_sky(sector.floor_texture) {
+            return Some(self.sky_plane(sector.floor_texture));
+        }
+        let key = PlaneKey { height: sector.floor, texture: sector.floor_texture, light: sector.light, sky: false };
+        (i64::from(sector.floor.0) < self.camera.z).then(|| self.planes.find(key))
+    }
+
+    fn sky_plane(&mut self, texture: TextureId) -> u16 {
+        self.planes.find(PlaneKey { height: Fixed::ZERO, texture, light: 0, sky: true })
+    }
+
+    fn edge(&self, seen: &SeenSeg, height: Fixed) -> Edge {
+        seen.line.edge(self.camera, self.view, i64::from(height.0) - self.camera.z)
+    }
+
+    /// Draws the wall between the upper and the lower scratch.
+    fn wall<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        seen: &SeenSeg,
+        front: &SectorState,
+        texture: Option<TextureId>,
+        hung_from: Fixed,
+    ) {
         let range = seen.first..seen.end;
         let shader = WallShader {
             camera: self.camera,
             view: self.view,
             tables: &self.scene.assets.light_tables,
             line: &seen.line,
+            texture: TextureLine::new(self.camera, seen.seg, seen.face),
             picture: &self.scene.textures.walls[self.picture(texture)],
-            light: seen.light,
-            hung_from: i64::from(top.0) - self.camera.z + seen.face.v_offset,
+            light: Light::new(self.camera, i32::from(front.light) + seen.face.contrast),
+            hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };
         let (tops, bottoms) = (&self.scratch.upper[range.clone()], &self.scratch.lower[range]);
         shader.draw::<DEPTH, CLASS>(self.frame, seen.first, tops, bottoms);
@@ -246,7 +284,7 @@ impl Walk<'_> {
             floor,
             ceiling,
             solid,
-            masked: !solid && seen.face.middle.is_some(),
+            masked: !solid && seen.seg.masked,
             rows: 0,
         };
         self.silhouettes.add(silhouette, &self.openings.top[range.clone()], &self.openings.bottom[range]);
@@ -263,23 +301,4 @@ impl Walk<'_> {
     fn texture_height(&self, texture: TextureId) -> Fixed {
         Fixed::from_int(self.scene.textures.walls[self.picture(Some(texture))].height as i32)
     }
-}
-
-/// What bounds an edge on its far side.
-#[derive(Clone, Copy)]
-enum EdgeOf {
-    /// The open rows.
-    Opening,
-    /// The other end of the wall part, in the other scratch.
-    Wall,
-}
-
-/// Whether nothing of floor and ceiling changes from one sector to the other.
-#[inline]
-fn same_planes(a: &SectorState, b: &SectorState) -> bool {
-    a.floor == b.floor
-        && a.ceiling == b.ceiling
-        && a.floor_texture == b.floor_texture
-        && a.ceiling_texture == b.ceiling_texture
-        && a.light == b.light
 }

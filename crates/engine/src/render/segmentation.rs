@@ -6,6 +6,14 @@ use crate::world::ActorKind;
 /// Number of classes that are no actors: wall, floor, ceiling, sky, status bar, weapon.
 const SURFACES: usize = 6;
 
+/// Colours that differ by no more than this in every channel are easily taken for each other.
+const NEARLY_ALIKE: u8 = 30;
+
+/// The largest difference of two colours in a channel.
+fn difference(a: [u8; 3], b: [u8; 3]) -> u8 {
+    a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+}
+
 /// A colour for each class.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SegmentationColours {
@@ -20,16 +28,18 @@ impl Default for SegmentationColours {
 }
 
 impl SegmentationColours {
-    /// No two classes alike.
+    /// No two classes alike, nor nearly so: some channel differs by more than [`NEARLY_ALIKE`].
     #[must_use]
     pub fn distinct() -> SegmentationColours {
-        let surfaces = [[0, 0, 0], [60, 60, 60], [128, 128, 128], [150, 200, 255], [30, 30, 80], [255, 255, 255]];
-        let mut actors = [[0; 3]; ActorKind::COUNT];
-        for (i, colour) in actors.iter_mut().enumerate() {
-            // A walk through a 5 x 5 x 5 cube of colours that comes by each once and makes neighbours unlike.
-            let at = (i * 37 + 12) % 125;
-            *colour = [at / 25, at / 5 % 5, at % 5].map(|level| 20 + 55 * level as u8);
-        }
+        let surfaces = [[0, 0, 0], [60, 60, 60], [128, 128, 128], [150, 200, 255], [20, 30, 100], [255, 255, 255]];
+        // A walk through a 5 x 5 x 5 cube of colours that comes by each once; its stride and start are those of all that
+        // leave the classes of a scenario farthest apart. What is dark, as walls and floors are, or nearly the colour of
+        // a surface is passed over.
+        let walk = (0..125).map(|i| (i * 123 + 124) % 125);
+        let cube = walk.map(|at| [at / 25, at / 5 % 5, at % 5].map(|level| 20 + 55 * level as u8));
+        let bright = cube.filter(|colour| colour.iter().any(|&channel| channel > 128));
+        let mut free = bright.filter(|&colour| surfaces.iter().all(|&surface| difference(surface, colour) > NEARLY_ALIKE));
+        let actors = std::array::from_fn(|_| free.next().expect("the cube has more colours than there are kinds"));
         SegmentationColours { surfaces, actors }
     }
 
@@ -106,8 +116,10 @@ mod tests {
     #[test]
     fn distinct_colours_are_distinct() {
         let colours = SegmentationColours::distinct();
-        let mut seen = std::collections::BTreeSet::new();
-        assert!(colours.surfaces.iter().chain(&colours.actors).all(|&colour| seen.insert(colour)));
-        assert_eq!(seen.len(), SURFACES + ActorKind::COUNT);
+        let all: Vec<[u8; 3]> = colours.surfaces.iter().chain(&colours.actors).copied().collect();
+        assert_eq!(all.len(), SURFACES + ActorKind::COUNT);
+        for (i, &colour) in all.iter().enumerate() {
+            assert!(all[..i].iter().all(|&other| difference(colour, other) > NEARLY_ALIKE), "{colour:?}");
+        }
     }
 }

@@ -4,6 +4,7 @@ use super::View;
 use super::camera::Camera;
 use super::frame::{Frame, class};
 use super::picture::WallPicture;
+use super::plane::Span;
 
 /// Height of the cylinder in units of 1/200 screen height, whatever the picture's: enough to look all the way up.
 const SKY_UNITS: i64 = 228;
@@ -29,14 +30,8 @@ impl SkyShader<'_> {
     }
 
     /// Draws the frame columns `first..end` of a frame row.
-    pub fn span<const DEPTH: bool, const CLASS: bool>(
-        &self,
-        frame: &mut Frame,
-        starts: &[u32],
-        row: usize,
-        first: usize,
-        end: usize,
-    ) {
+    pub fn span<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, starts: &[u32], span: Span) {
+        let (row, first, end) = (usize::from(span.row), usize::from(span.first), usize::from(span.end));
         let below = 2 * (i64::from(self.view.rows[row]) - self.camera.horizon) + 1;
         // The screen is 0.75 of its width high, whatever part of it is shown.
         let units = below * 400 / (3 * i64::from(self.view.base_width)) + UNITS_ABOVE;

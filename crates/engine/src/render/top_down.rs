@@ -16,8 +16,10 @@ const PLAYER: [u8; 3] = [60, 150, 255];
 const MARGIN: i64 = 4;
 /// Smallest half width of a thing, pixels.
 const LEAST_THING: i64 = 2;
-/// Smallest half length of a player's arrow, pixels.
+/// Smallest half length of a player's and a creature's arrow, pixels, and as a share of the picture's shorter side.
 const LEAST_PLAYER: i64 = 5;
+/// See above.
+const PLAYER_SHARE: i64 = 60;
 
 /// A picture of a map from above at one size: what does not change is worked out once.
 #[derive(Clone, Debug)]
@@ -107,7 +109,9 @@ impl TopDown {
     pub fn draw(&self, world: &World, out: &mut [u8]) {
         assert_eq!(out.len(), self.width * self.height * 3, "a buffer of height * width * 3 bytes is needed");
         assert_eq!(world.sectors.len(), self.map.sectors.len(), "the world is of another map");
-        let colours: Vec<[u8; 3]> = (0..world.sectors.len()).map(|sector| self.floor_colour(world, sector)).collect();
+        let floors = || world.sectors.iter().map(|sector| i64::from(sector.floor.floor()));
+        let range = [floors().min().unwrap_or(0), floors().max().unwrap_or(0)];
+        let colours: Vec<[u8; 3]> = (0..world.sectors.len()).map(|sector| self.floor_colour(world, sector, range)).collect();
         for (pixel, &sector) in out.chunks_exact_mut(3).zip(&self.ground) {
             pixel.copy_from_slice(colours.get(sector as usize).unwrap_or(&OUTSIDE));
         }
@@ -133,10 +137,12 @@ impl TopDown {
         }
     }
 
-    /// A floor's colour: the mean of its texture, lighter the higher it lies.
-    fn floor_colour(&self, world: &World, sector: usize) -> [u8; 3] {
+    /// A floor's colour: the mean of its texture, lighter the higher it lies among the others.
+    fn floor_colour(&self, world: &World, sector: usize, [lowest, highest]: [i64; 2]) -> [u8; 3] {
         let state = &world.sectors[sector];
-        let step = (i64::from(state.floor.0) >> 16).clamp(-400, 400);
+        // Maps of gentle slopes keep their colours, in deep ones the whole range is used.
+        let above_middle = i64::from(state.floor.floor()) - (lowest + highest) / 2;
+        let step = above_middle * 400 / ((highest - lowest) / 2).max(400);
         let mean = self.scene.mean_colour(state.floor_texture);
         mean.map(|channel| (i64::from(channel) * (600 + step) / 600).clamp(0, 255) as u8)
     }
@@ -159,7 +165,7 @@ impl TopDown {
             canvas.rectangle(column - half, row - half, column + half, row + half, colour);
             return;
         }
-        let half = half.max(LEAST_PLAYER);
+        let half = half.max(LEAST_PLAYER).max(self.width.min(self.height) as i64 / PLAYER_SHARE);
         // Tip and both tails, in units of half.
         let (cos, sin) = (i64::from(actor.angle.cos().0), i64::from(actor.angle.sin().0));
         let corner = |along: i64, aside: i64| {
@@ -221,5 +227,64 @@ impl Canvas<'_> {
         for pair in [[a, b], [b, c], [c, a]] {
             self.line(pair, colour.map(|channel| channel / 3));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::Assets;
+    use crate::map::{MapBuilder, Style};
+    use crate::math::Angle;
+
+    fn room() -> (TopDown, World) {
+        let style = Style {
+            floor: 0,
+            ceiling: 128,
+            light: 200,
+            floor_texture: "LAVA1",
+            ceiling_texture: "FLAT5_5",
+            wall: "A-BROK28",
+            step: "A-BROK28",
+            lintel: "A-BROK28",
+            special: 0,
+            tag: 0,
+        };
+        let mut builder = MapBuilder::new();
+        builder.rectangle(style, -300, 0, 500, 400);
+        builder.rectangle(Style { floor: 16, floor_texture: "FLOOR0_5", ..style }, 100, 100, 300, 300);
+        let map = Arc::new(Map::build(&builder.finish().unwrap(), "room", &[]).unwrap());
+        let mut world = World::new(map.clone(), 1);
+        world.add_player(Fixed::from_int(-200), Fixed::from_int(50), Angle::EAST);
+        (TopDown::new(map.clone(), Arc::new(Scene::new(&map, Assets::embedded())), 200, 160), world)
+    }
+
+    #[test]
+    fn pixels_and_positions_are_inverse() {
+        let (top_down, _) = room();
+        for (column, row) in [(0, 0), (199, 159), (100, 80), (37, 121)] {
+            let (x, y) = top_down.position_of(column, row);
+            assert_eq!(top_down.pixel_of(x, y), (column as i64, row as i64));
+        }
+        let (west, north) =
+            (top_down.pixel_of(Fixed::from_int(-300), Fixed::ZERO).0, top_down.pixel_of(Fixed::ZERO, Fixed::from_int(400)).1);
+        assert!(west >= 0 && north >= 0, "the whole map is in the picture");
+    }
+
+    #[test]
+    fn floors_walls_and_players_show() {
+        let (top_down, world) = room();
+        let mut picture = vec![0; 200 * 160 * 3];
+        top_down.draw(&world, &mut picture);
+        let at = |x: i32, y: i32| {
+            let (column, row) = top_down.pixel_of(Fixed::from_int(x), Fixed::from_int(y));
+            let at = (row as usize * 200 + column as usize) * 3;
+            [picture[at], picture[at + 1], picture[at + 2]]
+        };
+        assert_eq!(picture[..3], OUTSIDE);
+        assert_eq!([at(-300, 200), at(200, 0)], [WALL, WALL]);
+        assert_eq!(at(-200, 50), PLAYER);
+        let (lava, slab) = (at(0, 200), at(200, 200));
+        assert!(lava[0] > 2 * lava[2] && lava != slab, "lava is red: {lava:?}, slab {slab:?}");
     }
 }

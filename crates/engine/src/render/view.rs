@@ -12,6 +12,9 @@ pub(super) const BAR_ART_HEIGHT: u32 = 32;
 /// Width of the status bar's art.
 pub(super) const BAR_ART_WIDTH: u32 = 320;
 
+/// Columns that rows are drawn in steps of: the base columns of a chunk repeat in the next one, a constant to the right.
+pub(super) const CHUNK: usize = 8;
+
 /// Steepest pitch that is drawn, beyond what a player can look: bounds the table of row slopes.
 const PITCH_LIMIT_DEGREES: i32 = 60;
 
@@ -28,6 +31,8 @@ pub struct View {
     pub(super) view_rows: usize,
     /// Base column of each frame column.
     pub(super) columns: Box<[u32]>,
+    /// What the base column rises by over [`CHUNK`] frame columns.
+    pub(super) chunk_stride: u32,
     /// Base row of each frame row above the status bar.
     pub(super) rows: Box<[u32]>,
     /// For each base column 0..=width, the first frame column at or right of it.
@@ -101,6 +106,7 @@ impl View {
             base_width: width,
             base_view_rows,
             view_rows,
+            chunk_stride: columns[CHUNK],
             columns,
             rows,
             first_column,
@@ -195,6 +201,15 @@ mod tests {
                 let horizon = view.horizon(pitch);
                 let below = view.base_view_rows as i32 - 1 - horizon;
                 assert!(below < view.row_slopes.len() as i32 && horizon <= view.row_slopes.len() as i32);
+            }
+        }
+    }
+
+    #[test]
+    fn chunks_of_columns_repeat() {
+        for view in [view(128, 72), view(160, 120), view(1001, 700)] {
+            for x in 0..view.columns.len() - CHUNK {
+                assert_eq!(view.columns[x + CHUNK], view.columns[x] + view.chunk_stride);
             }
         }
     }

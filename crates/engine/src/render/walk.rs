@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::frame::Frame;
 use super::openings::Openings;
 use super::plane::Planes;
-use super::scene::Scene;
+use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
 use crate::map::Node;
 use crate::math::Fixed;
@@ -17,6 +17,8 @@ pub(super) struct Walk<'a> {
     pub view: &'a View,
     pub camera: &'a Camera,
     pub sectors: &'a [SectorState],
+    /// What [`look_of`] gives for each sector.
+    pub looks: &'a [[u64; 2]],
     /// Index of the picture that each texture shows now.
     pub pictures: &'a [u32],
     pub frame: &'a mut Frame,
@@ -29,10 +31,12 @@ pub(super) struct Walk<'a> {
 }
 
 /// Memory that the walk reuses.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct WalkScratch {
     /// Children to visit later: node index times two, plus the side.
     stack: Vec<u32>,
+    /// Segs of the subsector at hand that face the eye and matter, with their distance from it.
+    facing: Vec<(u32, i64)>,
     /// Rows of the upper end of the part of a wall that is being drawn.
     pub upper: Vec<i16>,
     /// Rows of its lower end.
@@ -40,98 +44,130 @@ pub(super) struct WalkScratch {
 }
 
 impl WalkScratch {
-    /// Makes room for frames of `width` columns.
-    pub fn resize(&mut self, width: usize) {
-        self.upper.resize(width, 0);
-        self.lower.resize(width, 0);
+    /// Room for frames of `width` columns of a scene.
+    pub fn new(scene: &Scene, width: usize) -> WalkScratch {
+        let most_segs = scene.subsectors.iter().map(|[first, end, _]| end - first).max().unwrap_or(0);
+        WalkScratch {
+            stack: vec![0; scene.nodes.len() + 2],
+            facing: vec![(0, 0); most_segs as usize + 1],
+            upper: vec![0; width],
+            lower: vec![0; width],
+        }
     }
 }
+
+/// Base columns by which the view's wedge is wider than what is open.
+const WEDGE_MARGIN: i64 = 2;
 
 /// One side of the view's wedge, as a test for boxes.
 #[derive(Clone, Copy)]
 struct WedgeSide {
+    /// Points inwards.
     normal: [i64; 2],
+    /// Where the eye lies along it.
+    offset: i64,
     /// Which of (west, east) and (south, north) lies farthest inside.
     corner: [usize; 2],
 }
 
 impl WedgeSide {
-    fn new(normal: [i64; 2]) -> WedgeSide {
-        WedgeSide { normal, corner: [usize::from(normal[0] > 0), 2 + usize::from(normal[1] > 0)] }
+    fn new(camera: &Camera, normal: [i64; 2]) -> WedgeSide {
+        WedgeSide {
+            normal,
+            offset: camera.x * normal[0] + camera.y * normal[1],
+            corner: [usize::from(normal[0] > 0), 2 + usize::from(normal[1] > 0)],
+        }
     }
 
+    /// Negative if a box lies wholly outside.
     #[inline]
-    fn may_hold(&self, camera: &Camera, bounds: &[Fixed; 4]) -> bool {
+    fn inside(&self, bounds: &[Fixed; 4]) -> i64 {
         let (x, y) = (bounds[self.corner[0]].0, bounds[self.corner[1]].0);
-        (i64::from(x) - camera.x) * self.normal[0] + (i64::from(y) - camera.y) * self.normal[1] >= 0
+        i64::from(x) * self.normal[0] + i64::from(y) * self.normal[1] - self.offset
     }
 }
 
 impl Walk<'_> {
     /// Walks until everything is covered.
+    ///
+    /// Which child is near and which one is in view cannot be foretold, so that all of it is arithmetic without
+    /// branches: children that are out of view are written to the stack too, but not counted.
     pub fn run<const DEPTH: bool, const CLASS: bool>(&mut self) {
-        let [cos, sin] = self.camera.forward;
-        let wedge = [WedgeSide::new([cos + sin, sin - cos]), WedgeSide::new([cos - sin, sin + cos])];
+        let scene = self.scene;
         let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
-        self.scratch.stack.clear();
-        let mut next = Some(match self.scene.nodes.len() {
+        let mut open = self.openings.range();
+        let mut wedge = self.wedge(open);
+        let mut stacked = 0;
+        let mut child = match scene.nodes.len() {
             0 => Node::SUBSECTOR,
             count => count as u32 - 1,
-        });
-        while let Some(mut child) = next {
-            while child & Node::SUBSECTOR == 0 {
-                let node = &self.scene.nodes[child as usize];
-                let near = usize::from(node.is_left(x, y));
-                let sees = |side: usize| wedge.iter().all(|w| w.may_hold(self.camera, &node.bounds[side]));
-                child = match (sees(near), sees(near ^ 1)) {
-                    (true, far) => {
-                        if far {
-                            self.scratch.stack.push(child * 2 + (near as u32 ^ 1));
-                        }
-                        node.children[near]
-                    }
-                    (false, true) => node.children[near ^ 1],
-                    (false, false) => break,
-                };
-            }
+        };
+        loop {
             if child & Node::SUBSECTOR != 0 {
                 self.subsector::<DEPTH, CLASS>((child & !Node::SUBSECTOR) as usize);
-                if self.openings.all_closed() {
+                let now_open = self.openings.range();
+                if now_open.0 >= now_open.1 {
                     return;
                 }
+                if now_open != open {
+                    open = now_open;
+                    wedge = self.wedge(open);
+                }
+            } else {
+                let node = &scene.nodes[child as usize];
+                let near = u32::from(node.is_left(x, y));
+                for side in [near ^ 1, near] {
+                    let bounds = &node.bounds[side as usize];
+                    let inside = wedge[0].inside(bounds) | wedge[1].inside(bounds);
+                    self.scratch.stack[stacked] = child * 2 + side;
+                    stacked += usize::from(inside >= 0);
+                }
             }
-            next = self.pop();
+            // The next child that is not hidden.
+            child = loop {
+                if stacked == 0 {
+                    return;
+                }
+                stacked -= 1;
+                let entry = self.scratch.stack[stacked];
+                let (node, side) = (&scene.nodes[(entry / 2) as usize], (entry & 1) as usize);
+                let (child, bounds) = (node.children[side], &node.bounds[side]);
+                // For a single subsector the second question costs more than it saves.
+                let hidden = wedge[0].inside(bounds) | wedge[1].inside(bounds) < 0
+                    || (child & Node::SUBSECTOR == 0 && self.openings.has_holes() && !self.box_is_open(bounds));
+                if !hidden {
+                    break child;
+                }
+            };
         }
     }
 
-    /// The next stacked child that is not hidden.
-    fn pop(&mut self) -> Option<u32> {
-        while let Some(entry) = self.scratch.stack.pop() {
-            let node = &self.scene.nodes[(entry / 2) as usize];
-            let side = (entry & 1) as usize;
-            if !self.openings.any_closed() || self.box_is_open(&node.bounds[side]) {
-                return Some(node.children[side]);
-            }
-        }
-        None
+    /// The wedge between the outermost rays of a range of frame columns, and a little more: sprites stand out of their
+    /// sectors, so that those just out of view are entered too.
+    fn wedge(&self, (first, end): (usize, usize)) -> [WedgeSide; 2] {
+        let camera = self.camera;
+        let ray = |half_columns: i64| [0, 1].map(|axis| (camera.ray[axis] + camera.ray_step[axis] * half_columns / 2) >> 16);
+        let left = ray(2 * (i64::from(self.view.columns[first]) - WEDGE_MARGIN) - 1);
+        let right = ray(2 * (i64::from(self.view.columns[end - 1]) + WEDGE_MARGIN) + 1);
+        [WedgeSide::new(camera, [left[1], -left[0]]), WedgeSide::new(camera, [-right[1], right[0]])]
     }
 
     /// Whether an open column may show something of a box.
     fn box_is_open(&self, bounds: &[Fixed; 4]) -> bool {
-        let (mut first, mut end) = (self.view.base_width, 0);
+        let width = self.view.base_width;
+        let (mut first, mut end) = (width, 0);
         for corner in 0..4 {
-            let (x, y) = (i64::from(bounds[corner & 1].0), i64::from(bounds[2 + (corner >> 1)].0));
-            let [left, right] = self.camera.edges(x, y);
+            let [left, right] = self.camera.edges(i64::from(bounds[corner & 1].0), i64::from(bounds[2 + corner / 2].0));
             if left < 0 {
                 first = 0;
             }
             if right < 0 {
-                end = self.view.base_width;
+                end = width;
             }
             if left >= 0 && right >= 0 {
-                let column = (left * i64::from(self.view.base_width) / (left + right).max(1)) as u32;
+                let column = (left as u64 * u64::from(width) / (left + right).max(1) as u64) as u32;
                 first = first.min(column.saturating_sub(1));
-                end = end.max((column + 2).min(self.view.base_width));
+                end = end.max((column + 2).min(width));
             }
         }
         let (first, end) = (self.view.first_column[first as usize], self.view.first_column[end as usize]);
@@ -139,10 +175,31 @@ impl Walk<'_> {
     }
 
     fn subsector<const DEPTH: bool, const CLASS: bool>(&mut self, index: usize) {
-        let [first, end, sector] = self.scene.subsectors[index];
+        let scene = self.scene;
+        let [first, end, sector] = scene.subsectors[index];
         self.entered[sector as usize] = true;
-        for seg in first..end {
-            self.seg::<DEPTH, CLASS>(seg);
+        let own = self.looks[sector as usize];
+        // First those to draw, again without branches, then their drawing.
+        let mut found = 0;
+        for (index, seg) in (first..end).zip(&scene.segs[first as usize..end as usize]) {
+            // A one-sided line differs from whatever its sector is compared with.
+            let one_sided = seg.back == NO_SECTOR;
+            let back = self.looks[if one_sided { sector } else { seg.back } as usize];
+            let differs = (own[0] ^ back[0]) | (own[1] ^ back[1]) | u64::from(one_sided | seg.masked);
+            let away = seg.away(self.camera.x, self.camera.y);
+            self.scratch.facing[found] = (index, away);
+            found += usize::from((differs != 0) & (away > 0));
+        }
+        for i in 0..found {
+            let (index, away) = self.scratch.facing[i];
+            self.seg::<DEPTH, CLASS>(index, away);
         }
     }
+}
+
+/// All that is drawn of a sector, so that two look the same if these are equal.
+pub(super) fn look_of(sector: &SectorState) -> [u64; 2] {
+    let textures = u64::from(sector.floor_texture.0) | u64::from(sector.ceiling_texture.0) << 16;
+    let heights = u64::from(sector.floor.0 as u32) | u64::from(sector.ceiling.0 as u32) << 32;
+    [heights, textures | u64::from(sector.light as u16) << 32]
 }

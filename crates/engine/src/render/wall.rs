@@ -22,6 +22,11 @@ pub(super) struct SeenLine {
     pub inverse: i64,
     /// Its change a column.
     pub inverse_step: i64,
+}
+
+/// Horizontal texture positions on a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TextureLine {
     /// Position along the line of the point nearest to the eye, 16.16.
     along: i64,
     /// Position along the line that a ray gains a unit of distance at base column 0, 60 fractional bits.
@@ -30,32 +35,47 @@ pub(super) struct SeenLine {
     gain_step: i64,
 }
 
-/// The row of a height along a line; linear in the base column.
+impl TextureLine {
+    /// The texture positions of one side of a seg's line.
+    pub fn new(camera: &Camera, seg: &SceneSeg, face: &Face) -> TextureLine {
+        let [nx, ny] = seg.normal.map(i64::from);
+        let (tx, ty) = (-ny, nx);
+        TextureLine {
+            along: (camera.x * tx + camera.y * ty + face.u_offset) >> 28,
+            gain: tx * camera.ray[0] + ty * camera.ray[1],
+            gain_step: tx * camera.ray_step[0] + ty * camera.ray_step[1],
+        }
+    }
+
+    /// Horizontal texture position at a base column where the distance is known, 16.16.
+    #[inline]
+    pub fn at(&self, column: i64, distance: i64) -> i64 {
+        let gain = (self.gain + self.gain_step * column) >> 32;
+        self.along + ((distance * gain) >> 28)
+    }
+}
+
+/// The row of a height along a line, plus a half; linear in the base column.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
+    /// At base column 0.
     at: i64,
+    /// Its change a column.
     step: i64,
 }
 
 impl SeenLine {
     /// The line of a seg that faces the camera from `away`, the distance with 44 fractional bits.
     #[inline]
-    pub fn new(camera: &Camera, seg: &SceneSeg, face: &Face, away: i64) -> SeenLine {
-        let [nx, ny] = seg.normal;
+    pub fn new(camera: &Camera, seg: &SceneSeg, away: i64) -> SeenLine {
+        let [nx, ny] = seg.normal.map(i64::from);
         // Nearer than 1/256 unit counts as that far.
         let reciprocal = (1i64 << 62) / (away >> 20).max(1 << 16);
         let inverse = |ray: [i64; 2]| {
             let towards = -(nx * ray[0] + ny * ray[1]);
             ((i128::from(towards) * i128::from(reciprocal)) >> (98 - INVERSE_BITS)) as i64
         };
-        let (tx, ty) = (-ny, nx);
-        SeenLine {
-            inverse: inverse(camera.ray),
-            inverse_step: inverse(camera.ray_step),
-            along: (camera.x * tx + camera.y * ty + face.u_offset) >> 28,
-            gain: tx * camera.ray[0] + ty * camera.ray[1],
-            gain_step: tx * camera.ray_step[0] + ty * camera.ray_step[1],
-        }
+        SeenLine { inverse: inverse(camera.ray), inverse_step: inverse(camera.ray_step) }
     }
 
     /// The inverse of the distance at a base column.
@@ -70,33 +90,23 @@ impl SeenLine {
         ((1u64 << (INVERSE_BITS + 16)) / self.inverse_at(column) as u64) as i64
     }
 
-    /// Horizontal texture position at a base column where the distance is known, 16.16.
-    #[inline]
-    pub fn texture_at(&self, column: i64, distance: i64) -> i64 {
-        let gain = (self.gain + self.gain_step * column) >> 32;
-        self.along + ((distance * gain) >> 28)
-    }
-
     /// Where a height, relative to the eye in 16.16, is seen.
     #[inline]
     pub fn edge(&self, camera: &Camera, view: &View, height: i64) -> Edge {
         let scale = i128::from(height * view.focal_y);
         let rows = |inverse: i64| ((scale * i128::from(inverse)) >> (32 + INVERSE_BITS - ROW_BITS)) as i64;
-        Edge { at: (camera.horizon << ROW_BITS) - rows(self.inverse), step: -rows(self.inverse_step) }
+        // Half a row more, as the middle of a row decides.
+        let horizon = (camera.horizon << ROW_BITS) + (1 << (ROW_BITS - 1)) - 1;
+        Edge { at: horizon - rows(self.inverse), step: -rows(self.inverse_step) }
     }
 }
 
 impl Edge {
-    /// The first frame row whose centre is below the edge, for each frame column from `first` on.
+    /// The first frame row whose middle is below the edge at a base column; `first_rows` is [`View::first_row`].
     #[inline]
-    pub fn rows(&self, view: &View, first: usize, rows: &mut [i16]) {
-        let at = self.at + (1 << (ROW_BITS - 1)) - 1;
-        let limit = i64::from(view.base_view_rows);
-        let columns = &view.columns[first..first + rows.len()];
-        for (row, &column) in rows.iter_mut().zip(columns) {
-            let base = ((at + self.step * i64::from(column)) >> ROW_BITS).clamp(0, limit);
-            *row = view.first_row[base as usize];
-        }
+    pub fn row(&self, first_rows: &[i16], column: u32) -> i32 {
+        let base = ((self.at + self.step * i64::from(column)) >> ROW_BITS).max(0) as usize;
+        i32::from(first_rows[base.min(first_rows.len() - 1)])
     }
 }
 
@@ -106,6 +116,7 @@ pub(super) struct WallShader<'a> {
     pub view: &'a View,
     pub tables: &'a [[u8; 256]; 32],
     pub line: &'a SeenLine,
+    pub texture: TextureLine,
     pub picture: &'a WallPicture,
     pub light: Light,
     /// Height of the texture's top row, relative to the eye, 16.16.
@@ -126,29 +137,57 @@ impl WallShader<'_> {
             let column = i64::from(self.view.columns[x]);
             let inverse = self.line.inverse_at(column);
             let distance = self.line.distance_at(column);
-            let texels = picture.column(self.line.texture_at(column, distance));
+            let texels = picture.column(self.texture.at(column, distance));
             let nearness = (inverse * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let table = &self.tables[self.light.table(nearness)];
             // Rows of texture a base row, as a fraction of its height with 32 bits: what overflows is whole heights.
             let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
-            let at = (start + step / 2 - step.wrapping_mul(self.camera.horizon)) as u32;
-            let step = step as u32;
+            let at = (start + (step >> 1) - step.wrapping_mul(self.camera.horizon)) as u32;
+            let column = Column { texels, table, at, step: step as u32 };
             let rows = &self.view.rows[top..bottom];
-            let pixels = frame.colour[top * frame.width + x..].iter_mut().step_by(frame.width);
-            for (pixel, &row) in pixels.zip(rows) {
-                let at = at.wrapping_add(step.wrapping_mul(row));
-                let texel = (u64::from(at) * u64::from(picture.height)) >> 32;
-                *pixel = table[usize::from(texels[texel as usize])];
+            let lines = top * frame.width..bottom * frame.width;
+            let pixels = frame.colour[lines.clone()].chunks_exact_mut(frame.width).map(|line| &mut line[x]);
+            match picture.height {
+                128 => column.draw::<7>(pixels.zip(rows)),
+                64 => column.draw::<6>(pixels.zip(rows)),
+                _ => column.draw_any_height(pixels.zip(rows)),
             }
             if DEPTH {
                 let depth = frame.capped_depth(distance);
-                let pixels = frame.depth[top * frame.width + x..].iter_mut().step_by(frame.width);
-                pixels.take(bottom - top).for_each(|pixel| *pixel = depth);
+                frame.depth[lines.clone()].chunks_exact_mut(frame.width).for_each(|line| line[x] = depth);
             }
             if CLASS {
-                let pixels = frame.class[top * frame.width + x..].iter_mut().step_by(frame.width);
-                pixels.take(bottom - top).for_each(|pixel| *pixel = class::WALL);
+                frame.class[lines].chunks_exact_mut(frame.width).for_each(|line| line[x] = class::WALL);
             }
+        }
+    }
+}
+
+/// A column of a wall on its way to the screen.
+struct Column<'a> {
+    texels: &'a [u8],
+    table: &'a [u8; 256],
+    /// Position in the texture at base row 0, as a fraction of its height.
+    at: u32,
+    /// Its change a base row.
+    step: u32,
+}
+
+impl Column<'_> {
+    /// For textures `2^BITS` texels high: fills pixels, each given with its base row.
+    #[inline(always)]
+    fn draw<'p, const BITS: u32>(&self, pixels: impl Iterator<Item = (&'p mut u8, &'p u32)>) {
+        let texels = &self.texels[..1 << BITS];
+        for (pixel, &row) in pixels {
+            let texel = self.at.wrapping_add(self.step.wrapping_mul(row)) >> (32 - BITS);
+            *pixel = self.table[usize::from(texels[texel as usize])];
+        }
+    }
+
+    fn draw_any_height<'p>(&self, pixels: impl Iterator<Item = (&'p mut u8, &'p u32)>) {
+        for (pixel, &row) in pixels {
+            let texel = (u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64) >> 32;
+            *pixel = self.table[usize::from(self.texels[texel as usize])];
         }
     }
 }

@@ -11,6 +11,8 @@ pub mod volcanic_venture;
 
 #[cfg(test)]
 mod map_tests;
+#[cfg(test)]
+mod readme_tests;
 
 use crate::{CostTerm, EnvError, EnvId, RuleSet, Scenario};
 use hasard_engine::map::{Map, MapSource};

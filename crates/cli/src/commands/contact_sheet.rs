@@ -1,0 +1,133 @@
+//! `hasard contact-sheet`: the scenarios in pictures, to be looked at.
+
+use crate::args::ContactSheetArgs;
+use crate::contact_sheet::layout::{Row, sheet};
+use crate::contact_sheet::moments::{self, Moment};
+use crate::failure::{Failure, Outcome};
+use crate::settings;
+use hasard_engine::assets::Assets;
+use hasard_engine::render::{Buffers, FrameSize, SegmentationColours};
+use hasard_envs::{Env, EnvId, EnvOptions, Move, Policy, PolicyRun, Scenario};
+use hasard_media::{Picture, files, png};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The size for people.
+const LARGE: FrameSize = FrameSize { width: 640, height: 480 };
+
+/// Runs the command.
+pub fn run(args: &ContactSheetArgs) -> Outcome {
+    let scenarios = match args.scenarios.as_slice() {
+        [] => Scenario::ALL.to_vec(),
+        names => names.iter().map(|name| scenario(name)).collect::<Result<_, _>>()?,
+    };
+    let assets = settings::assets(args.iwad.as_deref())?;
+    std::fs::create_dir_all(&args.out)
+        .map_err(|error| Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display())))?;
+    for scenario in scenarios {
+        let moments = moments::of(scenario);
+        let rows = moments.iter().map(|moment| row(scenario, moment, args.seed, assets.clone()));
+        let rows: Vec<Row> = rows.collect::<Result<_, _>>()?;
+        let name = file_name(scenario);
+        write(&sheet(&rows).in_few_colours(), &args.out.join(format!("{name}_sheet.png")), args.json)?;
+        write(&rows[moments::cover(scenario)].large[0], &args.out.join(format!("{name}.png")), args.json)?;
+    }
+    Ok(())
+}
+
+fn scenario(name: &str) -> Result<Scenario, Failure> {
+    let names = Scenario::ALL.map(Scenario::name);
+    let found = Scenario::ALL.into_iter().find(|scenario| scenario.name().eq_ignore_ascii_case(name));
+    found.ok_or_else(|| Failure::bad(format!("{name} is no scenario; the scenarios are {}", names.join(", "))))
+}
+
+/// The scenario's name as files are called: `remedy_rush`.
+fn file_name(scenario: Scenario) -> String {
+    let mut name = String::new();
+    for letter in scenario.name().chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('_');
+        }
+        name.push(letter.to_ascii_lowercase());
+    }
+    name
+}
+
+/// Plays to a moment and draws it in every view.
+fn row(scenario: Scenario, moment: &Moment, seed: u64, assets: Option<Arc<Assets>>) -> Result<Row, Failure> {
+    let id = EnvId { scenario, level: moment.level };
+    let options = EnvOptions { size: FrameSize::LEARNER, assets, ..EnvOptions::default() };
+    let mut env = Env::new(&id.to_string(), &options).map_err(Failure::bad)?;
+    let seed = moment.seed + seed;
+    env.reset(seed);
+    for &(steps, policy) in moment.way {
+        let policy: Policy = policy.parse().map_err(Failure::bad)?;
+        let mut policy = PolicyRun::new(policy, env.action_space(), seed);
+        for _ in 0..steps {
+            match policy.next_move() {
+                Move::Action(actions, deltas) => env.step(actions, deltas),
+                Move::Buttons(command) => env.step_buttons(command),
+            };
+        }
+    }
+    let episode = env.episode();
+    let seconds = f64::from(env.world().tic) / 35.0;
+    let caption = format!(
+        "{} level {}, {seconds:.1} s, seed {seed}: reward {:.1}, cost {:.1}   view, depth, classes and map at 640x480 (reduced) and at 128x72",
+        scenario.name(),
+        moment.level,
+        episode.episode_return,
+        episode.cost
+    );
+    Ok(Row { caption, large: views(&env, LARGE)?, small: views(&env, FrameSize::LEARNER)? })
+}
+
+/// The present moment: colour, depth, segmentation and the map from above.
+fn views(env: &Env, size: FrameSize) -> Result<[Picture; 4], Failure> {
+    let (width, height) = (usize::from(size.width), usize::from(size.height));
+    let mut renderer = env.renderer(size).map_err(Failure::bad)?;
+    renderer.render(env.world(), 0, Buffers { depth: true, labels: true });
+    let picture = |write: &dyn Fn(&mut [u8])| {
+        let mut rgb = vec![0; width * height * 3];
+        write(&mut rgb);
+        Picture::from_rgb(width, height, rgb).map_err(Failure::bad)
+    };
+    Ok([
+        picture(&|rgb| renderer.write_rgb_hwc(rgb))?,
+        Picture::from_grey(width, height, renderer.depth()).map_err(Failure::bad)?,
+        picture(&|rgb| renderer.write_segmented_hwc(&SegmentationColours::distinct(), rgb))?,
+        picture(&|rgb| env.top_down(width, height).draw(env.world(), rgb))?,
+    ])
+}
+
+fn write(picture: &Picture, path: &Path, json: bool) -> Outcome {
+    let bytes = png::encode(picture);
+    files::write_whole(path, &bytes).map_err(Failure::bad)?;
+    let (file, width, height) = (path.display().to_string(), picture.width(), picture.height());
+    if json {
+        say!("{}", serde_json::json!({ "file": file, "width": width, "height": height, "bytes": bytes.len() }));
+    } else {
+        say!("{file}: {width}x{height}, {} kB", bytes.len().div_ceil(1000));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_moment_can_be_reached_and_every_scenario_is_found_by_name() {
+        for scenario in Scenario::ALL {
+            assert_eq!(super::scenario(scenario.name()).unwrap(), scenario);
+            assert!(moments::cover(scenario) < moments::of(scenario).len());
+            for moment in moments::of(scenario) {
+                let row = row(scenario, &moment, 0, None).unwrap();
+                assert_eq!((row.large[0].width(), row.small[0].height()), (640, 72));
+                assert!(moment.way.iter().all(|(_, policy)| policy.parse::<Policy>().is_ok()));
+            }
+        }
+        assert_eq!(file_name(Scenario::RemedyRush), "remedy_rush");
+        assert!(super::scenario("Doom").is_err());
+    }
+}

@@ -1,0 +1,115 @@
+//! Palette look-ups with 512-bit vectors, for processors that look up 64 bytes of a 256-byte table at once (AVX-512
+//! VBMI: Ice Lake and Zen 4 onward).
+//!
+//! This file is `unsafe` because vector loads and stores take pointers, and because these functions must not run on a
+//! processor without the instructions. The first is confined to [`load`] and [`store`], which take references to whole
+//! 64-byte arrays; the second to [`Wide::detect`], the only way to get a [`Wide`]. The plain twins are in `convert`,
+//! where a test compares them.
+
+use std::arch::x86_64::{
+    __m512i, _mm512_loadu_si512, _mm512_mask_blend_epi8, _mm512_mask_permutexvar_epi8, _mm512_movepi8_mask,
+    _mm512_permutex2var_epi8, _mm512_storeu_si512,
+};
+
+/// Proof that the processor has the instructions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wide(());
+
+/// Bytes that are looked up at once.
+const LANES: usize = 64;
+
+impl Wide {
+    /// Asks the processor; the answer is remembered by the standard library.
+    pub fn detect() -> Option<Wide> {
+        let found =
+            is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512vbmi");
+        found.then_some(Wide(()))
+    }
+
+    /// Looks up whole blocks of 64 indices; returns how many indices that were.
+    pub fn look_up(self, table: &[u8; 256], indices: &[u8], out: &mut [u8]) -> usize {
+        // SAFETY: a `Wide` exists only where the instructions do.
+        unsafe { look_up(table, indices, out) }
+    }
+
+    /// Looks up whole blocks of 64 indices in three tables and writes the results in turn; returns how many indices
+    /// that were.
+    pub fn interleaved(self, tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) -> usize {
+        // SAFETY: a `Wide` exists only where the instructions do.
+        unsafe { interleaved(tables, indices, out) }
+    }
+}
+
+#[target_feature(enable = "avx512f")]
+fn load(bytes: &[u8; LANES]) -> __m512i {
+    // SAFETY: 64 bytes are readable behind a reference to 64 bytes; the load needs no alignment.
+    unsafe { _mm512_loadu_si512(bytes.as_ptr().cast()) }
+}
+
+#[target_feature(enable = "avx512f")]
+fn store(bytes: &mut [u8; LANES], vector: __m512i) {
+    // SAFETY: 64 bytes are writable behind a reference to 64 bytes; the store needs no alignment.
+    unsafe { _mm512_storeu_si512(bytes.as_mut_ptr().cast(), vector) }
+}
+
+/// A table of 256 bytes in registers.
+#[target_feature(enable = "avx512f")]
+fn load_table(table: &[u8; 256]) -> [__m512i; 4] {
+    let (blocks, _) = table.as_chunks::<LANES>();
+    [load(&blocks[0]), load(&blocks[1]), load(&blocks[2]), load(&blocks[3])]
+}
+
+#[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
+fn look_up_block(table: [__m512i; 4], indices: __m512i) -> __m512i {
+    // Each permutation looks at the lower 7 bits and covers one half of the table; the highest bit chooses between them.
+    let low = _mm512_permutex2var_epi8(table[0], indices, table[1]);
+    let high = _mm512_permutex2var_epi8(table[2], indices, table[3]);
+    _mm512_mask_blend_epi8(_mm512_movepi8_mask(indices), low, high)
+}
+
+#[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
+fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) -> usize {
+    let table = load_table(table);
+    let (blocks, _) = indices.as_chunks::<LANES>();
+    let (out_blocks, _) = out.as_chunks_mut::<LANES>();
+    for (to, from) in out_blocks.iter_mut().zip(blocks) {
+        store(to, look_up_block(table, load(from)));
+    }
+    blocks.len().min(out_blocks.len()) * LANES
+}
+
+/// For each of the three output blocks, which lane of red or green (plus 64) goes where, and where blue goes.
+const WEAVE: [([u8; LANES], u64, [u8; LANES]); 3] = {
+    let mut weave = [([0; LANES], 0, [0; LANES]); 3];
+    let mut at = 0;
+    while at < 3 * LANES {
+        let (block, lane, pixel) = (at / LANES, at % LANES, (at / 3) as u8);
+        match at % 3 {
+            0 => weave[block].0[lane] = pixel,
+            1 => weave[block].0[lane] = pixel + LANES as u8,
+            _ => {
+                weave[block].1 |= 1 << lane;
+                weave[block].2[lane] = pixel;
+            }
+        }
+        at += 1;
+    }
+    weave
+};
+
+#[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
+fn interleaved(tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) -> usize {
+    let tables = [load_table(&tables[0]), load_table(&tables[1]), load_table(&tables[2])];
+    let (blocks, _) = indices.as_chunks::<LANES>();
+    let (out_blocks, _) = out.as_chunks_mut::<LANES>();
+    let (triples, _) = out_blocks.as_chunks_mut::<3>();
+    for (triple, from) in triples.iter_mut().zip(blocks) {
+        let from = load(from);
+        let [red, green, blue] = [look_up_block(tables[0], from), look_up_block(tables[1], from), look_up_block(tables[2], from)];
+        for (to, (red_green, blue_lanes, blue_from)) in triple.iter_mut().zip(&WEAVE) {
+            let woven = _mm512_permutex2var_epi8(red, load(red_green), green);
+            store(to, _mm512_mask_permutexvar_epi8(woven, *blue_lanes, load(blue_from), blue));
+        }
+    }
+    blocks.len().min(triples.len()) * LANES
+}
