@@ -2,6 +2,8 @@
 
 use crate::{PlayError, Stage};
 use hasard_engine::render::{Buffers, FrameSize, Renderer, SegmentationColours, TopDown};
+use hasard_engine::world::World;
+use hasard_envs::Env;
 use hasard_media::Picture;
 use hasard_media::compose::{Panel, side_by_side};
 
@@ -54,23 +56,39 @@ impl Views {
     /// # Errors
     /// When the size is not drawable.
     pub fn new(stage: &Stage, size: FrameSize, kinds: &[ViewKind]) -> Result<Views, PlayError> {
-        let kinds = if kinds.is_empty() { vec![ViewKind::Colour] } else { kinds.to_vec() };
         let env = stage.shown();
-        let options = env.options();
-        let colours = if options.published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
-        let automap = kinds.contains(&ViewKind::Automap).then(|| {
-            let height = usize::from(size.height);
-            let width = match kinds[..] {
-                [ViewKind::Automap] => usize::from(size.width),
-                _ => {
-                    let [west, south, east, north] = env.extent().map(i64::from);
-                    let width = height as i64 * (east - west) / (north - south).max(1);
-                    width.clamp(height as i64 / 4, height as i64 * 2) as usize
-                }
-            };
-            (env.top_down(width, height), width, height)
-        });
+        let mut views = Views::of(env, size, kinds)?;
+        if let (Some(automap), [_, _, ..]) = (&mut views.automap, kinds) {
+            let [west, south, east, north] = env.extent().map(i64::from);
+            let height = i64::from(size.height);
+            let width = (height * (east - west) / (north - south).max(1)).clamp(height / 4, height * 2) as usize;
+            *automap = (env.top_down(width, height as usize), width, height as usize);
+        }
+        Ok(views)
+    }
+
+    /// Views of an environment's worlds, the automap too of `size`.
+    ///
+    /// # Errors
+    /// As [`Views::new`].
+    pub fn of(env: &Env, size: FrameSize, kinds: &[ViewKind]) -> Result<Views, PlayError> {
+        let kinds = if kinds.is_empty() { vec![ViewKind::Colour] } else { kinds.to_vec() };
+        let colours =
+            if env.options().published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
+        let (width, height) = (usize::from(size.width), usize::from(size.height));
+        let automap = kinds.contains(&ViewKind::Automap).then(|| (env.top_down(width, height), width, height));
         Ok(Views { renderer: env.renderer(size)?, size, kinds, colours, automap })
+    }
+
+    /// A moment of a world in each view.
+    ///
+    /// # Panics
+    /// When the world is of another environment.
+    pub fn pictures(&mut self, world: &World) -> Vec<Picture> {
+        let wants = |wanted: &[ViewKind]| self.kinds.iter().any(|kind| wanted.contains(kind));
+        let buffers = Buffers { depth: wants(&[ViewKind::Depth]), labels: wants(&[ViewKind::Segmented, ViewKind::Labels]) };
+        self.renderer.render(world, 0, buffers);
+        self.kinds.iter().map(|kind| self.picture(*kind, world)).collect()
     }
 
     /// The moment: the view alone, or several side by side with captions.
@@ -78,10 +96,7 @@ impl Views {
     /// # Panics
     /// When the stage is of another environment.
     pub fn draw(&mut self, stage: &Stage) -> Picture {
-        let wants = |wanted: &[ViewKind]| self.kinds.iter().any(|kind| wanted.contains(kind));
-        let buffers = Buffers { depth: wants(&[ViewKind::Depth]), labels: wants(&[ViewKind::Segmented, ViewKind::Labels]) };
-        self.renderer.render(stage.world(), 0, buffers);
-        let mut pictures: Vec<Picture> = self.kinds.iter().map(|kind| self.picture(*kind, stage)).collect();
+        let mut pictures = self.pictures(stage.world());
         if pictures.len() == 1 {
             return pictures.remove(0);
         }
@@ -96,7 +111,7 @@ impl Views {
         &self.renderer
     }
 
-    fn picture(&self, kind: ViewKind, stage: &Stage) -> Picture {
+    fn picture(&self, kind: ViewKind, world: &World) -> Picture {
         let (width, height) = (usize::from(self.size.width), usize::from(self.size.height));
         let rgb = |width: usize, height: usize, write: &dyn Fn(&mut [u8])| {
             let mut bytes = vec![0; width * height * 3];
@@ -110,7 +125,7 @@ impl Views {
         };
         let renderer = &self.renderer;
         let picture = match (kind, &self.automap) {
-            (ViewKind::Automap, Some((map, width, height))) => rgb(*width, *height, &|out| map.draw(stage.world(), out)),
+            (ViewKind::Automap, Some((map, width, height))) => rgb(*width, *height, &|out| map.draw(world, out)),
             (ViewKind::Colour | ViewKind::Automap, _) => rgb(width, height, &|out| renderer.write_rgb_hwc(out)),
             (ViewKind::Segmented, _) => rgb(width, height, &|out| renderer.write_segmented_hwc(&self.colours, out)),
             (ViewKind::Depth, _) => grey(&|out| renderer.write_depth(out)),

@@ -38,9 +38,6 @@ pub fn run(args: &TrainArgs) -> Outcome {
     let options = crate::settings::trained_options(&config.env)?;
     let stop = stop_on_interrupt().map_err(Failure::bad)?;
     let bar = (!args.json && !args.quiet).then(|| Bar::new(args.frames.unwrap_or(config.frames)));
-    if bar.is_some() {
-        describe(&config, &directory);
-    }
     let mut first: Option<Report> = None;
     let (mut drawn, mut failed_drawing) = (false, None);
     let mut hear = |report: &Report| {
@@ -64,7 +61,14 @@ pub fn run(args: &TrainArgs) -> Outcome {
         Some(bar) => bar.print(&format!("hasard: {text}")),
         None => eprintln!("hasard: {text}"),
     };
-    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
+    // Said once the directory is the run's own, when the first worlds are made.
+    let described = std::cell::Cell::new(bar.is_none());
+    let make = |env: &EnvConfig, worlds| {
+        if !described.replace(true) {
+            describe(&config, &directory);
+        }
+        VecEnv::new(&env.id, &options, worlds)
+    };
     let mut hooks = Hooks { stop: &stop, report: &mut hear, warn: &mut warn };
     let summary = train(start, &directory, &make, &mut hooks).map_err(Failure::bad)?;
     if let Some(error) = failed_drawing {
