@@ -21,9 +21,9 @@ pub struct BenchReport {
 /// Steps a batch with uniform random actions for about `seconds`. Observations are written and episodes follow each other
 /// without a pause, so that rendering and resets are part of what is measured.
 pub fn bench(id: &str, options: &EnvOptions, lanes: usize, threads: usize, seconds: f64) -> Result<BenchReport, EnvError> {
-    // One thread is the caller's own: there is nobody to wait for it.
-    let threads_hired = if threads == 1 { 0 } else { threads };
-    let mut worlds = VecEnv::new(id, options, VecOptions { lanes, threads: threads_hired, ..VecOptions::default() })?;
+    // One of the threads is the caller's own, which helps while it waits.
+    let hired = threads.saturating_sub(1);
+    let mut worlds = VecEnv::new(id, options, VecOptions { lanes, threads: hired, ..VecOptions::default() })?;
     let sizes = worlds.action_space().sizes();
     let mut rng = Rng::new(0);
     let mut batch = worlds.whole_batch();

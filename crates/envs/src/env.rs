@@ -336,6 +336,7 @@ impl Env {
         self.game.world.hash(&mut hasher);
         self.game.rules.hash(&mut hasher);
         self.totals.steps.hash(&mut hasher);
+        (self.game.outcome.finished, self.game.left).hash(&mut hasher);
         hasher.finish()
     }
 

@@ -1,38 +1,58 @@
-//! The hand-over of a batch to the worker threads and back: the only unsafe code of this crate.
+//! The hand-over of a batch to whoever steps its lanes, and back: the only unsafe code of this crate.
 //!
-//! Why unsafe: several threads write disjoint parts of the same contiguous buffers, which the borrow checker cannot see.
-//! The invariants that make it sound:
-//! 1. A slot is `IDLE` (its contents belong to the owner) or `BUSY` (they belong to the workers); only [`Slot::give`] and
-//!    [`Slot::take`] change that, and `take` succeeds only after every worker of the crew has called [`Slot::done`].
-//! 2. While `BUSY` nobody touches the batch but through the pointers taken in `give`, and each worker asks
-//!    [`Slot::lanes`] only for its own lanes, which no other worker has.
+//! Why unsafe: several threads step disjoint lanes and write disjoint parts of the same contiguous buffers, which the borrow
+//! checker cannot see. The invariants that make it sound:
+//! 1. A slot is `IDLE` (its contents belong to the owner) or `BUSY` (they belong to those who claim lanes); only
+//!    [`Slot::give`] and [`Slot::take`] change that, and `take` succeeds only after every lane has been claimed and done.
+//! 2. The slot's counter hands out each lane of a batch once. A thread touches a lane, and that lane's parts of the batch,
+//!    only between its claim and its being done; so a claim always belongs to the batch that is in the slot.
+//! 3. Slots that share lanes are never busy at the same time: the owner sees to that (`VecEnv::check_turn`).
 //!
 //! The safe twin is the batch of worlds without threads, which slices the same buffers by the borrow checker's rules; tests
 //! compare both.
 
 use super::Job;
-use super::lane::LaneSlices;
+use super::lane::{Lane, LaneSlices};
 use crate::Batch;
 use std::cell::UnsafeCell;
 use std::ops::Range;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU8, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 use std::thread::Thread;
 
 const IDLE: u8 = 0;
 const CHANGING: u8 = 1;
 const BUSY: u8 = 2;
 
+/// Looks this often whether the last lanes are done before sleeping: as long as a lane or two take.
+const SPINS: u32 = 2000;
+
+/// The lanes of a batch of worlds, for whoever has claimed one.
+pub(super) struct Lanes(Box<[UnsafeCell<Lane>]>);
+
+// SAFETY: a lane is reached by the thread that has claimed it alone, as the invariants above say; lanes are `Send`.
+unsafe impl Sync for Lanes {}
+
+const fn may_move_to_other_threads<T: Send>() {}
+const _: () = may_move_to_other_threads::<Lane>();
+
+impl Lanes {
+    pub fn new(lanes: Vec<Lane>) -> Lanes {
+        Lanes(lanes.into_iter().map(UnsafeCell::new).collect())
+    }
+}
+
 /// A place where one group's batch lies while its lanes are stepped.
 pub(super) struct Slot {
     state: AtomicU8,
-    /// Rises by one with every batch given; workers compare it with what they have done.
-    sequence: AtomicU64,
-    /// Workers that are not done yet.
+    /// The next lane to be claimed.
+    next: AtomicUsize,
+    /// Lanes that are not done yet.
     pending: AtomicUsize,
     contents: UnsafeCell<Contents>,
     waiter: Mutex<Option<Thread>>,
-    lane_count: usize,
+    /// The lanes of the whole that belong to the slot.
+    lanes: Range<usize>,
 }
 
 struct Contents {
@@ -64,15 +84,15 @@ impl<T> Raw<T> {
         Raw { start: buffer.as_mut_ptr(), length: buffer.len() }
     }
 
-    /// The part of `lanes`, of `lane_count` equal parts.
+    /// The part of a lane, of `lane_count` equal parts.
     ///
     /// # Safety
     /// The buffer is alive, and nobody else uses this part for the time of `'a`.
-    unsafe fn part<'a>(&self, lanes: &Range<usize>, lane_count: usize) -> &'a mut [T] {
-        assert!(lanes.start <= lanes.end && lanes.end <= lane_count && lane_count > 0);
+    unsafe fn part<'a>(&self, lane: usize, lane_count: usize) -> &'a mut [T] {
+        assert!(lane < lane_count);
         let each = self.length / lane_count;
         // SAFETY: inside of the buffer by the assertion; alive and exclusive by the caller's promise.
-        unsafe { std::slice::from_raw_parts_mut(self.start.add(lanes.start * each), lanes.len() * each) }
+        unsafe { std::slice::from_raw_parts_mut(self.start.add(lane * each), each) }
     }
 }
 
@@ -85,8 +105,17 @@ unsafe impl Send for Slot {}
 const fn job_may_cross_threads<T: Send + Sync>() {}
 const _: () = job_may_cross_threads::<Job>();
 
+/// Ends the program when it is dropped: only by a panic that was not caught.
+struct AbortOnPanic;
+
+impl Drop for AbortOnPanic {
+    fn drop(&mut self) {
+        std::process::abort();
+    }
+}
+
 impl Slot {
-    pub fn new(lane_count: usize) -> Slot {
+    pub fn new(lanes: Range<usize>) -> Slot {
         let contents = Contents {
             batch: Batch::default(),
             job: Job::Reset,
@@ -102,18 +131,18 @@ impl Slot {
         };
         Slot {
             state: AtomicU8::new(IDLE),
-            sequence: AtomicU64::new(0),
+            next: AtomicUsize::new(usize::MAX / 2),
             pending: AtomicUsize::new(0),
             contents: UnsafeCell::new(contents),
             waiter: Mutex::new(None),
-            lane_count,
+            lanes,
         }
     }
 
-    /// Gives a batch to a crew of workers. Panics unless the slot is idle.
-    pub fn give(&self, batch: Batch, job: Job, crew: usize) {
+    /// Lays a batch open for claims. Panics unless the slot is idle.
+    pub fn give(&self, batch: Batch, job: Job) {
         assert!(self.change(IDLE), "a batch was given to a busy slot");
-        self.pending.store(crew, Ordering::Relaxed);
+        self.pending.store(self.lanes.len(), Ordering::Relaxed);
         // SAFETY: the slot was idle and is now `CHANGING`, so this thread alone reaches the contents.
         let contents = unsafe { &mut *self.contents.get() };
         contents.batch = batch;
@@ -129,59 +158,69 @@ impl Slot {
         contents.terminated = Raw::of(&mut batch.terminated);
         contents.truncated = Raw::of(&mut batch.truncated);
         self.state.store(BUSY, Ordering::Release);
-        self.sequence.fetch_add(1, Ordering::Release);
+        // From here on lanes are claimed; whoever sees this number sees all of the above.
+        self.next.store(0, Ordering::Release);
     }
 
     fn change(&self, from: u8) -> bool {
         self.state.compare_exchange(from, CHANGING, Ordering::Acquire, Ordering::Relaxed).is_ok()
     }
 
-    /// Number of batches given so far. A worker that sees a new number may use [`Slot::lanes`].
-    pub fn sequence(&self) -> u64 {
-        self.sequence.load(Ordering::Acquire)
-    }
-
-    /// A worker's part of the batch, and what to do with it.
-    ///
-    /// # Safety
-    /// The caller belongs to the crew that the batch was given to, has seen its [`Slot::sequence`], has not called
-    /// [`Slot::done`] for it, lets go of the slices before it does, and asks only for lanes that no other worker asks for.
-    pub unsafe fn lanes<'a>(&self, lanes: &Range<usize>) -> (LaneSlices<'a>, Job) {
-        // SAFETY: the sequence was seen with `Acquire`, so the contents are written; while the slot is busy they are only read.
+    /// Claims one of the slot's lanes and runs `work` with its number in the batch, the lane, its parts of the batch and what is
+    /// to be done. Tells whether there was a lane left.
+    pub fn claim(&self, lanes: &Lanes, work: impl FnOnce(usize, &mut Lane, LaneSlices, &Job)) -> bool {
+        let count = self.lanes.len();
+        // Looking first keeps the counter from rising for ever while there is nothing to do.
+        if self.next.load(Ordering::Relaxed) >= count {
+            return false;
+        }
+        let index = self.next.fetch_add(1, Ordering::AcqRel);
+        if index >= count {
+            return false;
+        }
+        // SAFETY: the number was seen with `Acquire`, so the contents are written; until this lane is done they stay in the
+        // slot and are only read.
         let contents = unsafe { &*self.contents.get() };
-        let count = self.lane_count;
-        // SAFETY: the batch stays in the slot until all of the crew are done, and the lanes are the caller's own.
+        // SAFETY: the counter gave this lane to this thread alone, until it is done, and no other busy slot has it.
+        let lane = unsafe { &mut *lanes.0[self.lanes.start + index].get() };
+        // SAFETY: as for the lane; the batch's buffers are alive as long as it stays in the slot.
         let slices = unsafe {
             LaneSlices {
-                actions: contents.actions.part(lanes, count),
-                deltas: contents.deltas.part(lanes, count),
-                observations: contents.observations.part(lanes, count),
-                rewards: contents.rewards.part(lanes, count),
-                costs: contents.costs.part(lanes, count),
-                cost_terms: contents.cost_terms.part(lanes, count),
-                positions: contents.positions.part(lanes, count),
-                terminated: contents.terminated.part(lanes, count),
-                truncated: contents.truncated.part(lanes, count),
+                actions: contents.actions.part(index, count),
+                deltas: contents.deltas.part(index, count),
+                observations: contents.observations.part(index, count),
+                rewards: contents.rewards.part(index, count),
+                costs: contents.costs.part(index, count),
+                cost_terms: contents.cost_terms.part(index, count),
+                positions: contents.positions.part(index, count),
+                terminated: contents.terminated.part(index, count),
+                truncated: contents.truncated.part(index, count),
             }
         };
-        (slices, contents.job.clone())
-    }
-
-    /// A worker has finished its part.
-    pub fn done(&self) {
+        // A panic would leave the lane undone and the owner waiting: it is caught by `work`, or ends the program.
+        let guard = AbortOnPanic;
+        work(index, lane, slices, &contents.job);
+        std::mem::forget(guard);
         if self.pending.fetch_sub(1, Ordering::SeqCst) == 1
             && let Some(thread) = self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
         {
             thread.unpark();
         }
+        true
     }
 
-    /// Waits for the crew and takes the batch back. Panics unless one was given.
+    /// Waits until every lane is done and takes the batch back. Panics unless one was given.
     pub fn take(&self) -> Batch {
         let ready = || self.pending.load(Ordering::SeqCst) == 0;
+        for _ in 0..SPINS {
+            if ready() {
+                break;
+            }
+            std::hint::spin_loop();
+        }
         while !ready() {
             // Registered before the last look, so that the last worker either sees the waiter or is seen to be done; and
-            // registered anew after every wake: it may come from a worker of the batch before, late in `done`, which has
+            // registered anew after every wake: it may come from a worker of the batch before, late in its claim, which has
             // then taken the waiter that this batch's last worker needs.
             *self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(std::thread::current());
             if !ready() {
@@ -189,7 +228,7 @@ impl Slot {
             }
         }
         assert!(self.change(BUSY), "a batch was taken from an idle slot");
-        // SAFETY: every worker is done (their writes are seen through `pending`), and the slot is `CHANGING`.
+        // SAFETY: every lane is done (what was written is seen through `pending`), and the slot is `CHANGING`.
         let batch = std::mem::take(unsafe { &mut (*self.contents.get()).batch });
         self.state.store(IDLE, Ordering::Release);
         batch

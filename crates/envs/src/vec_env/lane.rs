@@ -26,6 +26,20 @@ pub(super) struct Outbox {
     pub panic: Option<String>,
 }
 
+impl Outbox {
+    /// Whether there is nothing to report.
+    pub fn is_empty(&self) -> bool {
+        self.final_observations.is_empty() && self.episodes.is_empty() && self.panic.is_none()
+    }
+
+    /// Takes over what another has to report.
+    pub fn append(&mut self, other: &mut Outbox) {
+        self.final_observations.append(&mut other.final_observations);
+        self.episodes.append(&mut other.episodes);
+        self.panic = self.panic.take().or(other.panic.take());
+    }
+}
+
 /// One environment of the batch. Its episodes follow from the batch's seed and its own number alone, whatever the batch's width,
 /// the number of threads and the way of stepping.
 pub(super) struct Lane {

@@ -1,18 +1,18 @@
-//! The batch of worlds: many environments stepped side by side by fixed worker threads.
+//! The batch of worlds: many environments stepped side by side by worker threads and the caller that waits for them.
 
 mod handover;
 mod lane;
 mod worker;
 
 use crate::{ActionSpace, Batch, CostTerm, Env, EnvError, EnvOptions, Environment};
-use handover::Slot;
+use handover::{Lanes, Slot};
 use lane::{Lane, LaneSlices, Manner, Outbox};
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
-use worker::{Share, Shared};
+use worker::Shared;
 
 /// What follows an episode's end.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -41,7 +41,8 @@ pub enum FinalObservations {
 pub struct VecOptions {
     /// Number of environments.
     pub lanes: usize,
-    /// Worker threads; 0 steps in the caller's thread.
+    /// Worker threads; 0 steps in the caller's thread. A caller that waits for a batch helps with it, so that `n` cores are used up
+    /// by `n - 1` threads if the caller has nothing else to do.
     pub threads: usize,
     /// Groups that the lanes are cut into, to be stepped independently: 2 lets a policy work on one half while the other steps.
     pub groups: usize,
@@ -120,8 +121,8 @@ fn run_job(job: &Job, lanes: &mut [Lane], first: usize, manner: Manner, slices: 
 enum Crew {
     /// The caller's thread; a group's batch is stepped when it is sent.
     Caller { lanes: Vec<Lane>, ready: Vec<Option<(Batch, Outbox)>> },
-    /// Worker threads.
-    Workers { shared: Arc<Shared>, threads: Vec<JoinHandle<()>>, crews: Vec<usize>, busy: Vec<bool> },
+    /// Worker threads, and the caller's while it waits.
+    Workers { shared: Arc<Shared>, threads: Vec<JoinHandle<()>>, busy: Vec<bool> },
 }
 
 /// A batch of worlds.
@@ -410,9 +411,10 @@ impl VecEnv {
                 }
                 ready[slot] = Some((batch, outbox));
             }
-            Crew::Workers { shared, threads, crews, busy } => {
-                shared.slots[slot].give(batch, job, crews[slot]);
+            Crew::Workers { shared, threads, busy } => {
+                shared.slots[slot].give(batch, job);
                 busy[slot] = true;
+                shared.given.fetch_add(1, Ordering::Release);
                 threads.iter().for_each(|thread| thread.thread().unpark());
             }
         }
@@ -421,34 +423,31 @@ impl VecEnv {
 
     fn take(&mut self, slot: usize) -> Result<Batch, EnvError> {
         let idle = || EnvError::Turn { why: format!("group {slot} is not under way; send it first") };
-        let mut panic = None;
-        let mut collect = |batch: &mut Batch, outbox: &mut Outbox| {
-            batch.final_observations.append(&mut outbox.final_observations);
-            batch.episodes.append(&mut outbox.episodes);
-            panic = panic.take().or(outbox.panic.take());
-        };
+        let mut reports = Outbox::default();
         let mut batch = match &mut self.crew {
             Crew::Caller { ready, .. } => {
-                let (mut batch, mut outbox) = ready[slot].take().ok_or_else(idle)?;
-                collect(&mut batch, &mut outbox);
+                let (batch, outbox) = ready[slot].take().ok_or_else(idle)?;
+                reports = outbox;
                 batch
             }
             Crew::Workers { shared, busy, .. } => {
                 if !std::mem::take(&mut busy[slot]) {
                     return Err(idle());
                 }
-                let mut batch = shared.slots[slot].take();
+                shared.help(self.options.threads, slot);
+                let batch = shared.slots[slot].take();
                 for outboxes in &shared.outboxes {
-                    collect(&mut batch, &mut outboxes[slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner()));
+                    reports.append(&mut outboxes[slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner()));
                 }
                 batch
             }
         };
-        if let Some(message) = panic {
+        if let Some(message) = reports.panic {
             self.failed = Some(message.clone());
             return Err(EnvError::Panicked { message });
         }
-        // Workers report in their own order; with several groups that is not the order of lanes.
+        (batch.final_observations, batch.episodes) = (reports.final_observations, reports.episodes);
+        // Lanes are stepped in any order.
         batch.final_observations.sort_by_key(|&(lane, _)| lane);
         batch.episodes.sort_by_key(|episode| episode.lane);
         Ok(batch)
@@ -479,38 +478,24 @@ fn cut(range: Range<usize>, i: usize, count: usize) -> Range<usize> {
     at(i)..at(i + 1)
 }
 
-/// Starts the worker threads and hands them their lanes: an equal share of every group, so that all work on whichever is stepped.
+/// Starts the worker threads.
 fn hire(lanes: Vec<Lane>, options: VecOptions, manner: Manner) -> Crew {
-    let groups = options.groups;
-    let slots = (0..=groups).map(|slot| Slot::new(group_lanes(&options, slot).len())).collect();
-    let outboxes = (0..options.threads).map(|_| (0..=groups).map(|_| Mutex::default()).collect()).collect();
-    let shared = Arc::new(Shared { slots, outboxes, stop: AtomicBool::new(false) });
-    let mut waiting: Vec<Option<Lane>> = lanes.into_iter().map(Some).collect();
-    let mut crews = vec![0; groups + 1];
-    let mut threads = Vec::with_capacity(options.threads);
-    for worker in 0..options.threads {
-        let mut own: Vec<Lane> = Vec::new();
-        let mut shares: Vec<Vec<Share>> = (0..=groups).map(|_| Vec::new()).collect();
-        for group in 0..groups {
-            let range = group_lanes(&options, group);
-            let part = cut(range.clone(), worker, options.threads);
-            if part.is_empty() {
-                continue;
-            }
-            let here = own.len()..own.len() + part.len();
-            own.extend(part.clone().filter_map(|lane| waiting[lane].take()));
-            shares[group].push(Share { own: here.clone(), in_batch: part.start - range.start..part.end - range.start });
-            shares[groups].push(Share { own: here, in_batch: part });
-        }
-        for (crew, shares) in crews.iter_mut().zip(&shares) {
-            *crew += usize::from(!shares.is_empty());
-        }
+    let slots = || 0..=options.groups;
+    let shared = Arc::new(Shared {
+        lanes: Lanes::new(lanes),
+        slots: slots().map(|slot| Slot::new(group_lanes(&options, slot))).collect(),
+        outboxes: (0..=options.threads).map(|_| slots().map(|_| Mutex::default()).collect()).collect(),
+        given: AtomicU64::new(0),
+        stop: AtomicBool::new(false),
+        manner,
+    });
+    let hire = |worker| {
         let shared = Arc::clone(&shared);
-        let name = format!("worlds {worker}");
-        let thread = std::thread::Builder::new().name(name).spawn(move || worker::work(worker, own, shares, manner, shared));
-        threads.push(thread.expect("the system refuses another thread"));
-    }
-    Crew::Workers { shared, threads, crews, busy: vec![false; groups + 1] }
+        let thread = std::thread::Builder::new().name(format!("worlds {worker}")).spawn(move || worker::work(worker, shared));
+        thread.expect("the system refuses another thread")
+    };
+    let threads = (0..options.threads).map(hire).collect();
+    Crew::Workers { shared, threads, busy: slots().map(|_| false).collect() }
 }
 
 /// All lanes of a batch, by the borrow checker's rules.

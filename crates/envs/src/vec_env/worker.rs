@@ -1,45 +1,52 @@
-//! A worker thread: owns its lanes for as long as the batch of worlds lives.
+//! A worker thread: steps lanes as long as there are any to claim.
 
-use super::handover::Slot;
-use super::lane::{Lane, Outbox};
-use super::{Manner, run_job};
-use std::ops::Range;
+use super::handover::{Lanes, Slot};
+use super::lane::{Lane, LaneSlices, Outbox};
+use super::{Job, Manner, run_job};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
-/// Looks for work this often before sleeping: some microseconds, longer than a caller that steps in a loop takes to come back,
-/// and too short to be felt by whatever else wants the core.
-const SPINS: u32 = 300;
+/// Looks for work this often before sleeping: tens of microseconds, longer than a caller that steps in a loop takes to come
+/// back, and too short to be felt by whatever else wants the core. Waking a sleeper costs as much.
+const SPINS: u32 = 2000;
 
 /// What the workers and the owner share.
 pub(super) struct Shared {
+    pub lanes: Lanes,
     pub slots: Vec<Slot>,
-    /// Reports of each worker for each slot: `outboxes[worker][slot]`.
+    /// Reports of each worker, and of the owner after them, for each slot: `outboxes[worker][slot]`.
     pub outboxes: Vec<Vec<Mutex<Outbox>>>,
+    /// Rises with every batch given.
+    pub given: AtomicU64,
     pub stop: AtomicBool,
+    pub manner: Manner,
 }
 
-/// A run of neighbouring lanes that a worker owns within one slot.
-pub(super) struct Share {
-    /// Where they are in the worker's own list.
-    pub own: Range<usize>,
-    /// Where they are in the slot's batch.
-    pub in_batch: Range<usize>,
+impl Shared {
+    /// Steps lanes of a slot until none is left to claim. Lanes differ in how long they take, and threads in how much of a
+    /// core they get: claiming one by one keeps all of them busy to the end.
+    pub fn help(&self, worker: usize, slot: usize) {
+        let work = |index: usize, lane: &mut Lane, slices: LaneSlices, job: &Job| {
+            let mut outbox = Outbox::default();
+            let lanes = std::slice::from_mut(lane);
+            let result = catch_unwind(AssertUnwindSafe(|| run_job(job, lanes, index, self.manner, slices, &mut outbox)));
+            outbox.panic = result.err().map(|panic| panic_text(&*panic));
+            if !outbox.is_empty() {
+                self.outboxes[worker][slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner()).append(&mut outbox);
+            }
+        };
+        while self.slots[slot].claim(&self.lanes, work) {}
+    }
 }
 
 /// Works until told to stop.
-pub(super) fn work(worker: usize, mut lanes: Vec<Lane>, shares: Vec<Vec<Share>>, manner: Manner, shared: Arc<Shared>) {
-    let mut done: Vec<u64> = shared.slots.iter().map(|_| 0).collect();
+pub(super) fn work(worker: usize, shared: Arc<Shared>) {
+    let mut seen = 0;
     let mut idle_looks = 0;
-    let mut next = 0;
     while !shared.stop.load(Ordering::Acquire) {
-        // Slots in turn, so that a group that is always ready cannot starve another.
-        let count = shared.slots.len();
-        let found = (0..count)
-            .map(|i| (next + i) % count)
-            .find(|&slot| !shares[slot].is_empty() && shared.slots[slot].sequence() != done[slot]);
-        let Some(slot) = found else {
+        let given = shared.given.load(Ordering::Acquire);
+        if given == seen {
             idle_looks += 1;
             if idle_looks > SPINS {
                 std::thread::park();
@@ -48,23 +55,10 @@ pub(super) fn work(worker: usize, mut lanes: Vec<Lane>, shares: Vec<Vec<Share>>,
                 std::hint::spin_loop();
             }
             continue;
-        };
-        idle_looks = 0;
-        next = slot + 1;
-        done[slot] += 1;
-        let mut outbox = shared.outboxes[worker][slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        for share in &shares[slot] {
-            // SAFETY: this worker is of the slot's crew (it has a share), has seen the sequence and is not done; shares of
-            // different workers never overlap (`VecEnv` cuts them from one range), and the slices end with this iteration.
-            let (slices, job) = unsafe { shared.slots[slot].lanes(&share.in_batch) };
-            let own = &mut lanes[share.own.clone()];
-            let result = catch_unwind(AssertUnwindSafe(|| run_job(&job, own, share.in_batch.start, manner, slices, &mut outbox)));
-            if let Err(panic) = result {
-                outbox.panic = Some(panic_text(&*panic));
-            }
         }
-        drop(outbox);
-        shared.slots[slot].done();
+        seen = given;
+        idle_looks = 0;
+        (0..shared.slots.len()).for_each(|slot| shared.help(worker, slot));
     }
 }
 
