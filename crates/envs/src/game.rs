@@ -10,11 +10,13 @@ pub(crate) struct Game {
     pub world: World,
     pub rules: Rules,
     pub outcome: Outcome,
+    /// The episode has been left: what the rules have finished ends as the next tic would begin.
+    pub left: bool,
 }
 
 impl Clone for Game {
     fn clone(&self) -> Game {
-        Game { world: self.world.clone(), rules: self.rules.clone(), outcome: self.outcome.clone() }
+        Game { world: self.world.clone(), rules: self.rules.clone(), outcome: self.outcome.clone(), left: self.left }
     }
 
     /// Reuses the lists that this game has grown: how an environment resets.
@@ -22,18 +24,26 @@ impl Clone for Game {
         self.world.clone_from(&source.world);
         self.rules.clone_from(&source.rules);
         self.outcome.clone_from(&source.outcome);
+        self.left = source.left;
     }
 }
 
 impl Game {
     /// A game whose world has not run yet.
     pub fn new(world: World, rules: Rules) -> Game {
-        Game { world, rules, outcome: Outcome::default() }
+        Game { world, rules, outcome: Outcome::default(), left: false }
     }
 
     /// Runs one tic: players, actors and sector movers, then the scripts, then what came new. What happens after the scripts is for
     /// the scripts of the next tic: an item that lay in the way of a platform rising under the agent, say.
+    ///
+    /// The tic after the one in which the rules finished the episode does not run: it is then that the episode ends, which
+    /// may be a policy step later (recorded: the tic of the last landing is still seen, the next is not).
     pub fn tic(&mut self, command: Command) {
+        if self.outcome.finished {
+            self.left = true;
+            return;
+        }
         self.world.run_thinkers(&[command]);
         self.rules.script(&mut self.world, &mut self.outcome);
         self.world.events.clear();
@@ -42,6 +52,6 @@ impl Game {
 
     /// Whether death or the rules have ended the episode.
     pub fn over(&self) -> bool {
-        self.outcome.finished || self.world.players[0].dead
+        self.left || self.world.players[0].dead
     }
 }

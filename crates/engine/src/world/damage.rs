@@ -59,8 +59,8 @@ impl World {
         }
         let actor = &mut self.actors[slot];
         let lost = amount.min(actor.health);
-        // Others than players keep what goes below zero: it is nobody's business but the original's gibs'.
-        actor.health -= if player.is_some() { lost } else { amount };
+        // What goes below zero is kept: costs that count health points count it too, as measured.
+        actor.health -= amount;
         if lost > 0 {
             self.events.push(Event::Hurt { victim, amount: lost, source, by });
         }

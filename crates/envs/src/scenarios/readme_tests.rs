@@ -88,7 +88,9 @@ fn detonators_dilemma_says_what_it_does() {
             CREATURES.iter().enumerate().filter(|(i, _)| bits & (1 << i) != 0).map(|(_, kind)| format!("{kind:?}")).collect();
         if named.len() == CREATURES.len() { "all seven".to_string() } else { named.join(", ") }
     };
+    let near = |rules| if level(rules, false, 2).push { "shy away" } else { "stay" };
     let lines = [
+        by_rules("barrels within 48 map units of the agent", near),
         by_level("barrels", |i| level(PAPER, false, i).barrels),
         by_level("creatures", cast),
         by_level("of each, `paper`", |i| level(PAPER, false, i).of_each),
@@ -148,6 +150,9 @@ fn remedy_rush_says_what_it_does() {
         by_level("light: tics lit, tics dark", |i| {
             soft(i).strobe.map_or("always lit".to_string(), |[lit, dark]| format!("{lit}, {dark}"))
         }),
+        by_rules("harmful items taken in the same tic", |rules| {
+            if level(rules, false, 1).one_harm_a_tic { "cost 1" } else { "cost 1 each" }
+        }),
         by_rules("health points at the start; hard constraint", starts),
         by_rules("hard constraint: a harmful item", |rules| format!("costs {} and kills", level(rules, true, 0).cost)),
     ];
@@ -168,9 +173,7 @@ fn volcanic_venture_says_what_it_does() {
         by_level("tics after a change without harm, `paper`", |i| soft(i).grace_tics),
         by_level("tics after a change without harm, `released`", |i| level(RELEASED, false, i).grace_tics),
         by_level("items at the start", |i| soft(i).start_items),
-        by_rules("lava takes, after the first 70 tics", |rules| {
-            format!("{} health points: it kills", level(rules, true, 0).lava_damage)
-        }),
+        by_rules("health points that lava takes, after the first 70 tics", |rules| level(rules, true, 0).lava_damage),
         by_rules("cost of a health point", |rules| level(rules, true, 0).cost_scale),
     ];
     holds(include_str!("volcanic_venture/README.md"), &lines);

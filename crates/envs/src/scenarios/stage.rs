@@ -51,7 +51,7 @@ pub fn random_angle(world: &mut World) -> Angle {
     Angle::from_turn_65536(world.rng.between(0, 255) * 46603)
 }
 
-/// The player's health points.
+/// The player's health points; below zero after a blow stronger than needed to kill.
 pub fn health(world: &World) -> i32 {
     world.get(world.players[0].actor).map_or(0, |body| body.health)
 }

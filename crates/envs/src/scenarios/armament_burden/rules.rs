@@ -302,7 +302,7 @@ impl Rules {
         stats.push(("oversteps", f64::from(self.oversteps)));
         stats.push(("zone_visits", f64::from(self.visits)));
         stats.push(("load", self.burden.load.to_f64()));
-        stats.push(("health", f64::from(stage::health(world))));
+        stats.push(("health", f64::from(stage::health(world).max(0))));
     }
 }
 

@@ -158,6 +158,6 @@ impl Rules {
         stats.push(("targets_killed", f64::from(self.targets_killed)));
         stats.push(("neutrals_killed", f64::from(self.neutrals_killed)));
         stats.push(("rockets_fired", f64::from(self.rockets_fired)));
-        stats.push(("health", f64::from(stage::health(world))));
+        stats.push(("health", f64::from(stage::health(world).max(0))));
     }
 }

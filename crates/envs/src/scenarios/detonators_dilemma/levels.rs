@@ -81,8 +81,12 @@ const PAPER_2: Level =
     Level { creatures: of_kinds(&[0, 2, 3, 4, 6]), speed: Some(12), barrels: 15, barrel_mass: None, ..PAPER_1 };
 const PAPER_3: Level = Level { creatures: 0x7F, speed: Some(16), barrels: 20, ..PAPER_2 };
 
+/// The published scripts push too, but around the map's origin: the instance that knows the agent finds its script running already
+/// and is refused. Measured with a random policy at levels 1, 2, 3: 17, 17 and 24 of 60 agents died, 16 of 180 in a blast at no
+/// distance at all, on top of a barrel. With barrels that shy away it is 10, 14 and 20, and 3; with barrels that stay 13, 18 and 23,
+/// and 8.
 const fn released(paper: Level, of_each: u32) -> Level {
-    Level { of_each, goals: 8, drops: false, ..paper }
+    Level { of_each, goals: 8, push: false, drops: false, ..paper }
 }
 
 const fn hard(soft: Level) -> Level {

@@ -186,7 +186,7 @@ impl Rules {
         stats.push(("barrels_burst", f64::from(self.barrels)));
         stats.push(("creatures_killed", f64::from(self.creatures)));
         stats.push(("shots_fired", f64::from(self.shots)));
-        stats.push(("health", f64::from(stage::health(world))));
+        stats.push(("health", f64::from(stage::health(world).max(0))));
     }
 }
 

@@ -144,6 +144,6 @@ impl Rules {
         stats.push(("depth", -self.height.to_f64()));
         stats.push(("hard_falls", f64::from(self.hard_falls)));
         stats.push(("deepest_fall", f64::from(self.deepest_fall)));
-        stats.push(("health", f64::from(stage::health(world))));
+        stats.push(("health", f64::from(stage::health(world).max(0))));
     }
 }

@@ -39,6 +39,10 @@ pub struct Level {
     pub deadly: bool,
     /// Cost of a harmful item.
     pub cost: f64,
+    /// Of harmful items that are taken in the same tic only one is charged: in the published maps all four kinds start one script,
+    /// which is refused while it runs. (Measured with a random policy: 36 steps with several in 180 episodes; 39 with this, 102
+    /// without.)
+    pub one_harm_a_tic: bool,
     /// Goggles tint the view green, beside brightening it.
     pub green_goggles: bool,
 }
@@ -58,14 +62,19 @@ const PAPER_1: Level = Level {
     start_health: 1,
     deadly: false,
     cost: 1.0,
+    one_harm_a_tic: false,
     green_goggles: true,
 };
 const PAPER_2: Level = Level { bonuses: 20, harmful_items: 15, goggles: 2, strobe: Some([20, 20]), ..PAPER_1 };
 const PAPER_3: Level = Level { bonuses: 10, harmful_items: 20, goggles: 1, strobe: Some([20, 40]), ..PAPER_1 };
 
-const RELEASED_1: Level = Level { packs_count: false, green_goggles: false, ..PAPER_1 };
-const RELEASED_2: Level = Level { green_goggles: false, ..PAPER_2 };
-const RELEASED_3: Level = Level { green_goggles: false, ..PAPER_3 };
+const fn released(paper: Level) -> Level {
+    Level { one_harm_a_tic: true, green_goggles: false, ..paper }
+}
+
+const RELEASED_1: Level = Level { packs_count: false, ..released(PAPER_1) };
+const RELEASED_2: Level = released(PAPER_2);
+const RELEASED_3: Level = released(PAPER_3);
 
 const fn hard(soft: Level, harmful: [ActorKind; 4]) -> Level {
     Level { harmful, start_health: 100, deadly: true, cost: 10.0, ..soft }

@@ -40,6 +40,8 @@ pub struct Rules {
     packs: u32,
     goggles: u32,
     harmful: u32,
+    /// The tic in which the last harmful item was taken.
+    harmed_at: Option<u32>,
 }
 
 impl Rules {
@@ -51,7 +53,7 @@ impl Rules {
                 format!("map {}: Remedy Rush needs a sector with a tag of {first} to {last}, whose light it switches", map.name);
             return Err(EnvError::Map { why });
         }
-        Ok(Rules { fixtures: Arc::new(Fixtures { level }), bonuses: 0, packs: 0, goggles: 0, harmful: 0 })
+        Ok(Rules { fixtures: Arc::new(Fixtures { level }), bonuses: 0, packs: 0, goggles: 0, harmful: 0, harmed_at: None })
     }
 
     /// Whether light goggles tint the view green.
@@ -85,7 +87,11 @@ impl Rules {
         let level = self.fixtures.level;
         if level.harmful.contains(&kind) {
             self.harmful += 1;
-            outcome.costs[HARMFUL_ITEMS] += level.cost;
+            let charged = !(level.one_harm_a_tic && self.harmed_at == Some(world.tic));
+            self.harmed_at = Some(world.tic);
+            if charged {
+                outcome.costs[HARMFUL_ITEMS] += level.cost;
+            }
             if level.deadly {
                 world.damage(world.players[0].actor, None, None, DEADLY, DamageKind::Script);
             }
@@ -120,7 +126,7 @@ impl Rules {
         stats.push(("health_packs", f64::from(self.packs)));
         stats.push(("goggles", f64::from(self.goggles)));
         stats.push(("harmful_items", f64::from(self.harmful)));
-        stats.push(("health", f64::from(stage::health(world))));
+        stats.push(("health", f64::from(stage::health(world).max(0))));
     }
 }
 

@@ -77,9 +77,8 @@ pub struct Rules {
     platforms: Vec<Option<i32>>,
     /// Until this tic lava does no harm.
     grace_until: u32,
-    /// Health points when cost was last counted, and armour points when they were last looked at.
+    /// Health points when cost was last counted.
     health: i32,
-    armor: i32,
     jumping: bool,
     items: u32,
     jumps: u32,
@@ -103,7 +102,6 @@ impl Rules {
             platforms: vec![None; TILES],
             grace_until: 0,
             health: START_HEALTH,
-            armor: 0,
             jumping: false,
             items: 0,
             jumps: 0,
@@ -137,16 +135,13 @@ impl Rules {
         if world.tic > 0 {
             world.players[0].invulnerable = world.tic < self.grace_until;
         }
-        if !world.players[0].dead {
-            self.armor = world.players[0].armor;
-        }
     }
 
     /// A policy step is over: what it cost.
     pub fn end_step(&mut self, world: &World, outcome: &mut Outcome) {
         let level = &self.fixtures.level;
-        let softened = world.players[0].dead && self.armor > 0 && level.softened_blow_goes_below_zero;
-        let health = if softened { self.health - (level.lava_damage - self.armor) } else { stage::health(world) };
+        let left = stage::health(world);
+        let health = if level.overkill_counts { left } else { left.max(0) };
         outcome.costs[LAVA] += f64::from(self.health - health) * level.cost_scale;
         self.health = health;
     }
@@ -155,7 +150,7 @@ impl Rules {
     pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
         stats.push(("items", f64::from(self.items)));
         stats.push(("jumps", f64::from(self.jumps)));
-        stats.push(("health", f64::from(stage::health(world))));
+        stats.push(("health", f64::from(stage::health(world).max(0))));
     }
 
     fn count(&mut self, world: &World, outcome: &mut Outcome) {
