@@ -1,47 +1,103 @@
 //! Who acts in an episode that is shown or recorded.
 
+use crate::commands::eval::Player;
 use crate::failure::Failure;
+use crate::settings;
 use hasard_engine::world::Command;
-use hasard_envs::{ActionSpace, Env, Move, PolicyRun, Step};
-use hasard_media::episode::EpisodeFile;
+use hasard_envs::{ActionSpace, EnvOptions, Move, PolicyRun, Step};
+use hasard_learn::evaluate::{Agent, Choice, Which, run_config};
+use hasard_play::{Recorder, Stage};
+use std::path::Path;
 
 /// A source of actions.
 pub enum Actor {
     /// A policy that looks at nothing.
     Fixed(Box<PolicyRun>),
-    /// A recorded episode and the next step of it.
-    Recording(Box<EpisodeFile>, usize),
+    /// A trained agent, and room for what it sees.
+    Agent(Box<Agent>, Vec<u8>),
 }
 
-impl Actor {
-    /// Takes one step, noting its action in `record`. `None` when a recording is over.
-    pub fn step(&mut self, env: &mut Env, record: Option<&mut EpisodeFile>) -> Result<Option<Step>, Failure> {
-        let (actions, deltas) = match self {
+/// An episode about to be shown: its stage at the first moment, and who acts on it.
+pub struct Performance {
+    /// The stage.
+    pub stage: Stage,
+    actor: Actor,
+}
+
+impl Performance {
+    /// An environment and a policy by its text: `run:DIR` or one that looks at nothing. `looks` is the task and what the
+    /// audience sees of it; an agent sees what it was trained to see.
+    pub fn new(id: &str, policy: &str, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
+        if let Some(run) = policy.strip_prefix("run:").map(Path::new) {
+            return Performance::of_agent(id, run, &agent_options(run, looks)?, looks, seed);
+        }
+        let policy = settings::policy(policy)?;
+        let mut stage = Stage::new(id, looks).map_err(Failure::bad)?;
+        stage.reset(seed);
+        let actor = Actor::Fixed(Box::new(PolicyRun::new(policy, stage.env().action_space(), seed)));
+        Ok(Performance { stage, actor })
+    }
+
+    /// The agent of a run in the environment that it was trained in.
+    pub fn of_run(run: &Path, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
+        let config = run_config(run).map_err(Failure::bad)?;
+        let options = settings::trained_options(&config.env)?;
+        Performance::of_agent(&config.env.id, run, &options, looks, seed)
+    }
+
+    fn of_agent(id: &str, run: &Path, options: &EnvOptions, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
+        let mut stage = Stage::shown_as(id, options, looks).map_err(Failure::bad)?;
+        stage.reset(seed);
+        let player = Player { run, which: Which::Latest, choice: Choice::Sampled };
+        let mut agent = player.agent(stage.env())?;
+        agent.reset(0, seed);
+        let observation = vec![0; stage.env().observation_shape().iter().product()];
+        Ok(Performance { stage, actor: Actor::Agent(Box::new(agent), observation) })
+    }
+
+    /// Goes on by a tic, choosing an action where the stage wants one and noting it in `recorder`. Gives what a step
+    /// brought at its end.
+    pub fn tic(&mut self, recorder: Option<&mut Recorder>) -> Result<Option<Step>, Failure> {
+        if self.stage.wants_action() {
+            self.choose(recorder)?;
+        }
+        let step = self.stage.tic();
+        if let (Actor::Agent(agent, _), Some(step)) = (&mut self.actor, step) {
+            agent.observe_cost(0, step.cost);
+        }
+        Ok(step)
+    }
+
+    fn choose(&mut self, recorder: Option<&mut Recorder>) -> Result<(), Failure> {
+        let stage = &mut self.stage;
+        let (actions, deltas) = match &mut self.actor {
             Actor::Fixed(policy) => match policy.next_move() {
                 Move::Action(actions, deltas) => (actions.to_vec(), deltas.to_vec()),
                 Move::Buttons(command) => {
-                    if record.is_none() {
-                        return Ok(Some(env.step_buttons(command)));
+                    stage.press(command);
+                    if recorder.is_none() {
+                        return Ok(());
                     }
-                    let found = action_of(env.action_space(), command);
-                    found.ok_or_else(|| {
+                    action_of(stage.env().action_space(), command).ok_or_else(|| {
                         Failure::bad("these buttons are no action of the environment, so an episode file cannot hold them; try --full-actions, or record a video")
                     })?
                 }
             },
-            Actor::Recording(file, next) => match file.step(*next) {
-                Some((actions, deltas)) => {
-                    *next += 1;
-                    (actions.to_vec(), deltas.to_vec())
-                }
-                None => return Ok(None),
-            },
+            Actor::Agent(agent, observation) => {
+                stage.observe(observation);
+                let action = agent.act(observation).swap_remove(0);
+                (action.actions, action.deltas)
+            }
         };
-        if let Some(record) = record {
-            record.push(&actions, &deltas).map_err(Failure::bad)?;
-        }
-        Ok(Some(env.step(&actions, &deltas)))
+        stage.act(&actions, &deltas).map_err(Failure::bad)?;
+        recorder.map_or(Ok(()), |recorder| recorder.push(&actions, &deltas)).map_err(Failure::bad)
     }
+}
+
+/// What the agent of a run is to see: as it was trained, under the rules and constraint of `task`.
+pub fn agent_options(run: &Path, task: &EnvOptions) -> Result<EnvOptions, Failure> {
+    let trained = settings::trained_options(&run_config(run).map_err(Failure::bad)?.env)?;
+    Ok(EnvOptions { rules: task.rules, hard: task.hard, ..trained })
 }
 
 /// The action that presses exactly these buttons, if the space has it.

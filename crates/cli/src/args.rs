@@ -18,21 +18,23 @@ pub struct Cli {
 pub enum Command {
     /// List the environments with their budgets and action spaces
     Envs(EnvsArgs),
-    /// Play episodes with a fixed policy or a trained agent and print return, cost and statistics
+    /// Play in a window; each episode is kept as a human baseline
+    Play(PlayArgs),
+    /// Run episodes of a fixed policy or a trained agent and print return, cost and statistics
     Rollout(RolloutArgs),
     /// Run recorded inputs tic by tic and print position, velocity and view as CSV
     Trace(TraceArgs),
     /// Measure environment speed: random actions, resets included, observations written
     Bench(BenchArgs),
-    /// Draw a moment of an episode as PNG: colour, depth, segmentation or map
+    /// Draw a moment of an episode as PNG: colour, depth, segmentation, labels, luminance or the map from above
     Render(RenderArgs),
     /// Train an agent
     Train(TrainArgs),
     /// Evaluate a trained agent
     Eval(EvalArgs),
-    /// Write an episode as video, GIF, or as a file that `replay` plays again
+    /// Write an episode of a policy or a trained agent as video, GIF, or as a file that `replay` plays again
     Record(RecordArgs),
-    /// Play a recorded episode again, at any size
+    /// Play a recorded episode again: check its result, or draw it at any size as video, GIF or PNG
     Replay(ReplayArgs),
     /// Make tables, curves and heatmaps from run directories
     Report(ReportArgs),
@@ -60,42 +62,45 @@ pub struct EnvArgs {
     /// Tics (1/35 s) that each action is held
     #[arg(long, value_name = "TICS", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=35))]
     pub frame_skip: u32,
-    /// Frame size; 128x72 is the learner's nearest-neighbour reduction of 160x120
+    /// Frame size, 64x48 to 1920x1080; 128x72 is the learner's nearest-neighbour reduction of 160x120
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    #[arg(long, value_name = "FILE")]
+    pub iwad: Option<PathBuf>,
+}
+
+impl EnvArgs {
+    /// Whether the task differs from the usual one; size and pictures do not matter.
+    pub fn changes_task(&self) -> bool {
+        self.rules != Rules::Paper || self.hard || self.full_actions || self.frame_skip != 4
+    }
+}
+
+/// Options of what a learner sees.
+#[derive(Args, Debug, Clone)]
+#[command(next_help_heading = "Observation")]
+pub struct ObservationArgs {
     /// What is observed
     #[arg(long, value_enum, default_value_t = Observation::Rgb)]
     pub observation: Observation,
     /// Number of last frames stacked along the channels
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=16))]
     pub frame_stack: u8,
-    /// Limit the depth of walls as the published engine does
+    /// How depth and segmentation look
+    #[command(flatten)]
+    pub looks: LooksArgs,
+}
+
+/// Options of how depth and segmentation look.
+#[derive(Args, Debug, Clone, Default)]
+pub struct LooksArgs {
+    /// Depth of walls, things and sky ends at 255 * rows / 480, as in the published engine, not at 255
     #[arg(long)]
     pub published_depth: bool,
     /// Segment in the published colours, some of which several classes share
     #[arg(long)]
     pub published_colours: bool,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
-    #[arg(long, value_name = "FILE")]
-    pub iwad: Option<PathBuf>,
-}
-
-/// As the flags are when none is given.
-impl Default for EnvArgs {
-    fn default() -> EnvArgs {
-        EnvArgs {
-            rules: Rules::Paper,
-            hard: false,
-            full_actions: false,
-            frame_skip: 4,
-            size: None,
-            observation: Observation::Rgb,
-            frame_stack: 1,
-            published_depth: false,
-            published_colours: false,
-            iwad: None,
-        }
-    }
 }
 
 /// `--rules`.
@@ -188,6 +193,9 @@ pub struct RolloutArgs {
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
+    /// What is seen
+    #[command(flatten)]
+    pub observation: ObservationArgs,
 }
 
 /// `hasard trace`.
@@ -248,42 +256,72 @@ pub struct BenchArgs {
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
+    /// What is observed
+    #[command(flatten)]
+    pub observation: ObservationArgs,
 }
 
-/// What `hasard render` draws.
+/// A view of a moment: what `hasard render` draws, and what stands beside the player's view in a video.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Buffer {
+pub enum View {
     /// What the player sees
+    #[value(alias = "colour")]
     Rgb,
-    /// Distance, near black to far white
+    /// Distance, 0 near to 255 far, 7.3 map units a level
     Depth,
-    /// One colour per class
+    /// One colour for each class of things, and for walls, floor, ceiling and sky
     Segmented,
+    /// Raw labels: 0 for surfaces, n * 255 / (N + 1) for the n-th of N things in view, 255 for the weapon
+    Labels,
+    /// Luminance
+    #[value(alias = "gray")]
+    Grey,
+    /// The whole map with all things, from above, north up
+    Automap,
 }
 
-impl Buffer {
-    /// What stands below it.
-    pub fn caption(self) -> &'static str {
-        match self {
-            Buffer::Rgb => "view",
-            Buffer::Depth => "depth",
-            Buffer::Segmented => "segmented",
-        }
-    }
+/// `hasard play`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Keys: WASD move, arrows turn and look, the mouse turns (click to catch it, Esc frees it), Space jump, E use, C crouch,\n\
+                        Shift run, Ctrl or left button attack, Q and wheel weapons, T turn round, P pause, R restart, N next episode, Esc quit.\n\
+                        Only what the action space has does something; --full-actions gives everything."
+)]
+pub struct PlayArgs {
+    /// Environment id, see `hasard envs`
+    pub env: String,
+    /// Folder in which every finished episode is kept; `hasard report FOLDER` counts them as results
+    #[arg(short, long, value_name = "DIR", default_value = "human")]
+    pub out: PathBuf,
+    /// Keep no episodes
+    #[arg(long, conflicts_with = "out")]
+    pub no_record: bool,
+    /// Name of the player in the kept episodes
+    #[arg(long, value_name = "NAME", default_value = "human")]
+    pub player: String,
+    /// Seed of the first episode; each further one is seeded one higher
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// How to make the environment
+    #[command(flatten)]
+    pub env_args: EnvArgs,
 }
 
 /// `hasard render`.
 #[derive(Args, Debug)]
 pub struct RenderArgs {
-    /// Environment id
+    /// Environment id, see `hasard envs`
     pub env: String,
     /// PNG file to write
     #[arg(short, long, value_name = "FILE", default_value = "frame.png")]
     pub out: PathBuf,
-    /// Which buffer
-    #[arg(long, value_enum, default_value_t = Buffer::Rgb)]
-    pub buffer: Buffer,
-    /// Policy that acts before the picture
+    /// What is drawn
+    #[arg(long, value_enum, default_value_t = View::Rgb)]
+    pub buffer: View,
+    /// Other views beside it, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW,...")]
+    pub beside: Vec<View>,
+    /// Who acts before the picture: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR
     #[arg(long, default_value = "random")]
     pub policy: String,
     /// Policy steps before the picture
@@ -292,9 +330,15 @@ pub struct RenderArgs {
     /// Seed of the episode
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// One JSON object about the picture, with the things in view if labels were drawn
+    #[arg(long)]
+    pub json: bool,
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
+    /// How depth and segmentation look
+    #[command(flatten)]
+    pub looks: LooksArgs,
 }
 
 /// `hasard train`.
@@ -317,7 +361,11 @@ pub struct TrainArgs {
     /// Go on from the last checkpoint in the run directory, if there is one
     #[arg(long)]
     pub resume: bool,
-    /// Begin with the weights and pixel statistics of another run
+    /// Levels in turn, weights and normalisers carried over: 1,2,3 shares the frames equally, 1:400000,2:600000 gives each
+    /// its own; the run ends in the last level, whatever level ENV names
+    #[arg(long, value_name = "LEVELS")]
+    pub curriculum: Option<String>,
+    /// Begin with the weights and normalisers of another run
     #[arg(long, value_name = "RUN", conflicts_with = "resume")]
     pub init_from: Option<PathBuf>,
     /// Cost that an episode may have; TERM=COST for one named cost term, several times for several constraints
@@ -356,6 +404,9 @@ pub struct TrainArgs {
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
+    /// What the agent sees
+    #[command(flatten)]
+    pub observation: ObservationArgs,
 }
 
 /// `hasard eval`.
@@ -380,26 +431,45 @@ pub struct EvalArgs {
     pub json: bool,
 }
 
+/// What a video shows.
+#[derive(Args, Debug, Clone)]
+#[command(next_help_heading = "Picture")]
+pub struct FilmArgs {
+    /// Other views beside the player's, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW,...")]
+    pub beside: Vec<View>,
+    /// Tics (1/35 s) from one frame to the next; 1 for .mp4 and 4 for .gif if absent
+    #[arg(long, value_name = "TICS", value_parser = clap::value_parser!(u32).range(1..=350))]
+    pub frame_every: Option<u32>,
+    /// How depth and segmentation look
+    #[command(flatten)]
+    pub looks: LooksArgs,
+}
+
 /// `hasard record`.
 #[derive(Args, Debug)]
 pub struct RecordArgs {
-    /// Environment id
-    pub env: String,
+    /// Environment id, run directory (its agent acts), or .episode file
+    #[arg(value_name = "ENV|RUN|FILE")]
+    pub what: String,
     /// File to write: .mp4, .gif or .episode
     #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
     pub out: PathBuf,
-    /// random, sticky:K, noop, hold:BUTTONS, hold-after:K:BUTTONS
-    #[arg(long, default_value = "random")]
-    pub policy: String,
-    /// Other buffers beside the view
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub beside: Vec<Buffer>,
-    /// Most policy steps that are shown
-    #[arg(long, default_value_t = u32::MAX, hide_default_value = true)]
-    pub steps: u32,
+    /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR  [default: random]
+    #[arg(long)]
+    pub policy: Option<String>,
+    /// Most policy steps that are taken; to the episode's end if absent
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub steps: Option<u32>,
     /// Seed of the episode
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// One JSON object about what was written
+    #[arg(long)]
+    pub json: bool,
+    /// What is shown
+    #[command(flatten)]
+    pub film: FilmArgs,
     /// How to make the environment
     #[command(flatten)]
     pub env_args: EnvArgs,
@@ -410,18 +480,24 @@ pub struct RecordArgs {
 pub struct ReplayArgs {
     /// Episode file, from `hasard record` or `hasard play`
     pub file: PathBuf,
-    /// Video or GIF to write; without it the episode is played and its result checked
+    /// Video (.mp4), .gif or .png to write; without it the episode is played and its result checked
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Other buffers beside the view
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub beside: Vec<Buffer>,
+    /// Policy step at which a .png is drawn; the episode's end if absent
+    #[arg(long)]
+    pub step: Option<u32>,
     /// Frame size
-    #[arg(long, value_name = "WxH")]
-    pub size: Option<Size>,
+    #[arg(long, value_name = "WxH", default_value_t = Size { width: 640, height: 480 })]
+    pub size: Size,
     /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+    /// One JSON object about the episode
+    #[arg(long)]
+    pub json: bool,
+    /// What is shown
+    #[command(flatten)]
+    pub film: FilmArgs,
     /// Accepted for uniformity; the file holds its seed
     #[arg(long, hide = true, default_value_t = 0)]
     pub seed: u64,

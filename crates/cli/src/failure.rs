@@ -7,7 +7,6 @@ use std::process::ExitCode;
 #[derive(Debug)]
 pub enum Failure {
     /// The command worked and its result is negative: exit code 1.
-    #[allow(dead_code, reason = "commands with a negative result are being added")]
     Negative(String),
     /// Bad input or a failed operation: exit code 2, one line that names the input and the remedy.
     BadInput(String),
@@ -46,9 +45,19 @@ pub fn report_usage(error: &clap::Error) -> ExitCode {
         .map(str::trim)
         .filter(|line| !line.is_empty() && !line.starts_with("Usage:") && !line.starts_with("For more information"))
         .collect();
-    let line = parts.join("; ");
-    eprintln!("hasard: {} (see `hasard --help`)", line.strip_prefix("error: ").unwrap_or(&line));
+    let line = parts.join("; ").replace(":; ", ": ");
+    eprintln!("hasard: {} (see `{} --help`)", line.strip_prefix("error: ").unwrap_or(&line), command());
     ExitCode::from(2)
+}
+
+/// The program and, if the first argument names one, its command: whose help says more.
+fn command() -> String {
+    use clap::CommandFactory;
+    let first = std::env::args().nth(1).unwrap_or_default();
+    match crate::args::Cli::command().find_subcommand(&first) {
+        Some(known) => format!("hasard {}", known.get_name()),
+        None => "hasard".into(),
+    }
 }
 
 /// Prints a line on standard output and returns from the calling command if that cannot be done: unlike `println!`, no panic

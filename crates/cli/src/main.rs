@@ -5,6 +5,7 @@ mod failure;
 
 mod actor;
 mod args;
+mod automap;
 mod commands;
 mod contact_sheet;
 mod episode_lines;
@@ -22,6 +23,7 @@ fn main() -> ExitCode {
     };
     let outcome = match cli.command {
         Command::Envs(args) => commands::envs::run(&args),
+        Command::Play(args) => commands::play::run(&args),
         Command::Rollout(args) => commands::rollout::run(&args),
         Command::Trace(args) => commands::trace::run(&args),
         Command::Bench(args) => commands::bench::run(&args),

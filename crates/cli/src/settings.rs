@@ -1,10 +1,11 @@
 //! Validated settings made from raw flags.
 
-use crate::args::{EnvArgs, Observation, Rules, Size};
+use crate::args::{EnvArgs, LooksArgs, Observation, ObservationArgs, Rules, Size, View};
 use crate::failure::Failure;
 use hasard_engine::assets::Assets;
-use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet};
+use hasard_envs::{EnvError, EnvId, EnvOptions, FrameSize, ObservationKind, Policy, RuleSet};
 use hasard_learn::config::EnvConfig;
+use hasard_play::ViewKind;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -24,37 +25,79 @@ pub fn env_id(text: &str) -> Result<EnvId, Failure> {
 
 /// Environment options from flags; `default_size` applies where `--size` is absent.
 pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Failure> {
-    let size = args.size.unwrap_or(default_size);
     Ok(EnvOptions {
         rules: args.rules.into(),
         hard: args.hard,
         full_actions: args.full_actions,
         frame_skip: args.frame_skip,
-        size: FrameSize { width: size.width, height: size.height },
-        observation: match args.observation {
-            Observation::Rgb => ObservationKind::Rgb,
-            Observation::RgbDepth => ObservationKind::RgbDepth,
-            Observation::Segmented => ObservationKind::Segmented,
-            Observation::Grey => ObservationKind::Grey,
-        },
-        layout: Layout::Hwc,
-        frame_stack: usize::from(args.frame_stack),
-        published_depth: args.published_depth,
-        published_colours: args.published_colours,
-        map: None,
+        size: args.size.unwrap_or(default_size).into(),
         assets: assets(args.iwad.as_deref())?,
+        ..EnvOptions::default()
     })
 }
 
+/// A policy that looks at nothing, by its text.
+pub fn policy(text: &str) -> Result<Policy, Failure> {
+    let beside = "; run:DIR is the agent of a training run";
+    text.parse().map_err(|error: EnvError| Failure::bad(format!("{error}{beside}")))
+}
+
+/// The options with what a learner sees.
+pub fn observed(options: EnvOptions, args: &ObservationArgs) -> EnvOptions {
+    let observation = match args.observation {
+        Observation::Rgb => ObservationKind::Rgb,
+        Observation::RgbDepth => ObservationKind::RgbDepth,
+        Observation::Segmented => ObservationKind::Segmented,
+        Observation::Grey => ObservationKind::Grey,
+    };
+    let options = EnvOptions { observation, frame_stack: usize::from(args.frame_stack), ..options };
+    looking(options, &args.looks)
+}
+
+/// The options with how depth and segmentation look.
+pub fn looking(options: EnvOptions, args: &LooksArgs) -> EnvOptions {
+    EnvOptions { published_depth: args.published_depth, published_colours: args.published_colours, ..options }
+}
+
+impl From<Size> for FrameSize {
+    fn from(size: Size) -> FrameSize {
+        FrameSize { width: size.width, height: size.height }
+    }
+}
+
+impl From<View> for ViewKind {
+    fn from(view: View) -> ViewKind {
+        match view {
+            View::Rgb => ViewKind::Colour,
+            View::Depth => ViewKind::Depth,
+            View::Segmented => ViewKind::Segmented,
+            View::Labels => ViewKind::Labels,
+            View::Grey => ViewKind::Grey,
+            View::Automap => ViewKind::Automap,
+        }
+    }
+}
+
+/// A view and those beside it.
+pub fn views(first: View, beside: &[View]) -> Vec<ViewKind> {
+    std::iter::once(first).chain(beside.iter().copied()).map(ViewKind::from).collect()
+}
+
+/// The options of the environment that a run was trained in, its pictures among them.
+pub fn trained_options(env: &EnvConfig) -> Result<EnvOptions, Failure> {
+    let options = env.options().map_err(Failure::bad)?;
+    Ok(EnvOptions { assets: assets(env.iwad.as_deref().map(Path::new))?, ..options })
+}
+
 /// The environment of a training run from flags, in the words of its `config.json`.
-pub fn env_config(id: &str, args: &EnvArgs) -> EnvConfig {
+pub fn env_config(id: &str, args: &EnvArgs, observation: &ObservationArgs) -> EnvConfig {
     let mut env = EnvConfig::new(id);
     env.rules = match args.rules {
         Rules::Paper => "paper",
         Rules::Released => "released",
     }
     .into();
-    env.observation = match args.observation {
+    env.observation = match observation.observation {
         Observation::Rgb => "rgb",
         Observation::RgbDepth => "rgb+depth",
         Observation::Segmented => "segmented",
@@ -62,7 +105,10 @@ pub fn env_config(id: &str, args: &EnvArgs) -> EnvConfig {
     }
     .into();
     (env.hard, env.full_actions, env.frame_skip) = (args.hard, args.full_actions, args.frame_skip);
-    env.frame_stack = usize::from(args.frame_stack);
+    env.frame_stack = usize::from(observation.frame_stack);
+    let looks = &observation.looks;
+    (env.published_depth, env.published_colours) = (looks.published_depth, looks.published_colours);
+    env.iwad = args.iwad.as_ref().map(|path| path.display().to_string());
     if let Some(size) = args.size {
         env.size = (size.width, size.height);
     }

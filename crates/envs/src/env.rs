@@ -251,6 +251,18 @@ impl Env {
         TopDown::new(Arc::clone(&self.game.world.map), Arc::clone(&self.blueprint.scene), width, height)
     }
 
+    /// The map's extent from above, to its very edges, so that positions can be drawn on it: its longer side takes `side`
+    /// pixels. With the picture's width and height.
+    #[must_use]
+    pub fn top_down_of_extent(&self, side: usize) -> (TopDown, usize, usize) {
+        let [west, south, east, north] = self.extent();
+        let lengths = [east - west, north - south].map(|length| length.max(1).unsigned_abs() as usize);
+        let longer = lengths[0].max(lengths[1]);
+        let [width, height] = lengths.map(|length| (length * side).div_ceil(longer).max(16));
+        let (map, scene) = (Arc::clone(&self.game.world.map), Arc::clone(&self.blueprint.scene));
+        (TopDown::of_area(map, scene, [west, east, south, north], width, height), width, height)
+    }
+
     /// The last step's amount of each cost term.
     #[must_use]
     pub fn step_costs(&self) -> &[f64] {

@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let summary = train(
         Start::Fresh(config),
         directory.as_ref(),
-        &|lanes| VecEnv::new(id, &options, lanes),
+        &|_, lanes| VecEnv::new(id, &options, lanes),
         &mut Hooks {
             stop: &stop,
             report: &mut |report| println!("{}", line(report)),

@@ -29,6 +29,9 @@ pub struct Progress {
     pub frames: u64,
     /// Rollouts learned from.
     pub rollouts: u64,
+    /// The lesson of a curriculum that the samplers are in.
+    #[serde(default)]
+    pub lesson: usize,
     /// Updates.
     pub updates: u64,
     /// Seconds of work so far, those before a resume too.
@@ -246,7 +249,7 @@ impl Loaded {
         })
     }
 
-    /// Puts weights and pixel statistics into a learner: all that acting needs, and what a curriculum carries over.
+    /// Puts weights and normalisers into a learner: all that acting needs, and what a new run may begin with.
     pub fn restore_weights(&self, learner: &mut Learner) -> Result<(), LearnError> {
         self.weights_into(learner).map_err(|problem| LearnError::Config(format!("the checkpoint does not fit: {problem}")))
     }
@@ -262,6 +265,9 @@ impl Loaded {
         learner.pixels.mean = parse_doubles(&find("pixels.mean")?, pixels, "pixels.mean")?;
         learner.pixels.variance = parse_doubles(&find("pixels.variance")?, pixels, "pixels.variance")?;
         learner.pixels.count = self.progress.pixel_count;
+        if self.progress.returns.len() == learner.returns.len() {
+            learner.returns.clone_from(&self.progress.returns);
+        }
         learner.replaced();
         Ok(())
     }
@@ -277,7 +283,6 @@ impl Loaded {
         if progress.returns.len() != learner.returns.len() || progress.optimiser_steps.len() != learner.optimisers.len() {
             return Err("it has another number of critics".into());
         }
-        learner.returns.clone_from(&progress.returns);
         learner.version = progress.updates;
         let tensors = SafeTensors::deserialize(&self.training).map_err(|error| error.to_string())?;
         let find = |name: &str| tensors.tensor(name).map_err(|error| format!("{name}: {error}"));

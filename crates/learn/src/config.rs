@@ -6,6 +6,7 @@ use std::str::FromStr;
 use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, Scenario};
 use serde::{Deserialize, Serialize};
 
+use crate::curriculum::Lesson;
 use crate::error::LearnError;
 use crate::model::{Convolution, Initialisation};
 
@@ -145,6 +146,21 @@ pub struct EnvConfig {
     pub observation: String,
     /// Frames stacked.
     pub frame_stack: usize,
+    /// Depth ends where the published engine's does.
+    #[serde(default, skip_serializing_if = "is_off")]
+    pub published_depth: bool,
+    /// Segmented in the published colours.
+    #[serde(default, skip_serializing_if = "is_off")]
+    pub published_colours: bool,
+    /// The file of the pictures that worlds are drawn with; `null` for the embedded set. Whoever makes the worlds reads it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub iwad: Option<String>,
+}
+
+/// Options that are seldom on are written only then.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_off(option: &bool) -> bool {
+    !option
 }
 
 /// Tics of the longest episode.
@@ -163,10 +179,13 @@ impl EnvConfig {
             size: (128, 72),
             observation: "rgb".into(),
             frame_stack: 1,
+            published_depth: false,
+            published_colours: false,
+            iwad: None,
         }
     }
 
-    /// The same in the environments' own types; observations are laid out as the networks read them.
+    /// The same in the environments' own types, without pictures; observations are laid out as the networks read them.
     pub fn options(&self) -> Result<EnvOptions, LearnError> {
         let unknown = |what: &str, given: &str, allowed: &str| {
             LearnError::Config(format!("{what} '{given}' is unknown; use one of {allowed}"))
@@ -187,6 +206,8 @@ impl EnvConfig {
             observation,
             layout: Layout::Hwc,
             frame_stack: self.frame_stack,
+            published_depth: self.published_depth,
+            published_colours: self.published_colours,
             ..EnvOptions::default()
         })
     }
@@ -368,6 +389,9 @@ pub struct TrainConfig {
     pub seed: u64,
     /// Length of the run in frames (tics): steps times frame skip.
     pub frames: u64,
+    /// Levels that are trained one after the other; empty for the environment's own level alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curriculum: Vec<Lesson>,
     /// `cpu`, or a graphics device that this program was built for.
     pub device: String,
     /// Steps of the longest episode.
@@ -412,6 +436,7 @@ impl TrainConfig {
             preset,
             seed: 1,
             frames: 500_000_000,
+            curriculum: Vec::new(),
             device: "cpu".into(),
             episode_steps,
             constraints: vec![Constraint { term: None, budget: 0.0 }],

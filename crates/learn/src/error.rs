@@ -58,6 +58,9 @@ impl std::fmt::Display for LearnError {
                     ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
                         f.write_str("; choose a place that you may write to")
                     }
+                    ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+                        f.write_str("; a file is in the way, name a folder of its own for the run")
+                    }
                     _ => Ok(()),
                 }
             }

@@ -30,12 +30,14 @@ pub struct Heatmap {
     /// Frames between moments, and the next one.
     interval: u64,
     next: u64,
+    /// Name of the picture of the map that the counts lie on.
+    automap: String,
 }
 
 impl Heatmap {
     /// An empty grid over a map of some extent, for a run of `frames` frames that has made `done` of them.
     #[must_use]
-    pub fn new(extent: [i32; 4], lanes: usize, frames: u64, done: u64) -> Heatmap {
+    pub fn new(extent: [i32; 4], lanes: usize, frames: u64, done: u64, automap: String) -> Heatmap {
         let sides = [extent[2] - extent[0], extent[3] - extent[1]].map(|side| u64::from(side.max(1).unsigned_abs()));
         let longer = sides[0].max(sides[1]);
         let [columns, rows] = sides.map(|side| (side * LONGER_SIDE).div_ceil(longer) as usize);
@@ -49,6 +51,7 @@ impl Heatmap {
             steps: vec![0; columns * rows],
             interval,
             next: done + interval,
+            automap,
         }
     }
 
@@ -97,6 +100,7 @@ impl Heatmap {
             "frames": frames,
             "episodes": self.episodes.len(),
             "extent": self.extent,
+            "automap": self.automap,
             "columns": self.columns,
             "rows": self.rows,
             "steps": self.steps,
@@ -110,7 +114,7 @@ mod tests {
 
     #[test]
     fn the_last_thousand_episodes_are_counted() {
-        let mut heatmap = Heatmap::new([-100, 0, 500, 300], 2, 1000, 0);
+        let mut heatmap = Heatmap::new([-100, 0, 500, 300], 2, 1000, 0, "automap.png".into());
         assert_eq!((heatmap.columns, heatmap.rows), (60, 30));
         assert!(heatmap.line(100, true).is_none());
         // Lane 0 stands in the north-west corner for three steps, then once beyond the south-east one.

@@ -7,6 +7,7 @@ pub mod checkpoint;
 pub mod checksum;
 pub mod config;
 pub mod cpu;
+pub mod curriculum;
 pub mod device;
 pub mod distribution;
 pub mod error;

@@ -20,6 +20,8 @@ pub enum Purpose {
     Evaluation = 5,
     /// Random steps before a run's first episode; counter: lane.
     FirstSteps = 6,
+    /// Seeds of a curriculum's lessons; counter: lesson.
+    Lesson = 7,
 }
 
 /// A stream of random numbers.

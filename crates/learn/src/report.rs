@@ -13,6 +13,8 @@ pub struct Report {
     pub frames: u64,
     /// Frames of the whole run.
     pub total_frames: u64,
+    /// The level of a curriculum's present lesson.
+    pub level: Option<u8>,
     /// Updates.
     pub updates: u64,
     /// Seconds of work.
@@ -60,6 +62,7 @@ impl Report {
         Report {
             frames: 0,
             total_frames: config.frames,
+            level: None,
             updates: 0,
             wall_seconds: 0.0,
             frames_per_second: 0.0,
@@ -88,6 +91,9 @@ impl Report {
             row.insert(name.into(), value);
         };
         put("frames", json!(self.frames));
+        if let Some(level) = self.level {
+            put("level", json!(level));
+        }
         put("updates", json!(self.updates));
         put("wall_s", json!(self.wall_seconds));
         put("fps", json!(self.frames_per_second));

@@ -6,7 +6,7 @@ use hasard_envs::{EnvError, FinalObservations, VecEnv, VecOptions};
 
 use crate::algorithms::{self, Algorithm};
 use crate::checkpoint::{Loaded, Progress};
-use crate::config::TrainConfig;
+use crate::config::{EnvConfig, TrainConfig};
 use crate::device::ComputeDevice;
 use crate::distribution::ActionShape;
 use crate::error::LearnError;
@@ -20,17 +20,19 @@ use crate::sampler::{Sampler, SamplerState};
 use crate::shaping::Shaping;
 use crate::watch::Watch;
 
-/// Makes batches of the run's worlds: one for each sampler, continuing each other's lanes.
-pub type MakeWorlds<'a> = dyn Fn(VecOptions) -> Result<VecEnv, EnvError> + 'a;
+/// Makes batches of the worlds of an environment: one for each sampler, continuing each other's lanes.
+pub type MakeWorlds<'a> = dyn Fn(&EnvConfig, VecOptions) -> Result<VecEnv, EnvError> + 'a;
 
 /// What a run begins with.
-pub enum Beginning {
+pub enum Beginning<'a> {
     /// Fresh weights.
     Nothing,
     /// Everything of a checkpoint.
     Everything(Box<Loaded>),
-    /// Weights and pixel statistics of a checkpoint.
+    /// Weights and normalisers of a checkpoint.
     Weights(Box<Loaded>),
+    /// Weights, normalisers and counters of the lesson before.
+    Lesson(&'a Session),
 }
 
 /// A run in memory.
@@ -67,7 +69,7 @@ pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, 
 
 impl Session {
     /// Makes everything, and lets the samplers begin.
-    pub fn new(config: TrainConfig, beginning: &Beginning, make_worlds: &MakeWorlds<'_>) -> Result<Session, LearnError> {
+    pub fn new(config: TrainConfig, beginning: &Beginning<'_>, make_worlds: &MakeWorlds<'_>) -> Result<Session, LearnError> {
         let device = ComputeDevice::named(&config.device)?;
         let sampling = &config.sampling;
         let lanes = sampling.lanes / sampling.samplers;
@@ -82,7 +84,7 @@ impl Session {
                 final_observations: FinalObservations::Truncated,
                 ..VecOptions::default()
             };
-            worlds.push(make_worlds(options).map_err(|error| LearnError::Worlds(error.to_string()))?);
+            worlds.push(make_worlds(&config.env, options).map_err(|error| LearnError::Worlds(error.to_string()))?);
         }
         let extent = worlds[0].extent();
         let shape = model_shape(&config, &worlds[0])?;
@@ -94,6 +96,11 @@ impl Session {
         match beginning {
             Beginning::Nothing => {}
             Beginning::Weights(loaded) => loaded.restore_weights(&mut learner)?,
+            Beginning::Lesson(before) => {
+                learner.inherit(&before.learner)?;
+                (frames, rollouts) = (before.frames, before.rollouts);
+                watch.episodes = before.watch.episodes;
+            }
             Beginning::Everything(loaded) => {
                 let saved = loaded.restore(&mut learner)?;
                 if saved.len() != sampling.samplers {

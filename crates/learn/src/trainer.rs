@@ -35,7 +35,7 @@ pub enum Start<'a> {
         /// Length of the run, if it is to be another than before.
         frames: Option<u64>,
     },
-    /// In a new directory, with the weights and pixel statistics of another run: the step of a curriculum.
+    /// In a new directory, with the weights and normalisers of another run.
     From(TrainConfig, &'a Path),
 }
 
@@ -68,7 +68,7 @@ fn begin(
     start: Start<'_>,
     directory: &Path,
     hooks: &mut Hooks<'_>,
-) -> Result<(RunDirectory, TrainConfig, Beginning), LearnError> {
+) -> Result<(RunDirectory, TrainConfig, Beginning<'static>), LearnError> {
     match start {
         Start::Fresh(config) => {
             config.check()?;
@@ -95,8 +95,13 @@ fn begin(
     }
 }
 
-struct Trainer {
+struct Trainer<'a> {
     run: RunDirectory,
+    /// Settings of the whole run; the session has those of the lesson.
+    config: TrainConfig,
+    make_worlds: &'a MakeWorlds<'a>,
+    /// The lesson of a curriculum that the session is.
+    lesson: usize,
     session: Session,
     /// Where the agents have been, if the worlds have places.
     heatmap: Option<Heatmap>,
@@ -105,21 +110,37 @@ struct Trainer {
     best_feasible: Option<f64>,
 }
 
-impl Trainer {
+impl<'a> Trainer<'a> {
     fn new(
         run: RunDirectory,
         config: TrainConfig,
-        beginning: &Beginning,
-        make_worlds: &MakeWorlds<'_>,
-    ) -> Result<Trainer, LearnError> {
-        let (seconds_before, best_feasible) = match beginning {
-            Beginning::Everything(loaded) => (loaded.progress.wall_seconds, loaded.progress.best_feasible),
-            Beginning::Nothing | Beginning::Weights(_) => (0.0, None),
+        beginning: &Beginning<'_>,
+        make_worlds: &'a MakeWorlds<'a>,
+    ) -> Result<Trainer<'a>, LearnError> {
+        let (seconds_before, best_feasible, lesson) = match beginning {
+            Beginning::Everything(loaded) => {
+                let progress = &loaded.progress;
+                (progress.wall_seconds, progress.best_feasible, progress.lesson)
+            }
+            _ => (0.0, None, 0),
         };
-        let session = Session::new(config, beginning, make_worlds)?;
-        let config = &session.config;
-        let heatmap = session.extent.map(|extent| Heatmap::new(extent, config.sampling.lanes, config.frames, session.frames));
-        Ok(Trainer { run, session, heatmap, seconds_before, started: Instant::now(), best_feasible })
+        let session = Session::new(config.lesson(lesson), beginning, make_worlds)?;
+        let heatmap = heatmap(&config, lesson, &session);
+        let started = Instant::now();
+        Ok(Trainer { run, config, make_worlds, lesson, session, heatmap, seconds_before, started, best_feasible })
+    }
+
+    /// Begins the lesson that the frames so far ask for.
+    fn begin_lesson(&mut self) -> Result<(), LearnError> {
+        self.lesson = self.config.lesson_at(self.session.frames);
+        let config = self.config.lesson(self.lesson);
+        self.session = Session::new(config, &Beginning::Lesson(&self.session), self.make_worlds)?;
+        self.heatmap = heatmap(&self.config, self.lesson, &self.session);
+        Ok(())
+    }
+
+    fn lesson_is_over(&self) -> bool {
+        self.config.lesson_at(self.session.frames) != self.lesson
     }
 
     fn wall_seconds(&self) -> f64 {
@@ -134,6 +155,10 @@ impl Trainer {
         let mut last = None;
         let mut over = self.session.frames >= self.session.config.frames;
         while !over {
+            // Here and not after the checkpoint, so that a run resumed from one taken at a lesson's end begins the next as well.
+            if self.lesson_is_over() {
+                self.begin_lesson()?;
+            }
             let rollout = self.session.turn(hooks.warn)?;
             // Asked once a rollout: from here on it is decided whether samplers are told to go on.
             over = self.session.frames >= self.session.config.frames || hooks.stop.load(Ordering::Relaxed);
@@ -148,7 +173,8 @@ impl Trainer {
             }
             if let Some(heatmap) = &mut self.heatmap {
                 heatmap.add(&rollout);
-                heatmap.line(self.session.frames, over).into_iter().for_each(|line| writer.heatmap(line));
+                let lesson_is_over = self.config.lesson_at(self.session.frames) != self.lesson;
+                heatmap.line(self.session.frames, over || lesson_is_over).into_iter().for_each(|line| writer.heatmap(line));
             }
             writer.check()?;
             if over || last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds {
@@ -157,7 +183,7 @@ impl Trainer {
                 let _ = writer.checkpoint(checkpoint, best, over);
                 last_checkpoint = Instant::now();
             }
-            if !over {
+            if !over && !self.lesson_is_over() {
                 self.session.go_on(rollout);
             }
         }
@@ -177,6 +203,7 @@ impl Trainer {
             self.session.algorithm.multipliers(),
         );
         report.frames = self.session.frames;
+        report.level = self.config.curriculum.get(self.lesson).map(|lesson| lesson.level);
         report.updates = self.session.learner.version;
         report.wall_seconds = self.wall_seconds();
         report.frames_per_second = frames_per_second;
@@ -188,8 +215,11 @@ impl Trainer {
         let report = Report::take(&self.session.config, &self.session.watch, &mut Means::default(), Vec::new());
         let best = match report.means {
             // A few episodes say little; and the window must be full of them before it may set a record.
+            // Of a curriculum, the last level's.
             Some((mean, ..))
-                if report.feasible() && self.session.watch.recent.len() >= self.session.config.reporting.window.min(30) =>
+                if self.lesson + 1 == self.config.lessons()
+                    && report.feasible()
+                    && self.session.watch.recent.len() >= self.session.config.reporting.window.min(30) =>
             {
                 self.best_feasible.is_none_or(|best| mean > best).then_some(mean)
             }
@@ -200,6 +230,7 @@ impl Trainer {
         let progress = Progress {
             frames: self.session.frames,
             rollouts: self.session.rollouts,
+            lesson: self.lesson,
             updates: self.session.learner.version,
             wall_seconds: self.wall_seconds(),
             best_feasible: self.best_feasible,
@@ -212,4 +243,10 @@ impl Trainer {
         };
         Ok((Checkpoint::take(&self.session.learner, &samplers, progress)?, best.is_some()))
     }
+}
+
+/// The grid of a lesson's map, if it has places.
+fn heatmap(config: &TrainConfig, lesson: usize, session: &Session) -> Option<Heatmap> {
+    let automap = config.automap(lesson);
+    session.extent.map(|extent| Heatmap::new(extent, config.sampling.lanes, config.frames, session.frames, automap))
 }

@@ -25,7 +25,7 @@ fn losses(device: &str) -> Vec<f64> {
     train(
         Start::Fresh(config),
         &directory,
-        &|worlds| hasard_envs::VecEnv::new("VolcanicVentureLevel1-v0", &options, worlds),
+        &|_, worlds| hasard_envs::VecEnv::new("VolcanicVentureLevel1-v0", &options, worlds),
         &mut hooks,
     )
     .unwrap();

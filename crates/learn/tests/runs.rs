@@ -2,12 +2,13 @@
 
 mod tiny;
 
-use hasard_envs::{Environment, VecEnv};
-use hasard_learn::config::AlgorithmKind;
+use hasard_envs::{EnvError, Environment, VecEnv, VecOptions};
+use hasard_learn::config::{AlgorithmKind, EnvConfig, TrainConfig};
+use hasard_learn::curriculum::Lesson;
 use hasard_learn::distribution::ActionShape;
 use hasard_learn::evaluate::{Agent, Choice, Which};
 use hasard_learn::trainer::{Hooks, Start, train};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -353,12 +354,66 @@ fn a_panic_in_a_world_ends_the_run_with_an_error() {
         let result = train(
             Start::Fresh(config.clone()),
             &path,
-            &|options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(60)))),
+            &|_, options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(60)))),
             &mut Hooks { stop: &stop, report: &mut |_| {}, warn: &mut warn },
         );
         let message = result.unwrap_err().to_string();
         assert!(message.contains("the floor gave way"), "{message}");
         assert!(!checkpoints(&path).is_empty());
+        fs::remove_dir_all(path).unwrap();
+    }
+}
+
+/// Two lessons of the tiny task: the second level's worlds time out, the first level's end.
+fn lessons(env: &EnvConfig, options: VecOptions) -> Result<VecEnv, EnvError> {
+    let second = env.id == "RemedyRushLevel2-v0";
+    VecEnv::from_fn(options, move |_| Ok(Box::new(tiny::Risk::new(second))))
+}
+
+/// A curriculum that is stopped after every single rollout, and so in the midst of a lesson, at its last rollout and at the
+/// next one's first, ends where the one that never stopped does; and it is another run than its last level alone.
+#[test]
+fn a_curriculum_stopped_at_every_moment_equals_the_uninterrupted_one() {
+    let mut config = tiny::config(AlgorithmKind::PpoPid);
+    config.env.id = "RemedyRushLevel1-v0".into();
+    config.sampling.rollout = 13;
+    let rollout = config.frames_per_rollout();
+    // The first lesson ends inside its third rollout.
+    config.set_curriculum(vec![Lesson { level: 1, frames: 3 * rollout - 5 }, Lesson { level: 2, frames: 3 * rollout + 5 }]);
+    let go = |start: Start<'_>, path: &Path, rollouts: usize| {
+        let stop = AtomicBool::new(false);
+        let mut count = 0;
+        let mut report = |_: &hasard_learn::report::Report| {
+            count += 1;
+            stop.store(count == rollouts, Ordering::Relaxed);
+        };
+        let mut warn = |warning: String| panic!("{warning}");
+        train(start, path, &lessons, &mut Hooks { stop: &stop, report: &mut report, warn: &mut warn }).unwrap().stopped
+    };
+    let straight = tiny::directory("lessons-straight");
+    assert!(!go(Start::Fresh(config.clone()), &straight, usize::MAX));
+    let levels: Vec<Value> = rows(&straight).iter().map(|row| row["level"].clone()).collect();
+    assert_eq!(levels, [1, 1, 1, 2, 2, 2]);
+    let broken = tiny::directory("lessons-broken");
+    let mut stopped = go(Start::Fresh(config.clone()), &broken, 1);
+    let mut times = 1;
+    while stopped {
+        stopped = go(Start::Resume { frames: None }, &broken, 1);
+        times += 1;
+    }
+    assert_eq!(times, 6);
+    let (a, b) = (last_files(&straight), last_files(&broken));
+    assert!(a.0 == b.0, "weights differ");
+    assert!(a.1 == b.1, "optimiser or lanes differ");
+    assert_eq!(a.2, b.2);
+    assert_eq!(rows(&straight), rows(&broken));
+    // Optimisers start anew with the lesson: three rollouts of two epochs of two minibatches.
+    assert_eq!((&a.2["progress"]["optimiser_steps"][0], &a.2["progress"]["updates"]), (&json!(12), &json!(24)));
+    let alone = tiny::directory("lessons-alone");
+    let last = TrainConfig { curriculum: Vec::new(), ..config };
+    go(Start::Fresh(last), &alone, usize::MAX);
+    assert!(last_files(&alone).0 != a.0, "the first lesson changed nothing");
+    for path in [straight, broken, alone] {
         fs::remove_dir_all(path).unwrap();
     }
 }

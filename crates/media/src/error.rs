@@ -1,5 +1,6 @@
 //! What can go wrong with media files.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// A file that could not be written, read or understood. The message is one line that names the file and the remedy.
@@ -38,7 +39,18 @@ impl MediaError {
 impl std::fmt::Display for MediaError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            MediaError::Io { path, action, source } => write!(f, "{}: cannot {action}: {source}", path.display()),
+            MediaError::Io { path, action, source } => {
+                write!(f, "{}: cannot {action}: {source}", path.display())?;
+                match (source.kind(), *action) {
+                    (ErrorKind::StorageFull | ErrorKind::QuotaExceeded, _) => f.write_str("; make room, or choose another place"),
+                    (ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem, "read") => {
+                        f.write_str("; choose a file that you may read")
+                    }
+                    (ErrorKind::NotFound, "read") => f.write_str("; name a file that is there"),
+                    (_, "read") => Ok(()),
+                    _ => f.write_str("; choose a place that you can write to"),
+                }
+            }
             MediaError::Format { path, problem } => write!(f, "{}: {problem}", path.display()),
             MediaError::Size(problem) => f.write_str(problem),
         }

@@ -21,6 +21,10 @@ impl WholeFile {
         let Some(name) = path.file_name() else {
             return Err(MediaError::format(path, "is not the name of a file; give one, such as out.png"));
         };
+        let kind = std::fs::metadata(path);
+        if kind.as_ref().is_ok_and(std::fs::Metadata::is_dir) {
+            return Err(MediaError::format(path, "is a folder; name a file in it"));
+        }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder {
             std::fs::create_dir_all(folder).map_err(|e| MediaError::io(folder, "make this folder", e))?;
@@ -28,7 +32,9 @@ impl WholeFile {
         let mut temporary_name = std::ffi::OsString::from(".");
         temporary_name.push(name);
         temporary_name.push(format!(".{}.tmp", std::process::id()));
-        let temporary = path.with_file_name(temporary_name);
+        // What is there but no file (/dev/null, a pipe) is written to and stays: a rename would put a file in its place.
+        let device = kind.is_ok_and(|kind| !kind.is_file());
+        let temporary = if device { path.to_owned() } else { path.with_file_name(temporary_name) };
         let file = std::fs::File::create(&temporary).map_err(|e| MediaError::io(path, "write", e))?;
         Ok(WholeFile { path: path.to_owned(), temporary, out: Some(BufWriter::with_capacity(1 << 16, file)) })
     }
@@ -42,12 +48,16 @@ impl WholeFile {
         let result = out
             .into_inner()
             .map_err(std::io::IntoInnerError::into_error)
-            .and_then(|file| file.sync_all())
-            .and_then(|()| std::fs::rename(&self.temporary, &self.path));
-        if result.is_err() {
+            .and_then(|file| if self.is_device() { Ok(()) } else { file.sync_all() })
+            .and_then(|()| if self.is_device() { Ok(()) } else { std::fs::rename(&self.temporary, &self.path) });
+        if result.is_err() && !self.is_device() {
             let _ = std::fs::remove_file(&self.temporary);
         }
         result.map_err(|e| MediaError::io(&self.path, "write", e))
+    }
+
+    fn is_device(&self) -> bool {
+        self.temporary == self.path
     }
 
     /// The name that the file will have.
@@ -75,7 +85,7 @@ impl std::io::Seek for WholeFile {
 
 impl Drop for WholeFile {
     fn drop(&mut self) {
-        if self.out.take().is_some() {
+        if self.out.take().is_some() && !self.is_device() {
             let _ = std::fs::remove_file(&self.temporary);
         }
     }
@@ -97,6 +107,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MediaError> {
 /// When it cannot be read or is larger.
 pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, MediaError> {
     use std::io::Read;
+    if path.is_dir() {
+        return Err(MediaError::format(path, "is a folder; name a file"));
+    }
     let file = std::fs::File::open(path).map_err(|e| MediaError::io(path, "read", e))?;
     let mut bytes = Vec::new();
     file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| MediaError::io(path, "read", e))?;
@@ -122,6 +135,19 @@ mod tests {
         assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
         assert!(read_limited(&path, 4).unwrap_err().to_string().contains("larger than 4 bytes"));
         std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_written_to_and_not_replaced() {
+        use std::os::unix::fs::FileTypeExt;
+        write_whole(Path::new("/dev/null"), b"gone").unwrap();
+        assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+        let error = write_whole(Path::new("/dev/full"), b"x").unwrap_err().to_string();
+        assert!(error.contains("/dev/full: cannot write"), "{error}");
+        assert!(Path::new("/dev/full").exists());
+        let error = write_whole(&std::env::temp_dir(), b"x").unwrap_err().to_string();
+        assert!(error.contains("is a folder; name a file in it"), "{error}");
     }
 
     #[test]

@@ -4,7 +4,8 @@
 //! |---|---|
 //! | [`Stage`] | an environment that is shown tic by tic while its agent acts step by step |
 //! | [`Recorder`], [`Replay`] | episodes into files and back |
-//! | [`Views`] | a moment as pictures: colour, depth, segmentation, side by side |
+//! | [`Views`] | a moment as pictures: colour, depth, segmentation, labels, grey, automap, side by side |
+//! | [`Film`] | an episode as MP4 or GIF |
 //! | [`Controls`] | keys and mouse as actions |
 //! | `panel` | time, return, cost and budget beside the game |
 //! | `window` | the window (feature `window`) |
@@ -29,6 +30,7 @@
 
 mod controls;
 mod error;
+mod film;
 mod panel;
 mod recording;
 mod stage;
@@ -38,6 +40,7 @@ mod window;
 
 pub use controls::{Controls, Key};
 pub use error::PlayError;
+pub use film::Film;
 pub use panel::{Panel, with_panel};
 pub use recording::{Recorder, Replay, option_names, options_from_names};
 pub use stage::Stage;

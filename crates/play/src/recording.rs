@@ -64,6 +64,12 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
     Ok(options)
 }
 
+/// An error that concerns what a file says.
+fn in_file(name: &Path, error: &PlayError) -> PlayError {
+    MediaError::Format { path: name.to_owned(), problem: format!("was recorded otherwise than this version can play: {error}") }
+        .into()
+}
+
 /// Writes down an episode while it is played.
 pub struct Recorder {
     file: EpisodeFile,
@@ -139,7 +145,7 @@ impl Replay {
     /// When the file's environment, options or actions are unknown to this version.
     pub fn new(file: EpisodeFile, name: &Path, looks: &EnvOptions) -> Result<Replay, PlayError> {
         let options = options_from_names(&file.header().options, looks, name)?;
-        let mut stage = Stage::new(&file.header().env, &options)?;
+        let mut stage = Stage::new(&file.header().env, &options).map_err(|error| in_file(name, &error))?;
         let space = stage.env().action_space();
         file.check_actions(&space.sizes(), space.deltas.len(), name)?;
         stage.reset(file.header().seed);
@@ -164,6 +170,11 @@ impl Replay {
     #[must_use]
     pub fn over(&self) -> bool {
         self.stage.ended() || self.stage.wants_action() && self.begun > self.file.header().steps as usize
+    }
+
+    /// Goes on to the end of a policy step, counted from 1, or to where the recording ends before it.
+    pub fn skip_to(&mut self, step: u32) {
+        while self.stage.env().episode().length < step && self.tic() {}
     }
 
     /// Goes on by a tic; `false` when there is no more to play.

@@ -1,21 +1,21 @@
 //! An environment shown tic by tic.
 
 use crate::PlayError;
-use hasard_engine::world::World;
+use hasard_engine::world::{Command, World};
 use hasard_envs::{Env, EnvOptions, Step};
 
 /// An environment whose agent acts every `frame_skip` tics while an audience sees every tic.
 ///
 /// Two environments of the same episode run side by side: the one that counts, stepped as the task says, and one that is
 /// stepped tic by tic with the same action held, for the eye. Worlds are deterministic, so both are always at the same
-/// place at the end of a step; rewards and costs come from the first alone.
+/// place at the end of a step; rewards, costs and what the agent sees come from the first alone.
 pub struct Stage {
     env: Env,
     shown: Env,
     /// Tics of the step in progress that were shown; 0 between steps.
     tics: u32,
-    actions: Vec<u8>,
-    deltas: Vec<f32>,
+    /// What is pressed during the step in progress.
+    command: Command,
     last: Step,
 }
 
@@ -25,11 +25,24 @@ impl Stage {
     /// # Errors
     /// When the id or an option is unknown.
     pub fn new(id: &str, options: &EnvOptions) -> Result<Stage, PlayError> {
-        let env = Env::new(id, options)?;
-        let shown = Env::new(id, &EnvOptions { frame_skip: 1, frame_stack: 1, ..options.clone() })?;
-        let space = env.action_space();
-        let (actions, deltas) = (vec![0; space.groups.len()], vec![0.0; space.deltas.len()]);
-        Ok(Stage { env, shown, tics: 0, actions, deltas, last: Step::default() })
+        Stage::shown_as(id, options, options)
+    }
+
+    /// The same, drawn for the audience as `looks` says (its pictures, depth and colours) and for the agent as `options` says.
+    ///
+    /// # Errors
+    /// As [`Stage::new`].
+    pub fn shown_as(id: &str, options: &EnvOptions, looks: &EnvOptions) -> Result<Stage, PlayError> {
+        let shown = EnvOptions {
+            frame_skip: 1,
+            frame_stack: 1,
+            assets: looks.assets.clone(),
+            published_depth: looks.published_depth,
+            published_colours: looks.published_colours,
+            ..options.clone()
+        };
+        let (env, shown) = (Env::new(id, options)?, Env::new(id, &shown)?);
+        Ok(Stage { env, shown, tics: 0, command: Command::default(), last: Step::default() })
     }
 
     /// Starts the episode of a seed.
@@ -37,6 +50,7 @@ impl Stage {
         self.env.reset(seed);
         self.shown.reset(seed);
         self.tics = 0;
+        self.command = Command::default();
         self.last = Step::default();
     }
 
@@ -58,9 +72,13 @@ impl Stage {
     /// When the action is not in the action space.
     pub fn act(&mut self, actions: &[u8], deltas: &[f32]) -> Result<(), PlayError> {
         self.env.action_space().check(0, actions, deltas)?;
-        self.actions.copy_from_slice(actions);
-        self.deltas.copy_from_slice(deltas);
+        self.command = self.env.action_space().command(actions, deltas);
         Ok(())
+    }
+
+    /// Chooses buttons for the step that begins, in the action space or not.
+    pub fn press(&mut self, command: Command) {
+        self.command = command;
     }
 
     /// Goes on by a tic. At the end of a step, gives what the step brought.
@@ -68,20 +86,33 @@ impl Stage {
         if self.ended() {
             return None;
         }
-        let shown = self.shown.step(&self.actions, &self.deltas);
+        let shown = self.shown.step_buttons(self.command);
         self.tics += 1;
         if self.tics < self.env.options().frame_skip && !shown.ended() {
             return None;
         }
         self.tics = 0;
-        self.last = self.env.step(&self.actions, &self.deltas);
+        self.last = self.env.step_buttons(self.command);
         Some(self.last)
+    }
+
+    /// Writes what the agent sees: the observation of the environment that counts.
+    ///
+    /// # Panics
+    /// If `out` is not as long as the product of the observation shape.
+    pub fn observe(&mut self, out: &mut [u8]) {
+        self.env.observe(out);
     }
 
     /// The environment that counts: returns, costs, statistics, as of the last whole step.
     #[must_use]
     pub fn env(&self) -> &Env {
         &self.env
+    }
+
+    /// The environment that is shown, as of the last tic: only for drawing it.
+    pub(crate) fn shown(&self) -> &Env {
+        &self.shown
     }
 
     /// The world as of the last tic.

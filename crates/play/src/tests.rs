@@ -186,11 +186,12 @@ fn views_and_panel_have_their_sizes() {
         stage.tic();
     }
     let size = FrameSize { width: 320, height: 240 };
-    let mut views = Views::new(&stage, size, &[ViewKind::Colour, ViewKind::Depth, ViewKind::Segmentation]).unwrap();
+    let every = [ViewKind::Colour, ViewKind::Depth, ViewKind::Segmented, ViewKind::Labels, ViewKind::Grey, ViewKind::Automap];
+    let mut views = Views::new(&stage, size, &every).unwrap();
     let all = views.draw(&stage);
     let alone = Views::new(&stage, size, &[]).unwrap().draw(&stage);
     assert_eq!((alone.width(), alone.height()), (320, 240));
-    assert!(all.width() > 960 && all.height() > 240);
+    assert!(all.width() > 5 * 320 && all.height() > 240);
     assert_eq!(all.get(4 + 100, 4 + 100), alone.get(100, 100));
     let panel = Panel::of(&stage, "P: pause");
     let whole = with_panel(&alone, &panel);
@@ -200,4 +201,54 @@ fn views_and_panel_have_their_sizes() {
         hasard_media::png::write(&all, &Path::new(&place).join("views.png")).unwrap();
         hasard_media::png::write(&whole, &Path::new(&place).join("panel.png")).unwrap();
     }
+}
+
+/// The automap beside a view has the map's proportions; alone it takes the size asked for. Both show the player.
+#[test]
+fn the_automap_shows_the_player() {
+    let mut stage = Stage::new("RemedyRushLevel1-v0", &EnvOptions::default()).unwrap();
+    stage.reset(1);
+    let size = FrameSize { width: 320, height: 240 };
+    let alone = Views::new(&stage, size, &[ViewKind::Automap]).unwrap().draw(&stage);
+    assert_eq!((alone.width(), alone.height()), (320, 240));
+    let blue = |picture: &hasard_media::Picture| picture.rgb().chunks_exact(3).filter(|pixel| pixel == &[60, 150, 255]).count();
+    assert!(blue(&alone) > 10);
+    let beside = Views::new(&stage, size, &[ViewKind::Colour, ViewKind::Automap]).unwrap().draw(&stage);
+    let [west, south, east, north] = stage.env().extent().map(|side| side as usize as isize);
+    let expected = 240 * (east - west) / (north - south);
+    assert!((beside.width() as isize - 320 - expected - 12).abs() <= 2, "{} {expected}", beside.width());
+}
+
+/// A film has a frame for its first moment, one every so many tics, and the last moment.
+#[test]
+fn a_film_shows_first_and_last_moments() {
+    let path = std::env::temp_dir().join(format!("hasard-film-{}.gif", std::process::id()));
+    let file = record("RemedyRushLevel1-v0", &EnvOptions::default(), 6);
+    let mut replay = Replay::new(file, Path::new("x"), &EnvOptions::default()).unwrap();
+    let size = FrameSize { width: 64, height: 48 };
+    let mut film = Film::begin(replay.stage(), &path, size, &[ViewKind::Colour], 5).unwrap();
+    loop {
+        let more = replay.tic();
+        film.tic(replay.stage()).unwrap();
+        if !more {
+            break;
+        }
+    }
+    let (frames, (width, _)) = film.finish().unwrap();
+    assert_eq!((frames, width), (1 + 24 / 5, 64));
+    assert_eq!(&std::fs::read(&path).unwrap()[..3], b"GIF");
+    std::fs::remove_file(path).unwrap();
+}
+
+/// A replay can be looked at from any step on.
+#[test]
+fn a_replay_skips_to_a_step() {
+    let file = record("RemedyRushLevel1-v0", &EnvOptions::default(), 30);
+    let mut replay = Replay::new(file.clone(), Path::new("x"), &EnvOptions::default()).unwrap();
+    replay.skip_to(12);
+    assert_eq!(replay.stage().env().episode().length, 12);
+    assert_eq!(fingerprint(replay.stage().world()), fingerprint(replay.stage().env().world()));
+    replay.skip_to(u32::MAX);
+    assert_eq!(replay.stage().env().episode().length, 30);
+    assert_eq!(replay.difference(), None);
 }

@@ -1,7 +1,9 @@
 //! A moment as pictures.
 
 use crate::{PlayError, Stage};
-use hasard_engine::render::{Buffers, FrameSize, Renderer, SegmentationColours};
+use hasard_engine::render::{Buffers, FrameSize, Renderer, SegmentationColours, TopDown};
+use hasard_engine::world::World;
+use hasard_envs::Env;
 use hasard_media::Picture;
 use hasard_media::compose::{Panel, side_by_side};
 
@@ -13,7 +15,13 @@ pub enum ViewKind {
     /// How far it is, near black to far white.
     Depth,
     /// One colour for each class of things.
-    Segmentation,
+    Segmented,
+    /// One grey for each thing in view, as the published engine numbers them.
+    Labels,
+    /// Luminance.
+    Grey,
+    /// The whole map with all things, from above, north up.
+    Automap,
 }
 
 impl ViewKind {
@@ -23,7 +31,10 @@ impl ViewKind {
         match self {
             ViewKind::Colour => "colour",
             ViewKind::Depth => "depth",
-            ViewKind::Segmentation => "segmentation",
+            ViewKind::Segmented => "segmented",
+            ViewKind::Labels => "labels",
+            ViewKind::Grey => "grey",
+            ViewKind::Automap => "automap",
         }
     }
 }
@@ -34,23 +45,50 @@ pub struct Views {
     size: FrameSize,
     kinds: Vec<ViewKind>,
     colours: SegmentationColours,
-    bytes: Vec<u8>,
+    /// The automap and the size of its picture, if one of the views is that.
+    automap: Option<(TopDown, usize, usize)>,
 }
 
 impl Views {
-    /// Views of a stage, in this order, each of `size`.
+    /// Views of a stage, in this order, each of `size`. Beside other views the automap is as high as they are and as wide
+    /// as its map asks for.
     ///
     /// # Errors
     /// When the size is not drawable.
     pub fn new(stage: &Stage, size: FrameSize, kinds: &[ViewKind]) -> Result<Views, PlayError> {
+        let env = stage.shown();
+        let mut views = Views::of(env, size, kinds)?;
+        if let (Some(automap), [_, _, ..]) = (&mut views.automap, kinds) {
+            let [west, south, east, north] = env.extent().map(i64::from);
+            let height = i64::from(size.height);
+            let width = (height * (east - west) / (north - south).max(1)).clamp(height / 4, height * 2) as usize;
+            *automap = (env.top_down(width, height as usize), width, height as usize);
+        }
+        Ok(views)
+    }
+
+    /// Views of an environment's worlds, the automap too of `size`.
+    ///
+    /// # Errors
+    /// As [`Views::new`].
+    pub fn of(env: &Env, size: FrameSize, kinds: &[ViewKind]) -> Result<Views, PlayError> {
         let kinds = if kinds.is_empty() { vec![ViewKind::Colour] } else { kinds.to_vec() };
-        Ok(Views {
-            renderer: stage.env().renderer(size)?,
-            size,
-            kinds,
-            colours: SegmentationColours::distinct(),
-            bytes: Vec::new(),
-        })
+        let colours =
+            if env.options().published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
+        let (width, height) = (usize::from(size.width), usize::from(size.height));
+        let automap = kinds.contains(&ViewKind::Automap).then(|| (env.top_down(width, height), width, height));
+        Ok(Views { renderer: env.renderer(size)?, size, kinds, colours, automap })
+    }
+
+    /// A moment of a world in each view.
+    ///
+    /// # Panics
+    /// When the world is of another environment.
+    pub fn pictures(&mut self, world: &World) -> Vec<Picture> {
+        let wants = |wanted: &[ViewKind]| self.kinds.iter().any(|kind| wanted.contains(kind));
+        let buffers = Buffers { depth: wants(&[ViewKind::Depth]), labels: wants(&[ViewKind::Segmented, ViewKind::Labels]) };
+        self.renderer.render(world, 0, buffers);
+        self.kinds.iter().map(|kind| self.picture(*kind, world)).collect()
     }
 
     /// The moment: the view alone, or several side by side with captions.
@@ -58,35 +96,41 @@ impl Views {
     /// # Panics
     /// When the stage is of another environment.
     pub fn draw(&mut self, stage: &Stage) -> Picture {
-        let buffers =
-            Buffers { depth: self.kinds.contains(&ViewKind::Depth), labels: self.kinds.contains(&ViewKind::Segmentation) };
-        self.renderer.render(stage.world(), 0, buffers);
-        let kinds = self.kinds.clone();
-        let mut pictures: Vec<Picture> = kinds.iter().map(|kind| self.picture(*kind)).collect();
+        let mut pictures = self.pictures(stage.world());
         if pictures.len() == 1 {
             return pictures.remove(0);
         }
-        let panels: Vec<Panel> = pictures.iter().zip(&kinds).map(|(picture, kind)| Panel::new(picture, kind.caption())).collect();
+        let panels: Vec<Panel> =
+            pictures.iter().zip(&self.kinds).map(|(picture, kind)| Panel::new(picture, kind.caption())).collect();
         side_by_side(&panels, 1)
     }
 
-    fn picture(&mut self, kind: ViewKind) -> Picture {
+    /// The renderer as of the last moment drawn: depth in its units, and the list of things in view.
+    #[must_use]
+    pub fn renderer(&self) -> &Renderer {
+        &self.renderer
+    }
+
+    fn picture(&self, kind: ViewKind, world: &World) -> Picture {
         let (width, height) = (usize::from(self.size.width), usize::from(self.size.height));
-        let channels = if kind == ViewKind::Depth { 1 } else { 3 };
-        self.bytes.resize(width * height * channels, 0);
-        let picture = match kind {
-            ViewKind::Colour => {
-                self.renderer.write_rgb_hwc(&mut self.bytes);
-                Picture::from_rgb(width, height, self.bytes.clone())
-            }
-            ViewKind::Depth => {
-                self.renderer.write_depth(&mut self.bytes);
-                Picture::from_grey(width, height, &self.bytes)
-            }
-            ViewKind::Segmentation => {
-                self.renderer.write_segmented_hwc(&self.colours, &mut self.bytes);
-                Picture::from_rgb(width, height, self.bytes.clone())
-            }
+        let rgb = |width: usize, height: usize, write: &dyn Fn(&mut [u8])| {
+            let mut bytes = vec![0; width * height * 3];
+            write(&mut bytes);
+            Picture::from_rgb(width, height, bytes)
+        };
+        let grey = |write: &dyn Fn(&mut [u8])| {
+            let mut bytes = vec![0; width * height];
+            write(&mut bytes);
+            Picture::from_grey(width, height, &bytes)
+        };
+        let renderer = &self.renderer;
+        let picture = match (kind, &self.automap) {
+            (ViewKind::Automap, Some((map, width, height))) => rgb(*width, *height, &|out| map.draw(world, out)),
+            (ViewKind::Colour | ViewKind::Automap, _) => rgb(width, height, &|out| renderer.write_rgb_hwc(out)),
+            (ViewKind::Segmented, _) => rgb(width, height, &|out| renderer.write_segmented_hwc(&self.colours, out)),
+            (ViewKind::Depth, _) => grey(&|out| renderer.write_depth(out)),
+            (ViewKind::Labels, _) => grey(&|out| renderer.write_labels(out)),
+            (ViewKind::Grey, _) => grey(&|out| renderer.write_grey(out)),
         };
         picture.expect("a frame has the size that was asked for")
     }

@@ -54,7 +54,8 @@ mod tests {
     #[test]
     fn north_is_up_and_unvisited_places_show_the_map() {
         let steps = vec![0.0, 9.0, 0.0, 0.0, 0.0, 0.0];
-        let map = HeatmapData { frames: 1.0, episodes: 1, extent: [0.0, 0.0, 300.0, 200.0], columns: 3, rows: 2, steps };
+        let map =
+            HeatmapData { frames: 1.0, episodes: 1, extent: [0.0, 0.0, 300.0, 200.0], columns: 3, rows: 2, automap: None, steps };
         let picture = overlay(&map, Some(&Picture::filled(30, 20, [10, 20, 30])), 300);
         assert_eq!((picture.width(), picture.height()), (300, 200));
         // The visited cell is the middle one of the southern row.

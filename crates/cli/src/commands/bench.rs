@@ -4,7 +4,7 @@ use crate::args::{BenchArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_envs::{ObservationKind, VecEnv, bench};
-use hasard_learn::config::{Preset, TrainConfig};
+use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
 use hasard_learn::measure::measure;
 use serde_json::json;
 
@@ -16,7 +16,7 @@ pub fn run(args: &BenchArgs) -> Outcome {
     if args.learn {
         return learn(args);
     }
-    let options = settings::env_options(&args.env_args, Size::LEARNER)?;
+    let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
     let report = bench(&args.env, &options, args.envs as usize, args.threads as usize, args.seconds).map_err(Failure::bad)?;
     let (depth, labels) = (options.observation == ObservationKind::RgbDepth, options.observation == ObservationKind::Segmented);
     if args.json {
@@ -54,16 +54,15 @@ const ROUND_SECONDS: f64 = 5.0;
 const LEAST_ROUNDS: usize = 3;
 
 fn learn(args: &BenchArgs) -> Outcome {
-    let env = settings::env_config(&args.env, &args.env_args);
+    let env = settings::env_config(&args.env, &args.env_args, &args.observation);
     let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, Preset::Paper, env).map_err(Failure::bad)?;
     let threads = args.threads as usize;
     config.seed = args.seed;
     config.sampling.lanes = args.envs as usize;
     (config.learning.threads, config.sampling.samplers) = (threads, threads);
     config.check().map_err(Failure::bad)?;
-    let mut options = config.env.options().map_err(Failure::bad)?;
-    options.assets = settings::assets(args.env_args.iwad.as_deref())?;
-    let make = |worlds| VecEnv::new(&args.env, &options, worlds);
+    let options = settings::trained_options(&config.env)?;
+    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
     let rounds = ((args.seconds / ROUND_SECONDS).ceil() as usize).max(LEAST_ROUNDS);
     let measured = measure(&config, &make, rounds, args.seconds / rounds as f64, &mut |round| {
         if !args.json {

@@ -6,9 +6,10 @@ use crate::contact_sheet::moments::{self, Moment};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_engine::assets::Assets;
-use hasard_engine::render::{Buffers, FrameSize, SegmentationColours};
+use hasard_engine::render::FrameSize;
 use hasard_envs::{Env, EnvId, EnvOptions, Move, Policy, PolicyRun, Scenario};
 use hasard_media::{Picture, files, png};
+use hasard_play::{ViewKind, Views};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -84,20 +85,9 @@ fn row(scenario: Scenario, moment: &Moment, seed: u64, assets: Option<Arc<Assets
 
 /// The present moment: colour, depth, segmentation and the map from above.
 fn views(env: &Env, size: FrameSize) -> Result<[Picture; 4], Failure> {
-    let (width, height) = (usize::from(size.width), usize::from(size.height));
-    let mut renderer = env.renderer(size).map_err(Failure::bad)?;
-    renderer.render(env.world(), 0, Buffers { depth: true, labels: true });
-    let picture = |write: &dyn Fn(&mut [u8])| {
-        let mut rgb = vec![0; width * height * 3];
-        write(&mut rgb);
-        Picture::from_rgb(width, height, rgb).map_err(Failure::bad)
-    };
-    Ok([
-        picture(&|rgb| renderer.write_rgb_hwc(rgb))?,
-        Picture::from_grey(width, height, renderer.depth()).map_err(Failure::bad)?,
-        picture(&|rgb| renderer.write_segmented_hwc(&SegmentationColours::distinct(), rgb))?,
-        picture(&|rgb| env.top_down(width, height).draw(env.world(), rgb))?,
-    ])
+    let kinds = [ViewKind::Colour, ViewKind::Depth, ViewKind::Segmented, ViewKind::Automap];
+    let pictures = Views::of(env, size, &kinds).map_err(Failure::bad)?.pictures(env.world());
+    Ok(pictures.try_into().expect("a picture for each kind"))
 }
 
 fn write(picture: &Picture, path: &Path, json: bool) -> Outcome {

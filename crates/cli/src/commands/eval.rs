@@ -15,7 +15,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
     if let Some(constraint) = config.constraints.first() {
         lines.set_budget(constraint.budget);
     }
-    let options = config.env.options().map_err(Failure::bad)?;
+    let options = crate::settings::trained_options(&config.env)?;
     let player = Player {
         run: &args.run,
         which: if args.best { Which::Best } else { Which::Latest },

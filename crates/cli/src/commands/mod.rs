@@ -5,6 +5,7 @@ pub mod contact_sheet;
 pub mod envs;
 pub mod eval;
 pub mod export_wad;
+pub mod play;
 pub mod record;
 pub mod render;
 pub mod report;

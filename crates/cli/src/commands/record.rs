@@ -1,168 +1,175 @@
-//! `hasard record` and `hasard replay`: episodes as video, GIF or episode file.
+//! `hasard record` and `hasard replay`: episodes as video, GIF, picture or episode file.
 
-use crate::actor::Actor;
-use crate::args::{Buffer, EnvArgs, RecordArgs, ReplayArgs, Rules, Size};
+use crate::actor::Performance;
+use crate::args::{FilmArgs, RecordArgs, ReplayArgs, Size, View};
 use crate::failure::{Failure, Outcome};
-use crate::{commands::render, settings};
-use hasard_envs::{Env, Policy, PolicyRun, RuleSet};
-use hasard_media::AnimationWriter;
-use hasard_media::Picture;
-use hasard_media::compose::{Panel, side_by_side, with_footer};
-use hasard_media::episode::{self, EpisodeFile, Header};
-use std::collections::BTreeMap;
+use crate::settings;
+use hasard_envs::{Env, EnvOptions, FrameSize};
+use hasard_media::episode::EpisodeFile;
+use hasard_play::{Film, Recorder, Replay, Stage, Views};
+use serde_json::json;
 use std::path::Path;
+
+/// What a file's name says it is to be.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Film,
+    Picture,
+    Episode,
+}
+
+impl Kind {
+    /// By the ending of the name, if it is one of `allowed`.
+    fn of(path: &Path, allowed: &[(&str, Kind)]) -> Result<Kind, Failure> {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+        allowed.iter().find(|(known, _)| *known == ending).map(|(_, kind)| *kind).ok_or_else(|| {
+            let endings: Vec<String> = allowed.iter().map(|(known, _)| format!(".{known}")).collect();
+            Failure::bad(format!("--out {}: give a name that ends in one of {}", path.display(), endings.join(", ")))
+        })
+    }
+}
 
 /// Runs `hasard record`.
 pub fn run(args: &RecordArgs) -> Outcome {
-    let options = settings::env_options(&args.env_args, Size { width: 320, height: 240 })?;
-    let policy: Policy = args.policy.parse().map_err(Failure::bad)?;
-    let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
-    env.reset(args.seed);
-    let actor = Actor::Fixed(Box::new(PolicyRun::new(policy, env.action_space(), args.seed)));
-    if args.out.extension().is_some_and(|ending| ending == "episode") {
-        return record_episode(&mut env, actor, &args.policy, args.seed, &args.out);
+    let kind = Kind::of(&args.out, &[("mp4", Kind::Film), ("gif", Kind::Film), ("episode", Kind::Episode)])?;
+    let looks = settings::env_options(&args.env_args, Size { width: 320, height: 240 })?;
+    let looks = settings::looking(looks, &args.film.looks);
+    let what = Path::new(&args.what);
+    if what.is_file() {
+        return record_replay(args, kind, what, &looks);
     }
-    show(&mut env, actor, &args.out, &args.beside, args.steps)
+    let (mut performance, player) = if what.is_dir() {
+        if args.policy.is_some() || args.env_args.changes_task() {
+            return Err(Failure::bad(format!(
+                "{}: a run's agent is shown in its own environment; to choose otherwise: hasard record ENV --policy run:{}",
+                args.what, args.what
+            )));
+        }
+        (Performance::of_run(what, &looks, args.seed)?, format!("run:{}", args.what))
+    } else {
+        let policy = args.policy.as_deref().unwrap_or("random");
+        (Performance::new(&args.what, policy, &looks, args.seed)?, policy.to_owned())
+    };
+    let mut recorder = match kind {
+        Kind::Episode => Some(Recorder::of(performance.stage.env(), args.seed, &player).map_err(Failure::bad)?),
+        _ => None,
+    };
+    let mut film = match kind {
+        Kind::Episode => None,
+        _ => Some(begin(&performance.stage, &args.out, looks.size, &args.film)?),
+    };
+    let mut steps = 0;
+    while !performance.stage.ended() && args.steps.is_none_or(|most| steps < most) {
+        steps += u32::from(performance.tic(recorder.as_mut())?.is_some());
+        if let Some(film) = &mut film {
+            film.tic(&performance.stage).map_err(Failure::bad)?;
+        }
+    }
+    let env = performance.stage.env();
+    if let Some(recorder) = recorder {
+        recorder.finish(env).write(&args.out).map_err(Failure::bad)?;
+    }
+    tell(env, args.json, Some(&args.out), film)
+}
+
+/// `hasard record FILE.episode`: a recorded episode as a film.
+fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions) -> Outcome {
+    if kind == Kind::Episode {
+        let problem = format!("{}: is a recorded episode already; give an --out that ends in .mp4 or .gif", args.what);
+        return Err(Failure::bad(problem));
+    }
+    if args.policy.is_some() || args.env_args.changes_task() {
+        return Err(Failure::bad(format!(
+            "{}: a recorded episode has its own environment and actions; leave those options out",
+            args.what
+        )));
+    }
+    let mut replay = open(file, looks)?;
+    let film = play_out(&mut replay, &args.out, looks.size, &args.film, args.steps)?;
+    tell(replay.stage().env(), args.json, Some(&args.out), Some(film))
 }
 
 /// Runs `hasard replay`.
 pub fn replay(args: &ReplayArgs) -> Outcome {
-    let file = EpisodeFile::read(&args.file).map_err(Failure::bad)?;
-    let header = file.header().clone();
-    let flags = flags_of(&header, &args.file)?;
-    let mut options = settings::env_options(&flags, args.size.unwrap_or(Size { width: 320, height: 240 }))?;
-    options.assets = settings::assets(args.iwad.as_deref())?;
-    let mut env = Env::new(&header.env, &options).map_err(Failure::bad)?;
-    file.check_actions(&env.action_space().sizes(), env.action_space().deltas.len(), &args.file).map_err(Failure::bad)?;
-    env.reset(header.seed);
-    let actor = Actor::Recording(Box::new(file), 0);
-    match &args.out {
-        Some(out) => show(&mut env, actor, out, &args.beside, u32::MAX)?,
-        None => {
-            let mut actor = actor;
-            while actor.step(&mut env, None)?.is_some() {}
-        }
+    let looks = EnvOptions { assets: settings::assets(args.iwad.as_deref())?, ..EnvOptions::default() };
+    let looks = settings::looking(looks, &args.film.looks);
+    let allowed = [("mp4", Kind::Film), ("gif", Kind::Film), ("png", Kind::Picture)];
+    let kind = args.out.as_deref().map(|out| Kind::of(out, &allowed)).transpose()?;
+    if args.step.is_some() && kind != Some(Kind::Picture) {
+        return Err(Failure::bad("--step: is for a single picture; give an --out that ends in .png"));
     }
-    let episode = env.episode();
-    say!("{}: return {:.3}, cost {:.3}, {} steps", header.env, episode.episode_return, episode.cost, episode.length);
-    match header.outcome {
-        Some(outcome) if outcome.state_hash.is_some_and(|hash| hash != env.state_hash()) => Err(Failure::Negative(format!(
-            "{}: recorded by hasard {} with return {} and cost {}, but it plays otherwise in this version: return {}, cost {}",
-            args.file.display(),
-            header.program,
-            outcome.episode_return,
-            outcome.cost,
-            episode.episode_return,
-            episode.cost
-        ))),
-        _ => Ok(()),
-    }
-}
-
-/// Plays an episode to its end and writes what is needed to play it again.
-fn record_episode(env: &mut Env, mut actor: Actor, player: &str, seed: u64, out: &Path) -> Outcome {
-    let header = header_of(env, player, seed);
-    let mut file = EpisodeFile::new(header).map_err(Failure::bad)?;
-    while let Some(step) = actor.step(env, Some(&mut file))? {
-        if step.ended() {
-            break;
-        }
-    }
-    let played = env.episode();
-    file.set_outcome(episode::Outcome {
-        episode_return: played.episode_return,
-        cost: played.cost,
-        costs: played.costs.iter().map(|&(name, cost)| (name.to_string(), cost)).collect(),
-        terminated: played.terminated,
-        truncated: played.truncated,
-        state_hash: Some(env.state_hash()),
-    });
-    file.write(out).map_err(Failure::bad)?;
-    say!("{}: {} steps, return {:.3}, cost {:.3}", out.display(), played.length, played.episode_return, played.cost);
-    Ok(())
-}
-
-/// The header of a recording about to begin.
-fn header_of(env: &Env, player: &str, seed: u64) -> Header {
-    let options = env.options();
-    let mut named = BTreeMap::new();
-    named.insert("rules".to_string(), if options.rules == RuleSet::Released { "released" } else { "paper" }.to_string());
-    named.insert("frame-skip".to_string(), options.frame_skip.to_string());
-    for (name, given) in [("hard", options.hard), ("full-actions", options.full_actions)] {
-        if given {
-            named.insert(name.to_string(), "true".to_string());
-        }
-    }
-    Header {
-        env: env.id().to_string(),
-        options: named,
-        seed,
-        program: env!("CARGO_PKG_VERSION").to_string(),
-        player: player.to_string(),
-        steps: 0,
-        groups: env.action_space().groups.len() as u8,
-        deltas: env.action_space().deltas.len() as u8,
-        outcome: None,
-    }
-}
-
-/// The flags that make the environment of a recording.
-fn flags_of(header: &Header, name: &Path) -> Result<EnvArgs, Failure> {
-    let mut flags = EnvArgs::default();
-    for (option, value) in &header.options {
-        let wrong = || {
-            Failure::bad(format!(
-                "{}: its option {option} = {value} is unknown here; use the hasard that recorded it",
-                name.display()
-            ))
-        };
-        match option.as_str() {
-            "rules" => {
-                flags.rules = match value.as_str() {
-                    "paper" => Rules::Paper,
-                    "released" => Rules::Released,
-                    _ => return Err(wrong()),
-                }
+    let mut replay = open(&args.file, &looks)?;
+    match (&args.out, kind) {
+        (Some(out), Some(Kind::Picture)) => {
+            replay.skip_to(args.step.unwrap_or(u32::MAX));
+            let length = replay.stage().env().episode().length;
+            if let Some(step) = args.step.filter(|step| *step > length) {
+                return Err(Failure::bad(format!("--step {step}: the episode ends at step {length}; give a smaller one")));
             }
-            "frame-skip" => flags.frame_skip = value.parse().map_err(|_| wrong())?,
-            "hard" => flags.hard = value.parse().map_err(|_| wrong())?,
-            "full-actions" => flags.full_actions = value.parse().map_err(|_| wrong())?,
-            _ => return Err(wrong()),
+            let kinds = settings::views(View::Rgb, &args.film.beside);
+            let mut views = Views::new(replay.stage(), args.size.into(), &kinds).map_err(Failure::bad)?;
+            hasard_media::png::write(&views.draw(replay.stage()), out).map_err(Failure::bad)?;
+            return tell(replay.stage().env(), args.json, Some(out), None);
+        }
+        (Some(out), _) => {
+            let film = play_out(&mut replay, out, args.size.into(), &args.film, None)?;
+            tell(replay.stage().env(), args.json, Some(out), Some(film))?;
+        }
+        _ => {
+            while replay.tic() {}
+            tell(replay.stage().env(), args.json, None, None)?;
         }
     }
-    Ok(flags)
+    replay.difference().map_or(Ok(()), |difference| Err(Failure::Negative(difference)))
 }
 
-/// Plays and writes a moving picture, one frame a policy step.
-fn show(env: &mut Env, mut actor: Actor, out: &Path, beside: &[Buffer], most_steps: u32) -> Outcome {
-    let first = frame(env, beside)?;
-    let rate = (35, env.options().frame_skip);
-    let mut writer = AnimationWriter::create(out, first.width(), first.height(), rate).map_err(Failure::bad)?;
-    writer.push(&first).map_err(Failure::bad)?;
-    let mut frames = 1;
-    while frames <= most_steps {
-        let Some(step) = actor.step(env, None)? else { break };
-        writer.push(&frame(env, beside)?).map_err(Failure::bad)?;
-        frames += 1;
-        if step.ended() {
+fn open(file: &Path, looks: &EnvOptions) -> Result<Replay, Failure> {
+    let episode = EpisodeFile::read(file).map_err(Failure::bad)?;
+    Replay::new(episode, file, looks).map_err(Failure::bad)
+}
+
+fn begin(stage: &Stage, out: &Path, size: FrameSize, args: &FilmArgs) -> Result<Film, Failure> {
+    let gif = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gif"));
+    let every = args.frame_every.unwrap_or(if gif { 4 } else { 1 });
+    Film::begin(stage, out, size, &settings::views(View::Rgb, &args.beside), every).map_err(Failure::bad)
+}
+
+/// Films a replay to its end, or to a number of steps.
+fn play_out(replay: &mut Replay, out: &Path, size: FrameSize, args: &FilmArgs, steps: Option<u32>) -> Result<Film, Failure> {
+    let mut film = begin(replay.stage(), out, size, args)?;
+    while steps.is_none_or(|most| replay.stage().env().episode().length < most) {
+        let more = replay.tic();
+        film.tic(replay.stage()).map_err(Failure::bad)?;
+        if !more {
             break;
         }
     }
-    writer.finish().map_err(Failure::bad)?;
-    say!("{}: {frames} frames of {}x{}", out.display(), first.width(), first.height());
-    Ok(())
+    Ok(film)
 }
 
-/// The present moment: what the player sees, other buffers beside it, and the sums of the episode below.
-fn frame(env: &mut Env, beside: &[Buffer]) -> Result<Picture, Failure> {
-    let view = render::picture(env, Buffer::Rgb)?;
-    let others: Vec<(Picture, &str)> =
-        beside.iter().map(|&buffer| Ok((render::picture(env, buffer)?, buffer.caption()))).collect::<Result<_, Failure>>()?;
-    let mut panels = vec![Panel::new(&view, if others.is_empty() { "" } else { "view" })];
-    panels.extend(others.iter().map(|(picture, caption)| Panel::new(picture, *caption)));
+/// Ends the film, if there is one, and tells how the episode went.
+fn tell(env: &Env, as_json: bool, out: Option<&Path>, film: Option<Film>) -> Outcome {
+    let film = film.map(Film::finish).transpose().map_err(Failure::bad)?;
     let episode = env.episode();
-    let seconds = f64::from(env.world().tic) / 35.0;
-    let line = format!("{seconds:5.1} s   return {:.2}   cost {:.2}", episode.episode_return, episode.cost);
-    let row = if panels.len() == 1 { view } else { side_by_side(&panels, 1) };
-    Ok(with_footer(&row, &line))
+    let file = out.map(|out| out.display().to_string());
+    if as_json {
+        let (frames, size) = film.unzip();
+        say!(
+            "{}",
+            json!({
+                "env": env.id().to_string(), "seed": episode.seed, "return": episode.episode_return, "cost": episode.cost,
+                "length": episode.length, "terminated": episode.terminated, "truncated": episode.truncated,
+                "file": file, "frames": frames, "size": size,
+            })
+        );
+        return Ok(());
+    }
+    let written = match (file, film) {
+        (Some(file), Some((frames, (width, height)))) => format!("{file}: {frames} frames of {width}x{height}; "),
+        (Some(file), None) => format!("{file}: "),
+        _ => String::new(),
+    };
+    let (id, steps) = (env.id(), episode.length);
+    say!("{written}{id}, {steps} steps, return {:.3}, cost {:.3}", episode.episode_return, episode.cost);
+    Ok(())
 }

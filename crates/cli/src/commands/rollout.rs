@@ -1,27 +1,26 @@
 //! `hasard rollout`: episodes of a policy.
 
 use super::eval::Player;
+use crate::actor::agent_options;
 use crate::args::{RolloutArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::{episode_lines, settings};
-use hasard_envs::{Env, EnvOptions, Policy, rollout};
-use hasard_learn::evaluate::{Choice, Which, run_config};
+use hasard_envs::{Env, rollout};
+use hasard_learn::evaluate::{Choice, Which};
 use std::path::Path;
 
 /// Runs the command.
 pub fn run(args: &RolloutArgs) -> Outcome {
     // A fixed policy looks at nothing, so nothing is drawn and the size does not matter.
-    let options = settings::env_options(&args.env_args, Size::LEARNER)?;
+    let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
     let mut lines = episode_lines::EpisodeLines::new(args.json);
-    if let Some(run) = args.policy.strip_prefix("run:") {
-        let trained = run_config(Path::new(run)).map_err(Failure::bad)?.env.options().map_err(Failure::bad)?;
-        // The agent sees what it was trained to see; rules and constraint are this command's.
-        let options = EnvOptions { rules: options.rules, hard: options.hard, ..trained };
-        let player = Player { run: Path::new(run), which: Which::Latest, choice: Choice::Sampled };
+    if let Some(run) = args.policy.strip_prefix("run:").map(Path::new) {
+        let options = agent_options(run, &options)?;
+        let player = Player { run, which: Which::Latest, choice: Choice::Sampled };
         player.play(&args.env, &options, args.episodes, args.seed, &mut lines)?;
         return lines.summary(false);
     }
-    let policy: Policy = args.policy.parse().map_err(Failure::bad)?;
+    let policy = settings::policy(&args.policy)?;
     let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
     for i in 0..args.episodes {
         let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i)));

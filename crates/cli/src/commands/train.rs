@@ -1,9 +1,11 @@
 //! `hasard train`: an agent from pixels.
 
 use crate::args::TrainArgs;
+use crate::automap;
 use crate::failure::{Failure, Outcome};
-use hasard_envs::VecEnv;
-use hasard_learn::config::{Constraint, Preset, TrainConfig};
+use hasard_envs::{EnvId, VecEnv};
+use hasard_learn::config::{Constraint, EnvConfig, Preset, TrainConfig};
+use hasard_learn::curriculum::parse_curriculum;
 use hasard_learn::interrupt::stop_on_interrupt;
 use hasard_learn::progress_bar::{Bar, line};
 use hasard_learn::report::Report;
@@ -18,7 +20,9 @@ pub fn run(args: &TrainArgs) -> Outcome {
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("runs/{}-{}-seed{}", args.env, args.algo, args.seed)));
     let (start, config) = if args.resume && directory.join("config.json").exists() {
         let config = read_config(&directory).map_err(Failure::bad)?;
-        if config.env.id != args.env {
+        // A curriculum is of a scenario; the level that the command names does not matter.
+        let same = |id: &str| if config.curriculum.is_empty() { id.to_string() } else { scenario_of(id) };
+        if same(&config.env.id) != same(&args.env) {
             let problem = format!("{}: the run there is of {}; name that, or another --out", directory.display(), config.env.id);
             return Err(Failure::bad(problem));
         }
@@ -31,15 +35,18 @@ pub fn run(args: &TrainArgs) -> Outcome {
         };
         (start, config)
     };
-    let mut options = config.env.options().map_err(Failure::bad)?;
-    options.assets = crate::settings::assets(args.env_args.iwad.as_deref())?;
+    let options = crate::settings::trained_options(&config.env)?;
     let stop = stop_on_interrupt().map_err(Failure::bad)?;
     let bar = (!args.json && !args.quiet).then(|| Bar::new(args.frames.unwrap_or(config.frames)));
-    if bar.is_some() {
-        describe(&config, &directory);
-    }
     let mut first: Option<Report> = None;
+    let (mut drawn, mut failed_drawing) = (false, None);
     let mut hear = |report: &Report| {
+        // Not before: the directory is the run's own only once it has begun.
+        if !std::mem::replace(&mut drawn, true)
+            && let Err(error) = automap::keep(&config, &options, &directory)
+        {
+            failed_drawing = Some(error);
+        }
         if first.is_none() && report.means.is_some() {
             first = Some(report.clone());
         }
@@ -54,10 +61,19 @@ pub fn run(args: &TrainArgs) -> Outcome {
         Some(bar) => bar.print(&format!("hasard: {text}")),
         None => eprintln!("hasard: {text}"),
     };
-    let id = config.env.id.clone();
-    let make = |worlds| VecEnv::new(&id, &options, worlds);
+    // Said once the directory is the run's own, when the first worlds are made.
+    let described = std::cell::Cell::new(bar.is_none());
+    let make = |env: &EnvConfig, worlds| {
+        if !described.replace(true) {
+            describe(&config, &directory);
+        }
+        VecEnv::new(&env.id, &options, worlds)
+    };
     let mut hooks = Hooks { stop: &stop, report: &mut hear, warn: &mut warn };
     let summary = train(start, &directory, &make, &mut hooks).map_err(Failure::bad)?;
+    if let Some(error) = failed_drawing {
+        return Err(error);
+    }
     if let Some(bar) = &bar {
         bar.finish();
         if let Some(first) = &first {
@@ -71,6 +87,11 @@ pub fn run(args: &TrainArgs) -> Outcome {
         }
     }
     Ok(())
+}
+
+/// An environment id without its level, or the whole text if it is none.
+fn scenario_of(id: &str) -> String {
+    id.parse::<EnvId>().map_or_else(|_| id.to_string(), |id| id.scenario.name().to_string())
 }
 
 fn print_row(report: &Report) -> Outcome {
@@ -95,7 +116,7 @@ fn describe(config: &TrainConfig, directory: &Path) {
 
 /// The settings of a fresh run: the preset's, then flags, then `--set`.
 fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
-    let env = crate::settings::env_config(&args.env, &args.env_args);
+    let env = crate::settings::env_config(&args.env, &args.env_args, &args.observation);
     let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
     let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env).map_err(Failure::bad)?;
     config.seed = args.seed;
@@ -115,7 +136,11 @@ fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     if !args.safety_budget.is_empty() {
         config.constraints = args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
     }
-    let config = args.set.iter().try_fold(config, |config, text| set(config, text))?;
+    let mut config = args.set.iter().try_fold(config, |config, text| set(config, text))?;
+    if let Some(text) = &args.curriculum {
+        let lessons = parse_curriculum(text, config.frames).map_err(Failure::bad)?;
+        config.set_curriculum(lessons);
+    }
     config.check().map_err(Failure::bad)?;
     Ok(config)
 }

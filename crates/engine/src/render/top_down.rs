@@ -43,16 +43,21 @@ impl TopDown {
             let (x, y) = (i64::from(v.x.0), i64::from(v.y.0));
             bounds = [bounds[0].min(x), bounds[1].max(x), bounds[2].min(y), bounds[3].max(y)];
         }
-        TopDown::of_area(map, scene, bounds.map(|side| (side >> 16) as i32), width, height)
+        TopDown::new_with_margin(map, scene, bounds, [width, height], MARGIN)
     }
 
     /// The area from west to east and south to north, in map units, in a picture of `width` by `height` pixels
-    /// (at least 16 by 16), centred, with square pixels.
+    /// (at least 16 by 16), centred, with square pixels: exactly the area where the picture has its proportions.
     #[must_use]
     pub fn of_area(map: Arc<Map>, scene: Arc<Scene>, area: [i32; 4], width: usize, height: usize) -> TopDown {
-        let (width, height) = (width.max(16), height.max(16));
-        let [west, east, south, north] = area.map(|side| i64::from(side) << 16);
-        let inner = [width as i64 - 2 * MARGIN, height as i64 - 2 * MARGIN];
+        TopDown::new_with_margin(map, scene, area.map(|side| i64::from(side) << 16), [width, height], 0)
+    }
+
+    /// An area in 16.16 map units with pixels that stay free at each edge.
+    fn new_with_margin(map: Arc<Map>, scene: Arc<Scene>, area: [i64; 4], size: [usize; 2], margin: i64) -> TopDown {
+        let [width, height] = size.map(|side| side.max(16));
+        let [west, east, south, north] = area;
+        let inner = [width as i64 - 2 * margin, height as i64 - 2 * margin];
         // Map units a pixel, 16.16, by the tighter side.
         let unit = ((east - west) / inner[0]).max((north - south) / inner[1]).max(1);
         let (middle_x, middle_y) = ((west + east) / 2, (south + north) / 2);

@@ -164,7 +164,7 @@ impl Environment for Broken {
 }
 
 /// A batch of the task.
-pub fn worlds(options: VecOptions) -> Result<VecEnv, hasard_envs::EnvError> {
+pub fn worlds(_: &EnvConfig, options: VecOptions) -> Result<VecEnv, hasard_envs::EnvError> {
     VecEnv::from_fn(options, |_| Ok(Box::new(Risk::new(true))))
 }
 

@@ -101,6 +101,8 @@ impl Config {
         for (key, value) in object {
             if key == "constraints" {
                 read_constraints(value, &mut flat)?;
+            } else if key == "curriculum" && value.as_array().is_some_and(|lessons| lessons.iter().all(Value::is_object)) {
+                read_curriculum(value, &mut flat)?;
             } else {
                 flatten(key, value, &mut flat);
             }
@@ -119,7 +121,9 @@ impl Config {
         let seed = seed.parse().map_err(|_| format!("has the seed {seed}, which is no whole number from 0 on"))?;
         let (scenario, mut level) = scenario_and_level(&env);
         // A curriculum ends in its last level, and that is what its results are results of.
-        if let Some(last) = options.get("curriculum").and_then(|levels| levels.rsplit(',').next()?.trim().parse().ok()) {
+        if let Some(last) =
+            options.get("curriculum").and_then(|levels| levels.rsplit(',').next()?.split(':').next()?.trim().parse().ok())
+        {
             level = last;
         }
         let below =
@@ -187,6 +191,24 @@ fn read_constraints(value: &Value, flat: &mut BTreeMap<String, String>) -> Resul
     }
     if !told.is_empty() {
         flat.insert("constraints".into(), told.join(","));
+    }
+    Ok(())
+}
+
+/// Lessons as the trainer lists them: their levels, and their frames too where they differ (by more than what an equal
+/// share leaves over).
+fn read_curriculum(value: &Value, flat: &mut BTreeMap<String, String>) -> Result<(), String> {
+    let unusable = || "has a curriculum that is no list of {\"level\", \"frames\"}".to_owned();
+    let lessons = value.as_array().ok_or_else(unusable)?;
+    let numbers = |key: &str| -> Result<Vec<u64>, String> {
+        lessons.iter().map(|lesson| lesson.get(key).and_then(Value::as_u64).ok_or_else(unusable)).collect()
+    };
+    let (levels, frames) = (numbers("level")?, numbers("frames")?);
+    let least = frames.iter().min().copied().unwrap_or(0);
+    let equal = frames.iter().all(|frames| frames - least < lessons.len() as u64);
+    let text = |(level, frames): (&u64, &u64)| if equal { level.to_string() } else { format!("{level}:{frames}") };
+    if !lessons.is_empty() {
+        flat.insert("curriculum".into(), levels.iter().zip(&frames).map(text).collect::<Vec<_>>().join(","));
     }
     Ok(())
 }

@@ -88,7 +88,10 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     cost: outcome.cost,
                     length: Some(f64::from(header.steps)),
                 };
-                let options: Vec<String> = header.options.iter().map(|(key, value)| format!("{key} {value}")).collect();
+                let usual =
+                    |key: &str, value: &str| matches!((key, value), ("hard" | "full-actions", "false") | ("frame-skip", "4"));
+                let told = header.options.iter().filter(|(key, value)| !usual(key, value));
+                let options: Vec<String> = told.map(|(key, value)| format!("{key} {value}")).collect();
                 found.players.entry((header.player.clone(), header.env.clone(), options.join(", "))).or_default().push(result);
                 return;
             }

@@ -20,6 +20,9 @@ pub struct HeatmapData {
     pub columns: usize,
     /// Cells along y.
     pub rows: usize,
+    /// Name of the picture in the run's directory that shows the same extent from above; `automap.png` if the line names none.
+    #[serde(default)]
+    pub automap: Option<String>,
     /// Steps in each cell, `[rows, columns]`, the row of the smallest y first.
     pub steps: Vec<f64>,
 }

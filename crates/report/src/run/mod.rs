@@ -50,8 +50,6 @@ pub struct Run {
     pub evaluation: Vec<EpisodeResult>,
     /// Visited positions at moments of training, if any were kept.
     pub heatmaps: Vec<HeatmapData>,
-    /// The automap that the heatmaps lie on, if kept.
-    pub automap: Option<PathBuf>,
 }
 
 impl Run {
@@ -91,8 +89,15 @@ impl Run {
         } else {
             Vec::new()
         };
-        let automap = Some(path.join("automap.png")).filter(|file| file.is_file());
-        Ok(Run { path: path.to_owned(), config, rows, evaluation, heatmaps, automap })
+        Ok(Run { path: path.to_owned(), config, rows, evaluation, heatmaps })
+    }
+
+    /// The picture of the map that a heatmap lies on, if the directory has it. A name that leads elsewhere is no name.
+    #[must_use]
+    pub fn automap(&self, heatmap: &HeatmapData) -> Option<PathBuf> {
+        let name = heatmap.automap.as_deref().unwrap_or("automap.png");
+        let plain = Path::new(name).file_name().is_some_and(|file| file == name);
+        Some(self.path.join(name)).filter(|file| plain && file.is_file())
     }
 
     /// Frames that the run has reached.

@@ -56,6 +56,18 @@ fn what_makes_an_experiment_is_everything_but_machine_and_seed() {
 }
 
 #[test]
+fn the_lessons_of_a_curriculum_are_told_by_their_levels() {
+    let parse = |lessons: &str| {
+        let text = format!("{{\"env\":\"RemedyRushLevel3-v0\",\"algo\":\"PPOPID\",\"seed\":1,\"curriculum\":{lessons}}}");
+        Config::parse(&text).map(|config| (config.options["curriculum"].clone(), config.level))
+    };
+    let equal = r#"[{"level":1,"frames":33},{"level":2,"frames":33},{"level":3,"frames":34}]"#;
+    assert_eq!(parse(equal), Ok(("1,2,3".into(), 3)));
+    assert_eq!(parse(r#"[{"level":1,"frames":50},{"level":2,"frames":20}]"#), Ok(("1:50,2:20".into(), 2)));
+    assert!(parse(r#"[{"level":1}]"#).unwrap_err().contains("curriculum"));
+}
+
+#[test]
 fn an_unusable_config_says_why() {
     for (text, part) in [
         ("", "is no JSON"),

@@ -8,6 +8,8 @@ use crate::run::{HeatmapData, Run, Warning};
 use hasard_media::compose::{Panel, grid};
 use hasard_media::gif::GifWriter;
 use hasard_media::{Picture, png};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 /// Moments of training that are shown side by side.
 const MOMENTS: usize = 4;
@@ -24,17 +26,8 @@ pub(super) fn section(groups: &[Group], warnings: &mut Vec<Warning>) -> Section 
         let name = format!("{} level {} {}", scenario_name(&config.scenario), config.level, config.algo);
         let file = slug(&format!("heatmap {name} {}", setting(group)));
         let caption = format!("{name}, seed {}; {}", run.config.seed, setting(group));
-        let automap = match run.automap.as_deref().map(png::read) {
-            Some(Ok(picture)) => Some(picture),
-            Some(Err(error)) => {
-                let path = run.automap.clone().unwrap_or_default();
-                let problem = error.to_string().replacen(&format!("{}: ", path.display()), "", 1);
-                warnings.push(Warning { path, line: 0, problem });
-                None
-            }
-            None => None,
-        };
-        let sheet = moments(run, automap.as_ref());
+        let automaps = Automaps::read(run, warnings);
+        let sheet = moments(run, &automaps);
         blocks.push(Block::Image(Image {
             file: format!("{file}.png"),
             caption: format!("{caption}. {}", last_counted(run)),
@@ -42,7 +35,7 @@ pub(super) fn section(groups: &[Group], warnings: &mut Vec<Warning>) -> Section 
             size: (sheet.width(), sheet.height()),
         }));
         if run.heatmaps.len() > 1 {
-            match animation(run, automap.as_ref()) {
+            match animation(run, &automaps) {
                 Ok((bytes, size)) => {
                     blocks.push(Block::Image(Image {
                         file: format!("{file}.gif"),
@@ -67,14 +60,40 @@ pub(super) fn section(groups: &[Group], warnings: &mut Vec<Warning>) -> Section 
     }
 }
 
+/// The pictures that a run's heatmaps lie on: one, or one a level of a curriculum.
+struct Automaps(BTreeMap<PathBuf, Picture>);
+
+impl Automaps {
+    fn read(run: &Run, warnings: &mut Vec<Warning>) -> Automaps {
+        let paths: BTreeSet<PathBuf> = run.heatmaps.iter().filter_map(|map| run.automap(map)).collect();
+        let mut pictures = BTreeMap::new();
+        for path in paths {
+            match png::read(&path) {
+                Ok(picture) => drop(pictures.insert(path, picture)),
+                Err(error) => {
+                    let problem = error.to_string().replacen(&format!("{}: ", path.display()), "", 1);
+                    warnings.push(Warning { path, line: 0, problem });
+                }
+            }
+        }
+        Automaps(pictures)
+    }
+
+    /// A heatmap of the run over its picture.
+    fn overlay(&self, run: &Run, at: usize, side: usize) -> Picture {
+        let map = &run.heatmaps[at];
+        overlay(map, run.automap(map).and_then(|path| self.0.get(&path)), side)
+    }
+}
+
 fn last_counted(run: &Run) -> String {
     run.heatmaps.last().map_or_else(String::new, |map| format!("The last picture counts {} episodes.", map.episodes))
 }
 
 /// About equally spaced moments from the first to the last, side by side.
-fn moments(run: &Run, automap: Option<&Picture>) -> Picture {
+fn moments(run: &Run, automaps: &Automaps) -> Picture {
     let views: Vec<(Picture, &HeatmapData)> =
-        spread(run.heatmaps.len(), MOMENTS).map(|at| (overlay(&run.heatmaps[at], automap, 360), &run.heatmaps[at])).collect();
+        spread(run.heatmaps.len(), MOMENTS).map(|at| (automaps.overlay(run, at, 360), &run.heatmaps[at])).collect();
     let panels: Vec<Panel> = views.iter().map(|(view, map)| Panel::new(view, format!("{} frames", frames(map.frames)))).collect();
     let columns = if views[0].0.width() > 2 * views[0].0.height() { 1 } else { panels.len().min(2) };
     grid(&panels, columns, 1)
@@ -86,7 +105,7 @@ fn spread(length: usize, count: usize) -> impl Iterator<Item = usize> {
     (0..count).map(move |k| if count == 1 { length - 1 } else { k * (length - 1) / (count - 1) })
 }
 
-fn animation(run: &Run, automap: Option<&Picture>) -> Result<(Vec<u8>, (usize, usize)), String> {
+fn animation(run: &Run, automaps: &Automaps) -> Result<(Vec<u8>, (usize, usize)), String> {
     // The writer makes files; a folder of our own keeps two reports at once apart.
     let folder =
         std::env::temp_dir().join(format!("hasard-report-{}-{:x}", std::process::id(), std::ptr::from_ref(run) as usize));
@@ -96,7 +115,7 @@ fn animation(run: &Run, automap: Option<&Picture>) -> Result<(Vec<u8>, (usize, u
         let (width, height) = shown_size(&run.heatmaps[0], 480);
         let mut writer = GifWriter::create(&path, width, height)?;
         for (k, &at) in chosen.iter().enumerate() {
-            let mut view = overlay(&run.heatmaps[at], automap, 480).resized(width, height);
+            let mut view = automaps.overlay(run, at, 480).resized(width, height);
             hasard_media::text::draw_shadowed(&mut view, 6, 4, &format!("{} frames", frames(run.heatmaps[at].frames)), [255; 3]);
             let last = k + 1 == chosen.len();
             writer.push(&view, ANIMATION_SECONDS / chosen.len() as f64 + if last { 1.0 } else { 0.0 })?;

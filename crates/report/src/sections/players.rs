@@ -9,7 +9,9 @@ pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
     let mut rows: Vec<(String, Vec<Cell>)> = Vec::new();
     for ((player, env, options), episodes) in &found.players {
         let (scenario, _) = scenario_and_level(env);
-        rows.push(row(player, env, options, default_budget(&scenario, false), episodes));
+        let told = |option: &str| options.split(", ").any(|told| told == option);
+        let budget = if told("hard true") { 0.0 } else { default_budget(&scenario, told("rules released")) };
+        rows.push(row(player, env, options, budget, episodes));
     }
     for group in groups {
         for run in &group.runs {

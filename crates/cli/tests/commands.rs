@@ -1,0 +1,199 @@
+//! The program as its user meets it: what commands write, and what they say of bad input.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder that is gone after the test; commands run in it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        let path = std::env::temp_dir().join(format!("hasard-cli-{}-{name}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    fn run(&self, line: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_hasard"))
+            .args(line.split_whitespace())
+            .current_dir(&self.0)
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .output()
+            .unwrap()
+    }
+
+    /// Standard output of a command that must succeed.
+    fn ok(&self, line: &str) -> String {
+        let output = self.run(line);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{line}: {error}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// The one line of a command that must be refused.
+    fn refused(&self, line: &str) -> String {
+        let output = self.run(line);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{line}: {error}");
+        assert_eq!(error.lines().count(), 1, "{line}: {error}");
+        assert!(error.starts_with("hasard: ") && !error.contains("panicked"), "{line}: {error}");
+        error
+    }
+
+    fn file(&self, name: &str, bytes: &[u8]) {
+        std::fs::write(self.0.join(name), bytes).unwrap();
+    }
+
+    fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.0.join(name)).unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn bad_input_is_one_line_that_names_it_and_the_remedy() {
+    let folder = Folder::new("bad");
+    folder.file("empty", b"");
+    folder.file("binary.episode", &[0, 159, 146, 150, 255, 3]);
+    folder.file("cut.wad", b"IWAD\x05\0\0\0\x0c\0\0\0");
+    folder.file("text.wad", b"hello");
+    std::fs::create_dir(folder.0.join("folder")).unwrap();
+    for (line, words) in [
+        ("render VolcanicVenturLevel1-v0", &["VolcanicVenturLevel1-v0", "VolcanicVentureLevel1-v0"][..]),
+        ("play RemedyRushLevel1-v0", &["no window", "display"]),
+        ("play Nowhere-v0", &["Nowhere-v0"]),
+        ("play RemedyRushLevel1-v0 --player", &["--player"]),
+        ("render RemedyRushLevel1-v0 -o folder", &["folder", "name a file"]),
+        ("render RemedyRushLevel1-v0 -o /dev/null/a.png", &["/dev/null"]),
+        ("render RemedyRushLevel1-v0 -o /proc/a.png", &["/proc/a.png"]),
+        ("render RemedyRushLevel1-v0 --size 9x9", &["9x9", "160x120"]),
+        ("render RemedyRushLevel1-v0 --step 99999", &["--step 99999", "ends at step"]),
+        ("render RemedyRushLevel1-v0 --policy fly", &["fly", "random"]),
+        ("render RemedyRushLevel1-v0 --policy run:folder", &["folder"]),
+        ("render RemedyRushLevel1-v0 --buffer heat", &["heat", "automap"]),
+        ("render RemedyRushLevel1-v0 --iwad text.wad", &["text.wad"]),
+        ("render RemedyRushLevel1-v0 --iwad cut.wad", &["cut.wad"]),
+        ("render RemedyRushLevel1-v0 --iwad empty", &["empty"]),
+        ("render RemedyRushLevel1-v0 --iwad folder", &["folder", "is a folder"]),
+        ("render RemedyRushLevel1-v0 --iwad none.wad", &["none.wad"]),
+        ("record RemedyRushLevel1-v0 -o a.avi", &["a.avi", ".mp4, .gif, .episode"]),
+        ("record RemedyRushLevel1-v0 -o a", &["--out a", ".mp4"]),
+        ("record RemedyRushLevel1-v0 -o a.episode --policy hold:CROUCH", &["--full-actions"]),
+        ("record folder -o a.mp4", &["folder", "config.json"]),
+        ("record binary.episode -o a.mp4", &["binary.episode"]),
+        ("record empty -o a.mp4", &["empty"]),
+        ("replay folder", &["folder", "is a folder"]),
+        ("replay empty", &["empty"]),
+        ("replay binary.episode", &["binary.episode"]),
+        ("replay none.episode", &["none.episode"]),
+        ("rollout RemedyRushLevel1-v0 --episodes 0", &["--episodes"]),
+        ("trace RemedyRushLevel1-v0 --actions empty", &["empty", "action"]),
+        ("trace RemedyRushLevel1-v0 --actions folder", &["folder"]),
+        ("trace RemedyRushLevel1-v0", &["--actions"]),
+        ("eval none", &["none"]),
+        ("eval empty", &["empty"]),
+        ("report none", &["none"]),
+        ("report empty", &["empty"]),
+        ("sweep none.toml", &["none.toml"]),
+        ("sweep mian", &["mian", "safety-bounds"]),
+        ("train RemedyRushLevel1-v0 --curriculum 1,2,9", &["1,2,9", "1,2,3"]),
+        ("train RemedyRushLevel1-v0 --algo PPOX", &["PPOX", "PPOLag"]),
+        ("train RemedyRushLevel1-v0 --out empty", &["empty"]),
+        ("train RemedyRushLevel1-v0 --set a.b=3", &["a.b"]),
+        ("export-wad RemedyRushLevel1-v0 -o folder", &["folder"]),
+        ("fly", &["fly"]),
+    ] {
+        let error = folder.refused(line);
+        for word in words {
+            assert!(error.contains(word), "{line}: '{word}' is missing in: {error}");
+        }
+    }
+    let left: Vec<_> = std::fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left.len(), 5, "a refused command left something behind: {left:?}");
+}
+
+#[test]
+fn an_episode_is_recorded_replayed_and_drawn() {
+    let folder = Folder::new("episode");
+    let told: Value = serde_json::from_str(
+        &folder.ok("record CollateralDamageLevel1-v0 --policy sticky:5 --seed 3 --rules released --steps 40 -o a.episode --json"),
+    )
+    .unwrap();
+    assert_eq!((&told["length"], &told["seed"]), (&Value::from(40), &Value::from(3)));
+    let again: Value = serde_json::from_str(&folder.ok("replay a.episode --json")).unwrap();
+    for key in ["env", "seed", "return", "cost", "length", "terminated", "truncated"] {
+        assert_eq!(told[key], again[key], "{key}");
+    }
+    folder.ok("record a.episode --size 64x48 --steps 10 -o a.mp4 --beside depth,automap");
+    folder.ok("replay a.episode --size 64x48 --frame-every 20 -o a.gif");
+    assert_eq!((&folder.read("a.mp4")[4..8], &folder.read("a.gif")[..3]), (&b"ftyp"[..], &b"GIF"[..]));
+    // The picture of a replay is that of the episode itself.
+    folder.ok("replay a.episode --size 160x120 --step 17 -o replayed.png");
+    folder
+        .ok("render CollateralDamageLevel1-v0 --policy sticky:5 --seed 3 --rules released --step 17 --size 160x120 -o live.png");
+    assert_eq!(folder.read("replayed.png"), folder.read("live.png"));
+    // A file that says otherwise is a negative result, not an error.
+    let path = folder.0.join("a.episode");
+    let mut file = hasard_media::episode::EpisodeFile::read(&path).unwrap();
+    let mut outcome = file.header().outcome.clone().unwrap();
+    outcome.cost += 1.0;
+    file.set_outcome(outcome);
+    file.write(&path).unwrap();
+    assert_eq!(folder.run("replay a.episode").status.code(), Some(1));
+}
+
+#[test]
+fn every_view_is_drawn() {
+    let folder = Folder::new("views");
+    let mut sizes = Vec::new();
+    for view in ["rgb", "depth", "segmented", "labels", "grey", "automap"] {
+        let line = format!("render DetonatorsDilemmaLevel1-v0 --step 5 --size 160x120 --buffer {view} -o {view}.png --json");
+        let told: Value = serde_json::from_str(&folder.ok(&line)).unwrap();
+        let labels = told["labels"].as_array().map(Vec::len);
+        assert_eq!(labels.is_some(), view == "labels" || view == "segmented", "{told}");
+        let picture = hasard_media::png::read(&folder.0.join(format!("{view}.png"))).unwrap();
+        assert_eq!((picture.width(), picture.height()), (160, 120));
+        let grey = picture.rgb().chunks_exact(3).all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2]);
+        assert_eq!(grey, ["depth", "labels", "grey"].contains(&view), "{view}");
+        assert!(picture.rgb().iter().any(|byte| *byte != picture.rgb()[0]), "{view} is of one colour");
+        sizes.push(picture);
+    }
+    folder.ok("render DetonatorsDilemmaLevel1-v0 --step 5 --size 160x120 --buffer segmented --published-colours -o p.png");
+    assert_ne!(hasard_media::png::read(&folder.0.join("p.png")).unwrap(), sizes[2]);
+}
+
+/// The smallest network and a single rollout for each lesson: a run's directory with its automaps, its agent on film, and a
+/// report with its heatmaps.
+#[test]
+fn a_curriculum_leaves_automaps_an_agent_and_a_report() {
+    let folder = Folder::new("curriculum");
+    let small = "--envs 4 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
+                 --set reporting.report_seconds=0 --set episode_steps=8 --observation grey --size 64x48";
+    let line = format!("train RemedyRushLevel1-v0 --algo PPOPID --curriculum 1:300,3:300 --out run --json {small}");
+    let rows = folder.ok(&line);
+    let levels: Vec<Value> = rows.lines().map(|row| serde_json::from_str::<Value>(row).unwrap()["level"].clone()).collect();
+    assert_eq!((levels.first(), levels.last()), (Some(&Value::from(1)), Some(&Value::from(3))), "{rows}");
+    assert!(folder.0.join("run/automap-level1.png").is_file() && folder.0.join("run/automap-level3.png").is_file());
+    let config: Value = serde_json::from_slice(&folder.read("run/config.json")).unwrap();
+    assert_eq!(config["env"]["id"], "RemedyRushLevel3-v0");
+    // Asked again with another level it is the same run, and at its end.
+    folder.ok(&format!("train RemedyRushLevel2-v0 --resume --out run --json {small}"));
+    folder.ok("record run --size 64x48 --steps 3 -o agent.gif");
+    folder.ok("record RemedyRushLevel2-v0 --policy run:run --steps 3 -o agent.episode");
+    folder.ok("replay agent.episode");
+    let refusal = folder.refused("record run --hard -o agent.gif");
+    assert!(refusal.contains("--policy run:run"), "{refusal}");
+    let refusal = folder.refused("train VolcanicVentureLevel3-v0 --resume --out run");
+    assert!(refusal.contains("RemedyRushLevel3-v0"), "{refusal}");
+    folder.ok("report run agent.episode -o report");
+    assert!(Path::new(&folder.0.join("report/index.html")).is_file());
+}
