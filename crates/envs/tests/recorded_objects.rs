@@ -23,11 +23,16 @@ fn alive(world: &World, kind: ActorKind) -> Vec<ActorId> {
     world.living().filter(|(_, actor)| actor.kind == kind && actor.health > 0).map(|(id, _)| id).collect()
 }
 
+/// A kind of walker, its map units a step, its tics from step to step.
+type Pace = (ActorKind, u32, u32);
+/// How often each number was seen.
+type Counts = BTreeMap<u32, u32>;
+
 #[test]
 fn walkers_step_as_far_and_as_often_as_recorded() {
     use ActorKind::{Cacodemon, ChaingunGuy, DoomImp, LostSoul, Revenant, ShotgunGuy, ZombieMan};
     // Map units a step, tics from step to step: the usual ones of 400 to 700 recorded tics.
-    let recorded: [(&str, &[(ActorKind, u32, u32)]); 4] = [
+    let recorded: [(&str, &[Pace]); 4] = [
         ("CollateralDamageLevel1-v0", &[(Cacodemon, 10, 3), (ZombieMan, 8, 4)]),
         ("CollateralDamageLevel2-v0", &[(Cacodemon, 15, 3), (ZombieMan, 8, 4)]),
         ("DetonatorsDilemmaLevel1-v0", &[(Revenant, 8, 2), (DoomImp, 8, 3), (ShotgunGuy, 8, 3)]),
@@ -40,7 +45,7 @@ fn walkers_step_as_far_and_as_often_as_recorded() {
         let mut env = env(id);
         env.reset(1);
         let mut last: BTreeMap<(u16, u16), ([f64; 2], u32)> = BTreeMap::new();
-        let mut seen: Vec<(BTreeMap<u32, u32>, BTreeMap<u32, u32>)> = vec![Default::default(); kinds.len()];
+        let mut seen: Vec<(Counts, Counts)> = vec![Default::default(); kinds.len()];
         for tic in 0..500 {
             for (actor_id, actor) in env.world().living() {
                 let Some(kind) = kinds.iter().position(|(kind, _, _)| *kind == actor.kind) else { continue };
