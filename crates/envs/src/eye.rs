@@ -121,13 +121,7 @@ impl Eye {
                 renderer.write_rgb_chw(colour);
                 renderer.write_depth(depth);
             }
-            (ObservationKind::RgbDepth, Layout::Hwc) => {
-                let palette = renderer.palette();
-                for ((to, &index), &depth) in out.chunks_exact_mut(4).zip(renderer.indices()).zip(renderer.depth()) {
-                    let [red, green, blue] = palette[usize::from(index)];
-                    to.copy_from_slice(&[red, green, blue, depth]);
-                }
-            }
+            (ObservationKind::RgbDepth, Layout::Hwc) => renderer.write_rgb_depth_hwc(out),
         }
     }
 

@@ -65,6 +65,21 @@ fn colour_of<const N: usize>(colours: &[[u8; 3]; N], class: u16) -> [u8; 3] {
     colours[usize::from(class).min(N - 1)]
 }
 
+/// The value of each class; those beyond the table share its last one.
+pub(super) fn classes_one_byte<const N: usize>(values: &[u8; N], classes: &[u16], out: &mut [u8]) {
+    for (to, &class) in out.iter_mut().zip(classes) {
+        *to = values[usize::from(class).min(N - 1)];
+    }
+}
+
+/// Red, green, blue of each pixel in turn, and its depth.
+pub(super) fn rgb_depth_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], depth: &[u8], out: &mut [u8]) {
+    let colours = palette.map(|[red, green, blue]| u32::from_le_bytes([red, green, blue, 0]));
+    for ((to, &index), &depth) in out.chunks_exact_mut(4).zip(indices).zip(depth) {
+        to.copy_from_slice(&(colours[usize::from(index)] | u32::from(depth) << 24).to_le_bytes());
+    }
+}
+
 /// The colour of each class, pixel by pixel.
 pub(super) fn classes_interleaved<const N: usize>(colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
     for (to, &class) in out.chunks_exact_mut(3).zip(classes) {

@@ -51,8 +51,8 @@ pub struct Renderer {
     options: RenderOptions,
 }
 
-/// Values of the class buffer that get a colour: more actors than any frame shows.
-const CLASS_COLOURS: usize = 1024;
+/// Values of the class buffer that are told apart: more actors than any frame shows.
+const CLASSES: usize = 1024;
 
 /// What may be drawn otherwise.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -301,6 +301,15 @@ impl Renderer {
         out.copy_from_slice(&self.frame.depth);
     }
 
+    /// Writes the last frame row by row, red, green, blue and depth of each pixel in turn; depth must have been asked for.
+    ///
+    /// # Panics
+    /// If `out` is not four times as long as a frame has pixels.
+    pub fn write_rgb_depth_hwc(&self, out: &mut [u8]) {
+        assert_eq!(out.len(), self.frame.colour.len() * 4, "a buffer of height * width * 4 bytes is needed");
+        convert::rgb_depth_interleaved(&self.palette, &self.frame.colour, &self.frame.depth, out);
+    }
+
     /// Writes the last frame with one colour per class, red, green and blue of each pixel in turn; labels must have been
     /// asked for.
     ///
@@ -328,19 +337,18 @@ impl Renderer {
     pub fn write_labels(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.class.len(), "a buffer of height * width bytes is needed");
         let count = self.labels.list.len() + 1;
-        let value = |class: u16| match class.checked_sub(class::FIRST_ACTOR) {
-            Some(index) => ((usize::from(index) + 1) * 255 / count) as u8,
-            None if class == class::WEAPON => 255,
-            None => 0,
-        };
-        out.iter_mut().zip(&self.frame.class).for_each(|(to, &class)| *to = value(class));
+        let mut values = [0; CLASSES];
+        values[usize::from(class::WEAPON)] = 255;
+        let actors = &mut values[usize::from(class::FIRST_ACTOR)..];
+        actors.iter_mut().take(count - 1).enumerate().for_each(|(index, value)| *value = ((index + 1) * 255 / count) as u8);
+        convert::classes_one_byte(&values, &self.frame.class, out);
     }
 
     /// The colour of each value of the class buffer.
-    fn class_colours(&self, colours: &SegmentationColours) -> [[u8; 3]; CLASS_COLOURS] {
+    fn class_colours(&self, colours: &SegmentationColours) -> [[u8; 3]; CLASSES] {
         let surfaces = (0..class::FIRST_ACTOR).map(|class| colours.surface(class));
         let actors = self.labels.list.iter().map(|label| colours.actor(label.kind));
-        let mut table = [[0; 3]; CLASS_COLOURS];
+        let mut table = [[0; 3]; CLASSES];
         table.iter_mut().zip(surfaces.chain(actors)).for_each(|(to, colour)| *to = colour);
         table
     }

@@ -58,23 +58,24 @@ fn layer<const DEPTH: bool, const CLASS: bool>(
     let column = |texel| first(u, u_step, texel).clamp(0, i64::from(view.base_width)) as usize;
     let row = |texel| first(v, v_step, texel).clamp(0, i64::from(view.base_view_rows)) as usize;
     let columns = usize::from(view.first_column[column(0)])..usize::from(view.first_column[column(picture.width)]);
-    for row in view.first_row[row(0)] as usize..view.first_row[row(picture.height)] as usize {
-        let v = (v + v_step * i64::from(view.rows[row])) >> TEXEL_BITS;
-        let start = row * frame.width;
-        for x in columns.clone() {
-            let u = (u + u_step * i64::from(view.columns[x])) >> TEXEL_BITS;
-            let texel = picture.column(u as u32)[v as usize];
+    let rows = view.first_row[row(0)] as usize..view.first_row[row(picture.height)] as usize;
+    // Column by column, as the picture lies.
+    for x in columns {
+        let texels = picture.column(((u + u_step * i64::from(view.columns[x])) >> TEXEL_BITS) as u32);
+        for row in rows.clone() {
+            let texel = texels[((v + v_step * i64::from(view.rows[row])) >> TEXEL_BITS) as usize];
             if texel & MaskedPicture::OPAQUE == 0 {
                 continue;
             }
-            let pixel = &mut frame.colour[start + x];
+            let at = row * frame.width + x;
+            let pixel = &mut frame.colour[at];
             let lit = table[usize::from(texel as u8)];
             *pixel = if translucent { scene.blend(lit, *pixel) } else { lit };
             if DEPTH {
-                frame.depth[start + x] = 0;
+                frame.depth[at] = 0;
             }
             if CLASS {
-                frame.class[start + x] = class::WEAPON;
+                frame.class[at] = class::WEAPON;
             }
         }
     }
