@@ -97,7 +97,7 @@ fn pictures_stay_close_to_the_source_and_files_small() {
         };
         for (plane, (a, b)) in source.planes.iter().zip(&frame.planes).enumerate() {
             let noise = 10.0 * (255.0 * 255.0 / squares(a, b).max(1e-9)).log10();
-            assert!(noise > 36.0, "frame {k} plane {plane}: {noise:.1} dB");
+            assert!(noise > 38.0, "frame {k} plane {plane}: {noise:.1} dB");
         }
     }
     // A quarter of the pixels is noise that cannot be predicted; stored plainly it would be 57,600 bytes a frame.
@@ -117,7 +117,7 @@ fn the_bytes_are_those_that_were_checked_with_a_foreign_decoder() {
     std::fs::remove_file(path).unwrap();
 }
 
-const GOLDEN: u32 = 683_946_673;
+const GOLDEN: u32 = 1_241_597_353;
 
 #[test]
 fn what_cannot_be_is_refused() {
