@@ -15,10 +15,15 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Bad input, from anything that prints as one line.
+    /// Bad input, from anything that prints as one line. What it quotes may come from a file or a name by anyone: nothing in it
+    /// commands the terminal.
     pub fn bad(message: impl std::fmt::Display) -> Failure {
-        Failure::BadInput(message.to_string())
+        Failure::BadInput(presentable(&message.to_string()))
     }
+}
+
+fn presentable(text: &str) -> String {
+    text.chars().map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
 }
 
 /// What every command returns.
@@ -45,7 +50,7 @@ pub fn report_usage(error: &clap::Error) -> ExitCode {
         .map(str::trim)
         .filter(|line| !line.is_empty() && !line.starts_with("Usage:") && !line.starts_with("For more information"))
         .collect();
-    let line = parts.join("; ").replace(":; ", ": ");
+    let line = presentable(&parts.join("; ").replace(":; ", ": "));
     eprintln!("hasard: {} (see `{} --help`)", line.strip_prefix("error: ").unwrap_or(&line), command());
     ExitCode::from(2)
 }

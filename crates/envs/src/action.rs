@@ -1,5 +1,6 @@
 //! Action spaces: groups of exclusive buttons, and delta buttons; and the names of buttons.
 
+use crate::error::excerpt;
 use crate::{EnvError, Scenario};
 use hasard_engine::world::{Buttons, Command};
 
@@ -164,7 +165,7 @@ pub fn parse_command(text: &str) -> Result<Command, EnvError> {
         return Ok(command);
     }
     for part in text.split('+') {
-        let unknown = || EnvError::UnknownButton { given: part.chars().take(80).collect() };
+        let unknown = || EnvError::UnknownButton { given: excerpt(part) };
         let (name, value) = part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));
         let delta = [DeltaButton::Look, DeltaButton::Turn].into_iter().find(|delta| delta.name() == name);
         if let Some(delta) = delta {

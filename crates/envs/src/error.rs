@@ -93,3 +93,8 @@ impl fmt::Display for EnvError {
 }
 
 impl std::error::Error for EnvError {}
+
+/// The beginning of what a user gave, for a message: one line, and nothing that commands a terminal.
+pub(crate) fn excerpt(given: &str) -> String {
+    given.chars().take(80).flat_map(char::escape_debug).collect()
+}

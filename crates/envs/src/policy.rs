@@ -1,5 +1,6 @@
 //! Fixed policies: what an agent without a model does.
 
+use crate::error::excerpt;
 use crate::{ActionSpace, EnvError, parse_command};
 use hasard_engine::math::Rng;
 use hasard_engine::world::Command;
@@ -28,13 +29,10 @@ impl std::str::FromStr for Policy {
     type Err = EnvError;
 
     fn from_str(text: &str) -> Result<Policy, EnvError> {
-        let wrong = |why: String| EnvError::Policy { given: text.chars().take(80).collect(), why };
+        let wrong = |why: String| EnvError::Policy { given: excerpt(text), why };
         let steps = |digits: &str, least: u32| match digits.parse::<u32>() {
             Ok(steps) if steps >= least => Ok(steps),
-            _ => Err(wrong(format!(
-                "'{}' is no number of steps; write a whole number from {least} up",
-                digits.chars().take(20).collect::<String>()
-            ))),
+            _ => Err(wrong(format!("'{}' is no number of steps; write a whole number from {least} up", excerpt(digits)))),
         };
         let buttons = |names: &str| match parse_command(names) {
             _ if names.is_empty() => Err(wrong("no button is named; write for example hold:MOVE_FORWARD".to_string())),

@@ -90,10 +90,7 @@ impl std::str::FromStr for EnvId {
             // Ids are short and few: the plain edit distance over upper-cased text is quick enough and forgives typos and case.
             let wanted = text.to_uppercase();
             let nearest = EnvId::all().min_by_key(|id| edit_distance(&wanted, &id.to_string().to_uppercase()));
-            EnvError::UnknownId {
-                id: text.chars().take(80).collect(),
-                nearest: nearest.map(|id| id.to_string()).unwrap_or_default(),
-            }
+            EnvError::UnknownId { id: crate::error::excerpt(text), nearest: nearest.map(|id| id.to_string()).unwrap_or_default() }
         })
     }
 }

@@ -302,11 +302,17 @@ impl Loaded {
                 state.push(parse_floats(&find(&name)?, lanes * shape.state_size(), &name)?);
             }
             let numbers = parse_words(&find(&format!("sampler{index}.lanes"))?, lanes * 4, "lanes")?;
-            let count = |column: usize| numbers.iter().skip(column).step_by(4).map(|&n| n as usize).sum::<usize>();
+            // Whoever wrote the file may have meant harm: lengths that add up only by wrapping around are none.
+            let count = |column: usize| {
+                let mut lengths = numbers.iter().skip(column).step_by(4).map(|&length| usize::try_from(length).ok());
+                let sum = lengths.try_fold(0usize, |sum, length| sum.checked_add(length?));
+                sum.ok_or_else(|| format!("the episodes of sampler {index} have impossible lengths"))
+            };
+            let (action_count, delta_count) = (count(2)?, count(3)?);
             let actions = find(&format!("sampler{index}.actions"))?;
-            let deltas = parse_floats(&find(&format!("sampler{index}.deltas"))?, count(3), "deltas")?;
-            if actions.data().len() != count(2) {
-                return Err(format!("sampler {index} has {} actions, not {}", actions.data().len(), count(2)));
+            let deltas = parse_floats(&find(&format!("sampler{index}.deltas"))?, delta_count, "deltas")?;
+            if actions.data().len() != action_count {
+                return Err(format!("sampler {index} has {} actions, not {action_count}", actions.data().len()));
             }
             let (mut actions, mut deltas) = (actions.data(), &deltas[..]);
             let mut worlds = Vec::new();

@@ -543,6 +543,10 @@ impl TrainConfig {
             ("the number of learner threads", learning.threads, 256),
             ("the number of kept checkpoints", self.reporting.keep, 1000),
             ("the window of episodes", self.reporting.window, 100_000),
+            ("the steps of the longest episode", self.episode_steps as usize, 100_000),
+            ("the delay of the PID controller", self.algorithm_settings.pid_delay, 100_000),
+            ("the conjugate-gradient iterations", self.algorithm_settings.conjugate_iterations, 1000),
+            ("the tries of the line search", self.algorithm_settings.line_search_steps, 1000),
         ] {
             if !(1..=most).contains(&given) {
                 return refuse(name, &given, &format!("1 to {most}"));

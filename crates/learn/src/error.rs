@@ -45,11 +45,27 @@ impl LearnError {
     }
 }
 
+/// Longest text of a message, in letters.
+const LONGEST: usize = 1000;
+
+/// A text that may quote a file by anyone: one line of bounded length, and nothing in it commands a terminal.
+struct OneLine<'a>(&'a str);
+
+impl std::fmt::Display for OneLine<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        use std::fmt::Write;
+        for letter in self.0.chars().take(LONGEST) {
+            if letter.is_control() { write!(f, "{}", letter.escape_default())? } else { f.write_char(letter)? }
+        }
+        if self.0.chars().nth(LONGEST).is_some() { f.write_str(" ...") } else { Ok(()) }
+    }
+}
+
 impl std::fmt::Display for LearnError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             LearnError::Config(text) | LearnError::Worlds(text) | LearnError::Panic(text) | LearnError::Diverged(text) => {
-                f.write_str(text)
+                write!(f, "{}", OneLine(text))
             }
             LearnError::File { path, doing, source } => {
                 write!(f, "cannot {doing} {}: {source}", path.display())?;
@@ -64,7 +80,7 @@ impl std::fmt::Display for LearnError {
                     _ => Ok(()),
                 }
             }
-            LearnError::Content { path, problem } => write!(f, "{}: {problem}", path.display()),
+            LearnError::Content { path, problem } => write!(f, "{}: {}", path.display(), OneLine(problem)),
         }
     }
 }

@@ -110,7 +110,7 @@ impl Session {
                 let progress: &Progress = &loaded.progress;
                 let misfit = |error| LearnError::Config(format!("the checkpoint's multipliers do not fit: {error}"));
                 algorithm.load(&progress.algorithm).map_err(misfit)?;
-                watch = progress.watch.clone();
+                watch = progress.watch.resumed(&config)?;
                 (frames, rollouts) = (progress.frames, progress.rollouts);
             }
         }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::algorithms::Signal;
 use crate::config::{Constraint, ConstraintStatistic, TrainConfig};
+use crate::error::LearnError;
 
 /// What is kept of an episode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,6 +49,16 @@ impl Watch {
         }
     }
 
+    /// A saved watch in a run of these settings.
+    pub fn resumed(&self, config: &TrainConfig) -> Result<Watch, LearnError> {
+        let constraints = config.constraints.len();
+        if self.recent.iter().any(|one| one.constrained.len() != constraints) {
+            let problem = "the checkpoint's episodes were held against other constraints; start a new run with --init-from";
+            return Err(LearnError::Config(problem.into()));
+        }
+        Ok(Watch { recent: self.recent.clone(), episodes: self.episodes, ..Watch::new(config) })
+    }
+
     /// Notes an episode.
     pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) {
         let of_term = |name: &String| episode.costs.iter().find(|(term, _)| term == name).map_or(0.0, |(_, cost)| *cost);
@@ -61,7 +72,7 @@ impl Watch {
             details: costs.chain(stats).collect(),
         });
         self.episodes += 1;
-        if self.recent.len() > self.window {
+        while self.recent.len() > self.window {
             self.recent.pop_front();
         }
     }

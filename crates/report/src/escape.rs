@@ -1,4 +1,4 @@
-//! Texts of users inside HTML, SVG, Markdown and CSV.
+//! Texts of users inside HTML, SVG, Markdown, CSV and messages.
 
 /// A text for HTML and SVG, inside elements and quoted attributes.
 #[must_use]
@@ -29,4 +29,11 @@ pub fn escape_markdown(text: &str) -> String {
 #[must_use]
 pub fn escape_csv(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+/// A message that may quote a file by anyone: one line of bounded length, and nothing in it commands a terminal.
+#[must_use]
+pub fn one_line(problem: &str) -> String {
+    let cut = problem.chars().take(1000);
+    cut.map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
 }

@@ -21,6 +21,7 @@
 //! ```
 
 use crate::grid::{Grid, OptionValue, Sweep};
+use crate::one_line;
 use crate::paper;
 use std::path::PathBuf;
 use toml::{Table, Value};
@@ -34,49 +35,53 @@ impl Sweep {
     /// # Errors
     /// One line that names the key, or line and column where it is no TOML.
     pub fn parse(text: &str) -> Result<Sweep, String> {
-        let table: Table = text.parse().map_err(|error: toml::de::Error| {
-            let (line, column) = error.span().map_or((1, 1), |span| line_and_column(text, span.start));
-            format!("line {line}, column {column}: {}", error.message().replace('\n', " "))
-        })?;
-        if let Some(key) = table.keys().find(|key| !TOP_KEYS.contains(&key.as_str()) && !GRID_KEYS.contains(&key.as_str())) {
-            return Err(format!("unknown key `{key}`; known are {}, {}", TOP_KEYS.join(", "), GRID_KEYS.join(", ")));
-        }
-        let mut sweep = match table.get("experiment") {
-            None => {
-                let grid = Grid { levels: vec![1], seeds: vec![1], ..Grid::default() };
-                Sweep { out: PathBuf::from("runs"), parallel: 1, grids: vec![grid] }
-            }
-            Some(name) => paper::experiment(name.as_str().ok_or("`experiment` must be a name in quotes")?)?,
-        };
-        if let Some(out) = table.get("out") {
-            sweep.out = PathBuf::from(out.as_str().filter(|out| !out.is_empty()).ok_or("`out` must be a path in quotes")?);
-        }
-        if let Some(parallel) = table.get("parallel") {
-            let count =
-                parallel.as_integer().and_then(|count| usize::try_from(count).ok()).filter(|count| (1..=4096).contains(count));
-            sweep.parallel = count.ok_or("`parallel` must be a whole number from 1 to 4096")?;
-        }
-        for grid in &mut sweep.grids {
-            change(grid, &table)?;
-        }
-        if let Some(grids) = table.get("grid") {
-            let grids = grids.as_array().ok_or("`grid` must be written as [[grid]]")?;
-            let bases = std::mem::take(&mut sweep.grids);
-            for (index, table) in grids.iter().enumerate() {
-                let named = |problem: String| format!("grid {}: {problem}", index + 1);
-                let table = table.as_table().ok_or("`grid` must be written as [[grid]]")?;
-                if let Some(key) = table.keys().find(|key| !GRID_KEYS.contains(&key.as_str())) {
-                    return Err(named(format!("unknown key `{key}`; known are {}", GRID_KEYS.join(", "))));
-                }
-                for base in &bases {
-                    let mut grid = base.clone();
-                    change(&mut grid, table).map_err(named)?;
-                    sweep.grids.push(grid);
-                }
-            }
-        }
-        Ok(sweep)
+        understand(text).map_err(|problem| one_line(&problem))
     }
+}
+
+fn understand(text: &str) -> Result<Sweep, String> {
+    let table: Table = text.parse().map_err(|error: toml::de::Error| {
+        let (line, column) = error.span().map_or((1, 1), |span| line_and_column(text, span.start));
+        format!("line {line}, column {column}: {}", error.message().replace('\n', " "))
+    })?;
+    if let Some(key) = table.keys().find(|key| !TOP_KEYS.contains(&key.as_str()) && !GRID_KEYS.contains(&key.as_str())) {
+        return Err(format!("unknown key `{key}`; known are {}, {}", TOP_KEYS.join(", "), GRID_KEYS.join(", ")));
+    }
+    let mut sweep = match table.get("experiment") {
+        None => {
+            let grid = Grid { levels: vec![1], seeds: vec![1], ..Grid::default() };
+            Sweep { out: PathBuf::from("runs"), parallel: 1, grids: vec![grid] }
+        }
+        Some(name) => paper::experiment(name.as_str().ok_or("`experiment` must be a name in quotes")?)?,
+    };
+    if let Some(out) = table.get("out") {
+        sweep.out = PathBuf::from(out.as_str().filter(|out| !out.is_empty()).ok_or("`out` must be a path in quotes")?);
+    }
+    if let Some(parallel) = table.get("parallel") {
+        let count =
+            parallel.as_integer().and_then(|count| usize::try_from(count).ok()).filter(|count| (1..=4096).contains(count));
+        sweep.parallel = count.ok_or("`parallel` must be a whole number from 1 to 4096")?;
+    }
+    for grid in &mut sweep.grids {
+        change(grid, &table)?;
+    }
+    if let Some(grids) = table.get("grid") {
+        let grids = grids.as_array().ok_or("`grid` must be written as [[grid]]")?;
+        let bases = std::mem::take(&mut sweep.grids);
+        for (index, table) in grids.iter().enumerate() {
+            let named = |problem: String| format!("grid {}: {problem}", index + 1);
+            let table = table.as_table().ok_or("`grid` must be written as [[grid]]")?;
+            if let Some(key) = table.keys().find(|key| !GRID_KEYS.contains(&key.as_str())) {
+                return Err(named(format!("unknown key `{key}`; known are {}", GRID_KEYS.join(", "))));
+            }
+            for base in &bases {
+                let mut grid = base.clone();
+                change(&mut grid, table).map_err(named)?;
+                sweep.grids.push(grid);
+            }
+        }
+    }
+    Ok(sweep)
 }
 
 /// Puts what a table says into a grid.

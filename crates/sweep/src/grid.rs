@@ -1,6 +1,6 @@
 //! What a sweep runs.
 
-use crate::Job;
+use crate::{Job, one_line};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -55,6 +55,10 @@ impl Sweep {
     /// # Errors
     /// When a list is empty, a value is unusable, or there are too many runs.
     pub fn jobs(&self) -> Result<Vec<Job>, String> {
+        self.expand().map_err(|problem| one_line(&problem))
+    }
+
+    fn expand(&self) -> Result<Vec<Job>, String> {
         let mut jobs: Vec<Job> = Vec::new();
         let mut seen = BTreeSet::new();
         for grid in &self.grids {

@@ -37,5 +37,11 @@ pub use execute::{Event, Summary, run_jobs};
 pub use grid::{Grid, OptionValue, Sweep};
 pub use job::{Job, State};
 
+/// A message that may quote a file by anyone: one line of bounded length, and nothing in it commands a terminal.
+fn one_line(problem: &str) -> String {
+    let cut = problem.chars().take(1000);
+    cut.map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
+}
+
 #[cfg(test)]
 mod tests;

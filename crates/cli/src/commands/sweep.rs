@@ -79,3 +79,28 @@ fn tell(as_json: bool, index: usize, total: usize, job: &Job, event: &Event) -> 
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Cli, Command};
+    use clap::Parser;
+
+    /// Every run of every experiment of the paper is a command that this program takes and can begin.
+    #[test]
+    fn the_papers_experiments_are_commands_of_this_program() {
+        for (name, _) in paper::EXPERIMENTS {
+            let jobs = paper::experiment(name).unwrap().jobs().unwrap();
+            assert!(!jobs.is_empty(), "{name}");
+            for job in jobs {
+                let line = std::iter::once("hasard".to_string()).chain(job.arguments.iter().cloned());
+                let Command::Train(args) = Cli::try_parse_from(line).unwrap_or_else(|error| panic!("{error}")).command else {
+                    panic!("{} is not a training", job.command_line("hasard"));
+                };
+                if let Err(failure) = crate::commands::train::configuration(&args) {
+                    panic!("{}: {failure:?}", job.command_line("hasard"));
+                }
+            }
+        }
+    }
+}

@@ -117,7 +117,7 @@ fn describe(config: &TrainConfig, directory: &Path) {
 }
 
 /// The settings of a fresh run: the preset's, then flags, then `--set`.
-fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
+pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     let env = crate::settings::env_config(&args.env, &args.env_args, &args.observation);
     let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
     let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env).map_err(Failure::bad)?;

@@ -40,7 +40,8 @@ impl TextureName {
 
 impl std::fmt::Debug for TextureName {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if self.is_some() { self.as_str() } else { "-" })
+        // Names come from files by anyone and go into messages, where nothing may command a terminal.
+        if self.is_some() { write!(f, "{}", self.as_str().escape_debug()) } else { f.write_str("-") }
     }
 }
 

@@ -4,6 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::LearnError;
 
+/// Bounds on networks, a hundred times the original's: beyond them a number in a settings file is surely a slip.
+const WIDEST: usize = 1 << 16;
+const MOST_LAYERS: usize = 64;
+const MOST_PARAMETERS: usize = 1 << 28;
+
 /// A convolution without padding, followed by an ELU.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub struct Convolution {
@@ -163,6 +168,16 @@ impl NetworkShape {
         }
         if self.heads.is_empty() || self.heads.contains(&0) {
             return bad("every head needs at least one output".into());
+        }
+        let widths = self.convolutions.iter().map(|convolution| &convolution.channels);
+        let widest = widths.chain(&self.dense).chain(&self.recurrent).chain(&self.heads).max().copied().unwrap_or(0);
+        let layers = self.convolutions.len() + self.dense.len() + self.heads.len();
+        // With these bounds no product of sizes wraps around.
+        if widest > WIDEST || layers > MOST_LAYERS || self.parameter_count() > MOST_PARAMETERS {
+            return bad(format!(
+                "a network of {layers} layers, the widest of {widest} units, is too large: use at most {MOST_LAYERS} layers of at \
+                 most {WIDEST} units, and {MOST_PARAMETERS} parameters"
+            ));
         }
         Ok(())
     }
@@ -332,5 +347,9 @@ mod tests {
         refuse(|s| s.convolutions[1].channels = 30, "30 channels");
         refuse(|s| s.convolutions[0].stride = 9, "stride 9");
         refuse(|s| s.heads = vec![], "head");
+        refuse(|s| s.dense = vec![1 << 40], "too large");
+        refuse(|s| s.dense = vec![32; 65], "too large");
+        refuse(|s| s.dense = vec![1 << 16, 1 << 16], "too large");
+        refuse(|s| s.convolutions[2].channels = usize::MAX / 32 * 32, "too large");
     }
 }

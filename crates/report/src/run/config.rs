@@ -1,6 +1,7 @@
 //! `config.json`: what was trained and how.
 
 use super::Warning;
+use crate::escape::one_line;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -94,6 +95,10 @@ impl Config {
     /// # Errors
     /// As [`Config::read`], without the path.
     pub fn parse(text: &str) -> Result<Config, String> {
+        Config::understand(text).map_err(|problem| one_line(&problem))
+    }
+
+    fn understand(text: &str) -> Result<Config, String> {
         let value: Value =
             serde_json::from_str(text).map_err(|e| format!("is no JSON ({e}); restore it or leave the run out"))?;
         let Value::Object(object) = &value else { return Err("is not a JSON object; restore it or leave the run out".into()) };

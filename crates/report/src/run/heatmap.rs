@@ -28,7 +28,7 @@ pub struct HeatmapData {
 }
 
 /// Understands the lines; a damaged one is passed over with a warning.
-pub(super) fn parse_heatmaps(text: &str, path: &Path, warnings: &mut Vec<Warning>) -> Vec<HeatmapData> {
+pub fn parse_heatmaps(text: &str, path: &Path, warnings: &mut Vec<Warning>) -> Vec<HeatmapData> {
     let mut heatmaps: Vec<HeatmapData> = Vec::new();
     for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let parsed = serde_json::from_str::<HeatmapData>(line).ok().filter(|map| {

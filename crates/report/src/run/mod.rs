@@ -9,9 +9,10 @@ mod metrics;
 pub use config::{Config, TOLD, default_budget, scenario_and_level};
 pub use discover::{Found, discover};
 pub use episodes::{EpisodeResult, read_episode_lines};
-pub use heatmap::HeatmapData;
+pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
 
+use crate::escape::one_line;
 use std::path::{Path, PathBuf};
 
 /// Largest text file that is read, in bytes: far above the metrics of any run.
@@ -30,9 +31,10 @@ pub struct Warning {
 
 impl std::fmt::Display for Warning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let problem = one_line(&self.problem);
         match self.line {
-            0 => write!(f, "{}: {}", self.path.display(), self.problem),
-            line => write!(f, "{}:{line}: {}", self.path.display(), self.problem),
+            0 => write!(f, "{}: {problem}", self.path.display()),
+            line => write!(f, "{}:{line}: {problem}", self.path.display()),
         }
     }
 }

@@ -58,10 +58,11 @@ pub(super) fn shotgun() -> Model {
 
 /// The double-barrelled shotgun: 43 long, two thick blued barrels, red-brown furniture.
 pub(super) fn super_shotgun() -> Model {
-    let cherry = Material::new(0x480A06, 0xB83420, 0xF07858).polished(0.5);
+    let cherry = Material::new(0x580404, 0xC82414, 0xFF6850).polished(0.5);
+    let blued = Material::new(0x10141C, 0x38445C, 0x7888A4).polished(0.9);
     let mut m = Model::new();
     for y in [-1.9, 1.9] {
-        m.tube(Vector(-3.0, y, 9.2), Vector(22.0, y, 9.2), (2.0, 2.0), STEEL);
+        m.tube(Vector(-3.0, y, 9.2), Vector(22.0, y, 9.2), (2.0, 2.0), blued);
         m.tube(Vector(21.9, y, 9.2), Vector(22.4, y, 9.2), (1.3, 1.3), HOLE);
     }
     m.tube(Vector(5.0, 0.0, 9.2), Vector(6.6, 0.0, 9.2), (4.2, 4.2), BRASS);
@@ -113,7 +114,7 @@ pub(super) fn chaingun_parts() -> Chaingun {
 
 /// The rocket launcher: 59 long, a wide olive tube.
 pub(super) fn launcher() -> Model {
-    let olive = Material::new(0x1C2010, 0x545E30, 0x98A468).mottled(0.15, 3.0);
+    let olive = Material::new(0x142808, 0x4C7824, 0x98CC5C).mottled(0.15, 3.0);
     let mut m = Model::new();
     m.tube(Vector(-24.0, 0.0, 12.0), Vector(18.0, 0.0, 12.0), (4.6, 4.6), olive);
     m.tube(Vector(18.0, 0.0, 12.0), Vector(30.0, 0.0, 12.0), (5.4, 6.2), GUN);

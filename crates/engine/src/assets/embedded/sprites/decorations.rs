@@ -234,8 +234,8 @@ pub(super) fn barrel(glow: bool) -> Model {
     };
     let mut m = Model::new();
     m.tube(Vector(0.0, 0.0, 0.5), Vector(0.0, 0.0, 30.0), (10.4, 10.4), body);
-    m.tube(Vector(0.0, 0.0, 11.0), Vector(0.0, 0.0, 20.0), (10.7, 10.7), paint);
-    for z in [0.5, 10.0, 19.5, 28.4] {
+    m.tube(Vector(0.0, 0.0, 8.5), Vector(0.0, 0.0, 22.5), (10.7, 10.7), paint);
+    for z in [0.5, 7.6, 22.0, 28.4] {
         m.tube(Vector(0.0, 0.0, z), Vector(0.0, 0.0, z + 1.8), (11.2, 11.2), STEEL);
     }
     m.tube(Vector(0.0, 0.0, 29.8), Vector(0.0, 0.0, 30.3), (9.2, 9.2), slime);

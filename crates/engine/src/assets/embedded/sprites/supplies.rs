@@ -12,6 +12,7 @@ const STEEL: Material = Material::new(0x20262C, 0x68747E, 0xC4D0D8).polished(0.8
 const DARK_STEEL: Material = Material::new(0x101214, 0x34383C, 0x747C84).polished(0.6);
 const BRASS: Material = Material::new(0x54380A, 0xC08C20, 0xFFE880).polished(0.9);
 const LEATHER: Material = Material::new(0x241408, 0x6C4420, 0xA87844).mottled(0.2, 2.0);
+const CANVAS: Material = Material::new(0x504828, 0xB4A86C, 0xECE4B0).mottled(0.2, 2.0);
 
 /// Paints the supplies.
 pub(super) fn paint(gallery: &mut Gallery) {
@@ -135,11 +136,11 @@ fn goggles(lit: bool) -> Model {
         Material::new(0x300404, 0x7C1810, 0xC04838).polished(1.0)
     };
     for side in [1.0, -1.0] {
-        m.tube(Vector(-3.0, side * 6.4, 6.0), Vector(3.0, side * 6.4, 6.0), (5.4, 5.4), DARK_STEEL);
+        m.tube(Vector(-3.0, side * 6.4, 6.0), Vector(3.0, side * 6.4, 6.0), (5.6, 5.6), WHITE);
         m.tube(Vector(2.8, side * 6.4, 6.0), Vector(3.6, side * 6.4, 6.0), (4.0, 4.0), lens);
         m.limb(Vector(-2.0, side * 11.0, 7.0), Vector(-8.0, side * 13.0, 8.0), (1.8, 1.4), LEATHER);
     }
-    m.block(Vector(0.0, 0.0, 7.0), Vector(2.0, 2.4, 1.6), STEEL);
+    m.block(Vector(0.0, 0.0, 7.0), Vector(2.0, 2.4, 1.6), WHITE);
     m
 }
 
@@ -147,7 +148,7 @@ fn goggles(lit: bool) -> Model {
 fn blur_sphere(phase: usize) -> Model {
     let mut m = Model::new();
     let centre = Vector(0.0, 0.0, 15.0);
-    m.ball(centre, 14.4, Material::new(0x3C0C60, 0x8C3CD8, 0xE0B0FF).mottled(0.5, 4.0).polished(1.0));
+    m.ball(centre, 14.4, Material::new(0x5008A0, 0xB030FF, 0xF0B0FF).mottled(0.4, 4.0).polished(1.0));
     for i in 0..5 {
         let (cos, sin) = turn(phase as f32 * 18.0 + i as f32 * 72.0);
         let spark = Material::new(0x4060F0, 0x88A8FF, 0xF0F8FF).glowing().fine();
@@ -177,19 +178,19 @@ fn computer_map(glow: f32) -> Model {
     m
 }
 
-/// A brown rucksack with a rolled blanket.
+/// A canvas rucksack with a rolled blanket.
 fn backpack() -> Model {
     let mut m = Model::new();
-    m.egg(Vector(0.0, 0.0, 11.0), Vector(7.5, 10.5, 11.4), LEATHER);
-    m.block(Vector(1.0, 0.0, 9.0), Vector(6.0, 8.8, 8.6), LEATHER);
-    m.egg(Vector(4.4, 0.0, 18.0), Vector(5.0, 10.2, 4.0), Material::new(0x2C180A, 0x7C5028, 0xB8844C));
+    m.egg(Vector(0.0, 0.0, 11.0), Vector(7.5, 10.5, 11.4), CANVAS);
+    m.block(Vector(1.0, 0.0, 9.0), Vector(6.0, 8.8, 8.6), CANVAS);
+    m.egg(Vector(4.4, 0.0, 18.0), Vector(5.0, 10.2, 4.0), Material::new(0x584C2C, 0xC4B878, 0xF4ECC0));
     m.limb(Vector(0.0, -11.0, 25.0), Vector(0.0, 11.0, 25.0), (3.4, 3.4), Material::new(0x20280E, 0x5C6830, 0x98A460));
     for y in [-5.0, 5.0] {
         m.block(Vector(8.0, y, 12.0), Vector(0.8, 0.9, 7.0), Material::new(0x1C1008, 0x402810, 0x644020));
         m.block(Vector(9.0, y, 12.0), Vector(0.4, 1.1, 0.9), BRASS.fine());
         m.tube(Vector(0.0, y, 25.0), Vector(0.0, y + 1.4, 25.0), (3.8, 3.8), Material::new(0x1C1008, 0x402810, 0x644020));
     }
-    m.block(Vector(7.0, 0.0, 6.0), Vector(1.8, 4.6, 4.0), LEATHER);
+    m.block(Vector(7.0, 0.0, 6.0), Vector(1.8, 4.6, 4.0), CANVAS);
     m
 }
 

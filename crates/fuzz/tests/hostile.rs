@@ -1,0 +1,28 @@
+//! Files that once did harm, or try to, do none; valid samples are let in.
+
+use hasard_fuzz::targets;
+use hasard_fuzz::verdict::{Verdict, try_input};
+use std::path::Path;
+
+#[test]
+fn hostile_files_do_no_harm() {
+    for target in targets::ALL {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("hostile").join(target.name);
+        let mut files: Vec<_> = std::fs::read_dir(&folder).into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        for file in files {
+            let verdict = try_input(target, &std::fs::read(&file).unwrap());
+            assert!(!matches!(verdict, Verdict::Harm(..)), "{}: {verdict:?}", file.display());
+        }
+    }
+}
+
+#[test]
+fn valid_samples_are_accepted() {
+    for target in targets::ALL {
+        for (index, sample) in (target.samples)().iter().enumerate() {
+            assert_eq!(try_input(target, sample), Verdict::Accepted, "{} sample {index}", target.name);
+            assert!((target.repair)(sample.clone()) == *sample, "{} sample {index} needs no repair", target.name);
+        }
+    }
+}
