@@ -62,7 +62,8 @@ pub struct EnvArgs {
     /// Tics (1/35 s) that each action is held
     #[arg(long, value_name = "TICS", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=35))]
     pub frame_skip: u32,
-    /// Frame size, 64x48 to 1920x1080; 128x72 is the learner's nearest-neighbour reduction of 160x120
+    /// Frame size, 64x48 to 1920x1080; if absent 128x72 for learners (the nearest-neighbour reduction of 160x120), 640x480
+    /// to play and render, 320x240 to record
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
     /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
@@ -178,7 +179,7 @@ pub struct EnvsArgs {
 pub struct RolloutArgs {
     /// Environment id, see `hasard envs`
     pub env: String,
-    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR
+    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR; `hasard envs --json` lists the buttons
     #[arg(long, default_value = "random")]
     pub policy: String,
     /// Number of episodes
@@ -411,6 +412,7 @@ pub struct TrainArgs {
 
 /// `hasard eval`.
 #[derive(Args, Debug)]
+#[command(after_help = "To have it in reports: hasard eval RUN --json > RUN/eval.jsonl")]
 pub struct EvalArgs {
     /// Run directory
     pub run: PathBuf,
@@ -506,7 +508,7 @@ pub struct ReplayArgs {
 /// `hasard report`.
 #[derive(Args, Debug)]
 pub struct ReportArgs {
-    /// Run directories, or folders that hold them
+    /// Run directories or folders that hold them, .episode files, and .jsonl files of `hasard rollout --json`
     #[arg(required = true)]
     pub runs: Vec<PathBuf>,
     /// Folder to write

@@ -18,7 +18,7 @@ pub enum ObservationKind {
     /// Red, green, blue.
     #[default]
     Rgb,
-    /// Red, green, blue, depth (0 near to 255 far).
+    /// Red, green, blue, depth (0 near to 255 far, 7.3 map units a level).
     RgbDepth,
     /// One fixed colour per class.
     Segmented,

@@ -13,7 +13,7 @@ const LONGER_SIDE: u64 = 60;
 /// Moments of a run at which the counts are written.
 const MOMENTS: u64 = 20;
 
-/// Steps spent in each cell during the last [`EPISODES`] episodes.
+/// Steps spent in each cell during the last `EPISODES` episodes.
 ///
 /// It is no part of a checkpoint: a resumed run begins to count anew, and each line says how many episodes it counts.
 pub struct Heatmap {

@@ -219,3 +219,35 @@ fn paths_without_runs_are_errors_that_say_what_to_do() {
     let error = write_report(&[run], Path::new("/dev/null/out"), "t").unwrap_err();
     assert!(error.starts_with("/dev/null/out"), "{error}");
 }
+
+/// What a person played is held against the budget of the rules and constraint that the episode was played under.
+#[test]
+fn a_persons_budget_follows_the_episodes_options() {
+    let folder = Folder::new("people");
+    for (player, option, cost) in
+        [("soft", ("hard", "false"), 4.0), ("strict", ("hard", "true"), 4.0), ("short", ("frame-skip", "1"), 6.0)]
+    {
+        let header = Header {
+            env: "RemedyRushLevel1-v0".into(),
+            options: [(option.0.to_owned(), option.1.to_owned())].into(),
+            seed: 1,
+            program: "0.1.0".into(),
+            player: player.into(),
+            steps: 0,
+            groups: 1,
+            deltas: 0,
+            outcome: None,
+        };
+        let mut file = EpisodeFile::new(header).unwrap();
+        file.push(&[1], &[]).unwrap();
+        file.set_outcome(Outcome { cost, ..Outcome::default() });
+        file.write(&folder.0.join(format!("{player}.episode"))).unwrap();
+    }
+    let out = folder.0.join("out");
+    write_report(std::slice::from_ref(&folder.0), &out, "People").unwrap();
+    let text = std::fs::read_to_string(out.join("report.md")).unwrap();
+    let line = |player: &str| text.lines().find(|line| line.starts_with(&format!("| {player} "))).unwrap().to_owned();
+    assert!(line("soft").ends_with("100 % |") && !line("soft").contains("hard"), "{}", line("soft"));
+    assert!(line("strict").ends_with("| 0 % |") && line("strict").contains("hard true"), "{}", line("strict"));
+    assert!(line("short").ends_with("| 0 % |") && line("short").contains("frame-skip 1"), "{}", line("short"));
+}

@@ -101,8 +101,10 @@ fn print_row(report: &Report) -> Outcome {
 
 fn describe(config: &TrainConfig, directory: &Path) {
     let budgets: Vec<String> = config.constraints.iter().map(|constraint| constraint.budget.to_string()).collect();
+    let levels: Vec<String> = config.curriculum.iter().map(|lesson| format!("{} for {}", lesson.level, lesson.frames)).collect();
+    let levels = if levels.is_empty() { String::new() } else { format!(" (levels {})", levels.join(", ")) };
     eprintln!(
-        "{} on {}, preset {}, seed {}, {} frames, cost budget {} an episode, device {} -> {}",
+        "{} on {}, preset {}, seed {}, {} frames{levels}, cost budget {} an episode, device {} -> {}",
         config.algorithm,
         config.env.id,
         config.preset,

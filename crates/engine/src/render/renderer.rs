@@ -148,7 +148,7 @@ impl Renderer {
             entered: &mut self.entered,
             scratch: &mut self.walk,
         };
-        walk.run::<DEPTH, CLASS>();
+        walk.run::<DEPTH>();
         self.draw_planes::<DEPTH, CLASS>(&camera);
         self.draw_masked::<DEPTH, CLASS>(&camera, world, player);
         self.draw_overlay::<DEPTH, CLASS>(&camera, world, player);
@@ -341,7 +341,7 @@ impl Renderer {
         values[usize::from(class::WEAPON)] = 255;
         let actors = &mut values[usize::from(class::FIRST_ACTOR)..];
         actors.iter_mut().take(count - 1).enumerate().for_each(|(index, value)| *value = ((index + 1) * 255 / count) as u8);
-        convert::classes_one_byte(&values, &self.frame.class, out);
+        convert::classes_one_byte(&values, class::WEAPON, &self.frame.class, out);
     }
 
     /// The colour of each value of the class buffer.

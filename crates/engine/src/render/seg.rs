@@ -46,7 +46,7 @@ struct Part {
 impl Walk<'_> {
     /// Draws a seg that faces the eye from `away`, the distance of its line with 44 fractional bits, if any column shows it.
     #[inline]
-    pub fn seg<const DEPTH: bool, const CLASS: bool>(&mut self, index: u32, away: i64) {
+    pub fn seg<const DEPTH: bool>(&mut self, index: u32, away: i64) {
         let seg = &self.scene.segs[index as usize];
         let Some(SeenColumns { first, end, base_ends }) = self.columns(seg) else { return };
         let face = &self.scene.faces[seg.face as usize];
@@ -54,9 +54,9 @@ impl Walk<'_> {
         let seen = SeenSeg { index, seg, face, line, first, end, base_ends };
         let front = &self.sectors[seg.front as usize];
         if seg.back == NO_SECTOR {
-            self.solid::<DEPTH, CLASS>(&seen, front);
+            self.solid::<DEPTH>(&seen, front);
         } else {
-            self.opening::<DEPTH, CLASS>(&seen, front, &self.sectors[seg.back as usize]);
+            self.opening::<DEPTH>(&seen, front, &self.sectors[seg.back as usize]);
         }
     }
 
@@ -88,7 +88,7 @@ impl Walk<'_> {
     }
 
     /// A wall without another side.
-    fn solid<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenSeg, front: &SectorState) {
+    fn solid<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState) {
         let (ceiling, floor) = (self.edge(seen, front.ceiling), self.edge(seen, front.floor));
         // As if there were an opening without height where the floor is.
         let above = Part { plane: self.ceiling_plane(front), edge: ceiling, wall: Some(floor) };
@@ -98,7 +98,7 @@ impl Walk<'_> {
             _ => front.ceiling,
         };
         if self.above(seen, above) {
-            self.wall::<DEPTH, CLASS>(seen, front, seen.face.middle, hung_from);
+            self.wall::<DEPTH>(seen, front, seen.face.middle, hung_from);
         }
         self.below(seen, below);
         self.openings.close(seen.first, seen.end);
@@ -106,7 +106,7 @@ impl Walk<'_> {
     }
 
     /// A line with a sector on its other side.
-    fn opening<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenSeg, front: &SectorState, back: &SectorState) {
+    fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState, back: &SectorState) {
         let face = seen.face;
         let shut = back.ceiling <= front.floor || back.floor >= front.ceiling || back.floor >= back.ceiling;
         // Between two skies there is no wall: the sky goes on.
@@ -122,7 +122,7 @@ impl Walk<'_> {
                     Some(texture) if !face.upper_unpegged => back.ceiling + self.texture_height(texture),
                     _ => ceiling,
                 };
-                self.wall::<DEPTH, CLASS>(seen, front, face.top, hung_from);
+                self.wall::<DEPTH>(seen, front, face.top, hung_from);
             }
         }
         if shut || front.floor != back.floor || front.floor_texture != back.floor_texture || other_light {
@@ -130,7 +130,7 @@ impl Walk<'_> {
             let part = Part { plane: self.floor_plane(front), edge: self.edge(seen, front.floor), wall };
             if self.below(seen, part) {
                 let hung_from = if face.lower_unpegged { front.ceiling.max(back.ceiling) } else { back.floor };
-                self.wall::<DEPTH, CLASS>(seen, front, face.bottom, hung_from);
+                self.wall::<DEPTH>(seen, front, face.bottom, hung_from);
             }
         }
         let eye = Fixed(self.camera.z as i32);
@@ -250,13 +250,7 @@ impl Walk<'_> {
     }
 
     /// Draws the wall between the upper and the lower scratch.
-    fn wall<const DEPTH: bool, const CLASS: bool>(
-        &mut self,
-        seen: &SeenSeg,
-        front: &SectorState,
-        texture: Option<TextureId>,
-        hung_from: Fixed,
-    ) {
+    fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState, texture: Option<TextureId>, hung_from: Fixed) {
         let range = seen.first..seen.end;
         let shader = WallShader {
             camera: self.camera,
@@ -269,7 +263,7 @@ impl Walk<'_> {
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };
         let (tops, bottoms) = (&self.scratch.upper[range.clone()], &self.scratch.lower[range]);
-        shader.draw::<DEPTH, CLASS>(self.frame, seen.first, tops, bottoms);
+        shader.draw::<DEPTH>(self.frame, seen.first, tops, bottoms);
     }
 
     fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {

@@ -28,7 +28,7 @@ impl Default for SegmentationColours {
 }
 
 impl SegmentationColours {
-    /// No two classes alike, nor nearly so: some channel differs by more than [`NEARLY_ALIKE`].
+    /// No two classes alike, nor nearly so: some channel differs by more than `NEARLY_ALIKE`.
     #[must_use]
     pub fn distinct() -> SegmentationColours {
         let surfaces = [[0, 0, 0], [60, 60, 60], [128, 128, 128], [150, 200, 255], [20, 30, 100], [255, 255, 255]];

@@ -162,9 +162,10 @@ pub(super) struct Covered {
 impl Covered {
     pub const NOTHING: Covered = Covered { columns: [usize::MAX, 0], rows: [usize::MAX, 0] };
 
-    pub fn add(&mut self, x: usize, row: usize) {
+    /// Adds pixels of a column, the first and the last of which are in the rows `first` and `end - 1`.
+    pub fn add(&mut self, x: usize, first: usize, end: usize) {
         self.columns = [self.columns[0].min(x), self.columns[1].max(x + 1)];
-        self.rows = [self.rows[0].min(row), self.rows[1].max(row + 1)];
+        self.rows = [self.rows[0].min(first), self.rows[1].max(end)];
     }
 }
 
@@ -201,18 +202,24 @@ impl SeenSprite {
                 *pixel = if texel & MaskedPicture::OPAQUE != 0 { lit } else { *pixel };
             }
             if DEPTH || CLASS {
+                let (mut first, mut end) = (usize::MAX, 0);
                 for row in rows {
                     let v = (self.v + self.v_step * i64::from(view.rows[row])) >> TEXEL_BITS;
-                    if texels[v as usize] & MaskedPicture::OPAQUE == 0 {
-                        continue;
-                    }
+                    let opaque = texels[v as usize] & MaskedPicture::OPAQUE != 0;
+                    let at = row * frame.width + x;
                     if DEPTH {
-                        frame.depth[row * frame.width + x] = depth;
+                        let pixel = &mut frame.depth[at];
+                        *pixel = if opaque { depth } else { *pixel };
                     }
                     if CLASS {
-                        frame.class[row * frame.width + x] = class;
-                        covered.add(x, row);
+                        let pixel = &mut frame.class[at];
+                        *pixel = if opaque { class } else { *pixel };
+                        first = if opaque { first.min(row) } else { first };
+                        end = if opaque { row + 1 } else { end };
                     }
+                }
+                if first < end {
+                    covered.add(x, first, end);
                 }
             }
         }

@@ -92,7 +92,7 @@ impl Walk<'_> {
     ///
     /// Which child is near and which one is in view cannot be foretold, so that all of it is arithmetic without
     /// branches: children that are out of view are written to the stack too, but not counted.
-    pub fn run<const DEPTH: bool, const CLASS: bool>(&mut self) {
+    pub fn run<const DEPTH: bool>(&mut self) {
         let scene = self.scene;
         let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
         let mut open = self.openings.range();
@@ -104,7 +104,7 @@ impl Walk<'_> {
         };
         loop {
             if child & Node::SUBSECTOR != 0 {
-                self.subsector::<DEPTH, CLASS>((child & !Node::SUBSECTOR) as usize);
+                self.subsector::<DEPTH>((child & !Node::SUBSECTOR) as usize);
                 let now_open = self.openings.range();
                 if now_open.0 >= now_open.1 {
                     return;
@@ -174,7 +174,7 @@ impl Walk<'_> {
         first < end && self.openings.any_open(usize::from(first), usize::from(end))
     }
 
-    fn subsector<const DEPTH: bool, const CLASS: bool>(&mut self, index: usize) {
+    fn subsector<const DEPTH: bool>(&mut self, index: usize) {
         let scene = self.scene;
         let [first, end, sector] = scene.subsectors[index];
         self.entered[sector as usize] = true;
@@ -192,7 +192,7 @@ impl Walk<'_> {
         }
         for i in 0..found {
             let (index, away) = self.scratch.facing[i];
-            self.seg::<DEPTH, CLASS>(index, away);
+            self.seg::<DEPTH>(index, away);
         }
     }
 }

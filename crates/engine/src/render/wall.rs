@@ -2,7 +2,7 @@
 
 use super::View;
 use super::camera::Camera;
-use super::frame::{Frame, class};
+use super::frame::Frame;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::WallPicture;
 use super::scene::{Face, SceneSeg};
@@ -125,7 +125,7 @@ pub(super) struct WallShader<'a> {
 
 impl WallShader<'_> {
     /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on.
-    pub fn draw<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
+    pub fn draw<const DEPTH: bool>(&self, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
         let picture = self.picture;
         let start = (self.hung_from * picture.inverse_height) >> 16;
         for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate() {
@@ -154,11 +154,9 @@ impl WallShader<'_> {
             }
             if DEPTH {
                 let depth = frame.capped_depth(distance);
-                frame.depth[lines.clone()].chunks_exact_mut(frame.width).for_each(|line| line[x] = depth);
+                frame.depth[lines].chunks_exact_mut(frame.width).for_each(|line| line[x] = depth);
             }
-            if CLASS {
-                frame.class[lines].chunks_exact_mut(frame.width).for_each(|line| line[x] = class::WALL);
-            }
+            // The class of a wall is what the frame was cleared to.
         }
     }
 }

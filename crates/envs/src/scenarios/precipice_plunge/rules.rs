@@ -117,9 +117,8 @@ impl Rules {
             let fall = self.landing - z;
             self.landing = z;
             self.deepest_fall = self.deepest_fall.max(fall.floor());
-            if fall > Fixed::from_int(FREE_FALL) {
-                let free = if level.free_fall_is_deducted { Fixed::from_int(FREE_FALL) } else { Fixed::ZERO };
-                world.damage(id, None, None, ((fall - free) * FALL_DAMAGE).floor(), DamageKind::Falling);
+            if let Some(damage) = fall_damage(&level, fall) {
+                world.damage(id, None, None, damage, DamageKind::Falling);
                 self.hard_falls += 1;
                 outcome.finished |= level.fall_ends;
             }
@@ -145,5 +144,41 @@ impl Rules {
         stats.push(("hard_falls", f64::from(self.hard_falls)));
         stats.push(("deepest_fall", f64::from(self.deepest_fall)));
         stats.push(("health", f64::from(stage::health(world).max(0))));
+    }
+}
+
+/// Health points that a fall takes; none for one that is free.
+fn fall_damage(level: &Level, fall: Fixed) -> Option<i32> {
+    let free = if level.free_fall_is_deducted { Fixed::from_int(FREE_FALL) } else { Fixed::ZERO };
+    (fall > Fixed::from_int(FREE_FALL)).then(|| ((fall - free) * FALL_DAMAGE).floor())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::RuleSet;
+    use crate::scenarios::precipice_plunge::levels::level;
+
+    #[test]
+    fn falls_cost_what_was_recorded() {
+        let (mut landing, mut episode, mut hard_falls) = (Fixed::ZERO, [0; 2], 0);
+        for line in include_str!("recorded_falls.txt").lines().filter(|line| !line.starts_with('#')) {
+            let words: Vec<i32> = line.split(' ').map(|word| word.parse().unwrap()).collect();
+            if episode != [words[0], words[1]] {
+                (episode, landing) = ([words[0], words[1]], Fixed::ZERO);
+            }
+            let z = Fixed((i64::from(words[2]) * 65536 / 1000) as i32);
+            let fall = landing - z;
+            landing = landing.min(z);
+            let damage = fall_damage(&level(RuleSet::Released, false, words[0] as usize - 1), fall).unwrap_or(0);
+            if words[0] == 3 {
+                // The floors of level 3 carry the agent on down between its landings, which shortens the next fall.
+                assert!(words[3] <= damage && damage - words[3] <= 13, "{line}: {damage}");
+            } else {
+                assert_eq!(damage, words[3], "{line}");
+                hard_falls += i32::from(damage > 0);
+            }
+        }
+        assert!(hard_falls > 100, "{hard_falls}");
     }
 }
