@@ -21,6 +21,7 @@ pub mod metrics;
 pub mod model;
 pub mod normaliser;
 pub mod optimiser;
+mod presets;
 pub mod progress_bar;
 pub mod random;
 pub mod report;
