@@ -79,18 +79,39 @@ pub(super) fn classes_one_byte<const N: usize>(values: &[u8; N], full: u16, clas
     }
 }
 
+/// Pixels converted at a time where a step in between needs room.
+const STRETCH: usize = 1024;
+
 /// Red, green, blue of each pixel in turn, and its depth.
 pub(super) fn rgb_depth_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], depth: &[u8], out: &mut [u8]) {
-    let colours = palette.map(|[red, green, blue]| u32::from_le_bytes([red, green, blue, 0]));
-    for ((to, &index), &depth) in out.chunks_exact_mut(4).zip(indices).zip(depth) {
-        to.copy_from_slice(&(colours[usize::from(index)] | u32::from(depth) << 24).to_le_bytes());
+    let tables = channels(palette);
+    let mut planes = [[0; STRETCH]; 3];
+    for ((to, indices), depth) in out.chunks_mut(STRETCH * 4).zip(indices.chunks(STRETCH)).zip(depth.chunks(STRETCH)) {
+        for (table, plane) in tables.iter().zip(&mut planes) {
+            look_up(table, indices, &mut plane[..indices.len()]);
+        }
+        let [red, green, blue] = &planes;
+        for ((((to, &red), &green), &blue), &depth) in to.chunks_exact_mut(4).zip(red).zip(green).zip(blue).zip(depth) {
+            to.copy_from_slice(&[red, green, blue, depth]);
+        }
     }
 }
 
 /// The colour of each class, pixel by pixel.
 pub(super) fn classes_interleaved<const N: usize>(colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
-    for (to, &class) in out.chunks_exact_mut(3).zip(classes) {
-        to.copy_from_slice(&colour_of(colours, class));
+    let mut palette = [[0; 3]; 256];
+    palette.iter_mut().zip(colours).for_each(|(to, &colour)| *to = colour);
+    let mut indices = [0; STRETCH];
+    for (to, classes) in out.chunks_mut(STRETCH * 3).zip(classes.chunks(STRETCH)) {
+        // Few pictures hold so many things that a class does not fit a byte.
+        if classes.iter().fold(0, |bits, &class| bits | class) < N.min(256) as u16 {
+            indices.iter_mut().zip(classes).for_each(|(index, &class)| *index = class as u8);
+            rgb_interleaved(&palette, &indices[..classes.len()], to);
+        } else {
+            for (to, &class) in to.chunks_exact_mut(3).zip(classes) {
+                to.copy_from_slice(&colour_of(colours, class));
+            }
+        }
     }
 }
 
@@ -118,6 +139,29 @@ mod tests {
                 classes_one_byte(&values, 5, &classes, &mut out);
                 let plain: Vec<u8> = classes.iter().map(|&class| values[usize::from(class).min(63)]).collect();
                 assert_eq!(out, plain);
+            }
+        }
+    }
+
+    #[test]
+    fn depth_and_classes_stand_where_they_belong() {
+        let mut rng = Rng::new(5);
+        let palette: [[u8; 3]; 256] = std::array::from_fn(|_| [0; 3].map(|_| rng.byte() as u8));
+        let colours: [[u8; 3]; 1024] = std::array::from_fn(|_| [0; 3].map(|_| rng.byte() as u8));
+        for length in [0, 1, 65, 1023, 1024, 1025, 9216] {
+            let indices: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
+            let depth: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
+            let most = if length % 2 == 0 { 1100 } else { 60 };
+            let classes: Vec<u16> = (0..length).map(|_| (rng.byte() as u16 * 5) % most).collect();
+            let mut out = vec![0; length * 4];
+            rgb_depth_interleaved(&palette, &indices, &depth, &mut out);
+            for (i, pixel) in out.chunks_exact(4).enumerate() {
+                assert_eq!((&pixel[..3], pixel[3]), (&palette[usize::from(indices[i])][..], depth[i]));
+            }
+            let mut out = vec![0; length * 3];
+            classes_interleaved(&colours, &classes, &mut out);
+            for (i, pixel) in out.chunks_exact(3).enumerate() {
+                assert_eq!(pixel, colour_of(&colours, classes[i]));
             }
         }
     }
