@@ -34,10 +34,15 @@ fn look_up_plainly(table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
 
 /// Red, green, blue of each pixel in turn.
 pub(super) fn rgb_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
+    interleaved(palette, &channels(palette), indices, out);
+}
+
+/// The same with the palette's `channels`, which callers that come often make once.
+fn interleaved(palette: &[[u8; 3]; 256], channels: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) {
     #[cfg(target_arch = "x86_64")]
-    let done = Wide::detect().map_or(0, |wide| wide.interleaved(&channels(palette), indices, out));
+    let done = Wide::detect().map_or(0, |wide| wide.interleaved(channels, indices, out));
     #[cfg(not(target_arch = "x86_64"))]
-    let done = 0;
+    let (_, done) = (channels, 0);
     rgb_interleaved_plainly(palette, &indices[done..], &mut out[done * 3..]);
 }
 
@@ -101,12 +106,13 @@ pub(super) fn rgb_depth_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], de
 pub(super) fn classes_interleaved<const N: usize>(colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
     let mut palette = [[0; 3]; 256];
     palette.iter_mut().zip(colours).for_each(|(to, &colour)| *to = colour);
+    let channels = channels(&palette);
     let mut indices = [0; STRETCH];
     for (to, classes) in out.chunks_mut(STRETCH * 3).zip(classes.chunks(STRETCH)) {
         // Few pictures hold so many things that a class does not fit a byte.
         if classes.iter().fold(0, |bits, &class| bits | class) < N.min(256) as u16 {
             indices.iter_mut().zip(classes).for_each(|(index, &class)| *index = class as u8);
-            rgb_interleaved(&palette, &indices[..classes.len()], to);
+            interleaved(&palette, &channels, &indices[..classes.len()], to);
         } else {
             for (to, &class) in to.chunks_exact_mut(3).zip(classes) {
                 to.copy_from_slice(&colour_of(colours, class));

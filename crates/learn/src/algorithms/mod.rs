@@ -117,14 +117,14 @@ pub fn make(config: &TrainConfig) -> Box<dyn Algorithm> {
     match config.algorithm {
         Kind::Ppo | Kind::PpoCost | Kind::PpoSaute => Box::new(ppo::Ppo::new(config)),
         Kind::PpoLag => Box::new(ppo_lag::PpoLag::new(config)),
-        Kind::PpoPid => Box::new(ppo_pid::PpoPid::new(config)),
+        Kind::PpoPid => Box::new(ppo_pid::new(config)),
         Kind::P3o => Box::new(p3o::P3o::new(config)),
         Kind::Focops => Box::new(focops::Focops::new(config)),
         Kind::Cup => Box::new(cup::Cup::new(config)),
         Kind::Ipo => Box::new(ipo::Ipo::new(config)),
         Kind::Trpo => Box::new(trpo::Trpo::new(config)),
         Kind::TrpoLag => Box::new(trpo_lag::TrpoLag::new(config)),
-        Kind::TrpoPid => Box::new(trpo_pid::TrpoPid::new(config)),
+        Kind::TrpoPid => Box::new(trpo_pid::new(config)),
         Kind::Cpo => Box::new(cpo::Cpo::new(config)),
     }
 }

@@ -21,7 +21,11 @@ impl PpoLag {
     /// PPOLag with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> PpoLag {
-        let multipliers = Lagrange::all(&config.algorithm_settings, config.constraints.len(), None);
+        PpoLag::moved_by(Lagrange::all(&config.algorithm_settings, config.constraints.len(), None), config)
+    }
+
+    /// The same with multipliers that move by another rule.
+    pub(super) fn moved_by(multipliers: Multipliers, config: &TrainConfig) -> PpoLag {
         PpoLag { settings: config.learning.clone(), multipliers }
     }
 }
@@ -34,6 +38,7 @@ impl Algorithm for PpoLag {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
+        // The original divides by one plus the multipliers under PID control; that cancels in the standardisation.
         let advantages = standardised(lagrangian_advantages(minibatch, &self.multipliers()));
         let advantages = minibatch.tensor(advantages);
         learner.descend(minibatch, |heads, batch| ppo::loss(&advantages, heads, batch, &self.settings), means)

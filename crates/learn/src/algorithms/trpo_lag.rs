@@ -19,7 +19,11 @@ impl TrpoLag {
     /// TRPOLag with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> TrpoLag {
-        let multipliers = Lagrange::all(&config.algorithm_settings, config.constraints.len(), None);
+        TrpoLag::moved_by(Lagrange::all(&config.algorithm_settings, config.constraints.len(), None), config)
+    }
+
+    /// The same with multipliers that move by another rule.
+    pub(super) fn moved_by(multipliers: Multipliers, config: &TrainConfig) -> TrpoLag {
         TrpoLag { trpo: Trpo::new(config), multipliers }
     }
 }
