@@ -1,5 +1,4 @@
-//! Draws views of a small test level, to be looked at: `cargo run --release -p hasard-engine --example frames -- OUTDIR`;
-//! with `--time` it measures instead.
+//! Draws views of a small test level, to be looked at: `cargo run --release -p hasard-engine --example frames -- OUTDIR`.
 
 use hasard_engine::assets::{Assets, sprite_index};
 use hasard_engine::map::{Map, MapBuilder, Mark, Style, TileGrid};
@@ -8,7 +7,6 @@ use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, SegmentationCol
 use hasard_engine::world::{ActorKind, PlayerSprite, Weapon, World};
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
 
 fn volcano() -> Map {
     let style = |column: usize, row: usize| Style {
@@ -108,33 +106,6 @@ fn main() {
     let mut world = world(&map);
     platforms(&mut world, 3, 40, 16, 16);
     items(&mut world, 5, 30, &[ActorKind::ArmorBonus]);
-    if arguments.first().is_some_and(|a| a == "--time") {
-        let learner_only = arguments.len() > 1;
-        let sizes = if learner_only { 1 } else { 5 };
-        for size in [(128, 72), (160, 120), (320, 240), (640, 480), (1920, 1080)].into_iter().take(sizes) {
-            let size = FrameSize { width: size.0, height: size.1 };
-            let mut renderer = Renderer::new(scene.clone(), Arc::new(View::new(size).unwrap()));
-            let all = [(false, false), (true, false), (false, true), (true, true)];
-            for (depth, labels) in all.into_iter().take(if learner_only { 1 } else { 4 }) {
-                // The best of several runs at each place, which keeps out what else the machine does.
-                let frames = if size.width > 400 { 50 } else { 1000 };
-                let mut best = vec![f64::MAX; frames];
-                for _ in 0..if learner_only { arguments[1].parse().unwrap_or(60) } else { 9 } {
-                    let mut rng = Rng::new(9);
-                    for best in &mut best {
-                        let (x, y) = (rng.between(20, 2150), rng.between(84, 2220));
-                        place(&mut world, x, y, f64::from(rng.between(0, 359)), 16.5);
-                        let start = Instant::now();
-                        renderer.render(&world, 0, Buffers { depth, labels });
-                        *best = best.min(start.elapsed().as_secs_f64());
-                    }
-                }
-                let best = best.iter().sum::<f64>() / frames as f64;
-                println!("{size} depth {depth} labels {labels}: {:.2} us", best * 1e6);
-            }
-        }
-        return;
-    }
     let folder = Path::new(arguments.first().map_or("/tmp/frames", String::as_str));
     std::fs::create_dir_all(folder).expect("the output folder is writable");
     let all: Vec<ActorKind> = ActorKind::all().collect();
