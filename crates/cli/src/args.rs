@@ -343,7 +343,7 @@ pub struct RenderArgs {
 }
 
 /// `hasard train`.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Clone)]
 pub struct TrainArgs {
     /// Environment id
     pub env: String,

@@ -12,15 +12,18 @@ mod episode_lines;
 mod settings;
 
 use args::{Cli, Command};
-use clap::Parser;
+use clap::{ArgMatches, CommandFactory, FromArgMatches};
 use failure::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
+    let parsed = Cli::command().try_get_matches().and_then(|matches| Ok((Cli::from_arg_matches(&matches)?, matches)));
+    let (cli, matches) = match parsed {
+        Ok(parsed) => parsed,
         Err(error) => return failure::report_usage(&error),
     };
+    // Which of a command's flags were typed, and which have their default.
+    let typed = matches.subcommand().map_or(&matches, |(_, typed): (_, &ArgMatches)| typed);
     let outcome = match cli.command {
         Command::Envs(args) => commands::envs::run(&args),
         Command::Play(args) => commands::play::run(&args),
@@ -28,7 +31,7 @@ fn main() -> ExitCode {
         Command::Trace(args) => commands::trace::run(&args),
         Command::Bench(args) => commands::bench::run(&args),
         Command::Render(args) => commands::render::run(&args),
-        Command::Train(args) => commands::train::run(&args),
+        Command::Train(args) => commands::train::run(&args, typed),
         Command::Eval(args) => commands::eval::run(&args),
         Command::Record(args) => commands::record::run(&args),
         Command::Replay(args) => commands::record::replay(&args),

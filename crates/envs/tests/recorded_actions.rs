@@ -6,11 +6,6 @@ use hasard_envs::{Env, EnvOptions, RuleSet};
 /// Return, cost and length.
 type Figures = (f64, f64, u32);
 
-/// Agents whose way differs from the recorded one somewhere.
-///
-/// Both come out with other directions of the lines between tiles than the rest allows; more than that is not known.
-const ASTRAY: [u32; 2] = [1032, 1041];
-
 fn env(hard: bool) -> Env {
     Env::new("PrecipicePlungeLevel1-v0", &EnvOptions { rules: RuleSet::Released, hard, ..EnvOptions::default() }).unwrap()
 }
@@ -50,5 +45,5 @@ fn random_agents_come_out_where_they_did() {
             hard_episodes += 1;
         }
     }
-    assert_eq!((astray, hard_episodes), (ASTRAY.to_vec(), 20));
+    assert_eq!((astray, hard_episodes), (Vec::<u32>::new(), 20));
 }

@@ -365,7 +365,7 @@ pub struct AlgorithmConfig {
 pub struct ReportingConfig {
     /// Seconds between reports; 0 reports after every rollout.
     pub report_seconds: f64,
-    /// Seconds between checkpoints; 0 writes one after every rollout.
+    /// Seconds between checkpoints; 0 writes one after every rollout that the disk keeps up with.
     pub checkpoint_seconds: f64,
     /// Checkpoints that are kept beside the best feasible one.
     pub keep: usize,

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use crate::checkpoint::{Checkpoint, Progress, Store};
 use crate::config::TrainConfig;
+use crate::device::ComputeDevice;
 use crate::error::LearnError;
 use crate::gather::panic_text;
 use crate::heatmap::Heatmap;
@@ -72,10 +73,12 @@ fn begin(
     match start {
         Start::Fresh(config) => {
             config.check()?;
+            ComputeDevice::named(&config.device)?;
             Ok((RunDirectory::create(directory, &config)?, config, Beginning::Nothing))
         }
         Start::From(config, other) => {
             config.check()?;
+            ComputeDevice::named(&config.device)?;
             let loaded = Store::new(other, 1).newest(hooks.warn)?;
             let loaded = loaded.ok_or_else(|| LearnError::content(other, "no checkpoint to take weights from is here"))?;
             Ok((RunDirectory::create(directory, &config)?, config, Beginning::Weights(Box::new(loaded))))
@@ -177,10 +180,10 @@ impl<'a> Trainer<'a> {
                 heatmap.line(self.session.frames, over || lesson_is_over).into_iter().for_each(|line| writer.heatmap(line));
             }
             writer.check()?;
-            if over || last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds {
+            let due = last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds;
+            if over || (due && writer.keeps_up()) {
                 let (checkpoint, best) = self.checkpoint()?;
-                // The last checkpoint waits for the disk; one on the way is left out if the disk is far behind.
-                let _ = writer.checkpoint(checkpoint, best, over);
+                writer.checkpoint(checkpoint, best);
                 last_checkpoint = Instant::now();
             }
             if !over && !self.lesson_is_over() {

@@ -1,7 +1,9 @@
 //! The thread that writes to the disk, so that sampling and learning never wait for it.
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
 use serde_json::Value;
@@ -18,26 +20,34 @@ enum Job {
 
 /// Writes rows and checkpoints in the order in which they were given.
 pub struct Writer {
-    jobs: Option<SyncSender<Job>>,
+    jobs: Option<Sender<Job>>,
+    /// Checkpoints that were handed over and are not on the disk yet.
+    waiting: Arc<AtomicUsize>,
     errors: Receiver<LearnError>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Jobs that may wait; when the disk is that far behind, a checkpoint is left out and a row waits.
-const QUEUE: usize = 8;
+/// Checkpoints that may wait for the disk. Rows are small: any number of them may.
+const MOST_WAITING: usize = 2;
 
 impl Writer {
     /// A writer for a run's directory.
     pub fn new(run: &Path, store: Store) -> Result<Writer, LearnError> {
         let mut log = MetricsLog::open(run)?;
-        let (jobs, queue) = sync_channel(QUEUE);
+        let (jobs, queue) = channel();
         let (failing, errors) = channel();
+        let waiting = Arc::new(AtomicUsize::new(0));
+        let written = Arc::clone(&waiting);
         let thread = std::thread::spawn(move || {
             for job in queue {
                 let result = match job {
                     Job::Row(frames, row) => log.write(frames, &row),
                     Job::Heatmap(line) => log.write_heatmap(&line),
-                    Job::Checkpoint(checkpoint, best) => store.write(&checkpoint, best),
+                    Job::Checkpoint(checkpoint, best) => {
+                        let result = store.write(&checkpoint, best);
+                        written.fetch_sub(1, Ordering::Relaxed);
+                        result
+                    }
                 };
                 if let Err(error) = result {
                     let _ = failing.send(error);
@@ -45,7 +55,7 @@ impl Writer {
                 }
             }
         });
-        Ok(Writer { jobs: Some(jobs), errors, thread: Some(thread) })
+        Ok(Writer { jobs: Some(jobs), waiting, errors, thread: Some(thread) })
     }
 
     /// The first error of the disk, if there was one.
@@ -68,15 +78,18 @@ impl Writer {
         }
     }
 
-    /// Hands a checkpoint over. Returns false if the disk is too far behind to take it.
+    /// Whether the disk is near enough to take another checkpoint. Otherwise one had better be left out than wait in memory.
     #[must_use]
-    pub fn checkpoint(&self, checkpoint: Checkpoint, best: bool, wait: bool) -> bool {
-        let Some(jobs) = &self.jobs else { return false };
-        let job = Job::Checkpoint(Box::new(checkpoint), best);
-        if wait {
-            return jobs.send(job).is_ok();
+    pub fn keeps_up(&self) -> bool {
+        self.waiting.load(Ordering::Relaxed) < MOST_WAITING
+    }
+
+    /// Hands a checkpoint over.
+    pub fn checkpoint(&self, checkpoint: Checkpoint, best: bool) {
+        if let Some(jobs) = &self.jobs {
+            self.waiting.fetch_add(1, Ordering::Relaxed);
+            let _ = jobs.send(Job::Checkpoint(Box::new(checkpoint), best));
         }
-        !matches!(jobs.try_send(job), Err(TrySendError::Full(_)))
     }
 
     /// Waits until everything is written.

@@ -9,6 +9,7 @@ pub mod play;
 pub mod record;
 pub mod render;
 pub mod report;
+mod resume;
 pub mod rollout;
 pub mod sweep;
 pub mod trace;

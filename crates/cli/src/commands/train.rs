@@ -3,6 +3,7 @@
 use crate::args::TrainArgs;
 use crate::automap;
 use crate::failure::{Failure, Outcome};
+use clap::ArgMatches;
 use hasard_envs::{EnvId, VecEnv};
 use hasard_learn::config::{Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::curriculum::parse_curriculum;
@@ -14,8 +15,8 @@ use hasard_learn::trainer::{Hooks, Start, train};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Runs the command.
-pub fn run(args: &TrainArgs) -> Outcome {
+/// Runs the command; `typed` tells which flags were given and which have their default.
+pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     let directory =
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("runs/{}-{}-seed{}", args.env, args.algo, args.seed)));
     let (start, config) = if args.resume && directory.join("config.json").exists() {
@@ -26,6 +27,7 @@ pub fn run(args: &TrainArgs) -> Outcome {
             let problem = format!("{}: the run there is of {}; name that, or another --out", directory.display(), config.env.id);
             return Err(Failure::bad(problem));
         }
+        super::resume::check(args, typed, &config, &directory)?;
         (Start::Resume { frames: args.frames }, config)
     } else {
         let config = configuration(args)?;

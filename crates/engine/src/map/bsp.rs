@@ -4,7 +4,7 @@
 //! 1/65536 unit, and it is computed from the uncut line, so that errors never add up. Points closer to a partition
 //! than [`EPSILON`] count as on it, which keeps cuts from leaving slivers.
 
-use super::{Line, MapError, Node, SectorId, Seg, SideId, Subsector, Vertex};
+use super::{Line, MapError, Node, SectorId, Seg, Side, SideId, Subsector, Vertex};
 use crate::math::Fixed;
 
 /// Deepest tree; renderers may keep a stack of this size. Balanced trees of 65,000 segs are about 30 deep.
@@ -132,9 +132,13 @@ struct Builder<'a> {
 }
 
 /// Builds the tree for closed sectors.
-pub(super) fn build(lines: &[Line]) -> Result<Tree, MapError> {
+pub(super) fn build(lines: &[Line], sides: &[Side]) -> Result<Tree, MapError> {
+    // A line that parts a sector from itself and shows nothing stops bodies at most: no view needs it.
+    let shows = |side: Option<SideId>| side.is_some_and(|side| sides[side.0 as usize].middle.is_some());
+    let parts = |line: &Line| line.back_sector != Some(line.front_sector) || shows(Some(line.front)) || shows(line.back);
+    let none_parts = !lines.iter().any(parts);
     let mut segs = Vec::with_capacity(lines.len() * 2);
-    for (index, line) in lines.iter().enumerate() {
+    for (index, line) in lines.iter().enumerate().filter(|(_, line)| none_parts || parts(line)) {
         segs.push(WorkSeg { v1: line.v1, v2: line.v2, line: index as u32, back: false });
         if line.back.is_some() {
             segs.push(WorkSeg { v1: line.v2, v2: line.v1, line: index as u32, back: true });

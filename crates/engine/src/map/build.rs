@@ -49,7 +49,7 @@ impl Map {
             .collect();
         tags.sort_unstable();
         let blockmap = Blockmap::build(&lines)?;
-        let tree = bsp::build(&lines)?;
+        let tree = bsp::build(&lines, &sides)?;
         Ok(Map {
             name: name.to_owned(),
             textures,

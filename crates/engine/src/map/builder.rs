@@ -46,6 +46,8 @@ pub struct Mark {
     pub lintel: Option<&'static str>,
     /// Stops every walker. Also keeps the line where it parts no two sectors.
     pub blocking: bool,
+    /// Keeps the line where it parts no two sectors. Nothing of it is seen, but slides of bodies know it.
+    pub kept: bool,
     /// The wall texture stands on the floor, or the lower texture hangs from the higher ceiling.
     pub lower_unpegged: bool,
     /// The upper texture hangs from the higher ceiling.
@@ -186,11 +188,16 @@ impl MapBuilder {
         };
         let mut edges = Vec::new();
         for piece in &pieces {
-            let mark = piece.owners.iter().rev().find_map(|owner| match *owner {
-                Owner::Mark(mark) => Some(mark),
-                Owner::Polygon(_) => None,
-            });
-            let keep = mark.is_some_and(|m| self.marks[m].0.blocking || self.marks[m].0.middle.is_some());
+            let marks = || {
+                piece.owners.iter().rev().filter_map(|owner| match *owner {
+                    Owner::Mark(mark) => Some(mark),
+                    Owner::Polygon(_) => None,
+                })
+            };
+            // Textures run on past a line that is only kept.
+            let mark = marks().find(|&mark| self.marks[mark].0 != Mark { kept: true, ..Mark::default() });
+            let keep = marks().any(|mark| self.marks[mark].0.kept)
+                || mark.is_some_and(|mark| self.marks[mark].0.blocking || self.marks[mark].0.middle.is_some());
             let (right, left) = (region_at(piece.a, piece.b, false), region_at(piece.a, piece.b, true));
             match (right, left) {
                 (None, None) if keep => {

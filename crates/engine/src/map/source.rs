@@ -62,6 +62,26 @@ pub struct MapSource {
     pub things: Vec<SourceThing>,
 }
 
+impl MapSource {
+    /// Turns the two-sided lines that `turned` picks, given their ends (x, y) in map units and the sectors in front and behind:
+    /// they run the other way, and front and back change places.
+    ///
+    /// Which way a line runs shows nowhere, but bodies feel it: within a 64th of a unit they count as in front of it, so that it
+    /// decides on which tic a body that falls along a step begins to slide.
+    pub fn turn_lines(&mut self, mut turned: impl FnMut([(f64, f64); 2], [&SourceSector; 2]) -> bool) {
+        let ends = |vertex: usize| (self.vertices[vertex].x, self.vertices[vertex].y);
+        let sector = |side: usize| &self.sectors[self.sides[side].sector];
+        for line in &mut self.lines {
+            if let Some(back) = line.back
+                && turned([ends(line.v1), ends(line.v2)], [sector(line.front), sector(back)])
+            {
+                std::mem::swap(&mut line.v1, &mut line.v2);
+                (line.front, line.back) = (back, Some(line.front));
+            }
+        }
+    }
+}
+
 /// A vertex of the source.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SourceVertex {

@@ -1,6 +1,6 @@
 //! Authoring maps that are grids of square tiles.
 
-use super::{MapBuilder, Style};
+use super::{MapBuilder, Mark, Style};
 
 /// A grid of square tiles, row by row from the south-west.
 #[derive(Clone, Debug)]
@@ -35,6 +35,18 @@ impl TileGrid {
                 let style = self.styles[row * self.columns + column];
                 builder.rectangle(style, west, south, west + self.tile, south + self.tile);
             }
+        }
+    }
+
+    /// Paints the tiles, and keeps a line between any two of them, also where they are one sector.
+    pub fn paint_apart(&self, builder: &mut MapBuilder) {
+        self.paint(builder);
+        let kept = Mark { kept: true, ..Mark::default() };
+        for column in 1..self.columns {
+            builder.mark(kept, &[self.corner(column, 0), self.corner(column, self.rows)]);
+        }
+        for row in 1..self.rows {
+            builder.mark(kept, &[self.corner(0, row), self.corner(self.columns, row)]);
         }
     }
 

@@ -4,7 +4,7 @@ use super::view::VIEW_HEIGHT;
 use super::{ActorId, Buttons, FaceState, WeaponState, ammo};
 use crate::math::Fixed;
 
-/// Tics after the start of a map during which no input has effect; scenarios may change a player's count.
+/// Tics after the start of a map during which bodies neither turn, walk nor jump; scenarios may change a player's count.
 pub const SPAWN_FREEZE_TICS: u32 = 8;
 
 /// A weapon that a player can hold, in slot order.
@@ -83,7 +83,7 @@ pub struct Player {
     pub invulnerable: bool,
     /// Multiplier of damage taken; zero also stops thrust and flash.
     pub damage_factor: Fixed,
-    /// Tics before input has effect (the spawn freeze).
+    /// Tics before the body can turn, walk and jump (the spawn freeze); looking, crouching and shooting work at once.
     pub freeze_tics: u32,
     /// Health points are 0.
     pub dead: bool,

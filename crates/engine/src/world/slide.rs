@@ -14,7 +14,7 @@ const GAP: Fixed = Fixed((1 << 16) / 32);
 /// Attempts to slide before stair-stepping.
 const ATTEMPTS: u32 = 2;
 
-/// A straight piece of a corner's way.
+/// A point and a direction: a corner's way, or the straight line that a wall lies on.
 #[derive(Clone, Copy)]
 struct Trace {
     x: Fixed,
@@ -31,15 +31,24 @@ impl Trace {
         if behind(line, self.x, self.y) == behind(line, self.x + self.dx, self.y + self.dy) {
             return None;
         }
-        let wide = |value: Fixed| i128::from(value.0);
-        let denominator = wide(line.dy) * wide(self.dx) - wide(line.dx) * wide(self.dy);
-        let numerator = wide(line.v1.x - self.x) * wide(line.dy) + wide(self.y - line.v1.y) * wide(line.dx);
-        let (numerator, denominator) = if denominator < 0 { (-numerator, -denominator) } else { (numerator, denominator) };
-        let fraction = match denominator {
-            0 => 0,
-            _ => ((numerator << 17) + denominator).div_euclid(2 * denominator),
-        };
+        let fraction = self.crossing(&Trace::of(line));
         (0..=1 << 16).contains(&fraction).then_some(Fixed(fraction as i32))
+    }
+
+    fn of(line: &Line) -> Trace {
+        Trace { x: line.v1.x, y: line.v1.y, dx: line.dx, dy: line.dy }
+    }
+
+    /// Where another straight line crosses this one, in 65536ths of its direction, rounded to nearest; 0 where they are parallel.
+    fn crossing(&self, other: &Trace) -> i64 {
+        let wide = |value: Fixed| i128::from(value.0);
+        let denominator = wide(other.dy) * wide(self.dx) - wide(other.dx) * wide(self.dy);
+        let numerator = wide(other.x - self.x) * wide(other.dy) + wide(self.y - other.y) * wide(other.dx);
+        let (numerator, denominator) = if denominator < 0 { (-numerator, -denominator) } else { (numerator, denominator) };
+        match denominator {
+            0 => 0,
+            _ => ((numerator << 17) + denominator).div_euclid(2 * denominator) as i64,
+        }
     }
 }
 
@@ -69,8 +78,8 @@ impl World {
                 return;
             }
             (dx, dy) = (dx * rest, dy * rest);
-            let (along_x, along_y) = along(&self.map.lines[wall as usize], dx, dy);
             let actor = &mut self.actors[slot];
+            let (along_x, along_y) = along(&self.map.lines[wall as usize], Trace { x: actor.x, y: actor.y, dx, dy });
             (actor.vx, actor.vy) = (along_x * steps, along_y * steps);
             let (x, y) = (actor.x, actor.y);
             self.limit_bob(slot);
@@ -152,17 +161,24 @@ impl World {
     }
 }
 
-/// What is left of a move along a wall.
-fn along(line: &Line, dx: Fixed, dy: Fixed) -> (Fixed, Fixed) {
+/// What is left of a body's move along a wall.
+///
+/// A slanting wall is met by the move and by the plumb line from the body; what lies between, divided by the part of the move that
+/// reaches the wall, is the move's share along it. The original's way, with its rounding.
+fn along(line: &Line, way: Trace) -> (Fixed, Fixed) {
     if line.dy.0 == 0 {
-        return (dx, Fixed::ZERO);
+        return (way.dx, Fixed::ZERO);
     }
     if line.dx.0 == 0 {
-        return (Fixed::ZERO, dy);
+        return (Fixed::ZERO, way.dy);
     }
-    let wide = |value: Fixed| i128::from(value.0);
-    let inner = wide(dx) * wide(line.dx) + wide(dy) * wide(line.dy);
-    let length_squared = wide(line.dx) * wide(line.dx) + wide(line.dy) * wide(line.dy);
-    let part = |component: Fixed| Fixed((inner * wide(component) / length_squared) as i32);
-    (part(line.dx), part(line.dy))
+    let wall = Trace::of(line);
+    let foot = wall.crossing(&Trace { dx: wall.dy, dy: -wall.dx, ..way });
+    let (met, reach) = (wall.crossing(&way), way.crossing(&wall));
+    let part = |side: Fixed| match reach {
+        0 => Fixed::ZERO,
+        // A way almost parallel to the wall meets it nowhere near; the sum is cut to the range of velocities all the same.
+        _ => Fixed(((i128::from(met - foot) * i128::from(side.0) / i128::from(reach)) as i64).clamp(-(1 << 30), 1 << 30) as i32),
+    };
+    (part(wall.dx), part(wall.dy))
 }

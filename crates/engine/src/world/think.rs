@@ -48,9 +48,9 @@ impl World {
             self.count_down(index);
             return;
         }
-        let pressed = if player.freeze_tics > 0 { Buttons::default() } else { command.buttons };
-        self.crouch(index, slot, pressed);
+        self.crouch(index, slot, command.buttons);
         let player = &mut self.players[index];
+        player.look(command);
         if player.jump_tics != 0 {
             player.jump_tics -= 1;
             if player.on_ground && player.jump_tics < -18 {
@@ -63,7 +63,6 @@ impl World {
         if player.freeze_tics > 0 {
             player.freeze_tics -= 1;
         } else {
-            player.look(command);
             self.turn(index, slot, command);
             self.push(index, slot);
             self.jump(index, slot, command.buttons);

@@ -49,7 +49,7 @@ pub fn source(level: u8) -> MapSource {
         }
     });
     let mut builder = MapBuilder::new();
-    grid.paint(&mut builder);
+    grid.paint_apart(&mut builder);
     let wall = |texture| Mark { wall: Some(texture), ..Mark::default() };
     let at = |column, row| grid.corner(column, row);
     // A stretch of wall for each tile, as in the original: how a body in the air stops at a wall depends on its length.
@@ -67,5 +67,8 @@ pub fn source(level: u8) -> MapSource {
             builder.thing(kind, x, y, 0);
         }
     }
-    builder.finish().expect("the tiles fit together")
+    let mut map = builder.finish().expect("the tiles fit together");
+    // From north to south and from west to east.
+    map.turn_lines(|[(x1, _), (x2, _)], _| x1 == x2);
+    map
 }

@@ -30,13 +30,21 @@ pub fn source(player_x: i32) -> MapSource {
 
     let wall = |texture| Mark { wall: Some(texture), ..Mark::default() };
     // Behind the shooter and at the ends of the range; the far wall stays plain so that targets stand out.
-    builder.mark(wall("SLIME16"), &[(-576, 640), (256, 640)]);
-    builder.mark(wall("SLIME16"), &[(-576, -640), (256, -640)]);
-    builder.mark(wall("SILVER3"), &[(-576, -640), (-576, 640)]);
-    for (south, texture) in [(-320, "CONS1_1"), (-64, "CONS1_5"), (192, "CONS1_7")] {
-        builder.mark(wall(texture), &[(-576, south), (-576, south + 128)]);
+    // In the original's pieces: how a body in the air stops at a wall depends on its length.
+    for (y, cuts) in [(640, [0, 64]), (-640, [-320, -256])] {
+        for [west, east] in [[-576, cuts[0]], cuts, [cuts[1], 256]] {
+            builder.mark(wall("SLIME16"), &[(west, y), (east, y)]);
+        }
     }
+    builder.mark(Mark::default(), &[(256, 0), (256, 192)]);
+    builder.mark(wall("SILVER3"), &[(-576, -640), (-576, 640)]);
     builder.mark(wall("SILVER3"), &[(256, 192), (224, 192), (224, 320), (256, 320)]);
     builder.thing(1, f64::from(player_x), 0.0, 0);
-    builder.finish().expect("the shapes fit together")
+    let mut map = builder.finish().expect("the shapes fit together");
+    // The room is in front of all lines but those of the northernmost crate.
+    map.turn_lines(|[(_, y), _], [front, _]| {
+        let in_room = front.floor == ROOM.floor && front.ceiling_texture.as_str() == ROOM.ceiling_texture;
+        in_room == (544.0..=576.0).contains(&y)
+    });
+    map
 }

@@ -16,11 +16,13 @@ pub const FIRST_TAG: i32 = 128;
 /// Ceiling before it sinks.
 pub const CEILING: i32 = 128;
 
-/// The lines at the western edge of these columns run from north to south, all others that part two tiles from south to north or
-/// from west to east. The engine counts a body within a 64th of a unit of a tile's line as in front of it, so that the direction
-/// decides on which tic a body that falls along a step begins to slide: episodes recorded with random actions come out exactly
-/// with these columns turned, and with any one of them not so, several do not.
-const TURNED_COLUMNS: [i32; 9] = [11, 13, 15, 17, 18, 20, 22, 24, 28];
+/// Whether the lines at a column's western edge run from north to south; those of all other columns run from south to north.
+const fn runs_south(column: usize) -> bool {
+    matches!(column, 11 | 13 | 15 | 17 | 55 | 57) || (column >= 18 && column <= 54 && column % 2 == 0)
+}
+
+/// The row whose southern lines run from east to west; those of all other rows run from west to east.
+const WESTWARD_ROW: usize = 5;
 
 /// The tag of a tile, 0 on the start platform.
 #[must_use]
@@ -44,9 +46,8 @@ pub fn source(bottom: usize) -> MapSource {
         special: 0,
         tag: tag(column, row),
     });
-    grid.paint(&mut builder);
-    // The platform's walls are in pieces of a tile, as in the original: how a body in the air stops at a wall depends on
-    // its length.
+    // Every tile has lines of its own, on the platform too, and its outer walls are in pieces of a tile.
+    grid.paint_apart(&mut builder);
     let mut piece = |from: (usize, usize), to: (usize, usize)| {
         builder.mark(Mark::default(), &[grid.corner(from.0, from.1), grid.corner(to.0, to.1)]);
     };
@@ -59,16 +60,10 @@ pub fn source(bottom: usize) -> MapSource {
     }
     builder.thing(1, 32.0, 224.0, 0);
     let mut map = builder.finish().expect("the tiles fit together");
-    let runs_along = |x: f64| TURNED_COLUMNS.iter().any(|column| x == f64::from(column * TILE));
-    for line in &mut map.lines {
-        let (x1, x2) = (map.vertices[line.v1].x, map.vertices[line.v2].x);
-        if let Some(back) = line.back
-            && x1 == x2
-            && runs_along(x1)
-        {
-            std::mem::swap(&mut line.v1, &mut line.v2);
-            (line.front, line.back) = (back, Some(line.front));
-        }
-    }
+    let tile = |at: f64| at as usize / TILE as usize;
+    map.turn_lines(|[(x1, y1), (x2, _)], _| if x1 == x2 { runs_south(tile(x1)) } else { tile(y1) == WESTWARD_ROW });
+    // The western wall comes last: of two walls that a body wedged in a corner meets at once, it slides along the earlier.
+    let west = |vertex: usize| map.vertices[vertex].x == 0.0;
+    map.lines.sort_by_key(|line| west(line.v1) && west(line.v2));
     map
 }

@@ -56,6 +56,7 @@ const fn wall(texture: &'static str) -> Mark {
         step: None,
         lintel: None,
         blocking: false,
+        kept: false,
         lower_unpegged: true,
         upper_unpegged: false,
         offset: None,

@@ -32,5 +32,25 @@ pub fn source() -> MapSource {
     });
     grid.paint(&mut builder);
     builder.thing(1, 1088.0, 1152.0, 0);
-    builder.finish().expect("the tiles fit together")
+    let mut map = builder.finish().expect("the tiles fit together");
+    let tile = |at: f64, origin: i32| (at as i32 - origin) / TILE;
+    map.turn_lines(|[(x1, y1), (x2, _)], _| {
+        let (column, row) = (tile(x1, ORIGIN.0), tile(y1, ORIGIN.1));
+        if x1 == x2 { runs_south(column, row) } else { runs_west(column, row) }
+    });
+    map
+}
+
+/// Whether the line at a tile's western edge runs from north to south; the others run from south to north.
+const fn runs_south(column: i32, row: i32) -> bool {
+    match column {
+        1..=8 => row < 9 || column % 2 == 0,
+        9 => row < 9,
+        _ => column % 2 == 1,
+    }
+}
+
+/// Whether the line at a tile's southern edge runs from east to west; the others run from west to east.
+const fn runs_west(column: i32, row: i32) -> bool {
+    row % 2 == 0 && (row > 9 || column >= 9)
 }

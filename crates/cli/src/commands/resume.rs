@@ -1,0 +1,139 @@
+//! `hasard train --resume`: a flag that contradicts the run in the directory is refused instead of ignored.
+
+use super::train::configuration;
+use crate::args::TrainArgs;
+use crate::failure::{Failure, Outcome};
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+use hasard_learn::config::TrainConfig;
+use serde_json::Value;
+use std::path::Path;
+
+/// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
+/// `--frames` is absent: a resumed run may be given another length.
+const DECIDES: [(&str, &[&str]); 21] = [
+    ("algo", &["/algorithm"]),
+    ("preset", &["/preset"]),
+    ("curriculum", &["/curriculum"]),
+    ("safety_budget", &["/constraints"]),
+    ("cost_scale", &["/algorithm_settings/penalty_scale"]),
+    ("device", &["/device"]),
+    ("sync", &["/sampling/synchronous"]),
+    ("asynchronous", &["/sampling/synchronous"]),
+    ("threads", &["/learning/threads", "/sampling/samplers"]),
+    ("envs", &["/sampling/lanes"]),
+    ("seed", &["/seed"]),
+    ("rules", &["/env/rules"]),
+    ("hard", &["/env/hard"]),
+    ("full_actions", &["/env/full_actions"]),
+    ("frame_skip", &["/env/frame_skip"]),
+    ("size", &["/env/size"]),
+    ("iwad", &["/env/iwad"]),
+    ("observation", &["/env/observation"]),
+    ("frame_stack", &["/env/frame_stack"]),
+    ("published_depth", &["/env/published_depth"]),
+    ("published_colours", &["/env/published_colours"]),
+];
+
+/// Refuses flags that were typed and say something else than the run's settings. Flags that repeat them are welcome: a sweep
+/// resumes a run with the command that began it.
+pub fn check(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, directory: &Path) -> Outcome {
+    let given = |id: &str| typed.value_source(id) == Some(ValueSource::CommandLine);
+    // What the command asks for, with the run's own settings wherever other defaults hang on them.
+    let mut args = args.clone();
+    if !given("algo") {
+        args.algo = saved.algorithm.name().into();
+    }
+    if !given("preset") {
+        args.preset = saved.preset.name().into();
+    }
+    if !given("frames") {
+        args.frames = Some(saved.frames);
+    }
+    if !given("device") {
+        args.device.clone_from(&saved.device);
+    }
+    let asked = serde_json::to_value(configuration(&args)?).map_err(Failure::bad)?;
+    let saved = serde_json::to_value(saved).map_err(Failure::bad)?;
+    let flags = DECIDES.iter().filter(|(id, _)| given(id));
+    let mut places: Vec<(String, String)> = flags
+        .flat_map(|(id, pointers)| {
+            let flag = if *id == "asynchronous" { "async" } else { id };
+            let flag = format!("--{}", flag.replace('_', "-"));
+            pointers.iter().map(move |pointer| (flag.clone(), (*pointer).to_string()))
+        })
+        .collect();
+    places.extend(args.set.iter().map(|text| {
+        let name = text.split('=').next().unwrap_or_default();
+        (format!("--set {name}"), format!("/{}", name.replace('.', "/")))
+    }));
+    for (flag, pointer) in places {
+        let (there, wanted) = (saved.pointer(&pointer), asked.pointer(&pointer));
+        if there != wanted {
+            let show = |value: Option<&Value>| value.map_or_else(|| "none".into(), Value::to_string);
+            return Err(Failure::bad(format!(
+                "{flag}: the run in {} has {}, not {}; leave {flag} out to go on with it, or begin another with --out",
+                directory.display(),
+                show(there),
+                show(wanted),
+            )));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Cli, Command};
+    use clap::{CommandFactory, FromArgMatches};
+
+    fn train(line: &str) -> (TrainArgs, ArgMatches) {
+        let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
+        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else { panic!("not a training") };
+        (args, matches.subcommand_matches("train").unwrap().clone())
+    }
+
+    #[test]
+    fn only_flags_that_contradict_the_run_are_refused() {
+        let began = "hasard train RemedyRushLevel1-v0 --algo PPOPID --preset quick --seed 3 --frames 9000 --curriculum 1,2 \
+                     --safety-budget 7 --threads 1 --hard --set learning.gamma=0.9";
+        let saved = configuration(&train(began).0).unwrap();
+        let check = |line: &str| {
+            let (args, typed) = train(line);
+            check(&args, &typed, &saved, Path::new("run"))
+        };
+        for fine in ["", "--frames 20000", "--algo ppopid --seed 3", "--hard --threads 1 --sync --device cpu", "--json --quiet"] {
+            check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {fine}")).unwrap();
+        }
+        check(&format!("{began} --resume --out run")).unwrap();
+        for (wrong, named) in [
+            ("--algo PPOLag", "--algo: the run in run has \"PPOPID\", not \"PPOLag\""),
+            ("--preset paper", "--preset: the run in run has \"quick\", not \"paper\""),
+            ("--seed 1", "--seed: the run in run has 3, not 1"),
+            ("--safety-budget 5", "--safety-budget: "),
+            ("--async", "--async: the run in run has true, not false"),
+            ("--frame-skip 8", "--frame-skip: the run in run has 4, not 8"),
+            ("--frame-skip 4 --size 64x48", "--size: the run in run has [128,72], not [64,48]"),
+            ("--set learning.gamma=0.99", "--set learning.gamma: the run in run has 0.9, not 0.99"),
+            ("--iwad some.wad", "--iwad: the run in run has none, not \"some.wad\""),
+        ] {
+            let line = format!("hasard train RemedyRushLevel1-v0 --resume --out run {wrong}");
+            match check(&line) {
+                Err(Failure::BadInput(message)) => assert!(message.starts_with(named), "{wrong}: {message}"),
+                other => panic!("{wrong}: {other:?}"),
+            }
+        }
+    }
+
+    /// A flag that is added to `train` must be thought of here.
+    #[test]
+    fn every_flag_of_train_is_known_to_decide_something_or_nothing() {
+        let harmless = ["env", "frames", "out", "resume", "init_from", "set", "json", "quiet", "help", "version"];
+        let command = Cli::command();
+        for argument in command.find_subcommand("train").unwrap().get_arguments() {
+            let id = argument.get_id().as_str();
+            assert!(harmless.contains(&id) != DECIDES.iter().any(|(known, _)| *known == id), "{id}");
+        }
+    }
+}
