@@ -122,7 +122,9 @@ impl Rules {
     fn appear(&mut self, kind: ActorKind, world: &mut World) {
         let level = self.fixtures.level;
         let barrel = kind == ActorKind::ExplosiveBarrel;
-        let Some(id) = stage::scatter(world, kind, AREA, APPEARANCE_HEIGHT, if barrel { BARREL } else { 0 }) else { return };
+        let Some(id) = stage::scatter_inside(world, kind, AREA, APPEARANCE_HEIGHT, if barrel { BARREL } else { 0 }) else {
+            return;
+        };
         let own_health = CREATURES.iter().position(|&creature| creature == kind).map_or(1, |i| CREATURE_HEALTH[i]);
         if let Some(actor) = world.get_mut(id) {
             actor.health = if barrel { 1 } else { level.health.unwrap_or(own_health) };

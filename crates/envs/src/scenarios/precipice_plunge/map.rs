@@ -18,7 +18,7 @@ pub const CEILING: i32 = 128;
 
 /// Whether the lines at a column's western edge run from north to south; those of all other columns run from south to north.
 const fn runs_south(column: usize) -> bool {
-    matches!(column, 11 | 13 | 15 | 17 | 55 | 57) || (column >= 18 && column <= 54 && column % 2 == 0)
+    matches!(column, 11 | 13 | 15 | 17 | 55 | 57) || (column >= 18 && column <= 54 && column.is_multiple_of(2))
 }
 
 /// The row whose southern lines run from east to west; those of all other rows run from west to east.

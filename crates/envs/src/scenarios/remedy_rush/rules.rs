@@ -75,10 +75,10 @@ impl Rules {
         }
         if world.tic.is_multiple_of(SUPPLY_TICS) {
             for _ in 0..SUPPLY_BONUSES {
-                stage::try_scatter(world, ActorKind::HealthBonus, ITEM_AREA, ITEM_HEIGHT);
+                stage::scatter(world, ActorKind::HealthBonus, ITEM_AREA, ITEM_HEIGHT, 0);
             }
             for kind in level.harmful {
-                stage::try_scatter(world, kind, ITEM_AREA, ITEM_HEIGHT);
+                stage::scatter(world, kind, ITEM_AREA, ITEM_HEIGHT, 0);
             }
         }
     }

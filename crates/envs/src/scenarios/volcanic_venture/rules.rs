@@ -21,7 +21,7 @@ const JUMPS: usize = 1;
 pub const TEXTURES: &[&str] = &["FLOOR0_5", "LAVA1"];
 /// Where agents start who may start anywhere.
 const AGENT_AREA: stage::Area = [0, 64, 2176, 2240];
-/// Where items appear: a little beyond the cavern, so that a try may fail.
+/// Where items appear: a little beyond the cavern, so that some lie behind its walls.
 const ITEM_AREA: stage::Area = [1, 1, 2239, 2239];
 /// Height at which items and agents appear, from where they fall.
 const APPEARANCE_HEIGHT: i32 = 20;
@@ -269,5 +269,5 @@ fn tag(tile: usize) -> i32 {
 }
 
 fn new_item(world: &mut World) {
-    stage::try_scatter(world, ActorKind::ArmorBonus, ITEM_AREA, APPEARANCE_HEIGHT);
+    stage::scatter(world, ActorKind::ArmorBonus, ITEM_AREA, APPEARANCE_HEIGHT, 0);
 }

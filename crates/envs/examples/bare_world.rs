@@ -1,0 +1,59 @@
+//! A body alone in the map of an environment, without rules and things: `beside_published.py` drives it.
+//!
+//! Standard input: a line with the id; a line with the start (x, y, z, angle, pitch: map units and degrees); a line with the
+//! number of floors, and for each a line with a point of its sector (x, y), floor and ceiling; then a line of buttons for every
+//! tic. Standard output: position, angle, pitch and velocity after each.
+
+use hasard_engine::math::{Angle, Fixed};
+use hasard_engine::world::World;
+use hasard_envs::{Env, EnvOptions, parse_command};
+use std::error::Error;
+use std::io::{BufWriter, Write};
+
+const TURN: f64 = 4_294_967_296.0 / 360.0;
+
+fn numbers(line: &str) -> Result<Vec<f64>, Box<dyn Error>> {
+    Ok(line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let text = std::io::read_to_string(std::io::stdin())?;
+    let mut lines = text.lines();
+    let mut line = || lines.next().ok_or("the input ends too early");
+    let env = Env::new(line()?, &EnvOptions::default())?;
+    let mut world = World::new(env.world().map.clone(), 1);
+    // Past the spawn freeze.
+    for _ in 0..20 {
+        world.run_thinkers(&[]);
+        world.finish_tic();
+    }
+    let fixed = |value: f64| Fixed((value * 65536.0).round() as i32);
+    let start = numbers(line()?)?;
+    for _ in 0..line()?.parse()? {
+        let floor = numbers(line()?)?;
+        let sector = world.map.sector_at(fixed(floor[0]), fixed(floor[1]));
+        let sector = &mut world.sectors[sector.0 as usize];
+        (sector.floor, sector.ceiling) = (fixed(floor[2]), fixed(floor[3]));
+        sector.damage = Default::default();
+    }
+    let angle = |degrees: f64| (degrees * TURN).round() as i64;
+    world.place_player(
+        0,
+        fixed(start[0]),
+        fixed(start[1]),
+        fixed(start[2]),
+        Angle(angle(start[3]) as u32),
+        angle(start[4]) as i32,
+    );
+    let mut out = BufWriter::new(std::io::stdout().lock());
+    for line in lines {
+        world.run_thinkers(&[parse_command(line)?]);
+        world.finish_tic();
+        let player = &world.players[0];
+        let body = &world.actors[usize::from(player.actor.slot)];
+        let [x, y, z] = [body.x, body.y, body.z].map(Fixed::to_f64);
+        let [vx, vy, vz] = [body.vx, body.vy, body.vz].map(Fixed::to_f64);
+        writeln!(out, "{x},{y},{z},{},{},{vx},{vy},{vz}", f64::from(body.angle.0) / TURN, f64::from(player.pitch) / TURN)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,157 @@
+"""Random buttons in the published engine and in ours, tic by tic; prints the first tic that differs, episode by episode.
+
+    pip install vizdoom==1.3.2 hasard==0.2.0 numpy
+    cargo build --release -p hasard && cargo build --release -p hasard-envs --example bare_world
+    python beside_published.py TARGET/release whole 100        # Precipice Plunge 1, which draws nothing at random: whole episodes
+    python beside_published.py TARGET/release bodies VolcanicVenture 60   # bodies among the floors that the original drew
+
+Nothing of the published packages is kept; they are run where pip put them. Compared are position, velocity, angle and pitch,
+to 1/65536 map unit and 0.01 degree.
+"""
+
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import vizdoom
+
+VARIABLES = "POSITION_X POSITION_Y POSITION_Z ANGLE PITCH VELOCITY_X VELOCITY_Y VELOCITY_Z".split()
+SIMPLE = "TURN_LEFT TURN_RIGHT MOVE_FORWARD MOVE_BACKWARD LOOK_UP LOOK_DOWN JUMP".split()
+FULL = SIMPLE + "MOVE_LEFT MOVE_RIGHT SPEED CROUCH TURN180 LOOK_UP_DOWN_DELTA TURN_LEFT_RIGHT_DELTA".split()
+FOLDERS = {
+    "ArmamentBurden": "armament_burden",
+    "CollateralDamage": "collateral_damage",
+    "PrecipicePlunge": "precipice_plunge",
+    "VolcanicVenture": "volcanic_venture",
+}
+
+
+def game(scenario, buttons, level=1):
+    """The published engine with a scenario's level."""
+    packages = os.path.dirname(os.path.dirname(vizdoom.__file__))
+    folder = os.path.join(packages, "hasard", "envs", FOLDERS[scenario])
+    game = vizdoom.DoomGame()
+    game.load_config(os.path.join(folder, "conf.cfg"))
+    game.set_doom_scenario_path(os.path.join(folder, f"level_{level}.wad"))
+    game.set_available_buttons([getattr(vizdoom.Button, name) for name in buttons])
+    game.set_available_game_variables([getattr(vizdoom.GameVariable, name) for name in VARIABLES])
+    game.set_screen_resolution(vizdoom.ScreenResolution.RES_160X120)
+    game.set_window_visible(False)
+    game.set_sectors_info_enabled(True)
+    game.set_objects_info_enabled(True)
+    game.init()
+    return game
+
+
+def held(rng, buttons, tics):
+    """Buttons that are pressed and let go at random; delta buttons have degrees."""
+    now, all_tics = [0.0] * len(buttons), []
+    for _ in range(tics):
+        for index, name in enumerate(buttons):
+            if rng.random() < 0.08:
+                value = float(rng.normal() * 3) if "DELTA" in name else 1.0
+                now[index] = value if rng.random() < 0.45 else 0.0
+        all_tics.append(list(now))
+    return all_tics
+
+
+def words(buttons, values):
+    """A tic's buttons as `hasard trace` reads them."""
+    pressed = [f"{name}={value}" if "DELTA" in name else name for name, value in zip(buttons, values) if value]
+    return "+".join(pressed) or "noop"
+
+
+def played(game, tics):
+    """The variables after each tic, until the episode ends."""
+    rows = []
+    for values in tics:
+        game.make_action(values, 1)
+        state = game.get_state()
+        if state is None:
+            break
+        rows.append([float(value) for value in state.game_variables])
+    return rows
+
+
+def first_difference(theirs, ours):
+    """Index of the first row that differs."""
+    allowed = [2e-5] * 3 + [0.01] * 2 + [2e-5] * 3
+    for index, (a, b) in enumerate(zip(theirs, ours)):
+        gaps = [abs(x - y) for x, y in zip(a, b)]
+        gaps[3] = min(gaps[3], 360 - gaps[3])
+        if any(gap > most for gap, most in zip(gaps, allowed)):
+            return index
+    return None
+
+
+def whole(programs, episodes):
+    """Whole episodes of Precipice Plunge 1, by `hasard trace`."""
+    original = game("PrecipicePlunge", SIMPLE)
+    for seed in range(1, episodes + 1):
+        tics = held(np.random.default_rng(seed), SIMPLE, 2090)
+        original.set_seed(seed)
+        original.new_episode()
+        theirs = played(original, tics)
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+            file.write("action\n" + "".join(words(SIMPLE, values) + "\n" for values in tics))
+            file.flush()
+            command = "trace PrecipicePlungeLevel1-v0 --rules released --after 0 --actions".split()
+            out = subprocess.run([f"{programs}/hasard", *command, file.name], capture_output=True, text=True, check=True)
+        rows = [row for row in csv.reader(out.stdout.splitlines()) if len(row) > 9 and row[2]][2:]
+        yield seed, len(theirs), first_difference(theirs, [[float(value) for value in row[2:10]] for row in rows])
+
+
+def bodies(programs, scenario, episodes):
+    """A body alone among the floors that the original has drawn by then, by the example `bare_world`."""
+    original = game(scenario, FULL)
+    for seed in range(1, episodes + 1):
+        rng = np.random.default_rng(seed)
+        tics = held(rng, FULL, 1000)
+        original.set_seed(seed)
+        original.new_episode()
+        original.make_action([0] * len(FULL), 40)
+        state = original.get_state()
+        lines = [line for sector in state.sectors for line in sector.lines]
+        west, east = min(line.x1 for line in lines) + 40, max(line.x1 for line in lines) - 40
+        south, north = min(line.y1 for line in lines) + 40, max(line.y1 for line in lines) - 40
+        for kind in {thing.name for thing in state.objects} - {"DoomPlayer"}:
+            original.send_game_command(f"remove {kind}")
+        original.send_game_command("god")
+        original.send_game_command(f"warp {rng.uniform(west, east):.0f} {rng.uniform(south, north):.0f}")
+        original.make_action([0] * len(FULL), 40)
+        state = original.get_state()
+        start = " ".join(repr(float(value)) for value in state.game_variables[:5])
+        floors = []
+        for sector in state.sectors:
+            count = 2 * len(sector.lines)
+            x = sum(line.x1 + line.x2 for line in sector.lines) / count
+            y = sum(line.y1 + line.y2 for line in sector.lines) / count
+            floors.append(f"{x} {y} {sector.floor_height} {sector.ceiling_height}")
+        theirs = played(original, tics)
+        text = [f"{scenario}Level1-v0", start, str(len(floors)), *floors, *(words(FULL, values) for values in tics[: len(theirs)])]
+        program = f"{programs}/examples/bare_world"
+        out = subprocess.run([program], input="\n".join(text) + "\n", capture_output=True, text=True, check=True)
+        ours = [[float(value) for value in line.split(",")] for line in out.stdout.splitlines()]
+        yield seed, len(theirs), first_difference(theirs, ours)
+
+
+def main():
+    programs, what, *rest = sys.argv[1:]
+    programs = os.path.abspath(programs)
+    # The published engine leaves files where it is started.
+    os.chdir(tempfile.mkdtemp())
+    runs = whole(programs, int(rest[0])) if what == "whole" else bodies(programs, rest[0], int(rest[1]))
+    tics = episodes = astray = 0
+    for seed, length, difference in runs:
+        episodes, tics = episodes + 1, tics + length
+        if difference is not None:
+            astray += 1
+            print(f"seed {seed}: differs at tic {difference + 1} of {length}")
+    print(f"{episodes} episodes, {tics} tics, {astray} episodes differ")
+
+
+if __name__ == "__main__":
+    main()
