@@ -375,7 +375,7 @@ pub struct TrainArgs {
     /// PPOCost: factor of the cost in the reward
     #[arg(long, value_name = "FACTOR")]
     pub cost_scale: Option<f64>,
-    /// cpu, or vulkan / cuda where the program was built with that feature
+    /// cpu; vulkan, cuda or wgpu where the program was built with that feature; vulkan:1 is the second card
     #[arg(long, default_value = "cpu")]
     pub device: String,
     /// Sampling and learning take turns, bit-reproducibly; the default on the CPU, where both want the same cores

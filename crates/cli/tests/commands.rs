@@ -109,6 +109,9 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("train RemedyRushLevel1-v0 --algo PPOX", &["PPOX", "PPOLag"]),
         ("train RemedyRushLevel1-v0 --out empty", &["empty"]),
         ("train RemedyRushLevel1-v0 --set a.b=3", &["a.b"]),
+        ("train RemedyRushLevel1-v0 --safety-budget rain=3 --out new", &["rain", "harmful_items"]),
+        ("train RemedyRushLevel1-v0 --device tpu --out new", &["tpu", "cpu"]),
+        ("train RemedyRushLevel1-v0 --iwad none.wad --out new", &["none.wad"]),
         ("export-wad RemedyRushLevel1-v0 -o folder", &["folder"]),
         ("fly", &["fly"]),
     ] {

@@ -77,7 +77,7 @@ impl fmt::Display for EnvError {
             EnvError::Policy { given, why } => write!(f, "policy '{given}': {why}"),
             EnvError::UnknownButton { given } => write!(
                 f,
-                "no button is called '{given}'; join names like MOVE_FORWARD, TURN_LEFT, ATTACK by '+', delta buttons as NAME=DEGREES"
+                "no button is called '{given}'; join names like MOVE_FORWARD, TURN_LEFT, ATTACK by '+', delta buttons as NAME=DEGREES; noop presses none"
             ),
             EnvError::Action { lane, why } => write!(f, "action of lane {lane}: {why}"),
             EnvError::BatchSize { field, given, needed } => {

@@ -31,6 +31,12 @@ impl Scenario {
         Scenario::VolcanicVenture,
     ];
 
+    /// The named parts of its cost.
+    #[must_use]
+    pub fn cost_terms(self) -> &'static [crate::CostTerm] {
+        crate::scenarios::cost_terms(self)
+    }
+
     /// Its name, as in the ids.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::curriculum::Lesson;
 use crate::error::LearnError;
 use crate::model::{Convolution, Initialisation};
+use crate::sampler::find_terms;
 
 /// An enum of names: its text is what users type, upper and lower case alike.
 macro_rules! names {
@@ -488,6 +489,10 @@ impl TrainConfig {
                 return refuse("a budget", &constraint.budget, "a number of at least 0");
             }
         }
+        // Ids that are not registered, such as those of tests, tell when their worlds are made.
+        if let Some(scenario) = self.env.scenario() {
+            find_terms(scenario.cost_terms(), &self.constraints)?;
+        }
         if self.algorithm == AlgorithmKind::PpoSaute && self.constraints.iter().any(|c| c.budget == 0.0) {
             return refuse("the budget of PPOSaute", &0, "above 0, for what is left of it is measured in its units");
         }
@@ -519,6 +524,7 @@ mod tests {
         refuse(|c| c.learning.rate = f64::NAN, "learning rate");
         refuse(|c| c.constraints[0].budget = -1.0, "budget");
         refuse(|c| c.frames = 0, "frames");
+        refuse(|c| c.constraints[0].term = Some("rain".into()), "harmful_items");
         assert!("ppolag".parse::<AlgorithmKind>().is_ok());
         let message = "PPOLagg".parse::<AlgorithmKind>().unwrap_err().to_string();
         assert!(message.contains("PPOLagg") && message.contains("P3O"), "{message}");

@@ -43,6 +43,16 @@ impl RunDirectory {
         Ok((RunDirectory::lock(path)?, config))
     }
 
+    /// Takes a new run back that could not begin, so that the same command, mended, finds its directory free. What was there
+    /// before stays.
+    pub fn withdraw(self) {
+        // Nothing hangs on it: at worst the next attempt is told of a run that is there already.
+        let _ = fs::remove_file(self.path.join("config.json"));
+        let _ = fs::remove_file(self.path.join("lock"));
+        let _ = fs::remove_dir(self.path.join("checkpoints"));
+        let _ = fs::remove_dir(&self.path);
+    }
+
     fn lock(path: &Path) -> Result<RunDirectory, LearnError> {
         let file = path.join("lock");
         let lock =

@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, RwLock};
 
-use hasard_envs::{Batch, LaneState, VecEnv};
+use hasard_envs::{Batch, CostTerm, LaneState, VecEnv};
 
 use crate::config::Constraint;
 use crate::error::LearnError;
@@ -71,7 +71,7 @@ impl Sampler {
         }
         let lanes = worlds.lanes();
         Ok(Sampler {
-            constraints: find_terms(&worlds, constraints)?,
+            constraints: find_terms(worlds.cost_terms(), constraints)?,
             state: shape.zero_state(lanes),
             after_state: shape.zero_state(lanes),
             safety: vec![1.0; lanes],
@@ -276,9 +276,8 @@ fn world_error(error: hasard_envs::EnvError) -> LearnError {
     LearnError::Worlds(error.to_string())
 }
 
-/// Where each constraint's cost is found; unknown names are refused.
-fn find_terms(worlds: &VecEnv, constraints: &[Constraint]) -> Result<Vec<Option<usize>>, LearnError> {
-    let terms = worlds.cost_terms();
+/// Where each constraint's cost is found among the terms; unknown names are refused.
+pub(crate) fn find_terms(terms: &[CostTerm], constraints: &[Constraint]) -> Result<Vec<Option<usize>>, LearnError> {
     constraints
         .iter()
         .map(|constraint| match &constraint.term {

@@ -59,10 +59,22 @@ pub fn train(
     make_worlds: &MakeWorlds<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Summary, LearnError> {
+    let fresh = !matches!(start, Start::Resume { .. });
     let (run, config, beginning) = begin(start, directory, hooks)?;
     // A panic of the learner's own thread ends as an error too; checkpoints already written stay.
-    catch_unwind(AssertUnwindSafe(|| Trainer::new(run, config, &beginning, make_worlds)?.run(hooks)))
-        .unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))))
+    let whole = || {
+        let lesson = lesson(&beginning);
+        match Session::new(config.lesson(lesson), &beginning, make_worlds) {
+            Ok(session) => Trainer::new(run, config, &beginning, lesson, session, make_worlds).run(hooks),
+            Err(error) => {
+                if fresh {
+                    run.withdraw();
+                }
+                Err(error)
+            }
+        }
+    };
+    catch_unwind(AssertUnwindSafe(whole)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))))
 }
 
 fn begin(
@@ -118,19 +130,17 @@ impl<'a> Trainer<'a> {
         run: RunDirectory,
         config: TrainConfig,
         beginning: &Beginning<'_>,
+        lesson: usize,
+        session: Session,
         make_worlds: &'a MakeWorlds<'a>,
-    ) -> Result<Trainer<'a>, LearnError> {
-        let (seconds_before, best_feasible, lesson) = match beginning {
-            Beginning::Everything(loaded) => {
-                let progress = &loaded.progress;
-                (progress.wall_seconds, progress.best_feasible, progress.lesson)
-            }
-            _ => (0.0, None, 0),
+    ) -> Trainer<'a> {
+        let (seconds_before, best_feasible) = match beginning {
+            Beginning::Everything(loaded) => (loaded.progress.wall_seconds, loaded.progress.best_feasible),
+            _ => (0.0, None),
         };
-        let session = Session::new(config.lesson(lesson), beginning, make_worlds)?;
         let heatmap = heatmap(&config, lesson, &session);
         let started = Instant::now();
-        Ok(Trainer { run, config, make_worlds, lesson, session, heatmap, seconds_before, started, best_feasible })
+        Trainer { run, config, make_worlds, lesson, session, heatmap, seconds_before, started, best_feasible }
     }
 
     /// Begins the lesson that the frames so far ask for.
@@ -245,6 +255,14 @@ impl<'a> Trainer<'a> {
             pixel_count: self.session.learner.pixels.count,
         };
         Ok((Checkpoint::take(&self.session.learner, &samplers, progress)?, best.is_some()))
+    }
+}
+
+/// The lesson of a curriculum that a run goes on with.
+fn lesson(beginning: &Beginning<'_>) -> usize {
+    match beginning {
+        Beginning::Everything(loaded) => loaded.progress.lesson,
+        _ => 0,
     }
 }
 

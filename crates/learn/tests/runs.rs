@@ -340,6 +340,25 @@ fn a_curriculum_carries_weights_over() {
     fs::remove_dir_all(second).unwrap();
 }
 
+/// The settings mended, the same command finds its directory free; what else was in it stays.
+#[test]
+fn a_run_that_cannot_begin_leaves_nothing_behind() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.frames = config.frames_per_rollout();
+    let good = config.clone();
+    config.constraints[0].term = Some("rain".into());
+    let path = tiny::directory("cannot-begin");
+    assert!(tiny::run(Start::Fresh(config.clone()), &path).0.unwrap_err().to_string().contains("rain"));
+    assert!(!path.exists());
+    fs::create_dir_all(&path).unwrap();
+    fs::write(path.join("notes.txt"), "mine").unwrap();
+    assert!(tiny::run(Start::Fresh(config), &path).0.is_err());
+    let left: Vec<_> = fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["notes.txt"]);
+    tiny::run(Start::Fresh(good), &path).0.unwrap();
+    fs::remove_dir_all(path).unwrap();
+}
+
 /// A world that panics ends the run with a clear error, and the checkpoints before it stay.
 #[test]
 fn a_panic_in_a_world_ends_the_run_with_an_error() {

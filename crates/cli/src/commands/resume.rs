@@ -70,7 +70,6 @@ pub fn check(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, director
     for (flag, pointer) in places {
         let (there, wanted) = (saved.pointer(&pointer), asked.pointer(&pointer));
         if there != wanted {
-            let show = |value: Option<&Value>| value.map_or_else(|| "none".into(), Value::to_string);
             return Err(Failure::bad(format!(
                 "{flag}: the run in {} has {}, not {}; leave {flag} out to go on with it, or begin another with --out",
                 directory.display(),
@@ -80,6 +79,16 @@ pub fn check(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, director
         }
     }
     Ok(())
+}
+
+/// A setting as users write it.
+fn show(value: Option<&Value>) -> String {
+    match value {
+        None => "none".into(),
+        // Most settings are single-precision; more digits would be noise.
+        Some(Value::Number(number)) if number.is_f64() => (number.as_f64().unwrap_or_default() as f32).to_string(),
+        Some(other) => other.to_string(),
+    }
 }
 
 #[cfg(test)]
