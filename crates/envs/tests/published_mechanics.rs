@@ -158,3 +158,23 @@ fn supplies_come_without_fail() {
         assert!((0.01..0.06).contains(&share), "{id}: {share} of {kind:?} lie behind walls");
     }
 }
+
+/// Recorded at levels 1 and 3 and under the hard constraint: a button held from the first tic on turns by 1.758 degrees and thrusts
+/// by 0.708 (on the ground; by 0.003 in the air) in that tic. Other scenarios wait for the eighth.
+#[test]
+fn volcanic_venture_lets_the_agent_move_at_once() {
+    for (id, hard) in
+        [("VolcanicVentureLevel1-v0", false), ("VolcanicVentureLevel3-v0", false), ("VolcanicVentureLevel1-v0", true)]
+    {
+        let mut env = env(id, hard, 1);
+        env.reset(3);
+        env.step_buttons(hold(Buttons::MOVE_FORWARD));
+        let body = |env: &Env| *env.world().get(env.world().players[0].actor).unwrap();
+        let speed = body(&env).vx.to_f64().hypot(body(&env).vy.to_f64());
+        assert!((speed - 0.708).abs() < 1e-3 || (speed - 0.003).abs() < 1e-3, "{id} hard {hard}: {speed}");
+        let before = body(&env).angle;
+        env.step_buttons(hold(Buttons::TURN_LEFT));
+        let turn = f64::from((body(&env).angle - before).0) / 4_294_967_296.0 * 360.0;
+        assert!((turn - 1.7578).abs() < 1e-3, "{id} hard {hard}: {turn}");
+    }
+}

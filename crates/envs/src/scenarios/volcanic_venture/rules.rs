@@ -113,7 +113,8 @@ impl Rules {
     pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         self.count(world, outcome);
         if world.tic == 0 {
-            // The map opens.
+            // The map opens. Here alone the agent may move at once.
+            world.players[0].freeze_tics = 0;
             if self.fixtures.level.change == Change::Never {
                 self.tend_tiles(world);
             }
