@@ -28,7 +28,7 @@ pub struct Writer {
 }
 
 /// Checkpoints that may wait for the disk. Rows are small: any number of them may.
-const MOST_WAITING: usize = 2;
+const MOST_WAITING: usize = 8;
 
 impl Writer {
     /// A writer for a run's directory.
