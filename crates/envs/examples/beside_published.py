@@ -29,13 +29,13 @@ FOLDERS = {
 }
 
 
-def game(scenario, buttons, level=1):
-    """The published engine with a scenario's level."""
+def game(scenario, buttons):
+    """The published engine with a scenario's first level."""
     packages = os.path.dirname(os.path.dirname(vizdoom.__file__))
     folder = os.path.join(packages, "hasard", "envs", FOLDERS[scenario])
     game = vizdoom.DoomGame()
     game.load_config(os.path.join(folder, "conf.cfg"))
-    game.set_doom_scenario_path(os.path.join(folder, f"level_{level}.wad"))
+    game.set_doom_scenario_path(os.path.join(folder, "level_1.wad"))
     game.set_available_buttons([getattr(vizdoom.Button, name) for name in buttons])
     game.set_available_game_variables([getattr(vizdoom.GameVariable, name) for name in VARIABLES])
     game.set_screen_resolution(vizdoom.ScreenResolution.RES_160X120)

@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut config = TrainConfig::new(algorithm.parse()?, preset.parse()?, EnvConfig::new(id))?;
     config.frames = frames.parse()?;
     for setting in rest.iter().skip(1) {
-        set(&mut config, setting)?;
+        config = config.with(setting)?;
     }
     let options = config.env.options()?;
     let stop = AtomicBool::new(false);
@@ -30,15 +30,5 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         },
     )?;
     println!("{}", serde_json::to_string_pretty(&summary.last.row())?);
-    Ok(())
-}
-
-/// Replaces one setting by its path, as in `learning.rate=0.0005`.
-fn set(config: &mut TrainConfig, setting: &str) -> Result<(), Box<dyn std::error::Error>> {
-    let (path, value) = setting.split_once('=').ok_or("settings are written path=value")?;
-    let mut tree = serde_json::to_value(&*config)?;
-    let place = tree.pointer_mut(&format!("/{}", path.replace('.', "/"))).ok_or("no such setting")?;
-    *place = serde_json::from_str(value).or_else(|_| serde_json::to_value(value))?;
-    *config = serde_json::from_value(tree)?;
     Ok(())
 }

@@ -499,11 +499,34 @@ impl TrainConfig {
         Ok(())
     }
 
+    /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`.
+    ///
+    /// # Errors
+    /// When the text is no `NAME=VALUE`, or there is no such setting, or it cannot have that value.
+    pub fn with(&self, setting: &str) -> Result<TrainConfig, LearnError> {
+        let wrong = |error: serde_json::Error| LearnError::Config(error.to_string());
+        let (name, given) =
+            setting.split_once('=').ok_or_else(|| LearnError::Config("write NAME=VALUE, such as learning.rate=0.0003".into()))?;
+        let mut all = serde_json::to_value(self).map_err(wrong)?;
+        let place = all.pointer_mut(&setting_pointer(name)).ok_or_else(|| {
+            let known = "names are those of a run's config.json, such as learning.rate";
+            LearnError::Config(format!("there is no setting '{name}'; {known}"))
+        })?;
+        *place = serde_json::from_str(given).unwrap_or_else(|_| given.into());
+        serde_json::from_value(all).map_err(wrong)
+    }
+
     /// Frames of one rollout of all worlds.
     #[must_use]
     pub fn frames_per_rollout(&self) -> u64 {
         (self.sampling.lanes * self.sampling.rollout) as u64 * u64::from(self.env.frame_skip)
     }
+}
+
+/// Where a setting such as `learning.rate` stands in `config.json`, as a JSON pointer.
+#[must_use]
+pub fn setting_pointer(name: &str) -> String {
+    format!("/{}", name.replace('.', "/"))
 }
 
 #[cfg(test)]

@@ -35,6 +35,16 @@ pub enum Beginning<'a> {
     Lesson(&'a Session),
 }
 
+impl Beginning<'_> {
+    /// How far the checkpoint is that a run goes on from.
+    pub fn progress(&self) -> Option<&Progress> {
+        match self {
+            Beginning::Everything(loaded) => Some(&loaded.progress),
+            _ => None,
+        }
+    }
+}
+
 /// A run in memory.
 pub struct Session {
     /// Settings.

@@ -63,7 +63,7 @@ pub fn train(
     let (run, config, beginning) = begin(start, directory, hooks)?;
     // A panic of the learner's own thread ends as an error too; checkpoints already written stay.
     let whole = || {
-        let lesson = lesson(&beginning);
+        let lesson = beginning.progress().map_or(0, |progress| progress.lesson);
         match Session::new(config.lesson(lesson), &beginning, make_worlds) {
             Ok(session) => Trainer::new(run, config, &beginning, lesson, session, make_worlds).run(hooks),
             Err(error) => {
@@ -134,10 +134,8 @@ impl<'a> Trainer<'a> {
         session: Session,
         make_worlds: &'a MakeWorlds<'a>,
     ) -> Trainer<'a> {
-        let (seconds_before, best_feasible) = match beginning {
-            Beginning::Everything(loaded) => (loaded.progress.wall_seconds, loaded.progress.best_feasible),
-            _ => (0.0, None),
-        };
+        let (seconds_before, best_feasible) =
+            beginning.progress().map_or((0.0, None), |progress| (progress.wall_seconds, progress.best_feasible));
         let heatmap = heatmap(&config, lesson, &session);
         let started = Instant::now();
         Trainer { run, config, make_worlds, lesson, session, heatmap, seconds_before, started, best_feasible }
@@ -255,14 +253,6 @@ impl<'a> Trainer<'a> {
             pixel_count: self.session.learner.pixels.count,
         };
         Ok((Checkpoint::take(&self.session.learner, &samplers, progress)?, best.is_some()))
-    }
-}
-
-/// The lesson of a curriculum that a run goes on with.
-fn lesson(beginning: &Beginning<'_>) -> usize {
-    match beginning {
-        Beginning::Everything(loaded) => loaded.progress.lesson,
-        _ => 0,
     }
 }
 

@@ -5,7 +5,7 @@ use crate::args::TrainArgs;
 use crate::failure::{Failure, Outcome};
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use hasard_learn::config::TrainConfig;
+use hasard_learn::config::{TrainConfig, setting_pointer};
 use serde_json::Value;
 use std::path::Path;
 
@@ -65,7 +65,7 @@ pub fn check(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, director
         .collect();
     places.extend(args.set.iter().map(|text| {
         let name = text.split('=').next().unwrap_or_default();
-        (format!("--set {name}"), format!("/{}", name.replace('.', "/")))
+        (format!("--set {name}"), setting_pointer(name))
     }));
     for (flag, pointer) in places {
         let (there, wanted) = (saved.pointer(&pointer), asked.pointer(&pointer));

@@ -12,7 +12,6 @@ use hasard_learn::progress_bar::{Bar, line};
 use hasard_learn::report::Report;
 use hasard_learn::run_directory::read_config;
 use hasard_learn::trainer::{Hooks, Start, train};
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Runs the command; `typed` tells which flags were given and which have their default.
@@ -140,7 +139,10 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     if !args.safety_budget.is_empty() {
         config.constraints = args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
     }
-    let mut config = args.set.iter().try_fold(config, |config, text| set(config, text))?;
+    let mut config = args
+        .set
+        .iter()
+        .try_fold(config, |config, text| config.with(text).map_err(|error| Failure::bad(format!("--set '{text}': {error}"))))?;
     if let Some(text) = &args.curriculum {
         let lessons = parse_curriculum(text, config.frames).map_err(Failure::bad)?;
         config.set_curriculum(lessons);
@@ -154,20 +156,4 @@ fn constraint(text: &str) -> Result<Constraint, Failure> {
     let (term, number) = text.split_once('=').map_or((None, text), |(term, number)| (Some(term.to_string()), number));
     let budget = number.parse().map_err(|_| Failure::bad(format!("--safety-budget '{text}': write a number, or TERM=NUMBER")))?;
     Ok(Constraint { term, budget })
-}
-
-/// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`.
-fn set(config: TrainConfig, text: &str) -> Result<TrainConfig, Failure> {
-    let (path, given) = text
-        .split_once('=')
-        .ok_or_else(|| Failure::bad(format!("--set '{text}': write NAME=VALUE, such as learning.rate=0.0003")))?;
-    let mut all = serde_json::to_value(&config).map_err(Failure::bad)?;
-    let pointer = format!("/{}", path.replace('.', "/"));
-    let place = all.pointer_mut(&pointer).ok_or_else(|| {
-        Failure::bad(format!(
-            "--set '{text}': there is no setting '{path}'; names are those of a run's config.json, such as learning.rate"
-        ))
-    })?;
-    *place = serde_json::from_str(given).unwrap_or_else(|_| Value::String(given.to_string()));
-    serde_json::from_value(all).map_err(|error| Failure::bad(format!("--set '{text}': {error}")))
 }

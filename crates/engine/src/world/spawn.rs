@@ -7,8 +7,8 @@ impl World {
     /// Creates an actor at absolute (x, y, z) if there is room, as the scripts' `Spawn` does: its square must cut no
     /// wall and, if it is solid, no solid actor (over and under is fine); the opening over all touched sectors must be
     /// tall enough; and it must be between floor and ceiling of the sector under its centre alone. Inside rock, out of
-    /// everybody's reach, there is room as well, with floor and ceiling of the nearest piece by the tree: in the original four to
-    /// eight of a hundred items lie there.
+    /// everybody's reach, there is room as well, with floor and ceiling of the nearest piece by the tree: in the original two to
+    /// four of a hundred items lie there.
     pub fn spawn_checked(&mut self, kind: ActorKind, x: Fixed, y: Fixed, z: Fixed, tid: i32) -> Option<ActorId> {
         let id = self.spawn(kind, x, y, z);
         let slot = usize::from(id.slot);
