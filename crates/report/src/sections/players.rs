@@ -42,9 +42,8 @@ fn row(player: &str, env: &str, options: &str, constraints: &[Constraint], episo
     let returns: Vec<f64> = episodes.iter().map(|episode| episode.episode_return).collect();
     let costs: Vec<f64> = episodes.iter().map(|episode| episode.cost).collect();
     let lengths: Vec<f64> = episodes.iter().filter_map(|episode| episode.length).collect();
-    let keeps = |episode: &&EpisodeResult| {
-        constraints.iter().all(|one| episode.cost_of(one).is_some_and(|cost| cost <= one.budget))
-    };
+    let keeps =
+        |episode: &&EpisodeResult| constraints.iter().all(|one| episode.cost_of(one).is_some_and(|cost| cost <= one.budget));
     let within = episodes.iter().filter(keeps).count() as f64 / episodes.len().max(1) as f64;
     let mean_within = |one: &Constraint| {
         let costs: Option<Vec<f64>> = episodes.iter().map(|episode| episode.cost_of(one)).collect();

@@ -51,8 +51,7 @@ pub(super) fn runs(groups: &[Group]) -> Section {
             let value = |metric: &str| run.final_mean(metric).map_or_else(|| Cell::text("-"), Cell::number);
             let last = |metric: &str| run.rows.iter().rev().find_map(|row| row.get(metric));
             let hours = last("wall_s").map_or_else(|| Cell::text("-"), |s| Cell::number(s / 3600.0));
-            let fps =
-                run.frames_per_second().map_or_else(|| Cell::text("-"), |fps| Cell::number(fps).with_text(number(fps)));
+            let fps = run.frames_per_second().map_or_else(|| Cell::text("-"), |fps| Cell::number(fps).with_text(number(fps)));
             let state = match run.config.frames {
                 Some(asked) if run.frames() < asked * 0.999 => format!("{:.0} %", 100.0 * run.frames() / asked),
                 _ => "finished".into(),
