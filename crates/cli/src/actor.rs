@@ -5,9 +5,9 @@ use crate::failure::Failure;
 use crate::settings;
 use hasard_engine::world::Command;
 use hasard_envs::{ActionSpace, EnvOptions, Move, PolicyRun, Step};
-use hasard_learn::runs::evaluate::{Agent, Choice, Which, run_config};
+use hasard_learn::runs::agent::{Agent, Choice, Which, run_config};
 use hasard_play::{Recorder, Stage};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A source of actions.
 pub enum Actor {
@@ -28,8 +28,8 @@ impl Performance {
     /// An environment and a policy by its text: `run:DIR` or one that looks at nothing. `looks` is the task and what the
     /// audience sees of it; an agent sees what it was trained to see.
     pub fn new(id: &str, policy: &str, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
-        if let Some(run) = policy.strip_prefix("run:").map(Path::new) {
-            return Performance::of_agent(id, run, &agent_options(run, looks)?, looks, seed);
+        if let Some(run) = agent_of(policy)? {
+            return Performance::of_agent(id, &run, &agent_options(&run, looks)?, looks, seed);
         }
         let policy = settings::policy(policy)?;
         let mut stage = Stage::new(id, looks).map_err(Failure::bad)?;
@@ -48,7 +48,7 @@ impl Performance {
     fn of_agent(id: &str, run: &Path, options: &EnvOptions, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
         let mut stage = Stage::shown_as(id, options, looks).map_err(Failure::bad)?;
         stage.reset(seed);
-        let player = Player { run, which: Which::Latest, choice: Choice::Sampled };
+        let player = Player { run, which: Which::HandedOut, choice: Choice::Sampled };
         let mut agent = player.agent(stage.env())?;
         agent.reset(0, seed);
         let observation = vec![0; stage.env().observation_shape().iter().product()];
@@ -63,7 +63,7 @@ impl Performance {
         }
         let step = self.stage.tic();
         if let (Actor::Agent(agent, _), Some(step)) = (&mut self.actor, step) {
-            agent.observe_cost(0, step.cost);
+            agent.observe_cost(0, step.cost, self.stage.env().step_costs());
         }
         Ok(step)
     }
@@ -92,6 +92,14 @@ impl Performance {
         stage.act(&actions, &deltas).map_err(Failure::bad)?;
         recorder.map_or(Ok(()), |recorder| recorder.push(&actions, &deltas)).map_err(Failure::bad)
     }
+}
+
+/// The run directory or file of the agent that a policy's text names: `run:DIR`, `run:FILE.agent` or `zoo:NAME`.
+pub fn agent_of(policy: &str) -> Result<Option<PathBuf>, Failure> {
+    if policy.starts_with("zoo:") {
+        return crate::zoo::find(policy).map(Some);
+    }
+    Ok(policy.strip_prefix("run:").map(PathBuf::from))
 }
 
 /// What the agent of a run is to see: as it was trained, under the rules and constraint of `task`.

@@ -40,6 +40,8 @@ pub enum Command {
     Report(ReportArgs),
     /// Run many trainings: a grid from a TOML file, or an experiment of the paper by name
     Sweep(SweepArgs),
+    /// Write the agent that a run hands out as one small file
+    ExportAgent(ExportAgentArgs),
     /// Write an environment's map as a WAD that other engines load
     ExportWad(ExportWadArgs),
     /// Draw the scenarios' contact sheets: every level at moments of scripted episodes, in every view
@@ -179,7 +181,7 @@ pub struct EnvsArgs {
 pub struct RolloutArgs {
     /// Environment id, see `hasard envs`
     pub env: String,
-    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR; `hasard envs --json` lists the buttons
+    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME; `hasard envs --json` lists the buttons
     #[arg(long, default_value = "random")]
     pub policy: String,
     /// Number of episodes
@@ -322,7 +324,7 @@ pub struct RenderArgs {
     /// Other views beside it, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW,...")]
     pub beside: Vec<View>,
-    /// Who acts before the picture: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR
+    /// Who acts before the picture: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME
     #[arg(long, default_value = "random")]
     pub policy: String,
     /// Policy steps before the picture
@@ -359,9 +361,14 @@ pub struct TrainArgs {
     /// Run directory; runs/ENV-ALGO-seedSEED if absent
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Go on from the last checkpoint in the run directory, if there is one
+    /// Go on from the last checkpoint in the run directory, if there is one; --frames, --seed, --threads and --set of the
+    /// learning rate may differ from before
     #[arg(long)]
     pub resume: bool,
+    /// Frames between evaluations on episodes of their own, by which the run chooses the checkpoint that it hands out; a
+    /// twentieth of the run if absent, 0 for none
+    #[arg(long, value_name = "FRAMES")]
+    pub eval_every: Option<u64>,
     /// Levels in turn, weights and normalisers carried over: 1,2,3 shares the frames equally, 1:400000,2:600000 gives each
     /// its own; the run ends in the last level, whatever level ENV names
     #[arg(long, value_name = "LEVELS")]
@@ -414,8 +421,9 @@ pub struct TrainArgs {
 #[derive(Args, Debug)]
 #[command(after_help = "To have it in reports: hasard eval RUN --json > RUN/eval.jsonl")]
 pub struct EvalArgs {
-    /// Run directory
-    pub run: PathBuf,
+    /// Run directory, agent file, or zoo:NAME for an agent that comes with the program
+    #[arg(value_name = "RUN|FILE|zoo:NAME")]
+    pub run: String,
     /// Number of episodes
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     pub episodes: u32,
@@ -425,9 +433,9 @@ pub struct EvalArgs {
     /// Take each sub-action's likeliest choice instead of sampling
     #[arg(long)]
     pub greedy: bool,
-    /// The checkpoint with the best return within all budgets instead of the latest
+    /// The latest checkpoint instead of the one that the run hands out
     #[arg(long)]
-    pub best: bool,
+    pub latest: bool,
     /// One JSON object an episode, then one with "summary"
     #[arg(long)]
     pub json: bool,
@@ -451,13 +459,13 @@ pub struct FilmArgs {
 /// `hasard record`.
 #[derive(Args, Debug)]
 pub struct RecordArgs {
-    /// Environment id, run directory (its agent acts), or .episode file
-    #[arg(value_name = "ENV|RUN|FILE")]
+    /// Environment id, run directory, agent file or zoo:NAME (the agent acts), or .episode file
+    #[arg(value_name = "ENV|RUN|zoo:NAME|FILE")]
     pub what: String,
     /// File to write: .mp4, .gif or .episode
     #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
     pub out: PathBuf,
-    /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR  [default: random]
+    /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME  [default: random]
     #[arg(long)]
     pub policy: Option<String>,
     /// Most policy steps that are taken; to the episode's end if absent
@@ -529,12 +537,12 @@ pub struct ReportArgs {
 #[derive(Args, Debug)]
 pub struct SweepArgs {
     /// TOML file, or an experiment of the paper: main, safety-bounds, cost-scale, curriculum, hard, full-actions, depth,
-    /// segmentation, trpo
+    /// segmentation, trpo; or quick, quick-all: the quick preset
     pub what: String,
     /// Folder of the runs
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Runs at a time
+    /// Runs at a time; they share the cores out
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub parallel: Option<u16>,
     /// Frames of every run times this, to try an experiment in small
@@ -547,6 +555,22 @@ pub struct SweepArgs {
     #[arg(long)]
     pub json: bool,
     /// Accepted for uniformity; a sweep lists its seeds
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard export-agent`.
+#[derive(Args, Debug)]
+pub struct ExportAgentArgs {
+    /// Run directory
+    pub run: PathBuf,
+    /// File to write, .agent; named after the environment if absent
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// One JSON object about the file
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; nothing is drawn by chance
     #[arg(long, hide = true, default_value_t = 0)]
     pub seed: u64,
 }

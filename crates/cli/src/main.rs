@@ -10,6 +10,7 @@ mod commands;
 mod contact_sheet;
 mod episode_lines;
 mod settings;
+mod zoo;
 
 use args::{Cli, Command};
 use clap::{ArgMatches, CommandFactory, FromArgMatches};
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         Command::Replay(args) => commands::record::replay(&args),
         Command::Report(args) => commands::report::run(&args),
         Command::Sweep(args) => commands::sweep::run(&args),
+        Command::ExportAgent(args) => commands::export_agent::run(&args),
         Command::ExportWad(args) => commands::export_wad::run(&args),
         Command::ContactSheet(args) => commands::contact_sheet::run(&args),
     };

@@ -38,7 +38,7 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
 
 /// A policy that looks at nothing, by its text.
 pub fn policy(text: &str) -> Result<Policy, Failure> {
-    let beside = "; run:DIR is the agent of a training run";
+    let beside = "; run:DIR is the agent of a training run, zoo:NAME one that comes with the program";
     text.parse().map_err(|error: EnvError| Failure::bad(format!("{error}{beside}")))
 }
 

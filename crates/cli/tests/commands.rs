@@ -64,6 +64,7 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
     let folder = Folder::new("bad");
     folder.file("empty", b"");
     folder.file("binary.episode", &[0, 159, 146, 150, 255, 3]);
+    folder.file("binary.agent", &[0, 159, 146, 150, 255, 3]);
     folder.file("cut.wad", b"IWAD\x05\0\0\0\x0c\0\0\0");
     folder.file("text.wad", b"hello");
     std::fs::create_dir(folder.0.join("folder")).unwrap();
@@ -100,6 +101,9 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("trace RemedyRushLevel1-v0 --actions folder", &["folder"]),
         ("trace RemedyRushLevel1-v0", &["--actions"]),
         ("eval none", &["none"]),
+        ("eval zoo:nobody", &["zoo:nobody", "zoo"]),
+        ("export-agent none", &["none"]),
+        ("record binary.agent -o a.mp4", &["binary.agent", "export-agent"]),
         ("eval empty", &["empty"]),
         ("report none", &["none"]),
         ("report empty", &["empty"]),
@@ -109,6 +113,9 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("train RemedyRushLevel1-v0 --algo PPOX", &["PPOX", "PPOLag"]),
         ("train RemedyRushLevel1-v0 --out empty", &["empty"]),
         ("train RemedyRushLevel1-v0 --set a.b=3", &["a.b"]),
+        ("train RemedyRushLevel1-v0 --set env.hard=true", &["env.hard", "--hard"]),
+        ("train RemedyRushLevel1-v0 --set preset=quick", &["preset", "--preset"]),
+        ("train RemedyRushLevel1-v0 --algo PPOSaute --safety-budget 3 --safety-budget 4", &["constraints", "PPOSaute"]),
         ("train RemedyRushLevel1-v0 --safety-budget rain=3 --out new", &["rain", "harmful_items"]),
         ("train RemedyRushLevel1-v0 --device tpu --out new", &["tpu", "cpu"]),
         ("train RemedyRushLevel1-v0 --iwad none.wad --out new", &["none.wad"]),
@@ -121,7 +128,7 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         }
     }
     let left: Vec<_> = std::fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left.len(), 5, "a refused command left something behind: {left:?}");
+    assert_eq!(left.len(), 6, "a refused command left something behind: {left:?}");
 }
 
 #[test]
@@ -199,4 +206,46 @@ fn a_curriculum_leaves_automaps_an_agent_and_a_report() {
     assert!(refusal.contains("RemedyRushLevel3-v0"), "{refusal}");
     folder.ok("report run agent.episode -o report");
     assert!(Path::new(&folder.0.join("report/index.html")).is_file());
+}
+
+/// A small run from its evaluations to its agent in a file: what is handed out, judged by each constraint's own budget.
+#[test]
+fn a_run_hands_out_an_agent_that_fits_in_a_file() {
+    let folder = Folder::new("hand-out");
+    let small = "--envs 4 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
+                 --set episode_steps=8 --observation grey --size 64x48 --set evaluation.episodes=2 \
+                 --set evaluation.confirming_episodes=3 --eval-every 128";
+    let budgets = "--safety-budget 1000 --safety-budget harmful_items=2000";
+    let told = folder.ok(&format!("train RemedyRushLevel1-v0 --algo ppolag --frames 256 --json {budgets} {small}"));
+    // The directory has the algorithm's own name, and the run tells what it hands out.
+    assert!(folder.0.join("runs/RemedyRushLevel1-v0-PPOLag-seed1/hand_out.json").is_file());
+    let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
+    let closing = &last["hand_out"]["closing"];
+    assert_eq!((&closing["episodes"], &closing["constraints"][1]["budget"]), (&Value::from(3), &Value::from(2000.0)), "{told}");
+    assert_eq!(told.lines().filter(|line| line.contains("eval/cost/harmful_items")).count(), 2, "{told}");
+    let run = "runs/RemedyRushLevel1-v0-PPOLag-seed1";
+    let summary = |line: &str| -> Value {
+        let told = folder.ok(line);
+        serde_json::from_str::<Value>(told.lines().last().unwrap()).unwrap()["summary"].clone()
+    };
+    let judged = summary(&format!("eval {run} --episodes 2 --json"));
+    assert_eq!(judged["constraints"][1]["term"], "harmful_items", "{judged}");
+    assert_eq!(judged["within_budget"], true, "{judged}");
+    // Four or eight bits a weight: the file acts, and is small.
+    std::fs::create_dir(folder.0.join("zoo")).unwrap();
+    folder.ok(&format!("export-agent {run} -o zoo/Small.agent"));
+    let weights = std::fs::read_dir(folder.0.join(run).join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
+    let weights = weights.map(|path| std::fs::metadata(path.join("weights.safetensors")).unwrap().len()).max().unwrap();
+    let file = std::fs::metadata(folder.0.join("zoo/Small.agent")).unwrap().len();
+    assert!(file < weights / 3, "{file} bytes of {weights}");
+    assert_eq!(summary("eval zoo:small --episodes 2 --json")["episodes"], 2);
+    assert!(folder.refused("eval zoo:large").contains("zoo:Small"));
+    folder.ok("record zoo:Small --size 64x48 --steps 3 -o agent.gif");
+    folder.ok("record RemedyRushLevel2-v0 --policy zoo:Small --steps 3 -o agent.episode");
+    folder.ok("rollout RemedyRushLevel1-v0 --policy run:zoo/Small.agent --episodes 1");
+    // It goes on with another seed and learning rate, and for longer: kept in the run.
+    folder.ok(&format!("train RemedyRushLevel1-v0 --resume --out {run} --frames 512 --seed 9 --set learning.rate=1e-5 --quiet"));
+    let config: Value = serde_json::from_slice(&folder.read(&format!("{run}/config.json"))).unwrap();
+    assert_eq!((&config["frames"], &config["seed"]), (&Value::from(512), &Value::from(9)));
+    assert_eq!(config["changes"].as_array().unwrap().len(), 3, "{config}");
 }

@@ -22,6 +22,8 @@ pub enum Purpose {
     FirstSteps = 6,
     /// Seeds of a curriculum's lessons; counter: lesson.
     Lesson = 7,
+    /// Seeds of the episodes of evaluations during training; counters: frames, episode.
+    EvaluatedWorlds = 8,
 }
 
 /// A stream of random numbers.

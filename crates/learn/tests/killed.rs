@@ -15,12 +15,16 @@ fn config() -> TrainConfig {
     let mut config = tiny::config(AlgorithmKind::PpoLag);
     // A checkpoint after every rollout: whenever the run is killed, it is often while one is being written.
     config.reporting.checkpoint_seconds = 0.0;
-    config.frames = 60 * config.frames_per_rollout();
+    // Long enough to be still at it when it is killed for the third time.
+    config.frames = 240 * config.frames_per_rollout();
+    // The checkpoint that is handed out is written and replaced meanwhile too.
+    config.evaluation.every = Some(5 * config.frames_per_rollout());
+    config.evaluation.confirming_episodes = 32;
     config
 }
 
 fn start(path: &Path) -> Start<'static> {
-    if path.join("config.json").exists() { Start::Resume { frames: None } } else { Start::Fresh(config()) }
+    if path.join("config.json").exists() { Start::RESUME } else { Start::Fresh(config()) }
 }
 
 /// The child of the test below; does nothing by itself.
@@ -38,6 +42,21 @@ fn weights(run: &Path) -> Vec<u8> {
     fs::read(run.join(format!("checkpoints/frames_{:012}/weights.safetensors", config().frames))).unwrap()
 }
 
+/// What a run hands out, and the weights of it.
+fn hand_out(run: &Path) -> (serde_json::Value, Vec<u8>) {
+    let told: serde_json::Value = serde_json::from_slice(&fs::read(run.join("hand_out.json")).unwrap()).unwrap();
+    let frames = told["frames"].as_u64().unwrap();
+    let best = fs::read(run.join(format!("checkpoints/best_{frames:012}/weights.safetensors"))).unwrap();
+    (told, best)
+}
+
+/// Frames of the newest checkpoint of a run.
+fn reached(run: &Path) -> u64 {
+    let entries = fs::read_dir(run.join("checkpoints")).into_iter().flatten();
+    let frames = entries.filter_map(|entry| entry.ok()?.file_name().to_str()?.strip_prefix("frames_")?.parse().ok());
+    frames.max().unwrap_or(0)
+}
+
 /// Killed with SIGKILL at three moments and resumed each time, the run ends where the uninterrupted one does.
 #[test]
 fn a_run_killed_three_times_equals_the_uninterrupted_one() {
@@ -45,8 +64,7 @@ fn a_run_killed_three_times_equals_the_uninterrupted_one() {
     tiny::run(Start::Fresh(config()), &straight).0.unwrap();
     let broken = tiny::directory("killed");
     let seed = std::process::id();
-    let mut delays = (0..3).map(|index| 60 + u64::from(seed.wrapping_mul(2_654_435_761).rotate_left(index * 7) % 120));
-    let mut kills = 0;
+    let mut moments = (0..3).map(|index| seed.wrapping_mul(2_654_435_761).rotate_left(index * 7));
     loop {
         let mut child = Command::new(std::env::current_exe().unwrap())
             .args(["--exact", "child", "--nocapture"])
@@ -55,16 +73,24 @@ fn a_run_killed_three_times_equals_the_uninterrupted_one() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let Some(delay) = delays.next() else {
+        let Some(moment) = moments.next() else {
             assert!(child.wait().unwrap().success(), "the last resume must reach the end");
             break;
         };
-        std::thread::sleep(Duration::from_millis(delay));
+        // Somewhere within the ten rollouts after the next checkpoint: by progress, for machines are not equally fast.
+        let before = reached(&broken);
+        let further = before + u64::from(1 + moment % 10) * config().frames_per_rollout();
+        while reached(&broken) < further {
+            assert!(child.try_wait().unwrap().is_none(), "the run ended before it was killed");
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        std::thread::sleep(Duration::from_micros(u64::from(moment >> 8 & 0xFFF)));
         child.kill().unwrap();
-        kills += u32::from(!child.wait().unwrap().success());
+        assert!(!child.wait().unwrap().success(), "the run ended before it was killed");
+        assert!(reached(&broken) < config().frames, "the run was over when it was killed");
     }
-    println!("killed {kills} times before the end");
-    assert!(weights(&straight) == weights(&broken), "weights differ after {kills} kills");
+    assert!(weights(&straight) == weights(&broken), "weights differ");
+    assert_eq!(hand_out(&straight), hand_out(&broken), "another checkpoint is handed out");
     let partial = fs::read_dir(broken.join("checkpoints"))
         .unwrap()
         .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "partial"));
@@ -90,7 +116,7 @@ fn a_full_disk_ends_the_run_with_an_error_and_loses_nothing() {
     assert!(message.contains("metrics.jsonl") && message.contains("No space left"), "{message}");
     assert!(message.contains("--resume"), "{message}");
     fs::remove_file(&log).unwrap();
-    let (result, _, warnings) = tiny::run(Start::Resume { frames: Some(2 * config.frames) }, &path);
+    let (result, _, warnings) = tiny::run(Start::Resume { settings: &[format!("frames={}", 2 * config.frames)] }, &path);
     assert_eq!(result.unwrap().last.frames, 2 * config.frames);
     assert!(warnings.is_empty(), "{warnings:?}");
     fs::remove_dir_all(path).unwrap();

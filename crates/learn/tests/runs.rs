@@ -6,7 +6,9 @@ use hasard_envs::{EnvError, Environment, VecEnv, VecOptions};
 use hasard_learn::config::curriculum::Lesson;
 use hasard_learn::config::{AlgorithmKind, EnvConfig, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
-use hasard_learn::runs::evaluate::{Agent, Choice, Which};
+use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which};
+use hasard_learn::runs::evaluate::{Evaluation, play};
+use hasard_learn::runs::run_directory::read_config;
 use hasard_learn::runs::trainer::{Hooks, Start, train};
 use serde_json::{Value, json};
 use std::fs;
@@ -55,7 +57,7 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
         config.sampling.world_threads = world_threads;
         // A rollout that is no multiple of the episode, so that the run ends inside episodes.
         config.sampling.rollout = 13;
-        config.learning.final_rate = 1e-3;
+        config.learning.final_rate = Some(1e-3);
         let rollout = config.frames_per_rollout();
         config.frames = 8 * rollout;
         let straight = tiny::directory(&format!("straight-{algorithm}"));
@@ -80,7 +82,7 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
         .unwrap();
         assert!(summary.stopped);
         assert!(summary.last.frames < config.frames);
-        let (resumed, ..) = tiny::run(Start::Resume { frames: None }, &broken);
+        let (resumed, ..) = tiny::run(Start::RESUME, &broken);
         assert!(!resumed.unwrap().stopped);
         let (a, b) = (last_files(&straight), last_files(&broken));
         assert!(a.0 == b.0, "{algorithm}: weights differ");
@@ -179,11 +181,7 @@ fn a_second_trainer_and_a_second_run_are_refused() {
         Start::Fresh(config.clone()),
         &path,
         &tiny::worlds,
-        &mut Hooks {
-            stop: &stop,
-            report: &mut |_| inner = Some(tiny::run(Start::Resume { frames: None }, &path).0),
-            warn: &mut |_| {},
-        },
+        &mut Hooks { stop: &stop, report: &mut |_| inner = Some(tiny::run(Start::RESUME, &path).0), warn: &mut |_| {} },
     )
     .unwrap();
     let message = inner.unwrap().unwrap_err();
@@ -191,7 +189,7 @@ fn a_second_trainer_and_a_second_run_are_refused() {
     let message = tiny::run(Start::Fresh(config), &path).0.unwrap_err();
     assert!(message.contains("--resume"), "{message}");
     let nowhere = tiny::directory("nowhere");
-    let message = tiny::run(Start::Resume { frames: None }, &nowhere).0.unwrap_err();
+    let message = tiny::run(Start::RESUME, &nowhere).0.unwrap_err();
     assert!(message.contains("no run is here"), "{message}");
     fs::remove_dir_all(path).unwrap();
 }
@@ -232,7 +230,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
         let mut text = fs::read_to_string(&metrics).unwrap();
         text.push_str("{\"frames\": 12");
         fs::write(&metrics, text).unwrap();
-        let (result, reports, warnings) = tiny::run(Start::Resume { frames: None }, &path);
+        let (result, reports, warnings) = tiny::run(Start::RESUME, &path);
         result.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(reports.len(), 1, "{name}: one rollout was done again");
         assert!(warnings[0].contains("going back"), "{name}: {warnings:?}");
@@ -241,7 +239,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
         for checkpoint in checkpoints(&path) {
             truncate(&checkpoint.join("state.json"));
         }
-        let message = tiny::run(Start::Resume { frames: Some(config.frames * 2) }, &path).0.unwrap_err();
+        let message = tiny::run(Start::Resume { settings: &[format!("frames={}", config.frames * 2)] }, &path).0.unwrap_err();
         assert!(message.contains("every checkpoint is damaged"), "{message}");
         fs::remove_dir_all(path).unwrap();
     }
@@ -276,7 +274,7 @@ fn a_loaded_agent_acts_as_it_learned() {
             }
             for (lane, (world, action)) in worlds.iter_mut().zip(agent.act(&observations)).enumerate() {
                 let step = world.step(&action.actions, &action.deltas);
-                agent.observe_cost(lane, step.cost);
+                agent.observe_cost(lane, step.cost, world.step_costs());
             }
         }
         worlds.iter().map(|world| (world.episode().episode_return, world.episode().cost)).collect()
@@ -319,7 +317,6 @@ fn a_curriculum_carries_weights_over() {
     let (first, second) = (tiny::directory("first-level"), tiny::directory("second-level"));
     tiny::run(Start::Fresh(config.clone()), &first).0.unwrap();
     config.learning.rate = 0.0;
-    config.learning.final_rate = 0.0;
     let (result, reports, _) = tiny::run(Start::From(config, &first), &second);
     assert_eq!(result.unwrap().last.updates, 8, "two rollouts of two epochs of two minibatches, counted from zero");
     assert_eq!(reports.len(), 2);
@@ -417,7 +414,7 @@ fn a_curriculum_stopped_at_every_moment_equals_the_uninterrupted_one() {
     let mut stopped = go(Start::Fresh(config.clone()), &broken, 1);
     let mut times = 1;
     while stopped {
-        stopped = go(Start::Resume { frames: None }, &broken, 1);
+        stopped = go(Start::RESUME, &broken, 1);
         times += 1;
     }
     assert_eq!(times, 6);
@@ -453,8 +450,116 @@ fn a_panic_of_the_learner_ends_the_run_with_an_error_and_it_goes_on() {
         train(Start::Fresh(config), &path, &tiny::worlds, &mut Hooks { stop: &stop, report: &mut hear, warn: &mut |_| {} });
     let message = result.unwrap_err().to_string();
     assert!(message.contains("the learner") && message.contains("the tape tore"), "{message}");
-    tiny::run(Start::Resume { frames: None }, &path).0.unwrap();
+    tiny::run(Start::RESUME, &path).0.unwrap();
     assert_eq!(rows(&path), rows(&straight));
     fs::remove_dir_all(straight).unwrap();
     fs::remove_dir_all(path).unwrap();
+}
+
+/// A run is evaluated by frames; it hands out the best checkpoint within its budget, and says what that is worth.
+#[test]
+fn a_run_hands_out_its_best_checkpoint_within_the_budget() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.frames = 60 * config.frames_per_rollout();
+    config.evaluation.every = Some(4 * config.frames_per_rollout());
+    config.algorithm_settings.multiplier_rate = 0.1;
+    let path = tiny::directory("hand-out");
+    let (summary, reports, _) = tiny::run(Start::Fresh(config.clone()), &path);
+    let evaluated: Vec<_> = reports.iter().filter_map(|report| Some((report.frames, report.evaluation.clone()?))).collect();
+    assert_eq!(evaluated.len(), 15);
+    let hand_out = summary.unwrap().hand_out.unwrap();
+    assert!(hand_out.confirmed && hand_out.chosen_by.surely_within(), "{hand_out:?}");
+    assert!(evaluated.iter().any(|(frames, _)| *frames == hand_out.frames));
+    let closing = hand_out.closing.as_ref().unwrap();
+    assert_eq!((closing.episodes, closing.constraints[0].budget), (100, 4.0));
+    // The best is 4 at cost 4; a policy that is blind to the picture gets 0.7 out of each unit of cost.
+    assert!(closing.within() && closing.episode_return.mean > 2.9, "{closing:?}");
+    // Rows have it too, and other episodes of the agent that is loaded from the directory cost as much.
+    let last = rows(&path).pop().unwrap();
+    assert!(last["eval/cost_mean"].is_number() && last["eval/episodes"] == 32, "{last}");
+    let told: Value = serde_json::from_slice(&fs::read(path.join("hand_out.json")).unwrap()).unwrap();
+    assert_eq!(told["frames"], hand_out.frames);
+    let shape = ActionShape { sizes: vec![2, 3], deltas: 0 };
+    let mut warn = |warning| panic!("{warning}");
+    let policy = TrainedPolicy::load(&path, Which::HandedOut, [tiny::SIDE, tiny::SIDE, 1], shape, &mut warn).unwrap();
+    let seeds: Vec<u64> = (0..100).collect();
+    let episodes = play(&policy, Choice::Sampled, &tiny::worlds, &seeds, 2).unwrap();
+    let others = Evaluation::of(&episodes, &config.constraints);
+    assert!((others.cost.mean - closing.cost.mean).abs() < 0.8, "{others:?} {closing:?}");
+    // The number of threads changes nothing.
+    assert_eq!(play(&policy, Choice::Sampled, &tiny::worlds, &seeds[..7], 3).unwrap(), episodes[..7]);
+    assert_eq!(episodes.iter().map(|episode| episode.seed).collect::<Vec<_>>(), seeds);
+    let best: Vec<_> = checkpoints(&path).into_iter().filter(|one| one.to_str().unwrap().contains("best_")).collect();
+    assert_eq!(best.len(), 1, "{best:?}");
+    // Asked again, the run is over and says the same.
+    let (again, ..) = tiny::run(Start::RESUME, &path);
+    assert_eq!(again.unwrap().hand_out, Some(hand_out));
+    fs::remove_dir_all(path).unwrap();
+}
+
+/// The worth of a run does not hang on whether it was evaluated.
+#[test]
+fn evaluations_change_nothing_that_is_learned() {
+    let mut config = tiny::config(AlgorithmKind::PpoSaute);
+    config.frames = 6 * config.frames_per_rollout();
+    let (never, often) = (tiny::directory("never-evaluated"), tiny::directory("often-evaluated"));
+    tiny::run(Start::Fresh(config.clone()), &never).0.unwrap();
+    config.evaluation.every = Some(1);
+    tiny::run(Start::Fresh(config), &often).0.unwrap();
+    assert!(last_files(&never).0 == last_files(&often).0 && last_files(&never).1 == last_files(&often).1);
+    fs::remove_dir_all(never).unwrap();
+    fs::remove_dir_all(often).unwrap();
+}
+
+/// A run may go on with another seed, learning rate, length and number of samplers; what changed is written down, and holds
+/// when the run is resumed once more.
+#[test]
+fn a_run_goes_on_with_other_settings_and_says_so() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.frames = 2 * config.frames_per_rollout();
+    let frames = |rollouts: u64| rollouts * config.frames_per_rollout();
+    let settings = [format!("frames={}", frames(4)), "seed=7".into(), "learning.rate=1e-4".into()];
+    let begun = tiny::directory("begun");
+    tiny::run(Start::Fresh(config.clone()), &begun).0.unwrap();
+    // Other numbers of samplers are no other run.
+    let mut ends = Vec::new();
+    for samplers in [1, 2, 4] {
+        let path = tiny::directory(&format!("goes-on-{samplers}"));
+        copy(&begun, &path);
+        let settings: Vec<String> = settings.iter().cloned().chain([format!("sampling.samplers={samplers}")]).collect();
+        let (summary, reports, _) = tiny::run(Start::Resume { settings: &settings }, &path);
+        assert_eq!(summary.unwrap().last.frames, frames(4));
+        assert!(
+            reports.iter().all(|report| report.learning.iter().any(|(name, rate)| *name == "learning_rate" && *rate == 1e-4))
+        );
+        let kept = read_config(&path).unwrap();
+        let changed: Vec<_> = kept.changes.iter().map(|change| (change.setting.as_str(), change.frames)).collect();
+        assert_eq!(changed, [("frames", frames(2)), ("learning.rate", frames(2)), ("seed", frames(2))]);
+        assert_eq!((kept.frames, kept.seed, kept.learning.rate), (frames(4), 7, 1e-4));
+        ends.push(last_files(&path).0);
+        fs::remove_dir_all(path).unwrap();
+    }
+    assert!(ends[0] == ends[1] && ends[1] == ends[2], "the number of samplers changed what was learned");
+    // Another seed is another run, and what cannot change is refused by name.
+    let same = tiny::directory("same-seed");
+    copy(&begun, &same);
+    tiny::run(Start::Resume { settings: &[settings[0].clone(), settings[2].clone()] }, &same).0.unwrap();
+    assert!(last_files(&same).0 != ends[0]);
+    let refused = tiny::run(Start::Resume { settings: &["learning.gamma=0.5".into()] }, &same).0.unwrap_err();
+    assert!(refused.contains("learning.gamma") && refused.contains("--init-from"), "{refused}");
+    fs::remove_dir_all(begun).unwrap();
+    fs::remove_dir_all(same).unwrap();
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let target = to.join(entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            copy(&entry.path(), &target)
+        } else {
+            drop(fs::copy(entry.path(), target).unwrap())
+        }
+    }
 }

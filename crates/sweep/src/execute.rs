@@ -36,18 +36,24 @@ pub struct Summary {
 /// Runs jobs, `parallel` processes of `program` at a time: finished ones are skipped, unfinished ones resumed. A job that
 /// fails does not stop the others. What a process prints goes to the job's log. `tell` hears of every event.
 ///
+/// Several processes share the cores out: each is told its number of threads, unless its job chooses one. Otherwise every one
+/// of them would take all cores, and they would wait for each other.
+///
 /// Ctrl-C reaches the processes as well (they are of the same group), and each stops with a checkpoint; the next call
 /// resumes them.
 pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, tell: impl Fn(usize, &Event) + Sync) -> Summary {
+    let parallel = parallel.clamp(1, jobs.len().max(1));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let share = (parallel > 1).then(|| (cores / parallel).max(1));
     let next = AtomicUsize::new(0);
     let summary = Mutex::new(Summary::default());
     std::thread::scope(|scope| {
-        for _ in 0..parallel.clamp(1, jobs.len().max(1)) {
+        for _ in 0..parallel {
             scope.spawn(|| {
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(job) = jobs.get(index) else { break };
-                    let event = run_one(program, job, |event| tell(index, event));
+                    let event = run_one(program, job, share, |event| tell(index, event));
                     tell(index, &event);
                     let mut summary = summary.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                     match event {
@@ -64,19 +70,25 @@ pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, tell: impl Fn(usi
     summary
 }
 
-fn run_one(program: &Path, job: &Job, tell: impl Fn(&Event)) -> Event {
+fn run_one(program: &Path, job: &Job, share: Option<usize>, tell: impl Fn(&Event)) -> Event {
     let state = job.state();
     if state == State::Finished {
-        return Event::AlreadyFinished;
+        if !job.wants_evaluation() {
+            return Event::AlreadyFinished;
+        }
+        return evaluate(program, job).map_or_else(Event::Failed, |()| Event::AlreadyFinished);
     }
     let log = job.log();
+    let mut arguments = job.arguments_from(state);
+    if let Some(threads) = share.filter(|_| !job.chooses_threads()) {
+        arguments.extend(["--threads".into(), threads.to_string()]);
+    }
     let open = || -> std::io::Result<std::fs::File> {
         if let Some(folder) = log.parent() {
             std::fs::create_dir_all(folder)?;
         }
         let mut file = OpenOptions::new().create(true).append(true).open(&log)?;
-        let arguments = job.arguments_from(state).join(" ");
-        writeln!(file, "$ {} {arguments}", program.display())?;
+        writeln!(file, "$ {} {}", program.display(), arguments.join(" "))?;
         Ok(file)
     };
     let outputs = open().and_then(|file| Ok((file.try_clone()?, file)));
@@ -86,15 +98,31 @@ fn run_one(program: &Path, job: &Job, tell: impl Fn(&Event)) -> Event {
     };
     tell(&Event::Started(state));
     let began = Instant::now();
-    let status = Command::new(program).args(job.arguments_from(state)).stdin(Stdio::null()).stdout(out).stderr(error).status();
+    let status = Command::new(program).args(&arguments).stdin(Stdio::null()).stdout(out).stderr(error).status();
     match status {
         Ok(status) if status.success() => match job.state() {
+            State::Finished if job.wants_evaluation() => {
+                evaluate(program, job).map_or_else(Event::Failed, |()| Event::Finished(began.elapsed()))
+            }
             State::Finished => Event::Finished(began.elapsed()),
             _ => Event::Failed(format!("ended before its {} frames; see {}", job.frames, log.display())),
         },
         Ok(status) => Event::Failed(format!("{status}; {}: {}", log.display(), last_line(&log))),
         Err(error) => Event::Failed(format!("cannot run {}: {error}", program.display())),
     }
+}
+
+/// Evaluates the agent of a finished run and keeps the episodes in its directory, under a temporary name until they are all
+/// there.
+fn evaluate(program: &Path, job: &Job) -> Result<(), String> {
+    let (path, partial) = (job.evaluation(), job.evaluation().with_extension("partial"));
+    let failed = |error: std::io::Error| format!("cannot evaluate into {}: {error}", path.display());
+    let output = Command::new(program).args(job.evaluation_arguments()).stdin(Stdio::null()).output().map_err(failed)?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+        return Err(format!("the evaluation of {} failed: {said}", job.directory.display()));
+    }
+    std::fs::write(&partial, &output.stdout).and_then(|()| std::fs::rename(&partial, &path)).map_err(failed)
 }
 
 /// The last line of a log that says anything; only the file's end is read.

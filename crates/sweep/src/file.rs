@@ -3,7 +3,8 @@
 //! ```toml
 //! experiment = "main"              # optional: begin with an experiment of the paper and change it below
 //! out = "runs/main"                # default "runs"
-//! parallel = 2                     # runs at a time, default 1
+//! parallel = 2                     # runs at a time, default 1; they share the cores out
+//! evaluate = 100                   # episodes of each finished run's agent, kept as eval.jsonl; default none
 //! frames = 2_000_000               # of each run
 //! seeds = [1, 2, 3]                # default [1]
 //! scenarios = ["RemedyRush"]       # or whole ids such as "RemedyRushLevel1-v0"
@@ -26,7 +27,7 @@ use crate::paper;
 use std::path::PathBuf;
 use toml::{Table, Value};
 
-const TOP_KEYS: [&str; 4] = ["experiment", "out", "parallel", "grid"];
+const TOP_KEYS: [&str; 5] = ["experiment", "out", "parallel", "evaluate", "grid"];
 const GRID_KEYS: [&str; 6] = ["frames", "seeds", "scenarios", "levels", "algorithms", "options"];
 
 impl Sweep {
@@ -50,7 +51,7 @@ fn understand(text: &str) -> Result<Sweep, String> {
     let mut sweep = match table.get("experiment") {
         None => {
             let grid = Grid { levels: vec![1], seeds: vec![1], ..Grid::default() };
-            Sweep { out: PathBuf::from("runs"), parallel: 1, grids: vec![grid] }
+            Sweep { out: PathBuf::from("runs"), parallel: 1, evaluate: 0, grids: vec![grid] }
         }
         Some(name) => paper::experiment(name.as_str().ok_or("`experiment` must be a name in quotes")?)?,
     };
@@ -61,6 +62,10 @@ fn understand(text: &str) -> Result<Sweep, String> {
         let count =
             parallel.as_integer().and_then(|count| usize::try_from(count).ok()).filter(|count| (1..=4096).contains(count));
         sweep.parallel = count.ok_or("`parallel` must be a whole number from 1 to 4096")?;
+    }
+    if let Some(evaluate) = table.get("evaluate") {
+        let count = evaluate.as_integer().and_then(|count| u32::try_from(count).ok());
+        sweep.evaluate = count.ok_or("`evaluate` must be a whole number of episodes from 0")?;
     }
     for grid in &mut sweep.grids {
         change(grid, &table)?;

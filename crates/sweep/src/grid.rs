@@ -44,6 +44,8 @@ pub struct Sweep {
     pub out: PathBuf,
     /// Runs at a time.
     pub parallel: usize,
+    /// Episodes that the agent of each finished run is evaluated on, kept in its directory as `eval.jsonl`; 0 for none.
+    pub evaluate: u32,
     /// The grids; a run that several ask for is made once.
     pub grids: Vec<Grid>,
 }
@@ -77,7 +79,8 @@ impl Sweep {
                 for algorithm in &grid.algorithms {
                     for options in grid.option_combinations() {
                         for &seed in &grid.seeds {
-                            let job = Job::new(&self.out, &environment, algorithm, grid.frames, seed, &options);
+                            let mut job = Job::new(&self.out, &environment, algorithm, grid.frames, seed, &options);
+                            job.evaluate = self.evaluate;
                             if seen.insert(job.directory.clone()) {
                                 jobs.push(job);
                             }

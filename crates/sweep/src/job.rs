@@ -13,6 +13,8 @@ pub struct Job {
     pub arguments: Vec<String>,
     /// Frames to reach.
     pub frames: u64,
+    /// Episodes that its agent is evaluated on when it is finished; 0 for none.
+    pub evaluate: u32,
 }
 
 /// How far a run is.
@@ -66,7 +68,7 @@ impl Job {
         }
         directory.push(format!("seed{seed}"));
         arguments.extend(["--out".into(), directory.display().to_string()]);
-        Job { directory, arguments, frames }
+        Job { directory, arguments, frames, evaluate: 0 }
     }
 
     /// How far the run is, by its `config.json` and the last whole line of its `metrics.jsonl`.
@@ -94,6 +96,31 @@ impl Job {
             arguments.push("--resume".into());
         }
         arguments
+    }
+
+    /// Whether its agent still has to be evaluated once the run is finished.
+    #[must_use]
+    pub fn wants_evaluation(&self) -> bool {
+        self.evaluate > 0 && !self.evaluation().is_file()
+    }
+
+    /// Where the episodes of its agent are kept: reports find them there. The file is there when it is whole.
+    #[must_use]
+    pub fn evaluation(&self) -> PathBuf {
+        self.directory.join("eval.jsonl")
+    }
+
+    /// The arguments that evaluate its agent.
+    #[must_use]
+    pub fn evaluation_arguments(&self) -> Vec<String> {
+        let directory = self.directory.display().to_string();
+        ["eval", &directory, "--episodes", &self.evaluate.to_string(), "--json"].map(String::from).to_vec()
+    }
+
+    /// Whether the number of threads was chosen for it.
+    #[must_use]
+    pub fn chooses_threads(&self) -> bool {
+        self.arguments.iter().any(|argument| argument == "--threads")
     }
 
     /// The command as one line for a shell, for a fresh start.

@@ -1,10 +1,10 @@
-//! The experiments of the paper by name, at its numbers of frames; [`Sweep::scale_frames`] makes them smaller.
+//! Experiments by name: those of the paper at its numbers of frames, and the quick preset's own; [`Sweep::scale_frames`] makes them smaller.
 
 use crate::grid::{Grid, OptionValue, SCENARIOS, Sweep};
 use std::path::PathBuf;
 
 /// Name of each experiment and what it compares.
-pub const EXPERIMENTS: [(&str, &str); 9] = [
+pub const EXPERIMENTS: [(&str, &str); 11] = [
     ("main", "six scenarios, three levels, PPO, PPOCost, PPOLag, PPOSaute, PPOPID and P3O"),
     ("safety-bounds", "PPOLag on level 1 with half, whole and one and a half times the budget"),
     ("cost-scale", "PPOCost on level 1 with cost scales 0.1, 0.5, 1 and 2"),
@@ -14,6 +14,8 @@ pub const EXPERIMENTS: [(&str, &str); 9] = [
     ("depth", "PPOPID on Precipice Plunge level 2 with and without depth"),
     ("segmentation", "PPOPID on Armament Burden level 2 with colours and with segmentation"),
     ("trpo", "TRPO, TRPOLag and TRPOPID on level 1"),
+    ("quick", "the quick preset on Volcanic Venture level 1, five seeds, each evaluated on 100 episodes"),
+    ("quick-all", "the quick preset on level 1 of the six scenarios, a seed each, evaluated on 100 episodes"),
 ];
 
 /// An experiment by its name: five seeds each, as the paper's text says, into `runs`, one run at a time.
@@ -59,12 +61,15 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
         }
         "depth" => vec![observed(grid(&["PrecipicePlunge"], &[2], &["PPOPID"], 200_000_000), "rgb+depth")],
         "segmentation" => vec![observed(grid(&["ArmamentBurden"], &[2], &["PPOPID"], 500_000_000), "segmented")],
+        "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOLag"], 4_000_000))],
+        "quick-all" => vec![Grid { seeds: vec![1], ..quick(grid(&SCENARIOS, &[1], &["PPOLag"], 16_000_000)) }],
         _ => {
             let known: Vec<&str> = EXPERIMENTS.iter().map(|(known, _)| *known).collect();
             return Err(format!("no experiment is called `{name}`; known are {}", known.join(", ")));
         }
     };
-    Ok(Sweep { out: PathBuf::from("runs"), parallel: 1, grids })
+    let evaluate = if name.starts_with("quick") { 100 } else { 0 };
+    Ok(Sweep { out: PathBuf::from("runs"), parallel: 1, evaluate, grids })
 }
 
 fn grid(scenarios: &[&str], levels: &[u32], algorithms: &[&str], frames: u64) -> Grid {
@@ -76,6 +81,10 @@ fn grid(scenarios: &[&str], levels: &[u32], algorithms: &[&str], frames: u64) ->
         frames,
         options: Vec::new(),
     }
+}
+
+fn quick(grid: Grid) -> Grid {
+    Grid { options: vec![("preset".into(), vec![OptionValue::Text("quick".into())])], ..grid }
 }
 
 fn observed(grid: Grid, observation: &str) -> Grid {

@@ -29,7 +29,7 @@ fn a_grid_expands_to_every_combination_once() {
 fn the_papers_experiments_have_their_sizes() {
     let count = |name: &str| paper::experiment(name).unwrap().jobs().unwrap().len();
     let counts = paper::EXPERIMENTS.map(|(name, _)| (name, count(name)));
-    let expected = [540, 90, 120, 20, 90, 60, 10, 10, 90];
+    let expected = [540, 90, 120, 20, 90, 60, 10, 10, 90, 5, 6];
     assert_eq!(counts.map(|(_, count)| count), expected, "{counts:?}");
     let mut curriculum = paper::experiment("curriculum").unwrap();
     curriculum.scale_frames(0.01);
@@ -132,6 +132,49 @@ fn jobs_run_are_resumed_and_skipped() {
     assert_eq!(events[1], (1, Event::Started(State::Unfinished(50))));
     let log = std::fs::read_to_string(jobs[1].log()).unwrap();
     assert!(log.contains("--resume"), "{log}");
+    // Two at a time had half the cores each; one alone takes what it likes.
+    let (first, second) = log.split_once("--resume").unwrap();
+    let share = (std::thread::available_parallelism().unwrap().get() / 2).max(1);
+    assert!(first.contains(&format!("--threads {share}\n")) && !second.contains("--threads"), "{log}");
+}
+
+/// Agents of finished runs are evaluated once, those of runs that were finished before as well; and jobs that choose their
+/// threads keep them.
+#[cfg(unix)]
+#[test]
+fn finished_runs_are_evaluated_once() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new("evaluate");
+    let program = folder.0.join("trainer");
+    let script = "#!/bin/sh\nif [ $1 = eval ]; then echo \"{\\\"asked\\\":\\\"$*\\\"}\"; exit 0; fi\n\
+                  for a in \"$@\"; do case \"$a\" in */seed*) dir=$a;; esac; done\nmkdir -p \"$dir\"; echo '{}' > \"$dir/config.json\"\n\
+                  echo '{\"frames\":100}' >> \"$dir/metrics.jsonl\"\n";
+    std::fs::write(&program, script).unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let text = |evaluate: u32| {
+        let out = folder.0.join("out");
+        format!(
+            "out = '{}'\nevaluate = {evaluate}\nframes = 100\nscenarios = ['RemedyRush']\nalgorithms = ['PPO']\nseeds = [1, 2]\n\
+             [options]\nthreads = 7",
+            out.display()
+        )
+    };
+    let without = Sweep::parse(&text(0)).unwrap().jobs().unwrap();
+    assert_eq!(run_jobs(&program, &without, 2, |_, _| {}).finished, 2);
+    assert!(!without[0].evaluation().exists());
+    let log = std::fs::read_to_string(without[0].log()).unwrap();
+    assert!(log.contains("--threads 7") && log.matches("--threads").count() == 1, "{log}");
+    let with = Sweep::parse(&text(100)).unwrap().jobs().unwrap();
+    for _ in 0..2 {
+        assert_eq!(run_jobs(&program, &with, 2, |_, _| {}).skipped, 2);
+        for job in &with {
+            let kept = std::fs::read_to_string(job.evaluation()).unwrap();
+            assert!(kept.contains(&format!("eval {} --episodes 100 --json", job.directory.display())), "{kept}");
+            std::fs::write(job.evaluation(), kept + "once").unwrap();
+            assert!(!job.wants_evaluation());
+        }
+    }
+    assert!(std::fs::read_to_string(with[0].evaluation()).unwrap().ends_with("onceonce"), "it was evaluated twice");
 }
 
 #[test]

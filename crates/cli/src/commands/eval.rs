@@ -3,22 +3,26 @@
 use crate::args::EvalArgs;
 use crate::episode_lines::EpisodeLines;
 use crate::failure::{Failure, Outcome};
-use hasard_envs::{Env, EnvOptions};
+use crate::zoo;
+use hasard_envs::{Env, EnvOptions, VecEnv};
 use hasard_learn::networks::distribution::ActionShape;
-use hasard_learn::runs::evaluate::{Agent, Choice, Which, run_config};
+use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config};
+use hasard_learn::runs::evaluate::play;
 use std::path::Path;
+
+/// Episodes that are played before they are printed.
+const AT_ONCE: u32 = 256;
 
 /// Runs the command.
 pub fn run(args: &EvalArgs) -> Outcome {
-    let config = run_config(&args.run).map_err(Failure::bad)?;
+    let run = zoo::find(&args.run)?;
+    let config = run_config(&run).map_err(Failure::bad)?;
     let mut lines = EpisodeLines::new(args.json);
-    if let Some(constraint) = config.constraints.first() {
-        lines.set_budget(constraint.budget);
-    }
+    lines.hold_against(&config.constraints);
     let options = crate::settings::trained_options(&config.env)?;
     let player = Player {
-        run: &args.run,
-        which: if args.best { Which::Best } else { Which::Latest },
+        run: &run,
+        which: if args.latest { Which::Latest } else { Which::HandedOut },
         choice: if args.greedy { Choice::Greedy } else { Choice::Sampled },
     };
     player.play(&config.env.id, &options, args.episodes, args.seed, &mut lines)?;
@@ -27,7 +31,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
 
 /// Which agent acts, and how.
 pub struct Player<'a> {
-    /// Its run directory.
+    /// Its run directory, or its file.
     pub run: &'a Path,
     /// Which of its checkpoints.
     pub which: Which,
@@ -36,33 +40,32 @@ pub struct Player<'a> {
 }
 
 impl Player<'_> {
-    /// The agent, for one world like this one.
-    pub fn agent(&self, env: &Env) -> Result<Agent, Failure> {
+    /// Its policy, for worlds like this one.
+    fn policy(&self, env: &Env) -> Result<TrainedPolicy, Failure> {
         let space = env.action_space();
         let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
         let mut warn = |text: String| eprintln!("hasard: {text}");
-        Agent::load(self.run, self.which, self.choice, 1, env.observation_shape(), action, &mut warn).map_err(Failure::bad)
+        TrainedPolicy::load(self.run, self.which, env.observation_shape(), action, &mut warn).map_err(Failure::bad)
     }
 
-    /// Plays episodes seeded `seed`, `seed + 1`, ... and prints them.
+    /// The agent, for one world like this one.
+    pub fn agent(&self, env: &Env) -> Result<Agent, Failure> {
+        Ok(self.policy(env)?.agent(self.choice, 1))
+    }
+
+    /// Plays episodes seeded `seed`, `seed + 1`, ... on all cores and prints them in order.
     pub fn play(&self, id: &str, options: &EnvOptions, episodes: u32, seed: u64, lines: &mut EpisodeLines) -> Outcome {
-        let mut env = Env::new(id, options).map_err(Failure::bad)?;
-        let mut agent = self.agent(&env)?;
-        let mut observation = vec![0; env.observation_shape().iter().product()];
-        for i in 0..u64::from(episodes) {
-            let seed = seed.wrapping_add(i);
-            env.reset(seed);
-            agent.reset(0, seed);
-            loop {
-                env.observe(&mut observation);
-                let action = agent.act(&observation).swap_remove(0);
-                let step = env.step(&action.actions, &action.deltas);
-                agent.observe_cost(0, step.cost);
-                if step.ended() {
-                    break;
-                }
+        let env = Env::new(id, options).map_err(Failure::bad)?;
+        let policy = self.policy(&env)?;
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let numbers: Vec<u32> = (0..episodes).collect();
+        for some in numbers.chunks(AT_ONCE as usize) {
+            let seeds: Vec<u64> = some.iter().map(|&number| seed.wrapping_add(number.into())).collect();
+            let make = |_: &_, worlds| VecEnv::new(id, options, worlds);
+            let played = play(&policy, self.choice, &make, &seeds, threads).map_err(Failure::bad)?;
+            for (&number, episode) in some.iter().zip(played) {
+                lines.episode(id, number.into(), episode)?;
             }
-            lines.episode(id, i, &env.episode())?;
         }
         Ok(())
     }

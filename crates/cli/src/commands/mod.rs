@@ -4,6 +4,7 @@ pub mod bench;
 pub mod contact_sheet;
 pub mod envs;
 pub mod eval;
+pub mod export_agent;
 pub mod export_wad;
 pub mod play;
 pub mod record;

@@ -4,6 +4,7 @@ use crate::actor::Performance;
 use crate::args::{FilmArgs, RecordArgs, ReplayArgs, Size, View};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
+use crate::zoo;
 use hasard_envs::{Env, EnvOptions, FrameSize};
 use hasard_media::episode::EpisodeFile;
 use hasard_play::{Film, Recorder, Replay, Stage, Views};
@@ -34,15 +35,18 @@ pub fn run(args: &RecordArgs) -> Outcome {
     let kind = Kind::of(&args.out, &[("mp4", Kind::Film), ("gif", Kind::Film), ("episode", Kind::Episode)])?;
     let looks = settings::env_options(&args.env_args, Size { width: 320, height: 240 })?;
     let looks = settings::looking(looks, &args.film.looks);
-    let what = Path::new(&args.what);
-    if what.is_file() {
+    let agent = zoo::is_agent(&args.what);
+    let what = &zoo::find(&args.what)?;
+    if what.is_file() && !agent {
         return record_replay(args, kind, what, &looks);
     }
-    let (mut performance, player) = if what.is_dir() {
+    let (mut performance, player) = if agent || what.is_dir() {
         if args.policy.is_some() || args.env_args.changes_task() {
             return Err(Failure::bad(format!(
-                "{}: a run's agent is shown in its own environment; to choose otherwise: hasard record ENV --policy run:{}",
-                args.what, args.what
+                "{}: a run's agent is shown in its own environment; to choose otherwise: hasard record ENV --policy {}{}",
+                args.what,
+                if args.what.starts_with("zoo:") { "" } else { "run:" },
+                args.what
             )));
         }
         (Performance::of_run(what, &looks, args.seed)?, format!("run:{}", args.what))

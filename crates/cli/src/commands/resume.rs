@@ -1,17 +1,20 @@
-//! `hasard train --resume`: a flag that contradicts the run in the directory is refused instead of ignored.
+//! `hasard train --resume`: a flag that contradicts the run in the directory changes the run where a run may change, and is refused
+//! instead of ignored elsewhere.
 
 use super::train::configuration;
 use crate::args::TrainArgs;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use hasard_learn::config::{TrainConfig, setting_pointer};
+use hasard_learn::config::TrainConfig;
+use hasard_learn::config::settings::{may_change, setting_pointer};
 use serde_json::Value;
 use std::path::Path;
 
 /// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
-/// `--frames` is absent: a resumed run may be given another length.
-const DECIDES: [(&str, &[&str]); 21] = [
+const DECIDES: [(&str, &[&str]); 23] = [
+    ("frames", &["/frames"]),
+    ("eval_every", &["/evaluation/every"]),
     ("algo", &["/algorithm"]),
     ("preset", &["/preset"]),
     ("curriculum", &["/curriculum"]),
@@ -35,9 +38,10 @@ const DECIDES: [(&str, &[&str]); 21] = [
     ("published_colours", &["/env/published_colours"]),
 ];
 
-/// Refuses flags that were typed and say something else than the run's settings. Flags that repeat them are welcome: a sweep
-/// resumes a run with the command that began it.
-pub fn check(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, directory: &Path) -> Outcome {
+/// The settings that are to be others from here on, each as `NAME=VALUE`. Flags that were typed and say something else than the
+/// run's settings are refused where a run cannot change; those that repeat them are welcome: a sweep resumes a run with the
+/// command that began it.
+pub fn settings(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, directory: &Path) -> Result<Vec<String>, Failure> {
     let given = |id: &str| typed.value_source(id) == Some(ValueSource::CommandLine);
     // What the command asks for, with the run's own settings wherever other defaults hang on them.
     let mut args = args.clone();
@@ -54,7 +58,7 @@ pub fn check(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, director
         args.device.clone_from(&saved.device);
     }
     let asked = serde_json::to_value(configuration(&args)?).map_err(Failure::bad)?;
-    let saved = serde_json::to_value(saved).map_err(Failure::bad)?;
+    let was = serde_json::to_value(saved).map_err(Failure::bad)?;
     let flags = DECIDES.iter().filter(|(id, _)| given(id));
     let mut places: Vec<(String, String)> = flags
         .flat_map(|(id, pointers)| {
@@ -63,13 +67,22 @@ pub fn check(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, director
             pointers.iter().map(move |pointer| (flag.clone(), (*pointer).to_string()))
         })
         .collect();
-    places.extend(args.set.iter().map(|text| {
+    for text in &args.set {
         let name = text.split('=').next().unwrap_or_default();
-        (format!("--set {name}"), setting_pointer(name))
-    }));
+        places.push((format!("--set {name}"), setting_pointer(name)));
+        if name == "learning.rate" {
+            // It decides the end of the schedule too.
+            places.push((format!("--set {name}"), setting_pointer("learning.final_rate")));
+        }
+    }
+    let mut changes = Vec::new();
     for (flag, pointer) in places {
-        let (there, wanted) = (saved.pointer(&pointer), asked.pointer(&pointer));
-        if there != wanted {
+        let (there, wanted) = (was.pointer(&pointer), asked.pointer(&pointer));
+        if there == wanted {
+            continue;
+        }
+        let name = pointer.trim_start_matches('/').replace('/', ".");
+        if !may_change(&name) {
             return Err(Failure::bad(format!(
                 "{flag}: the run in {} has {}, not {}; leave {flag} out to go on with it, or begin another with --out",
                 directory.display(),
@@ -77,8 +90,9 @@ pub fn check(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, director
                 show(wanted),
             )));
         }
+        changes.push(format!("{name}={}", wanted.unwrap_or(&Value::Null)));
     }
-    Ok(())
+    Ok(changes)
 }
 
 /// A setting as users write it.
@@ -104,22 +118,33 @@ mod tests {
     }
 
     #[test]
-    fn only_flags_that_contradict_the_run_are_refused() {
+    fn flags_that_contradict_the_run_change_it_or_are_refused() {
         let began = "hasard train RemedyRushLevel1-v0 --algo PPOPID --preset quick --seed 3 --frames 9000 --curriculum 1,2 \
                      --safety-budget 7 --threads 1 --hard --set learning.gamma=0.9";
         let saved = configuration(&train(began).0).unwrap();
         let check = |line: &str| {
             let (args, typed) = train(line);
-            check(&args, &typed, &saved, Path::new("run"))
+            settings(&args, &typed, &saved, Path::new("run"))
         };
-        for fine in ["", "--frames 20000", "--algo ppopid --seed 3", "--hard --threads 1 --sync --device cpu", "--json --quiet"] {
-            check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {fine}")).unwrap();
+        for fine in ["", "--algo ppopid --seed 3", "--hard --threads 1 --sync --device cpu", "--json --quiet"] {
+            let changes = check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {fine}")).unwrap();
+            assert!(changes.is_empty(), "{fine}: {changes:?}");
         }
-        check(&format!("{began} --resume --out run")).unwrap();
+        assert!(check(&format!("{began} --resume --out run")).unwrap().is_empty());
+        for (changed, expected) in [
+            ("--frames 20000", &["frames=20000"][..]),
+            ("--seed 1", &["seed=1"]),
+            ("--threads 2", &["learning.threads=2", "sampling.samplers=2"]),
+            ("--eval-every 4096", &["evaluation.every=4096"]),
+            ("--set learning.rate=0.0001", &["learning.rate=0.0001", "learning.final_rate=null"]),
+        ] {
+            let changes = check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {changed}")).unwrap();
+            assert_eq!(changes, expected, "{changed}");
+            saved.resumed_with(&changes, 4096).unwrap();
+        }
         for (wrong, named) in [
             ("--algo PPOLag", "--algo: the run in run has \"PPOPID\", not \"PPOLag\""),
             ("--preset paper", "--preset: the run in run has \"quick\", not \"paper\""),
-            ("--seed 1", "--seed: the run in run has 3, not 1"),
             ("--safety-budget 5", "--safety-budget: "),
             ("--async", "--async: the run in run has true, not false"),
             ("--frame-skip 8", "--frame-skip: the run in run has 4, not 8"),
@@ -138,7 +163,7 @@ mod tests {
     /// A flag that is added to `train` must be thought of here.
     #[test]
     fn every_flag_of_train_is_known_to_decide_something_or_nothing() {
-        let harmless = ["env", "frames", "out", "resume", "init_from", "set", "json", "quiet", "help", "version"];
+        let harmless = ["env", "out", "resume", "init_from", "set", "json", "quiet", "help", "version"];
         let command = Cli::command();
         for argument in command.find_subcommand("train").unwrap().get_arguments() {
             let id = argument.get_id().as_str();

@@ -6,17 +6,16 @@ use crate::args::{RolloutArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::{episode_lines, settings};
 use hasard_envs::{Env, rollout};
-use hasard_learn::runs::evaluate::{Choice, Which};
-use std::path::Path;
+use hasard_learn::runs::agent::{Choice, Which};
 
 /// Runs the command.
 pub fn run(args: &RolloutArgs) -> Outcome {
     // A fixed policy looks at nothing, so nothing is drawn and the size does not matter.
     let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
     let mut lines = episode_lines::EpisodeLines::new(args.json);
-    if let Some(run) = args.policy.strip_prefix("run:").map(Path::new) {
-        let options = agent_options(run, &options)?;
-        let player = Player { run, which: Which::Latest, choice: Choice::Sampled };
+    if let Some(run) = crate::actor::agent_of(&args.policy)? {
+        let options = agent_options(&run, &options)?;
+        let player = Player { run: &run, which: Which::HandedOut, choice: Choice::Sampled };
         player.play(&args.env, &options, args.episodes, args.seed, &mut lines)?;
         return lines.summary(false);
     }
@@ -24,7 +23,7 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
     for i in 0..args.episodes {
         let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i)));
-        lines.episode(&env.id().to_string(), u64::from(i), &episode)?;
+        lines.episode(&env.id().to_string(), u64::from(i), episode)?;
     }
     lines.summary(false)
 }

@@ -2,6 +2,7 @@
 
 use crate::args::SweepArgs;
 use crate::failure::{Failure, Outcome};
+use hasard_learn::config::AlgorithmKind;
 use hasard_sweep::{Event, Job, State, Sweep, paper, run_jobs};
 use serde_json::json;
 use std::path::Path;
@@ -20,6 +21,10 @@ pub fn run(args: &SweepArgs) -> Outcome {
             return Err(Failure::bad(format!("--scale {scale}: give a number above 0")));
         }
         sweep.scale_frames(scale);
+    }
+    // Directories bear the algorithms' own names, however they were typed.
+    for algorithm in sweep.grids.iter_mut().flat_map(|grid| &mut grid.algorithms) {
+        *algorithm = algorithm.parse::<AlgorithmKind>().map_err(Failure::bad)?.name().to_string();
     }
     let jobs = sweep.jobs().map_err(Failure::bad)?;
     if args.dry_run {

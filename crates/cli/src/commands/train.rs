@@ -2,22 +2,28 @@
 
 use crate::args::TrainArgs;
 use crate::automap;
+use crate::episode_lines::worth;
 use crate::failure::{Failure, Outcome};
 use clap::ArgMatches;
 use hasard_envs::{EnvId, VecEnv};
 use hasard_learn::config::curriculum::parse_curriculum;
-use hasard_learn::config::{Constraint, EnvConfig, Preset, TrainConfig};
+use hasard_learn::config::presets::samplers_for;
+use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
+use hasard_learn::runs::hand_out::HandOut;
 use hasard_learn::runs::interrupt::stop_on_interrupt;
 use hasard_learn::runs::progress_bar::{Bar, line};
 use hasard_learn::runs::report::Report;
 use hasard_learn::runs::run_directory::read_config;
 use hasard_learn::runs::trainer::{Hooks, Start, train};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Runs the command; `typed` tells which flags were given and which have their default.
 pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
-    let directory =
-        args.out.clone().unwrap_or_else(|| PathBuf::from(format!("runs/{}-{}-seed{}", args.env, args.algo, args.seed)));
+    let algorithm: AlgorithmKind = args.algo.parse().map_err(Failure::bad)?;
+    // By the algorithm's own name, however it was typed.
+    let directory = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("runs/{}-{algorithm}-seed{}", args.env, args.seed)));
+    let settings;
     let (start, config) = if args.resume && directory.join("config.json").exists() {
         let config = read_config(&directory).map_err(Failure::bad)?;
         // A curriculum is of a scenario; the level that the command names does not matter.
@@ -26,8 +32,9 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
             let problem = format!("{}: the run there is of {}; name that, or another --out", directory.display(), config.env.id);
             return Err(Failure::bad(problem));
         }
-        super::resume::check(args, typed, &config, &directory)?;
-        (Start::Resume { frames: args.frames }, config)
+        settings = super::resume::settings(args, typed, &config, &directory)?;
+        let config = config.with_all(&settings).map_err(Failure::bad)?;
+        (Start::Resume { settings: &settings }, config)
     } else {
         let config = configuration(args)?;
         let start = match &args.init_from {
@@ -38,7 +45,7 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     };
     let options = crate::settings::trained_options(&config.env)?;
     let stop = stop_on_interrupt().map_err(Failure::bad)?;
-    let bar = (!args.json && !args.quiet).then(|| Bar::new(args.frames.unwrap_or(config.frames)));
+    let bar = (!args.json && !args.quiet).then(|| Bar::new(config.frames));
     let mut first: Option<Report> = None;
     let (mut drawn, mut failed_drawing) = (false, None);
     let mut hear = |report: &Report| {
@@ -75,6 +82,9 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     if let Some(error) = failed_drawing {
         return Err(error);
     }
+    if let (true, Some(hand_out)) = (args.json, &summary.hand_out) {
+        say!("{}", json!({ "hand_out": hand_out }));
+    }
     if let Some(bar) = &bar {
         bar.finish();
         if let Some(first) = &first {
@@ -82,12 +92,27 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         }
         eprintln!("last:  {}", line(&summary.last));
         let name = directory.display();
+        if let Some(hand_out) = &summary.hand_out {
+            eprintln!("{}", handed_out(hand_out, summary.stopped));
+        }
         match summary.stopped {
             true => eprintln!("stopped; go on with: hasard train {} --resume --out {name}", config.env.id),
             false => eprintln!("{name} is a run directory: hasard eval {name}, hasard report {name}"),
         }
     }
     Ok(())
+}
+
+/// Which checkpoint the run hands out, and what it is worth.
+fn handed_out(hand_out: &HandOut, stopped: bool) -> String {
+    let all = hand_out.evaluation();
+    let kept = if all.within() { "within" } else { "NOT within" };
+    let so_far = if stopped { " so far" } else { "" };
+    let (frames, episodes) = (hand_out.frames, all.episodes);
+    format!(
+        "handed out{so_far}: the checkpoint of {frames} frames, {kept} its budget; {}, {episodes} episodes of their own",
+        worth(all)
+    )
 }
 
 /// An environment id without its level, or the whole text if it is none.
@@ -128,10 +153,16 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     config.sampling.synchronous = args.sync || (args.device == "cpu" && !args.asynchronous);
     if let Some(threads) = args.threads {
         config.learning.threads = usize::from(threads);
-        config.sampling.samplers = usize::from(threads);
     }
     if let Some(lanes) = args.envs {
         config.sampling.lanes = lanes as usize;
+    }
+    if args.threads.is_some() || args.envs.is_some() {
+        // As many samplers as threads, as far as they divide the worlds.
+        config.sampling.samplers = samplers_for(config.learning.threads, config.sampling.lanes);
+    }
+    if args.eval_every.is_some() {
+        config.evaluation.every = args.eval_every;
     }
     if let Some(scale) = args.cost_scale {
         config.algorithm_settings.penalty_scale = scale;
@@ -139,10 +170,7 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     if !args.safety_budget.is_empty() {
         config.constraints = args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
     }
-    let mut config = args
-        .set
-        .iter()
-        .try_fold(config, |config, text| config.with(text).map_err(|error| Failure::bad(format!("--set '{text}': {error}"))))?;
+    let mut config = config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     if let Some(text) = &args.curriculum {
         let lessons = parse_curriculum(text, config.frames).map_err(Failure::bad)?;
         config.set_curriculum(lessons);

@@ -43,6 +43,12 @@ impl AlgorithmKind {
         !matches!(self, Self::Ppo | Self::PpoCost | Self::PpoSaute | Self::Trpo)
     }
 
+    /// Whether it tries to keep budgets; the others are after the return alone, whatever their budget says.
+    #[must_use]
+    pub const fn keeps_budgets(self) -> bool {
+        !matches!(self, Self::Ppo | Self::PpoCost | Self::Trpo)
+    }
+
     /// Whether policy and critics are networks of their own, as second-order steps want it.
     #[must_use]
     pub const fn separates_networks(self) -> bool {

@@ -1,6 +1,6 @@
 //! Constraints, and what they are held against.
 
-use hasard_envs::CostTerm;
+use hasard_envs::{CostTerm, Episode};
 use serde::{Deserialize, Serialize};
 
 use super::names::names;
@@ -23,6 +23,17 @@ pub struct Constraint {
     pub term: Option<String>,
     /// Cost that an episode may have.
     pub budget: f64,
+}
+
+impl Constraint {
+    /// What an episode cost under it.
+    #[must_use]
+    pub fn cost_of(&self, episode: &Episode) -> f64 {
+        match &self.term {
+            None => episode.cost,
+            Some(name) => episode.costs.iter().find(|(term, _)| term == name).map_or(0.0, |(_, cost)| *cost),
+        }
+    }
 }
 
 /// Where each constraint's cost is found among the terms; unknown names are refused.

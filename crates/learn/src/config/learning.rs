@@ -27,8 +27,8 @@ pub struct LearningConfig {
     pub gae_lambda: f32,
     /// Learning rate.
     pub rate: f64,
-    /// Learning rate at the end of the run, reached linearly; equal to `rate` for a constant one.
-    pub final_rate: f64,
+    /// Learning rate at the end of the run, reached linearly; `null` for a constant one.
+    pub final_rate: Option<f64>,
     /// Adam's decays.
     pub adam_betas: (f64, f64),
     /// Adam's epsilon.
@@ -49,4 +49,12 @@ pub struct LearningConfig {
     pub bootstrap_time_outs: bool,
     /// Threads.
     pub threads: usize,
+}
+
+impl LearningConfig {
+    /// The learning rate after a share of the run, from 0 to 1.
+    #[must_use]
+    pub fn rate_after(&self, share: f64) -> f64 {
+        self.rate + (self.final_rate.unwrap_or(self.rate) - self.rate) * share.min(1.0)
+    }
 }

@@ -4,16 +4,19 @@ mod algorithm;
 pub mod constraint;
 pub mod curriculum;
 mod environment;
+mod evaluation;
 mod learning;
 mod names;
 mod network;
-mod presets;
+pub mod presets;
 mod reporting;
 mod sampling;
+pub mod settings;
 
 pub use algorithm::{AlgorithmConfig, AlgorithmKind};
 pub use constraint::{Constraint, ConstraintStatistic};
 pub use environment::EnvConfig;
+pub use evaluation::EvaluationConfig;
 pub use learning::{Exploration, LearningConfig};
 pub use network::{Convolution, Initialisation, NetworkConfig};
 pub use reporting::ReportingConfig;
@@ -27,6 +30,7 @@ use serde::{Deserialize, Serialize};
 use constraint::find_terms;
 use curriculum::Lesson;
 use names::names;
+use settings::Change;
 
 use crate::error::LearnError;
 
@@ -74,8 +78,14 @@ pub struct TrainConfig {
     pub learning: LearningConfig,
     /// Numbers of single algorithms.
     pub algorithm_settings: AlgorithmConfig,
+    /// When the agent is evaluated.
+    #[serde(default)]
+    pub evaluation: EvaluationConfig,
     /// What is written.
     pub reporting: ReportingConfig,
+    /// What changed when the run was resumed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<Change>,
 }
 
 impl TrainConfig {
@@ -106,6 +116,8 @@ impl TrainConfig {
             ("the number of learner threads", learning.threads, 256),
             ("the number of kept checkpoints", self.reporting.keep, 1000),
             ("the window of episodes", self.reporting.window, 100_000),
+            ("the episodes of an evaluation", self.evaluation.episodes, 100_000),
+            ("the confirming episodes", self.evaluation.confirming_episodes, 100_000),
             ("the steps of the longest episode", self.episode_steps as usize, 100_000),
             ("the delay of the PID controller", self.algorithm_settings.pid_delay, 100_000),
             ("the conjugate-gradient iterations", self.algorithm_settings.conjugate_iterations, 1000),
@@ -126,7 +138,7 @@ impl TrainConfig {
             ("gamma", f64::from(learning.gamma), 0.0, 1.0),
             ("lambda of the advantages", f64::from(learning.gae_lambda), 0.0, 1.0),
             ("the learning rate", learning.rate, 0.0, 10.0),
-            ("the final learning rate", learning.final_rate, 0.0, 10.0),
+            ("the final learning rate", learning.final_rate.unwrap_or(0.0), 0.0, 10.0),
             ("the largest gradient norm", learning.max_gradient_norm, 0.0, f64::MAX),
             ("the ratio clip", learning.clip_ratio, 0.0, 10.0),
             ("the value clip", learning.clip_value, 0.0, f64::MAX),
@@ -161,27 +173,15 @@ impl TrainConfig {
         if let Some(scenario) = self.env.scenario() {
             find_terms(scenario.cost_terms(), &self.constraints)?;
         }
+        let one_cost = matches!(self.algorithm, AlgorithmKind::PpoSaute | AlgorithmKind::PpoCost);
+        if one_cost && self.constraints.len() > 1 {
+            let allowed = format!("1 for {}, which shapes the reward by a single cost", self.algorithm);
+            return refuse("the number of constraints", &self.constraints.len(), &allowed);
+        }
         if self.algorithm == AlgorithmKind::PpoSaute && self.constraints.iter().any(|c| c.budget == 0.0) {
             return refuse("the budget of PPOSaute", &0, "above 0, for what is left of it is measured in its units");
         }
         Ok(())
-    }
-
-    /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`.
-    ///
-    /// # Errors
-    /// When the text is no `NAME=VALUE`, or there is no such setting, or it cannot have that value.
-    pub fn with(&self, setting: &str) -> Result<TrainConfig, LearnError> {
-        let wrong = |error: serde_json::Error| LearnError::Config(error.to_string());
-        let (name, given) =
-            setting.split_once('=').ok_or_else(|| LearnError::Config("write NAME=VALUE, such as learning.rate=0.0003".into()))?;
-        let mut all = serde_json::to_value(self).map_err(wrong)?;
-        let place = all.pointer_mut(&setting_pointer(name)).ok_or_else(|| {
-            let known = "names are those of a run's config.json, such as learning.rate";
-            LearnError::Config(format!("there is no setting '{name}'; {known}"))
-        })?;
-        *place = serde_json::from_str(given).unwrap_or_else(|_| given.into());
-        serde_json::from_value(all).map_err(wrong)
     }
 
     /// Frames of one rollout of all worlds.
@@ -189,12 +189,6 @@ impl TrainConfig {
     pub fn frames_per_rollout(&self) -> u64 {
         (self.sampling.lanes * self.sampling.rollout) as u64 * u64::from(self.env.frame_skip)
     }
-}
-
-/// Where a setting such as `learning.rate` stands in `config.json`, as a JSON pointer.
-#[must_use]
-pub fn setting_pointer(name: &str) -> String {
-    format!("/{}", name.replace('.', "/"))
 }
 
 #[cfg(test)]
@@ -215,6 +209,12 @@ mod tests {
         refuse(|c| c.learning.rate = f64::NAN, "learning rate");
         refuse(|c| c.constraints[0].budget = -1.0, "budget");
         refuse(|c| c.frames = 0, "frames");
+        for algorithm in [AlgorithmKind::PpoSaute, AlgorithmKind::PpoCost] {
+            let mut config = TrainConfig { algorithm, ..good.clone() };
+            config.constraints.push(config.constraints[0].clone());
+            let message = config.check().unwrap_err().to_string();
+            assert!(message.contains("number of constraints cannot be 2") && message.contains(algorithm.name()), "{message}");
+        }
         refuse(|c| c.constraints[0].term = Some("rain".into()), "harmful_items");
         assert!("ppolag".parse::<AlgorithmKind>().is_ok());
         let message = "PPOLagg".parse::<AlgorithmKind>().unwrap_err().to_string();

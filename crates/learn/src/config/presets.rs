@@ -2,8 +2,8 @@
 //! released code, and quick ones of our own.
 
 use crate::config::{
-    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, Exploration, LearningConfig, NetworkConfig,
-    Preset, ReportingConfig, SamplingConfig, TrainConfig,
+    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig, Exploration, LearningConfig,
+    NetworkConfig, Preset, ReportingConfig, SamplingConfig, TrainConfig,
 };
 use crate::config::{Convolution, Initialisation};
 use hasard_envs::Scenario;
@@ -62,7 +62,7 @@ impl TrainConfig {
                 gamma: 0.99,
                 gae_lambda: 0.95,
                 rate: 1e-4,
-                final_rate: 1e-4,
+                final_rate: None,
                 adam_betas: (0.9, 0.999),
                 adam_epsilon: if released && separate { 1e-8 } else { 1e-6 },
                 max_gradient_norm: 4.0,
@@ -106,6 +106,8 @@ impl TrainConfig {
                 ipo_kappa: 0.01,
                 ipo_limit: 1.0,
             },
+            evaluation: EvaluationConfig::default(),
+            changes: Vec::new(),
             reporting: ReportingConfig { report_seconds: 10.0, checkpoint_seconds: 120.0, keep: 2, window: 100 },
             env,
         };
@@ -117,7 +119,8 @@ impl TrainConfig {
 }
 
 /// As many samplers as cores, as far as they divide the worlds.
-fn samplers_for(cores: usize, lanes: usize) -> usize {
+#[must_use]
+pub fn samplers_for(cores: usize, lanes: usize) -> usize {
     (1..=cores.min(lanes)).rev().find(|count| lanes.is_multiple_of(*count)).unwrap_or(1)
 }
 
@@ -125,7 +128,7 @@ fn samplers_for(cores: usize, lanes: usize) -> usize {
 fn quicken(config: &mut TrainConfig) {
     config.frames = 4_000_000;
     config.learning.rate = 5e-4;
-    config.learning.final_rate = 1e-4;
+    config.learning.final_rate = Some(1e-4);
     config.learning.epochs = 2;
     config.learning.minibatches = 2;
     config.algorithm_settings.multiplier_rate = 0.02;

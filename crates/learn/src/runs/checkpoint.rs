@@ -19,6 +19,7 @@ use crate::learning::learner::Learner;
 use crate::learning::normaliser::Moments;
 use crate::networks::ModelShape;
 use crate::runs::checksum::crc32c;
+use crate::runs::hand_out::HandOut;
 use crate::runs::watch::Watch;
 use crate::sampling::sampler::SamplerState;
 
@@ -36,8 +37,9 @@ pub struct Progress {
     pub updates: u64,
     /// Seconds of work so far, those before a resume too.
     pub wall_seconds: f64,
-    /// Best mean return within all budgets.
-    pub best_feasible: Option<f64>,
+    /// The best evaluated checkpoint so far.
+    #[serde(default)]
+    pub hand_out: Option<HandOut>,
     /// Statistics of each critic's returns.
     pub returns: Vec<Moments>,
     /// Steps of each optimiser.
@@ -123,7 +125,7 @@ fn serialise(blocks: &[(String, Block)]) -> Result<Vec<u8>, LearnError> {
 }
 
 /// Names of all parameters: those of a model of several networks begin with the network's number.
-fn parameter_names(shape: &ModelShape) -> Vec<(String, Vec<usize>, std::ops::Range<usize>)> {
+pub(crate) fn parameter_names(shape: &ModelShape) -> Vec<(String, Vec<usize>, std::ops::Range<usize>)> {
     let mut names = Vec::new();
     for (index, network) in shape.networks.iter().enumerate() {
         let start = shape.parameter_range(index).start;
@@ -249,13 +251,18 @@ impl Loaded {
         })
     }
 
+    /// The networks' parameters and the statistics of pixels, by name.
+    pub fn tensors(&self) -> Result<SafeTensors<'_>, String> {
+        SafeTensors::deserialize(&self.weights).map_err(|error| error.to_string())
+    }
+
     /// Puts weights and normalisers into a learner: all that acting needs, and what a new run may begin with.
     pub fn restore_weights(&self, learner: &mut Learner) -> Result<(), LearnError> {
         self.weights_into(learner).map_err(|problem| LearnError::Config(format!("the checkpoint does not fit: {problem}")))
     }
 
     fn weights_into(&self, learner: &mut Learner) -> Result<(), String> {
-        let tensors = SafeTensors::deserialize(&self.weights).map_err(|error| error.to_string())?;
+        let tensors = self.tensors()?;
         let find = |name: &str| tensors.tensor(name).map_err(|error| format!("{name}: {error}"));
         for (name, _, range) in parameter_names(learner.shape()) {
             let values = parse_floats(&find(&name)?, range.len(), &name)?;
@@ -328,6 +335,10 @@ impl Loaded {
     }
 }
 
+fn remove(path: &Path) -> Result<(), LearnError> {
+    fs::remove_dir_all(path).map_err(LearnError::file(path, "remove"))
+}
+
 /// The checkpoints of a run.
 #[derive(Clone, Debug)]
 pub struct Store {
@@ -342,20 +353,24 @@ impl Store {
         Store { directory: run.join("checkpoints"), keep }
     }
 
-    /// Where the best feasible checkpoint is.
+    /// The checkpoint that the run hands out, if there is one.
     #[must_use]
-    pub fn best(&self) -> PathBuf {
-        self.directory.join("best")
+    pub fn best(&self) -> Option<PathBuf> {
+        self.numbered("best_").into_iter().next()
     }
 
-    /// All numbered checkpoints, newest first.
+    /// All checkpoints to go on from, newest first.
     #[must_use]
     pub fn all(&self) -> Vec<PathBuf> {
+        self.numbered("frames_")
+    }
+
+    fn numbered(&self, beginning: &str) -> Vec<PathBuf> {
         let Ok(entries) = fs::read_dir(&self.directory) else { return Vec::new() };
         let mut found: Vec<(u64, PathBuf)> = entries
             .filter_map(|entry| {
                 let path = entry.ok()?.path();
-                let frames = path.file_name()?.to_str()?.strip_prefix("frames_")?.parse().ok()?;
+                let frames = path.file_name()?.to_str()?.strip_prefix(beginning)?.parse().ok()?;
                 Some((frames, path))
             })
             .collect();
@@ -363,17 +378,50 @@ impl Store {
         found.into_iter().rev().map(|(_, path)| path).collect()
     }
 
-    /// Writes a checkpoint, as the best one too if it is; older ones beyond the number to keep go.
-    pub fn write(&self, checkpoint: &Checkpoint, best: bool) -> Result<(), LearnError> {
-        let path = self.directory.join(format!("frames_{:012}", checkpoint.progress.frames));
-        checkpoint.write(&path)?;
-        if best {
-            checkpoint.write(&self.best())?;
+    /// Writes a checkpoint to go on from; older ones beyond the number to keep go, and so do those that were the best before
+    /// the one that it knows of. Not earlier: whenever the run is killed, what its newest checkpoint hands out is there.
+    pub fn write(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
+        checkpoint.write(&self.directory.join(format!("frames_{:012}", checkpoint.progress.frames)))?;
+        self.all().into_iter().skip(self.keep).try_for_each(|old| remove(&old))?;
+        self.keep_best(checkpoint.progress.hand_out.as_ref())
+    }
+
+    /// Writes the checkpoint that is the best so far.
+    pub fn write_best(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
+        checkpoint.write(&self.best_of(checkpoint.progress.frames))
+    }
+
+    /// Where the best checkpoint of so many frames is.
+    #[must_use]
+    pub fn best_of(&self, frames: u64) -> PathBuf {
+        self.directory.join(format!("best_{frames:012}"))
+    }
+
+    fn keep_best(&self, hand_out: Option<&HandOut>) -> Result<(), LearnError> {
+        let Some(kept) = hand_out.map(|one| self.best_of(one.frames)) else { return Ok(()) };
+        self.numbered("best_").into_iter().filter(|path| *path != kept).try_for_each(|old| remove(&old))
+    }
+
+    /// Makes the directory agree with a checkpoint that the run goes on from, and gives what it hands out so far: what a
+    /// killed run left half-written goes, and so does what was the best in a future that will not be.
+    pub fn go_back_to(&self, progress: &Progress) -> Result<Option<HandOut>, LearnError> {
+        if let Ok(entries) = fs::read_dir(&self.directory) {
+            let half = entries.filter_map(|entry| Some(entry.ok()?.path()));
+            half.filter(|path| path.extension().is_some_and(|ending| ending == "partial")).try_for_each(|path| remove(&path))?;
         }
-        for old in self.all().into_iter().skip(self.keep) {
-            fs::remove_dir_all(&old).map_err(LearnError::file(&old, "remove"))?;
+        let known = progress.hand_out.clone().filter(|one| self.best_of(one.frames).is_dir());
+        match (known, self.best()) {
+            (Some(known), _) => {
+                self.keep_best(Some(&known))?;
+                Ok(Some(known))
+            }
+            // The newer checkpoints were damaged, but what they handed out is whole: better than nothing.
+            (None, Some(left)) if progress.hand_out.is_some() => Ok(Loaded::read(&left)?.progress.hand_out),
+            (None, _) => {
+                self.numbered("best_").into_iter().try_for_each(|path| remove(&path))?;
+                Ok(None)
+            }
         }
-        Ok(())
     }
 
     /// The newest whole checkpoint; `warn` is told of each damaged one that is passed over.

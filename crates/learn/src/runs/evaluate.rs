@@ -1,147 +1,215 @@
-//! A trained agent, acting.
+//! Episodes of a trained policy, and what they say about return and budgets.
 
-use std::path::Path;
+use hasard_envs::{Autoreset, Episode, LaneState, VecEnv, VecOptions};
+use serde::{Deserialize, Serialize};
 
-use crate::config::TrainConfig;
+use crate::config::Constraint;
 use crate::error::LearnError;
-use crate::learning::learner::Learner;
-use crate::networks::device::ComputeDevice;
-use crate::networks::distribution::ActionShape;
-use crate::networks::{Actor, ImageShape, ModelShape};
-use crate::random::{Purpose, Stream};
-use crate::runs::checkpoint::{Loaded, Store};
-use crate::runs::run_directory::read_config;
-use crate::sampling::shaping::Shaping;
+use crate::runs::agent::TrainedPolicy;
+use crate::runs::session::MakeWorlds;
+use crate::sampling::gather::panic_text;
 
-/// Which checkpoint of a run acts.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Which {
-    /// The newest whole one.
-    #[default]
-    Latest,
-    /// The one with the best return within all budgets.
-    Best,
-}
+pub use crate::runs::agent::{Action, Agent, Choice, Which, run_config};
 
-/// How actions are chosen.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Choice {
-    /// Drawn from the policy, as while training.
-    #[default]
-    Sampled,
-    /// The most probable one.
-    Greedy,
-}
+/// Most worlds that one agent acts in side by side.
+const MOST_LANES: usize = 32;
 
-/// A trained agent for some worlds side by side, each with an episode of its own.
-pub struct Agent {
-    shape: ModelShape,
-    actor: Actor,
-    shaping: Shaping,
+/// Plays an episode of each seed, on `threads` threads, and gives them in the order of the seeds. What happens in an episode
+/// follows from its seed alone.
+pub fn play(
+    policy: &TrainedPolicy,
     choice: Choice,
-    state: Vec<Vec<f32>>,
-    safety: Vec<f64>,
-    /// Seed of each lane's episode, and its steps so far: what its draws come from.
-    episodes: Vec<(u64, u64)>,
-}
-
-/// What an agent does in one world.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct Action {
-    /// Categorical sub-actions.
-    pub actions: Vec<u8>,
-    /// Continuous sub-actions.
-    pub deltas: Vec<f32>,
-}
-
-/// The settings of the run in a directory, so that its worlds can be made.
-pub fn run_config(directory: &Path) -> Result<TrainConfig, LearnError> {
-    read_config(directory)
-}
-
-impl Agent {
-    /// Loads the agent of a run for `lanes` worlds with these observations (height, width, channels) and actions.
-    pub fn load(
-        directory: &Path,
-        which: Which,
-        choice: Choice,
-        lanes: usize,
-        observation: [usize; 3],
-        action: ActionShape,
-        warn: &mut dyn FnMut(String),
-    ) -> Result<Agent, LearnError> {
-        let mut config = read_config(directory)?;
-        config.learning.threads = 1;
-        let store = Store::new(directory, 1);
-        let loaded = match which {
-            Which::Latest => store.newest(warn)?,
-            Which::Best if store.best().exists() => Some(Loaded::read(&store.best())?),
-            Which::Best => None,
-        };
-        let missing = match which {
-            Which::Latest => "no checkpoint was written yet; let the run go on with `hasard train --resume`",
-            Which::Best => "no checkpoint kept all budgets; use the latest one",
-        };
-        let loaded = loaded.ok_or_else(|| LearnError::content(directory, missing))?;
-        let [height, width, channels] = observation;
-        let shaping = Shaping::new(&config);
-        let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
-        let image = ImageShape { height, width, channels };
-        let shape = ModelShape::new(image, action, cost_critics, shaping.extra_inputs(), &config.network)?;
-        let mut learner = Learner::new(&config, &shape, &ComputeDevice::Processor);
-        loaded.restore_weights(&mut learner)?;
-        let mut actor = Actor::new(&shape, &ComputeDevice::Processor);
-        actor.load(&learner.publish());
-        Ok(Agent {
-            state: shape.zero_state(lanes),
-            safety: vec![1.0; lanes],
-            episodes: vec![(0, 0); lanes],
-            shape,
-            actor,
-            shaping,
-            choice,
-        })
+    make_worlds: &MakeWorlds<'_>,
+    seeds: &[u64],
+    threads: usize,
+) -> Result<Vec<Episode>, LearnError> {
+    if seeds.is_empty() {
+        return Ok(Vec::new());
     }
-
-    /// Starts the episode of `seed` in a lane.
-    pub fn reset(&mut self, lane: usize, seed: u64) {
-        self.safety[lane] = 1.0;
-        self.episodes[lane] = (seed, 0);
-        for (state, network) in self.state.iter_mut().zip(&self.shape.networks) {
-            let units = network.state_size();
-            state[lane * units..(lane + 1) * units].fill(0.0);
+    let mut parts = Vec::new();
+    for own in seeds.chunks(seeds.len().div_ceil(threads.max(1))) {
+        // As many in each turn as divide the seeds evenly.
+        let lanes = own.len().div_ceil(own.len().div_ceil(MOST_LANES));
+        let options = VecOptions { lanes, autoreset: Autoreset::Disabled, ..VecOptions::default() };
+        let worlds = make_worlds(&policy.config().env, options).map_err(|error| LearnError::Worlds(error.to_string()))?;
+        parts.push((worlds, policy.agent(choice, lanes), own));
+    }
+    let mut episodes = Vec::with_capacity(seeds.len());
+    std::thread::scope(|scope| {
+        let running: Vec<_> =
+            parts.into_iter().map(|(worlds, agent, own)| scope.spawn(move || play_all(worlds, agent, own))).collect();
+        for thread in running {
+            let played = thread.join().map_err(|panic| LearnError::Panic(panic_text("an evaluation", &*panic)))?;
+            episodes.extend(played?);
         }
-    }
+        Ok(episodes)
+    })
+}
 
-    /// What to do in each lane, given the observations of all lanes one after the other.
-    pub fn act(&mut self, observations: &[u8]) -> Vec<Action> {
-        let lanes = self.safety.len();
-        let extra: Vec<f32> = match self.shape.extra_inputs() {
-            0 => Vec::new(),
-            _ => self.safety.iter().map(|&safety| Shaping::seen(safety)).collect(),
-        };
-        let width = self.shape.outputs();
-        let mut rows = vec![0.0; lanes * width];
-        self.actor.act(observations, &extra, &mut self.state, 0..lanes, &mut rows);
-        let action = &self.shape.action;
-        let mut all = Vec::with_capacity(lanes);
-        for (row, (seed, step)) in rows.chunks_exact(width).zip(&mut self.episodes) {
-            let mut one = Action { actions: vec![0; action.sizes.len()], deltas: vec![0.0; action.deltas] };
-            match self.choice {
-                Choice::Greedy => action.greedy(row, &mut one.actions, &mut one.deltas),
-                Choice::Sampled => {
-                    let mut stream = Stream::new(*seed, Purpose::Evaluation, *seed, *step);
-                    action.sample(row, &mut stream, &mut one.actions, &mut one.deltas);
-                }
+fn play_all(mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Vec<Episode>, LearnError> {
+    let world_error = |error: hasard_envs::EnvError| LearnError::Worlds(error.to_string());
+    let (lanes, terms) = (worlds.lanes(), worlds.cost_terms().len());
+    let mut batch = worlds.whole_batch();
+    let mut all = Vec::with_capacity(seeds.len());
+    for turn in seeds.chunks(lanes) {
+        // A turn that is not full plays its last seed several times, and counts it once.
+        let seed_of = |lane: usize| turn[lane.min(turn.len() - 1)];
+        let starts = (0..lanes).map(|lane| LaneState { seed: seed_of(lane), ..LaneState::default() }).collect();
+        worlds.restore(starts, &mut batch).map_err(world_error)?;
+        (0..lanes).for_each(|lane| agent.reset(lane, seed_of(lane)));
+        let mut ended: Vec<Option<Episode>> = vec![None; lanes];
+        while ended.iter().any(Option::is_none) {
+            let (actions, deltas) = (&mut batch.actions[..], &mut batch.deltas[..]);
+            let (count, continuous) = (actions.len() / lanes, deltas.len() / lanes);
+            for (lane, action) in agent.act(&batch.observations).into_iter().enumerate() {
+                actions[lane * count..(lane + 1) * count].copy_from_slice(&action.actions);
+                deltas[lane * continuous..(lane + 1) * continuous].copy_from_slice(&action.deltas);
             }
-            *step += 1;
-            all.push(one);
+            worlds.step(&mut batch).map_err(world_error)?;
+            for lane in 0..lanes {
+                let own: Vec<f64> = batch.cost_terms[lane * terms..(lane + 1) * terms].iter().map(|&cost| cost.into()).collect();
+                agent.observe_cost(lane, batch.costs[lane].into(), &own);
+            }
+            for episode in batch.episodes.drain(..) {
+                let lane = episode.lane;
+                ended[lane] = Some(episode);
+            }
         }
-        all
+        all.extend(ended.into_iter().flatten().take(turn.len()));
+    }
+    Ok(all)
+}
+
+/// A mean and half the width of its 95 % confidence interval (normal approximation, sample variance; none for one value).
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
+pub struct Estimate {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width.
+    pub half_width: f64,
+}
+
+impl Estimate {
+    /// The estimate from samples; 0 from none.
+    #[must_use]
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Estimate {
+        let values: Vec<f64> = values.into_iter().collect();
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n.max(1.0);
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let half_width = if n > 1.0 { 1.96 * (squares / (n - 1.0) / n).sqrt() } else { 0.0 };
+        Estimate { mean, half_width }
     }
 
-    /// Tells what a step cost in a lane; agents that watch their budget need it.
-    pub fn observe_cost(&mut self, lane: usize, cost: f64) {
-        (_, self.safety[lane]) = self.shaping.step(self.safety[lane], 0.0, cost as f32);
+    /// Upper end of the interval.
+    #[must_use]
+    pub fn high(&self) -> f64 {
+        self.mean + self.half_width
+    }
+}
+
+/// A constraint and what episodes cost under it.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Judgement {
+    /// Name of the cost term; `null` for the scalar cost.
+    pub term: Option<String>,
+    /// Cost that an episode may have.
+    pub budget: f64,
+    /// What it had.
+    pub cost: Estimate,
+}
+
+impl Judgement {
+    /// Whether the mean is within the budget.
+    #[must_use]
+    pub fn within(&self) -> bool {
+        self.cost.mean <= self.budget
+    }
+}
+
+/// What some episodes of a policy came to.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Evaluation {
+    /// Number of episodes.
+    pub episodes: usize,
+    /// Sum of rewards.
+    pub episode_return: Estimate,
+    /// Sum of costs.
+    pub cost: Estimate,
+    /// Steps.
+    pub length: Estimate,
+    /// Each constraint by its own term and budget.
+    pub constraints: Vec<Judgement>,
+}
+
+impl Evaluation {
+    /// Judges episodes.
+    #[must_use]
+    pub fn of(episodes: &[Episode], constraints: &[Constraint]) -> Evaluation {
+        let judge = |one: &Constraint| Judgement {
+            term: one.term.clone(),
+            budget: one.budget,
+            cost: Estimate::of(episodes.iter().map(|episode| one.cost_of(episode))),
+        };
+        Evaluation {
+            episodes: episodes.len(),
+            episode_return: Estimate::of(episodes.iter().map(|episode| episode.episode_return)),
+            cost: Estimate::of(episodes.iter().map(|episode| episode.cost)),
+            length: Estimate::of(episodes.iter().map(|episode| f64::from(episode.length))),
+            constraints: constraints.iter().map(judge).collect(),
+        }
+    }
+
+    /// Whether every mean cost is within its budget.
+    #[must_use]
+    pub fn within(&self) -> bool {
+        self.constraints.iter().all(Judgement::within)
+    }
+
+    /// Whether every cost is within its budget up to the upper end of its interval.
+    #[must_use]
+    pub fn surely_within(&self) -> bool {
+        self.constraints.iter().all(|one| one.cost.high() <= one.budget)
+    }
+
+    /// How far mean costs are above their budgets, in parts of the budgets (of 1 where a budget is 0), added up.
+    #[must_use]
+    pub fn excess(&self) -> f64 {
+        let unit = |budget: f64| if budget > 0.0 { budget } else { 1.0 };
+        self.constraints.iter().map(|one| (one.cost.mean - one.budget).max(0.0) / unit(one.budget)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn episode(cost: f64, jumps: f64) -> Episode {
+        Episode {
+            lane: 0,
+            seed: 0,
+            episode_return: 1.0,
+            cost,
+            costs: vec![("lava", cost), ("jumps", jumps)],
+            length: 10,
+            terminated: true,
+            truncated: false,
+            stats: vec![],
+        }
+    }
+
+    #[test]
+    fn each_constraint_is_judged_by_its_own_term_and_budget() {
+        let constraints = [Constraint { term: None, budget: 50.0 }, Constraint { term: Some("jumps".into()), budget: 4.0 }];
+        let judged = Evaluation::of(&[episode(20.0, 6.0), episode(40.0, 4.0)], &constraints);
+        assert_eq!((judged.cost.mean, judged.constraints[0].cost.mean, judged.constraints[1].cost.mean), (30.0, 30.0, 5.0));
+        assert!(judged.constraints[0].within() && !judged.constraints[1].within() && !judged.within());
+        assert!((judged.excess() - 0.25).abs() < 1e-12);
+        // Half the interval of 20 and 40: 1.96 * 14.142 / sqrt(2) = 19.6.
+        assert!((judged.cost.half_width - 19.6).abs() < 1e-9);
+        let judged = Evaluation::of(&[episode(20.0, 1.0), episode(40.0, 1.0)], &constraints);
+        assert!(judged.within() && judged.surely_within());
+        let wide = Evaluation::of(&[episode(30.0, 1.0), episode(60.0, 1.0)], &constraints);
+        assert!(wide.within() && !wide.surely_within());
     }
 }

@@ -1,8 +1,11 @@
 //! A run from its first frame to its directory: the session in memory, the trainer around it, checkpoints, evaluation, reports.
 
+pub mod agent;
+pub mod agent_file;
 pub mod checkpoint;
 pub mod checksum;
 pub mod evaluate;
+pub mod hand_out;
 pub mod heatmap;
 pub mod interrupt;
 pub mod measure;

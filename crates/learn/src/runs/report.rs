@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::config::TrainConfig;
 use crate::learning::metrics::Means;
+use crate::runs::evaluate::Evaluation;
 use crate::runs::watch::Watch;
 
 /// A report.
@@ -33,6 +34,8 @@ pub struct Report {
     pub budgets: Vec<f64>,
     /// Multiplier of each constraint.
     pub multipliers: Vec<f64>,
+    /// The evaluation of the policy at this moment, if there was one.
+    pub evaluation: Option<Evaluation>,
     /// Losses and other numbers of the updates since the last report.
     pub learning: Vec<(&'static str, f64)>,
     /// Cost terms and statistics of the latest episodes.
@@ -72,15 +75,10 @@ impl Report {
             constraint_costs,
             budgets: config.constraints.iter().map(|constraint| constraint.budget).collect(),
             multipliers,
+            evaluation: None,
             learning: learning.take(),
             details: watch.details(),
         }
-    }
-
-    /// Whether the latest episodes keep every budget.
-    #[must_use]
-    pub fn feasible(&self) -> bool {
-        !self.constraint_costs.is_empty() && self.constraint_costs.iter().zip(&self.budgets).all(|(cost, budget)| cost <= budget)
     }
 
     /// The row of `metrics.jsonl`. Its keys are stable; what is not known yet is `null`.
@@ -111,6 +109,19 @@ impl Report {
             put("budgets", json!(self.budgets));
             put("multipliers", json!(self.multipliers));
             put("constraint_costs", json!(self.constraint_costs));
+        }
+        if let Some(evaluation) = &self.evaluation {
+            for (name, estimate) in
+                [("return", evaluation.episode_return), ("cost", evaluation.cost), ("length", evaluation.length)]
+            {
+                put(&format!("eval/{name}_mean"), json!(estimate.mean));
+                put(&format!("eval/{name}_ci95"), json!(estimate.half_width));
+            }
+            for (one, term) in evaluation.constraints.iter().filter_map(|one| Some((one, one.term.as_ref()?))) {
+                put(&format!("eval/cost/{term}"), json!(one.cost.mean));
+            }
+            put("eval/episodes", json!(evaluation.episodes));
+            put("eval/within_budget", json!(u8::from(evaluation.within())));
         }
         for (name, value) in &self.learning {
             put(name, json!(value));

@@ -8,10 +8,13 @@ use serde_json::Value;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
+use crate::runs::hand_out::HandOut;
 use crate::runs::tensorboard::EventFile;
 
 /// Where the agents have been, a line a moment.
 const HEATMAPS: &str = "heatmaps.jsonl";
+/// Which checkpoint the run hands out.
+const HAND_OUT: &str = "hand_out.json";
 
 /// A run's directory, locked against a second trainer for as long as this value lives.
 pub struct RunDirectory {
@@ -31,9 +34,7 @@ impl RunDirectory {
         }
         let checkpoints = path.join("checkpoints");
         fs::create_dir_all(&checkpoints).map_err(LearnError::file(&checkpoints, "create"))?;
-        let text = serde_json::to_vec_pretty(config)
-            .map_err(|error| LearnError::Config(format!("the settings cannot be written: {error}")))?;
-        write_whole(&path.join("config.json"), &text)?;
+        write_json(&path.join("config.json"), config)?;
         Ok(directory)
     }
 
@@ -65,6 +66,16 @@ impl RunDirectory {
             )),
             Err(TryLockError::Error(source)) => Err(LearnError::File { path: file, doing: "lock", source }),
         }
+    }
+
+    /// Writes the settings of a run that goes on with others than before.
+    pub fn rewrite_config(&self, config: &TrainConfig) -> Result<(), LearnError> {
+        write_json(&self.path.join("config.json"), config)
+    }
+
+    /// Writes which checkpoint the run hands out, and what it is worth.
+    pub fn write_hand_out(&self, hand_out: &HandOut) -> Result<(), LearnError> {
+        write_json(&self.path.join(HAND_OUT), hand_out)
     }
 
     /// Where it is.
@@ -102,6 +113,12 @@ impl RunDirectory {
     }
 }
 
+/// What the run in a directory handed out when it ended, if it did.
+#[must_use]
+pub fn read_hand_out(path: &Path) -> Option<HandOut> {
+    serde_json::from_slice(&fs::read(path.join(HAND_OUT)).ok()?).ok()
+}
+
 /// The settings of the run in a directory.
 pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
     let file = path.join("config.json");
@@ -116,6 +133,12 @@ pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
         .map_err(|error| LearnError::content(&file, format!("damaged or of another version: {error}")))?;
     config.check()?;
     Ok(config)
+}
+
+fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), LearnError> {
+    let text =
+        serde_json::to_vec_pretty(value).map_err(|error| LearnError::content(path, format!("cannot be written: {error}")))?;
+    write_whole(path, &text)
 }
 
 /// Writes a file under another name and renames it when it is complete.

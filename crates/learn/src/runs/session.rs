@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use hasard_envs::{EnvError, FinalObservations, VecEnv, VecOptions};
+use hasard_envs::{CostTerm, EnvError, FinalObservations, VecEnv, VecOptions};
 
 use crate::algorithms::{self, Algorithm};
 use crate::config::{EnvConfig, TrainConfig};
@@ -17,7 +17,7 @@ use crate::runs::checkpoint::{Loaded, Progress};
 use crate::runs::watch::Watch;
 use crate::sampling::gather::Gatherer;
 use crate::sampling::rollout::Rollout;
-use crate::sampling::sampler::{Sampler, SamplerState};
+use crate::sampling::sampler::{Sampler, SamplerState, deal};
 use crate::sampling::shaping::Shaping;
 
 /// Makes batches of the worlds of an environment: one for each sampler, continuing each other's lanes.
@@ -63,6 +63,8 @@ pub struct Session {
     pub frames: u64,
     /// Rollouts learned from.
     pub rollouts: u64,
+    /// The worlds' cost terms.
+    pub cost_terms: &'static [CostTerm],
     /// The map's extent, if the worlds have places: x from, y from, x to, y to in map units.
     pub extent: Option<[i32; 4]>,
 }
@@ -96,7 +98,7 @@ impl Session {
             };
             worlds.push(make_worlds(&config.env, options).map_err(|error| LearnError::Worlds(error.to_string()))?);
         }
-        let extent = worlds[0].extent();
+        let (extent, cost_terms) = (worlds[0].extent(), worlds[0].cost_terms());
         let shape = model_shape(&config, &worlds[0])?;
         let mut learner = Learner::new(&config, &shape, &device);
         let mut algorithm = algorithms::make(&config);
@@ -112,10 +114,8 @@ impl Session {
                 watch.episodes = before.watch.episodes;
             }
             Beginning::Everything(loaded) => {
-                let saved = loaded.restore(&mut learner)?;
-                if saved.len() != sampling.samplers {
-                    return Err(LearnError::Config("the checkpoint has another number of samplers".into()));
-                }
+                let saved = deal(loaded.restore(&mut learner)?, sampling.samplers)
+                    .ok_or_else(|| LearnError::Config("the checkpoint has another number of worlds than the run".into()))?;
                 states = saved.into_iter().map(Some).collect();
                 let progress: &Progress = &loaded.progress;
                 let misfit = |error| LearnError::Config(format!("the checkpoint's multipliers do not fit: {error}"));
@@ -130,7 +130,12 @@ impl Session {
             let shaping = Shaping::new(&config);
             let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, index * lanes, config.seed)?;
             match state {
-                Some(state) => sampler.restore(state)?,
+                Some(state) => {
+                    sampler.restore(state)?;
+                    if config.reseeded_at(frames) {
+                        sampler.reseed(Stream::new(config.seed, Purpose::Worlds, 0, 0).bits())?;
+                    }
+                }
                 None if sampling.spread_out => sampler.spread_out(sampling.lanes, config.episode_steps)?,
                 None => {}
             }
@@ -138,7 +143,7 @@ impl Session {
         }
         let ahead = if sampling.synchronous { 1 } else { sampling.accumulated + 1 };
         let gatherer = Gatherer::new(samplers, sampling.rollout, ahead, learner.publish());
-        Ok(Session { learner, algorithm, gatherer, watch, means: Means::default(), frames, rollouts, extent, config })
+        Ok(Session { learner, algorithm, gatherer, watch, means: Means::default(), frames, rollouts, cost_terms, extent, config })
     }
 
     /// Waits for the next rollout and learns from it.
@@ -173,7 +178,7 @@ impl Session {
         }
         let learning = self.config.learning.clone();
         let done = (self.frames as f64 / self.config.frames as f64).min(1.0);
-        self.learner.rate = learning.rate + (learning.final_rate - learning.rate) * done;
+        self.learner.rate = learning.rate_after(done);
         self.means.add("learning_rate", self.learner.rate);
         let prepared = self.learner.prepare(rollout);
         let mut lanes: Vec<usize> = (0..rollout.lanes()).collect();

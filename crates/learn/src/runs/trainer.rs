@@ -7,12 +7,13 @@ use std::time::Instant;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::learning::metrics::Means;
 use crate::networks::device::ComputeDevice;
-use crate::runs::checkpoint::{Checkpoint, Progress, Store};
+use crate::runs::checkpoint::{Checkpoint, Loaded, Progress, Store};
+use crate::runs::evaluate::Evaluation;
+use crate::runs::hand_out::{Examiner, HandOut};
 use crate::runs::heatmap::Heatmap;
 use crate::runs::report::Report;
-use crate::runs::run_directory::RunDirectory;
+use crate::runs::run_directory::{RunDirectory, read_hand_out};
 use crate::runs::session::{Beginning, MakeWorlds, Session};
 use crate::runs::writer::Writer;
 use crate::sampling::gather::panic_text;
@@ -31,13 +32,19 @@ pub struct Hooks<'a> {
 pub enum Start<'a> {
     /// In a new directory.
     Fresh(TrainConfig),
-    /// From the last checkpoint in the directory; a number of frames given here replaces the run's.
+    /// From the last checkpoint in the directory; settings given here, each as `NAME=VALUE`, replace the run's from there on
+    /// and are written down in it.
     Resume {
-        /// Length of the run, if it is to be another than before.
-        frames: Option<u64>,
+        /// Settings that are to be others than before.
+        settings: &'a [String],
     },
     /// In a new directory, with the weights and normalisers of another run.
     From(TrainConfig, &'a Path),
+}
+
+impl Start<'_> {
+    /// From the last checkpoint in the directory, as before.
+    pub const RESUME: Start<'static> = Start::Resume { settings: &[] };
 }
 
 /// How a run ended.
@@ -47,6 +54,8 @@ pub struct Summary {
     pub last: Report,
     /// The caller ended it.
     pub stopped: bool,
+    /// The checkpoint that it hands out; none if it was never evaluated.
+    pub hand_out: Option<HandOut>,
 }
 
 /// Trains in `directory` until the run's frames are used up or the caller ends it.
@@ -60,12 +69,15 @@ pub fn train(
     hooks: &mut Hooks<'_>,
 ) -> Result<Summary, LearnError> {
     let fresh = !matches!(start, Start::Resume { .. });
-    let (run, config, beginning) = begin(start, directory, hooks)?;
+    let (run, config, beginning, best) = begin(start, directory, hooks)?;
     // A panic of the learner's own thread ends as an error too; checkpoints already written stay.
     let whole = || {
         let lesson = beginning.progress().map_or(0, |progress| progress.lesson);
         match Session::new(config.lesson(lesson), &beginning, make_worlds) {
-            Ok(session) => Trainer::new(run, config, &beginning, lesson, session, make_worlds).run(hooks),
+            Ok(session) => {
+                let seconds = beginning.progress().map_or(0.0, |progress| progress.wall_seconds);
+                Trainer::new(run, config, seconds, best, lesson, session, make_worlds).run(hooks)
+            }
             Err(error) => {
                 if fresh {
                     run.withdraw();
@@ -81,31 +93,35 @@ fn begin(
     start: Start<'_>,
     directory: &Path,
     hooks: &mut Hooks<'_>,
-) -> Result<(RunDirectory, TrainConfig, Beginning<'static>), LearnError> {
+) -> Result<(RunDirectory, TrainConfig, Beginning<'static>, Option<HandOut>), LearnError> {
     match start {
         Start::Fresh(config) => {
             config.check()?;
             ComputeDevice::named(&config.device)?;
-            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Nothing))
+            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Nothing, None))
         }
         Start::From(config, other) => {
             config.check()?;
             ComputeDevice::named(&config.device)?;
             let loaded = Store::new(other, 1).newest(hooks.warn)?;
             let loaded = loaded.ok_or_else(|| LearnError::content(other, "no checkpoint to take weights from is here"))?;
-            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Weights(Box::new(loaded))))
+            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Weights(Box::new(loaded)), None))
         }
-        Start::Resume { frames } => {
-            let (run, mut config) = RunDirectory::open(directory)?;
-            config.frames = frames.unwrap_or(config.frames);
-            config.check()?;
-            let loaded = Store::new(directory, config.reporting.keep).newest(hooks.warn)?;
+        Start::Resume { settings } => {
+            let (run, before) = RunDirectory::open(directory)?;
+            let store = Store::new(directory, before.reporting.keep);
+            let loaded = store.newest(hooks.warn)?;
             let at = loaded.as_ref().map_or(0, |loaded| loaded.progress.frames);
             if loaded.is_none() {
                 (hooks.warn)(format!("{}: no checkpoint was written yet; the run starts again", directory.display()));
             }
+            let config = before.resumed_with(settings, at)?;
+            if config != before {
+                run.rewrite_config(&config)?;
+            }
             run.rewind_metrics(at, hooks.warn)?;
-            Ok((run, config, loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)))))
+            let best = loaded.as_ref().map_or(Ok(None), |loaded| store.go_back_to(&loaded.progress))?;
+            Ok((run, config, loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded))), best))
         }
     }
 }
@@ -122,23 +138,23 @@ struct Trainer<'a> {
     heatmap: Option<Heatmap>,
     seconds_before: f64,
     started: Instant,
-    best_feasible: Option<f64>,
+    examiner: Examiner<'a>,
 }
 
 impl<'a> Trainer<'a> {
     fn new(
         run: RunDirectory,
         config: TrainConfig,
-        beginning: &Beginning<'_>,
+        seconds_before: f64,
+        best: Option<HandOut>,
         lesson: usize,
         session: Session,
         make_worlds: &'a MakeWorlds<'a>,
     ) -> Trainer<'a> {
-        let (seconds_before, best_feasible) =
-            beginning.progress().map_or((0.0, None), |progress| (progress.wall_seconds, progress.best_feasible));
         let heatmap = heatmap(&config, lesson, &session);
         let started = Instant::now();
-        Trainer { run, config, make_worlds, lesson, session, heatmap, seconds_before, started, best_feasible }
+        let examiner = Examiner::new(make_worlds, best);
+        Trainer { run, config, make_worlds, lesson, session, heatmap, seconds_before, started, examiner }
     }
 
     /// Begins the lesson that the frames so far ask for.
@@ -160,7 +176,7 @@ impl<'a> Trainer<'a> {
 
     fn run(mut self, hooks: &mut Hooks<'_>) -> Result<Summary, LearnError> {
         let store = Store::new(self.run.path(), self.session.config.reporting.keep);
-        let writer = Writer::new(self.run.path(), store)?;
+        let writer = Writer::new(self.run.path(), store.clone())?;
         let (mut last_report, mut last_checkpoint) = (Instant::now(), Instant::now());
         let mut reported_frames = self.session.frames;
         let mut last = None;
@@ -170,12 +186,16 @@ impl<'a> Trainer<'a> {
             if self.lesson_is_over() {
                 self.begin_lesson()?;
             }
+            let before = self.session.frames;
             let rollout = self.session.turn(hooks.warn)?;
+            let evaluation = if self.config.evaluates(before, self.session.frames) { Some(self.examine(&writer)?) } else { None };
             // Asked once a rollout: from here on it is decided whether samplers are told to go on.
             over = self.session.frames >= self.session.config.frames || hooks.stop.load(Ordering::Relaxed);
-            if over || last_report.elapsed().as_secs_f64() >= self.session.config.reporting.report_seconds {
+            let due = last_report.elapsed().as_secs_f64() >= self.session.config.reporting.report_seconds;
+            if over || due || evaluation.is_some() {
                 let seconds = last_report.elapsed().as_secs_f64().max(1e-9);
-                let report = self.report((self.session.frames - reported_frames) as f64 / seconds);
+                let mut report = self.report((self.session.frames - reported_frames) as f64 / seconds);
+                report.evaluation = evaluation;
                 (last_report, reported_frames) = (Instant::now(), self.session.frames);
                 writer.row(self.session.frames, report.row());
                 (hooks.report)(&report);
@@ -190,8 +210,7 @@ impl<'a> Trainer<'a> {
             writer.check()?;
             let due = last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds;
             if over || (due && writer.keeps_up()) {
-                let (checkpoint, best) = self.checkpoint()?;
-                writer.checkpoint(checkpoint, best);
+                writer.checkpoint(self.checkpoint()?);
                 last_checkpoint = Instant::now();
             }
             if !over && !self.lesson_is_over() {
@@ -203,7 +222,36 @@ impl<'a> Trainer<'a> {
             Some(report) => report,
             None => self.report(0.0),
         };
-        Ok(Summary { last, stopped: self.session.frames < self.session.config.frames })
+        let stopped = self.session.frames < self.session.config.frames;
+        if !stopped {
+            self.close(&store)?;
+        }
+        Ok(Summary { last, stopped, hand_out: self.examiner.best.take() })
+    }
+
+    /// Evaluates the policy as it is; if it is the best so far, its checkpoint is what the run hands out.
+    fn examine(&mut self, writer: &Writer) -> Result<Evaluation, LearnError> {
+        // Of a curriculum, the last level's alone.
+        let counts = self.lesson + 1 == self.config.lessons();
+        let (evaluation, best) = self.examiner.examine(&mut self.session, counts)?;
+        if best {
+            writer.best(self.checkpoint()?);
+        }
+        Ok(evaluation)
+    }
+
+    /// Says what the checkpoint that is handed out is worth, by episodes that had no part in the choice.
+    fn close(&mut self, store: &Store) -> Result<(), LearnError> {
+        let Some(best) = &self.examiner.best else { return Ok(()) };
+        // A run that had ended before is not closed anew.
+        if let Some(known) = read_hand_out(self.run.path()).filter(|known| known.frames == best.frames && known.closing.is_some())
+        {
+            self.examiner.best = Some(known);
+            return Ok(());
+        }
+        let checkpoint = Loaded::read(&store.best_of(best.frames))?;
+        self.examiner.close(&self.session, &checkpoint)?;
+        self.examiner.best.as_ref().map_or(Ok(()), |best| self.run.write_hand_out(best))
     }
 
     fn report(&mut self, frames_per_second: f64) -> Report {
@@ -221,22 +269,8 @@ impl<'a> Trainer<'a> {
         report
     }
 
-    /// Takes a checkpoint, and says whether the run has never been as good within its budgets.
-    fn checkpoint(&mut self) -> Result<(Checkpoint, bool), LearnError> {
-        let report = Report::take(&self.session.config, &self.session.watch, &mut Means::default(), Vec::new());
-        let best = match report.means {
-            // A few episodes say little; and the window must be full of them before it may set a record.
-            // Of a curriculum, the last level's.
-            Some((mean, ..))
-                if self.lesson + 1 == self.config.lessons()
-                    && report.feasible()
-                    && self.session.watch.recent.len() >= self.session.config.reporting.window.min(30) =>
-            {
-                self.best_feasible.is_none_or(|best| mean > best).then_some(mean)
-            }
-            _ => None,
-        };
-        self.best_feasible = best.or(self.best_feasible);
+    /// Takes a checkpoint.
+    fn checkpoint(&mut self) -> Result<Checkpoint, LearnError> {
         let samplers = self.session.gatherer.save()?;
         let progress = Progress {
             frames: self.session.frames,
@@ -244,7 +278,7 @@ impl<'a> Trainer<'a> {
             lesson: self.lesson,
             updates: self.session.learner.version,
             wall_seconds: self.wall_seconds(),
-            best_feasible: self.best_feasible,
+            hand_out: self.examiner.best.clone(),
             returns: self.session.learner.returns.clone(),
             optimiser_steps: self.session.learner.optimisers.iter().map(|adam| adam.steps).collect(),
             algorithm: self.session.algorithm.save(),
@@ -252,7 +286,7 @@ impl<'a> Trainer<'a> {
             samplers: samplers.iter().map(|sampler| (sampler.steps, sampler.safety.clone())).collect(),
             pixel_count: self.session.learner.pixels.count,
         };
-        Ok((Checkpoint::take(&self.session.learner, &samplers, progress)?, best.is_some()))
+        Checkpoint::take(&self.session.learner, &samplers, progress)
     }
 }
 

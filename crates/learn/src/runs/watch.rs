@@ -61,14 +61,13 @@ impl Watch {
 
     /// Notes an episode.
     pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) {
-        let of_term = |name: &String| episode.costs.iter().find(|(term, _)| term == name).map_or(0.0, |(_, cost)| *cost);
         let costs = episode.costs.iter().map(|(name, value)| (format!("cost/{name}"), *value));
         let stats = episode.stats.iter().map(|(name, value)| (format!("stats/{name}"), *value));
         self.recent.push_back(Finished {
             episode_return: episode.episode_return,
             cost: episode.cost,
             length: f64::from(episode.length),
-            constrained: constraints.iter().map(|one| one.term.as_ref().map_or(episode.cost, of_term)).collect(),
+            constrained: constraints.iter().map(|one| one.cost_of(episode)).collect(),
             details: costs.chain(stats).collect(),
         });
         self.episodes += 1;

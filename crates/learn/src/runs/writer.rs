@@ -15,7 +15,8 @@ use crate::runs::run_directory::MetricsLog;
 enum Job {
     Row(u64, Value),
     Heatmap(Value),
-    Checkpoint(Box<Checkpoint>, bool),
+    Checkpoint(Box<Checkpoint>),
+    Best(Box<Checkpoint>),
 }
 
 /// Writes rows and checkpoints in the order in which they were given.
@@ -43,11 +44,12 @@ impl Writer {
                 let result = match job {
                     Job::Row(frames, row) => log.write(frames, &row),
                     Job::Heatmap(line) => log.write_heatmap(&line),
-                    Job::Checkpoint(checkpoint, best) => {
-                        let result = store.write(&checkpoint, best);
+                    Job::Checkpoint(checkpoint) => {
+                        let result = store.write(&checkpoint);
                         written.fetch_sub(1, Ordering::Relaxed);
                         result
                     }
+                    Job::Best(checkpoint) => store.write_best(&checkpoint),
                 };
                 if let Err(error) = result {
                     let _ = failing.send(error);
@@ -85,10 +87,17 @@ impl Writer {
     }
 
     /// Hands a checkpoint over.
-    pub fn checkpoint(&self, checkpoint: Checkpoint, best: bool) {
+    pub fn checkpoint(&self, checkpoint: Checkpoint) {
         if let Some(jobs) = &self.jobs {
             self.waiting.fetch_add(1, Ordering::Relaxed);
-            let _ = jobs.send(Job::Checkpoint(Box::new(checkpoint), best));
+            let _ = jobs.send(Job::Checkpoint(Box::new(checkpoint)));
+        }
+    }
+
+    /// Hands over the checkpoint that is the best so far.
+    pub fn best(&self, checkpoint: Checkpoint) {
+        if let Some(jobs) = &self.jobs {
+            let _ = jobs.send(Job::Best(Box::new(checkpoint)));
         }
     }
 

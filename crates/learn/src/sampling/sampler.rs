@@ -31,6 +31,36 @@ pub struct SamplerState {
     pub steps: u64,
 }
 
+/// The same lanes dealt to another number of samplers, in their order: what happens in a lane does not depend on its sampler.
+/// `None` if they cannot be dealt out evenly, or do not belong together.
+#[must_use]
+pub fn deal(states: Vec<SamplerState>, samplers: usize) -> Option<Vec<SamplerState>> {
+    let steps = states.first()?.steps;
+    let lanes: usize = states.iter().map(|state| state.worlds.len()).sum();
+    if samplers == 0 || !lanes.is_multiple_of(samplers) || states.iter().any(|state| state.steps != steps) {
+        return None;
+    }
+    let share = lanes / samplers;
+    let networks = states[0].state.len();
+    let whole = |network: usize| states.iter().flat_map(|one| &one.state[network]).copied().collect::<Vec<f32>>();
+    let memories: Vec<Vec<f32>> = (0..networks).map(whole).collect();
+    let safety: Vec<f64> = states.iter().flat_map(|one| &one.safety).copied().collect();
+    let mut worlds = states.into_iter().flat_map(|one| one.worlds);
+    let deal = |index: usize| {
+        let part = |memory: &Vec<f32>| {
+            let units = memory.len() / lanes * share;
+            memory[index * units..(index + 1) * units].to_vec()
+        };
+        SamplerState {
+            worlds: worlds.by_ref().take(share).collect(),
+            state: memories.iter().map(part).collect(),
+            safety: safety[index * share..(index + 1) * share].to_vec(),
+            steps,
+        }
+    };
+    Some((0..samplers).map(deal).collect())
+}
+
 /// Some worlds and the policy that acts in them.
 pub struct Sampler {
     shape: ModelShape,
@@ -143,6 +173,11 @@ impl Sampler {
         }
         (self.state, self.safety, self.steps) = (saved.state, saved.safety, saved.steps);
         Ok(())
+    }
+
+    /// The episodes after the running ones are those of another seed.
+    pub fn reseed(&mut self, seed: u64) -> Result<(), LearnError> {
+        self.worlds.seed(seed).map_err(world_error)
     }
 
     /// Gathers `steps` steps of all lanes.

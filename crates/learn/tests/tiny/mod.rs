@@ -182,7 +182,8 @@ pub fn config(algorithm: AlgorithmKind) -> TrainConfig {
     config.sampling.synchronous = true;
     config.learning.threads = 1;
     config.learning.rate = 3e-3;
-    config.learning.final_rate = 3e-3;
+    // Tests that want evaluations ask for them.
+    config.evaluation.every = Some(0);
     config.learning.epochs = 2;
     config.learning.minibatches = 2;
     config.learning.gamma = 0.9;

@@ -1,0 +1,30 @@
+//! `hasard export-agent`: the agent of a run as one small file.
+
+use crate::args::ExportAgentArgs;
+use crate::failure::{Failure, Outcome};
+use crate::zoo::ENDING;
+use hasard_learn::runs::agent_file::{AgentFile, export};
+use hasard_media::files::WholeFile;
+use serde_json::json;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Runs the command.
+pub fn run(args: &ExportAgentArgs) -> Outcome {
+    let bytes = export(&args.run).map_err(Failure::bad)?;
+    let file = AgentFile::parse(&bytes).map_err(Failure::bad)?;
+    let name = file.card.config.env.id.trim_end_matches("-v0");
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.{ENDING}")));
+    if out.extension().is_none_or(|ending| ending != ENDING) {
+        return Err(Failure::bad(format!("--out {}: give a name that ends in .{ENDING}", out.display())));
+    }
+    let mut whole = WholeFile::create(&out).map_err(Failure::bad)?;
+    whole.write_all(&bytes).map_err(|error| Failure::bad(format!("cannot write {}: {error}", out.display())))?;
+    whole.finish().map_err(Failure::bad)?;
+    if args.json {
+        say!("{}", json!({ "file": out.display().to_string(), "bytes": bytes.len(), "env": file.card.config.env.id }));
+    } else {
+        say!("{}: {} bytes; what it is worth with rounded weights: hasard eval {}", out.display(), bytes.len(), out.display());
+    }
+    Ok(())
+}

@@ -1,0 +1,52 @@
+//! The zoo: trained agents that come with the program, as files in the folder `zoo` of its repository.
+
+use crate::failure::Failure;
+use std::path::{Path, PathBuf};
+
+/// Ending of an agent's file.
+pub const ENDING: &str = "agent";
+
+/// Where the files are looked for: the folder that the variable `HASARD_ZOO` names, `zoo` in the working directory, and the
+/// one of the repository that this program was built in.
+fn folders() -> Vec<PathBuf> {
+    let named = std::env::var_os("HASARD_ZOO").map(PathBuf::from);
+    named.into_iter().chain(["zoo", concat!(env!("CARGO_MANIFEST_DIR"), "/../../zoo")].map(PathBuf::from)).collect()
+}
+
+/// The run directory or agent file that a text names: a path, or `zoo:NAME`.
+pub fn find(text: &str) -> Result<PathBuf, Failure> {
+    let Some(name) = text.strip_prefix("zoo:") else { return Ok(PathBuf::from(text)) };
+    let wanted = name.strip_suffix("-v0").unwrap_or(name);
+    let all = agents();
+    let found = all.iter().find(|(known, _)| known.eq_ignore_ascii_case(wanted));
+    found.map(|(_, path)| path.clone()).ok_or_else(|| {
+        let names: Vec<String> = all.iter().map(|(known, _)| format!("zoo:{known}")).collect();
+        let there = match names.len() {
+            0 => "no zoo was found; name its folder in the variable HASARD_ZOO".to_string(),
+            _ => format!("the zoo has {}", names.join(", ")),
+        };
+        Failure::bad(format!("{text}: {there}"))
+    })
+}
+
+/// Whether a text names an agent's file rather than a run directory or an environment.
+pub fn is_agent(text: &str) -> bool {
+    text.starts_with("zoo:") || Path::new(text).extension().is_some_and(|ending| ending == ENDING)
+}
+
+/// Names and files of all agents, those of earlier folders first.
+fn agents() -> Vec<(String, PathBuf)> {
+    let mut all: Vec<(String, PathBuf)> = Vec::new();
+    for folder in folders() {
+        let mut paths: Vec<PathBuf> =
+            std::fs::read_dir(folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
+        paths.sort();
+        for path in paths.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == ENDING)) {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            if all.iter().all(|(known, _)| *known != name) {
+                all.push((name, path));
+            }
+        }
+    }
+    all
+}

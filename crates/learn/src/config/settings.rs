@@ -1,0 +1,226 @@
+//! Single settings by their names in `config.json`: replaced when a run begins, and when it goes on.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::TrainConfig;
+use crate::error::LearnError;
+
+/// Settings that others hang on, and what to use instead: it brings those along.
+const OTHERS_HANG_ON: [(&str, &str); 8] = [
+    ("algorithm", "--algo"),
+    ("preset", "--preset"),
+    ("env.id", "the environment's id"),
+    ("env.rules", "--rules"),
+    ("env.hard", "--hard"),
+    ("env.frame_skip", "--frame-skip"),
+    ("curriculum", "--curriculum"),
+    ("changes", "--resume, which writes them down"),
+];
+
+/// Settings, or groups of them, that a run may be resumed with another value of: what was learned so far stays of use.
+const MAY_CHANGE: [&str; 12] = [
+    "frames",
+    "seed",
+    "learning.rate",
+    "learning.final_rate",
+    "learning.max_gradient_norm",
+    "learning.exploration_coefficient",
+    "learning.threads",
+    "sampling.samplers",
+    "sampling.world_threads",
+    "sampling.groups",
+    "evaluation",
+    "reporting",
+];
+
+/// Those of them that change nothing that is learned.
+const CHANGE_NOTHING: [&str; 6] =
+    ["learning.threads", "sampling.samplers", "sampling.world_threads", "sampling.groups", "evaluation", "reporting"];
+
+/// A setting that was given another value when the run was resumed.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Change {
+    /// Frames after which it holds.
+    pub frames: u64,
+    /// Its name.
+    pub setting: String,
+    /// What it was before.
+    pub from: Value,
+    /// What it is since.
+    pub to: Value,
+}
+
+/// Where a setting such as `learning.rate` stands in `config.json`, as a JSON pointer.
+#[must_use]
+pub fn setting_pointer(name: &str) -> String {
+    format!("/{}", name.replace('.', "/"))
+}
+
+/// Whether a setting is of a group, or is it.
+fn within(name: &str, group: &str) -> bool {
+    name.strip_prefix(group).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+fn wrong(error: impl std::fmt::Display) -> LearnError {
+    LearnError::Config(error.to_string())
+}
+
+impl TrainConfig {
+    /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`. A new learning rate is a constant one, unless
+    /// `learning.final_rate` is set after it.
+    ///
+    /// # Errors
+    /// When the text is no `NAME=VALUE`, or there is no such setting, or others hang on it, or it cannot have that value.
+    pub fn with(&self, setting: &str) -> Result<TrainConfig, LearnError> {
+        let (name, given) =
+            setting.split_once('=').ok_or_else(|| LearnError::Config("write NAME=VALUE, such as learning.rate=0.0003".into()))?;
+        let name = name.replace('/', ".");
+        if let Some((_, instead)) = OTHERS_HANG_ON.iter().find(|(known, _)| within(&name, known) || within(known, &name)) {
+            let problem = format!("other settings hang on '{name}'; use {instead}, or set the parts that nothing hangs on");
+            return Err(LearnError::Config(problem));
+        }
+        let mut all = serde_json::to_value(self).map_err(wrong)?;
+        let place = all.pointer_mut(&setting_pointer(&name)).ok_or_else(|| {
+            let known = "names are those of a run's config.json, such as learning.rate";
+            LearnError::Config(format!("there is no setting '{name}'; {known}"))
+        })?;
+        *place = serde_json::from_str(given).unwrap_or_else(|_| given.into());
+        let mut config: TrainConfig = serde_json::from_value(all).map_err(wrong)?;
+        if name == "learning.rate" {
+            config.learning.final_rate = None;
+        }
+        Ok(config)
+    }
+
+    /// Replaces several settings, in whatever order they are given.
+    ///
+    /// # Errors
+    /// As [`TrainConfig::with`]; the message names the setting.
+    pub fn with_all(&self, settings: &[String]) -> Result<TrainConfig, LearnError> {
+        // The learning rate first: it makes the rate constant, and its end may be among the others.
+        let (first, then): (Vec<&String>, Vec<&String>) =
+            settings.iter().partition(|setting| setting.starts_with("learning.rate=") || setting.starts_with("learning/rate="));
+        first.into_iter().chain(then).try_fold(self.clone(), |config, setting| {
+            config.with(setting).map_err(|error| LearnError::Config(format!("'{setting}': {error}")))
+        })
+    }
+
+    /// The settings with which a run goes on after `frames` frames. What changes is written down in them.
+    ///
+    /// # Errors
+    /// As [`TrainConfig::with_all`], and when a setting cannot change within a run.
+    pub fn resumed_with(&self, settings: &[String], frames: u64) -> Result<TrainConfig, LearnError> {
+        let mut config = self.with_all(settings)?;
+        let (before, after) = (serde_json::to_value(self).map_err(wrong)?, serde_json::to_value(&config).map_err(wrong)?);
+        let mut changes = Vec::new();
+        differences("", &before, &after, &mut changes);
+        for (setting, from, to) in changes {
+            if !may_change(&setting) {
+                return Err(LearnError::Config(format!(
+                    "'{setting}' is {from} in this run and cannot become {to} within it; begin another with --init-from"
+                )));
+            }
+            if !CHANGE_NOTHING.iter().any(|group| within(&setting, group)) {
+                config.changes.push(Change { frames, setting, from, to });
+            }
+        }
+        // A run that went back to an older checkpoint goes on from there with what was changed later.
+        config.changes.iter_mut().for_each(|change| change.frames = change.frames.min(frames));
+        config.check()?;
+        Ok(config)
+    }
+
+    /// Whether the run has had another seed since exactly `frames` frames.
+    #[must_use]
+    pub fn reseeded_at(&self, frames: u64) -> bool {
+        self.changes.iter().any(|change| change.setting == "seed" && change.frames == frames)
+    }
+}
+
+/// Whether a run may be resumed with another value of a setting.
+#[must_use]
+pub fn may_change(setting: &str) -> bool {
+    MAY_CHANGE.iter().any(|group| within(setting, group))
+}
+
+/// Names of the leaves that differ, with both values.
+fn differences(name: &str, before: &Value, after: &Value, out: &mut Vec<(String, Value, Value)>) {
+    match (before, after) {
+        (Value::Object(old), Value::Object(new)) => {
+            for key in old.keys().chain(new.keys().filter(|key| !old.contains_key(*key))) {
+                let inner = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+                differences(&inner, old.get(key).unwrap_or(&Value::Null), new.get(key).unwrap_or(&Value::Null), out);
+            }
+        }
+        _ if before == after => {}
+        _ => out.push((name.to_string(), before.clone(), after.clone())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{AlgorithmKind, EnvConfig, Preset};
+
+    fn config(preset: Preset) -> TrainConfig {
+        TrainConfig::new(AlgorithmKind::PpoLag, preset, EnvConfig::new("RemedyRushLevel1-v0")).unwrap()
+    }
+
+    fn all(settings: &[&str]) -> Vec<String> {
+        settings.iter().map(|setting| (*setting).to_string()).collect()
+    }
+
+    #[test]
+    fn a_learning_rate_without_an_end_is_constant() {
+        for preset in [Preset::Paper, Preset::Quick] {
+            let rates = |settings: &[&str]| {
+                let learning = config(preset).with_all(&all(settings)).unwrap().learning;
+                [learning.rate_after(0.0), learning.rate_after(0.5), learning.rate_after(1.0)]
+            };
+            assert_eq!(rates(&["learning.rate=1e-5"]), [1e-5; 3], "{preset}");
+            for order in [["learning.rate=4e-4", "learning.final_rate=2e-4"], ["learning.final_rate=2e-4", "learning.rate=4e-4"]]
+            {
+                let [first, middle, last] = rates(&order);
+                assert_eq!((first, last), (4e-4, 2e-4), "{preset}");
+                assert!((middle - 3e-4).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn what_others_hang_on_is_not_set_alone() {
+        for (setting, instead) in [
+            ("env.frame_skip=2", "--frame-skip"),
+            ("env.hard=true", "--hard"),
+            ("env.rules=released", "--rules"),
+            ("preset=quick", "--preset"),
+            ("algorithm=PPO", "--algo"),
+            ("env/hard=true", "--hard"),
+            ("env={}", "set the parts"),
+        ] {
+            let message = config(Preset::Paper).with(setting).unwrap_err().to_string();
+            assert!(message.contains(instead) && message.contains("hang on"), "{setting}: {message}");
+        }
+        assert_eq!(config(Preset::Paper).with("env.frame_stack=2").unwrap().env.frame_stack, 2);
+    }
+
+    #[test]
+    fn changes_of_a_resumed_run_are_written_down() {
+        let config = config(Preset::Quick);
+        let changed = config.resumed_with(&all(&["seed=9", "learning.rate=1e-4", "frames=5000000"]), 4096).unwrap();
+        let told: Vec<String> = changed.changes.iter().map(|one| format!("{} {} {}", one.setting, one.from, one.to)).collect();
+        assert_eq!(
+            told,
+            ["frames 4000000 5000000", "learning.final_rate 0.0001 null", "learning.rate 0.0005 0.0001", "seed 1 9"]
+        );
+        assert!(changed.reseeded_at(4096) && !changed.reseeded_at(8192));
+        // Asked for once more, nothing is new; and a run that falls back to an older checkpoint changes there.
+        let again = changed.resumed_with(&all(&["seed=9"]), 2048).unwrap();
+        assert_eq!(again.changes.len(), 4);
+        assert!(again.changes.iter().all(|one| one.frames == 2048));
+        assert!(changed.resumed_with(&all(&["learning.threads=3", "reporting.keep=5"]), 9000).unwrap().changes.len() == 4);
+        let message = config.resumed_with(&all(&["learning.gamma=0.9"]), 0).unwrap_err().to_string();
+        assert!(message.contains("learning.gamma") && message.contains("--init-from"), "{message}");
+    }
+}

@@ -1,0 +1,216 @@
+//! A trained agent, acting.
+
+use std::path::Path;
+
+use hasard_envs::{CostTerm, Scenario};
+
+use crate::config::TrainConfig;
+use crate::config::constraint::find_terms;
+use crate::error::LearnError;
+use crate::learning::learner::Learner;
+use crate::networks::device::ComputeDevice;
+use crate::networks::distribution::ActionShape;
+use crate::networks::{Actor, ImageShape, ModelShape, Published};
+use crate::random::{Purpose, Stream};
+use crate::runs::agent_file::AgentFile;
+use crate::runs::checkpoint::{Loaded, Store};
+use crate::runs::run_directory::read_config;
+use crate::sampling::shaping::Shaping;
+
+/// Which checkpoint of a run acts.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Which {
+    /// The one that the run hands out: the best evaluated one within all budgets. The newest of a run without any.
+    #[default]
+    HandedOut,
+    /// The newest whole one.
+    Latest,
+}
+
+/// How actions are chosen.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Choice {
+    /// Drawn from the policy, as while training.
+    #[default]
+    Sampled,
+    /// The most probable one.
+    Greedy,
+}
+
+/// All that acting needs of what was trained; any number of agents act by it.
+pub struct TrainedPolicy {
+    config: TrainConfig,
+    shape: ModelShape,
+    published: Published,
+    device: ComputeDevice,
+    /// Where the cost that shapes the agent's input is among the cost terms; `None` for the scalar cost.
+    watched: Option<usize>,
+}
+
+/// A trained agent for some worlds side by side, each with an episode of its own.
+pub struct Agent {
+    shape: ModelShape,
+    actor: Actor,
+    shaping: Shaping,
+    watched: Option<usize>,
+    choice: Choice,
+    state: Vec<Vec<f32>>,
+    safety: Vec<f64>,
+    /// Seed of each lane's episode, and its steps so far: what its draws come from.
+    episodes: Vec<(u64, u64)>,
+}
+
+/// What an agent does in one world.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Action {
+    /// Categorical sub-actions.
+    pub actions: Vec<u8>,
+    /// Continuous sub-actions.
+    pub deltas: Vec<f32>,
+}
+
+/// The settings of the run in a directory, or of the one that an agent's file comes from, so that its worlds can be made.
+pub fn run_config(directory: &Path) -> Result<TrainConfig, LearnError> {
+    if directory.is_file() {
+        return Ok(AgentFile::read(directory)?.card.config);
+    }
+    read_config(directory)
+}
+
+impl TrainedPolicy {
+    /// The policy of published weights, for worlds with these cost terms.
+    pub fn new(
+        config: &TrainConfig,
+        shape: &ModelShape,
+        published: Published,
+        device: ComputeDevice,
+        cost_terms: &[CostTerm],
+    ) -> Result<TrainedPolicy, LearnError> {
+        // Only the algorithms of a single constraint shape what the network sees by it.
+        let watched = find_terms(cost_terms, &config.constraints[..1])?.swap_remove(0);
+        Ok(TrainedPolicy { config: config.clone(), shape: shape.clone(), published, device, watched })
+    }
+
+    /// Loads the policy of a run, or of an agent's file, for worlds with these observations (height, width, channels) and actions.
+    pub fn load(
+        directory: &Path,
+        which: Which,
+        observation: [usize; 3],
+        action: ActionShape,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<TrainedPolicy, LearnError> {
+        if directory.is_file() {
+            let file = AgentFile::read(directory)?;
+            return TrainedPolicy::restored(&file.card.config, observation, action, |learner| file.restore_weights(learner));
+        }
+        let config = read_config(directory)?;
+        let store = Store::new(directory, 1);
+        let loaded = match (which, store.best()) {
+            (Which::HandedOut, Some(best)) => Some(Loaded::read(&best)?),
+            _ => store.newest(warn)?,
+        };
+        let missing = "no checkpoint was written yet; let the run go on with `hasard train --resume`";
+        let loaded = loaded.ok_or_else(|| LearnError::content(directory, missing))?;
+        TrainedPolicy::restored(&config, observation, action, |learner| loaded.restore_weights(learner))
+    }
+
+    /// A policy for the processor, whose weights `restore` puts into a learner.
+    pub(crate) fn restored(
+        config: &TrainConfig,
+        [height, width, channels]: [usize; 3],
+        action: ActionShape,
+        restore: impl FnOnce(&mut Learner) -> Result<(), LearnError>,
+    ) -> Result<TrainedPolicy, LearnError> {
+        let mut config = config.clone();
+        config.learning.threads = 1;
+        let image = ImageShape { height, width, channels };
+        let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
+        let shape = ModelShape::new(image, action, cost_critics, Shaping::new(&config).extra_inputs(), &config.network)?;
+        let mut learner = Learner::new(&config, &shape, &ComputeDevice::Processor);
+        restore(&mut learner)?;
+        let terms = config.env.scenario().map_or(&[][..], Scenario::cost_terms);
+        TrainedPolicy::new(&config, &shape, learner.publish(), ComputeDevice::Processor, terms)
+    }
+
+    /// The run's settings.
+    #[must_use]
+    pub fn config(&self) -> &TrainConfig {
+        &self.config
+    }
+
+    /// An agent for `lanes` worlds.
+    #[must_use]
+    pub fn agent(&self, choice: Choice, lanes: usize) -> Agent {
+        let mut actor = Actor::new(&self.shape, &self.device);
+        actor.load(&self.published);
+        Agent {
+            state: self.shape.zero_state(lanes),
+            safety: vec![1.0; lanes],
+            episodes: vec![(0, 0); lanes],
+            shape: self.shape.clone(),
+            actor,
+            shaping: Shaping::new(&self.config),
+            watched: self.watched,
+            choice,
+        }
+    }
+}
+
+impl Agent {
+    /// Loads the agent of a run for `lanes` worlds with these observations (height, width, channels) and actions.
+    pub fn load(
+        directory: &Path,
+        which: Which,
+        choice: Choice,
+        lanes: usize,
+        observation: [usize; 3],
+        action: ActionShape,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<Agent, LearnError> {
+        Ok(TrainedPolicy::load(directory, which, observation, action, warn)?.agent(choice, lanes))
+    }
+
+    /// Starts the episode of `seed` in a lane.
+    pub fn reset(&mut self, lane: usize, seed: u64) {
+        self.safety[lane] = 1.0;
+        self.episodes[lane] = (seed, 0);
+        for (state, network) in self.state.iter_mut().zip(&self.shape.networks) {
+            let units = network.state_size();
+            state[lane * units..(lane + 1) * units].fill(0.0);
+        }
+    }
+
+    /// What to do in each lane, given the observations of all lanes one after the other.
+    pub fn act(&mut self, observations: &[u8]) -> Vec<Action> {
+        let lanes = self.safety.len();
+        let extra: Vec<f32> = match self.shape.extra_inputs() {
+            0 => Vec::new(),
+            _ => self.safety.iter().map(|&safety| Shaping::seen(safety)).collect(),
+        };
+        let width = self.shape.outputs();
+        let mut rows = vec![0.0; lanes * width];
+        self.actor.act(observations, &extra, &mut self.state, 0..lanes, &mut rows);
+        let action = &self.shape.action;
+        let mut all = Vec::with_capacity(lanes);
+        for (row, (seed, step)) in rows.chunks_exact(width).zip(&mut self.episodes) {
+            let mut one = Action { actions: vec![0; action.sizes.len()], deltas: vec![0.0; action.deltas] };
+            match self.choice {
+                Choice::Greedy => action.greedy(row, &mut one.actions, &mut one.deltas),
+                Choice::Sampled => {
+                    let mut stream = Stream::new(*seed, Purpose::Evaluation, *seed, *step);
+                    action.sample(row, &mut stream, &mut one.actions, &mut one.deltas);
+                }
+            }
+            *step += 1;
+            all.push(one);
+        }
+        all
+    }
+
+    /// Tells what a step cost in a lane, in all and by cost terms; agents that watch their budget need it, and watch what
+    /// they watched while they learned.
+    pub fn observe_cost(&mut self, lane: usize, cost: f64, terms: &[f64]) {
+        let watched = self.watched.map_or(cost, |term| terms[term]);
+        (_, self.safety[lane]) = self.shaping.step(self.safety[lane], 0.0, watched as f32);
+    }
+}

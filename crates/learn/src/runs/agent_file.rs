@@ -1,0 +1,237 @@
+//! An agent as one small file, to be handed to others: its settings, what it is worth, and weights of four or eight bits.
+//!
+//! The file is safetensors. Weights are cut into blocks of [`BLOCK`] that share a scale; a block's codes are whole numbers from
+//! `-m` to `m`, and a weight is its code times `scale / m`. Small tensors take eight bits a code. So do large ones where the file
+//! stays within [`LIMIT`]; otherwise four, two codes a byte. Statistics of pixels take sixteen bits. What is lost is about
+//! what a step of training changes; what the agent is worth with it, `hasard eval FILE` tells.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fs;
+use std::path::Path;
+
+use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
+use serde::{Deserialize, Serialize};
+
+use crate::config::TrainConfig;
+use crate::error::LearnError;
+use crate::learning::learner::Learner;
+use crate::runs::checkpoint::{Loaded, Store, parameter_names};
+use crate::runs::hand_out::HandOut;
+use crate::runs::run_directory::{read_config, read_hand_out};
+
+/// Weights that share a scale.
+const BLOCK: usize = 64;
+/// Bytes that a file is to stay within, where four bits a weight suffice for it.
+const LIMIT: usize = 2_000_000;
+/// Tensors of fewer weights always take eight bits a code: early layers, heads and biases.
+const SMALL: usize = 100_000;
+/// Bytes of the largest file that is read.
+const LARGEST: u64 = 256 << 20;
+/// Layout of the file.
+const FORMAT: u32 = 1;
+/// Name of the file's own entry among its metadata.
+const CARD: &str = "hasard";
+
+/// What a file says of its agent, beside the weights.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Card {
+    format: u32,
+    /// Version of the program that wrote it.
+    pub program: String,
+    /// Settings of the run that it comes from.
+    pub config: TrainConfig,
+    /// What the run said when it handed it out, before its weights were rounded.
+    pub hand_out: Option<HandOut>,
+}
+
+/// An agent read from a file.
+pub struct AgentFile {
+    /// What the file says of it.
+    pub card: Card,
+    /// Codes and scales by the names of the tensors; how many weights they stand for, the network's shape tells.
+    codes: HashMap<String, (Vec<u8>, Vec<f32>)>,
+    pixel_mean: Vec<f64>,
+    pixel_variance: Vec<f64>,
+}
+
+fn largest_code(bits: u32) -> f32 {
+    (1i32 << (bits - 1)).wrapping_sub(1) as f32
+}
+
+/// Codes and scales of some weights.
+fn round(weights: &[f32], bits: u32) -> (Vec<u8>, Vec<f32>) {
+    let most = largest_code(bits);
+    let mut scales = Vec::with_capacity(weights.len().div_ceil(BLOCK));
+    let mut codes: Vec<i8> = Vec::with_capacity(weights.len());
+    for block in weights.chunks(BLOCK) {
+        let scale = block.iter().fold(0.0f32, |largest, weight| largest.max(weight.abs()));
+        let unit = if scale > 0.0 { most / scale } else { 0.0 };
+        codes.extend(block.iter().map(|weight| (weight * unit).round().clamp(-most, most) as i8));
+        scales.push(scale);
+    }
+    let bytes = match bits {
+        8 => codes.iter().map(|code| code.cast_unsigned()).collect(),
+        _ => codes.chunks(2).map(|two| nibble(two[0]) | nibble(two.get(1).copied().unwrap_or(0)) << 4).collect(),
+    };
+    (bytes, scales)
+}
+
+fn nibble(code: i8) -> u8 {
+    (code + 8).cast_unsigned() & 15
+}
+
+/// The weights that codes and scales stand for; `None` if they do not belong together.
+fn unround(bytes: &[u8], scales: &[f32], count: usize) -> Option<Vec<f32>> {
+    let (bits, codes): (u32, Vec<i8>) = if bytes.len() == count {
+        (8, bytes.iter().map(|byte| byte.cast_signed()).collect())
+    } else if bytes.len() == count.div_ceil(2) {
+        let two = |byte: &u8| [(byte & 15).cast_signed() - 8, (byte >> 4).cast_signed() - 8];
+        (4, bytes.iter().flat_map(two).take(count).collect())
+    } else {
+        return None;
+    };
+    if scales.len() != count.div_ceil(BLOCK) {
+        return None;
+    }
+    let blocks = codes.chunks(BLOCK).zip(scales);
+    Some(blocks.flat_map(|(block, scale)| block.iter().map(move |&code| f32::from(code) * scale / largest_code(bits))).collect())
+}
+
+/// The file of the agent that a run hands out.
+pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
+    let config = read_config(run)?;
+    let missing = "it has no checkpoint to hand out; let it be evaluated with `hasard train --resume --eval-every FRAMES`";
+    let best = Store::new(run, 1).best().ok_or_else(|| LearnError::content(run, missing))?;
+    let checkpoint = Loaded::read(&best)?;
+    let hand_out = read_hand_out(run).or_else(|| checkpoint.progress.hand_out.clone());
+    pack(&config, hand_out, &checkpoint)
+}
+
+/// The file of the agent of a checkpoint.
+fn pack(config: &TrainConfig, hand_out: Option<HandOut>, checkpoint: &Loaded) -> Result<Vec<u8>, LearnError> {
+    let wrong =
+        |error: &dyn std::fmt::Display| LearnError::Config(format!("the checkpoint cannot become an agent file: {error}"));
+    let tensors = checkpoint.tensors().map_err(|error| wrong(&error))?;
+    let card = Card { format: FORMAT, program: env!("CARGO_PKG_VERSION").into(), config: config.clone(), hand_out };
+    let card = serde_json::to_string(&card).map_err(|error| wrong(&error))?;
+    let mut file = Vec::new();
+    for bits in [8, 4] {
+        let mut blocks: BTreeMap<String, (Dtype, Vec<u8>)> = BTreeMap::new();
+        for (name, view) in tensors.iter() {
+            if name.starts_with("pixels.") {
+                blocks.insert(name.into(), (Dtype::U16, sixteen_bits(&view, name == "pixels.variance")));
+                continue;
+            }
+            let (words, _) = view.data().as_chunks::<4>();
+            let weights: Vec<f32> = words.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+            let (codes, scales) = round(&weights, if weights.len() < SMALL { 8 } else { bits });
+            blocks.insert(name.into(), (Dtype::U8, codes));
+            blocks.insert(format!("{name}.scale"), (Dtype::F32, scales.iter().flat_map(|scale| scale.to_le_bytes()).collect()));
+        }
+        let views = blocks.iter().map(|(name, (kind, bytes))| {
+            let width = match kind {
+                Dtype::U8 => 1,
+                Dtype::U16 => 2,
+                _ => 4,
+            };
+            TensorView::new(*kind, vec![bytes.len() / width], bytes).map(|view| (name.clone(), view))
+        });
+        let views: Vec<_> = views.collect::<Result<_, _>>().map_err(|error| wrong(&error))?;
+        let metadata = HashMap::from([(CARD.to_string(), card.clone())]);
+        file = serialize(views, Some(metadata)).map_err(|error| wrong(&error))?;
+        if file.len() <= LIMIT {
+            break;
+        }
+    }
+    Ok(file)
+}
+
+/// Means, which lie between 0 and 1, and deviations, which lie between 0 and a half, in steps of 1/65535.
+fn sixteen_bits(view: &TensorView<'_>, squared: bool) -> Vec<u8> {
+    let (words, _) = view.data().as_chunks::<8>();
+    let numbers = words.iter().map(|bytes| f64::from_le_bytes(*bytes));
+    let steps = numbers.map(|number| (if squared { number.max(0.0).sqrt() } else { number } * 65535.0).round() as u16);
+    steps.flat_map(u16::to_le_bytes).collect()
+}
+
+impl AgentFile {
+    /// Reads an agent's file.
+    pub fn read(path: &Path) -> Result<AgentFile, LearnError> {
+        let size = fs::metadata(path).map_err(LearnError::file(path, "read"))?.len();
+        if size > LARGEST {
+            return Err(LearnError::content(path, "too large for an agent's file; give one that `hasard export-agent` wrote"));
+        }
+        let bytes = fs::read(path).map_err(LearnError::file(path, "read"))?;
+        AgentFile::parse(&bytes).map_err(|problem| {
+            LearnError::content(path, format!("no agent's file ({problem}); give one that `hasard export-agent` wrote"))
+        })
+    }
+
+    /// Understands the bytes of an agent's file.
+    pub fn parse(bytes: &[u8]) -> Result<AgentFile, String> {
+        let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|error| error.to_string())?;
+        let card = metadata.metadata().as_ref().and_then(|all| all.get(CARD)).ok_or("it says nothing of its agent")?;
+        let card: Card = serde_json::from_str(card).map_err(|error| error.to_string())?;
+        if card.format != FORMAT {
+            return Err(format!("format {}, this program reads {FORMAT}", card.format));
+        }
+        card.config.check().map_err(|error| error.to_string())?;
+        let tensors = SafeTensors::deserialize(bytes).map_err(|error| error.to_string())?;
+        let mut codes = HashMap::new();
+        for (name, view) in tensors.iter().filter(|(_, view)| view.dtype() == Dtype::U8) {
+            let scales = tensors.tensor(&format!("{name}.scale")).map_err(|error| format!("{name}: {error}"))?;
+            let (words, _) = scales.data().as_chunks::<4>();
+            let scales: Vec<f32> = words.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+            codes.insert(name.to_string(), (view.data().to_vec(), scales));
+        }
+        let pixels = |name: &str| -> Result<Vec<f64>, String> {
+            let view = tensors.tensor(name).map_err(|error| format!("{name}: {error}"))?;
+            let (words, _) = view.data().as_chunks::<2>();
+            Ok(words.iter().map(|bytes| f64::from(u16::from_le_bytes(*bytes)) / 65535.0).collect())
+        };
+        let pixel_mean = pixels("pixels.mean")?;
+        let pixel_variance = pixels("pixels.variance")?.into_iter().map(|deviation| deviation * deviation).collect();
+        Ok(AgentFile { card, codes, pixel_mean, pixel_variance })
+    }
+
+    /// Puts the weights into a learner.
+    pub(crate) fn restore_weights(&self, learner: &mut Learner) -> Result<(), LearnError> {
+        let misfit = |name: &str| LearnError::Config(format!("the agent's file does not fit its own settings: {name}"));
+        for (name, _, range) in parameter_names(learner.shape()) {
+            let (bytes, scales) = self.codes.get(&name).ok_or_else(|| misfit(&name))?;
+            let weights = unround(bytes, scales, range.len()).ok_or_else(|| misfit(&name))?;
+            learner.parameters[range].copy_from_slice(&weights);
+        }
+        let pixels = learner.pixels.mean.len();
+        if self.pixel_mean.len() != pixels || self.pixel_variance.len() != pixels {
+            return Err(misfit("pixels"));
+        }
+        learner.pixels.mean.clone_from(&self.pixel_mean);
+        learner.pixels.variance.clone_from(&self.pixel_variance);
+        learner.replaced();
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_come_back_to_within_half_a_code() {
+        let weights: Vec<f32> = (0..1001).map(|k| ((k * 7919 % 1000) as f32 / 500.0 - 1.0) * (1 + k / 64) as f32).collect();
+        for bits in [8, 4] {
+            let (codes, scales) = round(&weights, bits);
+            assert_eq!(codes.len(), if bits == 8 { 1001 } else { 501 });
+            let back = unround(&codes, &scales, weights.len()).unwrap();
+            for (index, (weight, other)) in weights.iter().zip(&back).enumerate() {
+                let step = scales[index / BLOCK] / largest_code(bits);
+                assert!((weight - other).abs() <= step * 0.5001, "{bits} bits: {weight} became {other}");
+            }
+            assert!(unround(&codes[1..], &scales, weights.len()).is_none());
+            assert!(unround(&codes, &scales[1..], weights.len()).is_none());
+        }
+        let (codes, scales) = round(&[0.0; 10], 4);
+        assert_eq!(unround(&codes, &scales, 10), Some(vec![0.0; 10]));
+    }
+}
