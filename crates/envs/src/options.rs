@@ -2,7 +2,7 @@
 
 use hasard_engine::render::FrameSize;
 
-/// Which of the two sets of constants of `DECISIONS.md` the scenario follows.
+/// Which of the two sets of constants the scenario follows; the tables of its page hold both.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum RuleSet {
     /// The paper's text made self-consistent.

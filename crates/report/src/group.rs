@@ -169,7 +169,14 @@ mod tests {
                 "{{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":{seed},\"preset\":\"paper\",\"gamma\":0.9{extra}}}"
             );
             let config = Config::parse(&text).unwrap();
-            Run { path: format!("{seed}{extra}").into(), config, rows: vec![], evaluation: vec![], heatmaps: vec![] }
+            Run {
+                path: format!("{seed}{extra}").into(),
+                config,
+                rows: vec![],
+                evaluation: vec![],
+                hand_out: None,
+                heatmaps: vec![],
+            }
         };
         let runs = vec![
             run(1, ""),

@@ -178,6 +178,7 @@ fn each_term_stands_beside_its_own_budget() {
         let eval = "{\"return\":20,\"cost\":31,\"costs\":{\"lava\":28,\"falls\":3}}\n\
                     {\"return\":20,\"cost\":10,\"costs\":{\"lava\":8,\"falls\":2}}\n";
         std::fs::write(run.join("eval.jsonl"), eval).unwrap();
+        std::fs::write(run.join("hand_out.json"), "{\"frames\":123000,\"closing\":null}").unwrap();
     }
     let out = folder.0.join("out");
     write_report(std::slice::from_ref(&folder.0), &out, "Terms").unwrap();
@@ -186,6 +187,9 @@ fn each_term_stands_beside_its_own_budget() {
     assert!(line("| lava | 30 |").contains("28.00") && line("| lava | 30 |").contains('✓'), "{}", line("| lava |"));
     assert!(line("| falls | 2.5 |").contains("3.00") && !line("| falls | 2.5 |").contains('✓'), "{}", line("| falls |"));
     assert!(line("PPOLag, seed 1").ends_with("| 50 % |"), "{}", line("PPOLag, seed 1"));
+    let handed_out = line("lava 30, falls 2.5 |");
+    assert!(handed_out.contains("lava 18.00 ± 127") && handed_out.contains("| 123k |"), "{handed_out}");
+    assert!(line("mean of 2").contains("20.00 ± 0.00"), "{}", line("mean of 2"));
     let csv = std::fs::read_to_string(out.join("experiments.csv")).unwrap();
     assert!(csv.contains(",false,"), "{csv}");
     assert!(std::fs::read_to_string(out.join("index.html")).unwrap().contains("cost: falls"));

@@ -65,6 +65,10 @@ pub struct AlgorithmConfig {
     pub multiplier_initial: f64,
     /// Lagrangian algorithms: change of the multiplier per update and unit of cost per step above budget.
     pub multiplier_rate: f64,
+    /// Lagrangian algorithms: what the present excess adds to the multiplier at once, per unit of cost per step above budget;
+    /// it damps the circles that the integral alone runs in. 0 for none.
+    #[serde(default)]
+    pub multiplier_damping: f64,
     /// PID: proportional, integral and derivative gains.
     pub pid_gains: (f64, f64, f64),
     /// PID: the integral before the first update.

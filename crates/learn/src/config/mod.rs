@@ -68,6 +68,10 @@ pub struct TrainConfig {
     pub episode_steps: u32,
     /// Constraints, each with its budget.
     pub constraints: Vec<Constraint>,
+    /// Share of each budget that learning aims at: a policy that swings about it still keeps a budget that is a little above.
+    /// Evaluations hold costs against the whole budget.
+    #[serde(default = "whole")]
+    pub budget_share: f64,
     /// What they are held against.
     pub constraint_statistic: ConstraintStatistic,
     /// Layers.
@@ -86,6 +90,11 @@ pub struct TrainConfig {
     /// What changed when the run was resumed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
+}
+
+/// Learning aims at the whole budget where a file does not say otherwise.
+fn whole() -> f64 {
+    1.0
 }
 
 impl TrainConfig {
@@ -145,6 +154,9 @@ impl TrainConfig {
             ("the exploration coefficient", learning.exploration_coefficient, 0.0, 1e3),
             ("the seconds between reports", self.reporting.report_seconds, 0.0, f64::MAX),
             ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
+            ("the share of the budget", self.budget_share, 0.0, 1.0),
+            ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
+            ("the damping of the multiplier", self.algorithm_settings.multiplier_damping, 0.0, f64::MAX),
             ("the penalty scale", self.algorithm_settings.penalty_scale, 0.0, f64::MAX),
         ] {
             if !(low..=high).contains(&given) {

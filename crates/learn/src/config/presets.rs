@@ -29,6 +29,7 @@ impl TrainConfig {
             device: "cpu".into(),
             episode_steps,
             constraints: vec![Constraint { term: None, budget: 0.0 }],
+            budget_share: 1.0,
             constraint_statistic: if released { ConstraintStatistic::StepMean } else { ConstraintStatistic::EpisodeMean },
             network: NetworkConfig {
                 convolutions: vec![
@@ -78,6 +79,7 @@ impl TrainConfig {
                 penalty_scale: if released && scenario == Some(Scenario::ArmamentBurden) { 0.1 } else { 1.0 },
                 multiplier_initial: 0.0,
                 multiplier_rate: 0.01,
+                multiplier_damping: 0.0,
                 pid_gains: (0.1, 0.01, 0.01),
                 pid_initial: 0.001,
                 pid_decay: 0.95,

@@ -163,7 +163,7 @@ vectorised! {
 mod tests {
     use super::*;
 
-    /// `training.md` §10.
+    /// The released code's normaliser begins with a count of 1, mean 0 and variance 0; worked out apart by Chan's merge.
     #[test]
     fn first_batch_gives_the_recorded_numbers() {
         let mut moments = Moments::default();

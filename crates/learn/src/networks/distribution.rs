@@ -239,7 +239,7 @@ mod tests {
         f64::from(tensor.into_scalar::<f32>())
     }
 
-    /// `training.md` §10.
+    /// Sums over softmax probabilities, worked out apart in double precision.
     #[test]
     fn divergence_from_uniform_and_entropy_equal_the_recorded_numbers() {
         for (logits, divergence, entropy) in

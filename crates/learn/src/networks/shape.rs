@@ -297,7 +297,7 @@ impl Table {
 mod tests {
     use super::*;
 
-    /// Totals of `training.md` §2: PPO on Remedy Rush and Volcanic Venture has 2,874,090 parameters, on the spaces with
+    /// Totals of the original, counted in a replica of its modules: PPO on Remedy Rush and Volcanic Venture has 2,874,090 parameters, on the spaces with
     /// eleven logits 2,875,116, on Collateral Damage 2,872,038, 513 more with a cost critic, 2,048 more with depth.
     #[test]
     fn parameter_counts_are_those_of_the_original() {

@@ -101,7 +101,7 @@ impl Watch {
         let episode_steps = f64::from(config.episode_steps);
         let signal = |index: usize, episode_cost: f64| Signal {
             episode_cost,
-            episode_budget: config.constraints[index].budget,
+            episode_budget: config.constraints[index].budget * config.budget_share,
             episode_steps,
         };
         match config.constraint_statistic {

@@ -80,7 +80,7 @@ fn saute_unit(budget: f64, gamma: f64, horizon: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// `training.md` §10: the released code's unit (2100 tics) and safety states.
+    /// The released code's unit (2100 tics) and safety states, worked out apart in double precision.
     #[test]
     fn safety_states_equal_the_recorded_ones() {
         let unit = saute_unit(50.0, 0.9999, 2100.0);

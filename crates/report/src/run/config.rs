@@ -21,6 +21,7 @@ const NOT_IDENTITY: &[&str] = &[
     "host",
     "started",
     "reporting",
+    "evaluation",
     "sampling.samplers",
     "sampling.world_threads",
     "sampling.groups",

@@ -4,6 +4,7 @@ mod config;
 mod constraint;
 mod discover;
 mod episodes;
+mod hand_out;
 mod heatmap;
 mod metrics;
 
@@ -11,6 +12,7 @@ pub use config::{Config, TOLD, default_budget, scenario_and_level};
 pub use constraint::Constraint;
 pub use discover::{Found, discover};
 pub use episodes::{EpisodeResult, read_episode_lines};
+pub use hand_out::{HandOut, read_hand_out};
 pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
 
@@ -58,6 +60,8 @@ pub struct Run {
     pub rows: Vec<Row>,
     /// Episodes of `hasard eval`, if any were kept in the directory.
     pub evaluation: Vec<EpisodeResult>,
+    /// The checkpoint that it hands out, if it says.
+    pub hand_out: Option<HandOut>,
     /// Visited positions at moments of training, if any were kept.
     pub heatmaps: Vec<HeatmapData>,
 }
@@ -99,7 +103,8 @@ impl Run {
         } else {
             Vec::new()
         };
-        Ok(Run { path: path.to_owned(), config, rows, evaluation, heatmaps })
+        let hand_out = read_hand_out(path, warnings);
+        Ok(Run { path: path.to_owned(), config, rows, evaluation, hand_out, heatmaps })
     }
 
     /// The picture of the map that a heatmap lies on, if the directory has it. A name that leads elsewhere is no name.

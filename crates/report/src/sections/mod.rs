@@ -4,6 +4,7 @@ mod beside_paper;
 mod comparison;
 mod constraints;
 mod curves;
+mod handed_out;
 mod heatmaps;
 mod interquartile;
 mod main_results;
@@ -20,7 +21,8 @@ use std::collections::BTreeMap;
 pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec<Warning>) -> Document {
     let frames: f64 = groups.iter().flat_map(|group| &group.runs).map(crate::run::Run::frames).sum();
     let run_count: usize = groups.iter().map(|group| group.runs.len()).sum();
-    let mut sections = vec![main_results::section(groups), beside_paper::section(groups), curves::section(groups)];
+    let mut sections =
+        vec![main_results::section(groups), handed_out::section(groups), beside_paper::section(groups), curves::section(groups)];
     sections.push(constraints::section(groups));
     sections.extend(comparison::sections(groups));
     sections.push(interquartile::section(groups));
