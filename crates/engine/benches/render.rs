@@ -33,9 +33,9 @@ fn level() -> World {
     let mut world = World::new(Arc::new(map), 1);
     let mut rng = Rng::new(3);
     let slab = world.map.texture("FLOOR0_5").unwrap();
-    for sector in (0..world.sector_count() as u32).map(SectorId) {
+    for sector in 0..world.sector_count() as u32 {
         if rng.below(5) < 2 {
-            let sector = world.sector_mut(sector);
+            let sector = world.sector_mut(SectorId(sector));
             (sector.floor, sector.floor_texture) = (Fixed::from_int(16), slab);
         }
     }

@@ -77,7 +77,7 @@ impl Waggle {
             match self.phase {
                 Phase::Growing => self.scale += steps,
                 Phase::Steady => self.steady_tics = self.steady_tics.map(|tics| tics.wrapping_sub(calm as i32)),
-                Phase::Shrinking => self.scale += -steps,
+                Phase::Shrinking => self.scale -= steps,
             }
             tics -= calm;
             if tics == 0 {
@@ -95,10 +95,7 @@ impl Waggle {
         match self.phase {
             Phase::Growing => (self.scale, self.phase) = (self.full_scale, Phase::Steady),
             Phase::Steady => (self.steady_tics, self.phase) = (Some(0), Phase::Shrinking),
-            Phase::Shrinking => {
-                self.scale = self.scale - self.scale_step;
-                return false;
-            }
+            Phase::Shrinking => return false,
         }
         self.accumulator = self.accumulator.wrapping_add(self.accumulator_step);
         true
