@@ -63,6 +63,15 @@ impl Movers {
         self.note(self.list.len() - 1);
     }
 
+    /// Ends a mover before its time.
+    fn remove(&mut self, index: usize) {
+        if let Mover::Waggle(waggle) = self.list.remove(index) {
+            self.swings.clear(waggle.sector);
+        }
+        self.run -= usize::from(index < self.run);
+        (index..self.list.len()).for_each(|moved| self.note(moved));
+    }
+
     /// Notes what follows from the mover of number `index`.
     fn note(&mut self, index: usize) {
         match &self.list[index] {
@@ -117,7 +126,7 @@ impl Mover {
     fn moves_floor_of(&self, sector: SectorId) -> bool {
         match self {
             Mover::Plane(plane) => plane.sector == sector && !plane.ceiling,
-            Mover::Waggle(waggle) => waggle.sector() == sector,
+            Mover::Waggle(waggle) => waggle.sector == sector,
         }
     }
 }
@@ -161,12 +170,11 @@ impl World {
     pub fn stop_floors(&mut self, tag: i32) {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
-            if !std::mem::replace(&mut self.sectors[sector.0 as usize].floor_busy, false) {
+            if !std::mem::replace(&mut self.sector_mut(sector).floor_busy, false) {
                 continue;
             }
-            if let Some(index) = self.movers.iter().position(|mover| mover.moves_floor_of(sector)) {
+            if let Some(index) = self.movers.list.iter().position(|mover| mover.moves_floor_of(sector)) {
                 self.movers.remove(index);
-                self.movers_run -= usize::from(index < self.movers_run);
             }
         }
     }
