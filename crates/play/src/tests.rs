@@ -61,7 +61,7 @@ fn record(id: &str, options: &EnvOptions, steps: usize) -> EpisodeFile {
     let mut state = 77;
     for _ in 0..steps {
         let (actions, deltas) = random_action(env.action_space(), &mut state);
-        let step = env.step(&actions, &deltas);
+        let step = env.step(&actions, &deltas).unwrap();
         recorder.push(&actions, &deltas).unwrap();
         if step.ended() {
             break;
