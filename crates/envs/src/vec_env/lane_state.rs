@@ -56,7 +56,7 @@ impl LaneState {
             let [actions, deltas] =
                 [number(&mut rest)?, number(&mut rest)?].map(|count| usize::try_from(count).unwrap_or(usize::MAX));
             let actions = cut(&mut rest, actions)?.to_vec();
-            let deltas = cut(&mut rest, deltas.checked_mul(4).unwrap_or(usize::MAX))?;
+            let deltas = cut(&mut rest, deltas.saturating_mul(4))?;
             let deltas = deltas.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect();
             states.push(LaneState { seeds, seed, actions, deltas });
         }
