@@ -18,6 +18,15 @@ pub(crate) enum Mover {
     Waggle(Waggle),
 }
 
+impl Mover {
+    fn moves_floor_of(&self, sector: SectorId) -> bool {
+        match self {
+            Mover::Plane(plane) => plane.sector == sector && !plane.ceiling,
+            Mover::Waggle(waggle) => waggle.sector() == sector,
+        }
+    }
+}
+
 /// A plane on its way to a height.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct PlaneMover {
@@ -51,6 +60,20 @@ impl World {
     pub fn floor_move_to_value(&mut self, tag: i32, speed: i32, height: i32) {
         let target = Fixed::from_int(height);
         self.start_planes(tag, false, |floor| (target <= floor, target), speed);
+    }
+
+    /// Ends whatever the floors of the sectors with a tag still do: they stay at the height that they have.
+    pub fn stop_floors(&mut self, tag: i32) {
+        let map = Arc::clone(&self.map);
+        for sector in map.tagged(tag) {
+            if !std::mem::replace(&mut self.sectors[sector.0 as usize].floor_busy, false) {
+                continue;
+            }
+            if let Some(index) = self.movers.iter().position(|mover| mover.moves_floor_of(sector)) {
+                self.movers.remove(index);
+                self.movers_run -= usize::from(index < self.movers_run);
+            }
+        }
     }
 
     fn start_planes(&mut self, tag: i32, ceiling: bool, aim: impl Fn(Fixed) -> (bool, Fixed), speed: i32) {

@@ -32,6 +32,13 @@ pub(crate) struct Waggle {
     phase: Phase,
 }
 
+impl Waggle {
+    /// Where it is at work.
+    pub(super) fn sector(&self) -> SectorId {
+        self.sector
+    }
+}
+
 impl World {
     /// Has the floors of the sectors with a tag swing by `amplitude` eighths of a map unit about their height, with a
     /// period of 4096 / `frequency` tics. The swing grows to its full size, stays for `seconds` (0: for ever), and
