@@ -225,7 +225,7 @@ impl Sampler {
 
     /// Takes a group back and notes what its step brought.
     fn receive(&mut self, group: usize, step: usize, part: &mut Part) -> Result<(), LearnError> {
-        let batch = self.worlds.recv(group).map_err(world_error)?;
+        let mut batch = self.worlds.recv(group).map_err(world_error)?;
         let lanes = self.worlds.group_lanes(group);
         let first_row = step * self.lanes();
         let (count, terms) = (self.constraints.len(), self.worlds.cost_terms().len());
