@@ -40,7 +40,7 @@ fn what_is_shown_tic_by_tic_is_what_counts() {
                 assert!(stage.wants_action());
                 let (actions, deltas) = random_action(alone.action_space(), &mut state);
                 stage.act(&actions, &deltas).unwrap();
-                let expected = alone.step(&actions, &deltas);
+                let expected = alone.step(&actions, &deltas).unwrap();
                 let mut tics = 0;
                 let got = loop {
                     tics += 1;
