@@ -37,7 +37,7 @@ pub struct Report {
     /// The evaluation of the policy at this moment, if there was one.
     pub evaluation: Option<Evaluation>,
     /// Losses and other numbers of the updates since the last report.
-    pub learning: Vec<(&'static str, f64)>,
+    pub learning: Vec<(std::borrow::Cow<'static, str>, f64)>,
     /// Cost terms and statistics of the latest episodes.
     pub details: Vec<(String, f64)>,
 }
