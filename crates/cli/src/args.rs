@@ -366,7 +366,7 @@ pub struct TrainArgs {
     #[arg(long)]
     pub resume: bool,
     /// Frames between evaluations on episodes of their own, by which the run chooses the checkpoint that it hands out; a
-    /// twentieth of the run if absent, 0 for none
+    /// twentieth of the run if absent, or none in a run of fewer than 400000; 0 for none
     #[arg(long, value_name = "FRAMES")]
     pub eval_every: Option<u64>,
     /// Levels in turn, weights and normalisers carried over: 1,2,3 shares the frames equally, 1:400000,2:600000 gives each

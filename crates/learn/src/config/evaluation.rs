@@ -7,7 +7,7 @@ use super::TrainConfig;
 /// When and how long a run's agent is evaluated.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct EvaluationConfig {
-    /// Frames between evaluations; `null` for a twentieth of the run, 0 for none.
+    /// Frames between evaluations, 0 for none; `null` for a twentieth of the run, and none in a short one.
     pub every: Option<u64>,
     /// Episodes of an evaluation.
     pub episodes: usize,
@@ -23,12 +23,15 @@ impl Default for EvaluationConfig {
 
 /// Evaluations of a run that does not say how often.
 const EVALUATIONS: u64 = 20;
+/// Frames of a run that is worth them: the episodes that choose, confirm and close are some 500,000 frames themselves.
+const WORTH_EVALUATING: u64 = 400_000;
 
 impl TrainConfig {
     /// Whether an evaluation falls between two moments of the run, the second included. The end of a run is one.
     #[must_use]
     pub fn evaluates(&self, before: u64, frames: u64) -> bool {
-        let every = self.evaluation.every.unwrap_or(self.frames.div_ceil(EVALUATIONS));
+        let short = self.frames < WORTH_EVALUATING;
+        let every = self.evaluation.every.unwrap_or(if short { 0 } else { self.frames.div_ceil(EVALUATIONS) });
         let ends = before < self.frames && self.frames <= frames;
         every > 0 && (ends || before / every < frames / every)
     }
@@ -45,11 +48,16 @@ mod tests {
         let at = |config: &TrainConfig| -> Vec<u64> {
             (0..11).map(|k| k * 96).filter(|&before| config.evaluates(before, before + 96)).map(|before| before + 96).collect()
         };
-        assert_eq!(at(&config).len(), 11, "every 50 frames is more often than rollouts are");
+        assert!(at(&config).is_empty(), "a short run is not evaluated unless it is asked for");
+        config.evaluation.every = Some(50);
+        assert_eq!(at(&config).len(), 11, "50 frames are fewer than a rollout's");
         config.evaluation.every = Some(400);
         // The rollouts that reach 400, 800 and the end.
         assert_eq!(at(&config), [480, 864, 1056]);
         config.evaluation.every = Some(0);
         assert!(at(&config).is_empty());
+        (config.frames, config.evaluation.every) = (4_000_000, None);
+        let evaluated = (0..977).filter(|rollout| config.evaluates(rollout * 4096, (rollout + 1) * 4096)).count();
+        assert_eq!(evaluated, 20);
     }
 }
