@@ -58,7 +58,7 @@ fn played(id: EnvId, options: &EnvOptions) -> (u64, Vec<u8>) {
     let mut run = PolicyRun::new(policy, env.action_space(), 3);
     for _ in 0..60 {
         if let hasard_envs::Move::Action(actions, deltas) = run.next_move() {
-            env.step(actions, deltas);
+            env.step(actions, deltas).unwrap();
         }
     }
     let mut frame = vec![0; env.observation_shape().iter().product()];

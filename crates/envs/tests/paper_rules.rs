@@ -62,7 +62,7 @@ fn the_hard_constraint_s_first_step_is_free_under_the_paper_s_rules_alone() {
 
 /// Tiles of lava off the ground, after the present roll has had its time.
 fn swinging_lava(world: &World, lava: TextureId) -> usize {
-    let tiles = (100..=388).flat_map(|tag| world.map.tagged(tag)).map(|sector| &world.sectors[sector.0 as usize]);
+    let tiles = (100..=388).flat_map(|tag| world.map.tagged(tag)).map(|sector| world.sector(sector));
     tiles.filter(|tile| tile.floor_texture == lava && tile.floor != Fixed::ZERO).count()
 }
 

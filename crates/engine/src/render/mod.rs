@@ -14,6 +14,7 @@ mod convert_wide;
 mod frame;
 mod label;
 mod light;
+mod look;
 mod masked;
 mod openings;
 mod palette;

@@ -1,6 +1,7 @@
 //! What a seg does to the picture: it ends planes, has wall parts, and narrows or closes columns.
 
 use super::light::Light;
+use super::look::Look;
 use super::plane::PlaneKey;
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
@@ -8,7 +9,6 @@ use super::walk::Walk;
 use super::wall::{Edge, SeenLine, TextureLine, WallShader};
 use crate::map::TextureId;
 use crate::math::Fixed;
-use crate::world::SectorState;
 
 /// A seg in view, on its way through the stages.
 struct SeenSeg<'a> {
@@ -52,11 +52,12 @@ impl Walk<'_> {
         let face = &self.scene.faces[seg.face as usize];
         let line = SeenLine::new(self.camera, seg, away);
         let seen = SeenSeg { index, seg, face, line, first, end, base_ends };
-        let front = &self.sectors[seg.front as usize];
+        let front = &self.looks.of(self.world, seg.front);
         if seg.back == NO_SECTOR {
             self.solid::<DEPTH>(&seen, front);
         } else {
-            self.opening::<DEPTH>(&seen, front, &self.sectors[seg.back as usize]);
+            let back = &self.looks.of(self.world, seg.back);
+            self.opening::<DEPTH>(&seen, front, back);
         }
     }
 
@@ -88,7 +89,7 @@ impl Walk<'_> {
     }
 
     /// A wall without another side.
-    fn solid<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState) {
+    fn solid<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look) {
         let (ceiling, floor) = (self.edge(seen, front.ceiling), self.edge(seen, front.floor));
         // As if there were an opening without height where the floor is.
         let above = Part { plane: self.ceiling_plane(front), edge: ceiling, wall: Some(floor) };
@@ -106,7 +107,7 @@ impl Walk<'_> {
     }
 
     /// A line with a sector on its other side.
-    fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState, back: &SectorState) {
+    fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, back: &Look) {
         let face = seen.face;
         let shut = back.ceiling <= front.floor || back.floor >= front.ceiling || back.floor >= back.ceiling;
         // Between two skies there is no wall: the sky goes on.
@@ -224,7 +225,7 @@ impl Walk<'_> {
     }
 
     /// The plane of a sector's ceiling, if the eye sees it.
-    fn ceiling_plane(&mut self, sector: &SectorState) -> Option<u16> {
+    fn ceiling_plane(&mut self, sector: &Look) -> Option<u16> {
         if self.is_sky(sector.ceiling_texture) {
             return Some(self.sky_plane(sector.ceiling_texture));
         }
@@ -233,7 +234,7 @@ impl Walk<'_> {
     }
 
     /// The plane of a sector's floor, if the eye sees it.
-    fn floor_plane(&mut self, sector: &SectorState) -> Option<u16> {
+    fn floor_plane(&mut self, sector: &Look) -> Option<u16> {
         if self.is_sky(sector.floor_texture) {
             return Some(self.sky_plane(sector.floor_texture));
         }
@@ -250,7 +251,7 @@ impl Walk<'_> {
     }
 
     /// Draws the wall between the upper and the lower scratch.
-    fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState, texture: Option<TextureId>, hung_from: Fixed) {
+    fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, texture: Option<TextureId>, hung_from: Fixed) {
         let range = seen.first..seen.end;
         let shader = WallShader {
             camera: self.camera,
