@@ -4,7 +4,7 @@ mod tiny;
 
 use hasard_envs::{EnvError, Environment, VecEnv, VecOptions};
 use hasard_learn::config::curriculum::Lesson;
-use hasard_learn::config::{AlgorithmKind, EnvConfig, TrainConfig};
+use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which};
 use hasard_learn::runs::evaluate::{Evaluation, play};
@@ -99,7 +99,8 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
 fn the_first_rollout_does_not_depend_on_how_lanes_are_dealt_out() {
     let mut all = Vec::new();
     for (samplers, groups, world_threads) in [(1, 1, 0), (4, 1, 0), (1, 2, 2), (2, 4, 1)] {
-        let mut config = tiny::config(AlgorithmKind::Ppo);
+        // The multiplier looks at the latest episodes: in the order in which they ended.
+        let mut config = tiny::config(AlgorithmKind::PpoLag);
         config.sampling.samplers = samplers;
         config.sampling.groups = groups;
         config.sampling.world_threads = world_threads;
@@ -559,7 +560,36 @@ fn copy(from: &Path, to: &Path) {
         if entry.file_type().unwrap().is_dir() {
             copy(&entry.path(), &target)
         } else {
-            drop(fs::copy(entry.path(), target).unwrap())
+            fs::copy(entry.path(), target).unwrap();
         }
     }
+}
+
+/// Two constraints with networks of their own: both terms are judged and reported, and the run that stops and goes on equals
+/// the one that went straight through.
+#[test]
+fn two_constraints_are_kept_apart_and_resumed() {
+    let mut config = tiny::config(AlgorithmKind::TrpoLag);
+    let constraint = |term: &str, budget| Constraint { term: Some(term.into()), budget };
+    config.constraints = vec![constraint("risk", 4.0), constraint("second", 2.0)];
+    config.sampling.rollout = 13;
+    config.frames = 4 * config.frames_per_rollout();
+    config.evaluation.every = Some(2 * config.frames_per_rollout());
+    config.evaluation.confirming_episodes = 32;
+    let (straight, broken) = (tiny::directory("two-straight"), tiny::directory("two-broken"));
+    let (summary, ..) = tiny::run(Start::Fresh(config.clone()), &straight);
+    let hand_out = summary.unwrap().hand_out.unwrap();
+    let judged: Vec<_> = hand_out.evaluation().constraints.iter().map(|one| (one.term.as_deref(), one.budget)).collect();
+    assert_eq!(judged, [(Some("risk"), 4.0), (Some("second"), 2.0)]);
+    let last = rows(&straight).pop().unwrap();
+    assert!(last["eval/cost/risk"].is_number() && last["eval/cost/second"].is_number(), "{last}");
+    assert_eq!(last["constraint_costs"].as_array().unwrap().len(), 2);
+    let half = config.frames / 2;
+    tiny::run(Start::Fresh(TrainConfig { frames: half, ..config.clone() }), &broken).0.unwrap();
+    let settings = [format!("frames={}", config.frames)];
+    tiny::run(Start::Resume { settings: &settings }, &broken).0.unwrap();
+    assert!(last_files(&straight).0 == last_files(&broken).0, "weights differ");
+    assert!(last_files(&straight).1 == last_files(&broken).1, "optimisers or lanes differ");
+    fs::remove_dir_all(straight).unwrap();
+    fs::remove_dir_all(broken).unwrap();
 }

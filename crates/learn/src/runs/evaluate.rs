@@ -72,7 +72,8 @@ fn play_all(mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Vec<E
             }
             for episode in batch.episodes.drain(..) {
                 let lane = episode.lane;
-                ended[lane] = Some(episode);
+                // Which world of which agent it was in, says nothing about it.
+                ended[lane] = Some(Episode { lane: 0, ..episode });
             }
         }
         all.extend(ended.into_iter().flatten().take(turn.len()));

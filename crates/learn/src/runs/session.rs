@@ -167,7 +167,7 @@ impl Session {
 
     /// Everything that is learned from a rollout.
     fn learn(&mut self, rollout: &Rollout, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
-        for episode in rollout.parts.iter().flat_map(|part| &part.episodes) {
+        for episode in rollout.episodes() {
             self.watch.add(episode, &self.config.constraints);
         }
         let lag = self.learner.version.saturating_sub(rollout.oldest_version());

@@ -39,8 +39,8 @@ pub struct Part {
     pub cut_off: Vec<(usize, Vec<f32>)>,
     /// Version of the weights of each step.
     pub versions: Vec<u64>,
-    /// Episodes that ended.
-    pub episodes: Vec<Episode>,
+    /// Episodes that ended, and with which step.
+    pub episodes: Vec<(usize, Episode)>,
 }
 
 impl Part {
@@ -120,6 +120,14 @@ impl Rollout {
                 part.frame(step, lane)
             })
             .collect()
+    }
+
+    /// Episodes that ended, in the order in which they did: how lanes were dealt to samplers does not matter.
+    #[must_use]
+    pub fn episodes(&self) -> Vec<&Episode> {
+        let mut all: Vec<&(usize, Episode)> = self.parts.iter().flat_map(|part| &part.episodes).collect();
+        all.sort_by_key(|(step, episode)| (*step, episode.lane));
+        all.into_iter().map(|(_, episode)| episode).collect()
     }
 
     /// Oldest version of the weights that acted.

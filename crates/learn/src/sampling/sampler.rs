@@ -301,7 +301,7 @@ impl Sampler {
         }
         for mut episode in batch.episodes.drain(..) {
             episode.lane += self.first_lane;
-            part.episodes.push(episode);
+            part.episodes.push((step, episode));
         }
         self.batches[group] = Some(batch);
         Ok(())

@@ -27,7 +27,7 @@ pub struct Risk {
     seed: u64,
     rich: bool,
     steps: u32,
-    sums: (f64, f64),
+    sums: (f64, f64, f64),
     last: [f64; 2],
     times_out: bool,
 }
@@ -42,7 +42,7 @@ impl Risk {
             seed: 0,
             rich: false,
             steps: 0,
-            sums: (0.0, 0.0),
+            sums: (0.0, 0.0, 0.0),
             last: [0.0; 2],
             times_out,
         }
@@ -71,7 +71,7 @@ impl Environment for Risk {
         self.seed = seed;
         self.rich = self.rng.below(2) == 1;
         self.steps = 0;
-        self.sums = (0.0, 0.0);
+        self.sums = (0.0, 0.0, 0.0);
         self.last = [0.0; 2];
     }
 
@@ -85,6 +85,7 @@ impl Environment for Risk {
         self.last = [cost, if actions[1] == 2 { 1.0 } else { 0.0 }];
         self.sums.0 += reward;
         self.sums.1 += cost;
+        self.sums.2 += self.last[1];
         self.steps += 1;
         self.rich = self.rng.below(2) == 1;
         Step { reward, cost, terminated: self.ended() && !self.times_out, truncated: self.ended() && self.times_out }
@@ -107,7 +108,7 @@ impl Environment for Risk {
             seed: self.seed,
             episode_return: self.sums.0,
             cost: self.sums.1,
-            costs: vec![("risk", self.sums.1), ("second", 0.0)],
+            costs: vec![("risk", self.sums.1), ("second", self.sums.2)],
             length: self.steps,
             terminated: self.ended() && !self.times_out,
             truncated: self.ended() && self.times_out,
