@@ -53,8 +53,9 @@ class Infos:
 
     def now(self, lane: int) -> dict[str, Any]:
         """The info of a lane whose episode has just begun, where the batch tells the one that ended."""
-        info: dict[str, Any] = {"position": self.worlds.positions[lane], "episode_seed": self.worlds.episode_seeds[lane]}
-        info = info if self.full else {}
+        info: dict[str, Any] = {}
+        if self.full:
+            info = {"position": self.worlds.positions[lane], "episode_seed": self.worlds.episode_seeds[lane]}
         if self.env_stats:
             statistics = np.array([[value for _, value in self.worlds.stats(lane)]])
             info["env_stats"] = {name: float(column[0]) for name, column in self._stats(np.zeros(1), statistics).items()}

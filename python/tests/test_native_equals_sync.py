@@ -16,12 +16,14 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import hasard_rs
 
-STEPS = 400
+STEPS = 150
 
 
 def pair(env_id: str, mode: AutoresetMode, n: int, **arguments: Any) -> tuple[Any, Any]:
     native = hasard_rs.make_vec(env_id, n, autoreset_mode=mode.value, **arguments)
-    singles = [lambda: gymnasium.make(env_id, disable_env_checker=True, **arguments).unwrapped for _ in range(n)]
+    # The class itself: gymnasium.make would turn max_episode_steps into a wrapper.
+    scenario, level = env_id.removeprefix("hasard/").removesuffix("-v0").split("Level")
+    singles = [lambda: hasard_rs.Env(scenario=scenario, level=int(level), **arguments) for _ in range(n)]
     return native, SyncVectorEnv(singles, autoreset_mode=mode)
 
 
@@ -41,7 +43,7 @@ def settle(infos: dict[str, Any], sync: dict[str, Any]) -> None:
 @pytest.mark.parametrize("infos", ["cost", "full"])
 def test_bit_for_bit(env_id: str, mode: AutoresetMode, infos: str) -> None:
     full = infos == "full"
-    arguments = {"resolution": "64x48", "frame_skip": 20, "infos": infos, "env_stats": full, "full_actions": full, "hard_constraint": full}
+    arguments = {"resolution": "64x48", "frame_skip": 35, "infos": infos, "env_stats": full, "full_actions": full, "hard_constraint": full}
     native, sync = pair(env_id, mode, 3, **arguments)
     assert_same(native.reset(seed=5), sync.reset(seed=5), "reset")
     native.action_space.seed(3)
@@ -52,7 +54,7 @@ def test_bit_for_bit(env_id: str, mode: AutoresetMode, infos: str) -> None:
         settle(found[4], expected[4])
         assert_same(found, expected, f"step {step}")
         ends += int((found[2] | found[3]).sum())
-    assert ends >= 6
+    assert ends >= 3
     assert_same(native.reset(), sync.reset(), "the next episodes")
     mask = np.array([True, False, True])
     assert_same(native.reset(options={"reset_mask": mask}), sync.reset(options={"reset_mask": mask}), "some lanes")

@@ -1,12 +1,13 @@
 //! Keyword arguments of worlds, by their names in Python.
 
-use crate::errors::{INVALID_MAP, INVALID_OPTION, raise};
+use crate::errors::{INVALID_OPTION, raise};
 use hasard_engine::assets::Assets;
+use hasard_envs::maps::Maps;
 use hasard_envs::{Autoreset, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Every name that is understood, for the nearest one to a wrong name.
@@ -71,8 +72,8 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
             "safety_budget" => arguments.safety_budget = Some(typed(&name, &value, "a number")?),
             "iwad" if value.is_none() => options.assets = None,
             "iwad" => options.assets = Some(assets(py, &value)?),
-            "map" if value.is_none() => options.map = None,
-            "map" => return Err(INVALID_MAP.error(py, "map: a map of one's own is not read here yet; leave it None")),
+            "map" if value.is_none() => options.maps = None,
+            "map" => options.maps = Some(Arc::new(Maps::new(&typed::<PathBuf>(&name, &value, "a path")?, None))),
             "published_depth" => options.published_depth = typed(&name, &value, "True or False")?,
             "published_colours" => options.published_colours = typed(&name, &value, "True or False")?,
             _ => return Err(unknown(py, &name)?),
@@ -155,7 +156,7 @@ pub fn size(name: &str, given: &Bound<'_, PyAny>) -> PyResult<FrameSize> {
 }
 
 fn assets(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Arc<Assets>> {
-    let path: std::path::PathBuf = typed("iwad", path, "a path")?;
+    let path: PathBuf = typed("iwad", path, "a path")?;
     let wrong = |why: String| INVALID_OPTION.error(py, format!("iwad {}: {why}", path.display()));
     let bytes = hasard_media::files::read_limited(Path::new(&path), LARGEST_IWAD).map_err(|error| wrong(error.to_string()))?;
     Ok(Arc::new(Assets::from_iwad(&bytes).map_err(|error| wrong(error.to_string()))?))

@@ -74,10 +74,12 @@ impl Batch {
         let final_lanes: Vec<i32> = batch.final_lanes.iter().map(|&lane| lane as i32).collect();
         let final_shape = frames(final_lanes.len());
         let positions: Vec<i32> = batch.positions.iter().flatten().copied().collect();
-        fn given<T: numpy::Element>(py: Python<'_>, bound: Option<Py<PyAny>>, own: &[T], shape: &[usize]) -> PyResult<Py<PyAny>>
-        where
-            T: Clone,
-        {
+        fn given<T: numpy::Element + Clone>(
+            py: Python<'_>,
+            bound: Option<Py<PyAny>>,
+            own: &[T],
+            shape: &[usize],
+        ) -> PyResult<Py<PyAny>> {
             match bound {
                 Some(array) => Ok(array),
                 None => Ok(array(py, own.to_vec(), shape)?.unbind()),

@@ -31,6 +31,14 @@ impl From<EnvError> for Fault {
     }
 }
 
+/// A batch that has been stepped.
+enum CameBack {
+    /// In its own memory.
+    Own(hasard_envs::Batch),
+    /// In the caller's: this is what it tells beside the bound arrays.
+    Bound(hasard_envs::Batch),
+}
+
 /// Worlds(env_id, num_envs, *, num_threads=None, groups=1, autoreset_mode="SameStep", final_observations="every",
 /// statistics=False, **arguments)
 ///
@@ -110,47 +118,30 @@ impl Worlds {
         py: Python<'_>,
         work: impl FnOnce(&mut Inner, &mut hasard_envs::Batch) -> Result<(), Fault> + Send,
     ) -> PyResult<Batch> {
-        self.slot(py, self.facts.groups, |inner, mut batch| match work(inner, &mut batch) {
-            Ok(()) => Ok(batch),
-            Err(fault) => Err((fault, Some(batch))),
-        })
-    }
-
-    /// The same for the batch of a slot, which is given away and comes back.
-    fn slot(
-        &self,
-        py: Python<'_>,
-        slot: usize,
-        work: impl FnOnce(&mut Inner, hasard_envs::Batch) -> Result<hasard_envs::Batch, (Fault, Option<hasard_envs::Batch>)> + Send,
-    ) -> PyResult<Batch> {
-        let count = self.lanes_of(slot).len();
-        let mut shown = None;
-        let batch = self.with(py, |inner| {
+        let slot = self.facts.groups;
+        let came_back = self.with(py, |inner| {
             let bound = inner.bound.get_mut(slot).and_then(Option::take);
             let lent = bound.is_some();
-            let batch = bound.unwrap_or_else(|| self.scratch(inner, count));
-            match work(inner, batch) {
-                Ok(batch) if lent => {
-                    shown = Some(self.keep(inner, slot, batch));
-                    Ok(None)
-                }
-                Ok(batch) => Ok(Some(batch)),
-                Err((fault, batch)) => {
-                    if lent {
-                        inner.bound[slot] = batch;
-                    }
-                    Err(fault)
-                }
+            let mut batch = bound.unwrap_or_else(|| self.scratch(inner, self.facts.lanes));
+            let result = work(inner, &mut batch);
+            if !lent {
+                return result.map(|()| CameBack::Own(batch));
             }
+            let told = self.keep(inner, slot, batch);
+            result.map(|()| CameBack::Bound(told))
         })?;
+        self.tell(py, slot, came_back)
+    }
+
+    /// Shows what a slot's step brought.
+    fn tell(&self, py: Python<'_>, slot: usize, came_back: CameBack) -> PyResult<Batch> {
         let lanes = self.lanes_of(slot).map(|lane| lane as i32).collect();
-        match (batch, shown) {
-            (Some(batch), _) => self.show(py, batch, lanes),
-            (None, Some(mut told)) => {
+        match came_back {
+            CameBack::Own(batch) => self.show(py, batch, lanes),
+            CameBack::Bound(mut told) => {
                 let arrays = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner())[slot].clone_ref(py);
                 Batch::new(py, &mut told, lanes, self.facts.shape, &self.pool, arrays)
             }
-            (None, None) => unreachable!("a batch is shown in one way or the other"),
         }
     }
 
@@ -368,18 +359,11 @@ impl Worlds {
     #[pyo3(signature = (group=0))]
     fn recv(&self, py: Python<'_>, group: usize) -> PyResult<Batch> {
         self.check_group(py, group)?;
-        let (batch, shown) = self.with(py, |inner| {
+        let came_back = self.with(py, |inner| {
             let batch = inner.worlds().recv(group)?;
-            if inner.bound.is_empty() { Ok((Some(batch), None)) } else { Ok((None, Some(self.keep(inner, group, batch)))) }
+            Ok(if inner.bound.is_empty() { CameBack::Own(batch) } else { CameBack::Bound(self.keep(inner, group, batch)) })
         })?;
-        let lanes = self.lanes_of(group).map(|lane| lane as i32).collect();
-        match (batch, shown) {
-            (Some(batch), _) => self.show(py, batch, lanes),
-            (_, told) => {
-                let arrays = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner())[group].clone_ref(py);
-                Batch::new(py, &mut told.unwrap_or_default(), lanes, self.facts.shape, &self.pool, arrays)
-            }
-        }
+        self.tell(py, group, came_back)
     }
 
     /// bind(*, observations, rewards, costs, terminated, truncated, cost_terms=None)
@@ -486,20 +470,15 @@ impl Worlds {
     #[pyo3(signature = (lane=0))]
     fn stats(&self, py: Python<'_>, lane: usize) -> PyResult<Vec<(&'static str, f64)>> {
         self.check_lane(lane)?;
-        self.with(py, |inner| {
-            crate::bind::idle(inner)?;
-            Ok(inner.look(lane, |env| env.stats()))
-        })
+        self.with(py, |inner| Ok(inner.look(lane, |env| env.stats())))
     }
 
     /// Where each lane's player stands, in map units: int32 [num_envs, 2].
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let lanes = self.facts.lanes;
-        let places = self.with(py, |inner| {
-            crate::bind::idle(inner)?;
-            Ok((0..lanes).flat_map(|lane| inner.look(lane, |env| env.position())).collect::<Vec<i32>>())
-        })?;
+        let places =
+            self.with(py, |inner| Ok((0..lanes).flat_map(|lane| inner.look(lane, |env| env.position())).collect::<Vec<i32>>()))?;
         array(py, places, &[lanes, 2])
     }
 
@@ -507,10 +486,7 @@ impl Worlds {
     #[getter]
     fn episode_seeds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let lanes = self.facts.lanes;
-        let seeds = self.with(py, |inner| {
-            crate::bind::idle(inner)?;
-            Ok((0..lanes).map(|lane| inner.look(lane, |env| env.seed())).collect::<Vec<u64>>())
-        })?;
+        let seeds = self.with(py, |inner| Ok((0..lanes).map(|lane| inner.look(lane, |env| env.seed())).collect::<Vec<u64>>()))?;
         array(py, seeds, &[lanes])
     }
 
