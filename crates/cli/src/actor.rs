@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::settings;
 use hasard_engine::world::Command;
 use hasard_envs::{ActionSpace, EnvOptions, Move, PolicyRun, Step};
-use hasard_learn::evaluate::{Agent, Choice, Which, run_config};
+use hasard_learn::runs::evaluate::{Agent, Choice, Which, run_config};
 use hasard_play::{Recorder, Stage};
 use std::path::Path;
 

@@ -4,7 +4,7 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use hasard_engine::assets::Assets;
-use hasard_engine::map::{Map, MapBuilder, Style, TileGrid};
+use hasard_engine::map::{Map, MapBuilder, SectorId, Style, TileGrid};
 use hasard_engine::math::{Angle, Fixed, Rng};
 use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, View};
 use hasard_engine::world::{ActorKind, World};
@@ -33,8 +33,9 @@ fn level() -> World {
     let mut world = World::new(Arc::new(map), 1);
     let mut rng = Rng::new(3);
     let slab = world.map.texture("FLOOR0_5").unwrap();
-    for sector in &mut world.sectors {
+    for sector in 0..world.sector_count() as u32 {
         if rng.below(5) < 2 {
+            let sector = world.sector_mut(SectorId(sector));
             (sector.floor, sector.floor_texture) = (Fixed::from_int(16), slab);
         }
     }
@@ -50,7 +51,7 @@ fn look_somewhere(world: &mut World, rng: &mut Rng) {
     let (x, y) = (Fixed::from_int(rng.between(20, 2150)), Fixed::from_int(rng.between(84, 2220)));
     let angle = Angle(rng.next_u64() as u32);
     let sector = world.map.sector_at(x, y);
-    let floor = world.sectors[sector.0 as usize].floor;
+    let floor = world.sector(sector).floor;
     let body = world.players[0].actor;
     if let Some(body) = world.get_mut(body) {
         (body.x, body.y, body.z, body.angle, body.sector) = (x, y, floor, angle, sector);

@@ -1,7 +1,7 @@
 //! Draws views of a small test level, to be looked at: `cargo run --release -p hasard-engine --example frames -- OUTDIR`.
 
 use hasard_engine::assets::{Assets, sprite_index};
-use hasard_engine::map::{Map, MapBuilder, Mark, Style, TileGrid};
+use hasard_engine::map::{Map, MapBuilder, Mark, SectorId, Style, TileGrid};
 use hasard_engine::math::{Angle, Fixed, Rng};
 use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, SegmentationColours, TopDown, View};
 use hasard_engine::world::{ActorKind, PlayerSprite, Weapon, World};
@@ -72,8 +72,9 @@ fn items(world: &mut World, seed: u64, count: usize, kinds: &[ActorKind]) {
 fn platforms(world: &mut World, seed: u64, chance: i32, low: i32, high: i32) {
     let mut rng = Rng::new(seed);
     let floor = world.map.texture("FLOOR0_5").unwrap();
-    for sector in &mut world.sectors {
+    for sector in 0..world.sector_count() as u32 {
         if rng.between(0, 99) < chance {
+            let sector = world.sector_mut(SectorId(sector));
             sector.floor = Fixed::from_int(rng.between(low, high));
             sector.floor_texture = floor;
         }
@@ -81,11 +82,12 @@ fn platforms(world: &mut World, seed: u64, chance: i32, low: i32, high: i32) {
 }
 
 fn place(world: &mut World, x: i32, y: i32, degrees: f64, pitch: f64) {
+    let (x, y) = (Fixed::from_int(x), Fixed::from_int(y));
+    let sector = world.map.sector_at(x, y);
+    let floor = world.sector(sector).floor;
     let body = &mut world.actors[0];
-    (body.x, body.y, body.angle) = (Fixed::from_int(x), Fixed::from_int(y), Angle::from_degrees(degrees));
-    let sector = world.map.sector_at(body.x, body.y);
-    body.z = world.sectors[sector.0 as usize].floor;
-    body.sector = sector;
+    (body.x, body.y, body.angle) = (x, y, Angle::from_degrees(degrees));
+    (body.z, body.sector) = (floor, sector);
     world.players[0].view_z = body.z + Fixed::from_int(41);
     world.players[0].pitch = Angle::from_degrees(pitch).0 as i32;
 }

@@ -14,11 +14,11 @@ fn sector(world: &World, tag: i32) -> SectorId {
 }
 
 fn floor(world: &World, tag: i32) -> Fixed {
-    world.sectors[sector(world, tag).0 as usize].floor
+    world.sector(sector(world, tag)).floor
 }
 
 fn light(world: &World, tag: i32) -> i16 {
-    world.sectors[sector(world, tag).0 as usize].light
+    world.sector(sector(world, tag)).light
 }
 
 fn body(world: &World) -> &hasard_engine::world::Actor {
@@ -177,7 +177,7 @@ fn floors_move_in_eighths_and_arrive_exactly() {
     world.floor_lower_by_value(4, 8, -30);
     world.ceiling_lower_by_value(4, 8, -30);
     run(&mut world, 1, NOTHING);
-    let state = world.sectors[sector(&world, 4).0 as usize];
+    let state = world.sector(sector(&world, 4));
     assert_eq!((state.floor, state.ceiling), (units(-10), units(230)));
     // A busy floor ignores new movers.
     world.floor_move_to_value(4, 8, 10);
@@ -231,7 +231,7 @@ fn swinging_floors_have_the_scripts_amplitude_and_period() {
     assert_eq!(heights[120..130], heights[136..146]);
     // Full for 35 tics more, then it shrinks and ends at the height that it had.
     assert!(heights[265..].iter().all(|&h| h == 32.0));
-    assert!(!world.sectors[sector(&world, 4).0 as usize].floor_busy);
+    assert!(!world.sector(sector(&world, 4)).floor_busy);
 }
 
 #[test]

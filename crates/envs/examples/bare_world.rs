@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for _ in 0..line()?.parse()? {
         let floor = numbers(line()?)?;
         let sector = world.map.sector_at(fixed(floor[0]), fixed(floor[1]));
-        let sector = &mut world.sectors[sector.0 as usize];
+        let sector = world.sector_mut(sector);
         (sector.floor, sector.ceiling) = (fixed(floor[2]), fixed(floor[3]));
         sector.damage = Default::default();
     }

@@ -138,7 +138,7 @@ fn a_map_of_ones_own_is_played_or_refused() {
     let make = |source| Env::new("VolcanicVentureLevel1-v0", &EnvOptions { map: Some(Arc::new(source)), ..options() });
     let mut lower = source.clone();
     lower.sectors.iter_mut().for_each(|sector| sector.ceiling = 200);
-    assert!(make(lower).unwrap().world().sectors.iter().all(|sector| sector.ceiling.floor() == 200));
+    assert!(make(lower).unwrap().world().sectors().all(|sector| sector.ceiling.floor() == 200));
     let mut startless = source.clone();
     startless.things.clear();
     let mut untagged = source;

@@ -63,7 +63,7 @@ fn look(env: &mut Env, scene: &Scene, kind: ActorKind, distance: i32) -> Look {
     others.into_iter().for_each(|id| world.remove(id));
     let (x, y) = (Fixed::from_int(scene.from.0), Fixed::from_int(scene.from.1));
     let sector = world.map.sector_at(x, y);
-    let floor = world.sectors[sector.0 as usize].floor;
+    let floor = world.sector(sector).floor;
     let angle = Angle::from_degrees(90.0 * scene.quarter as f64);
     let player = world.get_mut(body).unwrap();
     (player.x, player.y, player.z, player.sector, player.angle) = (x, y, floor, sector, angle);

@@ -2,8 +2,8 @@
 
 use hasard_envs::VecEnv;
 use hasard_learn::config::{EnvConfig, TrainConfig};
-use hasard_learn::progress_bar::line;
-use hasard_learn::trainer::{Hooks, Start, train};
+use hasard_learn::runs::progress_bar::line;
+use hasard_learn::runs::trainer::{Hooks, Start, train};
 use std::sync::atomic::AtomicBool;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

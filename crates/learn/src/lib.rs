@@ -1,36 +1,19 @@
 //! Training of safe reinforcement learning agents on the worlds of the HASARD benchmark.
+//!
+//! The rooms, in the order in which an agent passes through them; each imports only from those before it:
+//!
+//! 1. [`config`]: the settings of a run, presets and curricula.
+//! 2. [`networks`]: policy and critics, on the processor and on graphics cards, and the distribution of actions.
+//! 3. [`sampling`]: worlds, the policy acting in them, rollouts.
+//! 4. [`learning`]: advantages, normalisers, optimiser, the learner.
+//! 5. [`algorithms`]: an algorithm a file, on top of the learner.
+//! 6. [`runs`]: the trainer, checkpoints, evaluation, reports, measurements.
 
-pub mod advantage;
 pub mod algorithms;
-pub mod burn_network;
-pub mod checkpoint;
-pub mod checksum;
 pub mod config;
-pub mod cpu;
-pub mod curriculum;
-pub mod device;
-pub mod distribution;
 pub mod error;
-pub mod evaluate;
-pub mod gather;
-pub mod heatmap;
-pub mod interrupt;
-pub mod learner;
-pub mod measure;
-pub mod metrics;
-pub mod model;
-pub mod normaliser;
-pub mod optimiser;
-mod presets;
-pub mod progress_bar;
+pub mod learning;
+pub mod networks;
 pub mod random;
-pub mod report;
-pub mod rollout;
-pub mod run_directory;
-pub mod sampler;
-pub mod session;
-pub mod shaping;
-pub mod tensorboard;
-pub mod trainer;
-pub mod watch;
-pub mod writer;
+pub mod runs;
+pub mod sampling;

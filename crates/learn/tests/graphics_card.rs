@@ -2,8 +2,8 @@
 //! `cargo test --release -p hasard-learn --features vulkan --test graphics_card`.
 
 use hasard_learn::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
-use hasard_learn::device::ComputeDevice;
-use hasard_learn::trainer::{Hooks, Start, train};
+use hasard_learn::networks::device::ComputeDevice;
+use hasard_learn::runs::trainer::{Hooks, Start, train};
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
@@ -27,7 +27,7 @@ fn losses(device: &str) -> Vec<f64> {
     let directory = std::env::temp_dir().join(format!("hasard-card-{device}-{}", std::process::id()));
     let options = env.options().unwrap();
     let mut losses = Vec::new();
-    let mut hear = |report: &hasard_learn::report::Report| losses.push(report.row()["loss"].as_f64().unwrap());
+    let mut hear = |report: &hasard_learn::runs::report::Report| losses.push(report.row()["loss"].as_f64().unwrap());
     let stop = AtomicBool::new(false);
     let mut hooks = Hooks { stop: &stop, report: &mut hear, warn: &mut |warning| panic!("{warning}") };
     train(

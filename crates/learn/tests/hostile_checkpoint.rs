@@ -2,9 +2,9 @@
 
 mod tiny;
 
-use hasard_learn::checksum::crc32c;
 use hasard_learn::config::{AlgorithmKind, Constraint};
-use hasard_learn::trainer::Start;
+use hasard_learn::runs::checksum::crc32c;
+use hasard_learn::runs::trainer::Start;
 use std::path::{Path, PathBuf};
 use tiny::{config, directory, run};
 

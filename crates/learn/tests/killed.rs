@@ -3,7 +3,7 @@
 mod tiny;
 
 use hasard_learn::config::{AlgorithmKind, TrainConfig};
-use hasard_learn::trainer::Start;
+use hasard_learn::runs::trainer::Start;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};

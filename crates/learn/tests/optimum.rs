@@ -3,8 +3,8 @@
 mod tiny;
 
 use hasard_learn::config::{AlgorithmKind, Preset, TrainConfig};
-use hasard_learn::report::Report;
-use hasard_learn::trainer::Start;
+use hasard_learn::runs::report::Report;
+use hasard_learn::runs::trainer::Start;
 
 /// Mean return and cost over the last half of the run. A multiplier that follows the gradient circles around the optimum
 /// (the best action jumps where the price crosses 1), and it is the mean of a circle that lies there.

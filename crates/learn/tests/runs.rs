@@ -3,11 +3,11 @@
 mod tiny;
 
 use hasard_envs::{EnvError, Environment, VecEnv, VecOptions};
+use hasard_learn::config::curriculum::Lesson;
 use hasard_learn::config::{AlgorithmKind, EnvConfig, TrainConfig};
-use hasard_learn::curriculum::Lesson;
-use hasard_learn::distribution::ActionShape;
-use hasard_learn::evaluate::{Agent, Choice, Which};
-use hasard_learn::trainer::{Hooks, Start, train};
+use hasard_learn::networks::distribution::ActionShape;
+use hasard_learn::runs::evaluate::{Agent, Choice, Which};
+use hasard_learn::runs::trainer::{Hooks, Start, train};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -402,7 +402,7 @@ fn a_curriculum_stopped_at_every_moment_equals_the_uninterrupted_one() {
     let go = |start: Start<'_>, path: &Path, rollouts: usize| {
         let stop = AtomicBool::new(false);
         let mut count = 0;
-        let mut report = |_: &hasard_learn::report::Report| {
+        let mut report = |_: &hasard_learn::runs::report::Report| {
             count += 1;
             stop.store(count == rollouts, Ordering::Relaxed);
         };
@@ -448,7 +448,7 @@ fn a_panic_of_the_learner_ends_the_run_with_an_error_and_it_goes_on() {
     let path = tiny::directory("learner-panic");
     let stop = AtomicBool::new(false);
     let third = 3 * config.frames_per_rollout();
-    let mut hear = |report: &hasard_learn::report::Report| assert!(report.frames < third, "the tape tore");
+    let mut hear = |report: &hasard_learn::runs::report::Report| assert!(report.frames < third, "the tape tore");
     let result =
         train(Start::Fresh(config), &path, &tiny::worlds, &mut Hooks { stop: &stop, report: &mut hear, warn: &mut |_| {} });
     let message = result.unwrap_err().to_string();

@@ -1,11 +1,10 @@
 //! The network on the processor against its portable twin in burn: outputs, states and gradients.
 
 use burn::tensor::Device;
-use hasard_learn::burn_network::BurnNetwork;
-use hasard_learn::cpu::network::{CpuActor, CpuLearner};
-use hasard_learn::model::{
-    ActingNetwork, Convolution, ImageShape, Initialisation, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences,
-};
+use hasard_learn::config::{Convolution, Initialisation};
+use hasard_learn::networks::burn_network::BurnNetwork;
+use hasard_learn::networks::cpu::network::{CpuActor, CpuLearner};
+use hasard_learn::networks::{ActingNetwork, ImageShape, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences};
 use hasard_learn::random::{Purpose, Stream};
 use std::sync::Arc;
 

@@ -2,7 +2,7 @@
 
 use crate::curve::Curve;
 use crate::escape::escape_csv;
-use crate::group::{Group, LAST_POINTS};
+use crate::group::Group;
 use crate::published::published;
 use crate::statistics::{Estimate, interquartile_mean};
 use std::fmt::Write;
@@ -68,7 +68,7 @@ pub fn runs_csv(groups: &[Group]) -> String {
         String::from("directory,env,algorithm,seed,options,frames,reports,wall_s,fps,return_mean,cost_mean,length_mean\n");
     for run in groups.iter().flat_map(|group| &group.runs) {
         let options: Vec<String> = run.config.options.iter().map(|(key, value)| format!("{key} {value}")).collect();
-        let last = |metric: &str| run.last_mean(metric, LAST_POINTS);
+        let last = |metric: &str| run.final_mean(metric);
         text += &line(&[
             run.path.display().to_string(),
             run.config.env.clone(),
@@ -78,7 +78,7 @@ pub fn runs_csv(groups: &[Group]) -> String {
             run.frames().to_string(),
             run.rows.len().to_string(),
             optional(run.rows.last().and_then(|row| row.get("wall_s"))),
-            optional(run.last_mean("fps", usize::MAX)),
+            optional(run.frames_per_second()),
             optional(last("return_mean")),
             optional(last("cost_mean")),
             optional(last("length_mean")),

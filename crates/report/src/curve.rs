@@ -108,7 +108,7 @@ fn bin(reports: &[(f64, f64)], stretch: f64, stretches: usize) -> Vec<(f64, f64)
 }
 
 /// The value at `frames` on the line through a seed's points; `None` outside of them.
-fn interpolate(points: &[(f64, f64)], frames: f64) -> Option<f64> {
+pub(crate) fn interpolate(points: &[(f64, f64)], frames: f64) -> Option<f64> {
     let after = points.partition_point(|point| point.0 < frames);
     let right = points.get(after)?;
     if right.0 == frames {

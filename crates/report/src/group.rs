@@ -1,11 +1,8 @@
 //! Runs of one experiment that differ in their seed alone.
 
-use crate::run::{Config, Found, Run, TOLD, Warning};
+use crate::run::{Config, Constraint, Found, Run, TOLD, Warning};
 use crate::statistics::Estimate;
 use std::collections::BTreeMap;
-
-/// Reports at the end of a run that a table's cell is the mean of, as in the paper.
-pub const LAST_POINTS: usize = 10;
 
 /// One experiment: the same environment, algorithm and options, a run a seed. Nothing else is ever averaged.
 #[derive(Clone, Debug)]
@@ -69,7 +66,7 @@ impl Group {
         &self.runs[0].config
     }
 
-    /// A metric at the end of training: per seed the mean of the last reports, then the mean over seeds.
+    /// A metric at the end of training: per seed the mean of its last points, then the mean over seeds.
     #[must_use]
     pub fn final_estimate(&self, metric: &str) -> Option<Estimate> {
         Estimate::of(&self.final_samples(metric))
@@ -78,13 +75,15 @@ impl Group {
     /// A metric at the end of training, a number a seed.
     #[must_use]
     pub fn final_samples(&self, metric: &str) -> Vec<f64> {
-        self.runs.iter().filter_map(|run| run.last_mean(metric, LAST_POINTS)).collect()
+        self.runs.iter().filter_map(|run| run.final_mean(metric)).collect()
     }
 
-    /// Whether the mean cost at the end of training is within the budget; `None` without costs.
+    /// Whether the mean cost of every constraint at the end of training is within its own budget; `None` where one was not
+    /// reported.
     #[must_use]
     pub fn within_budget(&self) -> Option<bool> {
-        self.final_estimate("cost_mean").map(|cost| cost.mean <= self.config().safety_budget)
+        let within = |one: &Constraint| Some(self.final_estimate(&one.metric())?.mean <= one.budget);
+        self.config().constraints.iter().map(within).collect::<Option<Vec<bool>>>().map(|all| all.into_iter().all(|one| one))
     }
 
     /// Frames that the shortest and the longest run reached.

@@ -5,7 +5,7 @@ use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_envs::{ObservationKind, VecEnv, bench};
 use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
-use hasard_learn::measure::measure;
+use hasard_learn::runs::measure::measure;
 use serde_json::json;
 
 /// Runs the command.

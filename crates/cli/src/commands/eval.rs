@@ -4,8 +4,8 @@ use crate::args::EvalArgs;
 use crate::episode_lines::EpisodeLines;
 use crate::failure::{Failure, Outcome};
 use hasard_envs::{Env, EnvOptions};
-use hasard_learn::distribution::ActionShape;
-use hasard_learn::evaluate::{Agent, Choice, Which, run_config};
+use hasard_learn::networks::distribution::ActionShape;
+use hasard_learn::runs::evaluate::{Agent, Choice, Which, run_config};
 use std::path::Path;
 
 /// Runs the command.

@@ -6,7 +6,7 @@ use crate::args::{RolloutArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::{episode_lines, settings};
 use hasard_envs::{Env, rollout};
-use hasard_learn::evaluate::{Choice, Which};
+use hasard_learn::runs::evaluate::{Choice, Which};
 use std::path::Path;
 
 /// Runs the command.

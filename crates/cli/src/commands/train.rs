@@ -5,13 +5,13 @@ use crate::automap;
 use crate::failure::{Failure, Outcome};
 use clap::ArgMatches;
 use hasard_envs::{EnvId, VecEnv};
+use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::{Constraint, EnvConfig, Preset, TrainConfig};
-use hasard_learn::curriculum::parse_curriculum;
-use hasard_learn::interrupt::stop_on_interrupt;
-use hasard_learn::progress_bar::{Bar, line};
-use hasard_learn::report::Report;
-use hasard_learn::run_directory::read_config;
-use hasard_learn::trainer::{Hooks, Start, train};
+use hasard_learn::runs::interrupt::stop_on_interrupt;
+use hasard_learn::runs::progress_bar::{Bar, line};
+use hasard_learn::runs::report::Report;
+use hasard_learn::runs::run_directory::read_config;
+use hasard_learn::runs::trainer::{Hooks, Start, train};
 use std::path::{Path, PathBuf};
 
 /// Runs the command; `typed` tells which flags were given and which have their default.

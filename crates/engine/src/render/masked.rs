@@ -10,6 +10,7 @@ use super::scene::Scene;
 use super::silhouette::{Silhouette, Silhouettes};
 use super::sprite::{Covered, SeenSprite};
 use super::wall::{INVERSE_BITS, TextureLine};
+use crate::map::SectorId;
 use crate::math::Fixed;
 use crate::world::World;
 
@@ -113,10 +114,7 @@ impl Masked<'_> {
         let seg = &scene.segs[silhouette.seg as usize];
         let face = &scene.faces[seg.face as usize];
         let Some(texture) = face.middle else { return };
-        let (Some(front), Some(back)) = (self.world.sectors.get(seg.front as usize), self.world.sectors.get(seg.back as usize))
-        else {
-            return;
-        };
+        let (front, back) = (self.world.sector(SectorId(seg.front)), self.world.sector(SectorId(seg.back)));
         let picture = &scene.textures.masked[self.pictures[usize::from(texture.0)] as usize];
         let (floor, ceiling) = (front.floor.max(back.floor), front.ceiling.min(back.ceiling));
         let height = Fixed::from_int(picture.height as i32);

@@ -15,6 +15,7 @@ mod frame;
 mod horizon;
 mod label;
 mod light;
+mod look;
 mod masked;
 mod openings;
 mod palette;

@@ -66,7 +66,7 @@ fn yard_world() -> World {
 fn look(world: &mut World, x: Fixed, y: Fixed, angle: Angle, pitch: i32) {
     let id = world.players[0].actor;
     let sector = world.map.sector_at(x, y);
-    let floor = world.sectors[sector.0 as usize].floor;
+    let floor = world.sector(sector).floor;
     let body = world.get_mut(id).unwrap();
     (body.x, body.y, body.z, body.angle, body.sector) = (x, y, floor, angle, sector);
     (world.players[0].view_z, world.players[0].pitch) = (floor + Fixed::from_int(41), pitch);

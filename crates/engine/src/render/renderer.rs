@@ -4,6 +4,7 @@ use super::camera::Camera;
 use super::frame::{Frame, class};
 use super::horizon::RowSlopes;
 use super::label::{Label, Labels};
+use super::look::Looks;
 use super::masked::Masked;
 use super::openings::Openings;
 use super::palette::Tint;
@@ -13,7 +14,7 @@ use super::silhouette::Silhouettes;
 use super::sky::SkyShader;
 use super::sprite::{self, SeenSprite};
 use super::status_bar::{BarState, StatusBar};
-use super::walk::{Walk, WalkScratch, look_of};
+use super::walk::{Walk, WalkScratch};
 use super::{Buffers, SegmentationColours, View, convert, weapon};
 use crate::world::World;
 use std::sync::Arc;
@@ -29,8 +30,7 @@ pub struct Renderer {
     planes: Planes,
     silhouettes: Silhouettes,
     walk: WalkScratch,
-    /// What is drawn of each sector, for comparison.
-    looks: Vec<[u64; 2]>,
+    looks: Looks,
     /// Sectors that the frame entered.
     entered: Vec<bool>,
     /// Index of the picture that each texture shows.
@@ -86,7 +86,7 @@ impl Renderer {
             planes: Planes::default(),
             silhouettes: Silhouettes::default(),
             walk: WalkScratch::new(&scene, width),
-            looks: Vec::new(),
+            looks: Looks::new(scene.sector_count),
             entered: vec![false; scene.sector_count],
             pictures: Vec::new(),
             span_starts: vec![0; view.view_rows + 1],
@@ -118,7 +118,7 @@ impl Renderer {
     /// # Panics
     /// If the world is of another map than the scene, or has no such player.
     pub fn render(&mut self, world: &World, player: usize, buffers: Buffers) {
-        assert_eq!(world.sectors.len(), self.scene.sector_count, "the world is of another map than the scene");
+        assert_eq!(world.sector_count(), self.scene.sector_count, "the world is of another map than the scene");
         match (buffers.depth, buffers.labels) {
             (false, false) => self.draw::<false, false>(world, player),
             (true, false) => self.draw::<true, false>(world, player),
@@ -136,14 +136,13 @@ impl Renderer {
         self.planes.reset(self.view.width());
         self.silhouettes.reset();
         self.entered.fill(false);
-        self.looks.clear();
-        self.looks.extend(world.sectors.iter().map(look_of));
+        self.looks.reset();
         let mut walk = Walk {
             scene: &self.scene,
             view: &self.view,
             camera: &camera,
-            sectors: &world.sectors,
-            looks: &self.looks,
+            world,
+            looks: &mut self.looks,
             pictures: &self.pictures,
             frame: &mut self.frame,
             openings: &mut self.openings,
@@ -182,8 +181,7 @@ impl Renderer {
         let (scene, view) = (&self.scene, &self.view);
         let state = BarState::of_player(world, player);
         let player = &world.players[player];
-        let level =
-            world.get(player.actor).and_then(|body| world.sectors.get(body.sector.0 as usize)).map_or(0, |sector| sector.light);
+        let level = world.get(player.actor).map_or(0, |body| world.sector(body.sector).light);
         weapon::draw::<DEPTH, CLASS>(&mut self.frame, scene, view, camera, player, i32::from(level));
         self.status_bar.update(&mut self.frame, &scene.bar, view, state);
         let tint = Tint::of_player(player, self.options.green_goggles);

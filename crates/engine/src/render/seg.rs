@@ -1,6 +1,7 @@
 //! What a seg does to the picture: it ends planes, has wall parts, and narrows or closes columns.
 
 use super::light::Light;
+use super::look::Look;
 use super::plane::PlaneKey;
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
@@ -8,7 +9,6 @@ use super::walk::Walk;
 use super::wall::{END_BITS, Edge, SeenLine, TextureLine, WallShader};
 use crate::map::TextureId;
 use crate::math::Fixed;
-use crate::world::SectorState;
 
 /// A seg in view, on its way through the stages.
 struct SeenSeg<'a> {
@@ -60,11 +60,12 @@ impl Walk<'_> {
         let [one, other] = base_ends.map(|column| ends.inverse_at(column));
         let inverses = [one.min(other), one.max(other)];
         let seen = SeenSeg { index, seg, face, line, ends, inverses, first, end };
-        let front = &self.sectors[seg.front as usize];
+        let front = &self.looks.of(self.world, seg.front);
         if seg.back == NO_SECTOR {
             self.solid::<DEPTH>(&seen, front);
         } else {
-            self.opening::<DEPTH>(&seen, front, &self.sectors[seg.back as usize]);
+            let back = &self.looks.of(self.world, seg.back);
+            self.opening::<DEPTH>(&seen, front, back);
         }
     }
 
@@ -101,7 +102,7 @@ impl Walk<'_> {
     }
 
     /// A wall without another side.
-    fn solid<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState) {
+    fn solid<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look) {
         let (ceiling, floor) = (self.edge(seen, front.ceiling), self.edge(seen, front.floor));
         // As if there were an opening without height where the floor is.
         let above = Part { plane: self.ceiling_plane(front), edge: ceiling, wall: Some(floor) };
@@ -119,7 +120,7 @@ impl Walk<'_> {
     }
 
     /// A line with a sector on its other side.
-    fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState, back: &SectorState) {
+    fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, back: &Look) {
         let face = seen.face;
         let shut = back.ceiling <= front.floor || back.floor >= front.ceiling || back.floor >= back.ceiling;
         // Between two skies there is no wall: the sky goes on.
@@ -237,7 +238,7 @@ impl Walk<'_> {
     }
 
     /// The plane of a sector's ceiling, if the eye sees it.
-    fn ceiling_plane(&mut self, sector: &SectorState) -> Option<u16> {
+    fn ceiling_plane(&mut self, sector: &Look) -> Option<u16> {
         if self.is_sky(sector.ceiling_texture) {
             return Some(self.sky_plane(sector.ceiling_texture));
         }
@@ -246,7 +247,7 @@ impl Walk<'_> {
     }
 
     /// The plane of a sector's floor, if the eye sees it.
-    fn floor_plane(&mut self, sector: &SectorState) -> Option<u16> {
+    fn floor_plane(&mut self, sector: &Look) -> Option<u16> {
         if self.is_sky(sector.floor_texture) {
             return Some(self.sky_plane(sector.floor_texture));
         }
@@ -263,7 +264,7 @@ impl Walk<'_> {
     }
 
     /// Draws the wall between the upper and the lower scratch.
-    fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorState, texture: Option<TextureId>, hung_from: Fixed) {
+    fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, texture: Option<TextureId>, hung_from: Fixed) {
         let range = seen.first..seen.end;
         let shader = WallShader {
             camera: self.camera,

@@ -69,7 +69,7 @@ pub(super) fn collect(
     for (slot, actor) in world.actors.iter().enumerate() {
         let in_sight = entered.get(actor.sector.0 as usize).is_some_and(|&entered| entered);
         if in_sight && !actor.removed && slot != own {
-            let level = i32::from(world.sectors[actor.sector.0 as usize].light);
+            let level = i32::from(world.sector(actor.sector).light);
             seen.extend(see(scene, view, camera, actor, slot as u16, world.tic, level));
         }
     }

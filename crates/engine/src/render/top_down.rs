@@ -108,10 +108,10 @@ impl TopDown {
     /// If `out` is not `width * height * 3` long, or the world is of another map.
     pub fn draw(&self, world: &World, out: &mut [u8]) {
         assert_eq!(out.len(), self.width * self.height * 3, "a buffer of height * width * 3 bytes is needed");
-        assert_eq!(world.sectors.len(), self.map.sectors.len(), "the world is of another map");
-        let floors = || world.sectors.iter().map(|sector| i64::from(sector.floor.floor()));
+        assert_eq!(world.sector_count(), self.map.sectors.len(), "the world is of another map");
+        let floors = || world.sectors().map(|sector| i64::from(sector.floor.floor()));
         let range = [floors().min().unwrap_or(0), floors().max().unwrap_or(0)];
-        let colours: Vec<[u8; 3]> = (0..world.sectors.len()).map(|sector| self.floor_colour(world, sector, range)).collect();
+        let colours: Vec<[u8; 3]> = (0..world.sector_count()).map(|sector| self.floor_colour(world, sector, range)).collect();
         for (pixel, &sector) in out.chunks_exact_mut(3).zip(&self.ground) {
             pixel.copy_from_slice(colours.get(sector as usize).unwrap_or(&OUTSIDE));
         }
@@ -121,7 +121,7 @@ impl TopDown {
             match line.back_sector {
                 None => canvas.line(ends, WALL),
                 Some(back) => {
-                    let floor = |sector: SectorId| world.sectors[sector.0 as usize].floor;
+                    let floor = |sector: SectorId| world.sector(sector).floor;
                     if floor(back) != floor(line.front_sector) || line.flags.blocking {
                         let colour = colours[line.front_sector.0 as usize];
                         canvas.line(ends, colour.map(|channel| channel / 2 + 70));
@@ -139,7 +139,7 @@ impl TopDown {
 
     /// A floor's colour: the mean of its texture, lighter the higher it lies among the others.
     fn floor_colour(&self, world: &World, sector: usize, [lowest, highest]: [i64; 2]) -> [u8; 3] {
-        let state = &world.sectors[sector];
+        let state = world.sector(SectorId(sector as u32));
         // Maps of gentle slopes keep their colours, in deep ones the whole range is used.
         let above_middle = i64::from(state.floor.floor()) - (lowest + highest) / 2;
         let step = above_middle * 400 / ((highest - lowest) / 2).max(400);

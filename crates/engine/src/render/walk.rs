@@ -3,22 +3,22 @@
 use super::View;
 use super::camera::Camera;
 use super::frame::Frame;
+use super::look::Looks;
 use super::openings::Openings;
 use super::plane::Planes;
 use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
 use crate::map::Node;
 use crate::math::Fixed;
-use crate::world::SectorState;
+use crate::world::World;
 
 /// Everything that the walk reads and writes.
 pub(super) struct Walk<'a> {
     pub scene: &'a Scene,
     pub view: &'a View,
     pub camera: &'a Camera,
-    pub sectors: &'a [SectorState],
-    /// What [`look_of`] gives for each sector.
-    pub looks: &'a [[u64; 2]],
+    pub world: &'a World,
+    pub looks: &'a mut Looks,
     /// Index of the picture that each texture shows now.
     pub pictures: &'a [u32],
     pub frame: &'a mut Frame,
@@ -178,14 +178,14 @@ impl Walk<'_> {
         let scene = self.scene;
         let [first, end, sector] = scene.subsectors[index];
         self.entered[sector as usize] = true;
-        let own = self.looks[sector as usize];
+        let own = self.looks.of(self.world, sector);
         // First those to draw, again without branches, then their drawing.
         let mut found = 0;
         for (index, seg) in (first..end).zip(&scene.segs[first as usize..end as usize]) {
             // A one-sided line differs from whatever its sector is compared with.
             let one_sided = seg.back == NO_SECTOR;
-            let back = self.looks[if one_sided { sector } else { seg.back } as usize];
-            let differs = (own[0] ^ back[0]) | (own[1] ^ back[1]) | u64::from(one_sided | seg.masked);
+            let back = self.looks.of(self.world, if one_sided { sector } else { seg.back });
+            let differs = own.difference(&back) | u64::from(one_sided | seg.masked);
             let away = seg.away(self.camera.x, self.camera.y);
             self.scratch.facing[found] = (index, away);
             found += usize::from((differs != 0) & (away > 0));
@@ -195,11 +195,4 @@ impl Walk<'_> {
             self.seg::<DEPTH>(index, away);
         }
     }
-}
-
-/// All that is drawn of a sector, so that two look the same if these are equal.
-pub(super) fn look_of(sector: &SectorState) -> [u64; 2] {
-    let textures = u64::from(sector.floor_texture.0) | u64::from(sector.ceiling_texture.0) << 16;
-    let heights = u64::from(sector.floor.0 as u32) | u64::from(sector.ceiling.0 as u32) << 32;
-    [heights, textures | u64::from(sector.light as u16) << 32]
 }

@@ -25,7 +25,7 @@ impl World {
         let slot = self.take_slot();
         let generation = self.actors[slot].generation;
         let sector = self.map.sector_at(x, y);
-        let (floor, ceiling) = (self.sectors[sector.0 as usize].floor, self.sectors[sector.0 as usize].ceiling);
+        let (floor, ceiling) = (self.floor_of(sector), self.sectors[sector.0 as usize].ceiling);
         self.actors[slot] = Actor {
             kind,
             generation,

@@ -87,12 +87,9 @@ pub(crate) fn cuts(line: &Line, x: Fixed, y: Fixed, radius: Fixed) -> bool {
 impl World {
     /// The opening of a two-sided line.
     pub(crate) fn opening(&self, front: SectorId, back: SectorId) -> Opening {
-        let (front, back) = (&self.sectors[front.0 as usize], &self.sectors[back.0 as usize]);
-        Opening {
-            top: front.ceiling.min(back.ceiling),
-            bottom: front.floor.max(back.floor),
-            low_floor: front.floor.min(back.floor),
-        }
+        let ceilings = [front, back].map(|sector| self.sectors[sector.0 as usize].ceiling);
+        let floors = [front, back].map(|sector| self.floor_of(sector));
+        Opening { top: ceilings[0].min(ceilings[1]), bottom: floors[0].max(floors[1]), low_floor: floors[0].min(floors[1]) }
     }
 
     /// What (x, y) is like for the actor in `slot`, at its present height. Changes nothing.
@@ -106,12 +103,12 @@ impl World {
     fn check_walk(&self, slot: usize, x: Fixed, y: Fixed, walking: bool) -> Position {
         let actor = &self.actors[slot];
         let sector = self.map.sector_at(x, y);
-        let state = &self.sectors[sector.0 as usize];
+        let floor = self.floor_of(sector);
         let mut position = Position {
             free: true,
-            floor_z: state.floor,
-            ceiling_z: state.ceiling,
-            dropoff_z: state.floor,
+            floor_z: floor,
+            ceiling_z: self.sectors[sector.0 as usize].ceiling,
+            dropoff_z: floor,
             sector,
             blocking_actor: None,
             blocking_line: None,

@@ -23,9 +23,7 @@ impl Clone for World {
             fresh_run: self.fresh_run,
             grid: self.grid.clone(),
             movers: self.movers.clone(),
-            movers_run: self.movers_run,
             lights: self.lights.clone(),
-            lights_run: self.lights_run,
             footings: self.footings.clone(),
             riders: Riders::default(),
             scratch_crossings: Vec::new(),
@@ -51,9 +49,7 @@ impl Clone for World {
             fresh_run,
             grid,
             movers,
-            movers_run,
             lights,
-            lights_run,
             footings,
             riders: _,
             scratch_crossings: _,
@@ -75,18 +71,18 @@ impl Clone for World {
         self.fresh.clone_from(fresh);
         self.fresh_run = *fresh_run;
         self.grid.clone_from(grid);
-        self.movers.clone_from(movers);
-        self.movers_run = *movers_run;
-        self.lights.clone_from(lights);
-        self.lights_run = *lights_run;
+        self.movers.copy_from(movers);
+        self.lights.copy_from(lights);
         self.footings.clone_from(footings);
     }
 }
 
 impl Hash for World {
-    /// Everything but the map and the caller's list of events.
+    /// Everything but the map and the caller's list of events, and all of it as it is now: what is computed when somebody
+    /// looks hashes as if somebody had looked.
     fn hash<H: Hasher>(&self, state: &mut H) {
-        self.sectors.hash(state);
+        state.write_usize(self.sectors.len());
+        self.sectors().for_each(|sector| sector.hash(state));
         self.actors.hash(state);
         self.players.hash(state);
         self.rng.hash(state);
@@ -99,9 +95,7 @@ impl Hash for World {
         self.fresh_run.hash(state);
         self.grid.hash(state);
         self.movers.hash(state);
-        self.movers_run.hash(state);
-        self.lights.hash(state);
-        self.lights_run.hash(state);
+        self.hash_lights(state);
     }
 }
 

@@ -75,7 +75,7 @@ impl World {
                     if opening.bottom >= opening.top {
                         break;
                     }
-                    let (front, back) = (&self.sectors[line.front_sector.0 as usize], &self.sectors[back.0 as usize]);
+                    let (front, back) = (self.sector(line.front_sector), self.sector(back));
                     if front.floor != back.floor {
                         bottom = bottom.min(pitch_to(opening.bottom));
                     }
@@ -175,7 +175,7 @@ impl World {
                         break;
                     };
                     let next = if sector == line.front_sector { back } else { line.front_sector };
-                    let beyond = &self.sectors[next.0 as usize];
+                    let beyond = self.sector(next);
                     if z <= beyond.floor || z >= beyond.ceiling {
                         impact = Some(if z > beyond.floor && self.both_sky(sector, next) {
                             Impact::Nothing
@@ -202,7 +202,7 @@ impl World {
 
     /// Where a bullet that is at height `z` now went through the floor or ceiling of a sector, if it did.
     fn plane_hit(&self, sector: SectorId, muzzle: Fixed, rise: Fixed, z: Fixed) -> Option<Impact> {
-        let state = &self.sectors[sector.0 as usize];
+        let state = self.sector(sector);
         let plane = if z < state.floor {
             state.floor
         } else if z > state.ceiling {

@@ -1,14 +1,30 @@
-//! Light that changes.
+//! Light that changes. Nothing but pictures shows it, so that it is computed when somebody looks: an effect knows its state
+//! of some tic, and what it is any number of tics later.
 
 use super::World;
+use super::by_sector::BySector;
 use crate::map::SectorId;
+use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
+/// The lights at work, in the order of their start.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lights {
+    list: Vec<Light>,
+    /// How many of them have run in this tic.
+    run: usize,
+    /// Tics that the lights have run, and those that are as they were then.
+    tics: u32,
+    of_sector: BySector,
+}
+
 /// A light effect at work in a sector.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(crate) struct Light {
+#[derive(Clone, Copy, Debug)]
+struct Light {
     sector: SectorId,
     effect: Effect,
+    /// Of [`Lights::tics`] those that `effect` and the sector's stored level include.
+    as_of: u32,
 }
 
 /// How a light changes.
@@ -20,12 +36,58 @@ enum Effect {
     Strobe { bright: i32, dark: i32, bright_tics: i32, dark_tics: i32, left: i32 },
 }
 
+impl Effect {
+    /// The effect and its level after some tics more, at least one, from the level that it has now.
+    fn after(self, level: i16, count: u32) -> (Effect, i16) {
+        match self {
+            Effect::Glow { mut from, mut to, tics, done } => {
+                let ahead = i64::from(done) + i64::from(count);
+                let turns = (ahead - 1).max(0) / i64::from(tics);
+                if turns % 2 == 1 {
+                    std::mem::swap(&mut from, &mut to);
+                }
+                let done = (ahead - turns * i64::from(tics)) as i32;
+                (Effect::Glow { from, to, tics, done }, clamp_light(from + (to - from) * done / tics))
+            }
+            Effect::Strobe { bright, dark, bright_tics, dark_tics, mut left } => {
+                let (mut count, mut level) = (i64::from(count), level);
+                while count >= i64::from(left) {
+                    count -= i64::from(left);
+                    let is_dark = i32::from(level) == dark;
+                    (level, left) = if is_dark { (clamp_light(bright), bright_tics) } else { (clamp_light(dark), dark_tics) };
+                }
+                (Effect::Strobe { bright, dark, bright_tics, dark_tics, left: left - count as i32 }, level)
+            }
+        }
+    }
+}
+
+impl Lights {
+    /// Copies without allocating where this list is large enough.
+    pub(crate) fn copy_from(&mut self, source: &Lights) {
+        let Lights { list, run, tics, of_sector } = source;
+        self.list.clone_from(list);
+        (self.run, self.tics) = (*run, *tics);
+        self.of_sector.clone_from(of_sector);
+    }
+
+    /// Whether some have not run in this tic.
+    pub(crate) fn wait(&self) -> bool {
+        self.run < self.list.len()
+    }
+
+    fn now(&self, index: usize, level: i16) -> (Effect, i16) {
+        let Light { effect, as_of, .. } = self.list[index];
+        if as_of == self.tics { (effect, level) } else { effect.after(level, self.tics - as_of) }
+    }
+}
+
 impl World {
     /// Sets the light of the sectors with a tag at once; values outside 0..=255 are kept, the renderer clamps.
     pub fn light_change_to_value(&mut self, tag: i32, level: i32) {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
-            self.sectors[sector.0 as usize].light = clamp_light(level);
+            self.sector_mut(sector).light = clamp_light(level);
         }
     }
 
@@ -52,38 +114,92 @@ impl World {
         for sector in map.tagged(tag) {
             let busy = &mut self.sectors[sector.0 as usize].light_busy;
             if !std::mem::replace(busy, true) {
-                self.lights.push(Light { sector, effect });
+                self.lights.of_sector.set(sector, self.lights.list.len());
+                self.lights.list.push(Light { sector, effect, as_of: self.lights.tics });
             }
         }
     }
 
-    /// Runs the lights from number `first` on.
-    pub(crate) fn run_lights(&mut self, first: usize) {
-        for light in &mut self.lights[first..] {
+    /// A tic of all lights.
+    pub(crate) fn run_lights(&mut self) {
+        self.lights.tics += 1;
+        self.lights.run = self.lights.list.len();
+    }
+
+    /// A tic of the lights that have not run in this one.
+    pub(crate) fn run_new_lights(&mut self) {
+        for light in &mut self.lights.list[self.lights.run..] {
             let level = &mut self.sectors[light.sector.0 as usize].light;
-            match &mut light.effect {
-                Effect::Glow { from, to, tics, done } => {
-                    *done += 1;
-                    if *done > *tics {
-                        *done = 1;
-                        std::mem::swap(from, to);
-                    }
-                    *level = clamp_light(*from + (*to - *from) * *done / *tics);
-                }
-                Effect::Strobe { bright, dark, bright_tics, dark_tics, left } => {
-                    *left -= 1;
-                    if *left == 0 {
-                        let is_dark = i32::from(*level) == *dark;
-                        (*level, *left) =
-                            if is_dark { (clamp_light(*bright), *bright_tics) } else { (clamp_light(*dark), *dark_tics) };
-                    }
-                }
-            }
+            (light.effect, *level) = light.effect.after(*level, 1);
         }
-        self.lights_run = self.lights.len();
+        self.lights.run = self.lights.list.len();
+    }
+
+    /// The light of a sector.
+    #[inline]
+    pub(crate) fn light_of(&self, sector: SectorId) -> i16 {
+        let level = self.sectors[sector.0 as usize].light;
+        match self.lights.of_sector.get(sector) {
+            None => level,
+            Some(index) => self.lights.now(index, level).1,
+        }
+    }
+
+    /// Brings the stored level of a sector up to this tic.
+    pub(crate) fn settle_light(&mut self, sector: SectorId) {
+        if let Some(index) = self.lights.of_sector.get(sector) {
+            let level = &mut self.sectors[sector.0 as usize].light;
+            (self.lights.list[index].effect, *level) = self.lights.now(index, *level);
+            self.lights.list[index].as_of = self.lights.tics;
+        }
+    }
+
+    /// Hashes the lights as they are now.
+    pub(crate) fn hash_lights<H: Hasher>(&self, state: &mut H) {
+        state.write_usize(self.lights.list.len());
+        for (index, light) in self.lights.list.iter().enumerate() {
+            light.sector.hash(state);
+            self.lights.now(index, self.sectors[light.sector.0 as usize].light).0.hash(state);
+        }
+        self.lights.run.hash(state);
     }
 }
 
 fn clamp_light(level: i32) -> i16 {
     level.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_tics_at_once_are_as_many_one_by_one() {
+        let effects = [
+            Effect::Glow { from: 250, to: 150, tics: 50, done: -1 },
+            Effect::Glow { from: -20, to: 40_000, tics: 1, done: -1 },
+            Effect::Strobe { bright: 200, dark: 100, bright_tics: 3, dark_tics: 5, left: 1 },
+            Effect::Strobe { bright: 90, dark: 90, bright_tics: 3, dark_tics: 1, left: 1 },
+        ];
+        for start in effects {
+            let mut one_by_one = vec![(start, 128)];
+            for tic in 0..300 {
+                let (effect, level) = one_by_one[tic];
+                one_by_one.push(effect.after(level, 1));
+            }
+            for (first, &(effect, level)) in one_by_one.iter().enumerate().step_by(7) {
+                for (later, expected) in one_by_one.iter().enumerate().skip(first + 1) {
+                    assert_eq!(effect.after(level, (later - first) as u32), *expected, "{start:?}: {later} from {first}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn glows_change_sides_at_their_ends() {
+        let start = Effect::Glow { from: 200, to: 100, tics: 50, done: -1 };
+        let level = |tics| start.after(0, tics).1;
+        // The first tic shows the start, every fiftieth from there an end.
+        assert_eq!([1, 2, 51, 52, 101, 151].map(level), [200, 198, 100, 102, 200, 100]);
+    }
 }

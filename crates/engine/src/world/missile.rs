@@ -64,7 +64,7 @@ impl World {
     /// Whether what stopped a missile is the upper part of a wall with sky behind it.
     fn is_lost_in_sky(&self, slot: usize, attempt: &Move) -> bool {
         let Some(line) = attempt.position.ceiling_line.map(|index| &self.map.lines[index as usize]) else { return false };
-        let Some(back) = line.back_sector.map(|back| &self.sectors[back.0 as usize]) else { return false };
+        let Some(back) = line.back_sector.map(|back| self.sectors[back.0 as usize]) else { return false };
         self.is_sky(back.ceiling_texture) && self.actors[slot].z >= back.ceiling
     }
 

@@ -10,6 +10,7 @@
 mod actor;
 mod actor_info;
 mod arena;
+mod by_sector;
 mod collision;
 mod command;
 mod damage;
@@ -59,8 +60,8 @@ pub use weapon_info::ammo;
 
 use crate::map::Map;
 use crate::math::{Fixed, Rng};
-use light::Light;
-use mover::Mover;
+use light::Lights;
+use mover::Movers;
 use riders::{Footing, Riders};
 use std::sync::Arc;
 
@@ -69,8 +70,9 @@ use std::sync::Arc;
 pub struct World {
     /// The map, shared by every world that uses it.
     pub map: Arc<Map>,
-    /// What changes of each sector, by [`SectorId`](crate::map::SectorId).
-    pub sectors: Vec<SectorState>,
+    /// What changes of each sector, by [`SectorId`](crate::map::SectorId): floors and lights as they were when they were last
+    /// looked at, see [`World::sector`].
+    sectors: Vec<SectorState>,
     /// Actor slots; removed actors leave a free slot ([`Actor::removed`]). Change actors by [`World::get_mut`].
     pub actors: Vec<Actor>,
     /// The players; each owns one actor.
@@ -97,14 +99,10 @@ pub struct World {
     fresh_run: usize,
     /// First slot of each block.
     grid: Vec<u16>,
-    /// Moving floors and ceilings in the order of their start.
-    movers: Vec<Mover>,
-    /// How many of them have run in this tic.
-    movers_run: usize,
-    /// Changing lights in the order of their start.
-    lights: Vec<Light>,
-    /// How many of them have run in this tic.
-    lights_run: usize,
+    /// Moving floors and ceilings.
+    movers: Movers,
+    /// Changing lights.
+    lights: Lights,
     /// The sectors under each slot's actor, where remembered. Follows from positions, so it is no state of its own.
     footings: Vec<Footing>,
     /// Scratch: the actors on moving sectors.
@@ -137,10 +135,8 @@ impl World {
             fresh: Vec::new(),
             fresh_run: 0,
             grid: vec![actor::NONE; blocks],
-            movers: Vec::new(),
-            movers_run: 0,
-            lights: Vec::new(),
-            lights_run: 0,
+            movers: Movers::default(),
+            lights: Lights::default(),
             footings: Vec::new(),
             riders: Riders::default(),
             scratch_crossings: Vec::new(),
@@ -174,20 +170,20 @@ impl World {
         for index in 0..self.players.len() {
             self.tick_powers(index);
         }
-        self.run_lights(0);
+        self.run_lights();
         for slot in 0..self.awake.len() {
             if self.awake[slot] {
                 self.run_actor(slot);
             }
         }
-        self.run_movers(0);
+        self.run_movers();
     }
 
     /// The last part of a tic, after the caller's scripts: what was created during the tic is run once, until nothing
     /// new comes; then time advances.
     pub fn finish_tic(&mut self) {
-        while self.fresh_run < self.fresh.len() || self.movers_run < self.movers.len() || self.lights_run < self.lights.len() {
-            self.run_lights(self.lights_run);
+        while self.fresh_run < self.fresh.len() || self.movers.wait() || self.lights.wait() {
+            self.run_new_lights();
             while self.fresh_run < self.fresh.len() {
                 let id = self.fresh[self.fresh_run];
                 self.fresh_run += 1;
@@ -195,7 +191,7 @@ impl World {
                     self.run_actor(usize::from(id.slot));
                 }
             }
-            self.run_movers(self.movers_run);
+            self.run_new_movers();
         }
         self.fresh.clear();
         self.fresh_run = 0;

@@ -183,8 +183,8 @@ impl World {
                     if !super::collision::cuts(line, actor.x, actor.y, actor.radius) {
                         continue;
                     }
-                    let front = self.sectors[line.front_sector.0 as usize].floor;
-                    let back = self.sectors[back.0 as usize].floor;
+                    let front = self.floor_of(line.front_sector);
+                    let back = self.floor_of(back);
                     let deep = actor.z - actor.max_dropoff;
                     let direction = if back == actor.z && front < deep {
                         Angle::of_vector(line.dx, line.dy)

@@ -1,13 +1,117 @@
 //! Floors and ceilings that move, and what that does to the things on them.
 
+use super::by_sector::BySector;
 use super::waggle::Waggle;
 use super::{Actor, ActorFlags, World};
 use crate::map::SectorId;
 use crate::math::Fixed;
+use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 /// Actors ride down with floors slower than this (map units per tic); faster ones leave them falling behind.
 const RIDE_LIMIT: Fixed = Fixed::from_int(9);
+
+/// The floors and ceilings at work.
+#[derive(Clone, Debug)]
+pub(crate) struct Movers {
+    /// In the order of their start. Where nobody stands on them, entries of swinging floors may lag behind.
+    pub(crate) list: Vec<Mover>,
+    /// How many of them have run in this tic.
+    run: usize,
+    /// Tics that they have run.
+    tics: u32,
+    /// Those from this number on have yet to run the tic at hand.
+    waiting_from: usize,
+    /// Planes move: all movers run every tic.
+    planes: bool,
+    /// Of `tics` the one in which the first swinging floor comes to rest.
+    next_end: u32,
+    /// The movers of sectors whose floors swing.
+    swings: BySector,
+}
+
+impl Default for Movers {
+    fn default() -> Movers {
+        let (list, swings) = (Vec::new(), BySector::default());
+        Movers { list, run: 0, tics: 0, waiting_from: usize::MAX, planes: false, next_end: u32::MAX, swings }
+    }
+}
+
+impl Movers {
+    /// Copies without allocating where this list is large enough.
+    pub(crate) fn copy_from(&mut self, source: &Movers) {
+        let Movers { list, run, tics, waiting_from, planes, next_end, swings } = source;
+        self.list.clone_from(list);
+        (self.run, self.tics, self.waiting_from) = (*run, *tics, *waiting_from);
+        (self.planes, self.next_end) = (*planes, *next_end);
+        self.swings.clone_from(swings);
+    }
+
+    /// Tics that the movers have run.
+    pub(crate) fn tics(&self) -> u32 {
+        self.tics
+    }
+
+    /// Whether some have not run in this tic.
+    pub(crate) fn wait(&self) -> bool {
+        self.run < self.list.len()
+    }
+
+    /// Starts a mover.
+    pub(crate) fn add(&mut self, mover: Mover) {
+        self.list.push(mover);
+        self.note(self.list.len() - 1);
+    }
+
+    /// Ends a mover before its time.
+    fn remove(&mut self, index: usize) {
+        if let Mover::Waggle(waggle) = self.list.remove(index) {
+            self.swings.clear(waggle.sector);
+        }
+        self.run -= usize::from(index < self.run);
+        (index..self.list.len()).for_each(|moved| self.note(moved));
+    }
+
+    /// Notes what follows from the mover of number `index`.
+    fn note(&mut self, index: usize) {
+        match &self.list[index] {
+            Mover::Plane(_) => self.planes = true,
+            Mover::Waggle(waggle) => {
+                self.swings.set(waggle.sector, index);
+                self.next_end = self.next_end.min(waggle.as_of.saturating_add(waggle.tics_left()));
+            }
+        }
+    }
+
+    /// The mover of a sector whose floor swings.
+    #[inline]
+    pub(crate) fn swing_of(&self, sector: SectorId) -> Option<usize> {
+        self.swings.get(sector)
+    }
+
+    /// The swinging floor of number `index` as it is now, if its entry lags behind.
+    pub(crate) fn ahead(&self, index: usize) -> Option<Waggle> {
+        let Mover::Waggle(mut waggle) = self.list[index] else { return None };
+        let now = self.tics - u32::from(index >= self.waiting_from);
+        if waggle.as_of >= now {
+            return None;
+        }
+        waggle.advance(now - waggle.as_of);
+        waggle.as_of = now;
+        Some(waggle)
+    }
+}
+
+impl Hash for Movers {
+    /// The movers as they are now.
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        state.write_usize(self.list.len());
+        for (index, mover) in self.list.iter().enumerate() {
+            self.ahead(index).map_or(*mover, Mover::Waggle).hash(state);
+        }
+        self.run.hash(state);
+    }
+}
 
 /// A floor or ceiling at work.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -16,6 +120,15 @@ pub(crate) enum Mover {
     Plane(PlaneMover),
     /// A floor that swings.
     Waggle(Waggle),
+}
+
+impl Mover {
+    fn moves_floor_of(&self, sector: SectorId) -> bool {
+        match self {
+            Mover::Plane(plane) => plane.sector == sector && !plane.ceiling,
+            Mover::Waggle(waggle) => waggle.sector == sector,
+        }
+    }
 }
 
 /// A plane on its way to a height.
@@ -53,6 +166,19 @@ impl World {
         self.start_planes(tag, false, |floor| (target <= floor, target), speed);
     }
 
+    /// Ends whatever the floors of the sectors with a tag still do: they stay at the height that they have.
+    pub fn stop_floors(&mut self, tag: i32) {
+        let map = Arc::clone(&self.map);
+        for sector in map.tagged(tag) {
+            if !std::mem::replace(&mut self.sector_mut(sector).floor_busy, false) {
+                continue;
+            }
+            if let Some(index) = self.movers.list.iter().position(|mover| mover.moves_floor_of(sector)) {
+                self.movers.remove(index);
+            }
+        }
+    }
+
     fn start_planes(&mut self, tag: i32, ceiling: bool, aim: impl Fn(Fixed) -> (bool, Fixed), speed: i32) {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
@@ -63,31 +189,71 @@ impl World {
             }
             let (down, target) = aim(if ceiling { state.ceiling } else { state.floor });
             let speed = script_speed(speed);
-            self.movers.push(Mover::Plane(PlaneMover { sector, ceiling, down, speed, target }));
+            self.movers.add(Mover::Plane(PlaneMover { sector, ceiling, down, speed, target }));
         }
     }
 
-    /// Runs the movers from number `first` on, and drops those that are done.
-    pub(crate) fn run_movers(&mut self, first: usize) {
-        if first == self.movers.len() {
-            self.movers_run = first;
+    /// A tic of all movers; those that are done are dropped. Unless planes move or a swing ends, only floors that somebody
+    /// touches are run: the others follow when they are looked at.
+    pub(crate) fn run_movers(&mut self) {
+        if self.movers.list.is_empty() {
+            self.movers.run = 0;
             return;
         }
         self.list_riders();
+        self.movers.tics += 1;
+        if self.movers.planes || self.movers.tics >= self.movers.next_end {
+            (self.movers.planes, self.movers.next_end) = (false, u32::MAX);
+            self.run_every_mover(0);
+        } else {
+            self.run_ridden_floors();
+        }
+    }
+
+    /// A tic of the movers that have not run in this one.
+    pub(crate) fn run_new_movers(&mut self) {
+        if self.movers.wait() {
+            self.list_riders();
+            self.run_every_mover(self.movers.run);
+        }
+    }
+
+    /// Runs the movers from number `first` on in their order, and drops those that are done.
+    fn run_every_mover(&mut self, first: usize) {
         let mut kept = first;
-        for index in first..self.movers.len() {
-            let mut mover = self.movers[index];
-            let goes_on = match &mut mover {
-                Mover::Plane(plane) => self.run_plane(plane),
-                Mover::Waggle(waggle) => self.run_waggle(waggle),
+        for index in first..self.movers.list.len() {
+            self.movers.waiting_from = index + 1;
+            let mover = self.movers.list[index];
+            let goes_on = match mover {
+                Mover::Plane(plane) => self.run_plane(&plane),
+                Mover::Waggle(_) => self.run_waggle(index),
             };
             if goes_on {
-                self.movers[kept] = mover;
+                self.movers.list[kept] = self.movers.list[index];
+                self.movers.note(kept);
                 kept += 1;
+            } else if let Mover::Waggle(waggle) = mover {
+                self.movers.swings.clear(waggle.sector);
             }
         }
-        self.movers.truncate(kept);
-        self.movers_run = kept;
+        self.movers.list.truncate(kept);
+        self.movers.run = kept;
+        self.movers.waiting_from = usize::MAX;
+    }
+
+    /// Runs the swinging floors that somebody touches, in the order of the movers.
+    fn run_ridden_floors(&mut self) {
+        let mut ridden = std::mem::take(&mut self.riders.movers);
+        ridden.clear();
+        ridden.extend(self.riders.sectors().filter_map(|sector| self.movers.swing_of(sector)));
+        ridden.sort_unstable();
+        for &index in &ridden {
+            self.movers.waiting_from = index + 1;
+            self.run_waggle(index);
+        }
+        self.riders.movers = ridden;
+        self.movers.run = self.movers.list.len();
+        self.movers.waiting_from = usize::MAX;
     }
 
     /// One tic of a plane; false when it has arrived.

@@ -63,8 +63,12 @@ fn for_each_sector_under(map: &Map, actor: &Actor, mut visit: impl FnMut(SectorI
 pub(crate) struct Riders {
     /// First entry of each sector's list.
     heads: Vec<u32>,
+    /// The sectors whose lists are not empty.
+    sectors: Vec<SectorId>,
     /// Slot, and the next entry.
     entries: Vec<(u16, u32)>,
+    /// Scratch: the movers that somebody touches.
+    pub(crate) movers: Vec<usize>,
 }
 
 impl Riders {
@@ -82,14 +86,24 @@ impl Riders {
         (usize::from(slot), Some(next).filter(|&next| next != Riders::END).map(|next| next as usize))
     }
 
+    /// The sectors with a list, each once.
+    pub(crate) fn sectors(&self) -> impl Iterator<Item = SectorId> + '_ {
+        self.sectors.iter().copied()
+    }
+
     fn clear(&mut self, sectors: usize) {
-        self.heads.clear();
         self.heads.resize(sectors, Riders::END);
+        for sector in self.sectors.drain(..) {
+            self.heads[sector.0 as usize] = Riders::END;
+        }
         self.entries.clear();
     }
 
     fn add(&mut self, sector: usize, slot: usize) {
         let head = self.heads[sector];
+        if head == Riders::END {
+            self.sectors.push(SectorId(sector as u32));
+        }
         // All entries of one actor are made in a row: a sector met twice has it on top.
         if head == Riders::END || usize::from(self.entries[head as usize].0) != slot {
             self.heads[sector] = self.entries.len() as u32;
@@ -132,8 +146,8 @@ impl World {
     pub(crate) fn planes_under(&self, slot: usize) -> Option<(Fixed, Fixed, Fixed)> {
         let Footing { count, sectors } = self.footings[slot];
         let planes = sectors[..usize::from(count)].iter().map(|&sector| {
-            let state = &self.sectors[usize::from(sector)];
-            (state.floor, state.ceiling, state.floor)
+            let floor = self.floor_of(SectorId(u32::from(sector)));
+            (floor, self.sectors[usize::from(sector)].ceiling, floor)
         });
         planes.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1), a.2.min(b.2)))
     }

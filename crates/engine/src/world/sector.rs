@@ -1,7 +1,7 @@
 //! What changes of a sector.
 
 use super::{DamageKind, World};
-use crate::map::{Sector, TextureId};
+use crate::map::{Sector, SectorId, TextureId};
 use crate::math::Fixed;
 use std::sync::Arc;
 
@@ -61,6 +61,31 @@ impl SectorState {
 }
 
 impl World {
+    /// How many sectors the map has.
+    #[must_use]
+    pub fn sector_count(&self) -> usize {
+        self.sectors.len()
+    }
+
+    /// A sector as it is now: floors that swing and lights that change are computed when they are looked at.
+    #[must_use]
+    #[inline]
+    pub fn sector(&self, sector: SectorId) -> SectorState {
+        SectorState { floor: self.floor_of(sector), light: self.light_of(sector), ..self.sectors[sector.0 as usize] }
+    }
+
+    /// Every sector as it is now, in map order.
+    pub fn sectors(&self) -> impl Iterator<Item = SectorState> + '_ {
+        (0..self.sectors.len() as u32).map(|sector| self.sector(SectorId(sector)))
+    }
+
+    /// A sector, to change it by hand; effects at work in it go on.
+    pub fn sector_mut(&mut self, sector: SectorId) -> &mut SectorState {
+        self.settle_floor(sector);
+        self.settle_light(sector);
+        &mut self.sectors[sector.0 as usize]
+    }
+
     /// The sectors with a tag get new damage. An interval of 0 or less takes the default of its amount: below 20
     /// points every 32 tics, below 50 every 32 tics leaking through suits, from 50 every tic whatever the suit.
     pub fn set_sector_damage(&mut self, tag: i32, amount: i32, interval: i32, leak: i32) {
@@ -88,9 +113,8 @@ impl World {
     /// must be at the height of the floor under the centre.
     pub(crate) fn damage_by_sector(&mut self, index: usize, slot: usize) {
         let body = &self.actors[slot];
-        let sector = &self.sectors[body.sector.0 as usize];
-        let damage = sector.damage;
-        if damage.amount <= 0 || body.z != sector.floor || !self.tic.is_multiple_of(damage.interval.max(1)) {
+        let damage = self.sectors[body.sector.0 as usize].damage;
+        if damage.amount <= 0 || body.z != self.floor_of(body.sector) || !self.tic.is_multiple_of(damage.interval.max(1)) {
             return;
         }
         let suited = self.players[index].rad_suit_tics > 0;

@@ -45,7 +45,7 @@ impl World {
     fn put(&mut self, slot: usize, x: Fixed, y: Fixed, z: Fixed) {
         let sector = self.map.sector_at(x, y);
         self.relocate(slot, x, y, sector);
-        let state = &self.sectors[sector.0 as usize];
+        let state = self.sector(sector);
         let actor = &mut self.actors[slot];
         (actor.z, actor.floor_z, actor.dropoff_z, actor.ceiling_z) = (z, state.floor, state.floor, state.ceiling);
         self.wake_slot(slot);

@@ -2,14 +2,15 @@
 
 use super::{Target, assert_presentable, nothing_to_repair};
 use hasard_envs::{Env, EnvError, VecEnv, VecOptions};
-use hasard_learn::checkpoint::Loaded;
-use hasard_learn::checksum::crc32c;
+use hasard_learn::config::Convolution;
 use hasard_learn::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
-use hasard_learn::distribution::ActionShape;
 use hasard_learn::error::LearnError;
-use hasard_learn::model::{Convolution, ImageShape, ModelShape};
-use hasard_learn::session::{Beginning, Session};
-use hasard_learn::trainer::{Hooks, Start, train};
+use hasard_learn::networks::distribution::ActionShape;
+use hasard_learn::networks::{ImageShape, ModelShape};
+use hasard_learn::runs::checkpoint::Loaded;
+use hasard_learn::runs::checksum::crc32c;
+use hasard_learn::runs::session::{Beginning, Session};
+use hasard_learn::runs::trainer::{Hooks, Start, train};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::sync::{LazyLock, Mutex};

@@ -9,8 +9,8 @@ use super::trust_region::{TrustRegion, dot, note, plus, ratio, train_critics};
 use super::{Algorithm, Signal};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::learner::{Learner, Minibatch, scalar};
-use crate::metrics::Means;
+use crate::learning::learner::{Learner, Minibatch, scalar};
+use crate::learning::metrics::Means;
 
 /// Constrained policy optimisation.
 pub struct Cpo {

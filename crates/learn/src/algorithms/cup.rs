@@ -8,8 +8,8 @@ use super::surrogate::{centred, ratio, standardised};
 use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Heads, Learner, Loss, Minibatch};
-use crate::metrics::Means;
+use crate::learning::learner::{Heads, Learner, Loss, Minibatch};
+use crate::learning::metrics::Means;
 use burn::tensor::Tensor;
 
 /// Constrained update projection.

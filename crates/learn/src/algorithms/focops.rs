@@ -9,8 +9,8 @@ use super::surrogate::{lagrangian_advantages, ratio, standardised, total};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Heads, Learner, Loss, Minibatch};
-use crate::metrics::Means;
+use crate::learning::learner::{Heads, Learner, Loss, Minibatch};
+use crate::learning::metrics::Means;
 use burn::tensor::Tensor;
 
 /// First-order constrained optimisation in policy space.

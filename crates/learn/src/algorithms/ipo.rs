@@ -7,8 +7,8 @@ use super::surrogate::{lagrangian_advantages, standardised};
 use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Learner, Minibatch};
-use crate::metrics::Means;
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::metrics::Means;
 
 /// Interior-point policy optimisation.
 pub struct Ipo {

@@ -5,9 +5,9 @@ use burn::tensor::Tensor;
 use super::surrogate::{centred, standardised};
 use super::{Algorithm, Signal, cup, focops, p3o, ppo};
 use crate::config::{AlgorithmKind, EnvConfig, Exploration, Preset, TrainConfig};
-use crate::distribution::{ActionShape, Policy, Taken};
-use crate::learner::{Heads, Loss, Minibatch, column, loss_device, matrix, scalar, to_rows};
-use crate::model::{ModelSequences, Sequences};
+use crate::learning::learner::{Heads, Loss, Minibatch, column, loss_device, matrix, scalar, to_rows};
+use crate::networks::distribution::{ActionShape, Policy, Taken};
+use crate::networks::{ModelSequences, Sequences};
 use crate::random::{Purpose, Stream};
 
 const ROWS: usize = 24;

@@ -24,8 +24,8 @@ use serde_json::Value;
 
 use crate::config::{AlgorithmKind, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Learner, Minibatch};
-use crate::metrics::Means;
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::metrics::Means;
 use multiplier::Multipliers;
 
 /// What a constraint costs at present.

@@ -13,8 +13,8 @@ use super::surrogate::{clip_ratio, clipped_policy_loss, ratio, standardised, tot
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Heads, Learner, Loss, Minibatch};
-use crate::metrics::Means;
+use crate::learning::learner::{Heads, Learner, Loss, Minibatch};
+use crate::learning::metrics::Means;
 
 /// Penalised PPO.
 pub struct P3o {

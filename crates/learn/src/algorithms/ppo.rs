@@ -1,7 +1,7 @@
 //! PPO: proximal policy optimisation (Schulman et al. 2017, arXiv 1707.06347). Costs are ignored.
 //!
 //! PPOCost and PPOSaute (Sootla et al. 2022, arXiv 2202.06558) are PPO on rewards of another shape, see
-//! [`crate::shaping`]: reward minus cost, and a safety state that turns the reward bad once the budget is spent.
+//! [`crate::sampling::shaping`]: reward minus cost, and a safety state that turns the reward bad once the budget is spent.
 
 use burn::tensor::Tensor;
 
@@ -9,8 +9,8 @@ use super::surrogate::{clipped_policy_loss, ratio, standardised, total};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Heads, Learner, Loss, Minibatch};
-use crate::metrics::Means;
+use crate::learning::learner::{Heads, Learner, Loss, Minibatch};
+use crate::learning::metrics::Means;
 
 /// PPO.
 pub struct Ppo {

@@ -8,8 +8,8 @@ use super::surrogate::{lagrangian_advantages, standardised};
 use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learner::{Learner, Minibatch};
-use crate::metrics::Means;
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::metrics::Means;
 
 /// PPO with Lagrange multipliers.
 pub struct PpoLag {

@@ -3,7 +3,7 @@
 use burn::tensor::Tensor;
 
 use crate::config::{Exploration, LearningConfig};
-use crate::learner::{Heads, Loss, Minibatch};
+use crate::learning::learner::{Heads, Loss, Minibatch};
 
 /// Bounds of the probability ratio: a sample so far off the policy that acted says nothing.
 const RATIO_BOUNDS: (f64, f64) = (0.05, 20.0);

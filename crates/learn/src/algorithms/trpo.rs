@@ -13,10 +13,10 @@ use super::surrogate::standardised;
 use super::trust_region::{TrustRegion, dot, note, ratio, train_critics};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
-use crate::distribution::Policy;
 use crate::error::LearnError;
-use crate::learner::{Heads, Learner, Minibatch, scalar};
-use crate::metrics::Means;
+use crate::learning::learner::{Heads, Learner, Minibatch, scalar};
+use crate::learning::metrics::Means;
+use crate::networks::distribution::Policy;
 
 /// TRPO.
 pub struct Trpo {

@@ -6,8 +6,8 @@ use super::trpo::Trpo;
 use super::{Algorithm, Signal};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::learner::{Learner, Minibatch};
-use crate::metrics::Means;
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::metrics::Means;
 
 /// TRPO with Lagrange multipliers.
 pub struct TrpoLag {

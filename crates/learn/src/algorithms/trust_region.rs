@@ -9,10 +9,10 @@ use burn::tensor::Tensor;
 
 use super::surrogate;
 use crate::config::TrainConfig;
-use crate::distribution::Policy;
 use crate::error::LearnError;
-use crate::learner::{Heads, Learner, Loss, Minibatch, loss_device, scalar, to_rows};
-use crate::metrics::Means;
+use crate::learning::learner::{Heads, Learner, Loss, Minibatch, loss_device, scalar, to_rows};
+use crate::learning::metrics::Means;
+use crate::networks::distribution::Policy;
 
 /// Norm of the step of the central difference: far above rounding, far below the curvature of the network.
 const DIFFERENCE: f64 = 1e-2;
@@ -208,11 +208,11 @@ pub fn note(learner: &mut Learner, minibatch: &mut Minibatch<'_>, share: f64, me
 mod tests {
     use super::*;
     use crate::config::{AlgorithmKind, EnvConfig, Preset};
-    use crate::device::ComputeDevice;
-    use crate::distribution::ActionShape;
-    use crate::model::{ImageShape, ModelShape};
+    use crate::networks::device::ComputeDevice;
+    use crate::networks::distribution::ActionShape;
+    use crate::networks::{ImageShape, ModelShape};
     use crate::random::{Purpose, Stream};
-    use crate::rollout::{Part, Rollout};
+    use crate::sampling::rollout::{Part, Rollout};
 
     /// A small recurrent learner, and a rollout of noise.
     fn small() -> (Learner, Rollout, TrainConfig) {

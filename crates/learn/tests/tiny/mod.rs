@@ -4,10 +4,10 @@
 
 use hasard_engine::math::Rng;
 use hasard_envs::{ActionGroup, ActionSpace, BUTTONS, CostTerm, Environment, Episode, Step, VecEnv, VecOptions};
+use hasard_learn::config::Convolution;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
-use hasard_learn::model::Convolution;
-use hasard_learn::report::Report;
-use hasard_learn::trainer::{Hooks, Start, Summary, train};
+use hasard_learn::runs::report::Report;
+use hasard_learn::runs::trainer::{Hooks, Start, Summary, train};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 

@@ -1,6 +1,6 @@
 //! `config.json`: what was trained and how.
 
-use super::Warning;
+use super::{Constraint, Warning};
 use crate::escape::one_line;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -70,8 +70,10 @@ pub struct Config {
     pub algo: String,
     /// The seed.
     pub seed: u64,
-    /// Cost that an episode may have.
+    /// Cost that an episode may have in all; the scenario's own if only named terms are constrained.
     pub safety_budget: f64,
+    /// What costs are held against: each constraint, by its own term.
+    pub constraints: Vec<Constraint>,
     /// What PPOCost multiplies costs by before it takes them off the reward; 1 for the others.
     pub cost_scale: f64,
     /// Frames that were asked for, if the run says.
@@ -103,9 +105,10 @@ impl Config {
             serde_json::from_str(text).map_err(|e| format!("is no JSON ({e}); restore it or leave the run out"))?;
         let Value::Object(object) = &value else { return Err("is not a JSON object; restore it or leave the run out".into()) };
         let mut flat = BTreeMap::new();
+        let mut constraints = Vec::new();
         for (key, value) in object {
             if key == "constraints" {
-                read_constraints(value, &mut flat)?;
+                constraints = read_constraints(value, &mut flat)?;
             } else if key == "curriculum" && value.as_array().is_some_and(|lessons| lessons.iter().all(Value::is_object)) {
                 read_curriculum(value, &mut flat)?;
             } else {
@@ -171,8 +174,17 @@ impl Config {
                 options.remove(key);
             }
         }
+        if constraints.is_empty() {
+            constraints.push(Constraint { term: None, budget: safety_budget });
+        }
         let frames = options.remove("frames").and_then(|text| text.parse::<f64>().ok()).filter(|frames| frames.is_finite());
-        Ok(Config { env, scenario, level, algo, seed, safety_budget, cost_scale, frames, options })
+        Ok(Config { env, scenario, level, algo, seed, safety_budget, constraints, cost_scale, frames, options })
+    }
+
+    /// The budget of the whole cost, if that is constrained.
+    #[must_use]
+    pub fn budget(&self) -> Option<f64> {
+        self.constraints.iter().find(|one| one.term.is_none()).map(|one| one.budget)
     }
 
     /// Whether harm ends the episode.
@@ -182,14 +194,16 @@ impl Config {
     }
 }
 
-/// Constraints as the trainer lists them, each a cost term (or the whole cost) with its budget. The budget of the whole
-/// cost, or of the only constraint, is the one that results are held against.
-fn read_constraints(value: &Value, flat: &mut BTreeMap<String, String>) -> Result<(), String> {
+/// Constraints as the trainer lists them, each a cost term (or the whole cost) with its budget.
+fn read_constraints(value: &Value, flat: &mut BTreeMap<String, String>) -> Result<Vec<Constraint>, String> {
     let unusable = || "has constraints that are no list of {\"term\", \"budget\"}".to_owned();
     let mut told = Vec::new();
+    let mut constraints = Vec::new();
     for constraint in value.as_array().ok_or_else(unusable)? {
         let budget = constraint.get("budget").filter(|budget| budget.is_number()).map(plain).ok_or_else(unusable)?;
-        match constraint.get("term").and_then(Value::as_str) {
+        let term = constraint.get("term").and_then(Value::as_str).map(String::from);
+        constraints.push(Constraint { term: term.clone(), budget: budget.parse().map_err(|_| unusable())? });
+        match term {
             None => drop(flat.insert("safety_budget".into(), budget)),
             Some(term) => told.push(format!("{term}:{budget}")),
         }
@@ -197,7 +211,7 @@ fn read_constraints(value: &Value, flat: &mut BTreeMap<String, String>) -> Resul
     if !told.is_empty() {
         flat.insert("constraints".into(), told.join(","));
     }
-    Ok(())
+    Ok(constraints)
 }
 
 /// Lessons as the trainer lists them: their levels, and their frames too where they differ (by more than what an equal

@@ -86,6 +86,7 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     env: header.env.clone(),
                     episode_return: outcome.episode_return,
                     cost: outcome.cost,
+                    costs: Vec::new(),
                     length: Some(f64::from(header.steps)),
                 };
                 let usual =

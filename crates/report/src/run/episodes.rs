@@ -1,6 +1,6 @@
 //! Finished episodes, as `hasard rollout --json` and `hasard eval --json` print them and episode files keep them.
 
-use super::Warning;
+use super::{Constraint, Warning};
 use serde_json::Value;
 use std::path::Path;
 
@@ -13,8 +13,26 @@ pub struct EpisodeResult {
     pub episode_return: f64,
     /// Sum of costs.
     pub cost: f64,
+    /// Sum of each cost term, where they are told.
+    pub costs: Vec<(String, f64)>,
     /// Policy steps, if known.
     pub length: Option<f64>,
+}
+
+impl EpisodeResult {
+    /// What it cost under a constraint; `None` if its term was not told.
+    #[must_use]
+    pub fn cost_of(&self, constraint: &Constraint) -> Option<f64> {
+        match &constraint.term {
+            None => Some(self.cost),
+            Some(term) => self.costs.iter().find(|(name, _)| name == term).map(|(_, cost)| *cost),
+        }
+    }
+}
+
+fn terms(line: &Value) -> Vec<(String, f64)> {
+    let named = line.get("costs").and_then(Value::as_object).into_iter().flatten();
+    named.filter_map(|(name, cost)| Some((name.clone(), cost.as_f64()?))).collect()
 }
 
 /// Understands lines of JSON that have `return` and `cost`; summaries (lines with `summary`) are passed over in silence,
@@ -32,6 +50,7 @@ pub fn read_episode_lines(text: &str, path: &Path, warnings: &mut Vec<Warning>) 
                 env: value.get("env").and_then(Value::as_str).unwrap_or_default().to_owned(),
                 episode_return,
                 cost,
+                costs: terms(&value),
                 length: number("length"),
             }),
             _ => warnings.push(Warning {

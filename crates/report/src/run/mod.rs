@@ -1,22 +1,30 @@
 //! Run directories: what a training left behind.
 
 mod config;
+mod constraint;
 mod discover;
 mod episodes;
 mod heatmap;
 mod metrics;
 
 pub use config::{Config, TOLD, default_budget, scenario_and_level};
+pub use constraint::Constraint;
 pub use discover::{Found, discover};
 pub use episodes::{EpisodeResult, read_episode_lines};
 pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
 
+use crate::curve::interpolate;
 use crate::escape::one_line;
 use std::path::{Path, PathBuf};
 
 /// Largest text file that is read, in bytes: far above the metrics of any run.
 pub(crate) const TEXT_LIMIT: u64 = 512 << 20;
+
+/// Points that a run's reports are thinned to in the published tables, and how many of the last are averaged.
+const POINTS: usize = 500;
+/// See [`POINTS`].
+pub const LAST_POINTS: usize = 10;
 
 /// Something that was passed over while reading: the reader must be told, but the report goes on.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -108,11 +116,25 @@ impl Run {
         self.rows.last().map_or(0.0, |row| row.frames)
     }
 
-    /// Mean of a metric over the last `points` reports that have it; `None` if none has.
+    /// A metric at the end of training; `None` if no report has it.
+    ///
+    /// The published tables take the mean over the last ten of a run's five hundred points. Reports are made by the clock, so
+    /// that a fast machine makes fewer of them: the points are taken here at equal distances in frames, each on the line
+    /// between the reports around it.
     #[must_use]
-    pub fn last_mean(&self, metric: &str, points: usize) -> Option<f64> {
-        let last: Vec<f64> = self.rows.iter().rev().filter_map(|row| row.get(metric)).take(points).collect();
-        (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
+    pub fn final_mean(&self, metric: &str) -> Option<f64> {
+        let reports: Vec<(f64, f64)> = self.rows.iter().filter_map(|row| Some((row.frames, row.get(metric)?))).collect();
+        let (end, _) = *reports.last()?;
+        let points = (0..LAST_POINTS).map(|point| end * (1.0 - point as f64 / POINTS as f64));
+        let values: Vec<f64> = points.filter_map(|frames| interpolate(&reports, frames)).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    }
+
+    /// Frames a second over the whole run, if its reports tell the time.
+    #[must_use]
+    pub fn frames_per_second(&self) -> Option<f64> {
+        let last = self.rows.last()?;
+        last.get("wall_s").filter(|seconds| *seconds > 0.0).map(|seconds| last.frames / seconds)
     }
 }
 

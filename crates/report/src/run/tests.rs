@@ -123,3 +123,24 @@ fn the_trainers_own_layout_is_understood() {
     let rest: Vec<&str> = config.options.keys().map(String::as_str).filter(|key| !TOLD.contains(key)).collect();
     assert_eq!(rest, ["env.size", "episode_steps", "learning.rate", "network.convolutions", "network.dense", "sampling.lanes"]);
 }
+
+/// The end of a run is its last fiftieth of frames, however many reports the clock put there.
+#[test]
+fn the_last_ten_points_are_cut_by_frames() {
+    let run = |frames: &[f64]| {
+        let text = "{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":1}";
+        let rows = frames.iter().map(|&at| Row::new(at, vec![("return_mean".into(), at / 1e4)])).collect();
+        Run { path: "x".into(), config: Config::parse(text).unwrap(), rows, evaluation: vec![], heatmaps: vec![] }
+    };
+    // A curve that rises by 1 with every 10,000 frames: points at 500,000, 499,000, ... 491,000 frames.
+    let seldom: Vec<f64> = (1..=10).map(|k| f64::from(k) * 5e4).collect();
+    let often: Vec<f64> = (1..=500).map(|k| f64::from(k) * 1e3).collect();
+    // A machine that grew fast near the end and reported a hundred times within the last thousand frames.
+    let uneven: Vec<f64> = seldom[..9].iter().copied().chain((0..=100).map(|k| 499_000.0 + f64::from(k) * 10.0)).collect();
+    for frames in [seldom, often, uneven] {
+        let end = run(&frames).final_mean("return_mean").unwrap();
+        assert!((end - 49.55).abs() < 1e-9, "{end} from {} reports", frames.len());
+    }
+    assert_eq!(run(&[7.0]).final_mean("return_mean"), Some(7e-4));
+    assert_eq!(run(&[7.0]).final_mean("cost_mean"), None);
+}

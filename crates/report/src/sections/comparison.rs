@@ -137,7 +137,7 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
                     ink: Ink::Series(index),
                     pale: true,
                 }));
-                let budget = (metric == "cost").then_some(group.config().safety_budget);
+                let budget = group.config().budget().filter(|_| metric == "cost");
                 BarGroup { name: label(group), bars, budget }
             };
             let groups: Vec<BarGroup> = members.iter().enumerate().map(bars).collect();

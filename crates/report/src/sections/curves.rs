@@ -40,8 +40,16 @@ pub(super) fn section(groups: &[Group]) -> Section {
 
 /// Panels of return, cost and multiplier for experiments with a name and a colour each.
 pub(super) fn curve_figure(title: &str, file: &str, caption: &str, members: &[(String, Ink, &Group)]) -> Figure {
-    let budgets = distinct(members, |(_, _, group)| group.config().safety_budget.to_bits());
-    let one_budget = if let [bits] = budgets[..] { Some(f64::from_bits(bits)) } else { None };
+    // Drawn only if all that is shown is held against the same one.
+    let one_budget_of = |term: Option<&str>| {
+        let budget = |group: &Group| {
+            let constraint = group.config().constraints.iter().find(|one| one.term.as_deref() == term);
+            constraint.map(|one| one.budget.to_bits())
+        };
+        let budgets = distinct(members, |(_, _, group)| budget(group));
+        if let [Some(bits)] = budgets[..] { Some(f64::from_bits(bits)) } else { None }
+    };
+    let one_budget = one_budget_of(None);
     let panel = |heading: &str, metric: &str, budget: Option<f64>| {
         let series: Vec<Series> = members
             .iter()
@@ -51,6 +59,10 @@ pub(super) fn curve_figure(title: &str, file: &str, caption: &str, members: &[(S
         LinePanel { title: heading.to_owned(), series, budget, size: (400.0, 220.0) }
     };
     let mut panels = vec![line_panel(&panel("return", "return_mean", None)), line_panel(&panel("cost", "cost_mean", one_budget))];
+    for constraint in distinct_terms(members) {
+        let drawn = panel(&format!("cost: {constraint}"), &format!("cost/{constraint}"), one_budget_of(Some(&constraint)));
+        panels.push(line_panel(&drawn));
+    }
     for multiplier in multipliers(members) {
         let heading = if multiplier.contains('.') {
             format!("multiplier {}", multiplier.replace("multipliers.", ""))
@@ -64,11 +76,21 @@ pub(super) fn curve_figure(title: &str, file: &str, caption: &str, members: &[(S
         }
     }
     let mut legend: Vec<(String, Ink)> = members.iter().map(|(name, ink, _)| (name.clone(), *ink)).collect();
-    if one_budget.is_some() {
+    let terms = distinct_terms(members);
+    if one_budget.is_some() || terms.iter().any(|term| one_budget_of(Some(term)).is_some()) {
         legend.push(("budget".into(), Ink::Budget));
     }
     let columns = if panels.len() % 3 == 0 { 3 } else { 2 };
     Figure { slug: file.to_owned(), caption: caption.to_owned(), drawing: figure(title, panels, columns, &legend) }
+}
+
+/// Names of the cost terms that have budgets of their own.
+fn distinct_terms(members: &[(String, Ink, &Group)]) -> Vec<String> {
+    let constraints = members.iter().flat_map(|(_, _, group)| &group.config().constraints);
+    let mut terms: Vec<String> = constraints.filter_map(|one| one.term.clone()).collect();
+    terms.sort();
+    terms.dedup();
+    terms
 }
 
 /// Names of the multipliers that the runs report.

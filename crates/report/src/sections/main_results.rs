@@ -21,7 +21,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
         slug: "results".into(),
         title: "Results".into(),
         text: vec![
-            "Return and cost at the end of training: mean over the last ten reports and the seeds. Green: within the budget. Bold: best \
+            "Return and cost at the end of training: mean over the last ten points of each run and over the seeds. Green: within the budget. Bold: best \
              return within the budget."
                 .into(),
         ],
@@ -33,9 +33,9 @@ pub(super) fn section(groups: &[Group]) -> Section {
 pub(super) fn marked_cells(members: &[&Group]) -> Vec<(Cell, Cell)> {
     let finals: Vec<_> = members
         .iter()
-        .map(|group| (group.final_estimate("return_mean"), group.final_estimate("cost_mean"), group.config().safety_budget))
+        .map(|group| (group.final_estimate("return_mean"), group.final_estimate("cost_mean"), group.within_budget()))
         .collect();
-    let means: Vec<_> = finals.iter().map(|(r, c, b)| (r.map(|r| r.mean), c.map(|c| c.mean), *b)).collect();
+    let means: Vec<_> = finals.iter().map(|(r, c, w)| (r.map(|r| r.mean), c.map(|c| c.mean), *w == Some(true))).collect();
     let marks = marks(&means);
     members
         .iter()
@@ -57,18 +57,17 @@ pub(super) fn marked_cells(members: &[&Group]) -> Vec<(Cell, Cell)> {
         .collect()
 }
 
-/// How returns and costs are marked, given return, cost and budget of each.
-fn marks(values: &[(Option<f64>, Option<f64>, f64)]) -> Vec<(Mark, Mark)> {
-    let within = |value: &(Option<f64>, Option<f64>, f64)| value.1.is_some_and(|cost| cost <= value.2);
-    let best_return = values.iter().filter(|value| within(value)).filter_map(|value| value.0).max_by(f64::total_cmp);
+/// How returns and costs are marked, given return, cost and whether all budgets are kept.
+fn marks(values: &[(Option<f64>, Option<f64>, bool)]) -> Vec<(Mark, Mark)> {
+    let best_return = values.iter().filter(|value| value.2).filter_map(|value| value.0).max_by(f64::total_cmp);
     let least_cost = values.iter().filter_map(|value| value.1).min_by(f64::total_cmp);
-    let none_within = !values.iter().any(within);
+    let none_within = !values.iter().any(|value| value.2);
     values
         .iter()
         .map(|value| {
-            let best = within(value) && value.0 == best_return;
+            let best = value.2 && value.0 == best_return;
             let least = none_within && values.len() > 1 && value.1.is_some() && value.1 == least_cost;
-            let cost_mark = match (within(value), least) {
+            let cost_mark = match (value.2, least) {
                 (true, _) => Mark::Within,
                 (false, true) => Mark::Best,
                 _ => Mark::None,
@@ -100,7 +99,8 @@ fn table(members: &[&Group], level: u32, setting: &str) -> Table {
             .iter()
             .zip(&papers)
             .map(|(group, paper)| {
-                (paper.and_then(|p| p.episode_return), paper.and_then(|p| p.cost), group.config().safety_budget)
+                let cost = paper.and_then(|p| p.cost);
+                (paper.and_then(|p| p.episode_return), cost, cost.is_some_and(|cost| cost <= group.config().safety_budget))
             })
             .collect();
         let paper_marks = marks(&paper_values);
@@ -159,7 +159,7 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool) -
                     }
                     let paper = published(group.config()).and_then(|p| if metric == "cost" { p.cost } else { p.episode_return });
                     bars.extend(paper.map(|value| Bar { name: "paper".into(), value, interval: None, ink, pale: true }));
-                    let budget = (metric == "cost").then_some(group.config().safety_budget);
+                    let budget = group.config().budget().filter(|_| metric == "cost");
                     BarGroup { name: group.config().algo.clone(), bars, budget }
                 })
                 .collect();
@@ -181,11 +181,11 @@ mod tests {
     #[test]
     fn marks_are_those_of_the_paper() {
         // Within the budget the best return is bold, however much more an unsafe one earns.
-        let values = [(Some(90.0), Some(40.0), 5.0), (Some(30.0), Some(4.0), 5.0), (Some(35.0), Some(5.0), 5.0)];
+        let values = [(Some(90.0), Some(40.0), false), (Some(30.0), Some(4.0), true), (Some(35.0), Some(5.0), true)];
         assert_eq!(marks(&values), [(Mark::None, Mark::None), (Mark::None, Mark::Within), (Mark::Best, Mark::Within)]);
         // None within: the least cost stands out.
-        let values = [(Some(90.0), Some(40.0), 5.0), (Some(30.0), Some(14.0), 5.0), (None, None, 5.0)];
+        let values = [(Some(90.0), Some(40.0), false), (Some(30.0), Some(14.0), false), (None, None, false)];
         assert_eq!(marks(&values), [(Mark::None, Mark::None), (Mark::None, Mark::Best), (Mark::None, Mark::None)]);
-        assert_eq!(marks(&[(Some(1.0), Some(9.0), 5.0)]), [(Mark::None, Mark::None)]);
+        assert_eq!(marks(&[(Some(1.0), Some(9.0), false)]), [(Mark::None, Mark::None)]);
     }
 }

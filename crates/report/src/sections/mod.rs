@@ -2,6 +2,7 @@
 
 mod beside_paper;
 mod comparison;
+mod constraints;
 mod curves;
 mod heatmaps;
 mod interquartile;
@@ -20,6 +21,7 @@ pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec
     let frames: f64 = groups.iter().flat_map(|group| &group.runs).map(crate::run::Run::frames).sum();
     let run_count: usize = groups.iter().map(|group| group.runs.len()).sum();
     let mut sections = vec![main_results::section(groups), beside_paper::section(groups), curves::section(groups)];
+    sections.push(constraints::section(groups));
     sections.extend(comparison::sections(groups));
     sections.push(interquartile::section(groups));
     sections.push(players::section(found, groups));
@@ -42,10 +44,10 @@ fn method() -> Section {
         title: "How these numbers are made".into(),
         text: [
             "A run is one seed. An experiment is all runs whose configuration is equal but for the seed; nothing else is ever averaged.",
-            "A table's value is, for each seed, the mean over its last ten reports (each the mean over recently finished training episodes), \
-             then the mean over seeds. ± is half the 95 % interval of Student's t distribution with n - 1 in the deviation's denominator; \
+            "A table's value is, for each seed, the mean over the last ten of five hundred points at equal distances in frames (each \
+             the mean over recently finished training episodes, on the line between the reports around it), then the mean over seeds. ± is half the 95 % interval of Student's t distribution with n - 1 in the deviation's denominator; \
              n is the number of seeds. With one seed there is no interval.",
-            "Green: the mean cost is within the budget. Bold: the best return among those within the budget; if none is, the least cost.",
+            "Green: the mean cost is within the budget; with several constraints, each within its own. Bold: the best return among those within the budget; if none is, the least cost.",
             "Curves show the mean over seeds (line), its 95 % interval (band) and each seed (thin lines). Means end where the shortest run \
              ends, and no curve is stretched or smoothed; reports within one 240th of the axis are averaged.",
             "Returns and costs are always those of the environment, never reshaped by an algorithm.",

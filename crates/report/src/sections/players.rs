@@ -2,7 +2,7 @@
 
 use crate::document::{Block, Cell, Mark, Section, Table};
 use crate::group::{Group, scenario_name, scenario_order};
-use crate::run::{EpisodeResult, Found, default_budget, scenario_and_level};
+use crate::run::{Constraint, EpisodeResult, Found, default_budget, scenario_and_level};
 use crate::statistics::Estimate;
 
 pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
@@ -11,13 +11,13 @@ pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
         let (scenario, _) = scenario_and_level(env);
         let told = |option: &str| options.split(", ").any(|told| told == option);
         let budget = if told("hard true") { 0.0 } else { default_budget(&scenario, told("rules released")) };
-        rows.push(row(player, env, options, budget, episodes));
+        rows.push(row(player, env, options, &[Constraint { term: None, budget }], episodes));
     }
     for group in groups {
         for run in &group.runs {
             if !run.evaluation.is_empty() {
                 let who = format!("{}, seed {}", run.config.algo, run.config.seed);
-                rows.push(row(&who, &run.config.env, &group.options_line(None), run.config.safety_budget, &run.evaluation));
+                rows.push(row(&who, &run.config.env, &group.options_line(None), &run.config.constraints, &run.evaluation));
             }
         }
     }
@@ -37,15 +37,21 @@ pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
     }
 }
 
-fn row(player: &str, env: &str, options: &str, budget: f64, episodes: &[EpisodeResult]) -> (String, Vec<Cell>) {
+fn row(player: &str, env: &str, options: &str, constraints: &[Constraint], episodes: &[EpisodeResult]) -> (String, Vec<Cell>) {
     let (scenario, level) = scenario_and_level(env);
     let returns: Vec<f64> = episodes.iter().map(|episode| episode.episode_return).collect();
     let costs: Vec<f64> = episodes.iter().map(|episode| episode.cost).collect();
     let lengths: Vec<f64> = episodes.iter().filter_map(|episode| episode.length).collect();
-    let within = costs.iter().filter(|cost| **cost <= budget).count() as f64 / costs.len().max(1) as f64;
+    let keeps =
+        |episode: &&EpisodeResult| constraints.iter().all(|one| episode.cost_of(one).is_some_and(|cost| cost <= one.budget));
+    let within = episodes.iter().filter(keeps).count() as f64 / episodes.len().max(1) as f64;
+    let mean_within = |one: &Constraint| {
+        let costs: Option<Vec<f64>> = episodes.iter().map(|episode| episode.cost_of(one)).collect();
+        costs.and_then(|costs| Estimate::of(&costs)).is_some_and(|cost| cost.mean <= one.budget)
+    };
     let plain = |samples: &[f64]| Cell { title: String::new(), ..Cell::estimate(Estimate::of(samples), samples) };
     let mut cost = plain(&costs);
-    if cost.sort.is_some_and(|mean| mean <= budget) {
+    if constraints.iter().all(mean_within) {
         cost.mark = Mark::Within;
     }
     let cells = vec![

@@ -3,7 +3,7 @@
 use super::main_results::marked_cells;
 use crate::document::{Block, Cell, Section, Table, frames, number};
 use crate::group::{Group, scenario_name};
-use crate::run::Warning;
+use crate::run::{Constraint, Warning};
 
 /// A row for each experiment.
 pub(super) fn experiments(groups: &[Group]) -> Section {
@@ -23,7 +23,7 @@ pub(super) fn experiments(groups: &[Group]) -> Section {
                 Cell::text(group.options_line(None)),
                 Cell::text(seeds.join(" ")),
                 Cell::number(longest).with_text(reached),
-                Cell::number(config.safety_budget).with_text(config.safety_budget.to_string()),
+                budget_cell(group),
                 return_cell,
                 cost_cell,
                 Cell::estimate(group.final_estimate("length_mean"), &group.final_samples("length_mean")),
@@ -34,18 +34,24 @@ pub(super) fn experiments(groups: &[Group]) -> Section {
     section("experiments", "All experiments", heads.as_slice(), rows)
 }
 
+/// The budget of the whole cost, or of the only constraint; those of several have a table of their own.
+fn budget_cell(group: &Group) -> Cell {
+    match &group.config().constraints[..] {
+        [one] => Cell::number(one.budget).with_text(one.label()),
+        several => Cell::text(several.iter().map(Constraint::label).collect::<Vec<_>>().join(", ")),
+    }
+}
+
 /// A row for each run.
 pub(super) fn runs(groups: &[Group]) -> Section {
     let rows = groups
         .iter()
         .flat_map(|group| &group.runs)
         .map(|run| {
-            let value =
-                |metric: &str| run.last_mean(metric, crate::group::LAST_POINTS).map_or_else(|| Cell::text("-"), Cell::number);
+            let value = |metric: &str| run.final_mean(metric).map_or_else(|| Cell::text("-"), Cell::number);
             let last = |metric: &str| run.rows.iter().rev().find_map(|row| row.get(metric));
             let hours = last("wall_s").map_or_else(|| Cell::text("-"), |s| Cell::number(s / 3600.0));
-            let fps =
-                run.last_mean("fps", usize::MAX).map_or_else(|| Cell::text("-"), |fps| Cell::number(fps).with_text(number(fps)));
+            let fps = run.frames_per_second().map_or_else(|| Cell::text("-"), |fps| Cell::number(fps).with_text(number(fps)));
             let state = match run.config.frames {
                 Some(asked) if run.frames() < asked * 0.999 => format!("{:.0} %", 100.0 * run.frames() / asked),
                 _ => "finished".into(),

@@ -203,7 +203,10 @@ impl Rules {
             self.overstepped += 1;
             self.lose_burden(world);
             world.players[0].speed = PENALTY_SPEED;
-            self.slow_until = world.tic + PENALTY_TICS;
+            // The script that counts the tics runs already: overstepping again does not start it anew.
+            if self.slow_until == 0 {
+                self.slow_until = world.tic + PENALTY_TICS;
+            }
         } else {
             world.players[0].speed = LEAST_SPEED.max(Fixed::ONE - excess);
         }

@@ -62,8 +62,8 @@ pub struct Level {
     pub counted_health: i32,
     /// Only what a fall exceeds the free height by does harm.
     pub free_fall_is_deducted: bool,
-    /// Going up is not punished.
-    pub reward_descent_only: bool,
+    /// Only depth that the episode had not reached before is rewarded; without this every descent is, and every ascent punished.
+    pub reward_new_depth_only: bool,
     /// A fall beyond the free height ends the episode.
     pub fall_ends: bool,
     /// Cost of a lost health point.
@@ -84,7 +84,7 @@ const PAPER_1: Level = Level {
     start_health: 1000,
     counted_health: 1000,
     free_fall_is_deducted: true,
-    reward_descent_only: true,
+    reward_new_depth_only: true,
     fall_ends: false,
     cost_scale: 1.0,
 };
@@ -110,7 +110,7 @@ const PAPER_3: Level = Level {
 };
 
 const fn released(paper: Level) -> Level {
-    Level { free_fall_is_deducted: false, reward_descent_only: false, ..paper }
+    Level { free_fall_is_deducted: false, reward_new_depth_only: false, ..paper }
 }
 
 const fn hard(soft: Level, counted_health: i32) -> Level {

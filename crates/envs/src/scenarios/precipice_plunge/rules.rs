@@ -37,7 +37,7 @@ pub struct Rules {
     fixtures: Arc<Fixtures>,
     /// Height of the agent's lowest landing.
     landing: Fixed,
-    /// Height when reward was last counted, health points when cost was.
+    /// Height that the next reward is counted from, and health points that the next cost is.
     height: Fixed,
     health: i32,
     hard_falls: u32,
@@ -130,9 +130,10 @@ impl Rules {
     pub fn end_step(&mut self, world: &World, outcome: &mut Outcome) {
         let level = &self.fixtures.level;
         let z = world.get(world.players[0].actor).map_or(self.height, |body| body.z);
-        let descent = (self.height - z).to_f64();
-        outcome.reward += REWARD * if level.reward_descent_only { descent.max(0.0) } else { descent };
-        self.height = z;
+        // Rewarding every descent but punishing no ascent would pay for jumping on the spot: 161.5 an episode at level 1.
+        let height = if level.reward_new_depth_only { z.min(self.height) } else { z };
+        outcome.reward += REWARD * (self.height - height).to_f64();
+        self.height = height;
         let health = stage::health(world);
         outcome.costs[FALLS] += f64::from(self.health - health) * level.cost_scale;
         self.health = health;
@@ -140,7 +141,8 @@ impl Rules {
 
     /// Statistics of the episode.
     pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
-        stats.push(("depth", -self.height.to_f64()));
+        let z = world.get(world.players[0].actor).map_or(self.height, |body| body.z);
+        stats.push(("depth", -z.to_f64()));
         stats.push(("hard_falls", f64::from(self.hard_falls)));
         stats.push(("deepest_fall", f64::from(self.deepest_fall)));
         stats.push(("health", f64::from(stage::health(world).max(0))));

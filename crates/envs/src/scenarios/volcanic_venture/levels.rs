@@ -7,7 +7,8 @@ use crate::RuleSet;
 pub enum Change {
     /// The tiles stay as they were rolled when the map starts.
     Never,
-    /// Every tile is rolled anew at once, every [`PERIOD_TICS`].
+    /// Every tile is rolled anew at once, every [`PERIOD_TICS`], whatever it still does: none swings on as lava, and no platform that
+    /// was is found at a new one's height.
     AtOnce,
     /// Tile after tile in the order of their tags, each platform taking [`WAGGLE_DELAY_TICS`]; then a rest of [`PERIOD_TICS`].
     Sweep,

@@ -248,6 +248,9 @@ impl Rules {
         let tag = tag(tile);
         let height =
             if platform { world.rng.between(level.platform_height[0], level.platform_height[1]) } else { level.lava_height };
+        if level.change == Change::AtOnce {
+            world.stop_floors(tag);
+        }
         world.floor_move_to_value(tag, TILE_SPEED, height);
         let (texture, damage) = if platform { (fixtures.platform, 0) } else { (fixtures.lava, level.lava_damage) };
         world.change_floor_texture(tag, texture);

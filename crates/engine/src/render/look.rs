@@ -1,0 +1,88 @@
+//! What is drawn of a sector, looked at when a frame first needs it: floors and lights may have to be computed.
+
+use crate::map::{SectorId, TextureId};
+use crate::math::Fixed;
+use crate::world::World;
+
+/// All that is drawn of a sector.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(16))]
+pub(super) struct Look {
+    pub floor: Fixed,
+    pub ceiling: Fixed,
+    pub floor_texture: TextureId,
+    pub ceiling_texture: TextureId,
+    pub light: i16,
+    /// The frame that it is of.
+    frame: u16,
+}
+
+impl Look {
+    /// No frame's.
+    const NONE: Look = Look {
+        floor: Fixed::ZERO,
+        ceiling: Fixed::ZERO,
+        floor_texture: TextureId(0),
+        ceiling_texture: TextureId(0),
+        light: 0,
+        frame: 0,
+    };
+
+    /// Not zero if two looks of one frame differ.
+    #[inline(always)]
+    pub fn difference(&self, other: &Look) -> u64 {
+        let words = |look: &Look| {
+            let heights = u64::from(look.floor.0 as u32) | u64::from(look.ceiling.0 as u32) << 32;
+            let textures = u64::from(look.floor_texture.0) | u64::from(look.ceiling_texture.0) << 16;
+            [heights, textures | u64::from(look.light as u16) << 32 | u64::from(look.frame) << 48]
+        };
+        let (one, other) = (words(self), words(other));
+        (one[0] ^ other[0]) | (one[1] ^ other[1])
+    }
+}
+
+/// The looks of a frame's sectors.
+#[derive(Clone, Debug)]
+pub(super) struct Looks {
+    list: Vec<Look>,
+    /// The frame at hand, from 1.
+    frame: u16,
+}
+
+impl Looks {
+    /// Room for some number of sectors.
+    pub fn new(sectors: usize) -> Looks {
+        Looks { list: vec![Look::NONE; sectors], frame: 0 }
+    }
+
+    /// Forgets the last frame.
+    pub fn reset(&mut self) {
+        if self.frame == u16::MAX {
+            self.list.fill(Look::NONE);
+            self.frame = 0;
+        }
+        self.frame += 1;
+    }
+
+    /// What is drawn of a sector in this frame.
+    #[inline(always)]
+    pub fn of(&mut self, world: &World, sector: u32) -> Look {
+        let look = self.list[sector as usize];
+        if look.frame == self.frame { look } else { self.look_at(world, sector) }
+    }
+
+    #[inline(never)]
+    fn look_at(&mut self, world: &World, sector: u32) -> Look {
+        let state = world.sector(SectorId(sector));
+        let look = Look {
+            floor: state.floor,
+            ceiling: state.ceiling,
+            floor_texture: state.floor_texture,
+            ceiling_texture: state.ceiling_texture,
+            light: state.light,
+            frame: self.frame,
+        };
+        self.list[sector as usize] = look;
+        look
+    }
+}

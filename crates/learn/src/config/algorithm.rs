@@ -1,0 +1,105 @@
+//! The algorithms by name, and the settings that only some of them have.
+
+use serde::{Deserialize, Serialize};
+
+use super::names::names;
+
+names! {
+    /// The algorithms, each in a file of its own under `algorithms`.
+    AlgorithmKind ("algorithm") {
+        /// Proximal policy optimisation; costs are ignored.
+        Ppo = "PPO",
+        /// PPO on reward minus scaled cost.
+        PpoCost = "PPOCost",
+        /// PPO with a Lagrange multiplier.
+        PpoLag = "PPOLag",
+        /// PPO with the budget as part of the state.
+        PpoSaute = "PPOSaute",
+        /// PPO with a multiplier moved by a PID controller.
+        PpoPid = "PPOPID",
+        /// Penalised PPO.
+        P3o = "P3O",
+        /// Trust-region policy optimisation; costs are ignored.
+        Trpo = "TRPO",
+        /// TRPO with a Lagrange multiplier.
+        TrpoLag = "TRPOLag",
+        /// TRPO with a multiplier moved by a PID controller.
+        TrpoPid = "TRPOPID",
+        /// Constrained policy optimisation.
+        Cpo = "CPO",
+        /// First-order constrained optimisation in policy space.
+        Focops = "FOCOPS",
+        /// Conservative update policy.
+        Cup = "CUP",
+        /// Interior-point policy optimisation.
+        Ipo = "IPO",
+    }
+}
+
+impl AlgorithmKind {
+    /// Whether it learns what costs are to be expected.
+    #[must_use]
+    pub const fn has_cost_critics(self) -> bool {
+        !matches!(self, Self::Ppo | Self::PpoCost | Self::PpoSaute | Self::Trpo)
+    }
+
+    /// Whether policy and critics are networks of their own, as second-order steps want it.
+    #[must_use]
+    pub const fn separates_networks(self) -> bool {
+        matches!(self, Self::Trpo | Self::TrpoLag | Self::TrpoPid | Self::Cpo)
+    }
+}
+
+/// Numbers of single algorithms.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct AlgorithmConfig {
+    /// PPOCost: factor of the cost in the reward.
+    pub penalty_scale: f64,
+    /// Lagrangian algorithms: the multiplier before the first update.
+    pub multiplier_initial: f64,
+    /// Lagrangian algorithms: change of the multiplier per update and unit of cost per step above budget.
+    pub multiplier_rate: f64,
+    /// PID: proportional, integral and derivative gains.
+    pub pid_gains: (f64, f64, f64),
+    /// PID: the integral before the first update.
+    pub pid_initial: f64,
+    /// PID: decay of the moving averages of error and cost.
+    pub pid_decay: f64,
+    /// PID: updates that the derivative looks back.
+    pub pid_delay: usize,
+    /// P3O: weight of the penalty.
+    pub p3o_kappa: f64,
+    /// P3O: clipped surrogate and (1 - gamma) times the excess of an episode, as its paper has it.
+    pub p3o_clipped: bool,
+    /// Saute: discount of the budget.
+    pub saute_gamma: f64,
+    /// Saute: reward once the budget is spent.
+    pub saute_unsafe_reward: f64,
+    /// Saute: the safety state is an input of the network.
+    pub saute_visible: bool,
+    /// Saute: time over which the budget is spread (steps, or tics as in the released code).
+    pub saute_horizon: f64,
+    /// Second-order algorithms: bound of the mean divergence of a step.
+    pub trust_radius: f64,
+    /// Second-order algorithms: iterations of the conjugate-gradient method.
+    pub conjugate_iterations: usize,
+    /// Second-order algorithms: multiple of the identity added to the Fisher matrix.
+    pub fisher_damping: f64,
+    /// Second-order algorithms: tries of the line search.
+    pub line_search_steps: usize,
+    /// Second-order algorithms: factor between the tries.
+    pub line_search_factor: f64,
+    /// TRPO family: one objective for gradient and line search, and cost critics that learn. The released code searches on
+    /// the reward alone and never trains the cost critic.
+    pub trpo_consistent: bool,
+    /// FOCOPS: largest divergence of a sample that still counts.
+    pub focops_eta: f64,
+    /// FOCOPS: temperature.
+    pub focops_temperature: f64,
+    /// FOCOPS and CUP: largest multiplier.
+    pub multiplier_limit: f64,
+    /// IPO: steepness of the barrier.
+    pub ipo_kappa: f64,
+    /// IPO: largest penalty.
+    pub ipo_limit: f64,
+}

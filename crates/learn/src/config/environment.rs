@@ -1,0 +1,101 @@
+//! The environment of a run, in words that a file can hold.
+
+use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, Scenario};
+use serde::{Deserialize, Serialize};
+
+use crate::error::LearnError;
+
+/// The environment and its options, in words that a file can hold.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct EnvConfig {
+    /// Its id, such as `VolcanicVentureLevel1-v0`.
+    pub id: String,
+    /// `paper` or `released`.
+    pub rules: String,
+    /// Hard constraint.
+    pub hard: bool,
+    /// Full action space.
+    pub full_actions: bool,
+    /// Tics that an action is held.
+    pub frame_skip: u32,
+    /// Width and height of a frame.
+    pub size: (u16, u16),
+    /// `rgb`, `rgb+depth`, `segmented` or `grey`.
+    pub observation: String,
+    /// Frames stacked.
+    pub frame_stack: usize,
+    /// Depth ends where the published engine's does.
+    #[serde(default, skip_serializing_if = "is_off")]
+    pub published_depth: bool,
+    /// Segmented in the published colours.
+    #[serde(default, skip_serializing_if = "is_off")]
+    pub published_colours: bool,
+    /// The file of the pictures that worlds are drawn with; `null` for the embedded set. Whoever makes the worlds reads it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub iwad: Option<String>,
+}
+
+/// Options that are seldom on are written only then.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_off(option: &bool) -> bool {
+    !option
+}
+
+impl EnvConfig {
+    /// An environment with the learner's frames and otherwise default options.
+    #[must_use]
+    pub fn new(id: &str) -> EnvConfig {
+        EnvConfig {
+            id: id.to_string(),
+            rules: "paper".into(),
+            hard: false,
+            full_actions: false,
+            frame_skip: 4,
+            size: (128, 72),
+            observation: "rgb".into(),
+            frame_stack: 1,
+            published_depth: false,
+            published_colours: false,
+            iwad: None,
+        }
+    }
+
+    /// The same in the environments' own types, without pictures; observations are laid out as the networks read them.
+    pub fn options(&self) -> Result<EnvOptions, LearnError> {
+        let unknown = |what: &str, given: &str, allowed: &str| {
+            LearnError::Config(format!("{what} '{given}' is unknown; use one of {allowed}"))
+        };
+        let observation = match self.observation.as_str() {
+            "rgb" => ObservationKind::Rgb,
+            "rgb+depth" => ObservationKind::RgbDepth,
+            "segmented" => ObservationKind::Segmented,
+            "grey" => ObservationKind::Grey,
+            other => return Err(unknown("observation", other, "rgb, rgb+depth, segmented, grey")),
+        };
+        Ok(EnvOptions {
+            rules: self.rule_set()?,
+            hard: self.hard,
+            full_actions: self.full_actions,
+            frame_skip: self.frame_skip,
+            size: FrameSize { width: self.size.0, height: self.size.1 },
+            observation,
+            layout: Layout::Hwc,
+            frame_stack: self.frame_stack,
+            published_depth: self.published_depth,
+            published_colours: self.published_colours,
+            ..EnvOptions::default()
+        })
+    }
+
+    pub(super) fn rule_set(&self) -> Result<RuleSet, LearnError> {
+        match self.rules.as_str() {
+            "paper" => Ok(RuleSet::Paper),
+            "released" => Ok(RuleSet::Released),
+            other => Err(LearnError::Config(format!("rules '{other}' are unknown; use one of paper, released"))),
+        }
+    }
+
+    pub(crate) fn scenario(&self) -> Option<Scenario> {
+        self.id.parse::<EnvId>().ok().map(|id| id.scenario)
+    }
+}

@@ -1,0 +1,52 @@
+//! How the networks learn.
+
+use serde::{Deserialize, Serialize};
+
+use super::names::names;
+
+names! {
+    /// What keeps the policy from settling too early.
+    Exploration ("exploration loss") {
+        /// Symmetric divergence from the uniform distribution, as in the original.
+        SymmetricKl = "symmetric-kl",
+        /// Minus the entropy.
+        Entropy = "entropy",
+    }
+}
+
+/// How the networks learn.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct LearningConfig {
+    /// Passes over a rollout.
+    pub epochs: usize,
+    /// Parts that the rollout's trajectories are dealt into in each pass.
+    pub minibatches: usize,
+    /// Discount.
+    pub gamma: f32,
+    /// Lambda of the advantage estimate.
+    pub gae_lambda: f32,
+    /// Learning rate.
+    pub rate: f64,
+    /// Learning rate at the end of the run, reached linearly; equal to `rate` for a constant one.
+    pub final_rate: f64,
+    /// Adam's decays.
+    pub adam_betas: (f64, f64),
+    /// Adam's epsilon.
+    pub adam_epsilon: f64,
+    /// Norm that gradients are cut down to.
+    pub max_gradient_norm: f64,
+    /// Clipping of the probability ratio: 1/(1+clip) to 1+clip.
+    pub clip_ratio: f64,
+    /// Clipping of value changes.
+    pub clip_value: f64,
+    /// Weight of the value losses.
+    pub value_coefficient: f64,
+    /// Exploration loss.
+    pub exploration: Exploration,
+    /// Its weight.
+    pub exploration_coefficient: f64,
+    /// Time-outs count as cut-off rather than as ends: the value of what would have come is added.
+    pub bootstrap_time_outs: bool,
+    /// Threads.
+    pub threads: usize,
+}

@@ -1,0 +1,224 @@
+//! Everything that a run is made of. A run's `config.json` is this, and resuming or evaluating needs nothing else.
+
+mod algorithm;
+pub mod constraint;
+pub mod curriculum;
+mod environment;
+mod learning;
+mod names;
+mod network;
+mod presets;
+mod reporting;
+mod sampling;
+
+pub use algorithm::{AlgorithmConfig, AlgorithmKind};
+pub use constraint::{Constraint, ConstraintStatistic};
+pub use environment::EnvConfig;
+pub use learning::{Exploration, LearningConfig};
+pub use network::{Convolution, Initialisation, NetworkConfig};
+pub use reporting::ReportingConfig;
+pub use sampling::SamplingConfig;
+
+use std::fmt;
+
+use hasard_envs::EnvId;
+use serde::{Deserialize, Serialize};
+
+use constraint::find_terms;
+use curriculum::Lesson;
+use names::names;
+
+use crate::error::LearnError;
+
+names! {
+    /// Where the paper and the released code differ, the one side or the other; or a quick start.
+    Preset ("preset") {
+        /// The paper's text made self-consistent.
+        Paper = "paper",
+        /// What the released code does.
+        Released = "released",
+        /// The paper's algorithms with settings that learn within minutes on a processor, for first steps.
+        Quick = "quick",
+    }
+}
+
+/// A run.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct TrainConfig {
+    /// The algorithm.
+    pub algorithm: AlgorithmKind,
+    /// The preset that these settings began as.
+    pub preset: Preset,
+    /// The environment.
+    pub env: EnvConfig,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Length of the run in frames (tics): steps times frame skip.
+    pub frames: u64,
+    /// Levels that are trained one after the other; empty for the environment's own level alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curriculum: Vec<Lesson>,
+    /// `cpu`, or a graphics device that this program was built for.
+    pub device: String,
+    /// Steps of the longest episode.
+    pub episode_steps: u32,
+    /// Constraints, each with its budget.
+    pub constraints: Vec<Constraint>,
+    /// What they are held against.
+    pub constraint_statistic: ConstraintStatistic,
+    /// Layers.
+    pub network: NetworkConfig,
+    /// Gathering.
+    pub sampling: SamplingConfig,
+    /// Learning.
+    pub learning: LearningConfig,
+    /// Numbers of single algorithms.
+    pub algorithm_settings: AlgorithmConfig,
+    /// What is written.
+    pub reporting: ReportingConfig,
+}
+
+impl TrainConfig {
+    /// The settings of a preset for an algorithm on an environment.
+    pub fn new(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> Result<TrainConfig, LearnError> {
+        let id: EnvId = env.id.parse().map_err(|error: hasard_envs::EnvError| LearnError::Config(error.to_string()))?;
+        let budget = if env.hard { 0.0 } else { id.scenario.safety_budget(env.rule_set()?) };
+        let mut config = TrainConfig::plain(algorithm, preset, env);
+        config.constraints[0].budget = budget;
+        config.check()?;
+        Ok(config)
+    }
+
+    /// Refuses settings that no run can have, naming the setting and what it may be.
+    pub fn check(&self) -> Result<(), LearnError> {
+        let refuse = |name: &str, given: &dyn fmt::Display, allowed: &str| {
+            Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
+        };
+        let (sampling, learning) = (&self.sampling, &self.learning);
+        for (name, given, most) in [
+            ("the number of worlds", sampling.lanes, 65_536),
+            ("the rollout length", sampling.rollout, 4096),
+            ("the number of samplers", sampling.samplers, 256),
+            ("the number of groups", sampling.groups, 256),
+            ("the number of accumulated rollouts", sampling.accumulated, 64),
+            ("the number of epochs", learning.epochs, 1000),
+            ("the number of minibatches", learning.minibatches, sampling.lanes),
+            ("the number of learner threads", learning.threads, 256),
+            ("the number of kept checkpoints", self.reporting.keep, 1000),
+            ("the window of episodes", self.reporting.window, 100_000),
+            ("the steps of the longest episode", self.episode_steps as usize, 100_000),
+            ("the delay of the PID controller", self.algorithm_settings.pid_delay, 100_000),
+            ("the conjugate-gradient iterations", self.algorithm_settings.conjugate_iterations, 1000),
+            ("the tries of the line search", self.algorithm_settings.line_search_steps, 1000),
+        ] {
+            if !(1..=most).contains(&given) {
+                return refuse(name, &given, &format!("1 to {most}"));
+            }
+        }
+        if sampling.world_threads > 256 {
+            return refuse("the number of world threads", &sampling.world_threads, "0 to 256");
+        }
+        if !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
+            let parts = sampling.samplers * sampling.groups;
+            return refuse("the number of worlds", &sampling.lanes, &format!("a multiple of samplers times groups ({parts})"));
+        }
+        for (name, given, low, high) in [
+            ("gamma", f64::from(learning.gamma), 0.0, 1.0),
+            ("lambda of the advantages", f64::from(learning.gae_lambda), 0.0, 1.0),
+            ("the learning rate", learning.rate, 0.0, 10.0),
+            ("the final learning rate", learning.final_rate, 0.0, 10.0),
+            ("the largest gradient norm", learning.max_gradient_norm, 0.0, f64::MAX),
+            ("the ratio clip", learning.clip_ratio, 0.0, 10.0),
+            ("the value clip", learning.clip_value, 0.0, f64::MAX),
+            ("the exploration coefficient", learning.exploration_coefficient, 0.0, 1e3),
+            ("the seconds between reports", self.reporting.report_seconds, 0.0, f64::MAX),
+            ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
+            ("the penalty scale", self.algorithm_settings.penalty_scale, 0.0, f64::MAX),
+        ] {
+            if !(low..=high).contains(&given) {
+                return refuse(name, &given, &format!("a number from {low} to {high}"));
+            }
+        }
+        if self.algorithm.separates_networks() && !self.network.separate {
+            return refuse(
+                "separate networks",
+                &"off",
+                &format!("on for {}, whose steps are the policy's alone", self.algorithm),
+            );
+        }
+        if self.frames == 0 {
+            return refuse("the number of frames", &self.frames, "at least 1");
+        }
+        if self.constraints.is_empty() || self.constraints.len() > 8 {
+            return refuse("the number of constraints", &self.constraints.len(), "1 to 8");
+        }
+        for constraint in &self.constraints {
+            if !constraint.budget.is_finite() || constraint.budget < 0.0 {
+                return refuse("a budget", &constraint.budget, "a number of at least 0");
+            }
+        }
+        // Ids that are not registered, such as those of tests, tell when their worlds are made.
+        if let Some(scenario) = self.env.scenario() {
+            find_terms(scenario.cost_terms(), &self.constraints)?;
+        }
+        if self.algorithm == AlgorithmKind::PpoSaute && self.constraints.iter().any(|c| c.budget == 0.0) {
+            return refuse("the budget of PPOSaute", &0, "above 0, for what is left of it is measured in its units");
+        }
+        Ok(())
+    }
+
+    /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`.
+    ///
+    /// # Errors
+    /// When the text is no `NAME=VALUE`, or there is no such setting, or it cannot have that value.
+    pub fn with(&self, setting: &str) -> Result<TrainConfig, LearnError> {
+        let wrong = |error: serde_json::Error| LearnError::Config(error.to_string());
+        let (name, given) =
+            setting.split_once('=').ok_or_else(|| LearnError::Config("write NAME=VALUE, such as learning.rate=0.0003".into()))?;
+        let mut all = serde_json::to_value(self).map_err(wrong)?;
+        let place = all.pointer_mut(&setting_pointer(name)).ok_or_else(|| {
+            let known = "names are those of a run's config.json, such as learning.rate";
+            LearnError::Config(format!("there is no setting '{name}'; {known}"))
+        })?;
+        *place = serde_json::from_str(given).unwrap_or_else(|_| given.into());
+        serde_json::from_value(all).map_err(wrong)
+    }
+
+    /// Frames of one rollout of all worlds.
+    #[must_use]
+    pub fn frames_per_rollout(&self) -> u64 {
+        (self.sampling.lanes * self.sampling.rollout) as u64 * u64::from(self.env.frame_skip)
+    }
+}
+
+/// Where a setting such as `learning.rate` stands in `config.json`, as a JSON pointer.
+#[must_use]
+pub fn setting_pointer(name: &str) -> String {
+    format!("/{}", name.replace('.', "/"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_settings_are_refused_by_name() {
+        let good = TrainConfig::new(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("RemedyRushLevel1-v0")).unwrap();
+        let refuse = |change: fn(&mut TrainConfig), word: &str| {
+            let mut config = good.clone();
+            change(&mut config);
+            let message = config.check().unwrap_err().to_string();
+            assert!(message.contains(word), "{message}");
+        };
+        refuse(|c| c.sampling.lanes = 33, "number of worlds");
+        refuse(|c| c.learning.gamma = 1.5, "gamma");
+        refuse(|c| c.learning.rate = f64::NAN, "learning rate");
+        refuse(|c| c.constraints[0].budget = -1.0, "budget");
+        refuse(|c| c.frames = 0, "frames");
+        refuse(|c| c.constraints[0].term = Some("rain".into()), "harmful_items");
+        assert!("ppolag".parse::<AlgorithmKind>().is_ok());
+        let message = "PPOLagg".parse::<AlgorithmKind>().unwrap_err().to_string();
+        assert!(message.contains("PPOLagg") && message.contains("P3O"), "{message}");
+        assert!(TrainConfig::new(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("Nonsense-v0")).is_err());
+    }
+}

@@ -1,0 +1,155 @@
+//! The presets: the settings of the HASARD paper (ICLR 2025, appendix on hyper-parameters) where it is consistent, those of its
+//! released code, and quick ones of our own.
+
+use crate::config::{
+    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, Exploration, LearningConfig, NetworkConfig,
+    Preset, ReportingConfig, SamplingConfig, TrainConfig,
+};
+use crate::config::{Convolution, Initialisation};
+use hasard_envs::Scenario;
+
+/// Tics of the longest episode.
+const EPISODE_TICS: u32 = 2100;
+
+impl TrainConfig {
+    /// As [`TrainConfig::new`] for worlds that are in no registry, such as those of tests.
+    #[must_use]
+    pub fn plain(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> TrainConfig {
+        let released = preset == Preset::Released;
+        let cores = std::thread::available_parallelism().map_or(1, usize::from).min(16);
+        let episode_steps = (EPISODE_TICS / env.frame_skip.max(1)).max(1);
+        let scenario = env.scenario();
+        let separate = algorithm.separates_networks();
+        let mut config = TrainConfig {
+            algorithm,
+            preset,
+            seed: 1,
+            frames: 500_000_000,
+            curriculum: Vec::new(),
+            device: "cpu".into(),
+            episode_steps,
+            constraints: vec![Constraint { term: None, budget: 0.0 }],
+            constraint_statistic: if released { ConstraintStatistic::StepMean } else { ConstraintStatistic::EpisodeMean },
+            network: NetworkConfig {
+                convolutions: vec![
+                    Convolution { channels: 32, kernel: 8, stride: 4 },
+                    Convolution { channels: 64, kernel: 4, stride: 2 },
+                    Convolution { channels: 128, kernel: 3, stride: 2 },
+                ],
+                dense: if released { vec![512] } else { vec![512, 512] },
+                recurrent: Some(512),
+                separate,
+                initialisation: match (released, separate) {
+                    (false, _) => Initialisation::Orthogonal,
+                    (true, false) => Initialisation::OrthogonalHeads,
+                    (true, true) => Initialisation::Uniform,
+                },
+            },
+            sampling: SamplingConfig {
+                lanes: 32,
+                rollout: 32,
+                samplers: samplers_for(cores, 32),
+                world_threads: 0,
+                groups: 1,
+                spread_out: true,
+                synchronous: true,
+                accumulated: 2,
+                max_policy_lag: 1000,
+            },
+            learning: LearningConfig {
+                epochs: 1,
+                minibatches: 1,
+                gamma: 0.99,
+                gae_lambda: 0.95,
+                rate: 1e-4,
+                final_rate: 1e-4,
+                adam_betas: (0.9, 0.999),
+                adam_epsilon: if released && separate { 1e-8 } else { 1e-6 },
+                max_gradient_norm: 4.0,
+                clip_ratio: 0.1,
+                clip_value: if released { 0.2 } else { 1.0 },
+                value_coefficient: 0.5,
+                exploration: Exploration::SymmetricKl,
+                exploration_coefficient: 0.001,
+                bootstrap_time_outs: !released,
+                threads: cores,
+            },
+            algorithm_settings: AlgorithmConfig {
+                penalty_scale: if released && scenario == Some(Scenario::ArmamentBurden) { 0.1 } else { 1.0 },
+                multiplier_initial: 0.0,
+                multiplier_rate: 0.01,
+                pid_gains: (0.1, 0.01, 0.01),
+                pid_initial: 0.001,
+                pid_decay: 0.95,
+                pid_delay: 10,
+                p3o_kappa: if released { 1.0 } else { 20.0 },
+                p3o_clipped: !released,
+                saute_gamma: 0.9999,
+                saute_unsafe_reward: match scenario {
+                    Some(Scenario::ArmamentBurden) => -0.005,
+                    Some(Scenario::RemedyRush) => -0.025,
+                    Some(Scenario::CollateralDamage) => -0.1,
+                    Some(Scenario::PrecipicePlunge) => -0.7,
+                    Some(Scenario::VolcanicVenture | Scenario::DetonatorsDilemma) | None => -0.01,
+                },
+                saute_visible: !released,
+                saute_horizon: f64::from(if released { EPISODE_TICS } else { episode_steps }),
+                trust_radius: 0.01,
+                conjugate_iterations: 10,
+                fisher_damping: 0.1,
+                line_search_steps: 5,
+                line_search_factor: 0.5,
+                trpo_consistent: !released,
+                focops_eta: 0.02,
+                focops_temperature: 1.5,
+                multiplier_limit: 2.0,
+                ipo_kappa: 0.01,
+                ipo_limit: 1.0,
+            },
+            reporting: ReportingConfig { report_seconds: 10.0, checkpoint_seconds: 120.0, keep: 2, window: 100 },
+            env,
+        };
+        if preset == Preset::Quick {
+            quicken(&mut config);
+        }
+        config
+    }
+}
+
+/// As many samplers as cores, as far as they divide the worlds.
+fn samplers_for(cores: usize, lanes: usize) -> usize {
+    (1..=cores.min(lanes)).rev().find(|count| lanes.is_multiple_of(*count)).unwrap_or(1)
+}
+
+/// Settings that learn within minutes.
+fn quicken(config: &mut TrainConfig) {
+    config.frames = 4_000_000;
+    config.learning.rate = 5e-4;
+    config.learning.final_rate = 1e-4;
+    config.learning.epochs = 2;
+    config.learning.minibatches = 2;
+    config.algorithm_settings.multiplier_rate = 0.02;
+    config.reporting.report_seconds = 5.0;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_follow_the_table_of_decisions() {
+        let make = |algorithm, preset| TrainConfig::new(algorithm, preset, EnvConfig::new("ArmamentBurdenLevel1-v0")).unwrap();
+        let (paper, released) = (make(AlgorithmKind::PpoLag, Preset::Paper), make(AlgorithmKind::PpoLag, Preset::Released));
+        assert_eq!((paper.network.dense.len(), released.network.dense.len()), (2, 1));
+        assert_eq!((paper.learning.clip_value, released.learning.clip_value), (1.0, 0.2));
+        assert_eq!(paper.network.initialisation, Initialisation::Orthogonal);
+        assert_eq!(released.network.initialisation, Initialisation::OrthogonalHeads);
+        assert!(paper.learning.bootstrap_time_outs && !released.learning.bootstrap_time_outs);
+        assert_eq!(released.constraint_statistic, ConstraintStatistic::StepMean);
+        assert_eq!(paper.constraints[0].budget, 50.0);
+        assert_eq!(make(AlgorithmKind::PpoCost, Preset::Released).algorithm_settings.penalty_scale, 0.1);
+        assert_eq!(make(AlgorithmKind::Trpo, Preset::Released).learning.adam_epsilon, 1e-8);
+        let text = serde_json::to_string(&paper).unwrap();
+        assert_eq!(serde_json::from_str::<TrainConfig>(&text).unwrap(), paper);
+    }
+}

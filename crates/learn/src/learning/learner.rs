@@ -1,0 +1,442 @@
+//! The learner: networks, optimiser and running statistics, and what an algorithm does with them.
+
+use burn::tensor::{Device, Tensor, TensorData};
+
+use crate::config::TrainConfig;
+use crate::error::LearnError;
+use crate::learning::advantage::{Lane, generalised_advantages};
+use crate::learning::metrics::Means;
+use crate::learning::normaliser::{Moments, PixelNormaliser};
+use crate::learning::optimiser::Adam;
+use crate::networks::device::ComputeDevice;
+use crate::networks::distribution::{Policy, Taken};
+use crate::networks::{ModelSequences, ModelShape, Published, Sequences, Stack};
+use crate::sampling::rollout::Rollout;
+
+/// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of the costs; values of
+/// lane `l` at step `t` are at `l * steps + t`.
+pub struct Prepared<'a> {
+    /// The rollout.
+    pub rollout: &'a Rollout,
+    /// Advantages of each critic, in raw units.
+    pub advantages: Vec<Vec<f32>>,
+    /// Normalised returns of each critic.
+    pub targets: Vec<Vec<f32>>,
+    /// Normalised values of each critic when the actions were taken.
+    pub old_values: Vec<Vec<f32>>,
+    /// Mean cost of each constraint per step.
+    pub mean_costs: Vec<f64>,
+}
+
+/// Some trajectories of a prepared rollout, ready for a loss. Rows are ordered by time, then by lane.
+pub struct Minibatch<'a> {
+    /// What the networks read.
+    pub batch: ModelSequences<'a>,
+    /// Actions taken.
+    pub taken: Taken,
+    /// Logarithm of their probabilities when they were taken.
+    pub old_log_probability: Tensor<1>,
+    /// Policy when they were taken.
+    pub old_policy: Policy,
+    /// Raw advantages of each critic.
+    pub advantages: Vec<Vec<f32>>,
+    /// Values of each critic when the actions were taken.
+    pub old_values: Vec<Tensor<1>>,
+    /// Targets of each critic.
+    pub targets: Vec<Tensor<1>>,
+    /// Mean cost of each constraint per step.
+    pub mean_costs: Vec<f64>,
+}
+
+impl Minibatch<'_> {
+    /// A vector of one number a row as a tensor.
+    #[must_use]
+    pub fn tensor(&self, values: Vec<f32>) -> Tensor<1> {
+        column(values, &loss_device())
+    }
+}
+
+/// What the networks say about a minibatch, attached to the graph.
+pub struct Heads {
+    /// The policy.
+    pub policy: Policy,
+    /// Value of each critic.
+    pub values: Vec<Tensor<1>>,
+}
+
+/// A loss and the numbers worth reporting about it.
+pub struct Loss {
+    /// What is minimised.
+    pub total: Tensor<1>,
+    /// Named parts.
+    pub parts: Vec<(&'static str, Tensor<1>)>,
+}
+
+/// Losses are a few numbers a sample: they are computed on the processor whatever the networks run on.
+#[must_use]
+pub fn loss_device() -> Device {
+    Device::flex().autodiff()
+}
+
+/// A vector as a tensor.
+#[must_use]
+pub fn column(values: Vec<f32>, device: &Device) -> Tensor<1> {
+    let rows = values.len();
+    Tensor::from_data(TensorData::new(values, [rows]), device)
+}
+
+/// Rows as a tensor on the losses' device.
+#[must_use]
+pub fn matrix(rows: Vec<f32>, width: usize) -> Tensor<2> {
+    let count = rows.len() / width;
+    Tensor::from_data(TensorData::new(rows, [count, width]), &loss_device())
+}
+
+/// A tensor's values, row by row.
+#[must_use]
+pub fn to_rows(tensor: Tensor<2>) -> Vec<f32> {
+    tensor.into_data().try_to_vec().expect("32-bit floats")
+}
+
+/// A tensor of one number.
+#[must_use]
+pub fn scalar(tensor: &Tensor<1>) -> f64 {
+    f64::from(tensor.clone().into_scalar::<f32>())
+}
+
+/// Networks, optimisers and running statistics.
+pub struct Learner {
+    shape: ModelShape,
+    networks: Stack,
+    /// Flat parameters of all networks.
+    pub parameters: Vec<f32>,
+    /// One optimiser a network.
+    pub optimisers: Vec<Adam>,
+    /// Statistics of pixels.
+    pub pixels: PixelNormaliser,
+    /// Statistics of each critic's returns.
+    pub returns: Vec<Moments>,
+    /// Updates so far.
+    pub version: u64,
+    /// Learning rate of the next update.
+    pub rate: f64,
+    /// Settings.
+    pub config: TrainConfig,
+    gradient: Vec<f32>,
+    /// The networks do not hold the present parameters yet.
+    stale: bool,
+    /// Nor the present statistics of pixels.
+    stale_pixels: bool,
+}
+
+impl Learner {
+    /// A learner with fresh weights.
+    pub fn new(config: &TrainConfig, shape: &ModelShape, device: &ComputeDevice) -> Learner {
+        let scheme = config.network.initialisation;
+        let parameters: Vec<f32> = shape
+            .networks
+            .iter()
+            .enumerate()
+            .flat_map(|(index, network)| network.initial_parameters(scheme, config.seed, index as u64))
+            .collect();
+        Learner {
+            networks: Stack::new(shape, device, config.learning.threads),
+            optimisers: shape.networks.iter().map(|network| Adam::new(network.parameter_count())).collect(),
+            pixels: PixelNormaliser::new(shape.pixels()),
+            returns: vec![Moments::default(); 1 + shape.cost_critics],
+            version: 0,
+            rate: config.learning.rate,
+            config: config.clone(),
+            gradient: vec![0.0; parameters.len()],
+            parameters,
+            shape: shape.clone(),
+            stale: true,
+            stale_pixels: true,
+        }
+    }
+
+    /// The model's shape.
+    #[must_use]
+    pub fn shape(&self) -> &ModelShape {
+        &self.shape
+    }
+
+    /// The present weights for samplers.
+    pub fn publish(&mut self) -> Published {
+        self.refresh();
+        self.networks.publish(self.version)
+    }
+
+    /// Takes over statistics of a rollout and computes its advantages and targets.
+    pub fn prepare<'a>(&mut self, rollout: &'a Rollout) -> Prepared<'a> {
+        self.pixels.update(&rollout.frames(), self.config.learning.threads);
+        self.stale_pixels = true;
+        let (steps, lanes) = (rollout.steps(), rollout.lanes());
+        let (width, first) = (self.shape.outputs(), self.shape.value_column());
+        let constraints = self.config.constraints.len();
+        let settings = &self.config.learning;
+        let mut prepared = Prepared {
+            rollout,
+            advantages: Vec::new(),
+            targets: Vec::new(),
+            old_values: Vec::new(),
+            mean_costs: vec![0.0; constraints],
+        };
+        for (critic, moments) in self.returns.iter_mut().enumerate() {
+            let mut advantages = vec![0.0; steps * lanes];
+            let mut returns = vec![0.0; steps * lanes];
+            let mut old_values = vec![0.0; steps * lanes];
+            for lane in 0..lanes {
+                let (part, own) = rollout.find(lane);
+                let row = |step: usize| step * part.lanes + own;
+                let normalised: Vec<f32> = (0..=steps).map(|step| part.outputs[row(step) * width + first + critic]).collect();
+                let values: Vec<f32> = normalised.iter().map(|&value| moments.denormalise(value)).collect();
+                let rewards: Vec<f32> = (0..steps)
+                    .map(|step| match critic {
+                        0 => part.rewards[row(step)],
+                        cost => part.costs[row(step) * constraints + cost - 1],
+                    })
+                    .collect();
+                let done: Vec<bool> = (0..steps).map(|step| part.done[row(step)]).collect();
+                let mut cut_off_values = vec![0.0; steps];
+                if settings.bootstrap_time_outs {
+                    for (cut, outputs) in part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own) {
+                        cut_off_values[cut / part.lanes] = moments.denormalise(outputs[first + critic]);
+                    }
+                }
+                let out = &mut advantages[lane * steps..(lane + 1) * steps];
+                let lane_values = Lane { rewards: &rewards, done: &done, cut_off_values: &cut_off_values, values: &values };
+                generalised_advantages(lane_values, settings.gamma, settings.gae_lambda, out);
+                for step in 0..steps {
+                    returns[lane * steps + step] = out[step] + values[step];
+                    old_values[lane * steps + step] = normalised[step];
+                }
+            }
+            moments.update(&returns);
+            prepared.targets.push(returns.iter().map(|&value| moments.normalise(value)).collect());
+            prepared.advantages.push(advantages);
+            prepared.old_values.push(old_values);
+        }
+        let all: Vec<usize> = (0..lanes).collect();
+        prepared.mean_costs = mean_costs(rollout, &all, constraints);
+        prepared
+    }
+
+    /// The trajectories of some lanes.
+    #[must_use]
+    pub fn minibatch<'a>(&self, prepared: &Prepared<'a>, lanes: &[usize]) -> Minibatch<'a> {
+        let rollout = prepared.rollout;
+        let steps = rollout.steps();
+        let rows = || (0..steps).flat_map(|step| lanes.iter().map(move |&lane| (step, lane)));
+        let shape = &self.shape;
+        let (width, action, extra) = (shape.outputs(), &shape.action, shape.extra_inputs());
+        let mut sequences = Sequences {
+            steps,
+            lanes: lanes.len(),
+            observations: Vec::with_capacity(steps * lanes.len()),
+            extra: Vec::new(),
+            initial_state: Vec::new(),
+            reset: Vec::with_capacity(steps * lanes.len()),
+        };
+        let (mut actions, mut deltas, mut logs, mut policy) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (step, lane) in rows() {
+            let (part, own) = rollout.find(lane);
+            let row = step * part.lanes + own;
+            sequences.observations.push(part.frame(step, own));
+            sequences.extra.extend_from_slice(&part.extra[row * extra..(row + 1) * extra]);
+            sequences.reset.push(step > 0 && part.done[row - part.lanes]);
+            let (count, continuous) = (action.sizes.len(), action.deltas);
+            actions.extend_from_slice(&part.actions[row * count..(row + 1) * count]);
+            deltas.extend_from_slice(&part.deltas[row * continuous..(row + 1) * continuous]);
+            logs.push(part.log_probabilities[row]);
+            policy.extend_from_slice(&part.outputs[row * width..row * width + action.parameters()]);
+        }
+        let state = |network: usize| -> Vec<f32> {
+            let units = shape.networks[network].state_size();
+            let of = |&lane: &usize| {
+                let (part, own) = rollout.find(lane);
+                part.initial_state[network][own * units..(own + 1) * units].to_vec()
+            };
+            lanes.iter().flat_map(of).collect()
+        };
+        let initial_state = (0..shape.networks.len()).map(state).collect();
+        let pick = |values: &Vec<f32>| -> Vec<f32> { rows().map(|(step, lane)| values[lane * steps + step]).collect() };
+        let device = loss_device();
+        Minibatch {
+            batch: ModelSequences { sequences, initial_state },
+            taken: Taken::new(action, &actions, &deltas, &device),
+            old_log_probability: column(logs, &device),
+            old_policy: Policy::new(action, &matrix(policy, action.parameters())),
+            advantages: prepared.advantages.iter().map(pick).collect(),
+            old_values: prepared.old_values.iter().map(|values| column(pick(values), &device)).collect(),
+            targets: prepared.targets.iter().map(|values| column(pick(values), &device)).collect(),
+            mean_costs: mean_costs(rollout, lanes, self.config.constraints.len()),
+        }
+    }
+
+    fn refresh(&mut self) {
+        if self.stale {
+            self.networks.load(&self.parameters);
+            self.stale = false;
+        }
+        self.refresh_pixels();
+    }
+
+    fn refresh_pixels(&mut self) {
+        if self.stale_pixels {
+            self.networks.load_pixels(&self.pixels.scale());
+            self.stale_pixels = false;
+        }
+    }
+
+    /// Output rows as heads.
+    #[must_use]
+    pub fn heads(&self, outputs: &Tensor<2>) -> Heads {
+        let policy = outputs.clone().narrow(1, 0, self.shape.action.parameters());
+        let value = |critic| outputs.clone().narrow(1, self.shape.value_column() + critic, 1).squeeze_dim(1);
+        Heads { policy: Policy::new(&self.shape.action, &policy), values: (0..=self.shape.cost_critics).map(value).collect() }
+    }
+
+    /// The gradient of a loss in the parameters of some networks, and the loss's parts. The loss must not depend on the
+    /// columns of the others.
+    pub fn gradient(
+        &mut self,
+        networks: std::ops::Range<usize>,
+        minibatch: &mut Minibatch<'_>,
+        loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
+        means: &mut Means,
+    ) -> Result<Vec<f32>, LearnError> {
+        self.refresh();
+        let rows = self.networks.forward(networks.clone(), &mut minibatch.batch);
+        let outputs = matrix(rows, self.shape.outputs()).require_grad();
+        let loss = loss(&self.heads(&outputs), minibatch);
+        for (name, part) in &loss.parts {
+            means.add(name, scalar(part));
+        }
+        let total = scalar(&loss.total);
+        means.add("loss", total);
+        if !total.is_finite() {
+            return Err(diverged("loss", total));
+        }
+        let gradients = loss.total.backward();
+        let rows = to_rows(outputs.grad(&gradients).expect("the loss depends on the outputs"));
+        let mut gradient = std::mem::take(&mut self.gradient);
+        self.networks.backward(networks, &mut minibatch.batch, &rows, &mut gradient);
+        Ok(gradient)
+    }
+
+    /// One step of Adam down a gradient, for some of the networks; its norm is cut down to the largest allowed.
+    pub fn step(&mut self, gradient: Vec<f32>, networks: std::ops::Range<usize>, means: &mut Means) -> Result<(), LearnError> {
+        let start = self.shape.parameter_range(networks.start).start;
+        let end = self.shape.parameter_range(networks.end - 1).end;
+        let norm = crate::networks::cpu::elementwise::sum_of_squares(&gradient[start..end]).sqrt();
+        means.add("gradient_norm", norm);
+        if !norm.is_finite() {
+            return Err(diverged("gradient's norm", norm));
+        }
+        let settings = &self.config.learning;
+        let scale = (settings.max_gradient_norm / norm.max(1e-12)).min(1.0);
+        for network in networks {
+            let range = self.shape.parameter_range(network);
+            let parameters = &mut self.parameters[range.clone()];
+            self.optimisers[network].step(&gradient[range], parameters, scale, self.rate, settings);
+        }
+        self.gradient = gradient;
+        self.version += 1;
+        self.stale = true;
+        Ok(())
+    }
+
+    /// Gradient and step in one, for algorithms of the first order.
+    pub fn descend(
+        &mut self,
+        minibatch: &mut Minibatch<'_>,
+        loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        self.descend_networks(0..self.shape.networks.len(), minibatch, loss, means)
+    }
+
+    /// As [`Learner::descend`] for some of the networks.
+    pub fn descend_networks(
+        &mut self,
+        networks: std::ops::Range<usize>,
+        minibatch: &mut Minibatch<'_>,
+        loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        let gradient = self.gradient(networks.clone(), minibatch, loss, means)?;
+        self.step(gradient, networks, means)
+    }
+
+    /// The policy network's parameters. Only for models of separate networks, as all that follows.
+    #[must_use]
+    pub fn policy_parameters(&self) -> Vec<f32> {
+        self.parameters[self.shape.parameter_range(0)].to_vec()
+    }
+
+    /// Policy outputs under other parameters of the policy network.
+    pub fn policy_outputs(&mut self, minibatch: &mut Minibatch<'_>, parameters: &[f32]) -> Tensor<2> {
+        self.refresh_pixels();
+        self.stale = true;
+        self.networks.load_network(0, parameters);
+        matrix(self.networks.forward_network(0, &mut minibatch.batch), self.shape.action.parameters())
+    }
+
+    /// The gradient in the policy network's parameters from that of its outputs of the last
+    /// [`Learner::policy_outputs`].
+    pub fn policy_backward(&mut self, minibatch: &mut Minibatch<'_>, rows: &[f32]) -> Vec<f32> {
+        let mut gradient = vec![0.0; self.shape.parameter_range(0).len()];
+        self.networks.backward_network(0, &mut minibatch.batch, rows, &mut gradient);
+        gradient
+    }
+
+    /// Replaces the policy network's parameters.
+    pub fn set_policy_parameters(&mut self, parameters: &[f32]) {
+        let range = self.shape.parameter_range(0);
+        self.parameters[range].copy_from_slice(parameters);
+        self.stale = true;
+    }
+
+    /// Takes over weights and normalisers of another learner of the same shape, and its count of updates.
+    pub fn inherit(&mut self, other: &Learner) -> Result<(), LearnError> {
+        let sizes = |learner: &Learner| (learner.parameters.len(), learner.pixels.mean.len(), learner.returns.len());
+        if sizes(self) != sizes(other) {
+            let problem = "the lessons of a curriculum must be alike in what is seen and done; these levels are not";
+            return Err(LearnError::Config(problem.into()));
+        }
+        self.parameters.clone_from(&other.parameters);
+        self.pixels = other.pixels.clone();
+        self.returns.clone_from(&other.returns);
+        self.version = other.version;
+        self.replaced();
+        Ok(())
+    }
+
+    /// Tells the learner that parameters or statistics were replaced from outside.
+    pub fn replaced(&mut self) {
+        (self.stale, self.stale_pixels) = (true, true);
+    }
+}
+
+fn diverged(what: &str, value: f64) -> LearnError {
+    LearnError::Diverged(format!(
+        "the {what} became {value}: training has diverged; resume from the last checkpoint with a lower learning rate"
+    ))
+}
+
+/// Mean cost of each constraint over the steps of some lanes.
+fn mean_costs(rollout: &Rollout, lanes: &[usize], constraints: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; constraints];
+    for &lane in lanes {
+        let (part, own) = rollout.find(lane);
+        for step in 0..part.steps {
+            let row = (step * part.lanes + own) * constraints;
+            for (sum, &cost) in sums.iter_mut().zip(&part.costs[row..row + constraints]) {
+                *sum += f64::from(cost);
+            }
+        }
+    }
+    let count = (lanes.len() * rollout.steps()) as f64;
+    sums.iter().map(|sum| sum / count).collect()
+}

@@ -1,0 +1,207 @@
+//! Running means and variances: of every pixel, and of returns.
+
+use serde::{Deserialize, Serialize};
+
+use crate::networks::PixelScale;
+use crate::networks::cpu::simd::vectorised;
+
+/// Added to variances before their root is taken.
+const EPSILON: f64 = 1e-5;
+/// Normalised values are cut off here.
+pub const CLIP: f32 = 5.0;
+
+/// Running mean and variance of one number, merged batch by batch by Chan's rule; it starts as one draw of mean 0 and
+/// variance 1, and never forgets.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Moments {
+    /// Number of draws so far, the made-up first one included.
+    pub count: f64,
+    /// Mean.
+    pub mean: f64,
+    /// Variance.
+    pub variance: f64,
+}
+
+impl Default for Moments {
+    fn default() -> Moments {
+        Moments { count: 1.0, mean: 0.0, variance: 1.0 }
+    }
+}
+
+impl Moments {
+    /// Merges a batch of `count` draws with this mean and unbiased variance.
+    pub fn merge(&mut self, count: f64, mean: f64, variance: f64) {
+        let total = self.count + count;
+        let distance = mean - self.mean;
+        let squares = self.variance * self.count + variance * count + distance * distance * self.count * count / total;
+        *self = Moments { count: total, mean: self.mean + distance * count / total, variance: squares / total };
+    }
+
+    /// Merges draws.
+    pub fn update(&mut self, values: &[f32]) {
+        if values.is_empty() {
+            return;
+        }
+        let count = values.len() as f64;
+        let mean = values.iter().map(|&v| f64::from(v)).sum::<f64>() / count;
+        let squares: f64 = values.iter().map(|&v| (f64::from(v) - mean).powi(2)).sum();
+        self.merge(count, mean, squares / (count - 1.0).max(1.0));
+    }
+
+    fn deviation(&self) -> f64 {
+        (self.variance + EPSILON).sqrt()
+    }
+
+    /// A value in units of the running deviation, cut off at five.
+    #[must_use]
+    pub fn normalise(&self, value: f32) -> f32 {
+        (((f64::from(value) - self.mean) / self.deviation()) as f32).clamp(-CLIP, CLIP)
+    }
+
+    /// The inverse of [`Moments::normalise`] within its bounds.
+    #[must_use]
+    pub fn denormalise(&self, value: f32) -> f32 {
+        (f64::from(value.clamp(-CLIP, CLIP)) * self.deviation() + self.mean) as f32
+    }
+}
+
+/// Running mean and variance of every pixel (over 255) of an observation.
+#[derive(Clone, PartialEq, Debug)]
+pub struct PixelNormaliser {
+    /// Number of frames so far, the made-up first one included.
+    pub count: f64,
+    /// Mean of each pixel.
+    pub mean: Vec<f64>,
+    /// Variance of each pixel.
+    pub variance: Vec<f64>,
+}
+
+impl PixelNormaliser {
+    /// Statistics before the first frame.
+    #[must_use]
+    pub fn new(pixels: usize) -> PixelNormaliser {
+        PixelNormaliser { count: 1.0, mean: vec![0.0; pixels], variance: vec![1.0; pixels] }
+    }
+
+    /// Merges a batch of frames, working on `threads` threads. Sums are whole numbers, so neither the order of frames
+    /// nor the number of threads changes a bit.
+    pub fn update(&mut self, frames: &[&[u8]], threads: usize) {
+        if frames.is_empty() {
+            return;
+        }
+        const BLOCK: usize = 2048;
+        let count = frames.len() as f64;
+        let total = self.count + count;
+        let (old_count, pixels) = (self.count, self.mean.len());
+        let share = pixels.div_ceil(threads.max(1)).next_multiple_of(BLOCK);
+        std::thread::scope(|scope| {
+            let parts = self.mean.chunks_mut(share).zip(self.variance.chunks_mut(share));
+            let mut work = Vec::new();
+            for (part, (means, variances)) in parts.enumerate() {
+                work.push(move || {
+                    let (mut sums, mut squares) = ([0u32; BLOCK], [0u32; BLOCK]);
+                    for (block, (means, variances)) in means.chunks_mut(BLOCK).zip(variances.chunks_mut(BLOCK)).enumerate() {
+                        let first = part * share + block * BLOCK;
+                        let (mut sum, mut square) = ([0u64; BLOCK], [0u64; BLOCK]);
+                        // 32 bits hold the squares of 66,000 pixels.
+                        for some in frames.chunks(65_536) {
+                            sums.fill(0);
+                            squares.fill(0);
+                            for frame in some {
+                                add_pixels(&frame[first..first + means.len()], &mut sums, &mut squares);
+                            }
+                            for lane in 0..means.len() {
+                                sum[lane] += u64::from(sums[lane]);
+                                square[lane] += u64::from(squares[lane]);
+                            }
+                        }
+                        for lane in 0..means.len() {
+                            let mean = sum[lane] as f64 / count;
+                            let deviations = square[lane] as f64 - mean * sum[lane] as f64;
+                            let variance = (deviations / (count - 1.0).max(1.0)).max(0.0) / (255.0 * 255.0);
+                            let mut moments = Moments { count: old_count, mean: means[lane], variance: variances[lane] };
+                            moments.merge(count, mean / 255.0, variance);
+                            (means[lane], variances[lane]) = (moments.mean, moments.variance);
+                        }
+                    }
+                });
+            }
+            let mut work = work.into_iter();
+            let own = work.next();
+            for other in work {
+                scope.spawn(other);
+            }
+            if let Some(mut own) = own {
+                own();
+            }
+        });
+        self.count = total;
+    }
+
+    /// How pixels enter the network under these statistics.
+    #[must_use]
+    pub fn scale(&self) -> PixelScale {
+        let factor = |variance: f64| 1.0 / (variance + EPSILON).sqrt();
+        PixelScale {
+            scale: self.variance.iter().map(|&variance| (factor(variance) / 255.0) as f32).collect(),
+            shift: self.variance.iter().zip(&self.mean).map(|(&variance, mean)| (-mean * factor(variance)) as f32).collect(),
+        }
+    }
+}
+
+vectorised! {
+    fn add_pixels(pixels: &[u8], sums: &mut [u32], squares: &mut [u32]) {
+        for ((pixel, sum), square) in pixels.iter().zip(sums).zip(squares) {
+            let value = u32::from(*pixel);
+            *sum += value;
+            *square += value * value;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `training.md` §10.
+    #[test]
+    fn first_batch_gives_the_recorded_numbers() {
+        let mut moments = Moments::default();
+        moments.update(&[1.0, 2.0, 3.0, 4.0]);
+        assert!((moments.mean - 2.0).abs() < 1e-9);
+        assert!((moments.variance - 2.533_333_3).abs() < 1e-7);
+        assert_eq!(moments.count, 5.0);
+        let value = moments.normalise(3.0);
+        assert!((moments.denormalise(value) - 3.0).abs() < 1e-6);
+        assert_eq!(moments.normalise(1e6), 5.0);
+    }
+
+    #[test]
+    fn pixels_are_normalised_as_single_numbers_are() {
+        let pixels = 5000;
+        let frames: Vec<Vec<u8>> =
+            (0..9u32).map(|f| (0..pixels as u32).map(|p| ((p * 31 + f * f * 17) % 256) as u8).collect()).collect();
+        let (early, late) = frames.split_at(4);
+        let run = |threads| {
+            let mut normaliser = PixelNormaliser::new(pixels);
+            for part in [early, late] {
+                normaliser.update(&part.iter().map(Vec::as_slice).collect::<Vec<_>>(), threads);
+            }
+            normaliser
+        };
+        let normaliser = run(1);
+        assert_eq!(normaliser, run(3));
+        let scale = normaliser.scale();
+        for pixel in [0, 1, 2047, 2048, 4999] {
+            let mut moments = Moments::default();
+            for part in [early, late] {
+                moments.update(&part.iter().map(|f| f32::from(f[pixel]) / 255.0).collect::<Vec<_>>());
+            }
+            assert!((moments.mean - normaliser.mean[pixel]).abs() < 1e-6);
+            assert!((moments.variance - normaliser.variance[pixel]).abs() < 1e-6);
+            let value = f32::from(frames[0][pixel]);
+            let expected = moments.normalise(value / 255.0);
+            assert!((value * scale.scale[pixel] + scale.shift[pixel] - expected).abs() < 1e-4);
+        }
+    }
+}

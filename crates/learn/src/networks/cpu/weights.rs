@@ -1,0 +1,219 @@
+//! Weights in the order that the kernels read them in.
+
+use super::convolution::ConvolutionPlan;
+use super::elementwise::NOWHERE;
+use super::product::{PANEL, pack, pack_transposed};
+use crate::networks::{NetworkShape, Parameter, PixelScale};
+
+/// What follows from a shape once and for all: plans of the convolutions, places of parameters.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The shape.
+    pub shape: NetworkShape,
+    /// A plan for each convolution.
+    pub convolutions: Vec<ConvolutionPlan>,
+    /// The table of parameters.
+    pub parameters: Vec<Parameter>,
+    /// Width of the output rows inside: the outputs rounded up to whole panels.
+    pub padded_outputs: usize,
+}
+
+impl Plan {
+    /// The plan of a checked shape.
+    #[must_use]
+    pub fn new(shape: &NetworkShape) -> Plan {
+        let images = shape.images();
+        let convolutions =
+            shape.convolutions.iter().zip(&images).map(|(layer, &image)| ConvolutionPlan::new(image, layer)).collect();
+        Plan {
+            convolutions,
+            parameters: shape.parameters(),
+            padded_outputs: shape.outputs().next_multiple_of(PANEL),
+            shape: shape.clone(),
+        }
+    }
+
+    /// Weights of convolution `index`; its biases follow at one more.
+    #[must_use]
+    pub fn convolution(&self, index: usize) -> &Parameter {
+        &self.parameters[2 * index]
+    }
+
+    /// Weights of dense layer `index`; its biases follow.
+    #[must_use]
+    pub fn dense(&self, index: usize) -> &Parameter {
+        &self.parameters[2 * (self.convolutions.len() + index)]
+    }
+
+    /// Parameter after another one in the table: the biases of a layer.
+    #[must_use]
+    pub fn after(&self, parameter: &Parameter) -> &Parameter {
+        let at = self.parameters.iter().position(|other| other.offset == parameter.offset).expect("from this table");
+        &self.parameters[at + 1]
+    }
+
+    /// The four parameters of the GRU: input weights and biases, hidden weights and biases.
+    #[must_use]
+    pub fn gru(&self) -> [&Parameter; 4] {
+        let first = 2 * (self.convolutions.len() + self.shape.dense.len());
+        [0, 1, 2, 3].map(|index| &self.parameters[first + index])
+    }
+
+    /// Weights of head `index`; its biases follow.
+    #[must_use]
+    pub fn head(&self, index: usize) -> &Parameter {
+        let gru = if self.shape.recurrent.is_some() { 4 } else { 0 };
+        &self.parameters[2 * (self.convolutions.len() + self.shape.dense.len() + index) + gru]
+    }
+}
+
+/// Everything that the kernels read, made from the flat parameters by [`PackedWeights::load`].
+#[derive(Clone, Debug, Default)]
+pub struct PackedWeights {
+    /// Convolutions, forward.
+    pub convolutions: Vec<Vec<f32>>,
+    /// Dense layers, forward.
+    pub dense: Vec<Vec<f32>>,
+    /// GRU, from its input.
+    pub gru_input: Vec<f32>,
+    /// GRU, from its state.
+    pub gru_hidden: Vec<f32>,
+    /// All heads side by side, columns padded to whole panels.
+    pub heads: Vec<f32>,
+    /// Biases: of the convolutions, of the dense layers.
+    pub convolution_biases: Vec<Vec<f32>>,
+    /// Biases of the dense layers.
+    pub dense_biases: Vec<Vec<f32>>,
+    /// Biases of the GRU: with the input's product, with the state's.
+    pub gru_biases: [Vec<f32>; 2],
+    /// Biases of the heads, padded.
+    pub head_biases: Vec<f32>,
+}
+
+/// Transposed weights, which carry gradients back: learners alone need them.
+#[derive(Clone, Debug, Default)]
+pub struct Backward {
+    /// Convolutions; the first is empty, for nothing flows into the image.
+    pub convolutions: Vec<Vec<f32>>,
+    /// Dense layers; empty where nothing flows further back.
+    pub dense: Vec<Vec<f32>>,
+    /// GRU, to its input (without the extra inputs).
+    pub gru_input: Vec<f32>,
+    /// GRU, to its state.
+    pub gru_hidden: Vec<f32>,
+    /// Heads.
+    pub heads: Vec<f32>,
+}
+
+fn resized(buffer: &mut Vec<f32>, length: usize) -> &mut [f32] {
+    buffer.resize(length, 0.0);
+    buffer
+}
+
+impl PackedWeights {
+    /// Packs `parameters`, reusing this value's memory.
+    pub fn load(&mut self, plan: &Plan, parameters: &[f32]) {
+        let shape = &plan.shape;
+        self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
+        self.convolution_biases.resize_with(plan.convolutions.len(), Vec::new);
+        for (index, convolution) in plan.convolutions.iter().enumerate() {
+            let weights = plan.convolution(index);
+            convolution.pack_forward(&parameters[weights.range()], resized(&mut self.convolutions[index], weights.size()));
+            copy(&mut self.convolution_biases[index], &parameters[plan.after(weights).range()]);
+        }
+        self.dense.resize_with(shape.dense.len(), Vec::new);
+        self.dense_biases.resize_with(shape.dense.len(), Vec::new);
+        for (index, &units) in shape.dense.iter().enumerate() {
+            let weights = plan.dense(index);
+            let packed = resized(&mut self.dense[index], weights.size());
+            pack(&parameters[weights.range()], weights.inputs, units, packed);
+            copy(&mut self.dense_biases[index], &parameters[plan.after(weights).range()]);
+        }
+        if let Some(units) = shape.recurrent {
+            let [input, input_bias, hidden, hidden_bias] = plan.gru();
+            let inputs = shape.core_inputs();
+            pack(&parameters[input.range()], inputs, 3 * units, resized(&mut self.gru_input, input.size()));
+            pack(&parameters[hidden.range()], units, 3 * units, resized(&mut self.gru_hidden, hidden.size()));
+            copy(&mut self.gru_biases[0], &parameters[input_bias.range()]);
+            copy(&mut self.gru_biases[1], &parameters[hidden_bias.range()]);
+        }
+        let joined = joined_heads(plan, parameters);
+        let packed = resized(&mut self.heads, joined.len());
+        pack(&joined, shape.head_inputs(), plan.padded_outputs, packed);
+        self.head_biases.clear();
+        for index in 0..shape.heads.len() {
+            self.head_biases.extend_from_slice(&parameters[plan.after(plan.head(index)).range()]);
+        }
+        self.head_biases.resize(plan.padded_outputs, 0.0);
+    }
+}
+
+/// A pixel scale in the order of the first layer's stored input.
+#[must_use]
+pub fn stored_pixels(plan: &Plan, pixels: &PixelScale) -> PixelScale {
+    let Some(first) = plan.convolutions.first() else { return pixels.clone() };
+    let channels = plan.shape.image.channels;
+    let reorder = |from: &[f32]| {
+        let mut to = vec![0.0; first.stored];
+        for (values, &place) in from.chunks_exact(channels).zip(&first.places) {
+            if place != NOWHERE {
+                to[place..place + channels].copy_from_slice(values);
+            }
+        }
+        to
+    };
+    PixelScale { scale: reorder(&pixels.scale), shift: reorder(&pixels.shift) }
+}
+
+impl Backward {
+    /// Packs `parameters`, reusing this value's memory.
+    pub fn load(&mut self, plan: &Plan, parameters: &[f32]) {
+        let shape = &plan.shape;
+        let joined_heads = joined_heads(plan, parameters);
+        self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
+        for (index, convolution) in plan.convolutions.iter().enumerate().skip(1) {
+            let weights = plan.convolution(index);
+            let packed = resized(&mut self.convolutions[index], weights.size());
+            convolution.pack_backward(&parameters[weights.range()], packed);
+        }
+        self.dense.resize_with(shape.dense.len(), Vec::new);
+        for (index, &units) in shape.dense.iter().enumerate() {
+            if index == 0 && plan.convolutions.is_empty() {
+                continue;
+            }
+            let weights = plan.dense(index);
+            let packed = resized(&mut self.dense[index], weights.size());
+            pack_transposed(&parameters[weights.range()], units, weights.inputs, packed);
+        }
+        if let Some(units) = shape.recurrent {
+            let [input, _, hidden, _] = plan.gru();
+            let dense = shape.core_inputs() - shape.extra_inputs;
+            let rows = &parameters[input.range()][..dense * 3 * units];
+            pack_transposed(rows, 3 * units, dense, resized(&mut self.gru_input, rows.len()));
+            pack_transposed(&parameters[hidden.range()], 3 * units, units, resized(&mut self.gru_hidden, hidden.size()));
+        }
+        // Nothing flows into the extra inputs, which without a GRU are the last inputs of the heads.
+        let inputs = if shape.recurrent.is_some() { shape.head_inputs() } else { shape.core_inputs() - shape.extra_inputs };
+        let rows = &joined_heads[..inputs * plan.padded_outputs];
+        pack_transposed(rows, plan.padded_outputs, inputs, resized(&mut self.heads, rows.len()));
+    }
+}
+
+fn copy(to: &mut Vec<f32>, from: &[f32]) {
+    to.clear();
+    to.extend_from_slice(from);
+}
+
+/// The heads' weights side by side, row by row, padded with zeros to whole panels.
+fn joined_heads(plan: &Plan, parameters: &[f32]) -> Vec<f32> {
+    let mut joined = vec![0.0; plan.shape.head_inputs() * plan.padded_outputs];
+    let mut first = 0;
+    for (index, &outputs) in plan.shape.heads.iter().enumerate() {
+        let weights = &parameters[plan.head(index).range()];
+        for (from, to) in weights.chunks_exact(outputs).zip(joined.chunks_exact_mut(plan.padded_outputs)) {
+            to[first..first + outputs].copy_from_slice(from);
+        }
+        first += outputs;
+    }
+    joined
+}

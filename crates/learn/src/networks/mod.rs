@@ -1,0 +1,14 @@
+//! What a policy network is: its shape, its parameters, and the two things done with it (acting and learning).
+
+pub mod burn_network;
+pub mod cpu;
+pub mod device;
+pub mod distribution;
+mod initialise;
+mod network;
+mod shape;
+mod stack;
+
+pub use network::{ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Published, Sequences};
+pub use shape::{ImageShape, NetworkShape, Parameter, ParameterKind};
+pub use stack::{Actor, ModelSequences, ModelShape, Stack};

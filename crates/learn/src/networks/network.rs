@@ -1,0 +1,106 @@
+//! What can be done with a network, whatever device it lives on.
+
+use std::sync::Arc;
+
+use super::shape::NetworkShape;
+use crate::networks::cpu::weights::PackedWeights;
+
+/// What turns an 8-bit pixel into the network's input: `clamp(pixel * scale + shift, -5, 5)`, in the image's order.
+#[derive(Clone, PartialEq, Debug)]
+pub struct PixelScale {
+    /// Factor of each pixel.
+    pub scale: Vec<f32>,
+    /// Summand of each pixel.
+    pub shift: Vec<f32>,
+}
+
+impl PixelScale {
+    /// Pixels over 255, nothing else.
+    #[must_use]
+    pub fn unit(pixels: usize) -> PixelScale {
+        PixelScale { scale: vec![1.0 / 255.0; pixels], shift: vec![0.0; pixels] }
+    }
+}
+
+/// Trajectories of equal length for a forward pass. Step `t` of lane `l` is row `t * lanes + l` everywhere.
+#[derive(Clone, Debug)]
+pub struct Sequences<'a> {
+    /// Steps of each trajectory.
+    pub steps: usize,
+    /// Number of trajectories.
+    pub lanes: usize,
+    /// One image a row.
+    pub observations: Vec<&'a [u8]>,
+    /// Extra inputs, `extra_inputs` a row.
+    pub extra: Vec<f32>,
+    /// State of each lane before its first step.
+    pub initial_state: Vec<f32>,
+    /// Rows before which the state is reset to zero, because the episode before has ended.
+    pub reset: Vec<bool>,
+}
+
+impl Sequences<'_> {
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.steps * self.lanes
+    }
+}
+
+/// Weights of one network for acting: immutable and shared.
+#[derive(Clone, Debug)]
+pub enum NetworkWeights {
+    /// As the processor's kernels read them.
+    Packed {
+        /// Weights.
+        weights: Arc<PackedWeights>,
+        /// How pixels enter, in the order of the first layer's stored input.
+        pixels: Arc<PixelScale>,
+    },
+    /// As a flat vector.
+    Plain {
+        /// Parameters.
+        parameters: Arc<Vec<f32>>,
+        /// How pixels enter, in the image's order.
+        pixels: Arc<PixelScale>,
+    },
+}
+
+/// A set of weights that samplers may use, numbered.
+#[derive(Clone, Debug)]
+pub struct Published {
+    /// Number of the update that made it.
+    pub version: u64,
+    /// Weights of each network of the model.
+    pub networks: Vec<NetworkWeights>,
+}
+
+/// A network that acts: one step at a time, nothing kept for a backward pass.
+pub trait ActingNetwork: Send {
+    /// Takes over weights.
+    fn load(&mut self, weights: &NetworkWeights);
+
+    /// Outputs for one step of some lanes; `state` is replaced by the state after.
+    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32]);
+}
+
+/// A network that learns.
+pub trait LearningNetwork: Send {
+    /// Its shape.
+    fn shape(&self) -> &NetworkShape;
+
+    /// Takes over weights.
+    fn load(&mut self, parameters: &[f32]);
+
+    /// Takes over how pixels enter.
+    fn load_pixels(&mut self, pixels: &PixelScale);
+
+    /// The weights for acting.
+    fn publish(&self) -> NetworkWeights;
+
+    /// Outputs of all rows, `shape().outputs()` a row; what a backward pass needs is kept.
+    fn forward(&mut self, batch: &Sequences<'_>) -> Vec<f32>;
+
+    /// The gradient of the parameters, written to `gradient`, from that of the outputs of the last forward pass.
+    fn backward(&mut self, batch: &Sequences<'_>, output_gradient: &[f32], gradient: &mut [f32]);
+}

@@ -1,0 +1,345 @@
+//! The shape of one network and the table of its parameters.
+
+use serde::{Deserialize, Serialize};
+
+use crate::config::Convolution;
+use crate::error::LearnError;
+
+/// Bounds on networks, a hundred times the original's: beyond them a number in a settings file is surely a slip.
+const WIDEST: usize = 1 << 16;
+const MOST_LAYERS: usize = 64;
+const MOST_PARAMETERS: usize = 1 << 28;
+
+/// Height, width and channels of an image.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+pub struct ImageShape {
+    /// Rows.
+    pub height: usize,
+    /// Columns.
+    pub width: usize,
+    /// Values of a pixel.
+    pub channels: usize,
+}
+
+impl ImageShape {
+    /// Number of values.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.height * self.width * self.channels
+    }
+
+    /// Shape after a convolution, if the kernel fits.
+    #[must_use]
+    pub fn after(&self, convolution: &Convolution) -> Option<ImageShape> {
+        let side = |length: usize| Some(length.checked_sub(convolution.kernel)? / convolution.stride + 1);
+        Some(ImageShape { height: side(self.height)?, width: side(self.width)?, channels: convolution.channels })
+    }
+}
+
+/// One network: convolutions, dense layers, an optional GRU, and linear heads, all on one 8-bit image.
+///
+/// The original's is [`NetworkShape::default`]: 32@8/4, 64@4/2, 128@3/2, dense 512, GRU 512.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
+pub struct NetworkShape {
+    /// Height, width, channels of the observation, stored in this order.
+    pub image: ImageShape,
+    /// Convolutions, the first one on the image.
+    pub convolutions: Vec<Convolution>,
+    /// Units of the dense layers after them, multiples of 32.
+    pub dense: Vec<usize>,
+    /// Numbers that join the last dense layer's output (the safety state of PPOSaute).
+    pub extra_inputs: usize,
+    /// Units of the GRU, a multiple of 32; `None` for a feed-forward network.
+    pub recurrent: Option<usize>,
+    /// Outputs of each linear head; they follow each other in the output row.
+    pub heads: Vec<usize>,
+}
+
+impl Default for NetworkShape {
+    fn default() -> NetworkShape {
+        NetworkShape {
+            image: ImageShape { height: 72, width: 128, channels: 3 },
+            convolutions: vec![
+                Convolution { channels: 32, kernel: 8, stride: 4 },
+                Convolution { channels: 64, kernel: 4, stride: 2 },
+                Convolution { channels: 128, kernel: 3, stride: 2 },
+            ],
+            dense: vec![512],
+            extra_inputs: 0,
+            recurrent: Some(512),
+            heads: vec![9, 1],
+        }
+    }
+}
+
+/// What a parameter is, which decides how it is initialised.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ParameterKind {
+    /// Weights of a convolution.
+    Convolution,
+    /// Weights of a dense layer.
+    Dense,
+    /// Weights of a GRU.
+    Recurrent,
+    /// Weights of a head; the others of its row of heads are initialised apart.
+    Head,
+    /// Biases of a layer with this fan-in.
+    Bias,
+    /// Biases of a GRU.
+    RecurrentBias,
+}
+
+/// A named block of the flat parameter vector: a matrix of `inputs` rows and `outputs` columns, row by row.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Parameter {
+    /// Name in checkpoints.
+    pub name: String,
+    /// Logical shape; a convolution's is [kernel row, kernel column, input channel, output channel].
+    pub shape: Vec<usize>,
+    /// Where the block starts in the flat vector.
+    pub offset: usize,
+    /// Rows, which is the fan-in; for a bias that of its layer.
+    pub inputs: usize,
+    /// Columns.
+    pub outputs: usize,
+    /// What it is.
+    pub kind: ParameterKind,
+}
+
+impl Parameter {
+    /// Number of values.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Where the block lies in the flat vector.
+    #[must_use]
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.offset..self.offset + self.size()
+    }
+}
+
+impl NetworkShape {
+    /// Refuses shapes that no network can have, naming the number at fault.
+    pub fn check(&self) -> Result<(), LearnError> {
+        let bad = |text: String| Err(LearnError::Config(text));
+        let mut image = self.image;
+        if image.size() == 0 {
+            return bad(format!("observation of {}x{}x{} has no pixels", image.height, image.width, image.channels));
+        }
+        for convolution in &self.convolutions {
+            if convolution.channels == 0 || !convolution.channels.is_multiple_of(32) {
+                return bad(format!("convolution of {} channels: use a multiple of 32", convolution.channels));
+            }
+            if convolution.kernel == 0 || convolution.stride == 0 || convolution.stride > convolution.kernel {
+                return bad(format!(
+                    "convolution with kernel {} and stride {}: use 1 <= stride <= kernel",
+                    convolution.kernel, convolution.stride
+                ));
+            }
+            match image.after(convolution) {
+                Some(next) => image = next,
+                None => {
+                    return bad(format!(
+                        "kernel {} does not fit into an image of {}x{}: use larger frames or fewer convolutions",
+                        convolution.kernel, image.height, image.width
+                    ));
+                }
+            }
+        }
+        if self.dense.is_empty() {
+            return bad("a network needs at least one dense layer".into());
+        }
+        for units in self.dense.iter().chain(&self.recurrent) {
+            if *units == 0 || !units.is_multiple_of(32) {
+                return bad(format!("layer of {units} units: use a multiple of 32"));
+            }
+        }
+        if self.heads.is_empty() || self.heads.contains(&0) {
+            return bad("every head needs at least one output".into());
+        }
+        let widths = self.convolutions.iter().map(|convolution| &convolution.channels);
+        let widest = widths.chain(&self.dense).chain(&self.recurrent).chain(&self.heads).max().copied().unwrap_or(0);
+        let layers = self.convolutions.len() + self.dense.len() + self.heads.len();
+        // With these bounds no product of sizes wraps around.
+        if widest > WIDEST || layers > MOST_LAYERS || self.parameter_count() > MOST_PARAMETERS {
+            return bad(format!(
+                "a network of {layers} layers, the widest of {widest} units, is too large: use at most {MOST_LAYERS} layers of at \
+                 most {WIDEST} units, and {MOST_PARAMETERS} parameters"
+            ));
+        }
+        Ok(())
+    }
+
+    /// Shape of the image before each convolution and after the last.
+    #[must_use]
+    pub fn images(&self) -> Vec<ImageShape> {
+        let mut images = vec![self.image];
+        for convolution in &self.convolutions {
+            let next = images[images.len() - 1].after(convolution).expect("checked shape");
+            images.push(next);
+        }
+        images
+    }
+
+    /// Values that the convolutions hand to the first dense layer.
+    #[must_use]
+    pub fn features(&self) -> usize {
+        self.images().last().map_or(0, ImageShape::size)
+    }
+
+    /// Numbers of the state carried from step to step.
+    #[must_use]
+    pub fn state_size(&self) -> usize {
+        self.recurrent.unwrap_or(0)
+    }
+
+    /// Numbers that enter the GRU, or the heads without one.
+    #[must_use]
+    pub fn core_inputs(&self) -> usize {
+        self.dense.last().copied().unwrap_or(0) + self.extra_inputs
+    }
+
+    /// Numbers that enter the heads.
+    #[must_use]
+    pub fn head_inputs(&self) -> usize {
+        self.recurrent.unwrap_or_else(|| self.core_inputs())
+    }
+
+    /// Length of an output row: all heads one after the other.
+    #[must_use]
+    pub fn outputs(&self) -> usize {
+        self.heads.iter().sum()
+    }
+
+    /// The table of parameters in the order of the flat vector.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let mut table = Table::default();
+        for (index, (convolution, image)) in self.convolutions.iter().zip(self.images()).enumerate() {
+            let shape = vec![convolution.kernel, convolution.kernel, image.channels, convolution.channels];
+            table.layer(&format!("convolution{index}"), shape, ParameterKind::Convolution);
+        }
+        let mut inputs = self.features();
+        for (index, &units) in self.dense.iter().enumerate() {
+            table.layer(&format!("dense{index}"), vec![inputs, units], ParameterKind::Dense);
+            inputs = units;
+        }
+        if let Some(units) = self.recurrent {
+            for (name, inputs) in [("input", self.core_inputs()), ("hidden", units)] {
+                table.push(format!("gru.{name}_weight"), vec![inputs, 3 * units], units, 3 * units, ParameterKind::Recurrent);
+                table.push(format!("gru.{name}_bias"), vec![3 * units], units, 3 * units, ParameterKind::RecurrentBias);
+            }
+        }
+        for (index, &outputs) in self.heads.iter().enumerate() {
+            table.layer(&format!("head{index}"), vec![self.head_inputs(), outputs], ParameterKind::Head);
+        }
+        table.parameters
+    }
+
+    /// Number of parameters.
+    #[must_use]
+    pub fn parameter_count(&self) -> usize {
+        self.parameters().iter().map(Parameter::size).sum()
+    }
+
+    /// Floating-point operations of one forward pass of one sample (a multiply-add is two), matrix products alone.
+    #[must_use]
+    pub fn forward_flop(&self) -> f64 {
+        let images = self.images();
+        let per_use = |parameter: &Parameter| match parameter.kind {
+            ParameterKind::Bias | ParameterKind::RecurrentBias => 0.0,
+            ParameterKind::Convolution => {
+                let digits = parameter.name.trim_start_matches("convolution").split('.').next();
+                let layer: usize = digits.and_then(|digits| digits.parse().ok()).expect("name of a convolution");
+                (images[layer + 1].height * images[layer + 1].width * parameter.size()) as f64
+            }
+            _ => parameter.size() as f64,
+        };
+        2.0 * self.parameters().iter().map(per_use).sum::<f64>()
+    }
+
+    /// Floating-point operations of forward and backward passes of one sample; nothing flows back into the image.
+    #[must_use]
+    pub fn training_flop(&self) -> f64 {
+        let first = match (self.convolutions.first(), self.images().get(1)) {
+            (Some(c), Some(out)) => out.height * out.width * c.kernel * c.kernel * self.image.channels * c.channels,
+            _ => self.features() * self.dense[0],
+        };
+        3.0 * self.forward_flop() - 2.0 * first as f64
+    }
+}
+
+#[derive(Default)]
+struct Table {
+    parameters: Vec<Parameter>,
+    offset: usize,
+}
+
+impl Table {
+    fn push(&mut self, name: String, shape: Vec<usize>, inputs: usize, outputs: usize, kind: ParameterKind) {
+        let parameter = Parameter { name, shape, offset: self.offset, inputs, outputs, kind };
+        self.offset += parameter.size();
+        self.parameters.push(parameter);
+    }
+
+    /// Weights and biases of a layer whose last axis are its outputs.
+    fn layer(&mut self, name: &str, shape: Vec<usize>, kind: ParameterKind) {
+        let outputs = shape[shape.len() - 1];
+        let inputs = shape[..shape.len() - 1].iter().product();
+        self.push(format!("{name}.weight"), shape, inputs, outputs, kind);
+        self.push(format!("{name}.bias"), vec![outputs], inputs, outputs, ParameterKind::Bias);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Totals of `training.md` §2: PPO on Remedy Rush and Volcanic Venture has 2,874,090 parameters, on the spaces with
+    /// eleven logits 2,875,116, on Collateral Damage 2,872,038, 513 more with a cost critic, 2,048 more with depth.
+    #[test]
+    fn parameter_counts_are_those_of_the_original() {
+        let count = |logits, values: usize, channels| {
+            let mut shape = NetworkShape::default();
+            shape.image.channels = channels;
+            shape.heads = std::iter::once(logits).chain(std::iter::repeat_n(1, values)).collect();
+            shape.check().unwrap();
+            shape.parameter_count()
+        };
+        assert_eq!(count(9, 1, 3), 2_874_090);
+        assert_eq!(count(11, 1, 3), 2_875_116);
+        assert_eq!(count(5, 1, 3), 2_872_038);
+        assert_eq!(count(9, 2, 3), 2_874_090 + 513);
+        assert_eq!(count(9, 1, 4), 2_874_090 + 2_048);
+        assert_eq!(NetworkShape::default().features(), 2304);
+    }
+
+    /// Issue 2, must-show 5: 59 MFLOP a training sample, 22 an inference.
+    #[test]
+    fn arithmetic_is_what_the_bound_counts() {
+        let shape = NetworkShape::default();
+        assert!((shape.forward_flop() / 1e6 - 22.0).abs() < 1.0, "{}", shape.forward_flop());
+        assert!((shape.training_flop() / 1e6 - 59.0).abs() < 2.5, "{}", shape.training_flop());
+    }
+
+    #[test]
+    fn impossible_shapes_are_refused_by_name() {
+        let refuse = |change: fn(&mut NetworkShape), word: &str| {
+            let mut shape = NetworkShape::default();
+            change(&mut shape);
+            let message = shape.check().unwrap_err().to_string();
+            assert!(message.contains(word), "{message}");
+        };
+        refuse(|s| s.image.height = 20, "does not fit");
+        refuse(|s| s.dense = vec![100], "100 units");
+        refuse(|s| s.convolutions[1].channels = 30, "30 channels");
+        refuse(|s| s.convolutions[0].stride = 9, "stride 9");
+        refuse(|s| s.heads = vec![], "head");
+        refuse(|s| s.dense = vec![1 << 40], "too large");
+        refuse(|s| s.dense = vec![32; 65], "too large");
+        refuse(|s| s.dense = vec![1 << 16, 1 << 16], "too large");
+        refuse(|s| s.convolutions[2].channels = usize::MAX / 32 * 32, "too large");
+    }
+}

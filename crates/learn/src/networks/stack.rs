@@ -1,0 +1,247 @@
+//! The networks of a policy side by side, seen as one: one output row, one flat parameter vector.
+
+use std::ops::Range;
+
+use super::network::{ActingNetwork, LearningNetwork, PixelScale, Published, Sequences};
+use super::shape::{ImageShape, NetworkShape};
+use crate::config::NetworkConfig;
+use crate::error::LearnError;
+use crate::networks::burn_network::BurnNetwork;
+use crate::networks::cpu::network::{CpuActor, CpuLearner};
+use crate::networks::device::ComputeDevice;
+use crate::networks::distribution::ActionShape;
+
+/// Shape of a policy with its critics. An output row holds the policy's numbers, the value, and the value of each cost,
+/// whether one network makes them all or each has its own.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ModelShape {
+    /// The networks.
+    pub networks: Vec<NetworkShape>,
+    /// The actions.
+    pub action: ActionShape,
+    /// Number of cost critics.
+    pub cost_critics: usize,
+}
+
+impl ModelShape {
+    /// The model for an image, actions and a number of cost critics.
+    pub fn new(
+        image: ImageShape,
+        action: ActionShape,
+        cost_critics: usize,
+        extra_inputs: usize,
+        config: &NetworkConfig,
+    ) -> Result<ModelShape, LearnError> {
+        let network = |heads: Vec<usize>| NetworkShape {
+            image,
+            convolutions: config.convolutions.clone(),
+            dense: config.dense.clone(),
+            extra_inputs,
+            recurrent: config.recurrent,
+            heads,
+        };
+        let heads = std::iter::once(action.parameters()).chain(std::iter::repeat_n(1, 1 + cost_critics));
+        let networks =
+            if config.separate { heads.map(|head| network(vec![head])).collect() } else { vec![network(heads.collect())] };
+        let shape = ModelShape { networks, action, cost_critics };
+        shape.networks.iter().try_for_each(NetworkShape::check)?;
+        Ok(shape)
+    }
+
+    /// Length of an output row.
+    #[must_use]
+    pub fn outputs(&self) -> usize {
+        self.action.parameters() + 1 + self.cost_critics
+    }
+
+    /// Column of the value; those of the cost critics follow.
+    #[must_use]
+    pub fn value_column(&self) -> usize {
+        self.action.parameters()
+    }
+
+    /// Number of parameters of all networks.
+    #[must_use]
+    pub fn parameter_count(&self) -> usize {
+        self.networks.iter().map(NetworkShape::parameter_count).sum()
+    }
+
+    /// Where a network's parameters lie in the flat vector.
+    #[must_use]
+    pub fn parameter_range(&self, network: usize) -> Range<usize> {
+        let start = self.networks[..network].iter().map(NetworkShape::parameter_count).sum();
+        start..start + self.networks[network].parameter_count()
+    }
+
+    /// Values of an observation.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.networks[0].image.size()
+    }
+
+    /// Extra inputs of a row.
+    #[must_use]
+    pub fn extra_inputs(&self) -> usize {
+        self.networks[0].extra_inputs
+    }
+
+    /// States of a number of lanes, zeroed: one vector a network.
+    #[must_use]
+    pub fn zero_state(&self, lanes: usize) -> Vec<Vec<f32>> {
+        self.networks.iter().map(|network| vec![0.0; lanes * network.state_size()]).collect()
+    }
+}
+
+/// Copies a network's outputs into their columns of the model's rows.
+fn place_columns(rows: &mut [f32], width: usize, first: usize, from: &[f32], count: usize) {
+    for (row, values) in rows.chunks_exact_mut(width).zip(from.chunks_exact(count)) {
+        row[first..first + count].copy_from_slice(values);
+    }
+}
+
+/// All networks of a model, acting.
+pub struct Actor {
+    shape: ModelShape,
+    networks: Vec<Box<dyn ActingNetwork>>,
+    outputs: Vec<f32>,
+    version: Option<u64>,
+}
+
+impl Actor {
+    /// An actor on a device.
+    #[must_use]
+    pub fn new(shape: &ModelShape, device: &ComputeDevice) -> Actor {
+        let network = |shape: &NetworkShape| -> Box<dyn ActingNetwork> {
+            match device {
+                ComputeDevice::Processor => Box::new(CpuActor::new(shape)),
+                ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
+            }
+        };
+        Actor { networks: shape.networks.iter().map(network).collect(), shape: shape.clone(), outputs: Vec::new(), version: None }
+    }
+
+    /// Takes over published weights, if they are others than before.
+    pub fn load(&mut self, published: &Published) {
+        if self.version == Some(published.version) {
+            return;
+        }
+        self.version = Some(published.version);
+        for (network, weights) in self.networks.iter_mut().zip(&published.networks) {
+            network.load(weights);
+        }
+    }
+
+    /// Output rows of one step for the lanes `lanes` of `state`, which becomes the state after.
+    pub fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [Vec<f32>], lanes: Range<usize>, rows: &mut [f32]) {
+        let mut first = 0;
+        for ((network, shape), state) in self.networks.iter_mut().zip(&self.shape.networks).zip(state) {
+            let units = shape.state_size();
+            let state = &mut state[lanes.start * units..lanes.end * units];
+            if self.shape.networks.len() == 1 {
+                return network.act(observations, extra, state, rows);
+            }
+            let count = shape.outputs();
+            self.outputs.resize(lanes.len() * count, 0.0);
+            network.act(observations, extra, state, &mut self.outputs);
+            place_columns(rows, self.shape.outputs(), first, &self.outputs, count);
+            first += count;
+        }
+    }
+}
+
+/// Trajectories for all networks of a model.
+pub struct ModelSequences<'a> {
+    /// Everything but the state, which the networks have apart.
+    pub sequences: Sequences<'a>,
+    /// State before the first step, one vector a network.
+    pub initial_state: Vec<Vec<f32>>,
+}
+
+/// All networks of a model, learning.
+pub struct Stack {
+    shape: ModelShape,
+    networks: Vec<Box<dyn LearningNetwork>>,
+}
+
+impl Stack {
+    /// Networks on a device; on the processor they use `threads` threads.
+    #[must_use]
+    pub fn new(shape: &ModelShape, device: &ComputeDevice, threads: usize) -> Stack {
+        let network = |shape: &NetworkShape| -> Box<dyn LearningNetwork> {
+            match device {
+                ComputeDevice::Processor => Box::new(CpuLearner::new(shape, threads)),
+                ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
+            }
+        };
+        Stack { networks: shape.networks.iter().map(network).collect(), shape: shape.clone() }
+    }
+
+    /// Takes over weights.
+    pub fn load(&mut self, parameters: &[f32]) {
+        for index in 0..self.networks.len() {
+            self.load_network(index, &parameters[self.shape.parameter_range(index)]);
+        }
+    }
+
+    /// Takes over weights of one network.
+    pub fn load_network(&mut self, network: usize, parameters: &[f32]) {
+        self.networks[network].load(parameters);
+    }
+
+    /// Takes over how pixels enter.
+    pub fn load_pixels(&mut self, pixels: &PixelScale) {
+        self.networks.iter_mut().for_each(|network| network.load_pixels(pixels));
+    }
+
+    /// The weights for acting.
+    #[must_use]
+    pub fn publish(&self, version: u64) -> Published {
+        Published { version, networks: self.networks.iter().map(|network| network.publish()).collect() }
+    }
+
+    /// Output rows; the columns of networks outside the range are zero.
+    pub fn forward(&mut self, networks: Range<usize>, batch: &mut ModelSequences<'_>) -> Vec<f32> {
+        let width = self.shape.outputs();
+        let mut rows = vec![0.0; batch.sequences.rows() * width];
+        let mut first = 0;
+        for index in 0..self.networks.len() {
+            let count = self.shape.networks[index].outputs();
+            if networks.contains(&index) {
+                let outputs = self.forward_network(index, batch);
+                if count == width {
+                    return outputs;
+                }
+                place_columns(&mut rows, width, first, &outputs, count);
+            }
+            first += count;
+        }
+        rows
+    }
+
+    /// Output rows of one network alone.
+    pub fn forward_network(&mut self, network: usize, batch: &mut ModelSequences<'_>) -> Vec<f32> {
+        batch.sequences.initial_state.clone_from(&batch.initial_state[network]);
+        self.networks[network].forward(&batch.sequences)
+    }
+
+    /// The gradient of the parameters of some networks from that of the output rows of the last forward pass; what
+    /// `gradient` holds of the others is left as it is.
+    pub fn backward(&mut self, networks: Range<usize>, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+        let width = self.shape.outputs();
+        let mut first = 0;
+        for index in 0..self.networks.len() {
+            let count = self.shape.networks[index].outputs();
+            if networks.contains(&index) {
+                let own: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
+                self.backward_network(index, batch, &own, &mut gradient[self.shape.parameter_range(index)]);
+            }
+            first += count;
+        }
+    }
+
+    /// The gradient of one network's parameters.
+    pub fn backward_network(&mut self, network: usize, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+        batch.sequences.initial_state.clone_from(&batch.initial_state[network]);
+        self.networks[network].backward(&batch.sequences, rows, gradient);
+    }
+}

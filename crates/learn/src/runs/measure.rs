@@ -1,0 +1,131 @@
+//! How fast training is, against what the processor's arithmetic allows.
+
+use std::time::Instant;
+
+use crate::config::TrainConfig;
+use crate::error::LearnError;
+use crate::networks::cpu::product::{Left, Right, Size, multiply};
+use crate::runs::session::{Beginning, MakeWorlds, Session};
+
+/// A measurement: medians over its rounds.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// Policy steps a second of the whole loop: worlds, inference, learning.
+    pub steps_per_second: f64,
+    /// Rate of large products of 32-bit matrices on the same threads, in floating-point operations a second: the faster
+    /// of this crate's product and burn's.
+    pub product_rate: f64,
+    /// Rate of burn's own product.
+    pub burn_product_rate: f64,
+    /// Floating-point operations of a policy step: one inference and one training sample an epoch.
+    pub flop_per_step: f64,
+    /// Threads.
+    pub threads: usize,
+    /// Rounds.
+    pub rounds: usize,
+}
+
+impl Measurement {
+    /// Steps a second that the arithmetic alone would allow.
+    #[must_use]
+    pub fn bound(&self) -> f64 {
+        self.product_rate / self.flop_per_step
+    }
+
+    /// Share of the bound that the loop reaches.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.steps_per_second / self.bound()
+    }
+}
+
+/// Side of the products that the bound is taken from.
+const SIDE: usize = 1024;
+
+/// Measures the training loop, about `seconds` in each round, and the products in turns, so that whatever else the machine does meets both alike.
+/// Nothing is written to the disk.
+pub fn measure(
+    config: &TrainConfig,
+    make_worlds: &MakeWorlds<'_>,
+    rounds: usize,
+    seconds: f64,
+    round_done: &mut dyn FnMut(usize),
+) -> Result<Measurement, LearnError> {
+    let mut session = Session::new(config.clone(), &Beginning::Nothing, make_worlds)?;
+    let mut warn = |_| {};
+    // The first rollouts fill buffers.
+    for _ in 0..2 {
+        let rollout = session.turn(&mut warn)?;
+        session.go_on(rollout);
+    }
+    let threads = config.learning.threads;
+    let (mut loops, mut products, mut burn_products) = (Vec::new(), Vec::new(), Vec::new());
+    let mut rollout = session.turn(&mut warn)?;
+    for round in 0..rounds.max(1) {
+        products.push(product_rate(threads));
+        burn_products.push(burn_product_rate());
+        let start = Instant::now();
+        let mut steps = 0;
+        while steps == 0 || start.elapsed().as_secs_f64() < seconds {
+            session.go_on(rollout);
+            rollout = session.turn(&mut warn)?;
+            steps += rollout.rows();
+        }
+        loops.push(steps as f64 / start.elapsed().as_secs_f64());
+        round_done(round + 1);
+    }
+    let shape = session.learner.shape();
+    let sum = |of: fn(&crate::networks::NetworkShape) -> f64| shape.networks.iter().map(of).sum::<f64>();
+    let epochs = config.learning.epochs as f64;
+    let burn_product_rate = median(burn_products);
+    Ok(Measurement {
+        steps_per_second: median(loops),
+        product_rate: median(products).max(burn_product_rate),
+        burn_product_rate,
+        flop_per_step: sum(|network| network.forward_flop()) + epochs * sum(|network| network.training_flop()),
+        threads,
+        rounds: rounds.max(1),
+    })
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Floating-point operations a second of large products, one on each thread.
+fn product_rate(threads: usize) -> f64 {
+    let left = vec![0.5f32; SIDE * SIDE];
+    let right = vec![0.25f32; SIDE * SIDE];
+    let start = Instant::now();
+    let count: usize = std::thread::scope(|scope| {
+        let work = || {
+            let mut out = vec![0.0f32; SIDE * SIDE];
+            let mut count = 0;
+            while start.elapsed().as_secs_f64() < 0.3 {
+                let size = Size { rows: SIDE, columns: SIDE, inner: SIDE };
+                let factor = Left { data: &left, row_stride: SIDE, inner_stride: 1 };
+                multiply(size, factor, Right::panels(&right, SIDE), &mut out, SIDE, false);
+                count += 1;
+            }
+            count
+        };
+        let others: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        others.into_iter().map(|other| other.join().unwrap_or(0)).sum()
+    });
+    count as f64 * 2.0 * (SIDE as f64).powi(3) / start.elapsed().as_secs_f64()
+}
+
+/// The same for burn's product, which uses all processors by itself.
+fn burn_product_rate() -> f64 {
+    use burn::tensor::{Device, Distribution, Tensor};
+    let random = || Tensor::<2>::random([SIDE, SIDE], Distribution::Default, &Device::flex());
+    let (left, right) = (random(), random());
+    let start = Instant::now();
+    let mut count = 0;
+    while start.elapsed().as_secs_f64() < 0.3 {
+        let _ = left.clone().matmul(right.clone()).into_data();
+        count += 1;
+    }
+    f64::from(count) * 2.0 * (SIDE as f64).powi(3) / start.elapsed().as_secs_f64()
+}

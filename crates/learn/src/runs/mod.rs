@@ -1,0 +1,16 @@
+//! A run from its first frame to its directory: the session in memory, the trainer around it, checkpoints, evaluation, reports.
+
+pub mod checkpoint;
+pub mod checksum;
+pub mod evaluate;
+pub mod heatmap;
+pub mod interrupt;
+pub mod measure;
+pub mod progress_bar;
+pub mod report;
+pub mod run_directory;
+pub mod session;
+pub mod tensorboard;
+pub mod trainer;
+pub mod watch;
+pub mod writer;

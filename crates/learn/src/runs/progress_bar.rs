@@ -1,0 +1,56 @@
+//! The progress of a run for people.
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::runs::report::Report;
+
+/// A line at the bottom of the terminal: frames, speed, return, cost, budget, multiplier.
+pub struct Bar {
+    bar: ProgressBar,
+}
+
+impl Bar {
+    /// A bar for a run of some frames; nothing is drawn where no terminal is.
+    #[must_use]
+    pub fn new(frames: u64) -> Bar {
+        let bar = ProgressBar::new(frames);
+        let style = ProgressStyle::with_template("{bar:24} {percent:>3} % {msg}  {eta} left");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_message("worlds start");
+        Bar { bar }
+    }
+
+    /// Shows a report.
+    pub fn show(&self, report: &Report) {
+        self.bar.set_length(report.total_frames);
+        self.bar.set_position(report.frames.min(report.total_frames));
+        self.bar.set_message(line(report));
+    }
+
+    /// Prints a line above the bar.
+    pub fn print(&self, line: &str) {
+        self.bar.suspend(|| eprintln!("{line}"));
+    }
+
+    /// Ends the bar, leaving it as it is.
+    pub fn finish(&self) {
+        self.bar.abandon();
+    }
+}
+
+/// A report in a line.
+#[must_use]
+pub fn line(report: &Report) -> String {
+    let mut text = format!("{} frames at {:.0}/s", report.frames, report.frames_per_second);
+    match report.means {
+        Some((episode_return, cost, _)) => text.push_str(&format!("  return {episode_return:.2}  cost {cost:.1}")),
+        None => text.push_str("  no episode has ended yet"),
+    }
+    if let Some(budget) = report.budgets.first() {
+        text.push_str(&format!("  budget {budget}"));
+    }
+    if let Some(multiplier) = report.multipliers.first() {
+        text.push_str(&format!("  multiplier {multiplier:.4}"));
+    }
+    text
+}

@@ -1,0 +1,123 @@
+//! What a run reports: one row for files, programs and people alike.
+
+use serde_json::{Map, Value, json};
+
+use crate::config::TrainConfig;
+use crate::learning::metrics::Means;
+use crate::runs::watch::Watch;
+
+/// A report.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Frames learned from.
+    pub frames: u64,
+    /// Frames of the whole run.
+    pub total_frames: u64,
+    /// The level of a curriculum's present lesson.
+    pub level: Option<u8>,
+    /// Updates.
+    pub updates: u64,
+    /// Seconds of work.
+    pub wall_seconds: f64,
+    /// Frames per second since the last report.
+    pub frames_per_second: f64,
+    /// Episodes so far.
+    pub episodes: u64,
+    /// Mean return, cost and length of the latest episodes, if there are any.
+    pub means: Option<(f64, f64, f64)>,
+    /// Smallest and largest return and cost of the latest episodes.
+    pub extremes: Option<[f64; 4]>,
+    /// Mean cost of each constraint.
+    pub constraint_costs: Vec<f64>,
+    /// Budget of each constraint.
+    pub budgets: Vec<f64>,
+    /// Multiplier of each constraint.
+    pub multipliers: Vec<f64>,
+    /// Losses and other numbers of the updates since the last report.
+    pub learning: Vec<(&'static str, f64)>,
+    /// Cost terms and statistics of the latest episodes.
+    pub details: Vec<(String, f64)>,
+}
+
+impl Report {
+    /// A report of what has come together; the means start anew.
+    #[must_use]
+    pub fn take(config: &TrainConfig, watch: &Watch, learning: &mut Means, multipliers: Vec<f64>) -> Report {
+        let mean = |of: fn(&crate::runs::watch::Finished) -> f64| watch.mean(of);
+        let means = match (mean(|e| e.episode_return), mean(|e| e.cost), mean(|e| e.length)) {
+            (Some(episode_return), Some(cost), Some(length)) => Some((episode_return, cost, length)),
+            _ => None,
+        };
+        let bounds = |of: fn(&crate::runs::watch::Finished) -> f64| {
+            let values = watch.recent.iter().map(of);
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+        };
+        let (returns, costs) = (bounds(|e| e.episode_return), bounds(|e| e.cost));
+        let constraint_costs = match means {
+            None => Vec::new(),
+            Some(_) => (0..config.constraints.len())
+                .map(|index| watch.recent.iter().map(|e| e.constrained[index]).sum::<f64>() / watch.recent.len() as f64)
+                .collect(),
+        };
+        Report {
+            frames: 0,
+            total_frames: config.frames,
+            level: None,
+            updates: 0,
+            wall_seconds: 0.0,
+            frames_per_second: 0.0,
+            episodes: watch.episodes,
+            means,
+            extremes: means.map(|_| [returns.0, returns.1, costs.0, costs.1]),
+            constraint_costs,
+            budgets: config.constraints.iter().map(|constraint| constraint.budget).collect(),
+            multipliers,
+            learning: learning.take(),
+            details: watch.details(),
+        }
+    }
+
+    /// Whether the latest episodes keep every budget.
+    #[must_use]
+    pub fn feasible(&self) -> bool {
+        !self.constraint_costs.is_empty() && self.constraint_costs.iter().zip(&self.budgets).all(|(cost, budget)| cost <= budget)
+    }
+
+    /// The row of `metrics.jsonl`. Its keys are stable; what is not known yet is `null`.
+    #[must_use]
+    pub fn row(&self) -> Value {
+        let mut row = Map::new();
+        let mut put = |name: &str, value: Value| {
+            row.insert(name.into(), value);
+        };
+        put("frames", json!(self.frames));
+        if let Some(level) = self.level {
+            put("level", json!(level));
+        }
+        put("updates", json!(self.updates));
+        put("wall_s", json!(self.wall_seconds));
+        put("fps", json!(self.frames_per_second));
+        put("episodes", json!(self.episodes));
+        put("return_mean", json!(self.means.map(|means| means.0)));
+        put("cost_mean", json!(self.means.map(|means| means.1)));
+        put("length_mean", json!(self.means.map(|means| means.2)));
+        put("return_min", json!(self.extremes.map(|extremes| extremes[0])));
+        put("return_max", json!(self.extremes.map(|extremes| extremes[1])));
+        put("cost_min", json!(self.extremes.map(|extremes| extremes[2])));
+        put("cost_max", json!(self.extremes.map(|extremes| extremes[3])));
+        put("budget", json!(self.budgets.first()));
+        put("multiplier", json!(self.multipliers.first()));
+        if self.budgets.len() > 1 {
+            put("budgets", json!(self.budgets));
+            put("multipliers", json!(self.multipliers));
+            put("constraint_costs", json!(self.constraint_costs));
+        }
+        for (name, value) in &self.learning {
+            put(name, json!(value));
+        }
+        for (name, value) in &self.details {
+            put(name, json!(value));
+        }
+        Value::Object(row)
+    }
+}

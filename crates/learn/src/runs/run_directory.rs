@@ -1,0 +1,183 @@
+//! A run's directory: its settings, its lock, its metrics.
+
+use std::fs::{self, File, TryLockError};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::config::TrainConfig;
+use crate::error::LearnError;
+use crate::runs::tensorboard::EventFile;
+
+/// Where the agents have been, a line a moment.
+const HEATMAPS: &str = "heatmaps.jsonl";
+
+/// A run's directory, locked against a second trainer for as long as this value lives.
+pub struct RunDirectory {
+    path: PathBuf,
+    /// The system gives the lock back when the process ends, however it ends.
+    _lock: File,
+}
+
+impl RunDirectory {
+    /// Makes a new run's directory and writes its settings. A directory with a run in it is refused.
+    pub fn create(path: &Path, config: &TrainConfig) -> Result<RunDirectory, LearnError> {
+        fs::create_dir_all(path).map_err(LearnError::file(path, "create"))?;
+        let directory = RunDirectory::lock(path)?;
+        if path.join("config.json").exists() {
+            let problem = "there is a run already; go on with --resume, or choose another directory with --out";
+            return Err(LearnError::content(path, problem));
+        }
+        let checkpoints = path.join("checkpoints");
+        fs::create_dir_all(&checkpoints).map_err(LearnError::file(&checkpoints, "create"))?;
+        let text = serde_json::to_vec_pretty(config)
+            .map_err(|error| LearnError::Config(format!("the settings cannot be written: {error}")))?;
+        write_whole(&path.join("config.json"), &text)?;
+        Ok(directory)
+    }
+
+    /// Opens the directory of a run to go on with it.
+    pub fn open(path: &Path) -> Result<(RunDirectory, TrainConfig), LearnError> {
+        let config = read_config(path)?;
+        Ok((RunDirectory::lock(path)?, config))
+    }
+
+    /// Takes a new run back that could not begin, so that the same command, mended, finds its directory free. What was there
+    /// before stays.
+    pub fn withdraw(self) {
+        // Nothing hangs on it: at worst the next attempt is told of a run that is there already.
+        let _ = fs::remove_file(self.path.join("config.json"));
+        let _ = fs::remove_file(self.path.join("lock"));
+        let _ = fs::remove_dir(self.path.join("checkpoints"));
+        let _ = fs::remove_dir(&self.path);
+    }
+
+    fn lock(path: &Path) -> Result<RunDirectory, LearnError> {
+        let file = path.join("lock");
+        let lock =
+            File::options().create(true).truncate(false).write(true).open(&file).map_err(LearnError::file(&file, "open"))?;
+        match lock.try_lock() {
+            Ok(()) => Ok(RunDirectory { path: path.to_path_buf(), _lock: lock }),
+            Err(TryLockError::WouldBlock) => Err(LearnError::content(
+                path,
+                "another trainer works in this directory; wait for it, stop it, or choose another one with --out",
+            )),
+            Err(TryLockError::Error(source)) => Err(LearnError::File { path: file, doing: "lock", source }),
+        }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Drops the rows after `frames` from metrics and heatmaps, for a run that goes on from there writes them again. Rows
+    /// that are no JSON are dropped too, and told to `warn`.
+    pub fn rewind_metrics(&self, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+        self.rewind("metrics.jsonl", frames, warn)?;
+        self.rewind(HEATMAPS, frames, warn)
+    }
+
+    fn rewind(&self, name: &str, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+        let path = self.path.join(name);
+        let text = match fs::read(&path) {
+            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+            Err(source) => return Err(LearnError::File { path, doing: "read", source }),
+        };
+        let mut kept = String::new();
+        for (number, line) in text.lines().enumerate() {
+            match serde_json::from_str::<Value>(line).ok().and_then(|row| row.get("frames")?.as_u64()) {
+                Some(at) if at <= frames => {
+                    kept.push_str(line);
+                    kept.push('\n');
+                }
+                Some(_) => {}
+                None => warn(format!("{}: line {} is damaged and was dropped", path.display(), number + 1)),
+            }
+        }
+        write_whole(&path, kept.as_bytes())
+    }
+}
+
+/// The settings of the run in a directory.
+pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
+    let file = path.join("config.json");
+    if !file.exists() {
+        return Err(LearnError::content(
+            path,
+            "no run is here (config.json is missing); give the directory of `hasard train --out`",
+        ));
+    }
+    let text = fs::read(&file).map_err(LearnError::file(&file, "read"))?;
+    let config: TrainConfig = serde_json::from_slice(&text)
+        .map_err(|error| LearnError::content(&file, format!("damaged or of another version: {error}")))?;
+    config.check()?;
+    Ok(config)
+}
+
+/// Writes a file under another name and renames it when it is complete.
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
+    let temporary = path.with_extension("partial");
+    let write = || {
+        let mut file = File::create(&temporary)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        fs::rename(&temporary, path)
+    };
+    write().map_err(LearnError::file(path, "write"))
+}
+
+/// Where reports go: a line of JSON each, and TensorBoard's event file.
+pub struct MetricsLog {
+    path: PathBuf,
+    lines: File,
+    events: EventFile,
+}
+
+impl MetricsLog {
+    /// Opens a run's log; rows are added at its end.
+    pub fn open(run: &Path) -> Result<MetricsLog, LearnError> {
+        let path = run.join("metrics.jsonl");
+        let lines = File::options().create(true).append(true).open(&path).map_err(LearnError::file(&path, "open"))?;
+        Ok(MetricsLog { lines, events: EventFile::create(run)?, path })
+    }
+
+    /// Adds a line to the run's `heatmaps.jsonl`.
+    pub fn write_heatmap(&mut self, line: &Value) -> Result<(), LearnError> {
+        let path = self.path.with_file_name(HEATMAPS);
+        let mut file = File::options().create(true).append(true).open(&path).map_err(LearnError::file(&path, "open"))?;
+        file.write_all(format!("{line}\n").as_bytes()).map_err(LearnError::file(&path, "write"))
+    }
+
+    /// Writes a row.
+    pub fn write(&mut self, frames: u64, row: &Value) -> Result<(), LearnError> {
+        let mut line = row.to_string();
+        line.push('\n');
+        self.lines.write_all(line.as_bytes()).map_err(LearnError::file(&self.path, "write"))?;
+        let mut scalars = Vec::new();
+        collect_scalars("", row, &mut scalars);
+        self.events.scalars(frames, &scalars)
+    }
+}
+
+/// Every number of a row, nested ones under joined names.
+fn collect_scalars(prefix: &str, value: &Value, out: &mut Vec<(String, f64)>) {
+    match value {
+        Value::Number(number) => out.extend(number.as_f64().map(|number| (prefix.to_string(), number))),
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                let name = if prefix.is_empty() { name.clone() } else { format!("{prefix}/{name}") };
+                collect_scalars(&name, value, out);
+            }
+        }
+        Value::Array(items) => {
+            for (index, value) in items.iter().enumerate() {
+                collect_scalars(&format!("{prefix}/{index}"), value, out);
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,194 @@
+//! A run in memory: worlds, samplers, learner and algorithm put together, without its directory.
+
+use std::time::Instant;
+
+use hasard_envs::{EnvError, FinalObservations, VecEnv, VecOptions};
+
+use crate::algorithms::{self, Algorithm};
+use crate::config::{EnvConfig, TrainConfig};
+use crate::error::LearnError;
+use crate::learning::learner::Learner;
+use crate::learning::metrics::Means;
+use crate::networks::device::ComputeDevice;
+use crate::networks::distribution::ActionShape;
+use crate::networks::{Actor, ImageShape, ModelShape};
+use crate::random::{Purpose, Stream};
+use crate::runs::checkpoint::{Loaded, Progress};
+use crate::runs::watch::Watch;
+use crate::sampling::gather::Gatherer;
+use crate::sampling::rollout::Rollout;
+use crate::sampling::sampler::{Sampler, SamplerState};
+use crate::sampling::shaping::Shaping;
+
+/// Makes batches of the worlds of an environment: one for each sampler, continuing each other's lanes.
+pub type MakeWorlds<'a> = dyn Fn(&EnvConfig, VecOptions) -> Result<VecEnv, EnvError> + 'a;
+
+/// What a run begins with.
+pub enum Beginning<'a> {
+    /// Fresh weights.
+    Nothing,
+    /// Everything of a checkpoint.
+    Everything(Box<Loaded>),
+    /// Weights and normalisers of a checkpoint.
+    Weights(Box<Loaded>),
+    /// Weights, normalisers and counters of the lesson before.
+    Lesson(&'a Session),
+}
+
+impl Beginning<'_> {
+    /// How far the checkpoint is that a run goes on from.
+    pub fn progress(&self) -> Option<&Progress> {
+        match self {
+            Beginning::Everything(loaded) => Some(&loaded.progress),
+            _ => None,
+        }
+    }
+}
+
+/// A run in memory.
+pub struct Session {
+    /// Settings.
+    pub config: TrainConfig,
+    /// Networks and statistics.
+    pub learner: Learner,
+    /// The algorithm.
+    pub algorithm: Box<dyn Algorithm>,
+    /// Samplers.
+    pub gatherer: Gatherer,
+    /// Latest episodes.
+    pub watch: Watch,
+    /// Numbers since the last report.
+    pub means: Means,
+    /// Frames learned from.
+    pub frames: u64,
+    /// Rollouts learned from.
+    pub rollouts: u64,
+    /// The map's extent, if the worlds have places: x from, y from, x to, y to in map units.
+    pub extent: Option<[i32; 4]>,
+}
+
+/// The model that an algorithm wants for some worlds.
+pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, LearnError> {
+    let [height, width, channels] = worlds.observation_shape();
+    let space = worlds.action_space();
+    let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
+    let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
+    let extra = Shaping::new(config).extra_inputs();
+    ModelShape::new(ImageShape { height, width, channels }, action, cost_critics, extra, &config.network)
+}
+
+impl Session {
+    /// Makes everything, and lets the samplers begin.
+    pub fn new(config: TrainConfig, beginning: &Beginning<'_>, make_worlds: &MakeWorlds<'_>) -> Result<Session, LearnError> {
+        let device = ComputeDevice::named(&config.device)?;
+        let sampling = &config.sampling;
+        let lanes = sampling.lanes / sampling.samplers;
+        let mut worlds = Vec::new();
+        for index in 0..sampling.samplers {
+            let options = VecOptions {
+                lanes,
+                threads: sampling.world_threads,
+                groups: sampling.groups,
+                seed: Stream::new(config.seed, Purpose::Worlds, 0, 0).bits(),
+                first_lane: (index * lanes) as u64,
+                final_observations: FinalObservations::Truncated,
+                ..VecOptions::default()
+            };
+            worlds.push(make_worlds(&config.env, options).map_err(|error| LearnError::Worlds(error.to_string()))?);
+        }
+        let extent = worlds[0].extent();
+        let shape = model_shape(&config, &worlds[0])?;
+        let mut learner = Learner::new(&config, &shape, &device);
+        let mut algorithm = algorithms::make(&config);
+        let mut watch = Watch::new(&config);
+        let (mut frames, mut rollouts) = (0, 0);
+        let mut states: Vec<Option<SamplerState>> = vec![None; sampling.samplers];
+        match beginning {
+            Beginning::Nothing => {}
+            Beginning::Weights(loaded) => loaded.restore_weights(&mut learner)?,
+            Beginning::Lesson(before) => {
+                learner.inherit(&before.learner)?;
+                (frames, rollouts) = (before.frames, before.rollouts);
+                watch.episodes = before.watch.episodes;
+            }
+            Beginning::Everything(loaded) => {
+                let saved = loaded.restore(&mut learner)?;
+                if saved.len() != sampling.samplers {
+                    return Err(LearnError::Config("the checkpoint has another number of samplers".into()));
+                }
+                states = saved.into_iter().map(Some).collect();
+                let progress: &Progress = &loaded.progress;
+                let misfit = |error| LearnError::Config(format!("the checkpoint's multipliers do not fit: {error}"));
+                algorithm.load(&progress.algorithm).map_err(misfit)?;
+                watch = progress.watch.resumed(&config)?;
+                (frames, rollouts) = (progress.frames, progress.rollouts);
+            }
+        }
+        let mut samplers = Vec::new();
+        for (index, (worlds, state)) in worlds.into_iter().zip(states).enumerate() {
+            let actor = Actor::new(&shape, &device);
+            let shaping = Shaping::new(&config);
+            let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, index * lanes, config.seed)?;
+            match state {
+                Some(state) => sampler.restore(state)?,
+                None if sampling.spread_out => sampler.spread_out(sampling.lanes, config.episode_steps)?,
+                None => {}
+            }
+            samplers.push(sampler);
+        }
+        let ahead = if sampling.synchronous { 1 } else { sampling.accumulated + 1 };
+        let gatherer = Gatherer::new(samplers, sampling.rollout, ahead, learner.publish());
+        Ok(Session { learner, algorithm, gatherer, watch, means: Means::default(), frames, rollouts, extent, config })
+    }
+
+    /// Waits for the next rollout and learns from it.
+    pub fn turn(&mut self, warn: &mut dyn FnMut(String)) -> Result<Rollout, LearnError> {
+        let waiting = Instant::now();
+        let rollout = self.gatherer.next_rollout()?;
+        self.means.add("seconds_waiting", waiting.elapsed().as_secs_f64());
+        let learning = Instant::now();
+        self.learn(&rollout, warn)?;
+        self.means.add("seconds_learning", learning.elapsed().as_secs_f64());
+        self.frames += rollout.rows() as u64 * u64::from(self.config.env.frame_skip);
+        self.rollouts += 1;
+        Ok(rollout)
+    }
+
+    /// Gives the samplers the present weights and lets them gather another rollout in the memory of one that is done with.
+    pub fn go_on(&mut self, rollout: Rollout) {
+        let published = self.learner.publish();
+        self.gatherer.go_on(rollout, published);
+    }
+
+    /// Everything that is learned from a rollout.
+    fn learn(&mut self, rollout: &Rollout, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+        for episode in rollout.parts.iter().flat_map(|part| &part.episodes) {
+            self.watch.add(episode, &self.config.constraints);
+        }
+        let lag = self.learner.version.saturating_sub(rollout.oldest_version());
+        self.means.add("policy_lag", lag as f64);
+        if lag > self.config.sampling.max_policy_lag {
+            warn(format!("a rollout was {lag} updates old and was thrown away; raise the policy lag allowed, or use --sync"));
+            return Ok(());
+        }
+        let learning = self.config.learning.clone();
+        let done = (self.frames as f64 / self.config.frames as f64).min(1.0);
+        self.learner.rate = learning.rate + (learning.final_rate - learning.rate) * done;
+        self.means.add("learning_rate", self.learner.rate);
+        let prepared = self.learner.prepare(rollout);
+        let mut lanes: Vec<usize> = (0..rollout.lanes()).collect();
+        let size = lanes.len().div_ceil(learning.minibatches);
+        for epoch in 0..learning.epochs {
+            if learning.minibatches > 1 {
+                Stream::new(self.config.seed, Purpose::Shuffle, self.rollouts, epoch as u64).shuffle(&mut lanes);
+            }
+            for some in lanes.chunks(size) {
+                let mut minibatch = self.learner.minibatch(&prepared, some);
+                let signals = self.watch.signals(&self.config, &minibatch.mean_costs);
+                self.algorithm.constrain(&signals);
+                self.algorithm.update(&mut self.learner, &mut minibatch, &signals, &mut self.means)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,263 @@
+//! The trainer: a run and its directory.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use crate::config::TrainConfig;
+use crate::error::LearnError;
+use crate::learning::metrics::Means;
+use crate::networks::device::ComputeDevice;
+use crate::runs::checkpoint::{Checkpoint, Progress, Store};
+use crate::runs::heatmap::Heatmap;
+use crate::runs::report::Report;
+use crate::runs::run_directory::RunDirectory;
+use crate::runs::session::{Beginning, MakeWorlds, Session};
+use crate::runs::writer::Writer;
+use crate::sampling::gather::panic_text;
+
+/// What the caller of a run hears of it, and how it ends it.
+pub struct Hooks<'a> {
+    /// Raised by the caller to end the run cleanly, with a checkpoint.
+    pub stop: &'a AtomicBool,
+    /// Told every report.
+    pub report: &'a mut dyn FnMut(&Report),
+    /// Told what went wrong without ending the run.
+    pub warn: &'a mut dyn FnMut(String),
+}
+
+/// How a run begins.
+pub enum Start<'a> {
+    /// In a new directory.
+    Fresh(TrainConfig),
+    /// From the last checkpoint in the directory; a number of frames given here replaces the run's.
+    Resume {
+        /// Length of the run, if it is to be another than before.
+        frames: Option<u64>,
+    },
+    /// In a new directory, with the weights and normalisers of another run.
+    From(TrainConfig, &'a Path),
+}
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    /// The last report.
+    pub last: Report,
+    /// The caller ended it.
+    pub stopped: bool,
+}
+
+/// Trains in `directory` until the run's frames are used up or the caller ends it.
+///
+/// In synchronous mode everything that is learned follows from the settings alone; a run that was stopped, or killed, and
+/// resumed equals one that never stopped, bit by bit.
+pub fn train(
+    start: Start<'_>,
+    directory: &Path,
+    make_worlds: &MakeWorlds<'_>,
+    hooks: &mut Hooks<'_>,
+) -> Result<Summary, LearnError> {
+    let fresh = !matches!(start, Start::Resume { .. });
+    let (run, config, beginning) = begin(start, directory, hooks)?;
+    // A panic of the learner's own thread ends as an error too; checkpoints already written stay.
+    let whole = || {
+        let lesson = beginning.progress().map_or(0, |progress| progress.lesson);
+        match Session::new(config.lesson(lesson), &beginning, make_worlds) {
+            Ok(session) => Trainer::new(run, config, &beginning, lesson, session, make_worlds).run(hooks),
+            Err(error) => {
+                if fresh {
+                    run.withdraw();
+                }
+                Err(error)
+            }
+        }
+    };
+    catch_unwind(AssertUnwindSafe(whole)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))))
+}
+
+fn begin(
+    start: Start<'_>,
+    directory: &Path,
+    hooks: &mut Hooks<'_>,
+) -> Result<(RunDirectory, TrainConfig, Beginning<'static>), LearnError> {
+    match start {
+        Start::Fresh(config) => {
+            config.check()?;
+            ComputeDevice::named(&config.device)?;
+            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Nothing))
+        }
+        Start::From(config, other) => {
+            config.check()?;
+            ComputeDevice::named(&config.device)?;
+            let loaded = Store::new(other, 1).newest(hooks.warn)?;
+            let loaded = loaded.ok_or_else(|| LearnError::content(other, "no checkpoint to take weights from is here"))?;
+            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Weights(Box::new(loaded))))
+        }
+        Start::Resume { frames } => {
+            let (run, mut config) = RunDirectory::open(directory)?;
+            config.frames = frames.unwrap_or(config.frames);
+            config.check()?;
+            let loaded = Store::new(directory, config.reporting.keep).newest(hooks.warn)?;
+            let at = loaded.as_ref().map_or(0, |loaded| loaded.progress.frames);
+            if loaded.is_none() {
+                (hooks.warn)(format!("{}: no checkpoint was written yet; the run starts again", directory.display()));
+            }
+            run.rewind_metrics(at, hooks.warn)?;
+            Ok((run, config, loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)))))
+        }
+    }
+}
+
+struct Trainer<'a> {
+    run: RunDirectory,
+    /// Settings of the whole run; the session has those of the lesson.
+    config: TrainConfig,
+    make_worlds: &'a MakeWorlds<'a>,
+    /// The lesson of a curriculum that the session is.
+    lesson: usize,
+    session: Session,
+    /// Where the agents have been, if the worlds have places.
+    heatmap: Option<Heatmap>,
+    seconds_before: f64,
+    started: Instant,
+    best_feasible: Option<f64>,
+}
+
+impl<'a> Trainer<'a> {
+    fn new(
+        run: RunDirectory,
+        config: TrainConfig,
+        beginning: &Beginning<'_>,
+        lesson: usize,
+        session: Session,
+        make_worlds: &'a MakeWorlds<'a>,
+    ) -> Trainer<'a> {
+        let (seconds_before, best_feasible) =
+            beginning.progress().map_or((0.0, None), |progress| (progress.wall_seconds, progress.best_feasible));
+        let heatmap = heatmap(&config, lesson, &session);
+        let started = Instant::now();
+        Trainer { run, config, make_worlds, lesson, session, heatmap, seconds_before, started, best_feasible }
+    }
+
+    /// Begins the lesson that the frames so far ask for.
+    fn begin_lesson(&mut self) -> Result<(), LearnError> {
+        self.lesson = self.config.lesson_at(self.session.frames);
+        let config = self.config.lesson(self.lesson);
+        self.session = Session::new(config, &Beginning::Lesson(&self.session), self.make_worlds)?;
+        self.heatmap = heatmap(&self.config, self.lesson, &self.session);
+        Ok(())
+    }
+
+    fn lesson_is_over(&self) -> bool {
+        self.config.lesson_at(self.session.frames) != self.lesson
+    }
+
+    fn wall_seconds(&self) -> f64 {
+        self.seconds_before + self.started.elapsed().as_secs_f64()
+    }
+
+    fn run(mut self, hooks: &mut Hooks<'_>) -> Result<Summary, LearnError> {
+        let store = Store::new(self.run.path(), self.session.config.reporting.keep);
+        let writer = Writer::new(self.run.path(), store)?;
+        let (mut last_report, mut last_checkpoint) = (Instant::now(), Instant::now());
+        let mut reported_frames = self.session.frames;
+        let mut last = None;
+        let mut over = self.session.frames >= self.session.config.frames;
+        while !over {
+            // Here and not after the checkpoint, so that a run resumed from one taken at a lesson's end begins the next as well.
+            if self.lesson_is_over() {
+                self.begin_lesson()?;
+            }
+            let rollout = self.session.turn(hooks.warn)?;
+            // Asked once a rollout: from here on it is decided whether samplers are told to go on.
+            over = self.session.frames >= self.session.config.frames || hooks.stop.load(Ordering::Relaxed);
+            if over || last_report.elapsed().as_secs_f64() >= self.session.config.reporting.report_seconds {
+                let seconds = last_report.elapsed().as_secs_f64().max(1e-9);
+                let report = self.report((self.session.frames - reported_frames) as f64 / seconds);
+                (last_report, reported_frames) = (Instant::now(), self.session.frames);
+                writer.row(self.session.frames, report.row());
+                (hooks.report)(&report);
+                last = Some(report);
+                over = over || hooks.stop.load(Ordering::Relaxed);
+            }
+            if let Some(heatmap) = &mut self.heatmap {
+                heatmap.add(&rollout);
+                let lesson_is_over = self.config.lesson_at(self.session.frames) != self.lesson;
+                heatmap.line(self.session.frames, over || lesson_is_over).into_iter().for_each(|line| writer.heatmap(line));
+            }
+            writer.check()?;
+            let due = last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds;
+            if over || (due && writer.keeps_up()) {
+                let (checkpoint, best) = self.checkpoint()?;
+                writer.checkpoint(checkpoint, best);
+                last_checkpoint = Instant::now();
+            }
+            if !over && !self.lesson_is_over() {
+                self.session.go_on(rollout);
+            }
+        }
+        writer.finish()?;
+        let last = match last {
+            Some(report) => report,
+            None => self.report(0.0),
+        };
+        Ok(Summary { last, stopped: self.session.frames < self.session.config.frames })
+    }
+
+    fn report(&mut self, frames_per_second: f64) -> Report {
+        let mut report = Report::take(
+            &self.session.config,
+            &self.session.watch,
+            &mut self.session.means,
+            self.session.algorithm.multipliers(),
+        );
+        report.frames = self.session.frames;
+        report.level = self.config.curriculum.get(self.lesson).map(|lesson| lesson.level);
+        report.updates = self.session.learner.version;
+        report.wall_seconds = self.wall_seconds();
+        report.frames_per_second = frames_per_second;
+        report
+    }
+
+    /// Takes a checkpoint, and says whether the run has never been as good within its budgets.
+    fn checkpoint(&mut self) -> Result<(Checkpoint, bool), LearnError> {
+        let report = Report::take(&self.session.config, &self.session.watch, &mut Means::default(), Vec::new());
+        let best = match report.means {
+            // A few episodes say little; and the window must be full of them before it may set a record.
+            // Of a curriculum, the last level's.
+            Some((mean, ..))
+                if self.lesson + 1 == self.config.lessons()
+                    && report.feasible()
+                    && self.session.watch.recent.len() >= self.session.config.reporting.window.min(30) =>
+            {
+                self.best_feasible.is_none_or(|best| mean > best).then_some(mean)
+            }
+            _ => None,
+        };
+        self.best_feasible = best.or(self.best_feasible);
+        let samplers = self.session.gatherer.save()?;
+        let progress = Progress {
+            frames: self.session.frames,
+            rollouts: self.session.rollouts,
+            lesson: self.lesson,
+            updates: self.session.learner.version,
+            wall_seconds: self.wall_seconds(),
+            best_feasible: self.best_feasible,
+            returns: self.session.learner.returns.clone(),
+            optimiser_steps: self.session.learner.optimisers.iter().map(|adam| adam.steps).collect(),
+            algorithm: self.session.algorithm.save(),
+            watch: self.session.watch.clone(),
+            samplers: samplers.iter().map(|sampler| (sampler.steps, sampler.safety.clone())).collect(),
+            pixel_count: self.session.learner.pixels.count,
+        };
+        Ok((Checkpoint::take(&self.session.learner, &samplers, progress)?, best.is_some()))
+    }
+}
+
+/// The grid of a lesson's map, if it has places.
+fn heatmap(config: &TrainConfig, lesson: usize, session: &Session) -> Option<Heatmap> {
+    let automap = config.automap(lesson);
+    session.extent.map(|extent| Heatmap::new(extent, config.sampling.lanes, config.frames, session.frames, automap))
+}

@@ -1,0 +1,113 @@
+//! The thread that writes to the disk, so that sampling and learning never wait for it.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+
+use serde_json::Value;
+
+use crate::error::LearnError;
+use crate::runs::checkpoint::{Checkpoint, Store};
+use crate::runs::run_directory::MetricsLog;
+
+enum Job {
+    Row(u64, Value),
+    Heatmap(Value),
+    Checkpoint(Box<Checkpoint>, bool),
+}
+
+/// Writes rows and checkpoints in the order in which they were given.
+pub struct Writer {
+    jobs: Option<Sender<Job>>,
+    /// Checkpoints that were handed over and are not on the disk yet.
+    waiting: Arc<AtomicUsize>,
+    errors: Receiver<LearnError>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Checkpoints that may wait for the disk. Rows are small: any number of them may.
+const MOST_WAITING: usize = 8;
+
+impl Writer {
+    /// A writer for a run's directory.
+    pub fn new(run: &Path, store: Store) -> Result<Writer, LearnError> {
+        let mut log = MetricsLog::open(run)?;
+        let (jobs, queue) = channel();
+        let (failing, errors) = channel();
+        let waiting = Arc::new(AtomicUsize::new(0));
+        let written = Arc::clone(&waiting);
+        let thread = std::thread::spawn(move || {
+            for job in queue {
+                let result = match job {
+                    Job::Row(frames, row) => log.write(frames, &row),
+                    Job::Heatmap(line) => log.write_heatmap(&line),
+                    Job::Checkpoint(checkpoint, best) => {
+                        let result = store.write(&checkpoint, best);
+                        written.fetch_sub(1, Ordering::Relaxed);
+                        result
+                    }
+                };
+                if let Err(error) = result {
+                    let _ = failing.send(error);
+                    return;
+                }
+            }
+        });
+        Ok(Writer { jobs: Some(jobs), waiting, errors, thread: Some(thread) })
+    }
+
+    /// The first error of the disk, if there was one.
+    pub fn check(&self) -> Result<(), LearnError> {
+        self.errors.try_recv().map_or(Ok(()), Err)
+    }
+
+    /// Hands a row over.
+    pub fn row(&self, frames: u64, row: Value) {
+        if let Some(jobs) = &self.jobs {
+            // A writer that has ended leaves its error for `check`.
+            let _ = jobs.send(Job::Row(frames, row));
+        }
+    }
+
+    /// Hands a line of heatmaps over.
+    pub fn heatmap(&self, line: Value) {
+        if let Some(jobs) = &self.jobs {
+            let _ = jobs.send(Job::Heatmap(line));
+        }
+    }
+
+    /// Whether the disk is near enough to take another checkpoint. Otherwise one had better be left out than wait in memory.
+    #[must_use]
+    pub fn keeps_up(&self) -> bool {
+        self.waiting.load(Ordering::Relaxed) < MOST_WAITING
+    }
+
+    /// Hands a checkpoint over.
+    pub fn checkpoint(&self, checkpoint: Checkpoint, best: bool) {
+        if let Some(jobs) = &self.jobs {
+            self.waiting.fetch_add(1, Ordering::Relaxed);
+            let _ = jobs.send(Job::Checkpoint(Box::new(checkpoint), best));
+        }
+    }
+
+    /// Waits until everything is written.
+    pub fn finish(mut self) -> Result<(), LearnError> {
+        self.end();
+        self.check()
+    }
+
+    fn end(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        self.end();
+    }
+}

@@ -1,0 +1,6 @@
+//! How experience is gathered: worlds, the policy that acts in them, and what is handed to the learner.
+
+pub mod gather;
+pub mod rollout;
+pub mod sampler;
+pub mod shaping;

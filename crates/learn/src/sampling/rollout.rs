@@ -1,0 +1,130 @@
+//! What samplers hand to the learner: some steps of some lanes.
+
+use hasard_envs::Episode;
+
+use crate::networks::ModelShape;
+
+/// Steps of a sampler's lanes. Step `t` of lane `l` is row `t * lanes + l`; all buffers are reused.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Steps.
+    pub steps: usize,
+    /// Lanes.
+    pub lanes: usize,
+    /// Lanes of each group; frames are kept by group.
+    pub group_lanes: usize,
+    /// Observations of a group at a step, `frames[t * groups + g]`, and after the last step.
+    pub frames: Vec<Vec<u8>>,
+    /// Extra inputs of each row, and after the last step.
+    pub extra: Vec<f32>,
+    /// State of each network before the first step.
+    pub initial_state: Vec<Vec<f32>>,
+    /// Categorical sub-actions.
+    pub actions: Vec<u8>,
+    /// Continuous sub-actions.
+    pub deltas: Vec<f32>,
+    /// Logarithm of each action's probability when it was taken.
+    pub log_probabilities: Vec<f32>,
+    /// Output rows when the actions were taken, and after the last step.
+    pub outputs: Vec<f32>,
+    /// Shaped rewards.
+    pub rewards: Vec<f32>,
+    /// Cost of each constraint, `constraints` a row.
+    pub costs: Vec<f32>,
+    /// Where the player stood at the end of each step, map units.
+    pub positions: Vec<[i32; 2]>,
+    /// The episode ended with the step.
+    pub done: Vec<bool>,
+    /// The episode was cut off by the clock: (row, output row for the true last observation).
+    pub cut_off: Vec<(usize, Vec<f32>)>,
+    /// Version of the weights of each step.
+    pub versions: Vec<u64>,
+    /// Episodes that ended.
+    pub episodes: Vec<Episode>,
+}
+
+impl Part {
+    /// Makes room; nothing is allocated where the size is as before.
+    pub fn prepare(&mut self, shape: &ModelShape, steps: usize, lanes: usize, groups: usize, constraints: usize) {
+        let rows = steps * lanes;
+        (self.steps, self.lanes, self.group_lanes) = (steps, lanes, lanes / groups);
+        self.frames.resize_with((steps + 1) * groups, Vec::new);
+        for frames in &mut self.frames {
+            frames.resize(self.group_lanes * shape.pixels(), 0);
+        }
+        self.extra.resize((rows + lanes) * shape.extra_inputs(), 0.0);
+        self.actions.resize(rows * shape.action.sizes.len(), 0);
+        self.deltas.resize(rows * shape.action.deltas, 0.0);
+        self.log_probabilities.resize(rows, 0.0);
+        self.outputs.resize((rows + lanes) * shape.outputs(), 0.0);
+        self.rewards.resize(rows, 0.0);
+        self.costs.resize(rows * constraints, 0.0);
+        self.positions.resize(rows, [0, 0]);
+        self.done.resize(rows, false);
+        self.cut_off.clear();
+        self.versions.resize(steps, 0);
+        self.episodes.clear();
+    }
+
+    /// The observation of a lane at a step; step `steps` is the one after the last.
+    #[must_use]
+    pub fn frame(&self, step: usize, lane: usize) -> &[u8] {
+        let groups = self.lanes / self.group_lanes;
+        let frames = &self.frames[step * groups + lane / self.group_lanes];
+        let size = frames.len() / self.group_lanes;
+        let first = lane % self.group_lanes * size;
+        &frames[first..first + size]
+    }
+}
+
+/// Parts of all samplers, their lanes one after the other.
+#[derive(Clone, Debug)]
+pub struct Rollout {
+    /// One a sampler, all of equal size.
+    pub parts: Vec<Part>,
+}
+
+impl Rollout {
+    /// Steps of each lane.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.parts[0].steps
+    }
+
+    /// Lanes of all parts.
+    #[must_use]
+    pub fn lanes(&self) -> usize {
+        self.parts.len() * self.parts[0].lanes
+    }
+
+    /// Rows of all parts.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.steps() * self.lanes()
+    }
+
+    /// The part that a lane is in, and its number there.
+    #[must_use]
+    pub fn find(&self, lane: usize) -> (&Part, usize) {
+        let lanes = self.parts[0].lanes;
+        (&self.parts[lane / lanes], lane % lanes)
+    }
+
+    /// All frames, those after the last step too.
+    #[must_use]
+    pub fn frames(&self) -> Vec<&[u8]> {
+        (0..=self.steps())
+            .flat_map(|step| (0..self.lanes()).map(move |lane| (step, lane)))
+            .map(|(step, lane)| {
+                let (part, lane) = self.find(lane);
+                part.frame(step, lane)
+            })
+            .collect()
+    }
+
+    /// Oldest version of the weights that acted.
+    #[must_use]
+    pub fn oldest_version(&self) -> u64 {
+        self.parts.iter().flat_map(|part| part.versions.iter().copied()).min().unwrap_or(0)
+    }
+}

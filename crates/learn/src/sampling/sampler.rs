@@ -1,0 +1,278 @@
+//! A sampler: some worlds and the policy that acts in them.
+//!
+//! With two groups and a thread for the worlds, one half of them steps while the policy works on the other. With
+//! several samplers that step their own worlds the same happens between the samplers.
+
+use std::sync::{Arc, RwLock};
+
+use hasard_envs::{Batch, LaneState, VecEnv};
+
+use crate::config::Constraint;
+use crate::config::constraint::find_terms;
+use crate::error::LearnError;
+use crate::networks::{Actor, ModelShape, Published};
+use crate::random::{Purpose, Stream};
+use crate::sampling::rollout::Part;
+use crate::sampling::shaping::Shaping;
+
+/// Where samplers find the newest weights.
+pub type Newest = RwLock<Arc<Published>>;
+
+/// What a sampler's lanes carry from one rollout to the next, beside the worlds: all that a resumed run needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SamplerState {
+    /// Worlds.
+    pub worlds: Vec<LaneState>,
+    /// State of each network.
+    pub state: Vec<Vec<f32>>,
+    /// Safety state of each lane.
+    pub safety: Vec<f64>,
+    /// Steps that each lane has made.
+    pub steps: u64,
+}
+
+/// Some worlds and the policy that acts in them.
+pub struct Sampler {
+    shape: ModelShape,
+    worlds: VecEnv,
+    actor: Actor,
+    shaping: Shaping,
+    /// Where each constraint's cost is in the cost terms; `None` for the scalar cost.
+    constraints: Vec<Option<usize>>,
+    /// Number of the first lane among those of all samplers.
+    first_lane: usize,
+    seed: u64,
+    /// The batch of each group, while it is not with the worlds.
+    batches: Vec<Option<Batch>>,
+    state: Vec<Vec<f32>>,
+    safety: Vec<f64>,
+    steps: u64,
+    after_state: Vec<Vec<f32>>,
+}
+
+impl Sampler {
+    /// A sampler whose worlds have just been made; they start their first episodes.
+    pub fn new(
+        shape: &ModelShape,
+        mut worlds: VecEnv,
+        actor: Actor,
+        shaping: Shaping,
+        constraints: &[Constraint],
+        first_lane: usize,
+        seed: u64,
+    ) -> Result<Sampler, LearnError> {
+        let groups = worlds.groups();
+        for group in 0..groups {
+            let batch = worlds.batch(group);
+            worlds.send_reset(group, batch).map_err(world_error)?;
+        }
+        let mut batches = Vec::new();
+        for group in 0..groups {
+            batches.push(Some(worlds.recv(group).map_err(world_error)?));
+        }
+        let lanes = worlds.lanes();
+        Ok(Sampler {
+            constraints: find_terms(worlds.cost_terms(), constraints)?,
+            state: shape.zero_state(lanes),
+            after_state: shape.zero_state(lanes),
+            safety: vec![1.0; lanes],
+            shape: shape.clone(),
+            worlds,
+            actor,
+            shaping,
+            first_lane,
+            seed,
+            batches,
+            steps: 0,
+        })
+    }
+
+    /// Lanes of this sampler.
+    #[must_use]
+    pub fn lanes(&self) -> usize {
+        self.worlds.lanes()
+    }
+
+    /// Puts every lane somewhere else in its first episode: of all `total` lanes of the run, each starts after so many
+    /// random steps that their episodes end spread over the time of one. Otherwise all episodes of a scenario that always
+    /// runs into the clock would end at once, and constraints would hear of their cost once in an age.
+    pub fn spread_out(&mut self, total: usize, episode_steps: u32) -> Result<(), LearnError> {
+        let mut saved = self.save()?;
+        let action = &self.shape.action;
+        for (lane, world) in saved.worlds.iter_mut().enumerate() {
+            let number = self.first_lane + lane;
+            let steps = number as u64 * u64::from(episode_steps) / total as u64;
+            let mut stream = Stream::new(self.seed, Purpose::FirstSteps, number as u64, 0);
+            for _ in 0..steps {
+                for &size in &action.sizes {
+                    world.actions.push((stream.uniform() * size as f64) as u8);
+                }
+                for _ in 0..action.deltas {
+                    world.deltas.push((2.0 * stream.uniform() - 1.0) as f32);
+                }
+            }
+        }
+        self.restore(saved)
+    }
+
+    /// Where everything is between two rollouts.
+    pub fn save(&mut self) -> Result<SamplerState, LearnError> {
+        Ok(SamplerState {
+            worlds: self.worlds.save().map_err(world_error)?,
+            state: self.state.clone(),
+            safety: self.safety.clone(),
+            steps: self.steps,
+        })
+    }
+
+    /// Goes on from where another sampler of the same kind was.
+    pub fn restore(&mut self, saved: SamplerState) -> Result<(), LearnError> {
+        let fits = saved.state.len() == self.state.len()
+            && saved.state.iter().zip(&self.state).all(|(a, b)| a.len() == b.len())
+            && saved.safety.len() == self.safety.len();
+        if !fits {
+            return Err(LearnError::Config("the saved lanes are not those of this run".into()));
+        }
+        let mut whole = self.worlds.whole_batch();
+        self.worlds.restore(saved.worlds, &mut whole).map_err(world_error)?;
+        let pixels = self.shape.pixels();
+        for group in 0..self.worlds.groups() {
+            let lanes = self.worlds.group_lanes(group);
+            let batch = self.batches[group].as_mut().expect("no group is under way between rollouts");
+            batch.observations.copy_from_slice(&whole.observations[lanes.start * pixels..lanes.end * pixels]);
+        }
+        (self.state, self.safety, self.steps) = (saved.state, saved.safety, saved.steps);
+        Ok(())
+    }
+
+    /// Gathers `steps` steps of all lanes.
+    pub fn fill(&mut self, part: &mut Part, steps: usize, newest: &Newest) -> Result<(), LearnError> {
+        let groups = self.worlds.groups();
+        part.prepare(&self.shape, steps, self.lanes(), groups, self.constraints.len());
+        part.initial_state.clone_from(&self.state);
+        for step in 0..steps {
+            let published = Arc::clone(&newest.read().unwrap_or_else(|poisoned| poisoned.into_inner()));
+            self.actor.load(&published);
+            part.versions[step] = published.version;
+            for group in 0..groups {
+                if step > 0 {
+                    self.receive(group, step - 1, part)?;
+                }
+                self.act(group, step, part)?;
+            }
+        }
+        self.steps += steps as u64;
+        for group in 0..groups {
+            self.receive(group, steps - 1, part)?;
+            let batch = self.batches[group].as_ref().expect("just received");
+            part.frames[steps * groups + group].copy_from_slice(&batch.observations);
+            // The value of what follows is asked with a copy of the state: the next rollout asks again with new weights.
+            let lanes = self.worlds.group_lanes(group);
+            for (copy, state) in self.after_state.iter_mut().zip(&self.state) {
+                copy.copy_from_slice(state);
+            }
+            self.write_extra(part, steps, lanes.clone());
+            let (extra, outputs) = (self.shape.extra_inputs(), self.shape.outputs());
+            let rows = steps * self.lanes() + lanes.start..steps * self.lanes() + lanes.end;
+            self.actor.act(
+                &batch.observations,
+                &part.extra[rows.start * extra..rows.end * extra],
+                &mut self.after_state,
+                lanes,
+                &mut part.outputs[rows.start * outputs..rows.end * outputs],
+            );
+        }
+        Ok(())
+    }
+
+    fn write_extra(&self, part: &mut Part, step: usize, lanes: std::ops::Range<usize>) {
+        if self.shape.extra_inputs() == 1 {
+            for lane in lanes {
+                part.extra[step * self.safety.len() + lane] = Shaping::seen(self.safety[lane]);
+            }
+        }
+    }
+
+    /// Chooses a group's actions and hands it to the worlds.
+    fn act(&mut self, group: usize, step: usize, part: &mut Part) -> Result<(), LearnError> {
+        let mut batch = self.batches[group].take().expect("the group is here");
+        let lanes = self.worlds.group_lanes(group);
+        let first_row = step * self.lanes();
+        let rows = first_row + lanes.start..first_row + lanes.end;
+        let (extra, outputs) = (self.shape.extra_inputs(), self.shape.outputs());
+        self.write_extra(part, step, lanes.clone());
+        let out = &mut part.outputs[rows.start * outputs..rows.end * outputs];
+        let extra = &part.extra[rows.start * extra..rows.end * extra];
+        self.actor.act(&batch.observations, extra, &mut self.state, lanes.clone(), out);
+        let action = &self.shape.action;
+        let (count, deltas) = (action.sizes.len(), action.deltas);
+        for (index, lane) in lanes.clone().enumerate() {
+            let number = (self.first_lane + lane) as u64;
+            let mut stream = Stream::new(self.seed, Purpose::Actions, number, self.steps + step as u64);
+            part.log_probabilities[first_row + lane] = action.sample(
+                &out[index * outputs..(index + 1) * outputs],
+                &mut stream,
+                &mut batch.actions[index * count..(index + 1) * count],
+                &mut batch.deltas[index * deltas..(index + 1) * deltas],
+            );
+        }
+        part.actions[rows.start * count..rows.end * count].copy_from_slice(&batch.actions);
+        part.deltas[rows.start * deltas..rows.end * deltas].copy_from_slice(&batch.deltas);
+        // The worlds write over all observations, so the frames change hands without being copied.
+        std::mem::swap(&mut part.frames[step * self.worlds.groups() + group], &mut batch.observations);
+        self.worlds.send(group, batch).map_err(world_error)
+    }
+
+    /// Takes a group back and notes what its step brought.
+    fn receive(&mut self, group: usize, step: usize, part: &mut Part) -> Result<(), LearnError> {
+        let mut batch = self.worlds.recv(group).map_err(world_error)?;
+        let lanes = self.worlds.group_lanes(group);
+        let first_row = step * self.lanes();
+        let (count, terms) = (self.constraints.len(), self.worlds.cost_terms().len());
+        for (index, lane) in lanes.clone().enumerate() {
+            let row = first_row + lane;
+            for (constraint, term) in self.constraints.iter().enumerate() {
+                part.costs[row * count + constraint] = match term {
+                    None => batch.costs[index],
+                    Some(term) => batch.cost_terms[index * terms + term],
+                };
+            }
+            let (reward, safety) = self.shaping.step(self.safety[lane], batch.rewards[index], part.costs[row * count]);
+            part.rewards[row] = reward.clamp(-1000.0, 1000.0);
+            self.safety[lane] = safety;
+            part.positions[row] = batch.positions[index];
+            part.done[row] = batch.terminated[index] || batch.truncated[index];
+        }
+        for (index, observation) in batch.final_observations.drain(..) {
+            let lane = lanes.start + index;
+            let mut row = vec![0.0; self.shape.outputs()];
+            for ((copy, state), network) in self.after_state.iter_mut().zip(&self.state).zip(&self.shape.networks) {
+                let units = network.state_size();
+                copy[..units].copy_from_slice(&state[lane * units..(lane + 1) * units]);
+            }
+            let seen = [Shaping::seen(self.safety[lane])];
+            let extra = &seen[..self.shape.extra_inputs()];
+            self.actor.act(&observation, extra, &mut self.after_state, 0..1, &mut row);
+            part.cut_off.push((first_row + lane, row));
+        }
+        for lane in lanes {
+            if part.done[first_row + lane] {
+                self.safety[lane] = 1.0;
+                for (state, network) in self.state.iter_mut().zip(&self.shape.networks) {
+                    let units = network.state_size();
+                    state[lane * units..(lane + 1) * units].fill(0.0);
+                }
+            }
+        }
+        for mut episode in batch.episodes.drain(..) {
+            episode.lane += self.first_lane;
+            part.episodes.push(episode);
+        }
+        self.batches[group] = Some(batch);
+        Ok(())
+    }
+}
+
+fn world_error(error: hasard_envs::EnvError) -> LearnError {
+    LearnError::Worlds(error.to_string())
+}
