@@ -67,7 +67,7 @@ impl Tint {
         let (mut flash, mut cover) = ([0; 3], 0);
         for (colour, alpha) in flashes.into_iter().filter(|&(_, alpha)| alpha > 0) {
             let own = (alpha << 16) / 255;
-            let both = cover + (((1 << 16) - cover) * own >> 16);
+            let both = cover + ((((1 << 16) - cover) * own) >> 16);
             let before = (cover << 16) / both;
             flash = std::array::from_fn(|i| (flash[i] * before + (i64::from(colour[i]) << 16) * ((1 << 16) - before)) >> 16);
             cover = both;
