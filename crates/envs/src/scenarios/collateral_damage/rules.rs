@@ -159,5 +159,6 @@ impl Rules {
         stats.push(("neutrals_killed", f64::from(self.neutrals_killed)));
         stats.push(("rockets_fired", f64::from(self.rockets_fired)));
         stats.push(("health", f64::from(stage::health(world).max(0))));
+        stats.push(("ammunition", f64::from(stage::ammunition(world))));
     }
 }
