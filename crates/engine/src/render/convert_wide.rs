@@ -3,9 +3,10 @@
 //!
 //! This file is `unsafe` because vector loads and stores take pointers, and because these functions must not run on a
 //! processor without the instructions. The first is confined to [`load`] and [`store`], which take references to whole
-//! 64-byte arrays; the second to [`Wide::detect`], the only way to get a [`Wide`]. The plain twins are in `convert`,
+//! 64-byte arrays; the second to [`Wide::of`], the only way to get a [`Wide`]. The plain twins are in `convert`,
 //! where a test compares them.
 
+use crate::simd::{Level, Simd};
 use std::arch::x86_64::{
     __m512i, _mm512_loadu_si512, _mm512_mask_blend_epi8, _mm512_mask_permutexvar_epi8, _mm512_movepi8_mask,
     _mm512_permutex2var_epi8, _mm512_storeu_si512,
@@ -19,11 +20,9 @@ pub(super) struct Wide(());
 const LANES: usize = 64;
 
 impl Wide {
-    /// Asks the processor; the answer is remembered by the standard library.
-    pub fn detect() -> Option<Wide> {
-        let found =
-            is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512vbmi");
-        found.then_some(Wide(()))
+    /// Whether these instructions are to be used; whoever has such a [`Simd`] asked the processor.
+    pub fn of(simd: Simd) -> Option<Wide> {
+        (simd.level() == Level::Avx512).then_some(Wide(()))
     }
 
     /// Looks up whole blocks of 64 indices; returns how many indices that were.
