@@ -16,6 +16,9 @@ mod label;
 mod light;
 mod look;
 mod masked;
+mod narrow;
+#[cfg(target_arch = "x86_64")]
+mod narrow_wide;
 mod openings;
 mod palette;
 mod picture;

@@ -156,6 +156,7 @@ impl Renderer {
             silhouettes: &mut self.silhouettes,
             entered: &mut self.entered,
             scratch: &mut self.walk,
+            simd: self.simd,
         };
         walk.run::<DEPTH>();
         self.draw_planes::<DEPTH, CLASS>(&camera);

@@ -4,6 +4,7 @@
 //! grid. Usually the two are the same. At 128x72 the base is 160x120, of which every 1.25th column and 5/3rd row is
 //! drawn, so that the small frame equals the nearest-neighbour reduction of the large one by construction.
 
+use super::narrow::padded;
 use super::{FrameSize, SizeError};
 use crate::math::{Angle, Fixed};
 
@@ -29,7 +30,7 @@ pub struct View {
     pub(super) base_view_rows: u32,
     /// Rows of the frame that show the world.
     pub(super) view_rows: usize,
-    /// Base column of each frame column.
+    /// Base column of each frame column, and so on for a block beyond.
     pub(super) columns: Box<[u32]>,
     /// What the base column rises by over [`CHUNK`] frame columns.
     pub(super) chunk_stride: u32,
@@ -39,6 +40,8 @@ pub struct View {
     pub(super) first_column: Box<[u16]>,
     /// For each base row 0..=view rows, the first frame row at or below it.
     pub(super) first_row: Box<[i16]>,
+    /// The same as a formula.
+    pub(super) row_scale: RowScale,
     /// Vertical focal length in base rows, 16.16: 1.2 times the horizontal one, which is half the width.
     pub(super) focal_y: i64,
     /// `2^32 / vertical focal length`.
@@ -72,7 +75,8 @@ impl View {
     fn sampled(size: FrameSize, base: FrameSize) -> View {
         let (width, height) = (u32::from(base.width), u32::from(base.height));
         let base_view_rows = height - bar_rows(width, height);
-        let columns: Box<[u32]> = (0..u32::from(size.width)).map(|x| x * width / u32::from(size.width)).collect();
+        let columns: Box<[u32]> =
+            (0..padded(usize::from(size.width)) as u32).map(|x| x * width / u32::from(size.width)).collect();
         let all_rows: Vec<u32> = (0..u32::from(size.height)).map(|y| y * height / u32::from(size.height)).collect();
         let view_rows = all_rows.partition_point(|&row| row < base_view_rows);
         let rows: Box<[u32]> = all_rows[..view_rows].into();
@@ -111,6 +115,7 @@ impl View {
             rows,
             first_column,
             first_row,
+            row_scale: RowScale::new(u32::from(size.height), height, base_view_rows),
             focal_y,
             inverse_focal_y: (1 << 48) / focal_y,
             row_slopes,
@@ -149,6 +154,34 @@ impl View {
         let tangent = i64::from(Angle::from_turn_65536(pitch).tan().0);
         let shift = (self.focal_y * tangent + (1 << 31)) >> 32;
         (self.base_view_rows / 2) as i32 - shift as i32
+    }
+}
+
+/// From base rows to the first frame row at or below them, without a table: the frame row `y` shows base row
+/// `y * base height / height`, rounded down, so that the first at or below `row` is `row * height / base height`, rounded up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowScale {
+    pub factor: i32,
+    pub addend: i32,
+    /// One past the last base row that shows the world.
+    pub last: i32,
+}
+
+impl RowScale {
+    /// Fractional bits of the factor; few enough that 1080 rows fit.
+    pub const BITS: u32 = 20;
+
+    fn new(height: u32, base_height: u32, last: u32) -> RowScale {
+        let factor = (height << RowScale::BITS).div_ceil(base_height) as i32;
+        let addend = (((base_height - 1) << RowScale::BITS) / base_height) as i32;
+        RowScale { factor, addend, last: last as i32 }
+    }
+
+    /// The frame row; base rows out of view count as the nearest end of it.
+    #[inline(always)]
+    pub(super) fn frame_row(&self, base: i64) -> i16 {
+        let base = base.clamp(0, i64::from(self.last)) as i32;
+        ((base * self.factor + self.addend) >> RowScale::BITS) as i16
     }
 }
 
@@ -202,6 +235,18 @@ mod tests {
                 let below = view.base_view_rows as i32 - 1 - horizon;
                 assert!(below < view.row_slopes.len() as i32 && horizon <= view.row_slopes.len() as i32);
             }
+        }
+    }
+
+    #[test]
+    fn the_scale_of_rows_is_their_table() {
+        for (width, height) in [(128, 72), (160, 120), (64, 48), (640, 480), (1001, 700), (1920, 1080)] {
+            let view = view(width, height);
+            for (base, &row) in view.first_row.iter().enumerate() {
+                assert_eq!(view.row_scale.frame_row(base as i64), row, "base row {base} of {width}x{height}");
+            }
+            assert_eq!(view.row_scale.frame_row(i64::MIN), 0);
+            assert_eq!(view.row_scale.frame_row(i64::MAX), view.view_rows as i16);
         }
     }
 

@@ -8,7 +8,7 @@ use super::picture::WallPicture;
 use super::scene::{Face, SceneSeg};
 
 /// Fractional bits of screen rows.
-const ROW_BITS: u32 = 24;
+pub(super) const ROW_BITS: u32 = 24;
 /// Fractional bits of the inverse of a distance.
 pub(super) const INVERSE_BITS: u32 = 44;
 /// The inverse of a distance beyond all maps, which keeps divisions in range.
@@ -59,9 +59,9 @@ impl TextureLine {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     /// At base column 0.
-    at: i64,
+    pub at: i64,
     /// Its change a column.
-    step: i64,
+    pub step: i64,
 }
 
 impl SeenLine {
@@ -102,6 +102,12 @@ impl SeenLine {
 }
 
 impl Edge {
+    /// The base row at a base column, anywhere.
+    #[inline(always)]
+    pub fn base_row(&self, column: i64) -> i64 {
+        (self.at + self.step * column) >> ROW_BITS
+    }
+
     /// The first frame row whose middle is below the edge at a base column; `first_rows` is [`View::first_row`].
     #[inline]
     pub fn row(&self, first_rows: &[i16], column: u32) -> i32 {
