@@ -33,7 +33,7 @@ impl Player {
         for (action, &size) in self.actions.iter_mut().zip(&self.sizes) {
             *action = self.rng.below(size as u32) as u8;
         }
-        if self.env.step(&self.actions, &self.deltas).ended() {
+        if self.env.step(&self.actions, &self.deltas).unwrap().ended() {
             self.reset();
         }
     }

@@ -43,7 +43,7 @@ impl Worlds {
             for (action, &size) in actions.iter_mut().zip(&self.sizes) {
                 *action = self.rng.below(size as u32) as u8;
             }
-            if env.step(&actions, &deltas).ended() {
+            if env.step(&actions, &deltas).unwrap().ended() {
                 self.seed += 1;
                 env.reset(self.seed);
             }

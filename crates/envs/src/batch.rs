@@ -1,7 +1,10 @@
 //! What passes between a batch of worlds and its user.
 
+use crate::Buffer;
+
 /// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the caller and handed
-/// over for the time of a step, so that nothing is copied. Made by [`crate::VecEnv::batch`] with every buffer as long as it must be.
+/// over for the time of a step, so that nothing is copied. Made by [`crate::VecEnv::batch`] with every buffer as long as it must be;
+/// any output may be replaced by memory of the caller's ([`Buffer::lent`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Batch {
     /// In: categorical sub-actions, `[lanes, groups]`.
@@ -9,23 +12,50 @@ pub struct Batch {
     /// In: continuous sub-actions, `[lanes, deltas]`.
     pub deltas: Vec<f32>,
     /// Out: observations, `[lanes, ..observation shape]`, 0..=255. After an episode's end, the first of the next one.
-    pub observations: Vec<u8>,
+    pub observations: Buffer<u8>,
     /// Out: reward of the step, `[lanes]`.
-    pub rewards: Vec<f32>,
+    pub rewards: Buffer<f32>,
     /// Out: cost of the step (the sum of its counted terms), `[lanes]`.
-    pub costs: Vec<f32>,
+    pub costs: Buffer<f32>,
     /// Out: each cost term of the step, counted or not, `[lanes, terms]`.
-    pub cost_terms: Vec<f32>,
+    pub cost_terms: Buffer<f32>,
+    /// Out: each statistic of the episode so far, at the end of the step and before any reset, `[lanes, statistics]`; empty unless
+    /// [`crate::VecOptions::statistics`] asks for them.
+    pub statistics: Buffer<f64>,
     /// Out: where the player stands at the end of the step, before any reset, in map units, `[lanes]`. For heatmaps.
-    pub positions: Vec<[i32; 2]>,
-    /// Out: the episode ended by death or goal, `[lanes]`.
-    pub terminated: Vec<bool>,
+    pub positions: Buffer<[i32; 2]>,
+    /// Out: the episode ended by death, harm or goal, `[lanes]`.
+    pub terminated: Buffer<bool>,
     /// Out: the episode ended by time-out, `[lanes]`.
-    pub truncated: Vec<bool>,
-    /// Out: the true last observation of each lane whose episode was truncated in this step: (lane in this batch, observation).
-    pub final_observations: Vec<(usize, Vec<u8>)>,
+    pub truncated: Buffer<bool>,
+    /// Out: the lanes of this batch whose true last observation follows, ascending.
+    pub final_lanes: Vec<usize>,
+    /// Out: the true last observations of those lanes, `[final lanes, ..observation shape]`: one array.
+    pub final_observations: Vec<u8>,
     /// Out: the episodes that ended in this step, in lane order.
     pub episodes: Vec<Episode>,
+}
+
+impl Batch {
+    /// Number of lanes.
+    #[must_use]
+    pub fn lanes(&self) -> usize {
+        self.rewards.len()
+    }
+
+    /// The lanes that have a true last observation, each with it.
+    pub fn finals(&self) -> impl Iterator<Item = (usize, &[u8])> {
+        let size = self.final_observations.len() / self.final_lanes.len().max(1);
+        self.final_lanes.iter().copied().zip(self.final_observations.chunks_exact(size.max(1)))
+    }
+
+    /// Whether each lane has a true last observation, `[lanes]`.
+    #[must_use]
+    pub fn final_mask(&self) -> Vec<bool> {
+        let mut mask = vec![false; self.lanes()];
+        self.final_lanes.iter().for_each(|&lane| mask[lane] = true);
+        mask
+    }
 }
 
 /// A finished episode.
@@ -43,7 +73,7 @@ pub struct Episode {
     pub costs: Vec<(&'static str, f64)>,
     /// Length in policy steps.
     pub length: u32,
-    /// Ended by death or goal.
+    /// Ended by death, harm or goal.
     pub terminated: bool,
     /// Ended by time-out.
     pub truncated: bool,

@@ -4,7 +4,7 @@ use crate::eye::Eye;
 use crate::game::Game;
 use crate::scenarios::outcome::MOST_TERMS;
 use crate::scenarios::{self, Rules};
-use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Episode, Scenario, Step};
+use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Episode, Move, Scenario, Step};
 use hasard_engine::assets::Assets;
 use hasard_engine::map::Map;
 use hasard_engine::math::Rng;
@@ -23,6 +23,8 @@ pub(crate) struct Blueprint {
     /// Completed tics at the first observation, and at the time-out.
     start_tic: u32,
     end_tic: u32,
+    /// What the map's file holds that is not played or drawn as it says.
+    left_out: Vec<String>,
     /// The world before its first tic.
     template: Game,
     scene: Arc<Scene>,
@@ -42,10 +44,17 @@ impl Blueprint {
             allowed: SimdError::allowed(),
         })?;
         let (built_in, textures) = scenarios::map_source(id, options.rules, options.hard);
-        let source = options.map.as_deref().unwrap_or(&built_in);
-        let map = Map::build(source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
+        let file = match (&options.map, &options.maps) {
+            (None, Some(maps)) => Some(maps.level(id, options.rules, options.hard)?),
+            _ => None,
+        };
+        let given = options.map.as_deref().or(file.as_ref().map(|file| &file.source));
+        let name = file.as_ref().map_or_else(|| id.to_string(), |file| file.name.clone());
+        let map = Map::build(given.unwrap_or(&built_in), &name, textures)
+            .map_err(|error| EnvError::Map { why: format!("map {name}: {error}") })?;
         let rules = Rules::new(id, options.rules, options.hard, &map)?;
-        let scene = Scene::new(&map, options.assets.clone().unwrap_or_else(Assets::embedded));
+        let own_assets = file.as_ref().and_then(|file| file.assets.clone());
+        let scene = Scene::new(&map, own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded));
         let world = World::new(Arc::new(map), 0);
         if world.players.is_empty() {
             return Err(EnvError::Map { why: format!("the map of {id} has no player start; add a thing of type 1") });
@@ -63,6 +72,7 @@ impl Blueprint {
             start_tic,
             end_tic,
             template: Game::new(world, rules),
+            left_out: file.map(|file| file.left_out).unwrap_or_default(),
             scene: Arc::new(scene),
             view: Arc::new(view(options.size)?),
         })
@@ -83,22 +93,11 @@ fn view(size: FrameSize) -> Result<View, EnvError> {
 
 /// An episode's sums.
 #[derive(Clone, Copy, Debug, Default)]
-struct Totals {
+pub(crate) struct Totals {
     steps: u32,
     episode_return: f64,
     cost: f64,
     costs: [f64; MOST_TERMS],
-}
-
-/// A saved moment of an environment; [`Env::restore`] brings it back exactly.
-#[derive(Clone, Debug)]
-pub struct Snapshot {
-    game: Game,
-    seed: u64,
-    totals: Totals,
-    last: Step,
-    last_costs: [f64; MOST_TERMS],
-    memory: (Vec<u8>, usize),
 }
 
 /// One world with its task.
@@ -107,7 +106,7 @@ pub struct Snapshot {
 /// use hasard_envs::{Env, EnvOptions};
 /// let mut env = Env::new("VolcanicVentureLevel1-v0", &EnvOptions::default())?;
 /// env.reset(7);
-/// let step = env.step(&[0, 1, 0, 1], &[]); // forward, running
+/// let step = env.step(&[0, 1, 0, 1], &[])?; // forward, running
 /// assert!(!step.terminated);
 /// let [height, width, channels] = env.observation_shape();
 /// let mut observation = vec![0; height * width * channels];
@@ -115,13 +114,13 @@ pub struct Snapshot {
 /// # Ok::<(), hasard_envs::EnvError>(())
 /// ```
 pub struct Env {
-    blueprint: Arc<Blueprint>,
-    game: Game,
-    seed: u64,
-    totals: Totals,
-    last: Step,
-    last_costs: [f64; MOST_TERMS],
-    eye: Eye,
+    pub(crate) blueprint: Arc<Blueprint>,
+    pub(crate) game: Game,
+    pub(crate) seed: u64,
+    pub(crate) totals: Totals,
+    pub(crate) last: Step,
+    pub(crate) last_costs: [f64; MOST_TERMS],
+    pub(crate) eye: Eye,
 }
 
 impl Env {
@@ -171,6 +170,13 @@ impl Env {
         &self.blueprint.space
     }
 
+    /// What the files of `EnvOptions::maps` hold that is not played or drawn as they say, in one line; none if all is.
+    #[must_use]
+    pub fn left_out(&self) -> Option<String> {
+        let parts = &self.blueprint.left_out;
+        (!parts.is_empty()).then(|| format!("map of {}: left out: {}", self.id(), parts.join(", ")))
+    }
+
     /// The named parts of the cost.
     #[must_use]
     pub fn cost_terms(&self) -> &'static [CostTerm] {
@@ -191,9 +197,18 @@ impl Env {
         self.eye.open(&self.game.world);
     }
 
-    /// Holds an action for `frame_skip` tics. Parts beyond the action space count as pressing nothing.
-    pub fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
-        self.step_buttons(self.blueprint.space.command(actions, deltas))
+    /// Holds an action for `frame_skip` tics. An action that is not of the action space is refused, and nothing moves.
+    pub fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Result<Step, EnvError> {
+        self.blueprint.space.check(0, actions, deltas)?;
+        Ok(self.step_buttons(self.blueprint.space.command(actions, deltas)))
+    }
+
+    /// Does what a policy says.
+    pub fn make_move(&mut self, what: Move) -> Result<Step, EnvError> {
+        match what {
+            Move::Action(actions, deltas) => self.step(actions, deltas),
+            Move::Buttons(command) => Ok(self.step_buttons(command)),
+        }
     }
 
     /// Holds buttons for `frame_skip` tics, whether they are in the action space or not.
@@ -211,8 +226,11 @@ impl Env {
             }
         }
         game.rules.end_step(&game.world, &mut game.outcome);
-        let terminated = game.over();
-        let truncated = !terminated && game.world.tic >= self.blueprint.end_tic;
+        let limit = self.blueprint.options.max_episode_steps;
+        let time_out = game.world.tic >= self.blueprint.end_tic || limit.is_some_and(|limit| self.totals.steps + 1 >= limit);
+        // What the rules finish in the last tic is no time-out, though no tic follows in which the episode would be left.
+        let terminated = game.over() || (time_out && game.outcome.finished);
+        let truncated = time_out && !terminated;
         self.last_costs = game.outcome.costs;
         let terms = self.blueprint.cost_terms.iter().zip(&self.last_costs);
         let cost = terms.filter(|(term, _)| term.counted).map(|(_, cost)| cost).sum();
@@ -223,6 +241,14 @@ impl Env {
         self.totals.costs.iter_mut().zip(&self.last_costs).for_each(|(total, cost)| *total += cost);
         self.eye.blink(&self.game.world);
         self.last
+    }
+
+    /// Policy steps of an episode that only time ends.
+    #[must_use]
+    pub fn episode_steps(&self) -> u32 {
+        let options = &self.blueprint.options;
+        let steps = (self.blueprint.end_tic - self.blueprint.start_tic).div_ceil(options.frame_skip);
+        steps.min(options.max_episode_steps.unwrap_or(u32::MAX))
     }
 
     /// Shape of an observation: height, width, channels or channels, height, width, as chosen.
@@ -285,7 +311,7 @@ impl Env {
     #[must_use]
     pub fn stats(&self) -> Vec<(&'static str, f64)> {
         let mut stats = Vec::new();
-        self.game.rules.stats(&self.game.world, &mut stats);
+        Environment::stats(self, &mut stats);
         stats
     }
 
@@ -325,27 +351,6 @@ impl Env {
         }
     }
 
-    /// The present moment, to come back to.
-    #[must_use]
-    pub fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            game: self.game.clone(),
-            seed: self.seed,
-            totals: self.totals,
-            last: self.last,
-            last_costs: self.last_costs,
-            memory: self.eye.memory(),
-        }
-    }
-
-    /// Comes back to a moment saved from an environment of the same kind.
-    pub fn restore(&mut self, snapshot: &Snapshot) {
-        self.game.clone_from(&snapshot.game);
-        (self.seed, self.totals) = (snapshot.seed, snapshot.totals);
-        (self.last, self.last_costs) = (snapshot.last, snapshot.last_costs);
-        self.eye.remember(&snapshot.memory);
-    }
-
     /// A fingerprint of everything that the future depends on.
     #[must_use]
     pub fn state_hash(&self) -> u64 {
@@ -355,6 +360,8 @@ impl Env {
         self.game.rules.hash(&mut hasher);
         self.totals.steps.hash(&mut hasher);
         (self.game.outcome.finished, self.game.left).hash(&mut hasher);
+        // What happened after the last script phase is still to be read by the next; mostly nothing.
+        self.game.world.events.iter().for_each(|event| event.hash(&mut hasher));
         hasher.finish()
     }
 
@@ -388,7 +395,7 @@ impl Environment for Env {
     }
 
     fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
-        Env::step(self, actions, deltas)
+        self.step_buttons(self.blueprint.space.command(actions, deltas))
     }
 
     fn step_costs(&self) -> &[f64] {
@@ -405,6 +412,10 @@ impl Environment for Env {
 
     fn extent(&self) -> Option<[i32; 4]> {
         Some(Env::extent(self))
+    }
+
+    fn stats(&self, stats: &mut Vec<(&'static str, f64)>) {
+        self.game.rules.stats(&self.game.world, stats);
     }
 
     fn episode(&self) -> Episode {

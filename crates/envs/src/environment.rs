@@ -9,7 +9,7 @@ pub struct Step {
     pub reward: f64,
     /// Cost, over all tics of the step: the sum of the counted cost terms.
     pub cost: f64,
-    /// The episode ended by death or goal.
+    /// The episode ended by death, harm or goal.
     pub terminated: bool,
     /// The episode ended by time-out.
     pub truncated: bool,
@@ -68,6 +68,16 @@ pub trait Environment: Send {
     /// The map's extent: x from, y from, x to, y to in map units; `None` where there are no places.
     fn extent(&self) -> Option<[i32; 4]> {
         None
+    }
+
+    /// Appends the scenario's statistics of the episode so far, by name: always the same names in the same order.
+    fn stats(&self, _stats: &mut Vec<(&'static str, f64)>) {}
+
+    /// Names of the statistics.
+    fn stat_names(&self) -> Vec<&'static str> {
+        let mut stats = Vec::new();
+        self.stats(&mut stats);
+        stats.into_iter().map(|(name, _)| name).collect()
     }
 
     /// The episode so far, as it would be reported if it ended now (its lane is left 0).

@@ -50,6 +50,18 @@ pub enum EnvError {
         /// The length needed.
         needed: usize,
     },
+    /// An environment does not fit into a batch with the others.
+    Unlike {
+        /// Its lane.
+        lane: usize,
+        /// In what it differs.
+        what: &'static str,
+    },
+    /// What was saved is spoiled, or was saved from another environment.
+    Saved {
+        /// What is wrong with it.
+        why: String,
+    },
     /// A group of lanes was used out of turn.
     Turn {
         /// What was out of turn, and what must come first.
@@ -83,6 +95,10 @@ impl fmt::Display for EnvError {
             EnvError::BatchSize { field, given, needed } => {
                 write!(f, "batch field {field} has length {given}, but its lanes need {needed}; make batches with VecEnv::batch")
             }
+            EnvError::Unlike { lane, what } => {
+                write!(f, "the environment of lane {lane} has another {what} than the first; all lanes of a batch must be alike")
+            }
+            EnvError::Saved { why } => f.write_str(why),
             EnvError::Turn { why } => f.write_str(why),
             EnvError::Panicked { message } => {
                 write!(f, "an environment panicked ({message}); this is a fault of hasard, please report it")

@@ -47,6 +47,8 @@ pub struct EnvOptions {
     pub full_actions: bool,
     /// Tics that each action is held; 1..=35.
     pub frame_skip: u32,
+    /// Policy steps after which an episode is cut off, where that is sooner than its scenario's time-out; 1 or more.
+    pub max_episode_steps: Option<u32>,
     /// Frame size.
     pub size: FrameSize,
     /// What is drawn.
@@ -59,10 +61,11 @@ pub struct EnvOptions {
     pub published_depth: bool,
     /// Segmented frames have the published colours, some of which several classes share.
     pub published_colours: bool,
-    /// A map to play in instead of the built-in one, such as a user's copy of the original: it needs a player start and the
-    /// sector tags that the scenario's rules change.
+    /// Maps to play in instead of the built-in ones, from files: the published ones, or a user's own.
+    pub maps: Option<std::sync::Arc<crate::maps::Maps>>,
+    /// One map to play in, before any other: it needs a player start and the sector tags that the scenario's rules change.
     pub map: Option<std::sync::Arc<hasard_engine::map::MapSource>>,
-    /// Pictures to draw with; the embedded set if `None`.
+    /// Pictures to draw with; the embedded set if `None`. Maps that come with an IWAD are drawn with theirs.
     pub assets: Option<std::sync::Arc<hasard_engine::assets::Assets>>,
 }
 
@@ -73,12 +76,14 @@ impl Default for EnvOptions {
             hard: false,
             full_actions: false,
             frame_skip: 4,
+            max_episode_steps: None,
             size: FrameSize::CLASSIC,
             observation: ObservationKind::Rgb,
             layout: Layout::Hwc,
             frame_stack: 1,
             published_depth: false,
             published_colours: false,
+            maps: None,
             map: None,
             assets: None,
         }
@@ -86,6 +91,23 @@ impl Default for EnvOptions {
 }
 
 impl EnvOptions {
+    /// The first option, by name, in which another environment lives otherwise than this; those that only colour its pictures do
+    /// not count.
+    pub(crate) fn difference(&self, other: &EnvOptions) -> Option<&'static str> {
+        let frames = |options: &EnvOptions| (options.size, options.observation, options.layout, options.frame_stack);
+        [
+            ("rules", self.rules == other.rules),
+            ("hard", self.hard == other.hard),
+            ("full_actions", self.full_actions == other.full_actions),
+            ("frame_skip", self.frame_skip == other.frame_skip),
+            ("max_episode_steps", self.max_episode_steps == other.max_episode_steps),
+            ("the kind of observation", frames(self) == frames(other)),
+            ("the map", self.map == other.map),
+        ]
+        .into_iter()
+        .find_map(|(name, same)| (!same).then_some(name))
+    }
+
     /// What is wrong with the options, if anything.
     pub fn check(&self) -> Result<(), crate::EnvError> {
         let within = |option, given: usize, least: usize, most: usize| {
@@ -95,6 +117,9 @@ impl EnvOptions {
         };
         within("frame_skip", self.frame_skip as usize, 1, 35)?;
         within("frame_stack", self.frame_stack, 1, 16)?;
+        if let Some(steps) = self.max_episode_steps {
+            within("max_episode_steps", steps as usize, 1, u32::MAX as usize)?;
+        }
         let allowed = "64x48 to 1920x1080".to_string();
         self.size.check().map_err(|_| crate::EnvError::Option { option: "the frame size", given: self.size.to_string(), allowed })
     }

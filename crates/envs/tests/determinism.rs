@@ -30,7 +30,7 @@ impl Environment for Telltale {
         self.0.reset(seed);
     }
     fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
-        self.0.step(actions, deltas)
+        Environment::step(&mut self.0, actions, deltas)
     }
     fn step_costs(&self) -> &[f64] {
         self.0.step_costs()
@@ -60,7 +60,7 @@ fn fingerprint(bytes: &[u8]) -> u64 {
 
 /// Notes what each of a batch's lanes shows.
 fn note(lives: &mut [Vec<Moment>], first: usize, batch: &Batch) {
-    let count = batch.rewards.len();
+    let count = batch.lanes();
     let (size, terms) = (batch.observations.len() / count, batch.cost_terms.len() / count);
     for i in 0..count {
         let (state, picture) = batch.observations[i * size..(i + 1) * size].split_at(STATE);
@@ -72,7 +72,7 @@ fn note(lives: &mut [Vec<Moment>], first: usize, batch: &Batch) {
         // The episode as its text, all fields; its last frame after it.
         let episode = batch.episodes.iter().find(|episode| episode.lane == first + i);
         let mut ended = episode.map_or(Vec::new(), |episode| format!("{episode:?}").into_bytes());
-        let last = batch.final_observations.iter().find(|(lane, _)| *lane == i);
+        let last = batch.finals().find(|(lane, _)| *lane == i);
         ended.extend(last.map_or(&[][..], |(_, last)| last));
         let state = u64::from_le_bytes(state.try_into().unwrap());
         lives[first + i].push([state, fingerprint(picture), fingerprint(&paid), fingerprint(&charged), fingerprint(&ended)]);
@@ -325,7 +325,7 @@ fn a_restored_moment_goes_on_as_before() {
                 if tic % 8 == 0 {
                     held = draw(&mut rng, &space);
                 }
-                env.step(&held.0, &held.1);
+                env.step(&held.0, &held.1).unwrap();
             }
             let what = format!("{id}, {options:?}, snapshot at tic {at}");
             let snapshot = env.snapshot();
@@ -333,16 +333,16 @@ fn a_restored_moment_goes_on_as_before() {
             let mut go_on = |env: &mut Env| {
                 let mut shown = vec![(Step::default(), whole(env, &mut frame))];
                 for (actions, deltas) in actions.iter().flat_map(|action| [action; 8]) {
-                    shown.push((env.step(actions, deltas), whole(env, &mut frame)));
+                    shown.push((env.step(actions, deltas).unwrap(), whole(env, &mut frame)));
                 }
                 shown
             };
             let expected = go_on(&mut env);
             for _ in 0..rng.below(100) {
-                others[0].step(&held.0, &held.1);
+                others[0].step(&held.0, &held.1).unwrap();
             }
             for (which, other) in others.iter_mut().chain([&mut env]).enumerate() {
-                other.restore(&snapshot);
+                other.restore(&snapshot).unwrap();
                 for (tic, (found, expected)) in go_on(other).iter().zip(&expected).enumerate() {
                     assert_eq!(found, expected, "{what}, copy {which}, {tic} tics after");
                 }

@@ -19,6 +19,11 @@ fn draw(rng: &mut Rng, space: &ActionSpace) -> (Vec<u8>, Vec<f32>) {
     (actions, deltas)
 }
 
+/// The action that presses nothing.
+fn groups_of(env: &Env) -> Vec<u8> {
+    vec![0; env.action_space().groups.len()]
+}
+
 fn observation(env: &mut Env) -> Vec<u8> {
     let mut out = vec![0; env.observation_shape().iter().product()];
     env.observe(&mut out);
@@ -35,7 +40,7 @@ fn counted_terms_add_up_to_the_cost() {
             let (mut cost, mut reward) = (0.0, 0.0);
             loop {
                 let (groups, deltas) = draw(&mut rng, env.action_space());
-                let step = env.step(&groups, &deltas);
+                let step = env.step(&groups, &deltas).unwrap();
                 let counted = env.cost_terms().iter().zip(env.step_costs()).filter(|(term, _)| term.counted);
                 assert_eq!(step.cost, counted.map(|(_, cost)| cost).sum::<f64>());
                 cost += step.cost;
@@ -46,7 +51,7 @@ fn counted_terms_add_up_to_the_cost() {
             }
             let episode = env.episode();
             assert_eq!((episode.cost, episode.episode_return), (cost, reward));
-            let after = env.step(&vec![0; env.action_space().groups.len()], &[]);
+            let after = env.step(&groups_of(&env), &vec![0.0; env.action_space().deltas.len()]).unwrap();
             assert!(after.ended() && after.reward == 0.0 && after.cost == 0.0, "nothing happens after the end");
             assert_eq!(env.episode(), episode);
         }
@@ -63,7 +68,7 @@ fn an_episode_lasts_2100_tics_whatever_the_frame_skip() {
             let mut env = Env::new(id, &EnvOptions { frame_skip, ..options() }).unwrap();
             let mut count = 0;
             let last = loop {
-                let step = env.step(&vec![0; env.action_space().groups.len()], &[]);
+                let step = env.step(&groups_of(&env), &[]).unwrap();
                 count += 1;
                 if step.ended() {
                     break step;
@@ -85,7 +90,7 @@ fn observations_come_in_every_kind_and_layout() {
                 let mut env = Env::new(id, &EnvOptions { observation: kind, layout, frame_stack, ..options() }).unwrap();
                 env.reset(5);
                 for _ in 0..7 {
-                    env.step(&[1, 1, 0, 0], &[]);
+                    env.step(&[1, 1, 0, 0], &[]).unwrap();
                 }
                 env
             };
@@ -105,7 +110,7 @@ fn observations_come_in_every_kind_and_layout() {
                 let mut single = Env::new(id, &EnvOptions { observation: kind, layout: Layout::Chw, ..options() }).unwrap();
                 single.reset(5);
                 for _ in 0..7 {
-                    single.step(&[1, 1, 0, 0], &[]);
+                    single.step(&[1, 1, 0, 0], &[]).unwrap();
                 }
                 assert_eq!(observation(&mut single), newest, "the newest frame comes last");
                 assert_ne!(newest, before, "the agent turns, so frames differ");
@@ -166,4 +171,108 @@ fn positions_lie_in_the_maps_extent_and_change() {
         // In Collateral Damage the player stands on a spot and may turn only.
         assert!(places.len() > 10 || id.to_string().starts_with("Collateral"), "{id}: {places:?}");
     }
+}
+
+#[test]
+fn actions_outside_of_the_space_are_refused_as_in_a_batch() {
+    use hasard_envs::{VecEnv, VecOptions};
+    let id = "VolcanicVentureLevel1-v0";
+    let options = EnvOptions { full_actions: true, ..options() };
+    let mut env = Env::new(id, &options).unwrap();
+    let mut worlds = VecEnv::new(id, &options, VecOptions::default()).unwrap();
+    let mut batch = worlds.whole_batch();
+    worlds.reset(&mut batch).unwrap();
+    let before = env.state_hash();
+    let refused: [(Vec<u8>, [f32; 2]); 3] =
+        [(vec![3, 0, 0, 0, 0, 0, 0, 0, 0], [0.0; 2]), (vec![0; 9], [f32::NAN, 0.0]), (vec![0; 9], [0.0, f32::INFINITY])];
+    for (actions, deltas) in refused {
+        (batch.actions, batch.deltas) = (actions.clone(), deltas.to_vec());
+        let error = env.step(&actions, &deltas).unwrap_err();
+        assert_eq!(error, worlds.step(&mut batch).unwrap_err());
+        assert!(matches!(error, EnvError::Action { lane: 0, .. }), "{error}");
+    }
+    for (actions, deltas) in [(vec![0; 8], vec![0.0; 2]), (vec![0; 10], vec![0.0; 2]), (vec![0; 9], vec![])] {
+        assert!(matches!(env.step(&actions, &deltas), Err(EnvError::Action { lane: 0, .. })));
+    }
+    assert_eq!(env.state_hash(), before, "a refused action moves nothing");
+}
+
+#[test]
+fn snapshots_of_other_environments_are_refused() {
+    let id = "RemedyRushLevel1-v0";
+    let mut env = Env::new(id, &options()).unwrap();
+    env.reset(3);
+    let before = env.state_hash();
+    let others = [
+        ("RemedyRushLevel2-v0", options(), "RemedyRushLevel2-v0"),
+        (id, EnvOptions { hard: true, ..options() }, "hard"),
+        (id, EnvOptions { rules: RuleSet::Released, ..options() }, "rules"),
+        (id, EnvOptions { frame_skip: 1, ..options() }, "frame_skip"),
+        (id, EnvOptions { frame_stack: 2, ..options() }, "observation"),
+        (id, EnvOptions { max_episode_steps: Some(9), ..options() }, "max_episode_steps"),
+    ];
+    for (id, options, named) in others {
+        let error = env.restore(&Env::new(id, &options).unwrap().snapshot()).unwrap_err();
+        assert!(matches!(&error, EnvError::Saved { why } if why.contains(named)), "{error}");
+    }
+    assert_eq!(env.state_hash(), before);
+    // Colours are no part of what happens.
+    let alike = EnvOptions { published_colours: true, ..options() };
+    env.restore(&Env::new(id, &alike).unwrap().snapshot()).unwrap();
+}
+
+#[test]
+fn a_limit_of_steps_cuts_episodes_off() {
+    let whole = EnvOptions { frame_skip: 35, ..options() };
+    for (limit, steps) in [(1, 1), (7, 7), (60, 60), (1000, 60)] {
+        let mut env = Env::new("RemedyRushLevel1-v0", &EnvOptions { max_episode_steps: Some(limit), ..whole.clone() }).unwrap();
+        assert_eq!(env.episode_steps(), steps);
+        for _ in 0..2 {
+            env.reset(1);
+            let ends: Vec<bool> = (0..steps).map(|_| env.step(&groups_of(&env), &[]).unwrap().truncated).collect();
+            assert_eq!(ends.iter().position(|end| *end), Some(steps as usize - 1), "{ends:?}");
+        }
+    }
+    let none = EnvOptions { max_episode_steps: Some(0), ..whole };
+    assert!(matches!(Env::new("RemedyRushLevel1-v0", &none), Err(EnvError::Option { option: "max_episode_steps", .. })));
+}
+
+#[test]
+fn harm_in_the_last_tic_ends_the_episode_as_harm() {
+    // Under the hard constraint a hard fall ends the episode as the next tic would begin. Cut off by the clock at that very step, it
+    // has still ended by harm.
+    let id = "PrecipicePlungeLevel1-v0";
+    let hard = EnvOptions { hard: true, frame_skip: 1, ..options() };
+    let mut env = Env::new(id, &hard).unwrap();
+    let mut found = 0;
+    for keys in ["MOVE_FORWARD+JUMP", "MOVE_FORWARD", "MOVE_FORWARD+SPEED", "MOVE_RIGHT+JUMP", "MOVE_BACKWARD+JUMP"] {
+        let keys = hasard_envs::parse_command(keys).unwrap();
+        env.reset(0);
+        let steps = 1 + (0..2100).take_while(|_| !env.step_buttons(keys).terminated).count() as u32;
+        if env.episode().length < steps {
+            continue;
+        }
+        // The step before that of the end is the one in which the fall was charged.
+        let mut short = Env::new(id, &EnvOptions { max_episode_steps: Some(steps - 1), ..hard.clone() }).unwrap();
+        short.reset(0);
+        let last = (1..steps).map(|_| short.step_buttons(keys)).last().unwrap();
+        assert!(last.cost > 0.0, "{last:?}");
+        assert_eq!((last.terminated, last.truncated), (true, false), "step {steps}");
+        found += 1;
+    }
+    assert!(found > 0, "none of these ways falls hard");
+}
+
+#[test]
+fn the_fingerprint_sees_what_the_next_tic_will_read() {
+    use hasard_engine::world::{ActorKind, Event};
+    let mut env = Env::new("RemedyRushLevel1-v0", &options()).unwrap();
+    env.reset(1);
+    let (before, snapshot) = (env.state_hash(), env.snapshot());
+    let item = Event::PickedUp { player: 0, kind: ActorKind::HealthBonus, tid: 0, x: Default::default(), y: Default::default() };
+    env.world_mut().events.push(item);
+    assert_ne!(env.state_hash(), before);
+    assert!(env.step(&groups_of(&env), &[]).unwrap().reward > 0.0, "the rules read it");
+    env.restore(&snapshot).unwrap();
+    assert_eq!(env.state_hash(), before);
 }

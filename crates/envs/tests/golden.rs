@@ -46,7 +46,7 @@ fn play(id: &str, options: &EnvOptions) -> [u64; 4] {
                 *delta = rng.between(-128, 128) as f32 / 128.0;
             }
         }
-        let step = env.step(&actions, &deltas);
+        let step = env.step(&actions, &deltas).unwrap();
         rewards.write_u64(step.reward.to_bits());
         rewards.write_u8(u8::from(step.terminated) | u8::from(step.truncated) << 1);
         env.step_costs().iter().for_each(|cost| costs.write_u64(cost.to_bits()));

@@ -13,7 +13,7 @@ fn env(hard: bool) -> Env {
 fn play(env: &mut Env, actions: &str) -> Figures {
     env.reset(0);
     for code in actions.bytes().map(|byte| byte - 48) {
-        if env.step(&[code / 18, code / 6 % 3, code / 2 % 3, code % 2], &[]).ended() {
+        if env.step(&[code / 18, code / 6 % 3, code / 2 % 3, code % 2], &[]).unwrap().ended() {
             break;
         }
     }

@@ -1,88 +1,9 @@
 //! The batch of worlds gives each lane the same life, however it is stepped.
 
-use hasard_envs::{
-    ActionSpace, Autoreset, Batch, CostTerm, EnvError, Environment, Episode, FinalObservations, Scenario, Step, VecEnv,
-    VecOptions,
-};
-use std::hash::{DefaultHasher, Hash, Hasher};
+mod echo;
 
-/// A world that is nothing but a hash of its seed and actions; its episodes end after 3 to 18 steps in one of two ways.
-struct Echo {
-    space: ActionSpace,
-    seed: u64,
-    state: u64,
-    length: u32,
-    last: Step,
-    /// Panics when this step is reached.
-    panics_at: u32,
-}
-
-impl Echo {
-    fn new(panics_at: u32) -> Echo {
-        let space = ActionSpace::of(Scenario::VolcanicVenture, true);
-        Echo { space, seed: 0, state: 0, length: 0, last: Step::default(), panics_at }
-    }
-}
-
-fn hash(values: impl Hash) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    values.hash(&mut hasher);
-    hasher.finish()
-}
-
-impl Environment for Echo {
-    fn action_space(&self) -> &ActionSpace {
-        &self.space
-    }
-    fn observation_shape(&self) -> [usize; 3] {
-        [2, 3, 2]
-    }
-    fn cost_terms(&self) -> &'static [CostTerm] {
-        &[CostTerm { name: "all", counted: true }]
-    }
-    fn reset(&mut self, seed: u64) {
-        *self = Echo { seed, state: hash(seed), length: 0, last: Step::default(), ..Echo::new(self.panics_at) };
-    }
-    fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
-        self.length += 1;
-        assert!(self.length != self.panics_at, "asked to panic");
-        let bits: Vec<u32> = deltas.iter().map(|d| d.to_bits()).collect();
-        self.state = hash((self.state, actions, bits));
-        let over = self.length >= 3 + (self.seed % 16) as u32;
-        let cost = f64::from((self.state >> 8) as u8);
-        self.last = Step {
-            reward: f64::from(self.state as u8),
-            cost,
-            terminated: over && self.seed & 16 == 0,
-            truncated: over && self.seed & 16 != 0,
-        };
-        self.last
-    }
-    fn step_costs(&self) -> &[f64] {
-        std::slice::from_ref(&self.last.cost)
-    }
-    fn observe(&mut self, out: &mut [u8]) {
-        for (i, byte) in out.iter_mut().enumerate() {
-            *byte = (self.state >> (i % 8 * 8)) as u8;
-        }
-    }
-    fn position(&self) -> [i32; 2] {
-        [self.last.cost as i32, self.last.reward as i32]
-    }
-    fn episode(&self) -> Episode {
-        Episode {
-            lane: 0,
-            seed: self.seed,
-            episode_return: 0.0,
-            cost: 0.0,
-            costs: Vec::new(),
-            length: self.length,
-            terminated: self.last.terminated,
-            truncated: self.last.truncated,
-            stats: Vec::new(),
-        }
-    }
-}
+use echo::{Echo, hash};
+use hasard_envs::{Autoreset, Batch, EnvError, Episode, FinalObservations, VecEnv, VecOptions};
 
 fn make(options: VecOptions) -> VecEnv {
     VecEnv::from_fn(options, |_| Ok(Box::new(Echo::new(u32::MAX)))).unwrap()
@@ -107,7 +28,7 @@ type Life = Vec<(Vec<u8>, u32, u32, bool, bool, Option<Vec<u8>>, Option<Episode>
 fn note(lives: &mut [Life], worlds: &VecEnv, group: usize, batch: &Batch) {
     let range = worlds.group_lanes(group);
     for (i, lane) in range.clone().enumerate() {
-        let last = batch.final_observations.iter().find(|(l, _)| *l == i).map(|(_, o)| o.clone());
+        let last = batch.finals().find(|(l, _)| *l == i).map(|(_, o)| o.to_vec());
         lives[lane].push((
             batch.observations[i * 12..(i + 1) * 12].to_vec(),
             batch.rewards[i].to_bits(),
@@ -200,8 +121,8 @@ fn a_batch_that_begins_at_a_lane_lives_that_lanes_life() {
     whole.reset(&mut a).unwrap();
     part.reset(&mut b).unwrap();
     for _ in 0..40 {
-        assert_eq!(a.observations[4 * 12..7 * 12], b.observations);
-        assert_eq!(a.truncated[4..7], b.truncated);
+        assert_eq!(a.observations[4 * 12..7 * 12], b.observations[..]);
+        assert_eq!(a.truncated[4..7], b.truncated[..]);
         whole.step(&mut a).unwrap();
         part.step(&mut b).unwrap();
     }
@@ -292,7 +213,7 @@ fn wrong_use_is_an_error_not_a_panic() {
         assert_eq!(whole.rewards.len(), 4, "the batch is not lost");
         worlds.recv(0).unwrap();
         let mut wrong = batch.clone();
-        wrong.rewards.pop();
+        wrong.rewards.to_mut().pop();
         assert!(matches!(worlds.send(0, wrong), Err(EnvError::BatchSize { field: "rewards", .. })));
         let mut wrong = batch.clone();
         wrong.actions[0] = 3;

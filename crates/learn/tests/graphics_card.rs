@@ -65,6 +65,7 @@ fn a_graphics_card_learns_what_the_processor_learns() {
 
 /// The same through burn's backend for processors, so that the portable path is held to it without a card.
 #[test]
+#[cfg_attr(not(feature = "graphics"), ignore = "built without a graphics card's feature")]
 fn the_portable_path_learns_what_the_processor_learns() {
     same_losses_as_the_processor("flex");
 }

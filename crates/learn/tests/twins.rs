@@ -1,8 +1,9 @@
-//! The network on the processor against its portable twin in burn: outputs, states and gradients.
+//! The network on the processor against its twins, outputs and gradients: a plain one by its definition and, where a graphics
+//! card's feature is built in, the one in burn.
 
-use burn::tensor::Device;
+mod plain;
+
 use hasard_learn::config::{Convolution, Initialisation};
-use hasard_learn::networks::burn_network::BurnNetwork;
 use hasard_learn::networks::cpu::network::{CpuActor, CpuLearner};
 use hasard_learn::networks::{ActingNetwork, ImageShape, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences};
 use hasard_learn::random::{Purpose, Stream};
@@ -85,38 +86,97 @@ fn close(what: &str, a: &[f32], b: &[f32]) {
     }
 }
 
+fn normals(count: usize, seed: u64) -> Vec<f32> {
+    let mut stream = Stream::new(12, Purpose::Evaluation, seed, 0);
+    (0..count).map(|_| stream.normal() as f32).collect()
+}
+
+/// Outputs, and for every block of parameters the change of a weighted sum of them in a random direction, by differences.
 #[test]
-fn outputs_and_gradients_equal_those_of_burn() {
+fn outputs_and_gradients_equal_those_of_the_plain_network() {
     for (name, shape) in shapes() {
         shape.check().unwrap();
         let parameters = shape.initial_parameters(Initialisation::Uniform, 5, 0);
+        let (steps, lanes) = if name == "original" { (2, 2) } else { (4, 5) };
+        let case = Case::new(&shape, steps, lanes);
+        let batch = case.sequences();
+        let wide: Vec<f64> = parameters.iter().map(|&value| f64::from(value)).collect();
+        let expected: Vec<f32> = plain::forward(&shape, &wide, &case.pixels, &batch).iter().map(|&value| value as f32).collect();
+        let seeds = normals(expected.len(), 1);
+        let mut learner = CpuLearner::new(&shape, 2);
+        learner.load(&parameters);
+        learner.load_pixels(&case.pixels);
+        close(&format!("{name}: output"), &learner.forward(&batch), &expected);
+        let mut gradient = vec![f32::NAN; parameters.len()];
+        learner.backward(&batch, &seeds, &mut gradient);
+        for parameter in shape.parameters() {
+            let direction = normals(parameter.size(), 2 + parameter.offset as u64);
+            let moved = |by: f64| -> f64 {
+                let mut moved = wide.clone();
+                for (value, direction) in moved[parameter.range()].iter_mut().zip(&direction) {
+                    *value += by * f64::from(*direction);
+                }
+                let outputs = plain::forward(&shape, &moved, &case.pixels, &batch);
+                outputs.iter().zip(&seeds).map(|(output, seed)| output * f64::from(*seed)).sum()
+            };
+            let expected = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+            let own = &gradient[parameter.range()];
+            let found: f64 = own.iter().zip(&direction).map(|(g, d)| f64::from(*g) * f64::from(*d)).sum();
+            let size = own.iter().map(|g| f64::from(*g).powi(2)).sum::<f64>().sqrt();
+            assert!((found - expected).abs() <= 1e-4 * size, "{name}: {} along {found}, {expected}", parameter.name);
+        }
+    }
+}
+
+/// The same bits from one pass to the next and for any number of threads.
+#[test]
+fn passes_do_not_depend_on_threads_or_on_what_was_before() {
+    for (name, shape) in shapes() {
+        let parameters = shape.initial_parameters(Initialisation::Uniform, 5, 0);
         let case = Case::new(&shape, 4, 5);
         let batch = case.sequences();
-        let mut portable = BurnNetwork::new(&shape, &Device::flex());
-        LearningNetwork::load(&mut portable, &parameters);
-        portable.load_pixels(&case.pixels);
-        let expected = portable.forward(&batch);
-        let mut stream = Stream::new(12, Purpose::Evaluation, 0, 0);
-        let seeds: Vec<f32> = (0..expected.len()).map(|_| stream.normal() as f32).collect();
-        let mut expected_gradient = vec![f32::NAN; parameters.len()];
-        portable.backward(&batch, &seeds, &mut expected_gradient);
-        assert!(expected_gradient.iter().all(|g| g.is_finite()));
-        for threads in [1, 2, 7] {
+        let seeds = normals(batch.rows() * shape.outputs(), 1);
+        let passes = [1, 2, 7].map(|threads| {
             let mut learner = CpuLearner::new(&shape, threads);
             learner.load(&parameters);
             learner.load_pixels(&case.pixels);
-            // Twice, so that buffers of an earlier pass are seen not to leak into the next.
-            for _ in 0..2 {
+            [(); 2].map(|()| {
                 let outputs = learner.forward(&batch);
-                close(&format!("{name}: output"), &outputs, &expected);
                 let mut gradient = vec![f32::NAN; parameters.len()];
                 learner.backward(&batch, &seeds, &mut gradient);
-                for parameter in shape.parameters() {
-                    let range = parameter.range();
-                    let what = format!("{name}, {threads} threads: gradient of {}", parameter.name);
-                    close(&what, &gradient[range.clone()], &expected_gradient[range]);
-                }
-            }
+                (outputs, gradient)
+            })
+        });
+        for pass in passes.iter().flatten() {
+            close(&format!("{name}: output"), &pass.0, &passes[0][0].0);
+            close(&format!("{name}: gradient"), &pass.1, &passes[0][0].1);
+        }
+    }
+}
+
+#[test]
+#[cfg(feature = "graphics")]
+fn outputs_and_gradients_equal_those_of_burn() {
+    use hasard_learn::networks::burn_network::BurnNetwork;
+    for (name, shape) in shapes() {
+        let parameters = shape.initial_parameters(Initialisation::Uniform, 5, 0);
+        let case = Case::new(&shape, 4, 5);
+        let batch = case.sequences();
+        let seeds = normals(batch.rows() * shape.outputs(), 1);
+        let networks: [Box<dyn LearningNetwork>; 2] =
+            [Box::new(BurnNetwork::new(&shape, &burn::tensor::Device::flex())), Box::new(CpuLearner::new(&shape, 2))];
+        let [(there, there_gradient), (here, here_gradient)] = networks.map(|mut network| {
+            network.load(&parameters);
+            network.load_pixels(&case.pixels);
+            let outputs = network.forward(&batch);
+            let mut gradient = vec![f32::NAN; parameters.len()];
+            network.backward(&batch, &seeds, &mut gradient);
+            (outputs, gradient)
+        });
+        close(&format!("{name}: output"), &here, &there);
+        for parameter in shape.parameters() {
+            let range = parameter.range();
+            close(&format!("{name}: gradient of {}", parameter.name), &here_gradient[range.clone()], &there_gradient[range]);
         }
     }
 }
@@ -130,15 +190,12 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
         learner.load(&parameters);
         learner.load_pixels(&case.pixels);
         let expected = learner.forward(&case.sequences());
-        let actors: [Box<dyn ActingNetwork>; 3] = [
-            Box::new(CpuActor::new(&shape)),
-            Box::new(BurnNetwork::new(&shape, &Device::flex())),
-            Box::new(CpuActor::new(&shape)),
-        ];
-        for (kind, mut actor) in actors.into_iter().enumerate() {
-            let plain = NetworkWeights::Plain { parameters: Arc::new(parameters.clone()), pixels: Arc::new(case.pixels.clone()) };
-            // The learner's own packed weights, or those that the actor packs or uploads itself.
-            actor.load(&if kind == 0 { learner.publish() } else { plain });
+        let plain = NetworkWeights::Plain { parameters: Arc::new(parameters.clone()), pixels: Arc::new(case.pixels.clone()) };
+        // The learner's own packed weights, or those that the actor packs or uploads itself.
+        let actor = || -> Box<dyn ActingNetwork> { Box::new(CpuActor::new(&shape)) };
+        let own = [(true, learner.publish(), actor()), (true, plain.clone(), actor())];
+        for (same_kernels, weights, mut actor) in own.into_iter().chain(portable(&shape, plain)) {
+            actor.load(&weights);
             let mut state = case.state.clone();
             for step in 0..case.steps {
                 let rows = step * case.lanes..(step + 1) * case.lanes;
@@ -152,7 +209,7 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
                 let extra = &case.extra[rows.start * shape.extra_inputs..rows.end * shape.extra_inputs];
                 actor.act(&case.observations[rows.clone()].concat(), extra, &mut state, &mut outputs);
                 let expected = &expected[rows.start * shape.outputs()..rows.end * shape.outputs()];
-                if kind != 1 {
+                if same_kernels {
                     assert_eq!(outputs, expected, "{name}: the same kernels must give the same bits");
                 } else {
                     close(&format!("{name}: output"), &outputs, expected);
@@ -160,4 +217,16 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
             }
         }
     }
+}
+
+/// The network in burn, where it is built in.
+#[cfg(feature = "graphics")]
+fn portable(shape: &NetworkShape, weights: NetworkWeights) -> Option<(bool, NetworkWeights, Box<dyn ActingNetwork>)> {
+    let burn = hasard_learn::networks::burn_network::BurnNetwork::new(shape, &burn::tensor::Device::flex());
+    Some((false, weights, Box::new(burn)))
+}
+
+#[cfg(not(feature = "graphics"))]
+fn portable(_: &NetworkShape, _: NetworkWeights) -> Option<(bool, NetworkWeights, Box<dyn ActingNetwork>)> {
+    None
 }

@@ -16,7 +16,7 @@
 //! let mut env = Env::new("RemedyRushLevel1-v0", &EnvOptions::default())?;
 //! let mut recorder = Recorder::begin(&mut env, 7, "example")?;
 //! for _ in 0..50 {
-//!     env.step(&[1, 1, 0, 0], &[]);
+//!     env.step(&[1, 1, 0, 0], &[])?;
 //!     recorder.push(&[1, 1, 0, 0], &[])?;
 //! }
 //! let file = recorder.finish(&env);

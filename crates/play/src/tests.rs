@@ -40,7 +40,7 @@ fn what_is_shown_tic_by_tic_is_what_counts() {
                 assert!(stage.wants_action());
                 let (actions, deltas) = random_action(alone.action_space(), &mut state);
                 stage.act(&actions, &deltas).unwrap();
-                let expected = alone.step(&actions, &deltas);
+                let expected = alone.step(&actions, &deltas).unwrap();
                 let mut tics = 0;
                 let got = loop {
                     tics += 1;
@@ -61,7 +61,7 @@ fn record(id: &str, options: &EnvOptions, steps: usize) -> EpisodeFile {
     let mut state = 77;
     for _ in 0..steps {
         let (actions, deltas) = random_action(env.action_space(), &mut state);
-        let step = env.step(&actions, &deltas);
+        let step = env.step(&actions, &deltas).unwrap();
         recorder.push(&actions, &deltas).unwrap();
         if step.ended() {
             break;

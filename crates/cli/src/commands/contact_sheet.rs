@@ -7,7 +7,7 @@ use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_engine::assets::Assets;
 use hasard_engine::render::FrameSize;
-use hasard_envs::{Env, EnvId, EnvOptions, Move, Policy, PolicyRun, Scenario};
+use hasard_envs::{Env, EnvId, EnvOptions, Policy, PolicyRun, Scenario};
 use hasard_media::{Picture, files, png};
 use hasard_play::{ViewKind, Views};
 use std::path::Path;
@@ -65,10 +65,7 @@ fn row(scenario: Scenario, moment: &Moment, seed: u64, assets: Option<Arc<Assets
         let policy: Policy = policy.parse().map_err(Failure::bad)?;
         let mut policy = PolicyRun::new(policy, env.action_space(), seed);
         for _ in 0..steps {
-            match policy.next_move() {
-                Move::Action(actions, deltas) => env.step(actions, deltas),
-                Move::Buttons(command) => env.step_buttons(command),
-            };
+            env.make_move(policy.next_move()).map_err(Failure::bad)?;
         }
     }
     let episode = env.episode();

@@ -56,7 +56,7 @@ impl Player<'_> {
             loop {
                 env.observe(&mut observation);
                 let action = agent.act(&observation).swap_remove(0);
-                let step = env.step(&action.actions, &action.deltas);
+                let step = env.step(&action.actions, &action.deltas).map_err(Failure::bad)?;
                 agent.observe_cost(0, step.cost);
                 if step.ended() {
                     break;

@@ -209,6 +209,12 @@ impl Weapon {
         Weapon::Bfg9000,
     ];
 
+    /// The kind of ammunition that the weapon fires: an index of the player's.
+    #[must_use]
+    pub fn ammo(self) -> usize {
+        self.info().ammo
+    }
+
     /// The fixed properties of the weapon.
     pub(super) fn info(self) -> &'static WeaponInfo {
         match self {

@@ -68,6 +68,12 @@ pub fn health(world: &World) -> i32 {
     world.get(world.players[0].actor).map_or(0, |body| body.health)
 }
 
+/// Shots that the weapon in hand has left, or the one coming up; 0 for bare hands.
+pub fn ammunition(world: &World) -> i32 {
+    let player = &world.players[0];
+    player.weapon.map_or(0, |weapon| player.ammo[weapon.ammo()])
+}
+
 /// Sets the player's health points.
 pub fn set_health(world: &mut World, points: i32) {
     if let Some(body) = world.get_mut(world.players[0].actor) {

@@ -4,20 +4,21 @@
 //! checker cannot see. The invariants that make it sound:
 //! 1. A slot is `IDLE` (its contents belong to the owner) or `BUSY` (they belong to those who claim lanes); only
 //!    [`Slot::give`] and [`Slot::take`] change that, and `take` succeeds only after every lane has been claimed and done.
-//! 2. The slot's counter hands out each lane of a batch once. A thread touches a lane, and that lane's parts of the batch,
-//!    only between its claim and its being done; so a claim always belongs to the batch that is in the slot.
-//! 3. Slots that share lanes are never busy at the same time: the owner sees to that (`VecEnv::check_turn`).
+//! 2. The slot's counter hands out each lane of a batch once. It holds the number of lanes beside the next one, so that a claim
+//!    is judged by the batch that it falls into, not by the one before. A thread touches a lane, and that lane's parts of the
+//!    batch, only between its claim and its being done; so a claim always belongs to the batch that is in the slot.
+//! 3. Slots that share lanes are never busy at the same time, and no lane is chosen twice for a batch: the owner sees to that
+//!    (`VecEnv::check_turn`, `VecEnv::check_lanes`).
 //!
 //! The safe twin is the batch of worlds without threads, which slices the same buffers by the borrow checker's rules; tests
 //! compare both.
 
-use super::Job;
+use super::job::{Chosen, Job, Task};
 use super::lane::{Lane, LaneSlices};
 use crate::Batch;
 use std::cell::UnsafeCell;
-use std::ops::Range;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, AtomicUsize, Ordering};
 use std::thread::Thread;
 
 const IDLE: u8 = 0;
@@ -45,25 +46,24 @@ impl Lanes {
 /// A place where one group's batch lies while its lanes are stepped.
 pub(super) struct Slot {
     state: AtomicU8,
-    /// The next lane to be claimed.
-    next: AtomicUsize,
+    /// Number of the batch's lanes, and of those claimed so far: see [`open`].
+    next: AtomicU64,
     /// Lanes that are not done yet.
     pending: AtomicUsize,
     contents: UnsafeCell<Contents>,
     waiter: Mutex<Option<Thread>>,
-    /// The lanes of the whole that belong to the slot.
-    lanes: Range<usize>,
 }
 
 struct Contents {
     batch: Batch,
-    job: Job,
+    task: Task,
     actions: Raw<u8>,
     deltas: Raw<f32>,
     observations: Raw<u8>,
     rewards: Raw<f32>,
     costs: Raw<f32>,
     cost_terms: Raw<f32>,
+    statistics: Raw<f64>,
     positions: Raw<[i32; 2]>,
     terminated: Raw<bool>,
     truncated: Raw<bool>,
@@ -97,13 +97,24 @@ impl<T> Raw<T> {
 }
 
 // SAFETY: the contents are reached by one side at a time, as the invariants above say; they hold nothing bound to a thread
-// (the job is required to be `Send + Sync` below).
+// (the task is required to be `Send + Sync` below).
 unsafe impl Sync for Slot {}
 // SAFETY: as above; the raw pointers point into `batch`, whose buffers do not move with the slot.
 unsafe impl Send for Slot {}
 
-const fn job_may_cross_threads<T: Send + Sync>() {}
-const _: () = job_may_cross_threads::<Job>();
+const fn task_may_cross_threads<T: Send + Sync>() {}
+const _: () = task_may_cross_threads::<Task>();
+
+/// The counter of a batch of so many lanes, none of them claimed.
+const fn open(count: usize) -> u64 {
+    (count as u64) << 32
+}
+
+/// The lane that a counter's value hands out, and the number of lanes; `None` if all are claimed.
+const fn claimed(next: u64) -> Option<(usize, usize)> {
+    let (index, count) = ((next & u32::MAX as u64) as usize, (next >> 32) as usize);
+    if index < count { Some((index, count)) } else { None }
+}
 
 /// Ends the program when it is dropped: only by a panic that was not caught.
 struct AbortOnPanic;
@@ -115,38 +126,39 @@ impl Drop for AbortOnPanic {
 }
 
 impl Slot {
-    pub fn new(lanes: Range<usize>) -> Slot {
+    pub fn new() -> Slot {
         let contents = Contents {
             batch: Batch::default(),
-            job: Job::Reset,
+            task: Task { job: Job::Reset, lanes: Chosen::Range(0..0) },
             actions: Raw::none(),
             deltas: Raw::none(),
             observations: Raw::none(),
             rewards: Raw::none(),
             costs: Raw::none(),
             cost_terms: Raw::none(),
+            statistics: Raw::none(),
             positions: Raw::none(),
             terminated: Raw::none(),
             truncated: Raw::none(),
         };
         Slot {
             state: AtomicU8::new(IDLE),
-            next: AtomicUsize::new(usize::MAX / 2),
+            next: AtomicU64::new(open(0)),
             pending: AtomicUsize::new(0),
             contents: UnsafeCell::new(contents),
             waiter: Mutex::new(None),
-            lanes,
         }
     }
 
     /// Lays a batch open for claims. Panics unless the slot is idle.
-    pub fn give(&self, batch: Batch, job: Job) {
+    pub fn give(&self, batch: Batch, task: Task) {
         assert!(self.change(IDLE), "a batch was given to a busy slot");
-        self.pending.store(self.lanes.len(), Ordering::Relaxed);
+        let count = task.lanes.count();
+        self.pending.store(count, Ordering::Relaxed);
         // SAFETY: the slot was idle and is now `CHANGING`, so this thread alone reaches the contents.
         let contents = unsafe { &mut *self.contents.get() };
         contents.batch = batch;
-        contents.job = job;
+        contents.task = task;
         let batch = &mut contents.batch;
         contents.actions = Raw::of(&mut batch.actions);
         contents.deltas = Raw::of(&mut batch.deltas);
@@ -154,12 +166,13 @@ impl Slot {
         contents.rewards = Raw::of(&mut batch.rewards);
         contents.costs = Raw::of(&mut batch.costs);
         contents.cost_terms = Raw::of(&mut batch.cost_terms);
+        contents.statistics = Raw::of(&mut batch.statistics);
         contents.positions = Raw::of(&mut batch.positions);
         contents.terminated = Raw::of(&mut batch.terminated);
         contents.truncated = Raw::of(&mut batch.truncated);
         self.state.store(BUSY, Ordering::Release);
         // From here on lanes are claimed; whoever sees this number sees all of the above.
-        self.next.store(0, Ordering::Release);
+        self.next.store(open(count), Ordering::Release);
     }
 
     fn change(&self, from: u8) -> bool {
@@ -169,20 +182,16 @@ impl Slot {
     /// Claims one of the slot's lanes and runs `work` with its number in the batch, the lane, its parts of the batch and what is
     /// to be done. Tells whether there was a lane left.
     pub fn claim(&self, lanes: &Lanes, work: impl FnOnce(usize, &mut Lane, LaneSlices, &Job)) -> bool {
-        let count = self.lanes.len();
         // Looking first keeps the counter from rising for ever while there is nothing to do.
-        if self.next.load(Ordering::Relaxed) >= count {
+        if claimed(self.next.load(Ordering::Relaxed)).is_none() {
             return false;
         }
-        let index = self.next.fetch_add(1, Ordering::AcqRel);
-        if index >= count {
-            return false;
-        }
+        let Some((index, count)) = claimed(self.next.fetch_add(1, Ordering::AcqRel)) else { return false };
         // SAFETY: the number was seen with `Acquire`, so the contents are written; until this lane is done they stay in the
         // slot and are only read.
         let contents = unsafe { &*self.contents.get() };
         // SAFETY: the counter gave this lane to this thread alone, until it is done, and no other busy slot has it.
-        let lane = unsafe { &mut *lanes.0[self.lanes.start + index].get() };
+        let lane = unsafe { &mut *lanes.0[contents.task.lanes.lane(index)].get() };
         // SAFETY: as for the lane; the batch's buffers are alive as long as it stays in the slot.
         let slices = unsafe {
             LaneSlices {
@@ -192,6 +201,7 @@ impl Slot {
                 rewards: contents.rewards.part(index, count),
                 costs: contents.costs.part(index, count),
                 cost_terms: contents.cost_terms.part(index, count),
+                statistics: contents.statistics.part(index, count),
                 positions: contents.positions.part(index, count),
                 terminated: contents.terminated.part(index, count),
                 truncated: contents.truncated.part(index, count),
@@ -199,7 +209,7 @@ impl Slot {
         };
         // A panic would leave the lane undone and the owner waiting: it is caught by `work`, or ends the program.
         let guard = AbortOnPanic;
-        work(index, lane, slices, &contents.job);
+        work(index, lane, slices, &contents.task.job);
         std::mem::forget(guard);
         if self.pending.fetch_sub(1, Ordering::SeqCst) == 1
             && let Some(thread) = self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()

@@ -1,10 +1,10 @@
 //! A lane: one environment of a batch, with the seeds of its episodes.
 
-use super::{Autoreset, FinalObservations, LaneState};
-use crate::{Environment, Episode, Step};
+use super::{Autoreset, FinalObservations, LaneState, Restart};
+use crate::{Batch, Environment, Episode, Step};
 use hasard_engine::math::Rng;
 
-/// One lane's parts of a batch's buffers, for one or several neighbouring lanes.
+/// One lane's parts of a batch's buffers, or those of several neighbouring lanes.
 pub(super) struct LaneSlices<'a> {
     pub actions: &'a [u8],
     pub deltas: &'a [f32],
@@ -12,9 +12,72 @@ pub(super) struct LaneSlices<'a> {
     pub rewards: &'a mut [f32],
     pub costs: &'a mut [f32],
     pub cost_terms: &'a mut [f32],
+    pub statistics: &'a mut [f64],
     pub positions: &'a mut [[i32; 2]],
     pub terminated: &'a mut [bool],
     pub truncated: &'a mut [bool],
+}
+
+impl<'a> LaneSlices<'a> {
+    /// All lanes of a batch, by the borrow checker's rules.
+    pub fn of(batch: &'a mut Batch) -> LaneSlices<'a> {
+        LaneSlices {
+            actions: &batch.actions,
+            deltas: &batch.deltas,
+            observations: &mut batch.observations,
+            rewards: &mut batch.rewards,
+            costs: &mut batch.costs,
+            cost_terms: &mut batch.cost_terms,
+            statistics: &mut batch.statistics,
+            positions: &mut batch.positions,
+            terminated: &mut batch.terminated,
+            truncated: &mut batch.truncated,
+        }
+    }
+
+    /// Cuts the first of `count` lanes off.
+    pub fn cut(&mut self, count: usize) -> LaneSlices<'a> {
+        fn front<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+            let each = rest.len() / count;
+            let (front, back) = std::mem::take(rest).split_at_mut(each);
+            *rest = back;
+            front
+        }
+        let (actions, deltas) = (self.actions.len() / count, self.deltas.len() / count);
+        let (own_actions, other_actions) = self.actions.split_at(actions);
+        let (own_deltas, other_deltas) = self.deltas.split_at(deltas);
+        (self.actions, self.deltas) = (other_actions, other_deltas);
+        LaneSlices {
+            actions: own_actions,
+            deltas: own_deltas,
+            observations: front(&mut self.observations, count),
+            rewards: front(&mut self.rewards, count),
+            costs: front(&mut self.costs, count),
+            cost_terms: front(&mut self.cost_terms, count),
+            statistics: front(&mut self.statistics, count),
+            positions: front(&mut self.positions, count),
+            terminated: front(&mut self.terminated, count),
+            truncated: front(&mut self.truncated, count),
+        }
+    }
+
+    /// Writes what a step brought, but for the observation.
+    fn note(&mut self, step: Step, env: &dyn Environment, moved: bool, scratch: &mut Vec<(&'static str, f64)>) {
+        self.rewards[0] = step.reward as f32;
+        self.costs[0] = step.cost as f32;
+        self.cost_terms.fill(0.0);
+        if moved {
+            self.cost_terms.iter_mut().zip(env.step_costs()).for_each(|(out, &term)| *out = term as f32);
+        }
+        if !self.statistics.is_empty() {
+            scratch.clear();
+            env.stats(scratch);
+            self.statistics.iter_mut().zip(scratch.iter()).for_each(|(out, &(_, value))| *out = value);
+        }
+        self.positions[0] = env.position();
+        self.terminated[0] = step.terminated;
+        self.truncated[0] = step.truncated;
+    }
 }
 
 /// What lanes report beside their buffers.
@@ -38,6 +101,24 @@ impl Outbox {
         self.episodes.append(&mut other.episodes);
         self.panic = self.panic.take().or(other.panic.take());
     }
+
+    /// Lays the reports into a batch, in the order of lanes: they were stepped in any order.
+    pub fn deliver(mut self, batch: &mut Batch) {
+        self.final_observations.sort_by_key(|&(lane, _)| lane);
+        for (lane, observation) in self.final_observations {
+            batch.final_lanes.push(lane);
+            batch.final_observations.extend_from_slice(&observation);
+        }
+        self.episodes.sort_by_key(|episode| episode.lane);
+        batch.episodes = self.episodes;
+    }
+}
+
+/// How the lanes of a batch go on after an episode's end.
+#[derive(Clone, Copy)]
+pub(super) struct Manner {
+    pub autoreset: Autoreset,
+    pub final_observations: FinalObservations,
 }
 
 /// One environment of the batch. Its episodes follow from the batch's seed and its own number alone, whatever the batch's width,
@@ -56,6 +137,8 @@ pub(super) struct Lane {
     deltas: Vec<f32>,
     /// How the running episode ended, where the next one does not follow at once.
     ended: Option<Step>,
+    /// Room for statistics on their way.
+    scratch: Vec<(&'static str, f64)>,
 }
 
 impl Lane {
@@ -63,7 +146,8 @@ impl Lane {
         // Room for an episode at frame skip 1, so that stepping never allocates.
         let (groups, deltas) = (env.action_space().groups.len(), env.action_space().deltas.len());
         let (actions, deltas) = (Vec::with_capacity(2104 * groups), Vec::with_capacity(2104 * deltas));
-        Lane { index, number, env, seeds: Rng::for_lane(seed, number), seed: 0, actions, deltas, ended: None }
+        let seeds = Rng::for_lane(seed, number);
+        Lane { index, number, env, seeds, seed: 0, actions, deltas, ended: None, scratch: Vec::new() }
     }
 
     /// The environment.
@@ -102,97 +186,66 @@ impl Lane {
         LaneState { seeds: self.seeds.state(), seed: self.seed, actions, deltas }
     }
 
-    /// Brings the lane to a saved state by repeating its episode.
-    pub fn restore(&mut self, state: &LaneState) {
+    /// Resets the lane as it is told and shows where it is then.
+    pub fn reset(&mut self, how: Restart, slices: LaneSlices) {
+        match how {
+            Restart::Stay => {}
+            Restart::Next => self.next_episode(),
+            Restart::Seed(seed) => {
+                self.seeds = Rng::for_lane(seed, 0);
+                self.next_episode();
+            }
+        }
+        self.show(slices);
+    }
+
+    /// Brings the lane to a saved state by repeating its episode, and shows it.
+    pub fn restore(&mut self, state: &LaneState, slices: LaneSlices) {
         self.seeds = Rng::from_state(state.seeds);
         self.start(state.seed);
-        let (groups, continuous) = (self.env.action_space().groups.len(), self.env.action_space().deltas.len());
-        for (i, actions) in state.actions.chunks_exact(groups.max(1)).enumerate() {
-            let step = self.advance(actions, &state.deltas[i * continuous..(i + 1) * continuous]);
+        let space = self.env.action_space().clone();
+        for i in 0..state.steps(&space) {
+            let (actions, deltas) = state.action(i, &space);
+            let step = self.advance(actions, deltas);
             self.ended = step.ended().then_some(step);
         }
+        self.show(slices);
     }
-}
 
-/// How the lanes of a batch go on after an episode's end.
-#[derive(Clone, Copy)]
-pub(super) struct Manner {
-    pub autoreset: Autoreset,
-    pub final_observations: FinalObservations,
-}
-
-/// Starts the next episode in each lane and writes its first observation; everything else of the batch is set to nothing.
-pub(super) fn reset_lanes(lanes: &mut [Lane], slices: LaneSlices) {
-    let count = lanes.len();
-    slices.rewards.fill(0.0);
-    slices.costs.fill(0.0);
-    slices.cost_terms.fill(0.0);
-    slices.terminated.fill(false);
-    slices.truncated.fill(false);
-    for (lane, observation) in lanes.iter_mut().zip(parts(slices.observations, count)) {
-        lane.next_episode();
-        lane.env.observe(observation);
+    /// Writes the present, as of a step that brought nothing.
+    fn show(&mut self, mut slices: LaneSlices) {
+        let step = Step { reward: 0.0, cost: 0.0, ..self.ended.unwrap_or_default() };
+        slices.note(step, &*self.env, false, &mut self.scratch);
+        self.env.observe(slices.observations);
     }
-    for (lane, position) in lanes.iter().zip(slices.positions) {
-        *position = lane.env.position();
-    }
-}
 
-/// Writes the present observation of each lane, without stepping.
-pub(super) fn observe_lanes(lanes: &mut [Lane], slices: LaneSlices) {
-    let count = lanes.len();
-    for (lane, observation) in lanes.iter_mut().zip(parts(slices.observations, count)) {
-        lane.env.observe(observation);
-    }
-}
-
-/// Steps each lane by its action. `first` is the number of the first lane within the batch.
-pub(super) fn step_lanes(lanes: &mut [Lane], first: usize, manner: Manner, slices: LaneSlices, outbox: &mut Outbox) {
-    let count = lanes.len();
-    let (groups, continuous) = (slices.actions.len() / count, slices.deltas.len() / count);
-    let terms = slices.cost_terms.len() / count;
-    for (i, (lane, observation)) in lanes.iter_mut().zip(parts(slices.observations, count)).enumerate() {
-        let actions = &slices.actions[i * groups..(i + 1) * groups];
-        let deltas = &slices.deltas[i * continuous..(i + 1) * continuous];
-        let (step, moved) = match (lane.ended, manner.autoreset) {
+    /// Steps the lane by its action. `index` is its number within the batch.
+    pub fn step(&mut self, index: usize, manner: Manner, mut slices: LaneSlices, outbox: &mut Outbox) {
+        let (step, moved) = match (self.ended, manner.autoreset) {
             (Some(_), Autoreset::NextStep) => {
-                lane.next_episode();
+                self.next_episode();
                 (Step::default(), false)
             }
             (Some(last), _) => (Step { reward: 0.0, cost: 0.0, ..last }, false),
             (None, _) => {
-                let step = lane.advance(actions, deltas);
+                let step = self.advance(slices.actions, slices.deltas);
                 if step.ended() {
-                    lane.ended = Some(step);
-                    outbox.episodes.push(Episode { lane: lane.index, ..lane.env.episode() });
+                    self.ended = Some(step);
+                    outbox.episodes.push(Episode { lane: self.index, ..self.env.episode() });
                 }
                 (step, true)
             }
         };
-        slices.rewards[i] = step.reward as f32;
-        slices.costs[i] = step.cost as f32;
-        let terms_out = &mut slices.cost_terms[i * terms..(i + 1) * terms];
-        for (out, &term) in terms_out.iter_mut().zip(lane.env.step_costs()) {
-            *out = if moved { term as f32 } else { 0.0 };
-        }
-        slices.positions[i] = lane.env.position();
-        slices.terminated[i] = step.terminated;
-        slices.truncated[i] = step.truncated;
+        slices.note(step, &*self.env, moved, &mut self.scratch);
         if step.ended() && manner.autoreset == Autoreset::SameStep {
             let keep = manner.final_observations == FinalObservations::Every || (step.truncated && !step.terminated);
             if keep {
-                let mut last = vec![0; observation.len()];
-                lane.env.observe(&mut last);
-                outbox.final_observations.push((first + i, last));
+                let mut last = vec![0; slices.observations.len()];
+                self.env.observe(&mut last);
+                outbox.final_observations.push((index, last));
             }
-            lane.next_episode();
+            self.next_episode();
         }
-        lane.env.observe(observation);
+        self.env.observe(slices.observations);
     }
-}
-
-/// A buffer cut into `count` equal parts.
-fn parts<T>(buffer: &mut [T], count: usize) -> std::slice::ChunksExactMut<'_, T> {
-    let size = (buffer.len() / count).max(1);
-    buffer.chunks_exact_mut(size)
 }

@@ -1,129 +1,24 @@
 //! The batch of worlds: many environments stepped side by side by worker threads and the caller that waits for them.
 
+mod checks;
+mod crew;
 mod handover;
+mod job;
 mod lane;
+mod lane_state;
+mod options;
 mod worker;
 
+pub use job::Restart;
+pub use lane_state::LaneState;
+pub use options::{Autoreset, FinalObservations, VecOptions};
+
 use crate::{ActionSpace, Batch, CostTerm, Env, EnvError, EnvOptions, Environment};
-use handover::{Lanes, Slot};
-use lane::{Lane, LaneSlices, Manner, Outbox};
+use crew::Crew;
+use job::{Chosen, Job, Task};
+use lane::Lane;
 use std::ops::Range;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
-use worker::Shared;
-
-/// What follows an episode's end.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Autoreset {
-    /// The same step starts the next episode; the observation is its first.
-    #[default]
-    SameStep,
-    /// The step after starts the next episode, whatever its action; its reward and cost are 0.
-    NextStep,
-    /// The lane rests, its flags raised, until the batch is reset.
-    Disabled,
-}
-
-/// Which last observations [`Batch::final_observations`] keeps under [`Autoreset::SameStep`].
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum FinalObservations {
-    /// Those of truncated episodes, whose value is still to be estimated.
-    #[default]
-    Truncated,
-    /// Those of every episode.
-    Every,
-}
-
-/// How a batch of worlds is made.
-#[derive(Clone, Copy, Debug)]
-pub struct VecOptions {
-    /// Number of environments.
-    pub lanes: usize,
-    /// Worker threads; 0 steps in the caller's thread. A caller that waits for a batch helps with it, so that `n` cores are used up
-    /// by `n - 1` threads if the caller has nothing else to do.
-    pub threads: usize,
-    /// Groups that the lanes are cut into, to be stepped independently: 2 lets a policy work on one half while the other steps.
-    pub groups: usize,
-    /// Seed of the batch: with the lane's number it decides everything that happens in a lane.
-    pub seed: u64,
-    /// Number of the first lane, so that a batch may continue where another ends.
-    pub first_lane: u64,
-    /// What follows an episode's end.
-    pub autoreset: Autoreset,
-    /// Which last observations are kept.
-    pub final_observations: FinalObservations,
-}
-
-impl Default for VecOptions {
-    fn default() -> VecOptions {
-        VecOptions {
-            lanes: 1,
-            threads: 0,
-            groups: 1,
-            seed: 0,
-            first_lane: 0,
-            autoreset: Autoreset::default(),
-            final_observations: FinalObservations::default(),
-        }
-    }
-}
-
-/// Where one lane is: enough to bring it back exactly, by repeating its episode.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct LaneState {
-    /// State of the stream that the seeds of the episodes to come are drawn from.
-    pub seeds: u64,
-    /// Seed of the running episode.
-    pub seed: u64,
-    /// Categorical sub-actions of the episode so far.
-    pub actions: Vec<u8>,
-    /// Continuous sub-actions of the episode so far.
-    pub deltas: Vec<f32>,
-}
-
-/// What is done with a batch's lanes.
-#[derive(Clone)]
-enum Job {
-    Reset,
-    Step,
-    /// Starts the seeds of episodes anew from a seed, nothing more.
-    Seed(u64),
-    /// Writes each lane's state to its place.
-    Save(Arc<Mutex<Vec<LaneState>>>),
-    /// Brings each lane to the state at its place, and observes it.
-    Restore(Arc<Vec<LaneState>>),
-}
-
-fn run_job(job: &Job, lanes: &mut [Lane], first: usize, manner: Manner, slices: LaneSlices, outbox: &mut Outbox) {
-    if lanes.is_empty() {
-        return;
-    }
-    match job {
-        Job::Reset => lane::reset_lanes(lanes, slices),
-        Job::Step => lane::step_lanes(lanes, first, manner, slices, outbox),
-        Job::Seed(seed) => lanes.iter_mut().for_each(|lane| lane.reseed(*seed)),
-        Job::Save(states) => {
-            let mut states = states.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-            for lane in lanes.iter() {
-                states[lane.index] = lane.state();
-            }
-        }
-        Job::Restore(states) => {
-            lanes.iter_mut().for_each(|lane| lane.restore(&states[lane.index]));
-            lane::observe_lanes(lanes, slices);
-        }
-    }
-}
-
-/// Who steps the lanes.
-enum Crew {
-    /// The caller's thread; a group's batch is stepped when it is sent.
-    Caller { lanes: Vec<Lane>, ready: Vec<Option<(Batch, Outbox)>> },
-    /// Worker threads, and the caller's while it waits.
-    Workers { shared: Arc<Shared>, threads: Vec<JoinHandle<()>>, busy: Vec<bool> },
-}
 
 /// A batch of worlds.
 ///
@@ -152,9 +47,14 @@ pub struct VecEnv {
     space: ActionSpace,
     observation_shape: [usize; 3],
     cost_terms: &'static [CostTerm],
+    statistics: Vec<&'static str>,
     extent: Option<[i32; 4]>,
     options: VecOptions,
     crew: Crew,
+    /// Lanes whose episode is over and whose next one has not begun.
+    resting: Vec<bool>,
+    /// Of each slot, the batch that an error kept from going on its way.
+    kept: Vec<Option<Batch>>,
     /// An environment panicked; nothing can be trusted any more.
     failed: Option<String>,
 }
@@ -166,33 +66,36 @@ impl VecEnv {
         VecEnv::from_fn(options, |_| Ok(Box::new(first.sibling())))
     }
 
-    /// A batch of any environments; `make` is given the lane's index, and all must have the same shapes.
+    /// A batch of any environments; `make` is given the lane's index. All must be alike: the same actions, shape of observations,
+    /// cost terms and statistics.
     pub fn from_fn(
         options: VecOptions,
         mut make: impl FnMut(usize) -> Result<Box<dyn Environment>, EnvError>,
     ) -> Result<VecEnv, EnvError> {
-        let limit = |option, given: usize, most: usize| {
-            let allowed = format!("1..={most}");
-            if (1..=most).contains(&given) { Ok(()) } else { Err(EnvError::Option { option, given: given.to_string(), allowed }) }
-        };
-        limit("the number of environments", options.lanes, 65536)?;
-        limit("the number of groups", options.groups, options.lanes)?;
-        limit("the number of threads", options.threads.max(1), 1024)?;
-        let mut lanes = Vec::with_capacity(options.lanes);
+        options.check()?;
+        let mut lanes: Vec<Lane> = Vec::with_capacity(options.lanes);
         for index in 0..options.lanes {
+            let env = make(index)?;
+            checks::alike(lanes.first().map_or(&*env, Lane::env), &*env, index)?;
             let number = options.first_lane.wrapping_add(index as u64);
-            lanes.push(Lane::new(index, number, options.seed, make(index)?));
+            lanes.push(Lane::new(index, number, options.seed, env));
         }
         let env = lanes[0].env();
         let (space, observation_shape, cost_terms) = (env.action_space().clone(), env.observation_shape(), env.cost_terms());
-        let extent = env.extent();
-        let manner = Manner { autoreset: options.autoreset, final_observations: options.final_observations };
-        let crew = if options.threads == 0 {
-            Crew::Caller { lanes, ready: (0..=options.groups).map(|_| None).collect() }
-        } else {
-            hire(lanes, options, manner)
-        };
-        Ok(VecEnv { space, observation_shape, cost_terms, extent, options, crew, failed: None })
+        let (statistics, extent) = (env.stat_names(), env.extent());
+        let slots = || 0..=options.groups;
+        Ok(VecEnv {
+            space,
+            observation_shape,
+            cost_terms,
+            statistics,
+            extent,
+            options,
+            crew: Crew::new(lanes, options)?,
+            resting: vec![false; options.lanes],
+            kept: slots().map(|_| None).collect(),
+            failed: None,
+        })
     }
 
     /// The action space of every lane.
@@ -211,6 +114,12 @@ impl VecEnv {
     #[must_use]
     pub const fn cost_terms(&self) -> &'static [CostTerm] {
         self.cost_terms
+    }
+
+    /// Names of the statistics, in the order of [`Batch::statistics`].
+    #[must_use]
+    pub fn statistics(&self) -> &[&'static str] {
+        &self.statistics
     }
 
     /// The map's extent: x from, y from, x to, y to in map units; `None` for environments without places.
@@ -234,32 +143,45 @@ impl VecEnv {
     /// The lanes of a group; the group after the last stands for all lanes together.
     #[must_use]
     pub fn group_lanes(&self, group: usize) -> Range<usize> {
-        group_lanes(&self.options, group)
+        self.options.group_lanes(group)
+    }
+
+    /// Which lanes' episodes are over without the next one having begun, `[lanes]`: under [`Autoreset::Disabled`] those that rest until
+    /// they are reset, under [`Autoreset::NextStep`] those whose next step starts an episode.
+    #[must_use]
+    pub fn resting(&self) -> &[bool] {
+        &self.resting
     }
 
     /// A batch with buffers of the right lengths for a group.
     #[must_use]
     pub fn batch(&self, group: usize) -> Batch {
-        let lanes = self.group_lanes(group).len();
-        Batch {
-            actions: vec![0; lanes * self.space.groups.len()],
-            deltas: vec![0.0; lanes * self.space.deltas.len()],
-            observations: vec![0; lanes * self.observation_shape.iter().product::<usize>()],
-            rewards: vec![0.0; lanes],
-            costs: vec![0.0; lanes],
-            cost_terms: vec![0.0; lanes * self.cost_terms.len()],
-            positions: vec![[0, 0]; lanes],
-            terminated: vec![false; lanes],
-            truncated: vec![false; lanes],
-            final_observations: Vec::new(),
-            episodes: Vec::new(),
-        }
+        self.batch_of(self.group_lanes(group).len())
     }
 
     /// A batch for all lanes together.
     #[must_use]
     pub fn whole_batch(&self) -> Batch {
-        self.batch(self.options.groups)
+        self.batch_of(self.options.lanes)
+    }
+
+    /// A batch for so many lanes, whichever they are: see [`VecEnv::step_lanes`].
+    #[must_use]
+    pub fn batch_of(&self, lanes: usize) -> Batch {
+        let statistics = if self.options.statistics { self.statistics.len() } else { 0 };
+        Batch {
+            actions: vec![0; lanes * self.space.groups.len()],
+            deltas: vec![0.0; lanes * self.space.deltas.len()],
+            observations: vec![0; lanes * self.observation_shape.iter().product::<usize>()].into(),
+            rewards: vec![0.0; lanes].into(),
+            costs: vec![0.0; lanes].into(),
+            cost_terms: vec![0.0; lanes * self.cost_terms.len()].into(),
+            statistics: vec![0.0; lanes * statistics].into(),
+            positions: vec![[0, 0]; lanes].into(),
+            terminated: vec![false; lanes].into(),
+            truncated: vec![false; lanes].into(),
+            ..Batch::default()
+        }
     }
 
     /// Starts the next episode in every lane. The batch's outputs are then those of a step that brought nothing.
@@ -267,29 +189,55 @@ impl VecEnv {
         self.exchange(batch, Job::Reset)
     }
 
+    /// Resets each lane as it is told, `how[lane]`: some, with a seed each or without, while others stay where they are. The batch
+    /// shows all of them.
+    pub fn restart(&mut self, how: &[Restart], batch: &mut Batch) -> Result<(), EnvError> {
+        self.check_restarts(how)?;
+        self.exchange(batch, Job::Restart(how.into()))
+    }
+
     /// Steps every lane by the batch's actions and fills its outputs.
     pub fn step(&mut self, batch: &mut Batch) -> Result<(), EnvError> {
-        self.check_actions(batch)?;
+        self.check_actions(batch, &Chosen::Range(0..self.options.lanes))?;
         self.exchange(batch, Job::Step)
+    }
+
+    /// Steps some lanes, each once and in any order, by the actions of a batch for so many lanes ([`VecEnv::batch_of`]).
+    pub fn step_lanes(&mut self, lanes: &[usize], batch: &mut Batch) -> Result<(), EnvError> {
+        self.check_lanes(lanes)?;
+        let lanes = Chosen::List(lanes.into());
+        self.check_actions(batch, &lanes)?;
+        self.exchange_with(batch, Task { job: Job::Step, lanes })
     }
 
     /// Hands a group's batch over for the start of the next episode in each of its lanes.
     pub fn send_reset(&mut self, group: usize, batch: Batch) -> Result<(), EnvError> {
-        self.check_group(group)?;
-        self.give(group, batch, Job::Reset)
+        self.hand_over(group, batch, Job::Reset)
     }
 
-    /// Hands a group's batch over to be stepped by its actions. On an error the batch is dropped; [`VecEnv::check`] tells beforehand.
+    /// Hands a group's batch over to be stepped by its actions. On an error the batch waits for [`VecEnv::reclaim`].
     pub fn send(&mut self, group: usize, batch: Batch) -> Result<(), EnvError> {
-        self.check_group(group)?;
-        self.check_actions(&batch)?;
-        self.give(group, batch, Job::Step)
+        self.hand_over(group, batch, Job::Step)
     }
 
-    /// Waits until a group has been stepped, and takes its batch back.
+    /// Waits until a group has been stepped, and takes its batch back. If an environment panicked, the batch waits for
+    /// [`VecEnv::reclaim`], its outputs half written.
     pub fn recv(&mut self, group: usize) -> Result<Batch, EnvError> {
         self.check_group(group)?;
-        self.take(group)
+        let (batch, result) = self.take(group)?;
+        match result {
+            Ok(()) => Ok(batch),
+            Err(error) => {
+                self.kept[group] = Some(batch);
+                Err(error)
+            }
+        }
+    }
+
+    /// The batch that could not be sent to a group, or that was under way when an environment panicked: an error never costs
+    /// the caller its buffers.
+    pub fn reclaim(&mut self, group: usize) -> Option<Batch> {
+        self.kept.get_mut(group)?.take()
     }
 
     /// Starts the lanes' streams of episode seeds anew, as if the batch had been made with this seed. Running episodes go on.
@@ -307,208 +255,83 @@ impl VecEnv {
         Ok(std::mem::take(&mut *states))
     }
 
-    /// Brings every lane to a saved state, by repeating its episode so far, and writes the observations.
+    /// Brings every lane to a saved state, by repeating its episode so far, and shows it as after a step that brought nothing.
     pub fn restore(&mut self, states: Vec<LaneState>, batch: &mut Batch) -> Result<(), EnvError> {
-        if states.len() != self.options.lanes {
-            let allowed = format!("{}, one of each lane", self.options.lanes);
-            return Err(EnvError::Option { option: "the number of saved lanes", given: states.len().to_string(), allowed });
-        }
-        let (groups, continuous) = (self.space.groups.len(), self.space.deltas.len());
-        for (lane, state) in states.iter().enumerate() {
-            let steps = state.actions.len().checked_div(groups).unwrap_or(0);
-            if state.actions.len() != steps * groups || state.deltas.len() != steps * continuous {
-                return Err(EnvError::Action { lane, why: "a saved episode does not fit the action space".to_string() });
-            }
-            for i in 0..steps {
-                let (actions, deltas) =
-                    (&state.actions[i * groups..(i + 1) * groups], &state.deltas[i * continuous..(i + 1) * continuous]);
-                self.space.check(lane, actions, deltas)?;
-            }
-        }
+        self.check_states(&states)?;
         self.exchange(batch, Job::Restore(Arc::new(states)))
     }
 
-    /// What is wrong with a group's batch (`group` = [`VecEnv::groups`] for all lanes), if anything.
-    pub fn check(&self, group: usize, batch: &Batch) -> Result<(), EnvError> {
-        let lanes = self.group_lanes(group).len();
-        let pixels: usize = self.observation_shape.iter().product();
-        for (field, given, needed) in [
-            ("actions", batch.actions.len(), lanes * self.space.groups.len()),
-            ("deltas", batch.deltas.len(), lanes * self.space.deltas.len()),
-            ("observations", batch.observations.len(), lanes * pixels),
-            ("rewards", batch.rewards.len(), lanes),
-            ("costs", batch.costs.len(), lanes),
-            ("cost_terms", batch.cost_terms.len(), lanes * self.cost_terms.len()),
-            ("positions", batch.positions.len(), lanes),
-            ("terminated", batch.terminated.len(), lanes),
-            ("truncated", batch.truncated.len(), lanes),
-        ] {
-            if given != needed {
-                return Err(EnvError::BatchSize { field, given, needed });
+    /// Checks a group's batch and gives it to the crew, or keeps it to be reclaimed.
+    fn hand_over(&mut self, group: usize, batch: Batch, job: Job) -> Result<(), EnvError> {
+        // A batch of no group at all still has a place where it can be reclaimed from: that of all lanes.
+        let slot = group.min(self.options.groups);
+        let lanes = Chosen::Range(self.group_lanes(group));
+        let check = || {
+            self.check_group(group)?;
+            if matches!(job, Job::Step) {
+                self.check_actions(&batch, &lanes)?;
             }
+            self.check(group, &batch)?;
+            self.check_turn(group)
+        };
+        if let Err(error) = check() {
+            self.kept[slot] = Some(batch);
+            return Err(error);
         }
+        self.give(slot, batch, Task { job, lanes });
         Ok(())
-    }
-
-    fn check_actions(&self, batch: &Batch) -> Result<(), EnvError> {
-        let (groups, continuous) = (self.space.groups.len(), self.space.deltas.len());
-        for lane in 0..batch.rewards.len() {
-            let actions = batch.actions.get(lane * groups..(lane + 1) * groups).unwrap_or_default();
-            let deltas = batch.deltas.get(lane * continuous..(lane + 1) * continuous).unwrap_or_default();
-            self.space.check(lane, actions, deltas)?;
-        }
-        Ok(())
-    }
-
-    fn check_group(&self, group: usize) -> Result<(), EnvError> {
-        if group < self.options.groups {
-            return Ok(());
-        }
-        let allowed = format!("less than {}, the number of groups", self.options.groups);
-        Err(EnvError::Option { option: "the group", given: group.to_string(), allowed })
     }
 
     /// Gives all lanes a job and waits for it.
     fn exchange(&mut self, batch: &mut Batch, job: Job) -> Result<(), EnvError> {
+        self.exchange_with(batch, Task { job, lanes: Chosen::Range(0..self.options.lanes) })
+    }
+
+    /// Gives lanes a job and waits for it. The caller has its batch back in any case.
+    fn exchange_with(&mut self, batch: &mut Batch, task: Task) -> Result<(), EnvError> {
         let whole = self.options.groups;
-        self.check(whole, batch)?;
+        self.check_lengths(task.lanes.count(), batch)?;
         self.check_turn(whole)?;
-        self.give(whole, std::mem::take(batch), job)?;
-        *batch = self.take(whole)?;
-        Ok(())
+        // What only moves streams of seeds, or reads them, shows nothing and changes no lane's rest.
+        let shows = !matches!(task.job, Job::Seed(_) | Job::Save(_));
+        let lanes = shows.then(|| task.lanes.clone());
+        self.give(whole, std::mem::take(batch), task);
+        let (returned, result) = self.take(whole)?;
+        *batch = returned;
+        if let (Ok(()), Some(lanes)) = (&result, lanes) {
+            self.note_rest(batch, &lanes);
+        }
+        result
     }
 
-    fn check_turn(&self, slot: usize) -> Result<(), EnvError> {
-        if let Some(message) = &self.failed {
-            return Err(EnvError::Panicked { message: message.clone() });
-        }
-        let under_way = |i: usize| match &self.crew {
-            Crew::Caller { ready, .. } => ready[i].is_some(),
-            Crew::Workers { busy, .. } => busy[i],
-        };
-        let whole = self.options.groups;
-        // All lanes together are busy while any group is.
-        if under_way(slot) || (slot == whole && (0..whole).any(under_way)) {
-            return Err(EnvError::Turn { why: "a group of lanes is under way; receive it first".to_string() });
-        }
-        Ok(())
-    }
-
-    fn give(&mut self, slot: usize, mut batch: Batch, job: Job) -> Result<(), EnvError> {
-        self.check(slot, &batch)?;
-        self.check_turn(slot)?;
+    fn give(&mut self, slot: usize, mut batch: Batch, task: Task) {
         batch.episodes.clear();
+        batch.final_lanes.clear();
         batch.final_observations.clear();
-        let range = self.group_lanes(slot);
-        match &mut self.crew {
-            Crew::Caller { lanes, ready } => {
-                let manner = Manner { autoreset: self.options.autoreset, final_observations: self.options.final_observations };
-                let mut outbox = Outbox::default();
-                let own = &mut lanes[range];
-                let run = || run_job(&job, own, 0, manner, slices(&mut batch), &mut outbox);
-                if let Err(panic) = catch_unwind(AssertUnwindSafe(run)) {
-                    outbox.panic = Some(worker::panic_text(&*panic));
-                }
-                ready[slot] = Some((batch, outbox));
-            }
-            Crew::Workers { shared, threads, busy } => {
-                shared.slots[slot].give(batch, job);
-                busy[slot] = true;
-                shared.given.fetch_add(1, Ordering::Release);
-                threads.iter().for_each(|thread| thread.thread().unpark());
-            }
-        }
-        Ok(())
+        self.crew.give(slot, batch, task);
     }
 
-    fn take(&mut self, slot: usize) -> Result<Batch, EnvError> {
+    /// Takes a batch back, and what went wrong with it.
+    fn take(&mut self, slot: usize) -> Result<(Batch, Result<(), EnvError>), EnvError> {
         let idle = || EnvError::Turn { why: format!("group {slot} is not under way; send it first") };
-        let mut reports = Outbox::default();
-        let mut batch = match &mut self.crew {
-            Crew::Caller { ready, .. } => {
-                let (batch, outbox) = ready[slot].take().ok_or_else(idle)?;
-                reports = outbox;
-                batch
-            }
-            Crew::Workers { shared, busy, .. } => {
-                if !std::mem::take(&mut busy[slot]) {
-                    return Err(idle());
-                }
-                shared.help(self.options.threads, slot);
-                let batch = shared.slots[slot].take();
-                for outboxes in &shared.outboxes {
-                    reports.append(&mut outboxes[slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner()));
-                }
-                batch
-            }
-        };
-        if let Some(message) = reports.panic {
+        let (mut batch, mut reports) = self.crew.take(slot).ok_or_else(idle)?;
+        if let Some(message) = reports.panic.take() {
             self.failed = Some(message.clone());
-            return Err(EnvError::Panicked { message });
+            return Ok((batch, Err(EnvError::Panicked { message })));
         }
-        (batch.final_observations, batch.episodes) = (reports.final_observations, reports.episodes);
-        // Lanes are stepped in any order.
-        batch.final_observations.sort_by_key(|&(lane, _)| lane);
-        batch.episodes.sort_by_key(|episode| episode.lane);
-        Ok(batch)
+        reports.deliver(&mut batch);
+        if slot < self.options.groups {
+            self.note_rest(&batch, &Chosen::Range(self.group_lanes(slot)));
+        }
+        Ok((batch, Ok(())))
     }
-}
 
-impl Drop for VecEnv {
-    fn drop(&mut self) {
-        if let Crew::Workers { shared, threads, .. } = &mut self.crew {
-            shared.stop.store(true, Ordering::Release);
-            for thread in threads.drain(..) {
-                thread.thread().unpark();
-                // A worker catches panics of environments; there is nothing left to report.
-                let _ = thread.join();
+    /// Notes which of a batch's lanes rest now.
+    fn note_rest(&mut self, batch: &Batch, lanes: &Chosen) {
+        if self.options.autoreset != Autoreset::SameStep {
+            for index in 0..lanes.count() {
+                self.resting[lanes.lane(index)] = batch.terminated[index] || batch.truncated[index];
             }
         }
-    }
-}
-
-/// The lanes of a group: equal shares of the whole; the group after the last is the whole.
-fn group_lanes(options: &VecOptions, group: usize) -> Range<usize> {
-    if group >= options.groups { 0..options.lanes } else { cut(0..options.lanes, group, options.groups) }
-}
-
-/// The `i`-th of `count` nearly equal parts.
-fn cut(range: Range<usize>, i: usize, count: usize) -> Range<usize> {
-    let at = |i: usize| range.start + range.len() * i / count;
-    at(i)..at(i + 1)
-}
-
-/// Starts the worker threads.
-fn hire(lanes: Vec<Lane>, options: VecOptions, manner: Manner) -> Crew {
-    let slots = || 0..=options.groups;
-    let shared = Arc::new(Shared {
-        lanes: Lanes::new(lanes),
-        slots: slots().map(|slot| Slot::new(group_lanes(&options, slot))).collect(),
-        outboxes: (0..=options.threads).map(|_| slots().map(|_| Mutex::default()).collect()).collect(),
-        given: AtomicU64::new(0),
-        stop: AtomicBool::new(false),
-        manner,
-    });
-    let hire = |worker| {
-        let shared = Arc::clone(&shared);
-        let thread = std::thread::Builder::new().name(format!("worlds {worker}")).spawn(move || worker::work(worker, shared));
-        thread.expect("the system refuses another thread")
-    };
-    let threads = (0..options.threads).map(hire).collect();
-    Crew::Workers { shared, threads, busy: slots().map(|_| false).collect() }
-}
-
-/// All lanes of a batch, by the borrow checker's rules.
-fn slices(batch: &mut Batch) -> LaneSlices<'_> {
-    LaneSlices {
-        actions: &batch.actions,
-        deltas: &batch.deltas,
-        observations: &mut batch.observations,
-        rewards: &mut batch.rewards,
-        costs: &mut batch.costs,
-        cost_terms: &mut batch.cost_terms,
-        positions: &mut batch.positions,
-        terminated: &mut batch.terminated,
-        truncated: &mut batch.truncated,
     }
 }

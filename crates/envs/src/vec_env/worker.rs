@@ -1,8 +1,8 @@
 //! A worker thread: steps lanes as long as there are any to claim.
 
 use super::handover::{Lanes, Slot};
-use super::lane::{Lane, LaneSlices, Outbox};
-use super::{Job, Manner, run_job};
+use super::job::Job;
+use super::lane::{Lane, LaneSlices, Manner, Outbox};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -29,8 +29,7 @@ impl Shared {
     pub fn help(&self, worker: usize, slot: usize) {
         let work = |index: usize, lane: &mut Lane, slices: LaneSlices, job: &Job| {
             let mut outbox = Outbox::default();
-            let lanes = std::slice::from_mut(lane);
-            let result = catch_unwind(AssertUnwindSafe(|| run_job(job, lanes, index, self.manner, slices, &mut outbox)));
+            let result = catch_unwind(AssertUnwindSafe(|| job.run(lane, index, self.manner, slices, &mut outbox)));
             outbox.panic = result.err().map(|panic| panic_text(&*panic));
             if !outbox.is_empty() {
                 self.outboxes[worker][slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner()).append(&mut outbox);

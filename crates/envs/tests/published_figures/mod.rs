@@ -1,6 +1,6 @@
 //! What fixed policies did in the published system, and what they do in ours.
 
-use hasard_envs::{Env, EnvOptions, Move, Policy, PolicyRun, RuleSet};
+use hasard_envs::{Env, EnvOptions, Policy, PolicyRun, RuleSet};
 
 /// What is compared of an episode, in the order of the columns.
 pub const COLUMNS: [&str; 8] = ["return", "cost", "length", "path length", "farthest", "lowest", "highest", "least health"];
@@ -52,10 +52,7 @@ fn play(env: &mut Env, policy: Policy, seed: u64) -> [f64; COLUMNS.len()] {
     let (mut path, mut farthest, mut lowest, mut highest, mut health) = (0.0, 0.0f64, start_z, start_z, start_health);
     let (mut last_x, mut last_y) = (start_x, start_y);
     loop {
-        let step = match run.next_move() {
-            Move::Action(actions, deltas) => env.step(actions, deltas),
-            Move::Buttons(command) => env.step_buttons(command),
-        };
+        let step = env.make_move(run.next_move()).unwrap();
         if step.ended() {
             let episode = env.episode();
             return [episode.episode_return, episode.cost, f64::from(episode.length), path, farthest, lowest, highest, health];

@@ -55,7 +55,7 @@ fn record(id: &str, full_actions: bool, steps: usize) -> Vec<u8> {
     let mut recorder = Recorder::begin(&mut env, 7, "sample").expect("a sound name");
     let (groups, deltas) = (vec![1; env.action_space().groups.len()], vec![0.25; env.action_space().deltas.len()]);
     for _ in 0..steps {
-        env.step(&groups, &deltas);
+        env.step(&groups, &deltas).expect("an action of the environment");
         recorder.push(&groups, &deltas).expect("an action of the environment");
     }
     recorder.finish(&env).to_bytes()

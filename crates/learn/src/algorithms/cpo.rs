@@ -5,11 +5,12 @@
 //! verifies reward, cost and divergence. With several constraints the one furthest above its budget rules the step.
 
 use super::surrogate::{centred, standardised};
-use super::trust_region::{TrustRegion, dot, note, plus, ratio, train_critics};
+use super::trust_region::{TrustRegion, dot, note, plus, train_critics};
 use super::{Algorithm, Signal};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::learning::learner::{Learner, Minibatch, scalar};
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 
 /// Constrained policy optimisation.
@@ -22,7 +23,7 @@ impl Cpo {
     /// CPO with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> Cpo {
-        Cpo { region: TrustRegion::new(config), gamma: f64::from(config.learning.gamma) }
+        Cpo { region: TrustRegion::new(config), gamma: config.learning.gamma }
     }
 }
 
@@ -108,30 +109,31 @@ impl Algorithm for Cpo {
     ) -> Result<(), LearnError> {
         let relative = |signal: &Signal| signal.episode_excess() / signal.episode_budget.max(1.0);
         let worst = (0..signals.len()).max_by(|&a, &b| relative(&signals[a]).total_cmp(&relative(&signals[b])));
-        let advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
-        let costs = minibatch.tensor(centred(minibatch.advantages[1 + worst.unwrap_or(0)].clone()));
+        let advantages = standardised(minibatch.advantages());
+        let costs = centred(&minibatch.costs()[worst.unwrap_or(0)].advantages);
+        let reward_loss = |heads: &Heads| -> Loss { heads.mean([&heads.ratio], |row, [ratio]| -(ratio * advantages[row])) };
+        let cost_loss = |heads: &Heads| -> Loss { heads.mean([&heads.ratio], |row, [ratio]| ratio * costs[row]) };
         let region = &self.region;
         let origin = region.origin(learner, minibatch);
-        let (g, reward_before) =
-            region.gradient(learner, minibatch, &origin, |policy, batch| -(ratio(policy, batch) * advantages.clone()).mean());
-        let (b, cost_before) =
-            region.gradient(learner, minibatch, &origin, |policy, batch| (ratio(policy, batch) * costs.clone()).mean());
+        let (reward_before, cost_before) = (reward_loss(&origin.heads), cost_loss(&origin.heads));
+        let g = region.gradient(learner, minibatch, &origin, &reward_before);
+        let b = region.gradient(learner, minibatch, &origin, &cost_before);
         let (x, y) = (region.solve(learner, minibatch, &origin, &g), region.solve(learner, minibatch, &origin, &b));
         // The surrogate's unit is a discounted step; an episode's excess is brought to it as in P3O.
         let excess = worst.map_or(-1.0, |index| (1.0 - self.gamma) * signals[index].episode_excess());
         let plane = Plane { q: dot(&g, &x), r: dot(&g, &y), s: dot(&b, &y), excess, radius: region.radius };
         let weights = plane.solve();
-        means.add("policy_loss", reward_before);
+        means.add("policy_loss", reward_before.value);
         means.add("recovery", f64::from(u8::from(weights.recovery)));
         let zero = vec![0.0; x.len()];
         let step = plus(&plus(&zero, -weights.reward, &x), -weights.cost, &y);
         let allowed = (-excess).max(0.0);
-        let share = region.search(learner, minibatch, &origin, &step, |policy, batch, divergence| {
-            let ratio = ratio(policy, batch);
-            let reward = scalar(&-(ratio.clone() * advantages.clone()).mean());
-            let cost = scalar(&(ratio * costs.clone()).mean());
+        let share = region.search(learner, minibatch, &origin, &step, |heads, divergence| {
+            let (reward, cost) = (reward_loss(heads).value, cost_loss(heads).value);
             // While above the budget the reward may fall; the cost may rise by what is left of the budget, no more.
-            (excess > 0.0 || reward <= reward_before) && cost - cost_before <= allowed && divergence <= 1.5 * region.radius
+            (excess > 0.0 || reward <= reward_before.value)
+                && cost - cost_before.value <= allowed
+                && divergence <= 1.5 * region.radius
         });
         note(learner, minibatch, share, means);
         let critics = 1 + learner.shape().cost_critics;

@@ -4,13 +4,13 @@
 //! lowers the costs' surrogates, weighted by multipliers, while staying near the policy that acted.
 
 use super::multiplier::{Lagrange, Multipliers};
-use super::surrogate::{centred, ratio, standardised};
+use super::surrogate::{centred, standardised};
 use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::learner::{Heads, Learner, Loss, Minibatch};
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use burn::tensor::Tensor;
 
 /// Constrained update projection.
 pub struct Cup {
@@ -28,15 +28,16 @@ impl Cup {
     }
 
     /// The loss of the second step.
-    pub(super) fn projection(&self, costs: &[Tensor<1>], heads: &Heads, batch: &Minibatch<'_>) -> Loss {
-        let (gamma, lambda) = (f64::from(self.settings.gamma), f64::from(self.settings.gae_lambda));
+    pub(super) fn projection(&self, costs: &[Vec<f64>], heads: &Heads, batch: &Minibatch<'_>, means: &mut Means) -> Loss {
+        let (gamma, lambda) = (self.settings.gamma, self.settings.gae_lambda);
         let coefficient = (1.0 - gamma * lambda) / (1.0 - gamma).max(1e-6);
-        let ratio = ratio(heads, batch);
-        let mut total = heads.policy.divergence(&batch.old_policy).mean();
+        let mut total = heads.mean_of(&heads.policy.divergence(&batch.old_policy));
         for (advantages, multiplier) in costs.iter().zip(self.multipliers()) {
-            total = total + (ratio.clone() * advantages.clone()).mean() * (multiplier * coefficient);
+            let surrogate = heads.mean([&heads.ratio], |row, [ratio]| ratio * advantages[row]);
+            total = total + surrogate * (multiplier * coefficient);
         }
-        Loss { parts: vec![("projection_loss", total.clone())], total }
+        means.add("projection_loss", total.value);
+        total
     }
 }
 
@@ -48,13 +49,11 @@ impl Algorithm for Cup {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
-        learner.descend(minibatch, |heads, batch| ppo::loss(&advantages, heads, batch, &self.settings), means)?;
+        let advantages = standardised(minibatch.advantages());
+        learner.descend(minibatch, |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means), means)?;
 
-        let costs: Vec<_> =
-            minibatch.advantages[1..].iter().map(|advantages| minibatch.tensor(centred(advantages.clone()))).collect();
-        let projection = |heads: &Heads, batch: &Minibatch<'_>| self.projection(&costs, heads, batch);
-        learner.descend(minibatch, projection, &mut Means::default())
+        let costs: Vec<_> = minibatch.costs().iter().map(|cost| centred(&cost.advantages)).collect();
+        learner.descend(minibatch, |heads, batch, means| self.projection(&costs, heads, batch, means), &mut Means::default())
     }
 
     fn weights(&self) -> Option<&Multipliers> {

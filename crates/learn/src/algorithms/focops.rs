@@ -5,13 +5,14 @@
 //! temperature, on those samples alone whose divergence is still small.
 
 use super::multiplier::{Lagrange, Multipliers};
-use super::surrogate::{lagrangian_advantages, ratio, standardised, total};
+use super::surrogate::{lagrangian_advantages, standardised, total};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::learner::{Heads, Learner, Loss, Minibatch};
+use crate::learning::dual::Dual;
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use burn::tensor::Tensor;
 
 /// First-order constrained optimisation in policy space.
 pub struct Focops {
@@ -34,11 +35,17 @@ impl Focops {
         }
     }
 
-    pub(super) fn loss(&self, advantages: &Tensor<1>, heads: &Heads, batch: &Minibatch<'_>) -> Loss {
+    /// Divergence from the policy that acted minus the gain, on the samples that are still near it.
+    pub(super) fn loss(&self, advantages: &[f64], heads: &Heads, batch: &Minibatch<'_>, means: &mut Means) -> Loss {
         let divergence = heads.policy.divergence(&batch.old_policy);
-        let near = divergence.clone().lower_equal_scalar(self.eta).float().detach();
-        let gain = ratio(heads, batch) * advantages.clone() / self.temperature;
-        total(((divergence - gain) * near).mean(), heads, batch, &self.settings)
+        let policy_loss = heads.mean([&heads.ratio, &divergence], |row, [ratio, divergence]| {
+            if divergence.value <= self.eta {
+                divergence - ratio * advantages[row] / self.temperature
+            } else {
+                Dual::constant(0.0)
+            }
+        });
+        total(policy_loss, heads, batch, &self.settings, means)
     }
 }
 
@@ -50,10 +57,8 @@ impl Algorithm for Focops {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = standardised(lagrangian_advantages(minibatch, &self.multipliers()));
-        let advantages = minibatch.tensor(advantages);
-        let loss = |heads: &Heads, batch: &Minibatch<'_>| self.loss(&advantages, heads, batch);
-        learner.descend(minibatch, loss, means)
+        let advantages = standardised(&lagrangian_advantages(minibatch, &self.multipliers()));
+        learner.descend(minibatch, |heads, batch, means| self.loss(&advantages, heads, batch, means), means)
     }
 
     fn weights(&self) -> Option<&Multipliers> {

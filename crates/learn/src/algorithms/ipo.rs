@@ -51,9 +51,8 @@ impl Algorithm for Ipo {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = standardised(lagrangian_advantages(minibatch, &self.penalties));
-        let advantages = minibatch.tensor(advantages);
-        learner.descend(minibatch, |heads, batch| ppo::loss(&advantages, heads, batch, &self.settings), means)
+        let advantages = standardised(&lagrangian_advantages(minibatch, &self.penalties));
+        learner.descend(minibatch, |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means), means)
     }
 
     fn multipliers(&self) -> Vec<f64> {

@@ -1,13 +1,14 @@
 //! Every loss against an independent one in plain 64-bit arithmetic: value, and gradient in the networks' outputs.
 
-use burn::tensor::Tensor;
-
 use super::surrogate::{centred, standardised};
 use super::{Algorithm, Signal, cup, focops, p3o, ppo};
 use crate::config::{AlgorithmKind, EnvConfig, Exploration, Preset, TrainConfig};
-use crate::learning::learner::{Heads, Loss, Minibatch, column, loss_device, matrix, scalar, to_rows};
-use crate::networks::distribution::{ActionShape, Policy, Taken};
-use crate::networks::{ModelSequences, Sequences};
+use crate::learning::learner::{Critic, Minibatch};
+use crate::learning::loss::{Heads, Loss};
+use crate::learning::metrics::Means;
+use crate::learning::policy::{Policy, Taken};
+use crate::networks::distribution::ActionShape;
+use crate::networks::{ModelSequences, ModelShape, Sequences};
 use crate::random::{Purpose, Stream};
 
 const ROWS: usize = 24;
@@ -48,41 +49,39 @@ impl Case {
     }
 
     fn minibatch(&self) -> Minibatch<'static> {
-        let device = loss_device();
         let empty = Sequences { steps: 0, lanes: 0, observations: vec![], extra: vec![], initial_state: vec![], reset: vec![] };
-        let old = matrix(self.old_outputs.clone(), self.shape.parameters());
-        let columns = |values: &[Vec<f32>; 2]| values.iter().map(|values| column(values.clone(), &device)).collect();
+        let critic = |index: usize| Critic {
+            loss_name: format!("critic {index}"),
+            advantages: self.advantages[index].clone(),
+            old_values: self.old_values[index].clone(),
+            targets: self.targets[index].clone(),
+        };
         Minibatch {
             batch: ModelSequences { sequences: empty, initial_state: vec![] },
-            taken: Taken::new(&self.shape, &self.actions, &self.deltas, &device),
-            old_log_probability: column(self.old_log.clone(), &device),
-            old_policy: Policy::new(&self.shape, &old),
-            advantages: self.advantages.to_vec(),
-            old_values: columns(&self.old_values),
-            targets: columns(&self.targets),
+            taken: Taken { actions: self.actions.clone(), deltas: self.deltas.clone() },
+            old_log_probability: self.old_log.iter().map(|&log| f64::from(log)).collect(),
+            old_policy: Policy::new(&self.shape, &self.old_outputs, self.shape.parameters()),
+            critics: vec![critic(0), critic(1)],
             mean_costs: vec![],
         }
     }
 
-    /// Value and gradient by burn.
-    fn by_burn(&self, loss: impl Fn(&Heads, &Minibatch<'_>) -> Loss) -> (f64, Vec<f32>) {
-        let width = self.shape.parameters() + 2;
-        let outputs = matrix(self.outputs.clone(), width).require_grad();
-        let policy = outputs.clone().narrow(1, 0, width - 2);
-        let value = |critic: usize| -> Tensor<1> { outputs.clone().narrow(1, width - 2 + critic, 1).squeeze_dim(1) };
-        let heads = Heads { policy: Policy::new(&self.shape, &policy), values: vec![value(0), value(1)] };
-        let total = loss(&heads, &self.minibatch()).total;
-        let gradients = total.backward();
-        (scalar(&total), to_rows(outputs.grad(&gradients).unwrap()))
+    /// Value and gradient of a loss.
+    fn found(&self, loss: impl Fn(&Heads, &Minibatch<'_>, &mut Means) -> Loss) -> (f64, Vec<f64>) {
+        let shape = ModelShape { networks: vec![], action: self.shape.clone(), cost_critics: 1 };
+        let minibatch = self.minibatch();
+        let heads = Heads::new(&shape, &self.outputs, shape.outputs(), &minibatch);
+        let loss = loss(&heads, &minibatch, &mut Means::default());
+        (loss.value, loss.gradient)
     }
 
-    /// Holds burn's loss against a plain one of the outputs in 64 bits, whose gradient is taken by differences.
-    fn compare(&self, name: &str, loss: impl Fn(&Heads, &Minibatch<'_>) -> Loss, plain: impl Fn(&[f64]) -> f64) {
-        let (value, gradient) = self.by_burn(loss);
+    /// Holds a loss against a plain one of the outputs, whose gradient is taken by differences.
+    fn compare(&self, name: &str, loss: impl Fn(&Heads, &Minibatch<'_>, &mut Means) -> Loss, plain: impl Fn(&[f64]) -> f64) {
+        let (value, gradient) = self.found(loss);
         let outputs: Vec<f64> = self.outputs.iter().map(|&v| f64::from(v)).collect();
         let expected = plain(&outputs);
-        assert!((value - expected).abs() < 1e-5 * expected.abs().max(1.0), "{name}: {value} against {expected}");
-        let largest = gradient.iter().fold(0.0f32, |most, value| most.max(value.abs()));
+        assert!((value - expected).abs() < 1e-9 * expected.abs().max(1.0), "{name}: {value} against {expected}");
+        let largest = gradient.iter().fold(0.0f64, |most, value| most.max(value.abs()));
         assert!(largest > 1e-4, "{name}: no gradient to compare");
         for (index, &found) in gradient.iter().enumerate() {
             let moved = |by: f64| {
@@ -91,8 +90,8 @@ impl Case {
                 plain(&outputs)
             };
             let expected = (moved(1e-6) - moved(-1e-6)) / 2e-6;
-            let error = (f64::from(found) - expected).abs();
-            assert!(error < 1e-4 * f64::from(largest).max(0.1), "{name}: gradient {index}: {found} against {expected}");
+            let error = (found - expected).abs();
+            assert!(error < 1e-6 * largest.max(0.1), "{name}: gradient {index}: {found} against {expected}");
         }
     }
 
@@ -163,10 +162,10 @@ impl Case {
         self.old_outputs[index * width..(index + 1) * width].iter().map(|&v| f64::from(v)).collect()
     }
 
-    fn clipped(&self, outputs: &[f64], advantages: &[f32], clip: f64) -> f64 {
+    fn clipped(&self, outputs: &[f64], advantages: &[f64], clip: f64) -> f64 {
         -Case::mean(|i| {
             let ratio = self.ratio(outputs, i).clamp(0.05, 20.0);
-            let a = f64::from(advantages[i]);
+            let a = advantages[i];
             (ratio * a).min(ratio.clamp(1.0 / (1.0 + clip), 1.0 + clip) * a)
         })
     }
@@ -219,11 +218,6 @@ fn signal(episode_cost: f64) -> Signal {
     Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0 }
 }
 
-fn standardised_tensor(case: &Case, critic: usize) -> (Vec<f32>, Tensor<1>) {
-    let values = standardised(case.advantages[critic].clone());
-    (values.clone(), column(values, &loss_device()))
-}
-
 #[test]
 fn ppo_and_its_value_and_exploration_losses() {
     for (preset, exploration, spread) in [
@@ -234,10 +228,10 @@ fn ppo_and_its_value_and_exploration_losses() {
         let mut config = config(AlgorithmKind::PpoLag, preset);
         config.learning.exploration = exploration;
         let case = Case::new(discrete(), spread);
-        let (advantages, tensor) = standardised_tensor(&case, 0);
+        let advantages = standardised(&case.advantages[0]);
         case.compare(
             "PPO",
-            |heads, batch| ppo::loss(&tensor, heads, batch, &config.learning),
+            |heads, batch, means| ppo::loss(&advantages, heads, batch, &config.learning, means),
             |outputs| case.clipped(outputs, &advantages, config.learning.clip_ratio) + case.rest(outputs, &config),
         );
     }
@@ -248,10 +242,10 @@ fn ppo_with_continuous_parts() {
     let mut config = config(AlgorithmKind::Ppo, Preset::Paper);
     config.learning.exploration_coefficient = 0.0;
     let case = Case::new(ActionShape { sizes: vec![3], deltas: 2 }, 0.1);
-    let (advantages, tensor) = standardised_tensor(&case, 0);
+    let advantages = standardised(&case.advantages[0]);
     case.compare(
         "PPO with normals",
-        |heads, batch| ppo::loss(&tensor, heads, batch, &config.learning),
+        |heads, batch, means| ppo::loss(&advantages, heads, batch, &config.learning, means),
         |outputs| case.clipped(outputs, &advantages, config.learning.clip_ratio) + case.rest(outputs, &config),
     );
 }
@@ -263,12 +257,12 @@ fn p3o_with_the_penalty_on_and_off() {
             let config = config(AlgorithmKind::P3o, preset);
             let p3o = p3o::P3o::new(&config);
             let case = Case::new(discrete(), 0.3);
-            let ((advantages, tensor), (costs, cost_tensor)) = (standardised_tensor(&case, 0), standardised_tensor(&case, 1));
+            let (advantages, costs) = (standardised(&case.advantages[0]), standardised(&case.advantages[1]));
             let signals = [signal(cost)];
             let clip = config.learning.clip_ratio;
             let penalty = |outputs: &[f64]| {
                 let expected = Case::mean(|i| {
-                    let (ratio, a) = (case.ratio(outputs, i), f64::from(costs[i]));
+                    let (ratio, a) = (case.ratio(outputs, i), costs[i]);
                     let clipped = ratio.clamp(1.0 / (1.0 + clip), 1.0 + clip);
                     if preset == Preset::Paper { (ratio * a).max(clipped * a) } else { ratio * a }
                 });
@@ -279,7 +273,7 @@ fn p3o_with_the_penalty_on_and_off() {
             };
             case.compare(
                 &format!("P3O {preset}, cost {cost}"),
-                |heads, batch| p3o.loss(&tensor, std::slice::from_ref(&cost_tensor), &signals, heads, batch),
+                |heads, batch, means| p3o.loss(&advantages, std::slice::from_ref(&costs), &signals, heads, batch, means),
                 |outputs| case.clipped(outputs, &advantages, clip) + case.rest(outputs, &config) + penalty(outputs),
             );
         }
@@ -291,17 +285,17 @@ fn focops_counts_near_samples_alone() {
     let config = config(AlgorithmKind::Focops, Preset::Paper);
     let focops = focops::Focops::new(&config);
     let case = Case::new(discrete(), 0.15);
-    let (advantages, tensor) = standardised_tensor(&case, 0);
+    let advantages = standardised(&case.advantages[0]);
     let at: Vec<f64> = case.outputs.iter().map(|&v| f64::from(v)).collect();
     let near: Vec<bool> = (0..ROWS).map(|i| case.divergence_from(case.row(&at, i), &case.old_row(i)) <= 0.02).collect();
     assert!(near.contains(&true) && near.contains(&false), "samples of both kinds");
     case.compare(
         "FOCOPS",
-        |heads, batch| focops.loss(&tensor, heads, batch),
+        |heads, batch, means| focops.loss(&advantages, heads, batch, means),
         |outputs| {
             let policy = Case::mean(|i| {
                 let divergence = case.divergence_from(case.row(outputs, i), &case.old_row(i));
-                let gain = case.ratio(outputs, i) * f64::from(advantages[i]) / 1.5;
+                let gain = case.ratio(outputs, i) * advantages[i] / 1.5;
                 if near[i] { divergence - gain } else { 0.0 }
             });
             policy + case.rest(outputs, &config)
@@ -317,16 +311,15 @@ fn cup_projects_back_towards_the_budget() {
     let multiplier = cup.multipliers()[0];
     assert!(multiplier > 0.1);
     let case = Case::new(discrete(), 0.3);
-    let costs = centred(case.advantages[1].clone());
-    let tensor = column(costs.clone(), &loss_device());
+    let costs = centred(&case.advantages[1]);
     case.compare(
         "CUP",
-        |heads, batch| cup.projection(std::slice::from_ref(&tensor), heads, batch),
+        |heads, batch, means| cup.projection(std::slice::from_ref(&costs), heads, batch, means),
         |outputs| {
             let coefficient = (1.0 - 0.99 * 0.95) / (1.0 - 0.99);
             Case::mean(|i| {
                 case.divergence_from(case.row(outputs, i), &case.old_row(i))
-                    + multiplier * coefficient * case.ratio(outputs, i) * f64::from(costs[i])
+                    + multiplier * coefficient * case.ratio(outputs, i) * costs[i]
             })
         },
     );

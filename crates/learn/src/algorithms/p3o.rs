@@ -7,13 +7,12 @@
 //! released code uses the plain ratio, the excess per step and kappa 1, which leaves little more than a switch on the
 //! sign of the excess.
 
-use burn::tensor::Tensor;
-
-use super::surrogate::{clip_ratio, clipped_policy_loss, ratio, standardised, total};
-use super::{Algorithm, Signal};
+use super::surrogate::{clip_ratio, standardised};
+use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::learner::{Heads, Learner, Loss, Minibatch};
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 
 /// Penalised PPO.
@@ -31,34 +30,34 @@ impl P3o {
         P3o { settings: config.learning.clone(), kappa: settings.p3o_kappa, clipped: settings.p3o_clipped }
     }
 
-    /// The penalty of one constraint from the ratios and the standardised advantages of its cost.
-    fn penalty(&self, ratio: &Tensor<1>, advantages: &Tensor<1>, signal: &Signal) -> Tensor<1> {
-        let plain = ratio.clone() * advantages.clone();
+    /// The penalty of one constraint from the standardised advantages of its cost.
+    fn penalty(&self, heads: &Heads, advantages: &[f64], signal: &Signal) -> Loss {
         let expected = if self.clipped {
-            let clipped = clip_ratio(ratio.clone(), self.settings.clip_ratio) * advantages.clone();
-            plain.max_pair(clipped).mean() + (1.0 - f64::from(self.settings.gamma)) * signal.episode_excess()
+            let surrogate = heads.mean([&heads.ratio], |row, [ratio]| {
+                (ratio * advantages[row]).max(clip_ratio(ratio, self.settings.clip_ratio) * advantages[row])
+            });
+            surrogate + (1.0 - self.settings.gamma) * signal.episode_excess()
         } else {
-            plain.mean() + signal.step_excess()
+            heads.mean([&heads.ratio], |row, [ratio]| ratio * advantages[row]) + signal.step_excess()
         };
-        expected.clamp_min(0.0) * self.kappa
+        expected.positive_part() * self.kappa
     }
 
     /// PPO's loss and the penalty of each constraint.
     pub(super) fn loss(
         &self,
-        advantages: &Tensor<1>,
-        cost_advantages: &[Tensor<1>],
+        advantages: &[f64],
+        cost_advantages: &[Vec<f64>],
         signals: &[Signal],
         heads: &Heads,
         batch: &Minibatch<'_>,
+        means: &mut Means,
     ) -> Loss {
-        let ratio = ratio(heads, batch);
-        let policy_loss = clipped_policy_loss(&ratio, advantages, self.settings.clip_ratio);
-        let mut loss = total(policy_loss, heads, batch, &self.settings);
+        let mut loss = ppo::loss(advantages, heads, batch, &self.settings, means);
         for (advantages, signal) in cost_advantages.iter().zip(signals) {
-            let penalty = self.penalty(&ratio, advantages, signal);
-            loss.total = loss.total + penalty.clone();
-            loss.parts.push(("policy_cost_loss", penalty));
+            let penalty = self.penalty(heads, advantages, signal);
+            means.add("policy_cost_loss", penalty.value);
+            loss = loss + penalty;
         }
         loss
     }
@@ -72,10 +71,11 @@ impl Algorithm for P3o {
         signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
-        let cost_advantages: Vec<_> =
-            minibatch.advantages[1..].iter().map(|advantages| minibatch.tensor(standardised(advantages.clone()))).collect();
-        let loss = |heads: &Heads, batch: &Minibatch<'_>| self.loss(&advantages, &cost_advantages, signals, heads, batch);
+        let advantages = standardised(minibatch.advantages());
+        let costs: Vec<_> = minibatch.costs().iter().map(|cost| standardised(&cost.advantages)).collect();
+        let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| {
+            self.loss(&advantages, &costs, signals, heads, batch, means)
+        };
         learner.descend(minibatch, loss, means)
     }
 }

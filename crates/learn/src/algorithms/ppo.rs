@@ -3,13 +3,12 @@
 //! PPOCost and PPOSaute (Sootla et al. 2022, arXiv 2202.06558) are PPO on rewards of another shape, see
 //! [`crate::sampling::shaping`]: reward minus cost, and a safety state that turns the reward bad once the budget is spent.
 
-use burn::tensor::Tensor;
-
-use super::surrogate::{clipped_policy_loss, ratio, standardised, total};
+use super::surrogate::{clipped_policy_loss, standardised, total};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::learner::{Heads, Learner, Loss, Minibatch};
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 
 /// PPO.
@@ -26,9 +25,8 @@ impl Ppo {
 }
 
 /// PPO's loss for standardised advantages of any kind.
-pub fn loss(advantages: &Tensor<1>, heads: &Heads, minibatch: &Minibatch<'_>, settings: &LearningConfig) -> Loss {
-    let policy_loss = clipped_policy_loss(&ratio(heads, minibatch), advantages, settings.clip_ratio);
-    total(policy_loss, heads, minibatch, settings)
+pub fn loss(advantages: &[f64], heads: &Heads, minibatch: &Minibatch<'_>, settings: &LearningConfig, means: &mut Means) -> Loss {
+    total(clipped_policy_loss(heads, advantages, settings.clip_ratio), heads, minibatch, settings, means)
 }
 
 impl Algorithm for Ppo {
@@ -39,7 +37,7 @@ impl Algorithm for Ppo {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
-        learner.descend(minibatch, |heads, batch| loss(&advantages, heads, batch, &self.settings), means)
+        let advantages = standardised(minibatch.advantages());
+        learner.descend(minibatch, |heads, batch, means| loss(&advantages, heads, batch, &self.settings, means), means)
     }
 }

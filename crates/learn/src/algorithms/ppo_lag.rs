@@ -39,9 +39,8 @@ impl Algorithm for PpoLag {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         // The original divides by one plus the multipliers under PID control; that cancels in the standardisation.
-        let advantages = standardised(lagrangian_advantages(minibatch, &self.multipliers()));
-        let advantages = minibatch.tensor(advantages);
-        learner.descend(minibatch, |heads, batch| ppo::loss(&advantages, heads, batch, &self.settings), means)
+        let advantages = standardised(&lagrangian_advantages(minibatch, &self.multipliers()));
+        learner.descend(minibatch, |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means), means)
     }
 
     fn weights(&self) -> Option<&Multipliers> {

@@ -7,16 +7,14 @@
 //! compares that value with one without the exploration loss (and, with multipliers, of the reward alone), and the cost
 //! critic never learns.
 
-use burn::tensor::Tensor;
-
-use super::surrogate::standardised;
-use super::trust_region::{TrustRegion, dot, note, ratio, train_critics};
+use super::surrogate::{exploration_loss, standardised};
+use super::trust_region::{TrustRegion, dot, note, train_critics};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::learner::{Heads, Learner, Minibatch, scalar};
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use crate::networks::distribution::Policy;
 
 /// TRPO.
 pub struct Trpo {
@@ -44,25 +42,18 @@ impl Trpo {
         mixed: Vec<f32>,
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = minibatch.tensor(standardised(mixed));
-        let reward_advantages = minibatch.tensor(standardised(minibatch.advantages[0].clone()));
-        let exploration = |policy: &Policy| {
-            super::surrogate::exploration_loss(&Heads { policy: policy.clone(), values: Vec::new() }, &self.settings)
-        };
+        let advantages = standardised(&mixed);
+        let reward_advantages = standardised(minibatch.advantages());
         let consistent = self.consistent;
-        let objective = |policy: &Policy, batch: &Minibatch<'_>, advantages: &Tensor<1>, explore: bool| {
-            let gain = if consistent {
-                ratio(policy, batch) * advantages.clone()
-            } else {
-                policy.log_probability(&batch.taken) * advantages.clone()
-            };
-            let loss = -gain.mean();
-            if explore { loss + exploration(policy) } else { loss }
+        let objective = |heads: &Heads, advantages: &[f64], explore: bool| -> Loss {
+            let gain = if consistent { &heads.ratio } else { &heads.log_probability };
+            let loss = heads.mean([gain], |row, [gain]| -(gain * advantages[row]));
+            if explore { loss + exploration_loss(heads, &self.settings) } else { loss }
         };
         let region = &self.region;
         let origin = region.origin(learner, minibatch);
-        let (gradient, before) =
-            region.gradient(learner, minibatch, &origin, |policy, batch| objective(policy, batch, &advantages, true));
+        let loss = objective(&origin.heads, &advantages, true);
+        let (gradient, before) = (region.gradient(learner, minibatch, &origin, &loss), loss.value);
         means.add("policy_loss", before);
         let direction = region.solve(learner, minibatch, &origin, &gradient);
         let product = region.fisher_times(learner, minibatch, &origin, &direction);
@@ -72,9 +63,8 @@ impl Trpo {
             let length = (2.0 * region.radius / curvature).sqrt();
             let step: Vec<f32> = direction.iter().map(|value| (-length * f64::from(*value)) as f32).collect();
             let searched = if consistent { &advantages } else { &reward_advantages };
-            share = region.search(learner, minibatch, &origin, &step, |policy, batch, divergence| {
-                let after = scalar(&objective(policy, batch, searched, consistent));
-                after < before && divergence <= region.radius
+            share = region.search(learner, minibatch, &origin, &step, |heads, divergence| {
+                objective(heads, searched, consistent).value < before && divergence <= region.radius
             });
         }
         note(learner, minibatch, share, means);
@@ -91,7 +81,7 @@ impl Algorithm for Trpo {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        let advantages = minibatch.advantages[0].clone();
+        let advantages = minibatch.advantages().to_vec();
         self.step(learner, minibatch, advantages, means)
     }
 }

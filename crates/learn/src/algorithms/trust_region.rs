@@ -5,14 +5,12 @@
 //! J v comes from a central difference of two forward passes, J' from the backward pass. A test holds the product
 //! against a dense Fisher matrix.
 
-use burn::tensor::Tensor;
-
-use super::surrogate;
+use super::surrogate::note_policy;
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::learning::learner::{Heads, Learner, Loss, Minibatch, loss_device, scalar, to_rows};
+use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use crate::networks::distribution::Policy;
 
 /// Norm of the step of the central difference: far above rounding, far below the curvature of the network.
 const DIFFERENCE: f64 = 1e-2;
@@ -32,8 +30,8 @@ pub struct TrustRegion {
 pub struct Origin {
     /// Parameters.
     pub parameters: Vec<f32>,
-    /// Policy outputs, row by row.
-    outputs: Vec<f32>,
+    /// The policy.
+    pub heads: Heads,
 }
 
 /// Product of two vectors.
@@ -69,23 +67,13 @@ impl TrustRegion {
     #[must_use]
     pub fn origin(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>) -> Origin {
         let parameters = learner.policy_parameters();
-        let outputs = to_rows(learner.policy_outputs(minibatch, &parameters).detach());
-        Origin { parameters, outputs }
+        Origin { heads: learner.policy_heads(minibatch, &parameters), parameters }
     }
 
-    /// Gradient, in the policy network's parameters, of a function of the policy, and the function's value.
-    pub fn gradient(
-        &self,
-        learner: &mut Learner,
-        minibatch: &mut Minibatch<'_>,
-        origin: &Origin,
-        function: impl Fn(&Policy, &Minibatch<'_>) -> Tensor<1>,
-    ) -> (Vec<f32>, f64) {
-        let outputs = learner.policy_outputs(minibatch, &origin.parameters).require_grad();
-        let value = function(&Policy::new(&learner.shape().action, &outputs), minibatch);
-        let number = scalar(&value);
-        let rows = to_rows(outputs.grad(&value.backward()).expect("the function depends on the policy"));
-        (learner.policy_backward(minibatch, &rows), number)
+    /// Gradient, in the policy network's parameters, of a loss of the policy at the origin.
+    pub fn gradient(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>, origin: &Origin, loss: &Loss) -> Vec<f32> {
+        let _ = learner.policy_outputs(minibatch, &origin.parameters);
+        learner.policy_backward(minibatch, &loss.rows())
     }
 
     /// The damped Fisher matrix times a vector.
@@ -102,10 +90,10 @@ impl TrustRegion {
             return vec![0.0; vector.len()];
         }
         let step = DIFFERENCE / norm;
-        let mut moved = |scale| to_rows(learner.policy_outputs(minibatch, &plus(&origin.parameters, scale, vector)).detach());
+        let mut moved = |scale| learner.policy_outputs(minibatch, &plus(&origin.parameters, scale, vector));
         let (ahead, behind) = (moved(step), moved(-step));
         let change: Vec<f32> = ahead.iter().zip(&behind).map(|(a, b)| (f64::from(a - b) / (2.0 * step)) as f32).collect();
-        let mut rows = learner.shape().action.fisher_times(&origin.outputs, &change);
+        let mut rows = origin.heads.policy.fisher_times(&change);
         let count = minibatch.batch.sequences.rows() as f32;
         rows.iter_mut().for_each(|value| *value /= count);
         let _ = learner.policy_outputs(minibatch, &origin.parameters);
@@ -147,15 +135,14 @@ impl TrustRegion {
         minibatch: &mut Minibatch<'_>,
         origin: &Origin,
         step: &[f32],
-        mut accept: impl FnMut(&Policy, &Minibatch<'_>, f64) -> bool,
+        mut accept: impl FnMut(&Heads, f64) -> bool,
     ) -> f64 {
         let mut share = 1.0;
         for _ in 0..self.search_steps {
             let parameters = plus(&origin.parameters, share, step);
-            let outputs = learner.policy_outputs(minibatch, &parameters).detach();
-            let policy = Policy::new(&learner.shape().action, &outputs);
-            let divergence = scalar(&minibatch.old_policy.divergence(&policy).mean());
-            if divergence.is_finite() && accept(&policy, minibatch, divergence) {
+            let heads = learner.policy_heads(minibatch, &parameters);
+            let divergence = minibatch.old_policy.divergence(&heads.policy).mean();
+            if divergence.is_finite() && accept(&heads, divergence) {
                 learner.set_policy_parameters(&parameters);
                 return share;
             }
@@ -166,12 +153,6 @@ impl TrustRegion {
     }
 }
 
-/// Ratio of the probabilities of the actions taken.
-#[must_use]
-pub fn ratio(policy: &Policy, minibatch: &Minibatch<'_>) -> Tensor<1> {
-    (policy.log_probability(&minibatch.taken) - minibatch.old_log_probability.clone()).exp()
-}
-
 /// One step of Adam for the critics, down their squared errors. `critics` counts the reward's as 0.
 pub fn train_critics(
     learner: &mut Learner,
@@ -179,16 +160,13 @@ pub fn train_critics(
     critics: usize,
     means: &mut Means,
 ) -> Result<(), LearnError> {
-    let loss = |heads: &Heads, batch: &Minibatch<'_>| {
-        let mut total = Tensor::zeros([1], &loss_device());
-        let mut parts = Vec::new();
-        for critic in 0..critics {
-            let error = heads.values[critic].clone() - batch.targets[critic].clone();
-            let loss = error.powi_scalar(2).mean();
-            total = total + loss.clone();
-            parts.push((if critic == 0 { "value_loss" } else { "cost_value_loss" }, loss));
-        }
-        Loss { total, parts }
+    let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| {
+        let losses = heads.values.iter().zip(&batch.critics).take(critics).map(|(value, critic)| {
+            let loss = heads.mean([value], |row, [value]| (value - f64::from(critic.targets[row])).square());
+            means.add(critic.loss_name.clone(), loss.value);
+            loss
+        });
+        losses.reduce(|sum, loss| sum + loss).expect("the reward has a critic")
     };
     learner.descend_networks(1..1 + critics, minibatch, loss, means)
 }
@@ -196,11 +174,8 @@ pub fn train_critics(
 /// Reports a finished step.
 pub fn note(learner: &mut Learner, minibatch: &mut Minibatch<'_>, share: f64, means: &mut Means) {
     let parameters = learner.policy_parameters();
-    let outputs = learner.policy_outputs(minibatch, &parameters).detach();
-    let heads = Heads { policy: Policy::new(&learner.shape().action, &outputs), values: vec![minibatch.old_values[0].clone()] };
-    for (name, value) in surrogate::policy_statistics(&heads, minibatch) {
-        means.add(name, scalar(&value));
-    }
+    let heads = learner.policy_heads(minibatch, &parameters);
+    note_policy(&heads, minibatch, learner.config.learning.clip_ratio, means);
     means.add("step_share", share);
 }
 
@@ -243,7 +218,8 @@ mod tests {
         let region = TrustRegion::new(&config);
         let origin = region.origin(&mut learner, &mut minibatch);
         let (count, width) = (origin.parameters.len(), learner.shape().action.parameters());
-        let rows = origin.outputs.len() / width;
+        let outputs = learner.policy_outputs(&mut minibatch, &origin.parameters);
+        let rows = outputs.len() / width;
         let mut fisher = vec![0.0f64; count * count];
         let mut add = |gradient: &[f32], weight: f64| {
             for (i, &a) in gradient.iter().enumerate().filter(|(_, a)| **a != 0.0) {
@@ -253,7 +229,7 @@ mod tests {
             }
         };
         for row in 0..rows {
-            let outputs = &origin.outputs[row * width..(row + 1) * width];
+            let outputs = &outputs[row * width..(row + 1) * width];
             let mut gradient_of = |direction: &[f64]| {
                 let _ = learner.policy_outputs(&mut minibatch, &origin.parameters);
                 let mut seeds = vec![0.0; rows * width];

@@ -22,9 +22,9 @@ pub struct LearningConfig {
     /// Parts that the rollout's trajectories are dealt into in each pass.
     pub minibatches: usize,
     /// Discount.
-    pub gamma: f32,
+    pub gamma: f64,
     /// Lambda of the advantage estimate.
-    pub gae_lambda: f32,
+    pub gae_lambda: f64,
     /// Learning rate.
     pub rate: f64,
     /// Learning rate at the end of the run, reached linearly; equal to `rate` for a constant one.

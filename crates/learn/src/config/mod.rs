@@ -123,8 +123,8 @@ impl TrainConfig {
             return refuse("the number of worlds", &sampling.lanes, &format!("a multiple of samplers times groups ({parts})"));
         }
         for (name, given, low, high) in [
-            ("gamma", f64::from(learning.gamma), 0.0, 1.0),
-            ("lambda of the advantages", f64::from(learning.gae_lambda), 0.0, 1.0),
+            ("gamma", learning.gamma, 0.0, 1.0),
+            ("lambda of the advantages", learning.gae_lambda, 0.0, 1.0),
             ("the learning rate", learning.rate, 0.0, 10.0),
             ("the final learning rate", learning.final_rate, 0.0, 10.0),
             ("the largest gradient norm", learning.max_gradient_norm, 0.0, f64::MAX),

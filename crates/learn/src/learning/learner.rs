@@ -1,15 +1,16 @@
 //! The learner: networks, optimiser and running statistics, and what an algorithm does with them.
 
-use burn::tensor::{Device, Tensor, TensorData};
+use std::ops::Range;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::learning::advantage::{Lane, generalised_advantages};
+use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 use crate::learning::normaliser::{Moments, PixelNormaliser};
 use crate::learning::optimiser::Adam;
+use crate::learning::policy::{Policy, Taken};
 use crate::networks::device::ComputeDevice;
-use crate::networks::distribution::{Policy, Taken};
 use crate::networks::{ModelSequences, ModelShape, Published, Sequences, Stack};
 use crate::sampling::rollout::Rollout;
 
@@ -28,6 +29,19 @@ pub struct Prepared<'a> {
     pub mean_costs: Vec<f64>,
 }
 
+/// What a critic has to learn, and what it says about the actions taken; a number a row.
+#[derive(Clone, Debug)]
+pub struct Critic {
+    /// Name of its loss.
+    pub loss_name: String,
+    /// Advantages in raw units.
+    pub advantages: Vec<f32>,
+    /// Values when the actions were taken.
+    pub old_values: Vec<f32>,
+    /// Targets of the values.
+    pub targets: Vec<f32>,
+}
+
 /// Some trajectories of a prepared rollout, ready for a loss. Rows are ordered by time, then by lane.
 pub struct Minibatch<'a> {
     /// What the networks read.
@@ -35,73 +49,27 @@ pub struct Minibatch<'a> {
     /// Actions taken.
     pub taken: Taken,
     /// Logarithm of their probabilities when they were taken.
-    pub old_log_probability: Tensor<1>,
+    pub old_log_probability: Vec<f64>,
     /// Policy when they were taken.
     pub old_policy: Policy,
-    /// Raw advantages of each critic.
-    pub advantages: Vec<Vec<f32>>,
-    /// Values of each critic when the actions were taken.
-    pub old_values: Vec<Tensor<1>>,
-    /// Targets of each critic.
-    pub targets: Vec<Tensor<1>>,
+    /// The critic of the reward, and those of the costs.
+    pub critics: Vec<Critic>,
     /// Mean cost of each constraint per step.
     pub mean_costs: Vec<f64>,
 }
 
 impl Minibatch<'_> {
-    /// A vector of one number a row as a tensor.
+    /// Raw advantages of the reward.
     #[must_use]
-    pub fn tensor(&self, values: Vec<f32>) -> Tensor<1> {
-        column(values, &loss_device())
+    pub fn advantages(&self) -> &[f32] {
+        &self.critics[0].advantages
     }
-}
 
-/// What the networks say about a minibatch, attached to the graph.
-pub struct Heads {
-    /// The policy.
-    pub policy: Policy,
-    /// Value of each critic.
-    pub values: Vec<Tensor<1>>,
-}
-
-/// A loss and the numbers worth reporting about it.
-pub struct Loss {
-    /// What is minimised.
-    pub total: Tensor<1>,
-    /// Named parts.
-    pub parts: Vec<(&'static str, Tensor<1>)>,
-}
-
-/// Losses are a few numbers a sample: they are computed on the processor whatever the networks run on.
-#[must_use]
-pub fn loss_device() -> Device {
-    Device::flex().autodiff()
-}
-
-/// A vector as a tensor.
-#[must_use]
-pub fn column(values: Vec<f32>, device: &Device) -> Tensor<1> {
-    let rows = values.len();
-    Tensor::from_data(TensorData::new(values, [rows]), device)
-}
-
-/// Rows as a tensor on the losses' device.
-#[must_use]
-pub fn matrix(rows: Vec<f32>, width: usize) -> Tensor<2> {
-    let count = rows.len() / width;
-    Tensor::from_data(TensorData::new(rows, [count, width]), &loss_device())
-}
-
-/// A tensor's values, row by row.
-#[must_use]
-pub fn to_rows(tensor: Tensor<2>) -> Vec<f32> {
-    tensor.into_data().try_to_vec().expect("32-bit floats")
-}
-
-/// A tensor of one number.
-#[must_use]
-pub fn scalar(tensor: &Tensor<1>) -> f64 {
-    f64::from(tensor.clone().into_scalar::<f32>())
+    /// The critics of the costs.
+    #[must_use]
+    pub fn costs(&self) -> &[Critic] {
+        &self.critics[1..]
+    }
 }
 
 /// Networks, optimisers and running statistics.
@@ -206,7 +174,7 @@ impl Learner {
                 }
                 let out = &mut advantages[lane * steps..(lane + 1) * steps];
                 let lane_values = Lane { rewards: &rewards, done: &done, cut_off_values: &cut_off_values, values: &values };
-                generalised_advantages(lane_values, settings.gamma, settings.gae_lambda, out);
+                generalised_advantages(lane_values, settings.gamma as f32, settings.gae_lambda as f32, out);
                 for step in 0..steps {
                     returns[lane * steps + step] = out[step] + values[step];
                     old_values[lane * steps + step] = normalised[step];
@@ -248,7 +216,7 @@ impl Learner {
             let (count, continuous) = (action.sizes.len(), action.deltas);
             actions.extend_from_slice(&part.actions[row * count..(row + 1) * count]);
             deltas.extend_from_slice(&part.deltas[row * continuous..(row + 1) * continuous]);
-            logs.push(part.log_probabilities[row]);
+            logs.push(f64::from(part.log_probabilities[row]));
             policy.extend_from_slice(&part.outputs[row * width..row * width + action.parameters()]);
         }
         let state = |network: usize| -> Vec<f32> {
@@ -260,17 +228,29 @@ impl Learner {
             lanes.iter().flat_map(of).collect()
         };
         let initial_state = (0..shape.networks.len()).map(state).collect();
-        let pick = |values: &Vec<f32>| -> Vec<f32> { rows().map(|(step, lane)| values[lane * steps + step]).collect() };
-        let device = loss_device();
+        let pick = |values: &[f32]| -> Vec<f32> { rows().map(|(step, lane)| values[lane * steps + step]).collect() };
+        let critic = |index: usize| Critic {
+            loss_name: self.critic_loss_name(index),
+            advantages: pick(&prepared.advantages[index]),
+            old_values: pick(&prepared.old_values[index]),
+            targets: pick(&prepared.targets[index]),
+        };
         Minibatch {
             batch: ModelSequences { sequences, initial_state },
-            taken: Taken::new(action, &actions, &deltas, &device),
-            old_log_probability: column(logs, &device),
-            old_policy: Policy::new(action, &matrix(policy, action.parameters())),
-            advantages: prepared.advantages.iter().map(pick).collect(),
-            old_values: prepared.old_values.iter().map(|values| column(pick(values), &device)).collect(),
-            targets: prepared.targets.iter().map(|values| column(pick(values), &device)).collect(),
+            taken: Taken { actions, deltas },
+            old_log_probability: logs,
+            old_policy: Policy::new(action, &policy, action.parameters()),
+            critics: (0..self.returns.len()).map(critic).collect(),
             mean_costs: mean_costs(rollout, lanes, self.config.constraints.len()),
+        }
+    }
+
+    /// What the loss of a critic is called in reports: that of a named cost has the name in it.
+    fn critic_loss_name(&self, critic: usize) -> String {
+        match critic.checked_sub(1).map(|index| &self.config.constraints[index].term) {
+            None => "value_loss".into(),
+            Some(None) => "cost_value_loss".into(),
+            Some(Some(term)) => format!("cost_value_loss/{term}"),
         }
     }
 
@@ -289,44 +269,29 @@ impl Learner {
         }
     }
 
-    /// Output rows as heads.
-    #[must_use]
-    pub fn heads(&self, outputs: &Tensor<2>) -> Heads {
-        let policy = outputs.clone().narrow(1, 0, self.shape.action.parameters());
-        let value = |critic| outputs.clone().narrow(1, self.shape.value_column() + critic, 1).squeeze_dim(1);
-        Heads { policy: Policy::new(&self.shape.action, &policy), values: (0..=self.shape.cost_critics).map(value).collect() }
-    }
-
-    /// The gradient of a loss in the parameters of some networks, and the loss's parts. The loss must not depend on the
-    /// columns of the others.
+    /// The gradient of a loss in the parameters of some networks. The loss must not depend on the columns of the others.
     pub fn gradient(
         &mut self,
-        networks: std::ops::Range<usize>,
+        networks: Range<usize>,
         minibatch: &mut Minibatch<'_>,
-        loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
+        loss: impl FnOnce(&Heads, &Minibatch<'_>, &mut Means) -> Loss,
         means: &mut Means,
     ) -> Result<Vec<f32>, LearnError> {
         self.refresh();
-        let rows = self.networks.forward(networks.clone(), &mut minibatch.batch);
-        let outputs = matrix(rows, self.shape.outputs()).require_grad();
-        let loss = loss(&self.heads(&outputs), minibatch);
-        for (name, part) in &loss.parts {
-            means.add(name, scalar(part));
+        let outputs = self.networks.forward(networks.clone(), &mut minibatch.batch);
+        let heads = Heads::new(&self.shape, &outputs, self.shape.outputs(), minibatch);
+        let loss = loss(&heads, minibatch, means);
+        means.add("loss", loss.value);
+        if !loss.value.is_finite() {
+            return Err(diverged("loss", loss.value));
         }
-        let total = scalar(&loss.total);
-        means.add("loss", total);
-        if !total.is_finite() {
-            return Err(diverged("loss", total));
-        }
-        let gradients = loss.total.backward();
-        let rows = to_rows(outputs.grad(&gradients).expect("the loss depends on the outputs"));
         let mut gradient = std::mem::take(&mut self.gradient);
-        self.networks.backward(networks, &mut minibatch.batch, &rows, &mut gradient);
+        self.networks.backward(networks, &mut minibatch.batch, &loss.rows(), &mut gradient);
         Ok(gradient)
     }
 
     /// One step of Adam down a gradient, for some of the networks; its norm is cut down to the largest allowed.
-    pub fn step(&mut self, gradient: Vec<f32>, networks: std::ops::Range<usize>, means: &mut Means) -> Result<(), LearnError> {
+    pub fn step(&mut self, gradient: Vec<f32>, networks: Range<usize>, means: &mut Means) -> Result<(), LearnError> {
         let start = self.shape.parameter_range(networks.start).start;
         let end = self.shape.parameter_range(networks.end - 1).end;
         let norm = crate::networks::cpu::elementwise::sum_of_squares(&gradient[start..end]).sqrt();
@@ -351,7 +316,7 @@ impl Learner {
     pub fn descend(
         &mut self,
         minibatch: &mut Minibatch<'_>,
-        loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
+        loss: impl FnOnce(&Heads, &Minibatch<'_>, &mut Means) -> Loss,
         means: &mut Means,
     ) -> Result<(), LearnError> {
         self.descend_networks(0..self.shape.networks.len(), minibatch, loss, means)
@@ -360,9 +325,9 @@ impl Learner {
     /// As [`Learner::descend`] for some of the networks.
     pub fn descend_networks(
         &mut self,
-        networks: std::ops::Range<usize>,
+        networks: Range<usize>,
         minibatch: &mut Minibatch<'_>,
-        loss: impl FnOnce(&Heads, &Minibatch<'_>) -> Loss,
+        loss: impl FnOnce(&Heads, &Minibatch<'_>, &mut Means) -> Loss,
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let gradient = self.gradient(networks.clone(), minibatch, loss, means)?;
@@ -376,11 +341,17 @@ impl Learner {
     }
 
     /// Policy outputs under other parameters of the policy network.
-    pub fn policy_outputs(&mut self, minibatch: &mut Minibatch<'_>, parameters: &[f32]) -> Tensor<2> {
+    pub fn policy_outputs(&mut self, minibatch: &mut Minibatch<'_>, parameters: &[f32]) -> Vec<f32> {
         self.refresh_pixels();
         self.stale = true;
         self.networks.load_network(0, parameters);
-        matrix(self.networks.forward_network(0, &mut minibatch.batch), self.shape.action.parameters())
+        self.networks.forward_network(0, &mut minibatch.batch)
+    }
+
+    /// The policy under other parameters of its network, as heads without values.
+    pub fn policy_heads(&mut self, minibatch: &mut Minibatch<'_>, parameters: &[f32]) -> Heads {
+        let outputs = self.policy_outputs(minibatch, parameters);
+        Heads::new(&self.shape, &outputs, self.shape.action.parameters(), minibatch)
     }
 
     /// The gradient in the policy network's parameters from that of its outputs of the last

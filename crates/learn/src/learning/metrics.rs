@@ -1,14 +1,17 @@
 //! Numbers worth reporting, averaged until they are.
 
+use std::borrow::Cow;
+
 /// Means by name, in the order of first mention.
 #[derive(Clone, Debug, Default)]
 pub struct Means {
-    sums: Vec<(&'static str, f64, u64)>,
+    sums: Vec<(Cow<'static, str>, f64, u64)>,
 }
 
 impl Means {
     /// Adds a value; those that are no numbers are left out.
-    pub fn add(&mut self, name: &'static str, value: f64) {
+    pub fn add(&mut self, name: impl Into<Cow<'static, str>>, value: f64) {
+        let name = name.into();
         if !value.is_finite() {
             return;
         }
@@ -28,7 +31,7 @@ impl Means {
     }
 
     /// All means, and a fresh start.
-    pub fn take(&mut self) -> Vec<(&'static str, f64)> {
+    pub fn take(&mut self) -> Vec<(Cow<'static, str>, f64)> {
         self.sums.drain(..).map(|(name, sum, count)| (name, sum / count as f64)).collect()
     }
 }
@@ -45,7 +48,7 @@ mod tests {
         means.add("a", 3.0);
         means.add("a", f64::NAN);
         assert_eq!(means.get("a"), Some(2.0));
-        assert_eq!(means.take(), [("a", 2.0), ("b", 5.0)]);
+        assert_eq!(means.take(), [("a".into(), 2.0), ("b".into(), 5.0)]);
         assert_eq!(means.get("a"), None);
     }
 }

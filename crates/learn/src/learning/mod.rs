@@ -1,7 +1,11 @@
-//! How networks learn from a rollout: advantages, normalisers, the optimiser, and the learner that algorithms steer.
+//! How networks learn from a rollout: advantages, normalisers, losses and their gradients, the optimiser, and the learner that
+//! algorithms steer.
 
 pub mod advantage;
+pub mod dual;
 pub mod learner;
+pub mod loss;
 pub mod metrics;
 pub mod normaliser;
 pub mod optimiser;
+pub mod policy;

@@ -1,5 +1,6 @@
 //! Where networks are computed, chosen at run time.
 
+#[cfg(feature = "graphics")]
 use burn::tensor::Device;
 
 use crate::error::LearnError;
@@ -10,12 +11,14 @@ pub enum ComputeDevice {
     /// The processor, with the kernels of [`crate::networks::cpu`].
     Processor,
     /// A device of the `burn` crate.
+    #[cfg(feature = "graphics")]
     Burn(Device),
 }
 
 impl ComputeDevice {
-    /// The device of a name: `cpu`; `flex` (burn's processor backend, for comparison); with the cargo features of the
-    /// same names `vulkan`, `cuda` and `wgpu` (Metal, Direct3D or Vulkan, whatever there is), with a colon and a number for another than the first.
+    /// The device of a name: `cpu`; with the cargo features of the same names `vulkan`, `cuda` and `wgpu` (Metal, Direct3D or
+    /// Vulkan, whatever there is), with a colon and a number for another than the first; and, with any of them, `flex`
+    /// (burn's processor backend, for comparison).
     ///
     /// # Errors
     /// When the name is unknown, the program was built without the device, or this machine has none of that number.
@@ -26,33 +29,44 @@ impl ComputeDevice {
             .map_err(|_| LearnError::Config(format!("device '{name}' has no number after the colon; write {kind}:0")))?;
         match kind {
             "cpu" => Ok(ComputeDevice::Processor),
-            "flex" => Ok(ComputeDevice::Burn(Device::flex())),
-            "vulkan" | "cuda" | "wgpu" => {
-                let all = cards(kind).ok_or_else(|| {
-                    LearnError::Config(format!(
-                        "this program was built without {kind}; build it with `--features {kind}`, or use --device cpu"
-                    ))
-                })?;
-                let there = match all.len() {
-                    0 => "no such card, or no driver for one".to_string(),
-                    1 => "only number 0".to_string(),
-                    count => format!("only numbers 0 to {}", count - 1),
-                };
-                all.into_iter().nth(number).map(ComputeDevice::Burn).ok_or_else(|| {
-                    LearnError::Config(format!(
-                        "device '{name}' was not found: this machine has {there}; use another, or --device cpu"
-                    ))
-                })
-            }
+            "vulkan" | "cuda" | "wgpu" | "flex" => card(kind, name, number),
             _ => Err(LearnError::Config(format!("device '{name}' is unknown; use one of cpu, flex, vulkan, cuda, wgpu"))),
         }
     }
 }
 
+fn not_built_in(kind: &str) -> LearnError {
+    let feature = if kind == "flex" { "vulkan" } else { kind };
+    LearnError::Config(format!(
+        "this program was built without {kind}; build it with `--features {feature}`, or use --device cpu"
+    ))
+}
+
+#[cfg(not(feature = "graphics"))]
+fn card(kind: &str, _name: &str, _number: usize) -> Result<ComputeDevice, LearnError> {
+    Err(not_built_in(kind))
+}
+
+/// A card of a kind, counted from 0.
+#[cfg(feature = "graphics")]
+fn card(kind: &str, name: &str, number: usize) -> Result<ComputeDevice, LearnError> {
+    let all = cards(kind).ok_or_else(|| not_built_in(kind))?;
+    let there = match all.len() {
+        0 => "no such card, or no driver for one".to_string(),
+        1 => "only number 0".to_string(),
+        count => format!("only numbers 0 to {}", count - 1),
+    };
+    all.into_iter().nth(number).map(ComputeDevice::Burn).ok_or_else(|| {
+        LearnError::Config(format!("device '{name}' was not found: this machine has {there}; use another, or --device cpu"))
+    })
+}
+
 /// All cards of a kind on this machine, those of their own before built-in ones. `None` if this program was built without the
 /// kind.
+#[cfg(feature = "graphics")]
 fn cards(kind: &str) -> Option<Vec<Device>> {
     match kind {
+        "flex" => Some(vec![Device::flex()]),
         #[cfg(feature = "vulkan")]
         "vulkan" => {
             // Drivers that compute on the processor crash on these kernels (llvmpipe) or return other numbers (SwiftShader);
@@ -76,6 +90,7 @@ mod tests {
     #[test]
     fn the_processor_is_always_there_and_unknown_devices_are_refused() {
         assert!(matches!(ComputeDevice::named("cpu"), Ok(ComputeDevice::Processor)));
+        #[cfg(feature = "graphics")]
         assert!(matches!(ComputeDevice::named("flex"), Ok(ComputeDevice::Burn(_))));
         for bad in ["tpu", "cuda:x", ""] {
             assert!(ComputeDevice::named(bad).is_err(), "{bad}");

@@ -1,5 +1,6 @@
 //! What a policy network is: its shape, its parameters, and the two things done with it (acting and learning).
 
+#[cfg(feature = "graphics")]
 pub mod burn_network;
 pub mod cpu;
 pub mod device;

@@ -6,6 +6,7 @@ use super::network::{ActingNetwork, LearningNetwork, PixelScale, Published, Sequ
 use super::shape::{ImageShape, NetworkShape};
 use crate::config::NetworkConfig;
 use crate::error::LearnError;
+#[cfg(feature = "graphics")]
 use crate::networks::burn_network::BurnNetwork;
 use crate::networks::cpu::network::{CpuActor, CpuLearner};
 use crate::networks::device::ComputeDevice;
@@ -114,6 +115,7 @@ impl Actor {
         let network = |shape: &NetworkShape| -> Box<dyn ActingNetwork> {
             match device {
                 ComputeDevice::Processor => Box::new(CpuActor::new(shape)),
+                #[cfg(feature = "graphics")]
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
         };
@@ -170,6 +172,7 @@ impl Stack {
         let network = |shape: &NetworkShape| -> Box<dyn LearningNetwork> {
             match device {
                 ComputeDevice::Processor => Box::new(CpuLearner::new(shape, threads)),
+                #[cfg(feature = "graphics")]
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
         };

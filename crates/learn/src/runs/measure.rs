@@ -12,11 +12,8 @@ use crate::runs::session::{Beginning, MakeWorlds, Session};
 pub struct Measurement {
     /// Policy steps a second of the whole loop: worlds, inference, learning.
     pub steps_per_second: f64,
-    /// Rate of large products of 32-bit matrices on the same threads, in floating-point operations a second: the faster
-    /// of this crate's product and burn's.
+    /// Rate of large products of 32-bit matrices on the same threads, in floating-point operations a second.
     pub product_rate: f64,
-    /// Rate of burn's own product.
-    pub burn_product_rate: f64,
     /// Floating-point operations of a policy step: one inference and one training sample an epoch.
     pub flop_per_step: f64,
     /// Threads.
@@ -59,11 +56,10 @@ pub fn measure(
         session.go_on(rollout);
     }
     let threads = config.learning.threads;
-    let (mut loops, mut products, mut burn_products) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut loops, mut products) = (Vec::new(), Vec::new());
     let mut rollout = session.turn(&mut warn)?;
     for round in 0..rounds.max(1) {
         products.push(product_rate(threads));
-        burn_products.push(burn_product_rate());
         let start = Instant::now();
         let mut steps = 0;
         while steps == 0 || start.elapsed().as_secs_f64() < seconds {
@@ -77,11 +73,9 @@ pub fn measure(
     let shape = session.learner.shape();
     let sum = |of: fn(&crate::networks::NetworkShape) -> f64| shape.networks.iter().map(of).sum::<f64>();
     let epochs = config.learning.epochs as f64;
-    let burn_product_rate = median(burn_products);
     Ok(Measurement {
         steps_per_second: median(loops),
-        product_rate: median(products).max(burn_product_rate),
-        burn_product_rate,
+        product_rate: median(products),
         flop_per_step: sum(|network| network.forward_flop()) + epochs * sum(|network| network.training_flop()),
         threads,
         rounds: rounds.max(1),
@@ -114,18 +108,4 @@ fn product_rate(threads: usize) -> f64 {
         others.into_iter().map(|other| other.join().unwrap_or(0)).sum()
     });
     count as f64 * 2.0 * (SIDE as f64).powi(3) / start.elapsed().as_secs_f64()
-}
-
-/// The same for burn's product, which uses all processors by itself.
-fn burn_product_rate() -> f64 {
-    use burn::tensor::{Device, Distribution, Tensor};
-    let random = || Tensor::<2>::random([SIDE, SIDE], Distribution::Default, &Device::flex());
-    let (left, right) = (random(), random());
-    let start = Instant::now();
-    let mut count = 0;
-    while start.elapsed().as_secs_f64() < 0.3 {
-        let _ = left.clone().matmul(right.clone()).into_data();
-        count += 1;
-    }
-    f64::from(count) * 2.0 * (SIDE as f64).powi(3) / start.elapsed().as_secs_f64()
 }

@@ -34,7 +34,7 @@ pub struct Report {
     /// Multiplier of each constraint.
     pub multipliers: Vec<f64>,
     /// Losses and other numbers of the updates since the last report.
-    pub learning: Vec<(&'static str, f64)>,
+    pub learning: Vec<(std::borrow::Cow<'static, str>, f64)>,
     /// Cost terms and statistics of the latest episodes.
     pub details: Vec<(String, f64)>,
 }

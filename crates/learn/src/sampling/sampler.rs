@@ -219,7 +219,7 @@ impl Sampler {
         part.actions[rows.start * count..rows.end * count].copy_from_slice(&batch.actions);
         part.deltas[rows.start * deltas..rows.end * deltas].copy_from_slice(&batch.deltas);
         // The worlds write over all observations, so the frames change hands without being copied.
-        std::mem::swap(&mut part.frames[step * self.worlds.groups() + group], &mut batch.observations);
+        std::mem::swap(&mut part.frames[step * self.worlds.groups() + group], batch.observations.to_mut());
         self.worlds.send(group, batch).map_err(world_error)
     }
 
@@ -243,7 +243,7 @@ impl Sampler {
             part.positions[row] = batch.positions[index];
             part.done[row] = batch.terminated[index] || batch.truncated[index];
         }
-        for (index, observation) in batch.final_observations.drain(..) {
+        for (index, observation) in batch.finals() {
             let lane = lanes.start + index;
             let mut row = vec![0.0; self.shape.outputs()];
             for ((copy, state), network) in self.after_state.iter_mut().zip(&self.state).zip(&self.shape.networks) {
@@ -252,7 +252,7 @@ impl Sampler {
             }
             let seen = [Shaping::seen(self.safety[lane])];
             let extra = &seen[..self.shape.extra_inputs()];
-            self.actor.act(&observation, extra, &mut self.after_state, 0..1, &mut row);
+            self.actor.act(observation, extra, &mut self.after_state, 0..1, &mut row);
             part.cut_off.push((first_row + lane, row));
         }
         for lane in lanes {

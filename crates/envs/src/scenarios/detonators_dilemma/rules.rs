@@ -189,6 +189,7 @@ impl Rules {
         stats.push(("creatures_killed", f64::from(self.creatures)));
         stats.push(("shots_fired", f64::from(self.shots)));
         stats.push(("health", f64::from(stage::health(world).max(0))));
+        stats.push(("ammunition", f64::from(stage::ammunition(world))));
     }
 }
 

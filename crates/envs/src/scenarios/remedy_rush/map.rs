@@ -225,6 +225,14 @@ impl Town {
         let style = Style { floor_texture: "TILES6", ..style };
         self.builder.rectangle(style, corners.0, corners.1, corners.2, corners.3);
         self.builder.mark(Mark { offset: Some((0, 0)), ..wall(texture) }, &back);
+        let threshold = match facing {
+            Facing::North => [(x - 32, y), (x + 32, y)],
+            Facing::South => [(x - 32, y), (x + 32, y)],
+            Facing::East => [(x, y - 32), (x, y + 32)],
+            Facing::West => [(x, y - 32), (x, y + 32)],
+        };
+        // A recess of 8 units holds on to who slides along the wall: closed for bodies.
+        self.builder.mark(Mark { blocking: true, ..Mark::default() }, &threshold);
     }
 
     /// The two halls behind the yard and the V of fences between them.
@@ -247,8 +255,9 @@ impl Town {
         self.block("BRIKS20", -864, 788, -592, 1340);
         let b = &mut self.builder;
         b.rectangle(Style { ceiling: 128, wall: "BRIKS20", ..ALCOVE }, -624, 836, -592, 1020);
-        b.rectangle(Style { ceiling: 96, ..ALCOVE }, -704, 1068, -592, 1292);
-        b.rectangle(Style { ceiling: 96, light: 255, ceiling_texture: "TLITE6_4", ..ALCOVE }, -664, 1100, -632, 1260);
+        b.rectangle(Style { floor: 32, ceiling: 128, ..ALCOVE }, -704, 1068, -592, 1292);
+        b.rectangle(Style { floor: 32, ceiling: 128, light: 255, ceiling_texture: "TLITE6_4", ..ALCOVE }, -664, 1100, -632, 1260);
+        b.rectangle(Style { floor: 32, ceiling: 128, ..ALCOVE }, -704, 1052, -664, 1068);
         b.mark(wall("COMPUTE2"), &[(-704, 1068), (-704, 1292)]);
         self.windows(Facing::East, -624, 880, 2, "BRIKS20", "LITEYEL3");
         // Western house: the front is open; behind the counter hang the shelves.
@@ -260,11 +269,19 @@ impl Town {
             Style { wall: "COMPUTE2", floor_texture: "FLAT5", ..shelf },
             &[(-448, 372), (-448, 636), (-472, 636), (-472, 372)],
         );
-        b.rectangle(Style { light: 255, ceiling_texture: "TLITE6_5", ..ALCOVE }, -400, 400, -376, 600);
+        b.rectangle(Style { light: 255, ceiling_texture: "TLITE6_5", ..ALCOVE }, -400, 400, -376, 560);
+        // A bench along the counter, and a screen before the northern corner: who strays behind it stays for a while.
+        let bench = Style { step: "CRATE1", floor_texture: "FLAT5", tag: 0, ..ALCOVE };
+        b.polygon(Style { floor: 32, ..bench }, &[(-448, 356), (-432, 340), (-432, 540), (-448, 540)]);
+        b.rectangle(Style { floor: 16, ..bench }, -432, 352, -416, 500);
+        b.polygon(Style { floor: 32, ..bench }, &[(-416, 324), (-400, 308), (-352, 308), (-352, 324)]);
+        b.rectangle(Style { floor: 32, ..bench }, -388, 572, -352, 588);
+        self.block("SILVER3", -376, 588, -364, 652);
         // South-western house: machines under an awning.
         self.block("BIGSTON3", -624, -108, -464, 180);
         let b = &mut self.builder;
         b.rectangle(Style { ceiling: 112, ..ALCOVE }, -480, -92, -464, 140);
+        b.rectangle(GROUND, -616, -100, -504, 172);
         for south in [-72, 0, 72] {
             let cabinet = Style { floor: 64, ceiling: 96, light: 255, wall: "COMPUTE2", step: "METAL5", ..ALCOVE };
             b.rectangle(Style { tag: 0, ..cabinet }, -496, south, -480, south + 48);
@@ -288,12 +305,18 @@ impl Town {
             &[(1088, 1300), (1088, 1220), (1056, 1220), (1056, 1092), (1032, 1092), (1032, 788), (1240, 788), (1240, 1340)],
         );
         let b = &mut self.builder;
-        b.rectangle(Style { ceiling: 112, ..ALCOVE }, 1032, 828, 1144, 1044);
-        b.rectangle(Style { ceiling: 112, light: 255, ceiling_texture: "TLITE6_4", ..ALCOVE }, 1072, 860, 1104, 1012);
+        b.rectangle(Style { floor: 32, ceiling: 128, ..ALCOVE }, 1032, 828, 1144, 1044);
+        b.rectangle(Style { floor: 32, ceiling: 128, light: 255, ceiling_texture: "TLITE6_4", ..ALCOVE }, 1072, 860, 1104, 1012);
+        for step in 0..3 {
+            let (floor, south) = (24 - 8 * step, 876 - 20 * step);
+            b.rectangle(Style { floor, ceiling: 128, ..ALCOVE }, 1032, south - 20, 1072, south);
+        }
         b.mark(wall("SILVER3"), &[(1144, 828), (1144, 1044)]);
         self.windows(Facing::West, 1056, 1156, 1, "BRIKS20", "LITEYEL3");
         // Eastern house: closed, with a row of lit windows and two doors.
         self.block("MODWALL4", 776, 268, 944, 692);
+        // Behind the fronts there are yards that nobody enters: supplies that fall there are lost, as many as in the published town.
+        self.builder.rectangle(GROUND, 792, 284, 936, 676);
         self.windows(Facing::West, 776, 320, 1, "MODWALL4", "CONS1_5");
         self.door(Facing::West, 776, 416, "MODWALL4", "CITY06");
         self.windows(Facing::West, 776, 512, 1, "MODWALL4", "CONS1_1");

@@ -1,7 +1,7 @@
 //! The network on the processor: fused kernels that reach most of what its multiply-add units can do.
 //!
-//! [`crate::networks::burn_network`] is the portable twin for every device of the `burn` crate; tests hold the two against each
-//! other, outputs and gradients.
+//! Tests hold outputs and gradients against a plain network in 64 bits, written down from its definition; and, where graphics
+//! cards are built in, against their twin in the `burn` crate.
 
 pub mod convolution;
 pub mod elementwise;

@@ -1,0 +1,114 @@
+//! What is wrong with what a batch of worlds is given, told before any world moves.
+
+use super::job::Chosen;
+use super::{LaneState, Restart, VecEnv};
+use crate::{Batch, EnvError, Environment};
+
+/// Whether a lane's environment fits into a batch with the first one's.
+pub(super) fn alike(first: &dyn Environment, env: &dyn Environment, lane: usize) -> Result<(), EnvError> {
+    let unlike = |what| Err(EnvError::Unlike { lane, what });
+    if env.action_space().groups.is_empty() && env.action_space().deltas.is_empty() {
+        unlike("action space (which may not be empty)")
+    } else if env.action_space() != first.action_space() {
+        unlike("action space")
+    } else if env.observation_shape() != first.observation_shape() {
+        unlike("observation shape")
+    } else if env.cost_terms() != first.cost_terms() {
+        unlike("cost terms")
+    } else if env.stat_names() != first.stat_names() {
+        unlike("statistics")
+    } else {
+        Ok(())
+    }
+}
+
+impl VecEnv {
+    /// What is wrong with a group's batch (`group` = [`VecEnv::groups`] for all lanes), if anything.
+    pub fn check(&self, group: usize, batch: &Batch) -> Result<(), EnvError> {
+        self.check_lengths(self.group_lanes(group).len(), batch)
+    }
+
+    pub(super) fn check_lengths(&self, lanes: usize, batch: &Batch) -> Result<(), EnvError> {
+        let pixels: usize = self.observation_shape.iter().product();
+        let statistics = if self.options.statistics { self.statistics.len() } else { 0 };
+        for (field, given, needed) in [
+            ("actions", batch.actions.len(), lanes * self.space.groups.len()),
+            ("deltas", batch.deltas.len(), lanes * self.space.deltas.len()),
+            ("observations", batch.observations.len(), lanes * pixels),
+            ("rewards", batch.rewards.len(), lanes),
+            ("costs", batch.costs.len(), lanes),
+            ("cost_terms", batch.cost_terms.len(), lanes * self.cost_terms.len()),
+            ("statistics", batch.statistics.len(), lanes * statistics),
+            ("positions", batch.positions.len(), lanes),
+            ("terminated", batch.terminated.len(), lanes),
+            ("truncated", batch.truncated.len(), lanes),
+        ] {
+            if given != needed {
+                return Err(EnvError::BatchSize { field, given, needed });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether each lane's action lies in the action space; a wrong one is told with its lane of the whole.
+    pub(super) fn check_actions(&self, batch: &Batch, lanes: &Chosen) -> Result<(), EnvError> {
+        let (groups, continuous) = (self.space.groups.len(), self.space.deltas.len());
+        for index in 0..lanes.count() {
+            let actions = batch.actions.get(index * groups..(index + 1) * groups).unwrap_or_default();
+            let deltas = batch.deltas.get(index * continuous..(index + 1) * continuous).unwrap_or_default();
+            self.space.check(lanes.lane(index), actions, deltas)?;
+        }
+        Ok(())
+    }
+
+    /// Whether lanes exist and none is named twice.
+    pub(super) fn check_lanes(&self, lanes: &[usize]) -> Result<(), EnvError> {
+        let mut seen = vec![false; self.options.lanes];
+        for &lane in lanes {
+            let refused = |allowed| Err(EnvError::Option { option: "a lane to step", given: lane.to_string(), allowed });
+            match seen.get_mut(lane) {
+                None => return refused(format!("less than {}, the number of lanes", self.options.lanes)),
+                Some(true) => return refused("named once".to_string()),
+                Some(seen) => *seen = true,
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_restarts(&self, how: &[Restart]) -> Result<(), EnvError> {
+        self.one_of_each_lane("the number of lanes to restart", how.len())
+    }
+
+    pub(super) fn check_states(&self, states: &[LaneState]) -> Result<(), EnvError> {
+        self.one_of_each_lane("the number of saved lanes", states.len())?;
+        states.iter().enumerate().try_for_each(|(lane, state)| state.check(lane, &self.space).map(|_| ()))
+    }
+
+    fn one_of_each_lane(&self, option: &'static str, given: usize) -> Result<(), EnvError> {
+        if given == self.options.lanes {
+            return Ok(());
+        }
+        let allowed = format!("{}, one of each lane", self.options.lanes);
+        Err(EnvError::Option { option, given: given.to_string(), allowed })
+    }
+
+    pub(super) fn check_group(&self, group: usize) -> Result<(), EnvError> {
+        if group < self.options.groups {
+            return Ok(());
+        }
+        let allowed = format!("less than {}, the number of groups", self.options.groups);
+        Err(EnvError::Option { option: "the group", given: group.to_string(), allowed })
+    }
+
+    /// Whether a slot's lanes are free: all lanes together are busy while any group is.
+    pub(super) fn check_turn(&self, slot: usize) -> Result<(), EnvError> {
+        if let Some(message) = &self.failed {
+            return Err(EnvError::Panicked { message: message.clone() });
+        }
+        let whole = self.options.groups;
+        if self.crew.under_way(slot) || (slot == whole && (0..whole).any(|group| self.crew.under_way(group))) {
+            return Err(EnvError::Turn { why: "a group of lanes is under way; receive it first".to_string() });
+        }
+        Ok(())
+    }
+}

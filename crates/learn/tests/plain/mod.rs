@@ -1,0 +1,89 @@
+//! A network by its definition: loops in 64 bits over the table of parameters, nothing shared with what it is held against.
+
+use hasard_learn::networks::{NetworkShape, PixelScale, Sequences};
+
+fn elu(values: &mut [f64]) {
+    values.iter_mut().filter(|value| **value < 0.0).for_each(|value| *value = value.exp() - 1.0);
+}
+
+fn sigmoid(value: f64) -> f64 {
+    1.0 / (1.0 + (-value).exp())
+}
+
+/// `inputs * weights + biases`, the weights row by row.
+fn dense(inputs: &[f64], weights: &[f64], biases: &[f64]) -> Vec<f64> {
+    let mut outputs = biases.to_vec();
+    for (input, row) in inputs.iter().zip(weights.chunks_exact(biases.len())) {
+        outputs.iter_mut().zip(row).for_each(|(output, weight)| *output += input * weight);
+    }
+    outputs
+}
+
+/// Outputs of all rows, one after the other.
+pub fn forward(shape: &NetworkShape, parameters: &[f64], pixels: &PixelScale, batch: &Sequences<'_>) -> Vec<f64> {
+    let table = shape.parameters();
+    let mut blocks = table.iter().map(|parameter| &parameters[parameter.range()]);
+    let mut next = || blocks.next().expect("a block of each layer");
+    let convolutions: Vec<_> = shape.convolutions.iter().map(|_| (next(), next())).collect();
+    let layers: Vec<_> = shape.dense.iter().map(|_| (next(), next())).collect();
+    let gru = shape.recurrent.map(|units| (units, [next(), next(), next(), next()]));
+    let heads: Vec<_> = shape.heads.iter().map(|_| (next(), next())).collect();
+
+    let mut states: Vec<Vec<f64>> = batch
+        .initial_state
+        .iter()
+        .map(|&value| f64::from(value))
+        .collect::<Vec<_>>()
+        .chunks(shape.state_size().max(1))
+        .map(<[f64]>::to_vec)
+        .collect();
+    let mut outputs = Vec::new();
+    for row in 0..batch.rows() {
+        let mut values: Vec<f64> = batch.observations[row]
+            .iter()
+            .zip(pixels.scale.iter().zip(&pixels.shift))
+            .map(|(&pixel, (&scale, &shift))| (f64::from(pixel) * f64::from(scale) + f64::from(shift)).clamp(-5.0, 5.0))
+            .collect();
+        let mut image = shape.image;
+        for (layer, (weights, biases)) in shape.convolutions.iter().zip(&convolutions) {
+            let after = image.after(layer).expect("the kernel fits");
+            let mut next = Vec::with_capacity(after.size());
+            for y in 0..after.height {
+                for x in 0..after.width {
+                    let mut patch = Vec::new();
+                    for kernel_row in 0..layer.kernel {
+                        let first = ((y * layer.stride + kernel_row) * image.width + x * layer.stride) * image.channels;
+                        patch.extend_from_slice(&values[first..first + layer.kernel * image.channels]);
+                    }
+                    next.extend(dense(&patch, weights, biases));
+                }
+            }
+            elu(&mut next);
+            (values, image) = (next, after);
+        }
+        for (weights, biases) in &layers {
+            values = dense(&values, weights, biases);
+            elu(&mut values);
+        }
+        values.extend(batch.extra[row * shape.extra_inputs..][..shape.extra_inputs].iter().map(|&value| f64::from(value)));
+        if let Some((units, [input, input_bias, hidden, hidden_bias])) = gru {
+            let state = &mut states[row % batch.lanes];
+            if batch.reset[row] {
+                state.fill(0.0);
+            }
+            // Gates in the order reset, update, new.
+            let (x, s) = (dense(&values, input, input_bias), dense(state, hidden, hidden_bias));
+            for unit in 0..units {
+                let reset = sigmoid(x[unit] + s[unit]);
+                let update = sigmoid(x[units + unit] + s[units + unit]);
+                let new = (x[2 * units + unit] + reset * s[2 * units + unit]).tanh();
+                state[unit] = (1.0 - update) * new + update * state[unit];
+            }
+            values.clone_from(state);
+        }
+        for (weights, biases) in &heads {
+            outputs.extend(dense(&values, weights, biases));
+        }
+    }
+    outputs
+}
