@@ -39,8 +39,9 @@ impl Wide {
     }
 }
 
+#[inline]
 #[target_feature(enable = "avx512f")]
-fn load(bytes: &[u8; LANES]) -> __m512i {
+pub(super) fn load(bytes: &[u8; LANES]) -> __m512i {
     // SAFETY: 64 bytes are readable behind a reference to 64 bytes; the load needs no alignment.
     unsafe { _mm512_loadu_si512(bytes.as_ptr().cast()) }
 }
@@ -52,14 +53,16 @@ fn store(bytes: &mut [u8; LANES], vector: __m512i) {
 }
 
 /// A table of 256 bytes in registers.
+#[inline]
 #[target_feature(enable = "avx512f")]
-fn load_table(table: &[u8; 256]) -> [__m512i; 4] {
+pub(super) fn load_table(table: &[u8; 256]) -> [__m512i; 4] {
     let (blocks, _) = table.as_chunks::<LANES>();
     [load(&blocks[0]), load(&blocks[1]), load(&blocks[2]), load(&blocks[3])]
 }
 
+#[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-fn look_up_block(table: [__m512i; 4], indices: __m512i) -> __m512i {
+pub(super) fn look_up_block(table: [__m512i; 4], indices: __m512i) -> __m512i {
     // Each permutation looks at the lower 7 bits and covers one half of the table; the highest bit chooses between them.
     let low = _mm512_permutex2var_epi8(table[0], indices, table[1]);
     let high = _mm512_permutex2var_epi8(table[2], indices, table[3]);

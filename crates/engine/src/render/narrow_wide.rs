@@ -59,13 +59,13 @@ impl<const AVX512: bool> Rows for Wide<AVX512> {
     }
 
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
+    fn at_least(self, other: Self) -> Self {
         // SAFETY: the instructions are there, as in all that follow.
         Wide(unsafe { _mm256_max_epi16(self.0, other.0) })
     }
 
     #[inline(always)]
-    fn min(self, other: Self) -> Self {
+    fn at_most(self, other: Self) -> Self {
         // SAFETY: as above.
         Wide(unsafe { _mm256_min_epi16(self.0, other.0) })
     }

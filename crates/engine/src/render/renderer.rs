@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::convert::Colours;
-use super::frame::{Frame, class};
+use super::frame::{Columns, Frame, class};
 use super::label::{Label, Labels};
 use super::look::Looks;
 use super::masked::Masked;
@@ -80,6 +80,7 @@ impl Renderer {
             depth: vec![0; pixels],
             class: vec![class::STATUS_BAR; pixels],
             depth_cap: 255,
+            columns: Columns::new(width, view.view_rows),
         };
         Renderer {
             frame,
@@ -137,7 +138,7 @@ impl Renderer {
     fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, world: &World, player: usize) {
         let camera = Camera::of_player(world, player, &self.view);
         self.animate(world.tic);
-        self.frame.clear::<DEPTH, CLASS>(self.view.view_rows, 0);
+        self.frame.clear::<DEPTH, CLASS>(self.view.view_rows);
         self.openings.reset(self.view.width(), self.view.view_rows);
         self.planes.reset(self.view.width());
         self.silhouettes.reset();
@@ -159,6 +160,7 @@ impl Renderer {
             simd: self.simd,
         };
         walk.run::<DEPTH>();
+        self.frame.end_walls::<DEPTH>(self.simd, self.view.view_rows);
         self.draw_planes::<DEPTH, CLASS>(&camera);
         self.draw_masked::<DEPTH, CLASS>(&camera, world, player);
         self.draw_overlay::<DEPTH, CLASS>(&camera, world, player);

@@ -241,7 +241,7 @@ impl Walk<'_> {
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };
         let (tops, bottoms) = (&self.scratch.upper[range.clone()], &self.scratch.lower[range]);
-        shader.draw::<DEPTH>(self.frame, seen.first, tops, bottoms);
+        shader.draw::<DEPTH>(self.simd, self.frame, seen.first, tops, bottoms);
     }
 
     fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {

@@ -4,6 +4,8 @@
 //! grid. Usually the two are the same. At 128x72 the base is 160x120, of which every 1.25th column and 5/3rd row is
 //! drawn, so that the small frame equals the nearest-neighbour reduction of the large one by construction.
 
+use super::column::ROW_GROUP;
+use super::frame::column_stride;
 use super::narrow::padded;
 use super::{FrameSize, SizeError};
 use crate::math::{Angle, Fixed};
@@ -34,7 +36,7 @@ pub struct View {
     pub(super) columns: Box<[u32]>,
     /// What the base column rises by over [`CHUNK`] frame columns.
     pub(super) chunk_stride: u32,
-    /// Base row of each frame row above the status bar.
+    /// Base row of each frame row above the status bar, then zeros as far as columns are drawn.
     pub(super) rows: Box<[u32]>,
     /// For each base column 0..=width, the first frame column at or right of it.
     pub(super) first_column: Box<[u16]>,
@@ -79,9 +81,11 @@ impl View {
             (0..padded(usize::from(size.width)) as u32).map(|x| x * width / u32::from(size.width)).collect();
         let all_rows: Vec<u32> = (0..u32::from(size.height)).map(|y| y * height / u32::from(size.height)).collect();
         let view_rows = all_rows.partition_point(|&row| row < base_view_rows);
-        let rows: Box<[u32]> = all_rows[..view_rows].into();
+        let mut rows = all_rows[..view_rows].to_vec();
         let first_column = (0..=width).map(|c| columns.partition_point(|&column| column < c) as u16).collect();
         let first_row = (0..=base_view_rows).map(|r| rows.partition_point(|&row| row < r) as i16).collect();
+
+        rows.resize(column_stride(view_rows) + ROW_GROUP, 0);
 
         let focal_y = i64::from(width) * 6 * 65536 / 10;
         let steepest = Angle::from_turn_65536(PITCH_LIMIT_DEGREES * 65536 / 360).tan();
@@ -112,7 +116,7 @@ impl View {
             view_rows,
             chunk_stride: columns[CHUNK],
             columns,
-            rows,
+            rows: rows.into(),
             first_column,
             first_row,
             row_scale: RowScale::new(u32::from(size.height), height, base_view_rows),

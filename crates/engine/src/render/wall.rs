@@ -2,10 +2,12 @@
 
 use super::View;
 use super::camera::Camera;
+use super::column::Column;
 use super::frame::Frame;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::WallPicture;
 use super::scene::{Face, SceneSeg};
+use crate::simd::Simd;
 
 /// Fractional bits of screen rows.
 pub(super) const ROW_BITS: u32 = 24;
@@ -130,8 +132,8 @@ pub(super) struct WallShader<'a> {
 }
 
 impl WallShader<'_> {
-    /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on.
-    pub fn draw<const DEPTH: bool>(&self, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
+    /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on, into the frame's columns.
+    pub fn draw<const DEPTH: bool>(&self, simd: Simd, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
         let picture = self.picture;
         let start = (self.hung_from * picture.inverse_height) >> 16;
         for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate() {
@@ -150,48 +152,12 @@ impl WallShader<'_> {
             let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
             let at = (start + (step >> 1) - step.wrapping_mul(self.camera.horizon)) as u32;
             let column = Column { texels, table, at, step: step as u32 };
-            let rows = &self.view.rows[top..bottom];
-            let lines = top * frame.width..bottom * frame.width;
-            let pixels = frame.colour[lines.clone()].chunks_exact_mut(frame.width).map(|line| &mut line[x]);
-            match picture.height {
-                128 => column.draw::<7>(pixels.zip(rows)),
-                64 => column.draw::<6>(pixels.zip(rows)),
-                _ => column.draw_any_height(pixels.zip(rows)),
-            }
+            column.draw(simd, frame.columns.colour_of(x), &self.view.rows, top, bottom);
             if DEPTH {
                 let depth = frame.capped_depth(distance);
-                frame.depth[lines].chunks_exact_mut(frame.width).for_each(|line| line[x] = depth);
+                frame.columns.depth_of(x)[top..bottom].fill(depth);
             }
             // The class of a wall is what the frame was cleared to.
-        }
-    }
-}
-
-/// A column of a wall on its way to the screen.
-struct Column<'a> {
-    texels: &'a [u8],
-    table: &'a [u8; 256],
-    /// Position in the texture at base row 0, as a fraction of its height.
-    at: u32,
-    /// Its change a base row.
-    step: u32,
-}
-
-impl Column<'_> {
-    /// For textures `2^BITS` texels high: fills pixels, each given with its base row.
-    #[inline(always)]
-    fn draw<'p, const BITS: u32>(&self, pixels: impl Iterator<Item = (&'p mut u8, &'p u32)>) {
-        let texels = &self.texels[..1 << BITS];
-        for (pixel, &row) in pixels {
-            let texel = self.at.wrapping_add(self.step.wrapping_mul(row)) >> (32 - BITS);
-            *pixel = self.table[usize::from(texels[texel as usize])];
-        }
-    }
-
-    fn draw_any_height<'p>(&self, pixels: impl Iterator<Item = (&'p mut u8, &'p u32)>) {
-        for (pixel, &row) in pixels {
-            let texel = (u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64) >> 32;
-            *pixel = self.table[usize::from(self.texels[texel as usize])];
         }
     }
 }
