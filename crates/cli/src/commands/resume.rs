@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
-const DECIDES: [(&str, &[&str]); 23] = [
+const DECIDES: [(&str, &[&str]); 24] = [
     ("frames", &["/frames"]),
     ("eval_every", &["/evaluation/every"]),
     ("algo", &["/algorithm"]),
@@ -32,6 +32,7 @@ const DECIDES: [(&str, &[&str]); 23] = [
     ("frame_skip", &["/env/frame_skip"]),
     ("size", &["/env/size"]),
     ("iwad", &["/env/iwad"]),
+    ("maps", &["/env/maps"]),
     ("observation", &["/env/observation"]),
     ("frame_stack", &["/env/frame_stack"]),
     ("published_depth", &["/env/published_depth"]),
