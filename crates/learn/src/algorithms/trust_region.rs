@@ -183,6 +183,7 @@ pub fn note(learner: &mut Learner, minibatch: &mut Minibatch<'_>, share: f64, me
 mod tests {
     use super::*;
     use crate::config::{AlgorithmKind, EnvConfig, Preset};
+    use crate::networks::cpu::simd::Kernels;
     use crate::networks::device::ComputeDevice;
     use crate::networks::distribution::ActionShape;
     use crate::networks::{ImageShape, ModelShape};
@@ -199,7 +200,7 @@ mod tests {
         let image = ImageShape { height: 2, width: 3, channels: 1 };
         let action = ActionShape { sizes: vec![3, 2], deltas: 1 };
         let shape = ModelShape::new(image, action, 0, 0, &config.network).unwrap();
-        let learner = Learner::new(&config, &shape, &ComputeDevice::Processor);
+        let learner = Learner::new(&config, &shape, &ComputeDevice::Processor(Kernels::PORTABLE));
         let mut stream = Stream::new(3, Purpose::Evaluation, 0, 0);
         let mut part = Part { initial_state: shape.zero_state(2), ..Part::default() };
         part.prepare(&shape, 3, 2, 1, 1);

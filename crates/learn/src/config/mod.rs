@@ -118,7 +118,8 @@ impl TrainConfig {
         if sampling.world_threads > 256 {
             return refuse("the number of world threads", &sampling.world_threads, "0 to 256");
         }
-        if !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
+        // Alone, samplers share out any number of worlds; groups are all of one size.
+        if sampling.groups > 1 && !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
             let parts = sampling.samplers * sampling.groups;
             return refuse("the number of worlds", &sampling.lanes, &format!("a multiple of samplers times groups ({parts})"));
         }
