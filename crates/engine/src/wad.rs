@@ -2,7 +2,6 @@
 
 use crate::assets::STAND_INS;
 use crate::map::{MapSource, TextureName, udmf};
-use std::collections::BTreeSet;
 use std::fmt;
 
 /// Bytes of the header and of a directory entry.
@@ -182,9 +181,7 @@ pub fn write_map(name: &str, map: &MapSource) -> Vec<u8> {
 
 /// The `TEXTURES` lump for the names that the map uses.
 fn texture_definitions(map: &MapSource) -> String {
-    let walls = map.sides.iter().flat_map(|side| [side.top, side.middle, side.bottom]);
-    let flats = map.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
-    let used: BTreeSet<TextureName> = walls.chain(flats).collect();
+    let used = map.textures();
     let needed = STAND_INS.iter().filter(|(name, ..)| used.contains(&TextureName::new(name)));
     let define = |(name, stand_in, (width, height)): &(&str, &str, (u16, u16))| {
         format!("Texture {name}, {width}, {height}\n{{\n\tPatch {stand_in}, 0, 0\n}}\n")

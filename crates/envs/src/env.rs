@@ -22,6 +22,8 @@ pub(crate) struct Blueprint {
     /// Completed tics at the first observation, and at the time-out.
     start_tic: u32,
     end_tic: u32,
+    /// What the map's file holds that is not played or drawn as it says.
+    left_out: Vec<String>,
     /// The world before its first tic.
     template: Game,
     scene: Arc<Scene>,
@@ -36,10 +38,17 @@ impl Blueprint {
         let id: EnvId = id.parse()?;
         options.check()?;
         let (built_in, textures) = scenarios::map_source(id, options.rules, options.hard);
-        let source = options.map.as_deref().unwrap_or(&built_in);
-        let map = Map::build(source, &id.to_string(), textures).map_err(|error| EnvError::Map { why: error.to_string() })?;
+        let file = match (&options.map, &options.maps) {
+            (None, Some(maps)) => Some(maps.level(id, options.rules, options.hard)?),
+            _ => None,
+        };
+        let given = options.map.as_deref().or(file.as_ref().map(|file| &file.source));
+        let name = file.as_ref().map_or_else(|| id.to_string(), |file| file.name.clone());
+        let map = Map::build(given.unwrap_or(&built_in), &name, textures)
+            .map_err(|error| EnvError::Map { why: format!("map {name}: {error}") })?;
         let rules = Rules::new(id, options.rules, options.hard, &map)?;
-        let scene = Scene::new(&map, options.assets.clone().unwrap_or_else(Assets::embedded));
+        let own_assets = file.as_ref().and_then(|file| file.assets.clone());
+        let scene = Scene::new(&map, own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded));
         let world = World::new(Arc::new(map), 0);
         if world.players.is_empty() {
             return Err(EnvError::Map { why: format!("the map of {id} has no player start; add a thing of type 1") });
@@ -57,6 +66,7 @@ impl Blueprint {
             start_tic,
             end_tic,
             template: Game::new(world, rules),
+            left_out: file.map(|file| file.left_out).unwrap_or_default(),
             scene: Arc::new(scene),
             view: Arc::new(view(options.size)?),
         })
@@ -152,6 +162,13 @@ impl Env {
     #[must_use]
     pub fn action_space(&self) -> &ActionSpace {
         &self.blueprint.space
+    }
+
+    /// What the files of `EnvOptions::maps` hold that is not played or drawn as they say, in one line; none if all is.
+    #[must_use]
+    pub fn left_out(&self) -> Option<String> {
+        let parts = &self.blueprint.left_out;
+        (!parts.is_empty()).then(|| format!("map of {}: left out: {}", self.id(), parts.join(", ")))
     }
 
     /// The named parts of the cost.

@@ -41,6 +41,7 @@ mod environment;
 mod error;
 mod eye;
 mod game;
+pub mod maps;
 mod options;
 mod policy;
 mod registry;

@@ -61,10 +61,11 @@ pub struct EnvOptions {
     pub published_depth: bool,
     /// Segmented frames have the published colours, some of which several classes share.
     pub published_colours: bool,
-    /// A map to play in instead of the built-in one, such as a user's copy of the original: it needs a player start and the
-    /// sector tags that the scenario's rules change.
+    /// Maps to play in instead of the built-in ones, from files: the published ones, or a user's own.
+    pub maps: Option<std::sync::Arc<crate::maps::Maps>>,
+    /// One map to play in, before any other: it needs a player start and the sector tags that the scenario's rules change.
     pub map: Option<std::sync::Arc<hasard_engine::map::MapSource>>,
-    /// Pictures to draw with; the embedded set if `None`.
+    /// Pictures to draw with; the embedded set if `None`. Maps that come with an IWAD are drawn with theirs.
     pub assets: Option<std::sync::Arc<hasard_engine::assets::Assets>>,
 }
 
@@ -82,6 +83,7 @@ impl Default for EnvOptions {
             frame_stack: 1,
             published_depth: false,
             published_colours: false,
+            maps: None,
             map: None,
             assets: None,
         }

@@ -6,7 +6,9 @@ use crate::{MediaError, Picture};
 use std::path::Path;
 
 /// Writes frames as MP4 or GIF.
-pub enum AnimationWriter {
+pub struct AnimationWriter(Format);
+
+enum Format {
     /// H.264 in MP4: small, plays nearly everywhere.
     Video(Box<VideoWriter>),
     /// GIF and the seconds of a frame: exact colours where they are few, shown where no video is; many times larger.
@@ -26,10 +28,12 @@ impl AnimationWriter {
         frames_per_second: (u32, u32),
     ) -> Result<AnimationWriter, MediaError> {
         match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("mp4") => Ok(AnimationWriter::Video(Box::new(VideoWriter::create(path, width, height, frames_per_second)?))),
+            Some("mp4") => {
+                Ok(AnimationWriter(Format::Video(Box::new(VideoWriter::create(path, width, height, frames_per_second)?))))
+            }
             Some("gif") if frames_per_second.0 > 0 => {
                 let seconds = f64::from(frames_per_second.1) / f64::from(frames_per_second.0);
-                Ok(AnimationWriter::Gif(Box::new(GifWriter::create(path, width, height)?), seconds))
+                Ok(AnimationWriter(Format::Gif(Box::new(GifWriter::create(path, width, height)?), seconds)))
             }
             _ => Err(MediaError::format(path, "has a name that ends neither in .mp4 nor in .gif")),
         }
@@ -40,9 +44,9 @@ impl AnimationWriter {
     /// # Errors
     /// When its size differs from the first's or the file cannot be written.
     pub fn push(&mut self, picture: &Picture) -> Result<(), MediaError> {
-        match self {
-            AnimationWriter::Video(writer) => writer.push(picture),
-            AnimationWriter::Gif(writer, seconds) => writer.push(picture, *seconds),
+        match &mut self.0 {
+            Format::Video(writer) => writer.push(picture),
+            Format::Gif(writer, seconds) => writer.push(picture, *seconds),
         }
     }
 
@@ -51,9 +55,9 @@ impl AnimationWriter {
     /// # Errors
     /// When there was no frame or the file cannot be written.
     pub fn finish(self) -> Result<(), MediaError> {
-        match self {
-            AnimationWriter::Video(writer) => writer.finish(),
-            AnimationWriter::Gif(writer, _) => writer.finish(),
+        match self.0 {
+            Format::Video(writer) => writer.finish(),
+            Format::Gif(writer, _) => writer.finish(),
         }
     }
 }

@@ -5,7 +5,7 @@
 //! | [`Picture`] | red, green, blue pixels, and drawing on them |
 //! | [`png`] | PNG files, written and read |
 //! | [`gif`] | animated GIF |
-//! | [`video`] | MP4 |
+//! | `video` | MP4 |
 //! | [`AnimationWriter`] | either, by the name of the file |
 //! | [`compose`] | several views of one moment side by side, with captions |
 //! | [`text`] | captions |
@@ -32,7 +32,7 @@ mod picture;
 pub mod png;
 mod quantise;
 pub mod text;
-pub mod video;
+mod video;
 
 pub use animation::AnimationWriter;
 pub use error::MediaError;

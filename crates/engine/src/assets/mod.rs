@@ -1,4 +1,4 @@
-//! Pictures behind one interface: the embedded set that this project draws itself, or an IWAD.
+//! Pictures behind one interface: the embedded set that this project draws itself, or an IWAD with files laid over it.
 //!
 //! Everything is paletted (one byte a pixel); the renderer maps bytes through a light table, then the palette.
 
@@ -59,6 +59,10 @@ pub struct Assets {
     pub sprites: Vec<Sprite>,
     /// Status bar, font, face and sky pictures by lump name (`STBAR`, `STTNUM0`, `STFST00`, `SKY1`, ...).
     pub graphics: std::collections::BTreeMap<crate::map::TextureName, u32>,
+    /// The picture of the sky, where the files name one.
+    pub sky: Option<crate::map::TextureName>,
+    /// What the files hold and wanted textures ask for, but is not drawn as they say; a phrase each.
+    pub left_out: std::collections::BTreeSet<String>,
 }
 
 impl Assets {
@@ -85,7 +89,7 @@ pub struct TextureEntry {
 }
 
 /// Four-letter sprite names; an actor's `sprite` is an index into this list.
-pub const SPRITE_NAMES: [&str; 65] = [
+pub const SPRITE_NAMES: [&str; 72] = [
     "BON1", "STIM", "MEDI", "BON2", "ROCK", "SHEL", "CELL", "CLIP", "PVIS", "PINS", "PMAP", "BPAK", "SUIT", "YKEY",
     "BSKU", // items
     "PIST", "SHOT", "SGN2", "MGUN", "LAUN", "PLAS", "BFUG", // weapons to pick up
@@ -93,6 +97,7 @@ pub const SPRITE_NAMES: [&str; 65] = [
     "BAR1", "BEXP", "MISL", "PLSS", "PLSE", "BFS1", "BFE1", "PUFF", "BLUD", // effects
     "TLMP", "TLP2", "COL4", "COL2", "COL5", "ELEC", "TRE1", "SMIT", "TRE2", "POL5", "PLAY", "BRS1", "COL1", // decor, player
     "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", "SHT2", "PLSF", "BFGF", // view weapons
+    "CAND", "SMBT", "SMGT", "SMRT", "POB1", "FTOP", "FDEB", // decor of the published maps
 ];
 
 /// The index of a sprite name; `const`, so that the state tables resolve their names while compiling.

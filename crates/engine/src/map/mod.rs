@@ -11,6 +11,7 @@ mod built;
 mod error;
 #[cfg(test)]
 mod hostile_tests;
+mod left_out;
 mod source;
 mod tile_grid;
 pub mod udmf;

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 /// The name of the ceiling texture that is the sky.
 const SKY_FLAT: TextureName = TextureName::new("F_SKY1");
-/// Names of sky pictures, the first that the map or the set has is taken.
-const SKY_NAMES: [&str; 2] = ["RSKY1", "SKY1"];
+/// Names of sky pictures, where the pictures do not name one themselves: the first that they have is taken.
+const SKY_NAMES: [TextureName; 2] = [TextureName::new("SKY1"), TextureName::new("RSKY1")];
 /// The sector of the other side of a one-sided line.
 pub(super) const NO_SECTOR: u32 = u32::MAX;
 
@@ -96,10 +96,9 @@ impl Scene {
             textures.add(&assets, assets.texture(name), missing);
         }
         let sky = textures.walls.len();
-        let sky_entry = SKY_NAMES.iter().find_map(|name| {
-            let name = TextureName::new(name);
-            let graphic = assets.graphics.get(&name).map(|&first| TextureEntry { first, frames: 1, tics: 1 });
-            assets.textures.get(&name).copied().or(graphic)
+        let sky_entry = assets.sky.iter().chain(&SKY_NAMES).find_map(|name| {
+            let graphic = assets.graphics.get(name).map(|&first| TextureEntry { first, frames: 1, tics: 1 });
+            assets.textures.get(name).copied().or(graphic)
         });
         let no_entry = TextureEntry { first: u32::MAX, frames: 1, tics: 1 };
         textures.add(&assets, sky_entry.unwrap_or(no_entry), missing);

@@ -66,6 +66,17 @@ pub enum ActorKind {
     BrainStem,
     // Invisible.
     PatrolPoint,
+    // Decor of the published maps that nothing else knows.
+    DeadMarine,
+    DeadZombieMan,
+    DeadShotgunGuy,
+    Candlestick,
+    ShortBlueTorch,
+    ShortGreenTorch,
+    ShortRedTorch,
+    ColonGibs,
+    BurningTop,
+    BurningDebris,
 }
 
 /// Names an actor: its slot and the slot's generation, so that the name of a removed actor never means another.

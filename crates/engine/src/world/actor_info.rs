@@ -209,6 +209,16 @@ const INFO: [ActorInfo; ActorKind::COUNT] = [
     remains(K::SmallBloodPool, "SmallBloodPool", 80),
     remains(K::BrainStem, "BrainStem", 81),
     ActorInfo { editor_number: 9024, ..row(K::PatrolPoint, "PatrolPoint", 8, 8, GHOST) },
+    remains(K::DeadMarine, "DeadMarine", 15),
+    remains(K::DeadZombieMan, "DeadZombieMan", 18),
+    remains(K::DeadShotgunGuy, "DeadShotgunGuy", 19),
+    remains(K::Candlestick, "Candlestick", 34),
+    decor(K::ShortBlueTorch, "ShortBlueTorch", 55, 16, 37),
+    decor(K::ShortGreenTorch, "ShortGreenTorch", 56, 16, 37),
+    decor(K::ShortRedTorch, "ShortRedTorch", 57, 16, 37),
+    remains(K::ColonGibs, "ColonGibs", 79),
+    remains(K::BurningTop, "burning_top", 27001),
+    remains(K::BurningDebris, "burning_debris", 27002),
 ];
 
 /// The kinds by number, where a constant is needed.
@@ -224,7 +234,7 @@ pub(super) const fn kinds() -> [ActorKind; ActorKind::COUNT] {
 
 impl ActorKind {
     /// Number of kinds.
-    pub const COUNT: usize = ActorKind::PatrolPoint as usize + 1;
+    pub const COUNT: usize = ActorKind::BurningDebris as usize + 1;
 
     /// The fixed properties of the kind.
     #[must_use]

@@ -105,6 +105,13 @@ pub fn cost_terms(scenario: Scenario) -> &'static [CostTerm] {
     }
 }
 
+/// Whether the published package has a map of its own for an environment with the hard constraint, whose world these rules follow.
+#[must_use]
+pub fn has_hard_map(id: EnvId, rules: RuleSet, hard: bool) -> bool {
+    let always = matches!(id.scenario, Scenario::ArmamentBurden | Scenario::PrecipicePlunge);
+    hard && id.level == 1 && (always || rules == RuleSet::Released)
+}
+
 /// The built-in map of an environment, and the textures beyond its own that its rules use.
 #[must_use]
 pub fn map_source(id: EnvId, rules: RuleSet, hard: bool) -> (MapSource, &'static [&'static str]) {

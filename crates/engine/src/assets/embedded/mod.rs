@@ -51,6 +51,8 @@ fn paint() -> Assets {
         fallbacks: Vec::new(),
         sprites: Vec::new(),
         graphics: BTreeMap::new(),
+        sky: None,
+        left_out: std::collections::BTreeSet::new(),
     });
     textures::paint(&mut gallery);
     sky::paint(&mut gallery);

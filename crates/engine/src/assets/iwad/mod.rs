@@ -5,26 +5,42 @@
 
 mod animation;
 mod budget;
+mod composites;
 mod error;
 mod flats;
+#[cfg(test)]
+mod overlay_tests;
 mod picture;
+mod png;
+mod reader;
+mod sections;
+mod sky;
 mod sprites;
 mod substitutes;
 #[cfg(test)]
 mod tests;
 mod wall_textures;
+mod words;
 
 pub use error::IwadError;
 pub(crate) use substitutes::STAND_INS;
 
 use super::{Assets, Image, TextureEntry};
 use crate::map::TextureName;
-use crate::wad::{Lump, Wad};
-use budget::Budget;
-use std::collections::BTreeMap;
+use crate::wad::{Wad, WadKind};
+use animation::Animations;
+use reader::Reader;
+use sections::Sections;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Beginnings of the names of status-bar lumps.
 const STATUS_BAR: [&str; 9] = ["STBAR", "STARMS", "STTNUM", "STTMINUS", "STTPRCNT", "STYSNUM", "STGNUM", "STF", "STKEYS"];
+
+/// Which textures are needed: those of additions can be many more than a map shows.
+type Wanted<'a> = &'a dyn Fn(TextureName) -> bool;
+
+/// The map whose sky counts.
+const MAP: &str = "MAP01";
 
 impl Assets {
     /// Reads the picture set of an IWAD.
@@ -35,8 +51,17 @@ impl Assets {
     /// # Errors
     /// The first broken or missing part, by its lump's name.
     pub fn from_iwad(bytes: &[u8]) -> Result<Assets, IwadError> {
-        let wad = Wad::read(bytes)?;
-        let mut budget = Budget::new();
+        Assets::from_wads(bytes, &[], &|_| true)
+    }
+
+    /// The same, with other files laid over the IWAD: what they bring counts before the IWAD's. Of their single pictures only those
+    /// that are `wanted`, and the frames of their animations, are decoded: a published map names 140 of the 1,400 in its file.
+    ///
+    /// # Errors
+    /// The first broken or missing part, by its lump's name.
+    pub fn from_wads(iwad: &[u8], additions: &[&[u8]], wanted: &dyn Fn(TextureName) -> bool) -> Result<Assets, IwadError> {
+        let files = std::iter::once(&iwad).chain(additions).map(|bytes| Wad::read(bytes)).collect::<Result<Vec<_>, _>>()?;
+        let wad = Wad { kind: WadKind::Iwad, lumps: files.iter().flat_map(|file| &file.lumps).copied().collect() };
         let mut set = Assets {
             palette: palette(&wad)?,
             light_tables: light_tables(&wad)?,
@@ -45,17 +70,27 @@ impl Assets {
             fallbacks: Vec::new(),
             sprites: Vec::new(),
             graphics: BTreeMap::new(),
+            sky: sky::of_map(&wad, MAP),
+            left_out: BTreeSet::new(),
         };
-        let sections = Sections::new(&wad);
-        let flats = flats::load(&mut set, &sections, &mut budget)?;
-        let walls = wall_textures::load(&mut set, &wad, &sections, &mut budget)?;
-        animation::apply(&mut set, &wad, &flats, &walls);
+        let mut reader = Reader::new(set.palette);
+        let sections = Sections::new(&files);
+        let animations = Animations::read(&wad);
+        let animated = animations.needed(&sections, wanted);
+        let needed = &|name| wanted(name) || animated.contains(&name);
+        let flats = flats::load(&mut set, &sections, needed, &mut reader)?;
+        let walls = wall_textures::load(&mut set, &wad, &sections, needed, &mut reader)?;
+        composites::load(&mut set, &wad, &sections, needed, &mut reader)?;
+        animations.apply(&mut set, &flats, &walls, wanted);
+        for lump in sections.finer.iter().filter(|lump| wanted(lump.name)) {
+            set.left_out.insert(format!("the finer picture of {:?}", lump.name));
+        }
         substitutes::textures(&mut set);
-        sprites::load(&mut set, &sections, &mut budget)?;
+        sprites::load(&mut set, &sections, &mut reader)?;
         substitutes::sprites(&mut set, &Assets::embedded());
         for lump in &sections.rest {
             if STATUS_BAR.iter().any(|prefix| lump.name.as_str().starts_with(prefix)) {
-                let image = picture::decode(lump, &mut budget)?;
+                let image = reader.picture(lump)?;
                 let index = push(&mut set, image);
                 set.graphics.insert(lump.name, index);
             }
@@ -91,37 +126,6 @@ fn palette(wad: &Wad<'_>) -> Result<[[u8; 3]; 256], IwadError> {
 fn light_tables(wad: &Wad<'_>) -> Result<Box<[[u8; 256]; 32]>, IwadError> {
     let bytes = lump(wad, "COLORMAP", 32 * 256)?;
     Ok(Box::new(std::array::from_fn(|table| std::array::from_fn(|colour| bytes[256 * table + colour]))))
-}
-
-/// The lumps by what their place in the file says that they are; markers left out.
-struct Sections<'a> {
-    flats: Vec<Lump<'a>>,
-    sprites: Vec<Lump<'a>>,
-    patches: Vec<Lump<'a>>,
-    rest: Vec<Lump<'a>>,
-}
-
-impl<'a> Sections<'a> {
-    fn new(wad: &Wad<'a>) -> Sections<'a> {
-        let mut sections = Sections { flats: Vec::new(), sprites: Vec::new(), patches: Vec::new(), rest: Vec::new() };
-        let mut current = "";
-        for lump in &wad.lumps {
-            match lump.name.as_str() {
-                "F_START" | "FF_START" => current = "F",
-                "S_START" | "SS_START" => current = "S",
-                "P_START" | "PP_START" => current = "P",
-                "F_END" | "FF_END" | "S_END" | "SS_END" | "P_END" | "PP_END" => current = "",
-                _ if lump.bytes.is_empty() => {}
-                _ => match current {
-                    "F" => sections.flats.push(*lump),
-                    "S" => sections.sprites.push(*lump),
-                    "P" => sections.patches.push(*lump),
-                    _ => sections.rest.push(*lump),
-                },
-            }
-        }
-        sections
-    }
 }
 
 /// A little-endian 16-bit number at a place that the caller has checked.

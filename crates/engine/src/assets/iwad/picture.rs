@@ -15,9 +15,6 @@ pub(super) fn decode(lump: &Lump<'_>, budget: &mut Budget) -> Result<Image, Iwad
     if bytes.len() < HEADER {
         return Err(IwadError::TooShort { lump: lump.name, least: HEADER, length: bytes.len() });
     }
-    if bytes.starts_with(b"\x89PNG") {
-        return Err(wrong("it is a PNG, which this program does not read from WADs"));
-    }
     let (width, height) = (i32::from(short(bytes, 0)), i32::from(short(bytes, 2)));
     let allowed = 1..=SIDE_LIMIT as i32;
     if !allowed.contains(&width) || !allowed.contains(&height) {

@@ -1,7 +1,7 @@
 //! Sprites: lumps whose names tell frame and rotation, some for a second rotation mirrored.
 
-use super::budget::Budget;
-use super::{IwadError, Sections, picture, push};
+use super::reader::Reader;
+use super::{IwadError, Sections, push};
 use crate::assets::{Assets, SPRITE_NAMES, Sprite, SpriteFrame};
 
 /// Most frames of a sprite: the letters from `A` to `]`.
@@ -11,7 +11,7 @@ const FRAME_LIMIT: usize = 29;
 const EMPTY: SpriteFrame = SpriteFrame { images: [u32::MAX; 8], mirrored: [false; 8] };
 
 /// Adds the sprites of [`SPRITE_NAMES`].
-pub(super) fn load(set: &mut Assets, sections: &Sections<'_>, budget: &mut Budget) -> Result<(), IwadError> {
+pub(super) fn load(set: &mut Assets, sections: &Sections<'_>, reader: &mut Reader) -> Result<(), IwadError> {
     let mut sprites = vec![Sprite::default(); SPRITE_NAMES.len()];
     for lump in &sections.sprites {
         let name = lump.name.as_str();
@@ -21,7 +21,7 @@ pub(super) fn load(set: &mut Assets, sections: &Sections<'_>, budget: &mut Budge
         if views.is_empty() {
             continue;
         }
-        let image = picture::decode(lump, budget)?;
+        let image = reader.picture(lump)?;
         let index = push(set, image);
         for (i, &(frame, rotation)) in views.iter().enumerate() {
             let frames = &mut sprites[sprite].frames;

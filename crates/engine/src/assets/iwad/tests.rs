@@ -6,7 +6,7 @@ use crate::mutation::{iterations, mutated};
 use crate::wad::{self, Lump, WadKind};
 
 /// A picture of one opaque run a column, `rows` high, that begins `skip` rows down.
-fn picture(width: u16, height: u16, skip: u8, rows: u8, colour: u8) -> Vec<u8> {
+pub(super) fn picture(width: u16, height: u16, skip: u8, rows: u8, colour: u8) -> Vec<u8> {
     let mut out = Vec::new();
     for value in [width, height, 3, 7] {
         out.extend(value.to_le_bytes());
@@ -50,7 +50,7 @@ fn texture_list(textures: &[Texture<'_>]) -> Vec<u8> {
 }
 
 /// The lumps of a very small IWAD with one of everything.
-fn lumps() -> Vec<(&'static str, Vec<u8>)> {
+pub(super) fn lumps() -> Vec<(&'static str, Vec<u8>)> {
     let palette: Vec<u8> = (0..256).flat_map(|i| [i as u8, 255 - i as u8, 7]).collect();
     let light: Vec<u8> = (0..34 * 256).map(|i| (i / 256) as u8 ^ (i % 256) as u8).collect();
     let mut patch_names = 3u32.to_le_bytes().to_vec();
@@ -90,7 +90,7 @@ fn lumps() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-fn iwad(lumps: &[(&str, Vec<u8>)]) -> Vec<u8> {
+pub(super) fn iwad(lumps: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let lumps: Vec<Lump> = lumps.iter().map(|(name, bytes)| Lump { name: TextureName::new(name), bytes }).collect();
     wad::write(WadKind::Iwad, &lumps)
 }
@@ -188,7 +188,7 @@ fn what_is_missing_or_broken_is_named() {
     assert_eq!(broken("BRICK", &large(0)), name("BRICK"));
     assert_eq!(broken("BRICK", &large(8)), name("BRICK"));
     assert_eq!(broken("BRICK", &|bytes| bytes.truncate(30)), name("BRICK"));
-    assert_eq!(broken("BON1A0", &|bytes| bytes.splice(..4, *b"\x89PNG").for_each(drop)), name("BON1A0"));
+    assert_eq!(broken("BON1A0", &|bytes| bytes.splice(..4, *b"\x89PNG").for_each(drop)), name("BON1A0"), "a broken PNG");
     assert!(matches!(spoiled("LAVA2", &|bytes| bytes.truncate(4095)), IwadError::TooShort { length: 4095, .. }));
     assert!(matches!(Assets::from_iwad(b"nothing"), Err(IwadError::Wad(_))));
 }

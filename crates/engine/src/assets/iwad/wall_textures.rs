@@ -1,7 +1,8 @@
-//! Wall textures: lists of patches laid over each other.
+//! Wall textures: lists of patches laid over each other, and whole pictures by their own names.
 
-use super::budget::{Budget, SIDE_LIMIT};
-use super::{IwadError, Sections, long, lump, picture, push, short, still};
+use super::budget::SIDE_LIMIT;
+use super::reader::Reader;
+use super::{IwadError, Sections, Wanted, long, lump, push, short, still};
 use crate::assets::{Assets, Image};
 use crate::map::TextureName;
 use crate::wad::{Lump, Wad};
@@ -17,7 +18,8 @@ pub(super) fn load(
     set: &mut Assets,
     wad: &Wad<'_>,
     sections: &Sections<'_>,
-    budget: &mut Budget,
+    wanted: Wanted<'_>,
+    reader: &mut Reader,
 ) -> Result<Vec<TextureName>, IwadError> {
     let mut patches = Patches::new(wad, sections)?;
     let mut names = Vec::new();
@@ -34,7 +36,7 @@ pub(super) fn load(
             let start = usize::try_from(long(offset, 0)).map_err(|_| outside())?;
             let texture = bytes.get(start..).filter(|texture| texture.len() >= HEAD).ok_or_else(outside)?;
             let name = name_of(texture);
-            let image = compose(name, texture, &mut patches, budget)?;
+            let image = compose(name, texture, &mut patches, reader)?;
             // Of equal names the first counts here, as in the engines that these lists were made for.
             if seen.insert(name) {
                 let index = push(set, image);
@@ -42,6 +44,12 @@ pub(super) fn load(
                 names.push(name);
             }
         }
+    }
+    for lump in sections.textures.iter().filter(|lump| wanted(lump.name)) {
+        let image = reader.picture(lump)?;
+        let index = push(set, Image { offset_x: 0, offset_y: 0, ..image });
+        set.textures.insert(lump.name, still(index));
+        names.push(lump.name);
     }
     Ok(names)
 }
@@ -68,18 +76,18 @@ impl<'a> Patches<'a> {
     }
 
     /// The patch of a number; none if the file does not have it, as some published files do not.
-    fn get(&mut self, number: i16, budget: &mut Budget) -> Result<Option<&Image>, IwadError> {
+    fn get(&mut self, number: i16, reader: &mut Reader) -> Result<Option<&Image>, IwadError> {
         let Some((number, lump)) = usize::try_from(number).ok().and_then(|n| Some((n, (*self.lumps.get(n)?)?))) else {
             return Ok(None);
         };
         if let Entry::Vacant(place) = self.decoded.entry(number) {
-            place.insert(picture::decode(&lump, budget)?);
+            place.insert(reader.picture(&lump)?);
         }
         Ok(self.decoded.get(&number))
     }
 }
 
-fn compose(name: TextureName, texture: &[u8], patches: &mut Patches<'_>, budget: &mut Budget) -> Result<Image, IwadError> {
+fn compose(name: TextureName, texture: &[u8], patches: &mut Patches<'_>, reader: &mut Reader) -> Result<Image, IwadError> {
     let wrong = |what| IwadError::Picture { lump: name, what };
     let (width, height) = (i32::from(short(texture, 12)), i32::from(short(texture, 14)));
     let allowed = 1..=SIDE_LIMIT as i32;
@@ -89,12 +97,12 @@ fn compose(name: TextureName, texture: &[u8], patches: &mut Patches<'_>, budget:
     let count = usize::from(short(texture, 20) as u16);
     let list = texture.get(HEAD..HEAD + PATCH * count).ok_or_else(|| wrong("its patches lie outside"))?;
     let size = (width * height) as usize;
-    budget.keep(size)?;
+    reader.budget.keep(size)?;
     let mut pixels = vec![0; size].into_boxed_slice();
     let mut mask = vec![0; size].into_boxed_slice();
     for entry in list.chunks_exact(PATCH) {
         let (left, top) = (i32::from(short(entry, 0)), i32::from(short(entry, 2)));
-        let Some(patch) = patches.get(short(entry, 4), budget)? else { continue };
+        let Some(patch) = patches.get(short(entry, 4), reader)? else { continue };
         let (patch_width, patch_height) = (i32::from(patch.width), i32::from(patch.height));
         let (first_row, end_row) = (top.max(0), (top + patch_height).min(height));
         if first_row >= end_row {
@@ -102,7 +110,7 @@ fn compose(name: TextureName, texture: &[u8], patches: &mut Patches<'_>, budget:
         }
         let rows = (end_row - first_row) as usize;
         for x in left.max(0)..(left + patch_width).min(width) {
-            budget.visit(rows)?;
+            reader.budget.visit(rows)?;
             let from = ((x - left) * patch_height + first_row - top) as usize;
             let to = (x * height + first_row) as usize;
             for i in 0..rows {

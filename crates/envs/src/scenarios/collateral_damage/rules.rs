@@ -87,13 +87,8 @@ impl Rules {
     fn open(&mut self, world: &mut World) {
         let level = self.fixtures.level;
         self.line_x = world.rng.between_fixed(Fixed::from_int(LINE[0]), Fixed::from_int(LINE[1]));
-        self.ends = Some([(NORTH_END, SOUTH_END, WAY_REACH), (SOUTH_END, NORTH_END, -WAY_REACH)].map(|(tid, next, y)| {
-            let id = world.spawn(ActorKind::PatrolPoint, self.line_x, Fixed::from_int(y), Fixed::ZERO);
-            if let Some(end) = world.get_mut(id) {
-                (end.tid, end.next_goal) = (tid, next);
-            }
-            id
-        }));
+        let ways = [(NORTH_END, SOUTH_END, WAY_REACH), (SOUTH_END, NORTH_END, -WAY_REACH)];
+        self.ends = Some(ways.map(|(tid, next, y)| end_of_the_way(world, tid, next, self.line_x, Fixed::from_int(y))));
         for _ in 0..level.targets {
             self.walk_on(TARGET, world);
         }
@@ -161,4 +156,18 @@ impl Rules {
         stats.push(("health", f64::from(stage::health(world).max(0))));
         stats.push(("ammunition", f64::from(stage::ammunition(world))));
     }
+}
+
+/// An end of the walkers' way: the map's own patrol point with the thing id, moved there, or a new one where the map has none.
+fn end_of_the_way(world: &mut World, tid: i32, next: i32, x: Fixed, y: Fixed) -> ActorId {
+    if let Some(point) = world.patrol_point(tid)
+        && world.set_position(point, x, y, Fixed::ZERO)
+    {
+        return point;
+    }
+    let id = world.spawn(ActorKind::PatrolPoint, x, y, Fixed::ZERO);
+    if let Some(end) = world.get_mut(id) {
+        (end.tid, end.next_goal) = (tid, next);
+    }
+    id
 }

@@ -48,8 +48,11 @@ impl Rules {
     /// The rules of a level in its map.
     pub fn new(map: &Map, level: Level) -> Result<Rules, EnvError> {
         let tiles = level.last_row * map::ROWS as i32;
-        if let Some(tag) = (map::FIRST_TAG..map::FIRST_TAG + tiles).find(|&tag| map.tagged(tag).next().is_none()) {
-            return Err(EnvError::Map { why: format!("map {}: Precipice Plunge needs a sector with tag {tag}", map.name) });
+        // A published map lacks two of them; they are then nowhere to sink.
+        if !(map::FIRST_TAG..map::FIRST_TAG + tiles).any(|tag| map.tagged(tag).next().is_some()) {
+            let (first, last) = (map::FIRST_TAG, map::FIRST_TAG + tiles - 1);
+            let why = format!("map {}: Precipice Plunge needs sectors with the tags {first} to {last}, which it sinks", map.name);
+            return Err(EnvError::Map { why });
         }
         let (health, fixtures) = (level.counted_health, Arc::new(Fixtures { level, tiles }));
         let zero = Fixed::ZERO;

@@ -33,6 +33,17 @@ pub(super) fn paint(gallery: &mut Gallery) {
     ahead_from(gallery, "SMIT", &stump(), level);
     ahead_from(gallery, "POL5", &pool_of_gore(), View::new(0.0, 14.0));
     ahead_from(gallery, "BRS1", &scattered_bones(), View::new(0.0, 20.0));
+    ahead_from(gallery, "POB1", &pool_of_gore(), View::new(0.0, 14.0));
+    ahead_from(gallery, "CAND", &candlestick(), level);
+    for flicker in [0.0, 1.5, -1.0, 0.7] {
+        ahead_from(gallery, "SMBT", &torch(flicker, 0x3070F0), level);
+        ahead_from(gallery, "SMGT", &torch(flicker, 0x30D040), level);
+        ahead_from(gallery, "SMRT", &torch(flicker, 0xF04028), level);
+    }
+    for flicker in [0.0, 2.0, -1.5] {
+        ahead_from(gallery, "FTOP", &fire(flicker, 14.0), level);
+        ahead_from(gallery, "FDEB", &fire(flicker, 9.0), level);
+    }
     for glow in 0..2 {
         ahead_from(gallery, "BAR1", &barrel(glow == 1), View::new(0.0, 16.0));
     }
@@ -60,6 +71,40 @@ fn tech_lamp(height: f32, radius: f32, lit: usize) -> Model {
     m.tube(Vector(0.0, 0.0, top), Vector(0.0, 0.0, top + 3.0), (radius * 0.6, radius * 0.5), DARK);
     m.limb(Vector(0.0, 0.0, top + 3.0), Vector(0.0, 0.0, height - 1.0), (radius * 0.25, 0.5), STEEL);
     m
+}
+
+/// A candle on a foot.
+fn candlestick() -> Model {
+    let mut m = Model::new();
+    let wax = Material::new(0xA09878, 0xE0D8B8, 0xFFFFF0);
+    m.tube(Vector(0.0, 0.0, 0.0), Vector(0.0, 0.0, 2.0), (3.5, 2.0), STEEL);
+    m.tube(Vector(0.0, 0.0, 2.0), Vector(0.0, 0.0, 9.0), (1.3, 1.2), wax);
+    m.egg(Vector(0.0, 0.0, 12.0), Vector(1.2, 1.2, 2.4), flame(0xF0C040));
+    m
+}
+
+/// A burning bowl on a short post; `flicker` bends its flame.
+fn torch(flicker: f32, colour: u32) -> Model {
+    let mut m = Model::new();
+    m.tube(Vector(0.0, 0.0, 0.0), Vector(0.0, 0.0, 3.0), (7.0, 5.0), DARK);
+    m.tube(Vector(0.0, 0.0, 3.0), Vector(0.0, 0.0, 18.0), (2.2, 2.0), STEEL);
+    m.tube(Vector(0.0, 0.0, 18.0), Vector(0.0, 0.0, 22.0), (3.0, 6.0), DARK);
+    m.limb(Vector(0.0, 0.0, 22.0), Vector(0.0, flicker, 36.0), (5.0, 1.0), flame(colour));
+    m
+}
+
+/// Flames on the ground, so wide to each side.
+fn fire(flicker: f32, reach: f32) -> Model {
+    let mut m = Model::new();
+    for (i, side) in [-1.0f32, -0.4, 0.3, 0.9].into_iter().enumerate() {
+        let (y, height) = (side * reach * 0.7, reach * (1.2 + 0.4 * (i % 2) as f32) + flicker);
+        m.limb(Vector(0.0, y, 0.0), Vector(0.0, y + flicker, height), (reach * 0.3, 0.8), flame(0xF08020));
+    }
+    m
+}
+
+fn flame(colour: u32) -> Material {
+    Material::new(colour, colour | 0x404040, 0xFFFFC0).glowing()
 }
 
 /// A short stone column.

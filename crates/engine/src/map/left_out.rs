@@ -1,0 +1,45 @@
+//! What a map asks for that the engine does not do.
+
+use super::{MapSource, TextureName};
+use crate::world::ActorKind;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Sector specials that are played: none, harm before any script.
+const SECTOR_SPECIALS: [i32; 2] = [0, 83];
+
+/// Editor numbers of player starts, of deathmatch starts and of the editor's camera, which nothing is lost by.
+const NO_THINGS: [i32; 6] = [1, 2, 3, 4, 11, 32000];
+
+impl MapSource {
+    /// What the engine leaves out of this map, a phrase each with how often it occurs; empty if nothing.
+    #[must_use]
+    pub fn left_out(&self) -> Vec<String> {
+        let count = |numbers: &mut dyn Iterator<Item = i32>| {
+            let mut counts: BTreeMap<i32, usize> = BTreeMap::new();
+            numbers.for_each(|number| *counts.entry(number).or_default() += 1);
+            counts
+        };
+        let known = |kind: i32| NO_THINGS.contains(&kind) || ActorKind::from_editor_number(kind).is_some();
+        let lists = [
+            ("line special", count(&mut self.lines.iter().map(|line| line.special).filter(|&special| special != 0))),
+            (
+                "sector special",
+                count(&mut self.sectors.iter().map(|sector| sector.special).filter(|special| !SECTOR_SPECIALS.contains(special))),
+            ),
+            ("thing type", count(&mut self.things.iter().map(|thing| thing.kind).filter(|&kind| !known(kind)))),
+        ];
+        let phrase = |(what, counts): (&str, BTreeMap<i32, usize>)| {
+            let list: Vec<String> = counts.iter().take(24).map(|(number, times)| format!("{number} ({times})")).collect();
+            (!list.is_empty()).then(|| format!("{what} {}", list.join(" ")))
+        };
+        lists.into_iter().filter_map(phrase).collect()
+    }
+
+    /// Every texture that the map names.
+    #[must_use]
+    pub fn textures(&self) -> BTreeSet<TextureName> {
+        let walls = self.sides.iter().flat_map(|side| [side.top, side.middle, side.bottom]);
+        let flats = self.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
+        walls.chain(flats).filter(TextureName::is_some).collect()
+    }
+}

@@ -1,0 +1,179 @@
+//! Maps from files: ours written and read again, a user's own, and what is told of those that cannot be played.
+
+use hasard_engine::map::{MapSource, SourceThing, TextureName};
+use hasard_engine::math::Fixed;
+use hasard_engine::wad::{self, Lump, WadKind};
+use hasard_engine::world::ActorKind;
+use hasard_envs::maps::Maps;
+use hasard_envs::{Env, EnvId, EnvOptions, FrameSize, Policy, PolicyRun, RuleSet, scenarios};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A folder of its own, gone afterwards.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        let path = std::env::temp_dir().join(format!("hasard-maps-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    fn put(&self, name: &str, bytes: &[u8]) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, bytes).unwrap();
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn folder_name(id: EnvId) -> &'static str {
+    use hasard_envs::Scenario as S;
+    match id.scenario {
+        S::ArmamentBurden => "armament_burden",
+        S::CollateralDamage => "collateral_damage",
+        S::DetonatorsDilemma => "detonators_dilemma",
+        S::PrecipicePlunge => "precipice_plunge",
+        S::RemedyRush => "remedy_rush",
+        S::VolcanicVenture => "volcanic_venture",
+    }
+}
+
+fn options(maps: Option<&Path>) -> EnvOptions {
+    let size = FrameSize { width: 64, height: 48 };
+    EnvOptions { size, maps: maps.map(|place| Arc::new(Maps::new(place, None))), ..EnvOptions::default() }
+}
+
+/// Fingerprint of the state after some random steps, and the last frame.
+fn played(id: EnvId, options: &EnvOptions) -> (u64, Vec<u8>) {
+    let mut env = Env::new(&id.to_string(), options).unwrap();
+    let policy: Policy = "sticky:5".parse().unwrap();
+    env.reset(3);
+    let mut run = PolicyRun::new(policy, env.action_space(), 3);
+    for _ in 0..60 {
+        if let hasard_envs::Move::Action(actions, deltas) = run.next_move() {
+            env.step(actions, deltas).unwrap();
+        }
+    }
+    let mut frame = vec![0; env.observation_shape().iter().product()];
+    env.observe(&mut frame);
+    (env.state_hash(), frame)
+}
+
+#[test]
+fn our_own_maps_play_the_same_from_files() {
+    let folder = Folder::new("own");
+    for id in EnvId::all() {
+        let (source, _) = scenarios::map_source(id, RuleSet::Paper, false);
+        folder.put(&format!("{}/level_{}.wad", folder_name(id), id.level), &wad::write_map("MAP01", &source));
+    }
+    for id in EnvId::all() {
+        assert_eq!(played(id, &options(Some(&folder.0))), played(id, &options(None)), "{id}");
+    }
+}
+
+#[test]
+fn the_hard_map_is_taken_where_the_rules_follow_its_world() {
+    let folder = Folder::new("hard");
+    let id: EnvId = "VolcanicVentureLevel1-v0".parse().unwrap();
+    let with_light = |light| {
+        let (mut source, _) = scenarios::map_source(id, RuleSet::Paper, false);
+        source.sectors.iter_mut().for_each(|sector| sector.light = light);
+        wad::write_map("MAP01", &source)
+    };
+    folder.put("volcanic_venture/level_1.wad", &with_light(100));
+    let light = |rules, hard| {
+        let env = Env::new(&id.to_string(), &EnvOptions { rules, hard, ..options(Some(&folder.0)) }).unwrap();
+        env.world().map.sectors[0].light
+    };
+    assert_eq!(light(RuleSet::Released, true), 100, "without a hard map the level's own is played");
+    folder.put("volcanic_venture/level_1_hard.wad", &with_light(200));
+    let lights = [(RuleSet::Paper, false), (RuleSet::Paper, true), (RuleSet::Released, false), (RuleSet::Released, true)]
+        .map(|(rules, hard)| light(rules, hard));
+    assert_eq!(lights, [100, 100, 100, 200]);
+}
+
+fn thing(kind: i32, x: f64, y: f64, id: i32, next: i32) -> SourceThing {
+    SourceThing { x, y, kind, id, args: [next, 0, 0, 0, 0], ..SourceThing::default() }
+}
+
+fn one_map(folder: &Folder, id: &str, change: impl FnOnce(&mut MapSource)) -> Result<Env, String> {
+    let (mut source, _) = scenarios::map_source(id.parse().unwrap(), RuleSet::Paper, false);
+    change(&mut source);
+    let path = folder.put("one.wad", &wad::write_map("MAP01", &source));
+    Env::new(id, &options(Some(&path))).map_err(|error| error.to_string())
+}
+
+#[test]
+fn the_walkers_of_collateral_damage_use_the_map_s_own_patrol_points() {
+    let folder = Folder::new("points");
+    let mut env = one_map(&folder, "CollateralDamageLevel1-v0", |source| {
+        source.things.extend([thing(9024, 0.0, 300.0, 11, 12), thing(9024, 0.0, -300.0, 12, 11)]);
+    })
+    .unwrap();
+    for seed in 0..3 {
+        env.reset(seed);
+        let points: Vec<_> = env.world().actors.iter().filter(|a| !a.removed && a.kind == ActorKind::PatrolPoint).collect();
+        assert_eq!(points.len(), 2, "the map's own and no others");
+        assert_eq!((points[0].x, points[0].y + points[1].y, points[0].next_goal), (points[1].x, Fixed::ZERO, 12));
+        assert_eq!(points[0].y, Fixed::from_int(608));
+    }
+}
+
+#[test]
+fn one_agent_plays_whatever_other_starts_the_map_has() {
+    let folder = Folder::new("starts");
+    let env = one_map(&folder, "RemedyRushLevel1-v0", |source| {
+        source.things.extend((2..=4).map(|kind| thing(kind, 224.0, 20.0, 0, 0)));
+    });
+    assert_eq!(env.unwrap().world().players.len(), 1);
+}
+
+#[test]
+fn what_is_left_out_is_told_in_one_line() {
+    let folder = Folder::new("left-out");
+    let env = one_map(&folder, "RemedyRushLevel1-v0", |source| {
+        source.lines[0].special = 160;
+        source.sectors[0].special = 9;
+        source.things.push(thing(9080, 224.0, 20.0, 0, 0));
+    });
+    let told = env.unwrap().left_out().unwrap();
+    assert_eq!(told, "map of RemedyRushLevel1-v0: left out: line special 160 (1), sector special 9 (1), thing type 9080 (1)");
+    assert_eq!(one_map(&folder, "RemedyRushLevel1-v0", |_| ()).unwrap().left_out(), None);
+}
+
+#[test]
+fn precipice_plunge_plays_where_some_tags_are_missing_but_not_where_all_are() {
+    let folder = Folder::new("tags");
+    let id = "PrecipicePlungeLevel1-v0";
+    let without = |tags: std::ops::Range<i32>| {
+        one_map(&folder, id, |source| source.sectors.iter_mut().filter(|s| tags.contains(&s.tag)).for_each(|s| s.tag = 0))
+    };
+    let mut env = without(200..202).unwrap();
+    env.reset(1);
+    let error = without(1..1000).map(|_| ()).unwrap_err();
+    assert!(error.contains("needs sectors with the tags 128 to 372"), "{error}");
+}
+
+#[test]
+fn what_cannot_be_played_is_named_in_one_line() {
+    let folder = Folder::new("wrong");
+    let lump = |name, bytes| Lump { name: TextureName::new(name), bytes };
+    let wads: [(&[u8], &str); 4] = [
+        (b"nothing at all", "not a WAD"),
+        (&wad::write(WadKind::Pwad, &[lump("MAP02", b"")]), "no UDMF map MAP01"),
+        (&wad::write(WadKind::Pwad, &[lump("MAP01", b""), lump("TEXTMAP", b"sector {")]), "line 1"),
+        (&wad::write(WadKind::Pwad, &[lump("MAP01", b""), lump("TEXTMAP", b"namespace = \"zdoom\";")]), "no vertices"),
+    ];
+    for (bytes, expected) in wads {
+        let path = folder.put("map\u{1b}[1m.wad", bytes);
+        let error = Env::new("VolcanicVentureLevel1-v0", &options(Some(&path))).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains("[1m.wad") && !error.contains(char::is_control), "{error}");
+    }
+}
