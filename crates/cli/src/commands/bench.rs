@@ -86,12 +86,12 @@ fn learn(args: &BenchArgs) -> Outcome {
         };
         let seconds = args.seconds / rounds as f64;
         let measured = measure(kernels, &config, &make, rounds, seconds, &mut told).map_err(Failure::bad)?;
-        report(args, &config, &measured);
+        report(args, &config, &measured)?;
     }
     Ok(())
 }
 
-fn report(args: &BenchArgs, config: &TrainConfig, measured: &Measurement) {
+fn report(args: &BenchArgs, config: &TrainConfig, measured: &Measurement) -> Outcome {
     if args.json {
         let object = json!({
             "env": args.env,
@@ -108,7 +108,7 @@ fn report(args: &BenchArgs, config: &TrainConfig, measured: &Measurement) {
             "rounds": measured.rounds,
         });
         say!("{object}");
-        return;
+        return Ok(());
     }
     say!(
         "{:>8}, {} thread(s): {:.0} steps/s; {:.1} GFLOP/s in large products / {:.1} MFLOP forward and backward = {:.0} steps/s: {:.1} % of that",
@@ -120,4 +120,5 @@ fn report(args: &BenchArgs, config: &TrainConfig, measured: &Measurement) {
         measured.bound(),
         100.0 * measured.share()
     );
+    Ok(())
 }

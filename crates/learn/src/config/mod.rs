@@ -211,7 +211,7 @@ mod tests {
             let message = config.check().unwrap_err().to_string();
             assert!(message.contains(word), "{message}");
         };
-        refuse(|c| c.sampling.lanes = 33, "number of worlds");
+        refuse(|c| (c.sampling.lanes, c.sampling.groups) = (33, 2), "number of worlds");
         refuse(|c| c.learning.gamma = 1.5, "gamma");
         refuse(|c| c.learning.rate = f64::NAN, "learning rate");
         refuse(|c| c.constraints[0].budget = -1.0, "budget");

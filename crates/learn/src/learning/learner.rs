@@ -133,6 +133,12 @@ impl Learner {
         &self.shape
     }
 
+    /// The kernels of the processor that compute it, or what comes before and after a card does.
+    #[must_use]
+    pub fn kernels(&self) -> Kernels {
+        self.kernels
+    }
+
     /// The present weights for samplers.
     pub fn publish(&mut self) -> Published {
         self.refresh();

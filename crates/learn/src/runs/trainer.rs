@@ -216,6 +216,7 @@ impl<'a> Trainer<'a> {
         report.frames = self.session.frames;
         report.level = self.config.curriculum.get(self.lesson).map(|lesson| lesson.level);
         report.updates = self.session.learner.version;
+        report.made_with = (self.session.learner.kernels().name(), self.session.config.learning.threads);
         report.wall_seconds = self.wall_seconds();
         report.frames_per_second = frames_per_second;
         report
