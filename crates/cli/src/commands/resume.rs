@@ -30,6 +30,7 @@ const DECIDES: [(&str, &[&str]); 22] = [
     ("frame_skip", &["/env/frame_skip"]),
     ("size", &["/env/size"]),
     ("iwad", &["/env/iwad"]),
+    ("maps", &["/env/maps"]),
     ("observation", &["/env/observation"]),
     ("frame_stack", &["/env/frame_stack"]),
     ("published_depth", &["/env/published_depth"]),
