@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
-const DECIDES: [(&str, &[&str]); 24] = [
+const DECIDES: [(&str, &[&str]); 25] = [
     ("frames", &["/frames"]),
     ("eval_every", &["/evaluation/every"]),
     ("algo", &["/algorithm"]),
@@ -24,6 +24,7 @@ const DECIDES: [(&str, &[&str]); 24] = [
     ("sync", &["/sampling/synchronous"]),
     ("asynchronous", &["/sampling/synchronous"]),
     ("threads", &["/learning/threads", "/sampling/samplers"]),
+    ("portable", &["/learning/portable"]),
     ("envs", &["/sampling/lanes"]),
     ("seed", &["/seed"]),
     ("rules", &["/env/rules"]),

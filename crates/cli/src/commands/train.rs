@@ -7,7 +7,6 @@ use crate::failure::{Failure, Outcome};
 use clap::ArgMatches;
 use hasard_envs::{EnvId, VecEnv};
 use hasard_learn::config::curriculum::parse_curriculum;
-use hasard_learn::config::presets::samplers_for;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::hand_out::HandOut;
 use hasard_learn::runs::interrupt::stop_on_interrupt;
@@ -151,15 +150,13 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     config.device.clone_from(&args.device);
     config.frames = args.frames.unwrap_or(config.frames);
     config.sampling.synchronous = args.sync || (args.device == "cpu" && !args.asynchronous);
+    config.learning.portable = args.portable;
     if let Some(threads) = args.threads {
         config.learning.threads = usize::from(threads);
+        config.sampling.samplers = usize::from(threads);
     }
     if let Some(lanes) = args.envs {
         config.sampling.lanes = lanes as usize;
-    }
-    if args.threads.is_some() || args.envs.is_some() {
-        // As many samplers as threads, as far as they divide the worlds.
-        config.sampling.samplers = samplers_for(config.learning.threads, config.sampling.lanes);
     }
     if args.eval_every.is_some() {
         config.evaluation.every = args.eval_every;

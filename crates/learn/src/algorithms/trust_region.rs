@@ -207,6 +207,8 @@ mod tests {
     fn fisher_products_equal_those_of_the_dense_matrix() {
         let config = small::config(AlgorithmKind::Trpo);
         let (mut learner, rollout) = small::learner(&config);
+        // As in the middle of a run, where pixels have been seen.
+        learner.absorb(&rollout);
         let prepared = learner.prepare(&rollout);
         let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
         let region = TrustRegion::new(&config);

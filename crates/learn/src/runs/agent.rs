@@ -58,6 +58,8 @@ pub struct Agent {
     safety: Vec<f64>,
     /// Seed of each lane's episode, and its steps so far: what its draws come from.
     episodes: Vec<(u64, u64)>,
+    /// What the network put out last, a row a lane.
+    rows: Vec<f32>,
 }
 
 /// What an agent does in one world.
@@ -67,6 +69,17 @@ pub struct Action {
     pub actions: Vec<u8>,
     /// Continuous sub-actions.
     pub deltas: Vec<f32>,
+}
+
+/// What an agent made of the moment it acted in last.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Thought {
+    /// Probability of each choice of each categorical sub-action.
+    pub probabilities: Vec<Vec<f32>>,
+    /// Return that is expected from here on, in the normalised units of training.
+    pub value: Option<f32>,
+    /// The same of each constrained cost, for algorithms that estimate it.
+    pub cost_values: Vec<f32>,
 }
 
 /// The settings of the run in a directory, or of the one that an agent's file comes from, so that its worlds can be made.
@@ -126,10 +139,13 @@ impl TrainedPolicy {
         let image = ImageShape { height, width, channels };
         let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
         let shape = ModelShape::new(image, action, cost_critics, Shaping::new(&config).extra_inputs(), &config.network)?;
-        let mut learner = Learner::new(&config, &shape, &ComputeDevice::Processor);
+        // Wherever it was trained, it acts on the processor.
+        config.device = "cpu".into();
+        let device = ComputeDevice::of(&config)?;
+        let mut learner = Learner::new(&config, &shape, &device);
         restore(&mut learner)?;
         let terms = config.env.scenario().map_or(&[][..], Scenario::cost_terms);
-        TrainedPolicy::new(&config, &shape, learner.publish(), ComputeDevice::Processor, terms)
+        TrainedPolicy::new(&config, &shape, learner.publish(), device, terms)
     }
 
     /// The run's settings.
@@ -147,6 +163,7 @@ impl TrainedPolicy {
             state: self.shape.zero_state(lanes),
             safety: vec![1.0; lanes],
             episodes: vec![(0, 0); lanes],
+            rows: vec![0.0; lanes * self.shape.outputs()],
             shape: self.shape.clone(),
             actor,
             shaping: Shaping::new(&self.config),
@@ -188,11 +205,10 @@ impl Agent {
             _ => self.safety.iter().map(|&safety| Shaping::seen(safety)).collect(),
         };
         let width = self.shape.outputs();
-        let mut rows = vec![0.0; lanes * width];
-        self.actor.act(observations, &extra, &mut self.state, 0..lanes, &mut rows);
+        self.actor.act(observations, &extra, &mut self.state, 0..lanes, &mut self.rows, None);
         let action = &self.shape.action;
         let mut all = Vec::with_capacity(lanes);
-        for (row, (seed, step)) in rows.chunks_exact(width).zip(&mut self.episodes) {
+        for (row, (seed, step)) in self.rows.chunks_exact(width).zip(&mut self.episodes) {
             let mut one = Action { actions: vec![0; action.sizes.len()], deltas: vec![0.0; action.deltas] };
             match self.choice {
                 Choice::Greedy => action.greedy(row, &mut one.actions, &mut one.deltas),
@@ -205,6 +221,25 @@ impl Agent {
             all.push(one);
         }
         all
+    }
+
+    /// What the agent made of the moment of its last action in a lane.
+    #[must_use]
+    pub fn thought(&self, lane: usize) -> Thought {
+        let width = self.shape.outputs();
+        let row = &self.rows[lane * width..(lane + 1) * width];
+        let mut logits = row;
+        let probabilities = self.shape.action.sizes.iter().map(|&size| {
+            let (group, rest) = logits.split_at(size);
+            logits = rest;
+            let largest = group.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            let exponentials: Vec<f32> = group.iter().map(|logit| (logit - largest).exp()).collect();
+            let sum: f32 = exponentials.iter().sum();
+            exponentials.iter().map(|one| one / sum).collect()
+        });
+        let probabilities = probabilities.collect();
+        let mut values = row[self.shape.action.parameters()..].iter().copied();
+        Thought { probabilities, value: values.next(), cost_values: values.collect() }
     }
 
     /// Tells what a step cost in a lane, in all and by cost terms; agents that watch their budget need it, and watch what

@@ -88,7 +88,7 @@ impl<'a> Examiner<'a> {
     /// as in the lessons before the last.
     pub fn examine(&mut self, session: &mut Session, counts: bool) -> Result<(Evaluation, bool), LearnError> {
         let published = session.learner.publish();
-        let device = ComputeDevice::named(&session.config.device)?;
+        let device = ComputeDevice::of(&session.config)?;
         let policy = TrainedPolicy::new(&session.config, session.learner.shape(), published, device, session.cost_terms)?;
         let settings = session.config.evaluation.clone();
         let evaluation = self.play(&policy, session.frames, Set::Candidates, settings.episodes)?;
@@ -124,10 +124,11 @@ impl<'a> Examiner<'a> {
     /// Plays the closing episodes of the checkpoint that the run hands out.
     pub fn close(&mut self, session: &Session, checkpoint: &Loaded) -> Result<(), LearnError> {
         let Some(best) = &self.best else { return Ok(()) };
-        let mut learner = Learner::new(&session.config, session.learner.shape(), &ComputeDevice::Processor);
+        let device = ComputeDevice::of(&session.config)?;
+        let mut learner = Learner::new(&session.config, session.learner.shape(), &device);
         checkpoint.restore_weights(&mut learner)?;
         let shape = session.learner.shape();
-        let policy = TrainedPolicy::new(&session.config, shape, learner.publish(), ComputeDevice::Processor, session.cost_terms)?;
+        let policy = TrainedPolicy::new(&session.config, shape, learner.publish(), device, session.cost_terms)?;
         let closing = self.play(&policy, best.frames, Set::Closing, session.config.evaluation.confirming_episodes)?;
         self.best = self.best.take().map(|best| HandOut { closing: Some(closing), ..best });
         Ok(())

@@ -3,6 +3,7 @@
 //! With two groups and a thread for the worlds, one half of them steps while the policy works on the other. With
 //! several samplers that step their own worlds the same happens between the samplers.
 
+use std::ops::Range;
 use std::sync::{Arc, RwLock};
 
 use hasard_envs::{Batch, LaneState, VecEnv};
@@ -10,7 +11,7 @@ use hasard_envs::{Batch, LaneState, VecEnv};
 use crate::config::Constraint;
 use crate::config::constraint::find_terms;
 use crate::error::LearnError;
-use crate::networks::{Actor, ModelShape, Published};
+use crate::networks::{Actor, ModelShape, Notes, Published};
 use crate::random::{Purpose, Stream};
 use crate::sampling::rollout::Part;
 use crate::sampling::shaping::Shaping;
@@ -31,34 +32,33 @@ pub struct SamplerState {
     pub steps: u64,
 }
 
-/// The same lanes dealt to another number of samplers, in their order: what happens in a lane does not depend on its sampler.
-/// `None` if they cannot be dealt out evenly, or do not belong together.
+/// The same lanes dealt to other samplers, in their order: what happens in a lane does not depend on its sampler. `None` if
+/// they do not belong together, or are not as many as the shares.
 #[must_use]
-pub fn deal(states: Vec<SamplerState>, samplers: usize) -> Option<Vec<SamplerState>> {
+pub fn dealt_anew(states: Vec<SamplerState>, shares: &[Range<usize>]) -> Option<Vec<SamplerState>> {
     let steps = states.first()?.steps;
     let lanes: usize = states.iter().map(|state| state.worlds.len()).sum();
-    if samplers == 0 || !lanes.is_multiple_of(samplers) || states.iter().any(|state| state.steps != steps) {
+    if shares.last()?.end != lanes || states.iter().any(|state| state.steps != steps) {
         return None;
     }
-    let share = lanes / samplers;
     let networks = states[0].state.len();
     let whole = |network: usize| states.iter().flat_map(|one| &one.state[network]).copied().collect::<Vec<f32>>();
     let memories: Vec<Vec<f32>> = (0..networks).map(whole).collect();
     let safety: Vec<f64> = states.iter().flat_map(|one| &one.safety).copied().collect();
     let mut worlds = states.into_iter().flat_map(|one| one.worlds);
-    let deal = |index: usize| {
+    let deal = |share: &Range<usize>| {
         let part = |memory: &Vec<f32>| {
-            let units = memory.len() / lanes * share;
-            memory[index * units..(index + 1) * units].to_vec()
+            let units = memory.len() / lanes;
+            memory[share.start * units..share.end * units].to_vec()
         };
         SamplerState {
-            worlds: worlds.by_ref().take(share).collect(),
+            worlds: worlds.by_ref().take(share.len()).collect(),
             state: memories.iter().map(part).collect(),
-            safety: safety[index * share..(index + 1) * share].to_vec(),
+            safety: safety[share.clone()].to_vec(),
             steps,
         }
     };
-    Some((0..samplers).map(deal).collect())
+    Some(shares.iter().map(deal).collect())
 }
 
 /// Some worlds and the policy that acts in them.
@@ -78,6 +78,8 @@ pub struct Sampler {
     safety: Vec<f64>,
     steps: u64,
     after_state: Vec<Vec<f32>>,
+    /// What is computed is kept for the learner.
+    recording: bool,
 }
 
 impl Sampler {
@@ -114,6 +116,7 @@ impl Sampler {
             seed,
             batches,
             steps: 0,
+            recording: false,
         })
     }
 
@@ -121,6 +124,11 @@ impl Sampler {
     #[must_use]
     pub fn lanes(&self) -> usize {
         self.worlds.lanes()
+    }
+
+    /// Keeps what the networks compute, for a learner that will have the same weights.
+    pub fn record(&mut self) {
+        self.recording = true;
     }
 
     /// Puts every lane somewhere else in its first episode: of all `total` lanes of the run, each starts after so many
@@ -185,6 +193,7 @@ impl Sampler {
         let groups = self.worlds.groups();
         part.prepare(&self.shape, steps, self.lanes(), groups, self.constraints.len());
         part.initial_state.clone_from(&self.state);
+        part.recordings.resize_with(if self.recording { self.shape.networks.len() } else { 0 }, Default::default);
         for step in 0..steps {
             let published = Arc::clone(&newest.read().unwrap_or_else(|poisoned| poisoned.into_inner()));
             self.actor.load(&published);
@@ -215,6 +224,7 @@ impl Sampler {
                 &mut self.after_state,
                 lanes,
                 &mut part.outputs[rows.start * outputs..rows.end * outputs],
+                None,
             );
         }
         Ok(())
@@ -238,7 +248,8 @@ impl Sampler {
         self.write_extra(part, step, lanes.clone());
         let out = &mut part.outputs[rows.start * outputs..rows.end * outputs];
         let extra = &part.extra[rows.start * extra..rows.end * extra];
-        self.actor.act(&batch.observations, extra, &mut self.state, lanes.clone(), out);
+        let notes = Notes { recordings: &mut part.recordings, steps: part.steps, all_lanes: part.lanes, step };
+        self.actor.act(&batch.observations, extra, &mut self.state, lanes.clone(), out, Some(notes));
         let action = &self.shape.action;
         let (count, deltas) = (action.sizes.len(), action.deltas);
         for (index, lane) in lanes.clone().enumerate() {
@@ -287,7 +298,7 @@ impl Sampler {
             }
             let seen = [Shaping::seen(self.safety[lane])];
             let extra = &seen[..self.shape.extra_inputs()];
-            self.actor.act(observation, extra, &mut self.after_state, 0..1, &mut row);
+            self.actor.act(observation, extra, &mut self.after_state, 0..1, &mut row, None);
             part.cut_off.push((first_row + lane, row));
         }
         for lane in lanes {
