@@ -175,7 +175,7 @@ impl WallShader<'_> {
                 _ => column.draw_any_height(pixels.zip(rows)),
             }
             if DEPTH {
-                let depth = frame.capped_depth(distance);
+                let depth = frame.depths.wall(distance);
                 frame.depth[lines].chunks_exact_mut(frame.width).for_each(|line| line[x] = depth);
             }
             // The class of a wall is what the frame was cleared to.
