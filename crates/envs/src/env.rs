@@ -158,6 +158,12 @@ impl Env {
         &self.blueprint.options
     }
 
+    /// Seed of the running episode.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
     /// The action space.
     #[must_use]
     pub fn action_space(&self) -> &ActionSpace {
@@ -168,7 +174,7 @@ impl Env {
     #[must_use]
     pub fn left_out(&self) -> Option<String> {
         let parts = &self.blueprint.left_out;
-        (!parts.is_empty()).then(|| format!("map of {}: left out: {}", self.id(), parts.join(", ")))
+        (!parts.is_empty()).then(|| format!("{}: left out: {}", self.blueprint.template.world.map.name, parts.join(", ")))
     }
 
     /// The named parts of the cost.
