@@ -114,8 +114,11 @@ impl BarState {
     }
 }
 
-/// Columns of the art that each part takes: ammunition, health, arms, face, armour, keys, stock.
-const PARTS: [[usize; 2]; 7] = [[0, 48], [48, 104], [104, 143], [143, 179], [179, 236], [236, 249], [249, 320]];
+/// Columns of the art that each part takes: ammunition, health, arms, face, armour, keys, stock. They end where nothing is
+/// drawn, as a percent sign may be one column wider than its field.
+const PARTS: [[usize; 2]; 7] = [[0, 48], [48, 108], [108, 143], [143, 179], [179, 238], [238, 249], [249, 320]];
+/// Column of the panel of arms.
+const ARMS: i32 = 104;
 /// Right ends of the big numbers, in art columns, and their row.
 const AMMO_END: i32 = 44;
 const HEALTH_END: i32 = 90;
@@ -136,7 +139,7 @@ impl StatusBar {
         let (width, rows) = (view.width(), view.bar_rows.len());
         let mut bar = StatusBar { background: vec![0; width * rows], shown: None };
         let mut background = std::mem::take(&mut bar.background);
-        for (picture, x) in [(&art.bar, 0), (&art.arms, PARTS[2][0] as i32)] {
+        for (picture, x) in [(&art.bar, 0), (&art.arms, ARMS)] {
             draw(&mut background, view, picture.as_ref(), x, 0);
         }
         bar.background = background;

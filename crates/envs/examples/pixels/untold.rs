@@ -3,12 +3,15 @@
 use crate::dump::{Moment, Pictures};
 use crate::pose::{Posed, Stage};
 use hasard_engine::assets::sprite_index;
+use hasard_engine::map::SectorId;
 use hasard_engine::math::Fixed;
 use hasard_engine::render::Buffers;
 use hasard_engine::world::{Face, Phase, PlayerSprite, Weapon, World, animation, is_timed};
 
-/// Tics between the frames of animated textures.
-const FRAME_TICS: u32 = 8;
+/// Tics within which every animated texture has shown each of its frames.
+const CLOCK_TICS: u32 = 32;
+/// Sectors of Remedy Rush that its scripts darken by turns, by tag.
+const DARKENED_TAGS: std::ops::RangeInclusive<i32> = 101..=118;
 /// A power-up with more tics left than this does not blink.
 const LASTING: u32 = 1000;
 /// Where the weapon rests, 16.16 of the 320x200 screen.
@@ -42,11 +45,15 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
     try_all(posed, (0..=2).map(spent).collect(), &bar);
     let muzzle = |light| -> Change { Box::new(move |world: &mut World| world.players[0].extra_light = light) };
     try_all(posed, (0..=2).map(muzzle).collect(), &world);
-    let clock = |frames: u32| -> Change {
-        let tic = moment.tic + FRAME_TICS * frames;
+    if scenario == "remedy_rush" {
+        let variants = darkness(&posed.world);
+        try_all(posed, variants, &world);
+    }
+    let clock = |tics: u32| -> Change {
+        let tic = moment.tic + tics;
         Box::new(move |world: &mut World| world.tic = tic)
     };
-    try_all(posed, (0..8).map(clock).collect(), &world);
+    try_all(posed, (0..CLOCK_TICS).map(clock).collect(), &world);
     if scenario == "collateral_damage" {
         try_all(posed, launcher(), &everywhere);
     }
@@ -76,6 +83,22 @@ fn flash(bonus: u8, damage: u8, suit: u32) -> Change {
         let player = &mut world.players[0];
         (player.bonus_count, player.damage_count, player.rad_suit_tics) = (bonus, damage, suit);
     })
+}
+
+/// Light, darkness, and either with goggles.
+fn darkness(world: &World) -> Vec<Change> {
+    let sectors = (0..).zip(&world.map.sectors).filter(|(_, sector)| DARKENED_TAGS.contains(&sector.tag));
+    let lit: Vec<_> = sectors.map(|(id, _)| (SectorId(id), world.sector(SectorId(id)).light)).collect();
+    let variant = |dark: bool, goggles: bool| -> Change {
+        let lit = lit.clone();
+        Box::new(move |world: &mut World| {
+            for &(id, light) in &lit {
+                world.sector_mut(id).light = if dark { 0 } else { light };
+            }
+            world.players[0].infrared_tics = if goggles { LASTING } else { 0 };
+        })
+    };
+    vec![variant(false, false), variant(true, false), variant(false, true), variant(true, true)]
 }
 
 /// The rocket launcher at rest and every frame of its shot.
