@@ -252,10 +252,16 @@ pub struct BenchArgs {
     /// With --learn: the algorithm
     #[arg(long, default_value = "PPOLag", requires = "learn")]
     pub algo: String,
+    /// With --learn: the preset, but for its epochs and minibatches
+    #[arg(long, default_value = "paper", requires = "learn")]
+    pub preset: String,
+    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512 chooses others
+    #[arg(long, requires = "learn")]
+    pub portable: bool,
     /// Seed
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Print one JSON object
+    /// Print JSON objects, one a line
     #[arg(long)]
     pub json: bool,
     /// How to make the environment
@@ -388,9 +394,13 @@ pub struct TrainArgs {
     /// Sampling and learning run side by side; the default on a graphics card
     #[arg(long = "async", conflicts_with = "sync")]
     pub asynchronous: bool,
-    /// Threads; all cores if absent
+    /// Threads; all cores if absent. Results do not depend on their number
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
+    /// Plain kernels: the same bits on every machine, some six times slower. HASARD_SIMD=plain|avx2|avx512 forces a family
+    /// without leaving a trace in the settings
+    #[arg(long)]
+    pub portable: bool,
     /// Worlds
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub envs: Option<u32>,

@@ -9,6 +9,7 @@ use hasard_engine::assets::Assets;
 use hasard_engine::map::Map;
 use hasard_engine::math::Rng;
 use hasard_engine::render::{Buffers, FrameSize, RenderOptions, Renderer, Scene, TopDown, View};
+use hasard_engine::simd::{Simd, SimdError};
 use hasard_engine::world::{Command, World};
 use std::sync::Arc;
 
@@ -37,6 +38,11 @@ impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
         let id: EnvId = id.parse()?;
         options.check()?;
+        Simd::chosen().map_err(|error| EnvError::Option {
+            option: "the variable HASARD_SIMD",
+            given: error.given,
+            allowed: SimdError::allowed(),
+        })?;
         let (built_in, textures) = scenarios::map_source(id, options.rules, options.hard);
         let file = match (&options.map, &options.maps) {
             (None, Some(maps)) => Some(maps.level(id, options.rules, options.hard)?),
