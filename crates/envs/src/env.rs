@@ -158,6 +158,12 @@ impl Env {
         &self.blueprint.options
     }
 
+    /// Seed of the running episode.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
     /// The action space.
     #[must_use]
     pub fn action_space(&self) -> &ActionSpace {

@@ -1,6 +1,7 @@
 //! Where a frame is seen from.
 
 use super::View;
+use super::horizon;
 use super::palette::power_shows;
 use crate::math::Angle;
 use crate::world::World;
@@ -21,12 +22,17 @@ pub(super) struct Camera {
     pub angle: Angle,
     /// Cosine and sine of the facing, 16.16.
     pub forward: [i64; 2],
-    /// First base row below the horizon.
+    /// The horizon in base rows, 16.16.
     pub horizon: i64,
-    /// World direction of the ray through the middle of base column 0, one unit forward; 32 fractional bits.
+    /// The ray through the left edge of base column 0: what it gains of the world for a unit of distance forward; 32
+    /// fractional bits.
     pub ray: [i64; 2],
-    /// What the direction changes by with each base column.
+    /// Its change a base column.
     pub ray_step: [i64; 2],
+    /// The same for floors and ceilings, through the right edge of base column 0.
+    pub plane_ray: [i64; 2],
+    /// Its change a base column.
+    pub plane_step: [i64; 2],
     /// Muzzle light, 0..=2.
     pub extra_light: i32,
     /// Light amplification: everything is drawn with this light table.
@@ -42,18 +48,26 @@ impl Camera {
         let forward = [i64::from(angle.cos().0), i64::from(angle.sin().0)];
         let right = [forward[1], -forward[0]];
         let width = i64::from(view.base_width);
-        // Half the width is one focal length: the outermost rays are 45 degrees off.
-        let ray_step = right.map(|r| (r << 17) / width);
-        let ray = [0, 1].map(|i| (forward[i] << 16) - ray_step[i] * (width - 1) / 2);
+        // Half the width is one focal length: the outermost rays are 45 degrees off. Floors are laid out along the facing
+        // as the sine table has it. Distances are scalar products with the same vector, which is up to 0.04 % short as
+        // that table's second quarter lies one entry early: who has gone a unit forward is as many times that farther.
+        let plane_step = right.map(|r| (r << 17) / width);
+        let plane_ray = [0, 1].map(|i| (forward[i] << 16) - plane_step[i] * (width - 2) / 2);
+        let square = forward[0] * forward[0] + forward[1] * forward[1];
+        let unit = |part: i64| (part << 46) / (square >> 2);
+        let ray_step = right.map(|r| (unit(r) << 1) / width);
+        let ray = [0, 1].map(|i| unit(forward[i]) - ray_step[i] * width / 2);
         Camera {
             x: i64::from(x),
             y: i64::from(y),
             z: i64::from(player.view_z.0),
             angle,
             forward,
-            horizon: i64::from(view.horizon(player.pitch)),
+            horizon: horizon::at_pitch(view, player.pitch),
             ray,
             ray_step,
+            plane_ray,
+            plane_step,
             extra_light: i32::from(player.extra_light),
             fixed_table: power_shows(player.infrared_tics).then_some(AMPLIFIED_TABLE),
         }

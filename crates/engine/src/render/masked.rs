@@ -123,9 +123,9 @@ impl Masked<'_> {
         let top = hung_from.min(i64::from(ceiling.0)) - self.camera.z;
         let bottom = (hung_from - i64::from(height.0)).max(i64::from(floor.0)) - self.camera.z;
         let light = Light::new(self.camera, i32::from(front.light) + face.contrast);
-        let along = TextureLine::new(self.camera, seg, face);
+        let along = TextureLine::new(self.camera, face);
         let (upper, lower) =
-            (silhouette.line.edge(self.camera, self.view, top), silhouette.line.edge(self.camera, self.view, bottom));
+            (silhouette.ends.edge(self.camera, self.view, top), silhouette.ends.edge(self.camera, self.view, bottom));
         let first_rows = &self.view.first_row;
         for x in first..end {
             let row_index = silhouette.rows + x - silhouette.first;
@@ -139,12 +139,12 @@ impl Masked<'_> {
             }
             let column = i64::from(column);
             let distance = silhouette.line.distance_at(column);
-            let nearness = (silhouette.line.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+            let nearness = (silhouette.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let table = &scene.assets.light_tables[light.table(nearness)];
             let u = along.at(column, distance) >> 16;
             let texels = picture.column(u.rem_euclid(i64::from(picture.width)) as u32);
             let step = (distance * self.view.inverse_focal_y) >> 16;
-            let at = ((hung_from - self.camera.z) << 16) + step / 2 - step * self.camera.horizon;
+            let at = ((hung_from - self.camera.z) << 16) + step - ((step * self.camera.horizon) >> 16);
             let depth = self.frame.capped_depth(distance);
             for row in rows.start as usize..rows.end as usize {
                 let v = (at + step * i64::from(self.view.rows[row])) >> 32;

@@ -12,6 +12,7 @@ mod convert;
 #[cfg(target_arch = "x86_64")]
 mod convert_wide;
 mod frame;
+mod horizon;
 mod label;
 mod light;
 mod look;

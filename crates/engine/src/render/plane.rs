@@ -4,6 +4,7 @@ use super::View;
 use super::camera::Camera;
 use super::depth_level;
 use super::frame::{Frame, class};
+use super::horizon::RowSlopes;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::FlatPicture;
 use super::row_walk::RowWalk;
@@ -209,26 +210,31 @@ pub(super) struct PlaneShader<'a> {
     tables: &'a [[u8; 256]; 32],
     /// Distance of the plane from the eye's height, 16.16, positive.
     height: i64,
-    /// A ceiling: rows are counted up from the horizon.
-    above: bool,
+    slopes: &'a RowSlopes,
     light: Light,
-    /// [`ONE_TABLE_DISTANCE`] over the distance of half a row, 40 fractional bits.
+    /// [`ONE_TABLE_DISTANCE`] over the distance in the first row from the horizon, 32 fractional bits.
     nearness: i64,
     class: u16,
 }
 
 impl<'a> PlaneShader<'a> {
     /// For a plane at `height` in a sector of light `light`.
-    pub fn new(camera: &'a Camera, view: &'a View, tables: &'a [[u8; 256]; 32], key: PlaneKey) -> PlaneShader<'a> {
+    pub fn new(
+        camera: &'a Camera,
+        view: &'a View,
+        slopes: &'a RowSlopes,
+        tables: &'a [[u8; 256]; 32],
+        key: PlaneKey,
+    ) -> PlaneShader<'a> {
         let above = i64::from(key.height.0) > camera.z;
         let height = (i64::from(key.height.0) - camera.z).abs().max(256);
-        let nearness = ((i128::from(ONE_TABLE_DISTANCE) << 72) / i128::from(2 * height * view.focal_y)) as i64;
+        let nearness = ((i128::from(ONE_TABLE_DISTANCE) << 64) / i128::from(height * view.focal_y)) as i64;
         PlaneShader {
             camera,
             view,
             tables,
             height,
-            above,
+            slopes,
             light: Light::new(camera, i32::from(key.light)),
             nearness,
             class: if above { class::CEILING } else { class::FLOOR },
@@ -239,10 +245,8 @@ impl<'a> PlaneShader<'a> {
     #[inline]
     pub fn span<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, flat: &FlatPicture, span: Span) {
         let (row, first, end) = (usize::from(span.row), usize::from(span.first), usize::from(span.end));
-        let below = i64::from(self.view.rows[row]) - self.camera.horizon;
-        let away = if self.above { -1 - below } else { below }.max(0);
-        let distance = (self.height * self.view.row_slopes[away as usize]) >> 16;
-        let table = &self.tables[self.light.table((self.nearness * (2 * away + 1)) >> 24)];
+        let distance = (self.height * self.slopes.distances[row]) >> 16;
+        let table = &self.tables[self.light.table((self.nearness * self.slopes.rows[row]) >> 32)];
         let start = row * frame.width;
         let pixels = &mut frame.colour[start + first..start + end];
         let columns = &self.view.columns[first..end];
@@ -270,13 +274,13 @@ impl<'a> PlaneShader<'a> {
         let camera = self.camera;
         // 48 fractional bits, of which the fraction of the side's 32 are kept; whole sides wrap away.
         let part = |position: i64| (position >> (16 + BITS)) as u32;
-        let u = (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.ray[0]));
-        let v = (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.ray[1]));
+        let u = (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.plane_ray[0]));
+        let v = (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.plane_ray[1]));
         RowWalk {
             u: part(u),
             v: part(v.wrapping_neg()),
-            u_step: part(distance.wrapping_mul(camera.ray_step[0])),
-            v_step: part(distance.wrapping_mul(camera.ray_step[1]).wrapping_neg()),
+            u_step: part(distance.wrapping_mul(camera.plane_step[0])),
+            v_step: part(distance.wrapping_mul(camera.plane_step[1]).wrapping_neg()),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::camera::Camera;
 use super::frame::{Frame, class};
+use super::horizon::RowSlopes;
 use super::label::{Label, Labels};
 use super::look::Looks;
 use super::masked::Masked;
@@ -38,6 +39,7 @@ pub struct Renderer {
     span_starts: Vec<u16>,
     /// Spans of the plane at hand.
     spans: Vec<Span>,
+    slopes: RowSlopes,
     /// Start of each column's texels in the sky's picture.
     sky_columns: Vec<u32>,
     sprites: Vec<SeenSprite>,
@@ -89,6 +91,7 @@ impl Renderer {
             pictures: Vec::new(),
             span_starts: vec![0; view.view_rows + 1],
             spans: Vec::new(),
+            slopes: RowSlopes::default(),
             sky_columns: vec![0; width],
             sprites: Vec::new(),
             sprite_rows: [Vec::new(), Vec::new()],
@@ -126,6 +129,7 @@ impl Renderer {
 
     fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, world: &World, player: usize) {
         let camera = Camera::of_player(world, player, &self.view);
+        self.slopes.update(&self.view, camera.horizon);
         self.animate(world.tic);
         self.frame.clear::<DEPTH, CLASS>(self.view.view_rows, 0);
         self.openings.reset(self.view.width(), self.view.view_rows);
@@ -216,7 +220,7 @@ impl Renderer {
                     shader.span::<DEPTH, CLASS>(&mut self.frame, &self.sky_columns, span);
                 }
             } else {
-                let shader = PlaneShader::new(camera, &self.view, tables, plane.key);
+                let shader = PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key);
                 let picture = self.pictures[usize::from(plane.key.texture.0)];
                 let flat = &self.scene.textures.flats[picture as usize];
                 for &span in spans {

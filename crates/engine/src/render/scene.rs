@@ -13,6 +13,9 @@ const SKY_NAMES: [TextureName; 2] = [TextureName::new("SKY1"), TextureName::new(
 /// The sector of the other side of a one-sided line.
 pub(super) const NO_SECTOR: u32 = u32::MAX;
 
+/// Light that walls running north-south have more and walls running east-west less than their sector.
+const CONTRAST: i32 = 16;
+
 /// A seg as the renderer wants it.
 #[derive(Clone, Debug)]
 pub(super) struct SceneSeg {
@@ -43,7 +46,14 @@ impl SceneSeg {
 /// One side of a line: how its textures lie.
 #[derive(Clone, Debug)]
 pub(super) struct Face {
-    /// Horizontal texture position of the map's origin projected on the line; 44 fractional bits.
+    /// Direction of growing horizontal texture positions, 28 fractional bits, by as much longer than a unit as the
+    /// texture is squeezed: a line is as many texels long as it has whole map units, to the nearest.
+    pub along: [i32; 2],
+    /// Position of the map's origin along the line, 44 fractional bits.
+    pub origin: i64,
+    /// Texels of the line, 16.16.
+    pub texels: i64,
+    /// Texture position of the line's start, 16.16.
     pub u_offset: i64,
     /// Moves textures up, 16.16 map units.
     pub v_offset: i64,
@@ -109,19 +119,21 @@ impl Scene {
         for line in &map.lines {
             let (dx, dy) = (i64::from(line.dx.0), i64::from(line.dy.0));
             let contrast = if dx == 0 {
-                8
+                CONTRAST
             } else if dy == 0 {
-                -8
+                -CONTRAST
             } else {
                 0
             };
-            let unit = unit_vector(dx, dy);
-            let sides = [Some((line.front, line.v1, unit)), line.back.map(|back| (back, line.v2, [-unit[0], -unit[1]]))];
+            let (texels, along) = texels_along(dx, dy);
+            let sides = [Some((line.front, line.v1, along)), line.back.map(|back| (back, line.v2, [-along[0], -along[1]]))];
             for (id, start, along) in sides.into_iter().flatten() {
                 let side: &Side = &map.sides[id.0 as usize];
-                let start = i64::from(start.x.0) * along[0] + i64::from(start.y.0) * along[1];
                 faces[id.0 as usize] = Some(Face {
-                    u_offset: (i64::from(side.offset_x.0) << 28) - start,
+                    along: along.map(|part| part as i32),
+                    origin: -(i64::from(start.x.0) * along[0] + i64::from(start.y.0) * along[1]),
+                    texels: texels << 16,
+                    u_offset: i64::from(side.offset_x.0),
                     v_offset: i64::from(side.offset_y.0),
                     top: side.top,
                     middle: side.middle,
@@ -133,6 +145,9 @@ impl Scene {
             }
         }
         let bare = Face {
+            along: [0; 2],
+            origin: 0,
+            texels: 1 << 16,
             u_offset: 0,
             v_offset: 0,
             top: None,
@@ -207,14 +222,28 @@ fn scene_seg(map: &Map, seg: &Seg) -> SceneSeg {
 
 /// The direction of a vector with 28 fractional bits.
 fn unit_vector(dx: i64, dy: i64) -> [i64; 2] {
-    let square = u128::from(dx.unsigned_abs()).pow(2) + u128::from(dy.unsigned_abs()).pow(2);
     // 8 more bits than the vector's own, so that rounding the length does not show.
-    let length = (square << 16).isqrt().max(1) as i128;
+    let length = (square(dx, dy) << 16).isqrt().max(1) as i128;
     let part = |d: i64| {
         let scaled = i128::from(d) << 36;
         ((scaled + scaled.signum() * length / 2) / length) as i64
     };
     [part(dx), part(dy)]
+}
+
+fn square(dx: i64, dy: i64) -> u128 {
+    u128::from(dx.unsigned_abs()).pow(2) + u128::from(dy.unsigned_abs()).pow(2)
+}
+
+/// How many texels a line is long, and what a texture position on it gains with each map unit of the world, 28
+/// fractional bits.
+fn texels_along(dx: i64, dy: i64) -> (i64, [i64; 2]) {
+    let square = square(dx, dy).max(1);
+    let length = square.isqrt() as i64;
+    // At most twice as many texels as units, for lines that are shorter than one.
+    let texels = ((length + 0x8000) >> 16).max(1);
+    let stretched = (i128::from(texels) << 44).min(i128::from(length) << 29);
+    (texels, [dx, dy].map(|d| (i128::from(d) * stretched / square as i128) as i64))
 }
 
 fn sprite_pictures(assets: &Assets) -> Vec<Option<MaskedPicture>> {

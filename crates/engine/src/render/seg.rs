@@ -6,7 +6,7 @@ use super::plane::PlaneKey;
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
 use super::walk::Walk;
-use super::wall::{Edge, SeenLine, TextureLine, WallShader};
+use super::wall::{END_BITS, Edge, SeenLine, TextureLine, WallShader};
 use crate::map::TextureId;
 use crate::math::Fixed;
 
@@ -15,12 +15,15 @@ struct SeenSeg<'a> {
     index: u32,
     seg: &'a SceneSeg,
     face: &'a Face,
+    /// Its line.
     line: SeenLine,
+    /// Its line as drawn between the whole columns of its ends.
+    ends: SeenLine,
+    /// Inverse distances of its farther and its nearer end.
+    inverses: [i64; 2],
     /// Frame columns.
     first: usize,
     end: usize,
-    /// First and last base column.
-    base_ends: [i64; 2],
 }
 
 /// The columns of a seg that faces the eye.
@@ -28,7 +31,9 @@ struct SeenColumns {
     /// Frame columns.
     first: usize,
     end: usize,
-    /// First and last base column: what depends on these is the same in every reduction of a frame.
+    /// Where its ends are exactly, base columns with [`END_BITS`] fractional bits.
+    positions: [i64; 2],
+    /// First base column and one past the last: what depends on these is the same in every reduction of a frame.
     base_ends: [i64; 2],
 }
 
@@ -48,10 +53,13 @@ impl Walk<'_> {
     #[inline]
     pub fn seg<const DEPTH: bool>(&mut self, index: u32, away: i64) {
         let seg = &self.scene.segs[index as usize];
-        let Some(SeenColumns { first, end, base_ends }) = self.columns(seg) else { return };
+        let Some(SeenColumns { first, end, positions, base_ends }) = self.columns(seg) else { return };
         let face = &self.scene.faces[seg.face as usize];
         let line = SeenLine::new(self.camera, seg, away);
-        let seen = SeenSeg { index, seg, face, line, first, end, base_ends };
+        let ends = line.between(positions, base_ends);
+        let [one, other] = base_ends.map(|column| ends.inverse_at(column));
+        let inverses = [one.min(other), one.max(other)];
+        let seen = SeenSeg { index, seg, face, line, ends, inverses, first, end };
         let front = &self.looks.of(self.world, seg.front);
         if seg.back == NO_SECTOR {
             self.solid::<DEPTH>(&seen, front);
@@ -75,17 +83,22 @@ impl Walk<'_> {
             return None;
         }
         let width = i64::from(view.base_width);
-        let column = |left: i64, right: i64| {
-            // The first column whose middle is right of the point.
-            let position = ((left * (width << 16)) as u64 / (left + right).max(1) as u64) as i64;
-            ((position + 0x7FFF) >> 16) as usize
-        };
-        let first = if left1 < 0 { 0 } else { column(left1, right1) };
-        let end = if right2 < 0 { width as usize } else { column(left2, right2) };
-        let base_ends = [first as i64, end as i64 - 1];
-        let first = usize::from(*view.first_column.get(first)?);
-        let end = usize::from(*view.first_column.get(end)?);
-        (first < end && self.openings.any_open(first, end)).then_some(SeenColumns { first, end, base_ends })
+        let exact = |left: i64, right: i64| ((left * (width << END_BITS)) as u64 / (left + right).max(1) as u64) as i64;
+        // A column is the seg's from the one in which it begins: left of the middle that one counts, right of it not.
+        let column = |position: i64| (position >> END_BITS) + i64::from(2 * position >= width << END_BITS);
+        let (mut positions, mut base_ends) = ([0, width << END_BITS], [0, width]);
+        if left1 >= 0 {
+            positions[0] = exact(left1, right1);
+            base_ends[0] = column(positions[0]);
+        }
+        if right2 >= 0 {
+            positions[1] = exact(left2, right2);
+            base_ends[1] = column(positions[1]).min(width);
+        }
+        let first = usize::from(*view.first_column.get(base_ends[0] as usize)?);
+        let end = usize::from(view.first_column[base_ends[1] as usize]);
+        let seen = first < end && self.openings.any_open(first, end);
+        seen.then_some(SeenColumns { first, end, positions, base_ends })
     }
 
     /// A wall without another side.
@@ -247,7 +260,7 @@ impl Walk<'_> {
     }
 
     fn edge(&self, seen: &SeenSeg, height: Fixed) -> Edge {
-        seen.line.edge(self.camera, self.view, i64::from(height.0) - self.camera.z)
+        seen.ends.edge(self.camera, self.view, i64::from(height.0) - self.camera.z)
     }
 
     /// Draws the wall between the upper and the lower scratch.
@@ -258,7 +271,8 @@ impl Walk<'_> {
             view: self.view,
             tables: &self.scene.assets.light_tables,
             line: &seen.line,
-            texture: TextureLine::new(self.camera, seen.seg, seen.face),
+            ends: &seen.ends,
+            texture: TextureLine::new(self.camera, seen.face),
             picture: &self.scene.textures.walls[self.picture(texture)],
             light: Light::new(self.camera, i32::from(front.light) + seen.face.contrast),
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
@@ -269,13 +283,13 @@ impl Walk<'_> {
 
     fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {
         let range = seen.first..seen.end;
-        let ends = seen.base_ends.map(|column| seen.line.inverse_at(column));
         let silhouette = Silhouette {
             first: seen.first,
             end: seen.end,
             line: seen.line,
+            ends: seen.ends,
             seg: seen.index,
-            inverses: [ends[0].min(ends[1]), ends[0].max(ends[1])],
+            inverses: seen.inverses,
             floor,
             ceiling,
             solid,

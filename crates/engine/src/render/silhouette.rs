@@ -12,6 +12,8 @@ pub(super) struct Silhouette {
     pub end: usize,
     /// Its line on the screen.
     pub line: SeenLine,
+    /// The same as drawn between the whole columns of its ends.
+    pub ends: SeenLine,
     /// Index of the seg.
     pub seg: u32,
     /// Inverse distances of the farther and the nearer end.

@@ -8,6 +8,7 @@ use super::plane::Span;
 
 /// Height of the cylinder in units of 1/200 screen height, whatever the picture's: enough to look all the way up.
 const SKY_UNITS: i64 = 228;
+const UNITS_A_SCREEN: i64 = 200;
 /// Units of it above the horizon.
 const UNITS_ABOVE: i64 = 200;
 
@@ -32,11 +33,11 @@ impl SkyShader<'_> {
     /// Draws the frame columns `first..end` of a frame row.
     pub fn span<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, starts: &[u32], span: Span) {
         let (row, first, end) = (usize::from(span.row), usize::from(span.first), usize::from(span.end));
-        let below = 2 * (i64::from(self.view.rows[row]) - self.camera.horizon) + 1;
-        // The screen is 0.75 of its width high, whatever part of it is shown.
-        let units = below * 400 / (3 * i64::from(self.view.base_width)) + UNITS_ABOVE;
         let height = i64::from(self.picture.height);
-        let v = (units * height / SKY_UNITS).clamp(0, height - 1) as usize;
+        // From the lower edge of the row.
+        let below = (i64::from(self.view.rows[row] + 1) << 16) - self.camera.horizon;
+        let units = below * UNITS_A_SCREEN / i64::from(self.view.base_rows()) + (UNITS_ABOVE << 16);
+        let v = ((units * height / SKY_UNITS) >> 16).rem_euclid(height) as usize;
         let start = row * frame.width;
         let pixels = frame.colour[start + first..start + end].iter_mut();
         for (pixel, &column) in pixels.zip(&starts[first..end]) {

@@ -105,7 +105,7 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
     let top = actor.z + Fixed::from_int(picture.offset_y);
     let v_step = (distance * view.inverse_focal_y) >> (48 - TEXEL_BITS);
     let above = i64::from(top.0) - camera.z;
-    let v = (above << (TEXEL_BITS - 16)) + v_step / 2 - v_step * camera.horizon;
+    let v = (above << (TEXEL_BITS - 16)) + v_step / 2 - v_step * (camera.horizon >> 16);
     let row = |texel: u32| {
         let base = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
         view.first_row[base.clamp(0, i64::from(view.base_view_rows)) as usize]

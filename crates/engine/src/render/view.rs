@@ -12,11 +12,11 @@ pub(super) const BAR_ART_HEIGHT: u32 = 32;
 /// Width of the status bar's art.
 pub(super) const BAR_ART_WIDTH: u32 = 320;
 
+/// A fine angle, of which there are 8192 a turn.
+const FINE: u32 = 1 << 19;
+
 /// Columns that rows are drawn in steps of: the base columns of a chunk repeat in the next one, a constant to the right.
 pub(super) const CHUNK: usize = 8;
-
-/// Steepest pitch that is drawn, beyond what a player can look: bounds the table of row slopes.
-const PITCH_LIMIT_DEGREES: i32 = 60;
 
 /// The tables of one frame size. Immutable; shared by every renderer of that size.
 #[derive(Clone, Debug)]
@@ -43,8 +43,6 @@ pub struct View {
     pub(super) focal_y: i64,
     /// `2^32 / vertical focal length`.
     pub(super) inverse_focal_y: i64,
-    /// Distance of a floor one unit below the eye, in the row whose centre is n + 1/2 rows below the horizon; 16.16.
-    pub(super) row_slopes: Box<[i64]>,
     /// Direction of each frame column relative to the view direction, for the sky.
     pub(super) column_angles: Box<[Angle]>,
     /// Column of the status bar's art in each frame column.
@@ -80,18 +78,7 @@ impl View {
         let first_row = (0..=base_view_rows).map(|r| rows.partition_point(|&row| row < r) as i16).collect();
 
         let focal_y = i64::from(width) * 6 * 65536 / 10;
-        let steepest = Angle::from_turn_65536(PITCH_LIMIT_DEGREES * 65536 / 360).tan();
-        let farthest = i64::from(base_view_rows) + ((focal_y * i64::from(steepest.0)) >> 32) + 2;
-        let row_slopes = (0..farthest).map(|n| 2 * focal_y / (2 * n + 1)).collect();
-
-        let column_angles = columns
-            .iter()
-            .map(|&c| {
-                // To the left is positive. Half a base column is the unit.
-                let left = width as i32 - 2 * c as i32 - 1;
-                Angle::of_vector(Fixed::from_int(width as i32), Fixed::from_int(left))
-            })
-            .collect();
+        let column_angles = columns.iter().map(|&column| column_angle(width, column)).collect();
         let bar_height = height - base_view_rows;
         let bar_columns: Box<[u16]> = columns.iter().map(|&c| ((2 * c + 1) * BAR_ART_WIDTH / (2 * width)) as u16).collect();
         let bar_rows: Box<[u16]> = all_rows[view_rows..]
@@ -113,7 +100,6 @@ impl View {
             first_row,
             focal_y,
             inverse_focal_y: (1 << 48) / focal_y,
-            row_slopes,
             column_angles,
             bar_columns,
             bar_rows,
@@ -141,15 +127,14 @@ impl View {
     pub(super) fn width(&self) -> usize {
         usize::from(self.size.width)
     }
+}
 
-    /// The base row of the horizon at a pitch (negative looks up): a shear, so that verticals stay vertical.
-    pub(super) fn horizon(&self, pitch: i32) -> i32 {
-        let limit = PITCH_LIMIT_DEGREES * 65536 / 360;
-        let pitch = (pitch >> 16).clamp(1 - limit, limit - 1);
-        let tangent = i64::from(Angle::from_turn_65536(pitch).tan().0);
-        let shift = (self.focal_y * tangent + (1 << 31)) >> 32;
-        (self.base_view_rows / 2) as i32 - shift as i32
-    }
+/// Direction of the left edge of a base column relative to the view direction, to the next fine angle to the left.
+fn column_angle(width: u32, column: u32) -> Angle {
+    // To the left is positive. Half a base column is the unit.
+    let left = width as i32 - 2 * column as i32;
+    let exact = Angle::of_vector(Fixed::from_int(width as i32), Fixed::from_int(left));
+    Angle(exact.0.wrapping_add(FINE - 1) & !(FINE - 1))
 }
 
 /// Rows of the status bar: its art is stretched with the screen, by 1.2 more vertically, but never over more than
@@ -168,20 +153,18 @@ mod tests {
 
     #[test]
     fn the_bar_takes_the_measured_rows() {
-        for (width, height, view_rows, horizon) in
-            [(160, 120, 100, 50), (320, 240, 208, 104), (640, 480, 403, 201), (1280, 1024, 870, 435)]
-        {
-            let view = view(width, height);
-            assert_eq!((view.view_rows, view.horizon(0)), (view_rows, horizon), "{width}x{height}");
+        for (width, height, view_rows) in [(160, 120, 100), (320, 240, 208), (640, 480, 403), (1280, 1024, 870)] {
+            assert_eq!(view(width, height).view_rows, view_rows, "{width}x{height}");
         }
     }
 
     #[test]
-    fn pitch_shears_by_the_measured_rows() {
+    fn the_sky_turns_in_fine_angles() {
         let view = view(160, 120);
-        let degrees = |d: f64| Angle::from_degrees(d).0 as i32;
-        assert_eq!(view.horizon(degrees(-32.0)), 50 + 60);
-        assert_eq!(view.horizon(degrees(56.0)), 50 - 142);
+        let angles: Vec<i32> = view.column_angles.iter().map(|angle| angle.0 as i32).collect();
+        assert_eq!((angles[0], angles[80]), (1 << 29, 0), "45 degrees to the left, and straight ahead");
+        // Column 79's left edge is atan(1/80) = 16.296 fine angles to the left, column 81's as many to the right.
+        assert_eq!((angles[79], angles[81]), (17 << 19, -(16 << 19)));
     }
 
     #[test]
@@ -191,18 +174,6 @@ mod tests {
         assert_eq!(small.rows[..6], [0, 1, 3, 5, 6, 8]);
         assert_eq!(small.base_view_rows, large.base_view_rows);
         assert_eq!((small.view_rows, small.bar_rows.len()), (60, 12));
-    }
-
-    #[test]
-    fn every_row_of_every_pitch_has_a_slope() {
-        for (width, height) in [(64, 48), (1920, 1080), (64, 1080), (1920, 48), (128, 72)] {
-            let view = view(width, height);
-            for pitch in [i32::MIN, -(1 << 29), 0, 1 << 29, i32::MAX] {
-                let horizon = view.horizon(pitch);
-                let below = view.base_view_rows as i32 - 1 - horizon;
-                assert!(below < view.row_slopes.len() as i32 && horizon <= view.row_slopes.len() as i32);
-            }
-        }
     }
 
     #[test]

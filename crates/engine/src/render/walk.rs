@@ -146,9 +146,9 @@ impl Walk<'_> {
     /// sectors, so that those just out of view are entered too.
     fn wedge(&self, (first, end): (usize, usize)) -> [WedgeSide; 2] {
         let camera = self.camera;
-        let ray = |half_columns: i64| [0, 1].map(|axis| (camera.ray[axis] + camera.ray_step[axis] * half_columns / 2) >> 16);
-        let left = ray(2 * (i64::from(self.view.columns[first]) - WEDGE_MARGIN) - 1);
-        let right = ray(2 * (i64::from(self.view.columns[end - 1]) + WEDGE_MARGIN) + 1);
+        let ray = |column: i64| [0, 1].map(|axis| (camera.ray[axis] + camera.ray_step[axis] * column) >> 16);
+        let left = ray(i64::from(self.view.columns[first]) - WEDGE_MARGIN);
+        let right = ray(i64::from(self.view.columns[end - 1]) + WEDGE_MARGIN + 1);
         [WedgeSide::new(camera, [left[1], -left[0]]), WedgeSide::new(camera, [-right[1], right[0]])]
     }
 

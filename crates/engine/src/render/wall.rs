@@ -11,6 +11,8 @@ use super::scene::{Face, SceneSeg};
 const ROW_BITS: u32 = 24;
 /// Fractional bits of the inverse of a distance.
 pub(super) const INVERSE_BITS: u32 = 44;
+/// Fractional bits of the exact columns of a seg's ends.
+pub(super) const END_BITS: u32 = 18;
 /// The inverse of a distance beyond all maps, which keeps divisions in range.
 const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
 
@@ -33,29 +35,35 @@ pub(super) struct TextureLine {
     gain: i64,
     /// Its change a column.
     gain_step: i64,
+    /// Last position of the line.
+    last: i64,
+    /// Texture position of the line's start.
+    offset: i64,
 }
 
 impl TextureLine {
-    /// The texture positions of one side of a seg's line.
-    pub fn new(camera: &Camera, seg: &SceneSeg, face: &Face) -> TextureLine {
-        let [nx, ny] = seg.normal.map(i64::from);
-        let (tx, ty) = (-ny, nx);
+    /// The texture positions of one side of a line.
+    pub fn new(camera: &Camera, face: &Face) -> TextureLine {
+        let [tx, ty] = face.along.map(i64::from);
         TextureLine {
-            along: (camera.x * tx + camera.y * ty + face.u_offset) >> 28,
+            along: (camera.x * tx + camera.y * ty + face.origin) >> 28,
             gain: tx * camera.ray[0] + ty * camera.ray[1],
             gain_step: tx * camera.ray_step[0] + ty * camera.ray_step[1],
+            last: face.texels - 1,
+            offset: face.u_offset,
         }
     }
 
-    /// Horizontal texture position at a base column where the distance is known, 16.16.
+    /// Horizontal texture position at a base column where the distance is known, 16.16. The left edge of a line's first
+    /// column may lie before the line: it shows the line's first texel.
     #[inline]
     pub fn at(&self, column: i64, distance: i64) -> i64 {
         let gain = (self.gain + self.gain_step * column) >> 32;
-        self.along + ((distance * gain) >> 28)
+        (self.along + ((distance * gain) >> 28)).min(self.last).max(0) + self.offset
     }
 }
 
-/// The row of a height along a line, plus a half; linear in the base column.
+/// The row of a height along a line; linear in the base column.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     /// At base column 0.
@@ -90,19 +98,29 @@ impl SeenLine {
         ((1u64 << (INVERSE_BITS + 16)) / self.inverse_at(column) as u64) as i64
     }
 
+    /// The line of a seg whose ends lie on `self` at `positions`, base columns with [`END_BITS`] fractional bits, put at
+    /// the whole columns `columns`: where light and the rows of edges are taken from.
+    #[inline]
+    pub fn between(&self, positions: [i64; 2], columns: [i64; 2]) -> SeenLine {
+        let [first, end] = positions.map(|position| {
+            let change = (i128::from(self.inverse_step) * i128::from(position)) >> END_BITS;
+            (self.inverse + change as i64).max(LEAST_INVERSE)
+        });
+        let inverse_step = (end - first) / (columns[1] - columns[0]).max(1);
+        SeenLine { inverse: first - inverse_step * columns[0], inverse_step }
+    }
+
     /// Where a height, relative to the eye in 16.16, is seen.
     #[inline]
     pub fn edge(&self, camera: &Camera, view: &View, height: i64) -> Edge {
         let scale = i128::from(height * view.focal_y);
         let rows = |inverse: i64| ((scale * i128::from(inverse)) >> (32 + INVERSE_BITS - ROW_BITS)) as i64;
-        // Half a row more, as the middle of a row decides.
-        let horizon = (camera.horizon << ROW_BITS) + (1 << (ROW_BITS - 1)) - 1;
-        Edge { at: horizon - rows(self.inverse), step: -rows(self.inverse_step) }
+        Edge { at: (camera.horizon << (ROW_BITS - 16)) - rows(self.inverse), step: -rows(self.inverse_step) }
     }
 }
 
 impl Edge {
-    /// The first frame row whose middle is below the edge at a base column; `first_rows` is [`View::first_row`].
+    /// The first frame row that the edge cuts, or one below, at a base column; `first_rows` is [`View::first_row`].
     #[inline]
     pub fn row(&self, first_rows: &[i16], column: u32) -> i32 {
         let base = ((self.at + self.step * i64::from(column)) >> ROW_BITS).max(0) as usize;
@@ -115,7 +133,10 @@ pub(super) struct WallShader<'a> {
     pub camera: &'a Camera,
     pub view: &'a View,
     pub tables: &'a [[u8; 256]; 32],
+    /// For texture positions.
     pub line: &'a SeenLine,
+    /// For the light.
+    pub ends: &'a SeenLine,
     pub texture: TextureLine,
     pub picture: &'a WallPicture,
     pub light: Light,
@@ -128,6 +149,8 @@ impl WallShader<'_> {
     pub fn draw<const DEPTH: bool>(&self, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
         let picture = self.picture;
         let start = (self.hung_from * picture.inverse_height) >> 16;
+        // Texels are those of the rows' lower edges.
+        let (centre, fraction) = (self.camera.horizon >> 16, self.camera.horizon & 0xFFFF);
         for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate() {
             if top >= bottom {
                 continue;
@@ -135,14 +158,13 @@ impl WallShader<'_> {
             let (top, bottom) = (top as usize, bottom as usize);
             let x = first + i;
             let column = i64::from(self.view.columns[x]);
-            let inverse = self.line.inverse_at(column);
             let distance = self.line.distance_at(column);
             let texels = picture.column(self.texture.at(column, distance));
-            let nearness = (inverse * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+            let nearness = (self.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let table = &self.tables[self.light.table(nearness)];
             // Rows of texture a base row, as a fraction of its height with 32 bits: what overflows is whole heights.
             let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
-            let at = (start + (step >> 1) - step.wrapping_mul(self.camera.horizon)) as u32;
+            let at = start.wrapping_add(step.wrapping_mul(1 - centre)).wrapping_sub((step * fraction) >> 16) as u32;
             let column = Column { texels, table, at, step: step as u32 };
             let rows = &self.view.rows[top..bottom];
             let lines = top * frame.width..bottom * frame.width;

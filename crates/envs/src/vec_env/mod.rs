@@ -153,6 +153,12 @@ impl VecEnv {
         &self.resting
     }
 
+    /// Whether no batch is under way.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        (0..=self.options.groups).all(|slot| !self.crew.under_way(slot))
+    }
+
     /// A batch with buffers of the right lengths for a group.
     #[must_use]
     pub fn batch(&self, group: usize) -> Batch {

@@ -1,0 +1,170 @@
+//! Keyword arguments of worlds, by their names in Python.
+
+use crate::errors::{INVALID_OPTION, raise};
+use hasard_engine::assets::Assets;
+use hasard_envs::maps::Maps;
+use hasard_envs::{Autoreset, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Every name that is understood, for the nearest one to a wrong name.
+const NAMES: [&str; 17] = [
+    "rules",
+    "hard_constraint",
+    "hard",
+    "full_actions",
+    "frame_skip",
+    "resolution",
+    "size",
+    "observation",
+    "layout",
+    "frame_stack",
+    "max_episode_steps",
+    "seed",
+    "safety_budget",
+    "iwad",
+    "map",
+    "published_depth",
+    "published_colours",
+];
+
+/// Largest IWAD that is read, bytes.
+const LARGEST_IWAD: u64 = 256 << 20;
+
+/// What an environment is made with, and what only its attributes tell.
+pub struct Arguments {
+    pub options: EnvOptions,
+    pub safety_budget: Option<f64>,
+    pub seed: Option<u64>,
+}
+
+/// Reads keyword arguments; an unknown one is a `TypeError` that names the nearest.
+pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Arguments> {
+    let mut arguments = Arguments { options: EnvOptions::default(), safety_budget: None, seed: None };
+    for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
+        let name: String = name.extract()?;
+        let options = &mut arguments.options;
+        match name.as_str() {
+            "rules" => options.rules = choice(&name, &value, &[("paper", RuleSet::Paper), ("released", RuleSet::Released)])?,
+            "hard_constraint" | "hard" => options.hard = typed(&name, &value, "True or False")?,
+            "full_actions" => options.full_actions = typed(&name, &value, "True or False")?,
+            "frame_skip" => options.frame_skip = number(&name, &value, 1, 35)? as u32,
+            "resolution" | "size" => options.size = size(&name, &value)?,
+            "observation" => {
+                let kinds = [
+                    ("rgb", ObservationKind::Rgb),
+                    ("rgb+depth", ObservationKind::RgbDepth),
+                    ("segmented", ObservationKind::Segmented),
+                    ("grey", ObservationKind::Grey),
+                ];
+                options.observation = choice(&name, &value, &kinds)?;
+            }
+            "layout" => options.layout = choice(&name, &value, &[("hwc", Layout::Hwc), ("chw", Layout::Chw)])?,
+            "frame_stack" => options.frame_stack = number(&name, &value, 1, 16)? as usize,
+            "max_episode_steps" if value.is_none() => options.max_episode_steps = None,
+            "max_episode_steps" => options.max_episode_steps = Some(number(&name, &value, 1, u32::MAX.into())? as u32),
+            "seed" if value.is_none() => arguments.seed = None,
+            "seed" => arguments.seed = Some(seed(&value)?),
+            "safety_budget" if value.is_none() => arguments.safety_budget = None,
+            "safety_budget" => arguments.safety_budget = Some(typed(&name, &value, "a number")?),
+            "iwad" if value.is_none() => options.assets = None,
+            "iwad" => options.assets = Some(assets(py, &value)?),
+            "map" if value.is_none() => options.maps = None,
+            "map" => options.maps = Some(Arc::new(Maps::new(&typed::<PathBuf>(&name, &value, "a path")?, None))),
+            "published_depth" => options.published_depth = typed(&name, &value, "True or False")?,
+            "published_colours" => options.published_colours = typed(&name, &value, "True or False")?,
+            _ => return Err(unknown(py, &name)?),
+        }
+    }
+    arguments.options.check().map_err(|error| raise(py, &error))?;
+    Ok(arguments)
+}
+
+/// A mode of going on after an end, by Gymnasium's name, in snake case, or as Gymnasium's enum.
+pub fn autoreset(given: &Bound<'_, PyAny>) -> PyResult<Autoreset> {
+    let value =
+        if given.is_instance_of::<PyString>() { given.clone() } else { given.getattr("value").unwrap_or_else(|_| given.clone()) };
+    let names = [
+        ("NextStep", Autoreset::NextStep),
+        ("next_step", Autoreset::NextStep),
+        ("SameStep", Autoreset::SameStep),
+        ("same_step", Autoreset::SameStep),
+        ("Disabled", Autoreset::Disabled),
+        ("disabled", Autoreset::Disabled),
+    ];
+    choice("autoreset_mode", &value, &names)
+}
+
+/// A seed: any non-negative integer, modulo 2^64.
+pub fn seed(given: &Bound<'_, PyAny>) -> PyResult<u64> {
+    let py = given.py();
+    let index = match given.call_method0("__index__") {
+        Ok(index) => index,
+        Err(_) => return Err(PyTypeError::new_err(format!("a seed must be an integer, got {}", shown(given)))),
+    };
+    if index.lt(0)? {
+        return Err(pyo3::exceptions::PyValueError::new_err(format!("a seed must not be negative, got {}", shown(given))));
+    }
+    index.call_method1("__and__", (u64::MAX,))?.extract().map_err(|error: PyErr| INVALID_OPTION.error(py, error.to_string()))
+}
+
+/// What was given, cut short, for a message.
+fn shown(given: &Bound<'_, PyAny>) -> String {
+    let text = given.repr().map(|text| text.to_string()).unwrap_or_default();
+    text.chars().take(60).collect()
+}
+
+fn refused(given: &Bound<'_, PyAny>, name: &str, allowed: &str) -> PyErr {
+    INVALID_OPTION.error(given.py(), format!("{name} cannot be {}; it must be {allowed}", shown(given)))
+}
+
+fn typed<'py, T: FromPyObjectOwned<'py>>(name: &str, given: &Bound<'py, PyAny>, allowed: &str) -> PyResult<T> {
+    given.extract().map_err(|_| refused(given, name, allowed))
+}
+
+fn number(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyResult<u64> {
+    let value: Result<u64, _> = given.call_method0("__index__").and_then(|index| index.extract());
+    value.ok().filter(|value| (least..=most).contains(value)).ok_or_else(|| refused(given, name, &format!("{least}..={most}")))
+}
+
+fn choice<T: Copy>(name: &str, given: &Bound<'_, PyAny>, choices: &[(&str, T)]) -> PyResult<T> {
+    let text: Option<String> = given.extract().ok();
+    let found = choices.iter().find(|(name, _)| text.as_deref() == Some(*name));
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        refused(given, name, &names.join(" or "))
+    })
+}
+
+/// `"160x120"` in either case, or a pair of width and height.
+pub fn size(name: &str, given: &Bound<'_, PyAny>) -> PyResult<FrameSize> {
+    let wrong = || refused(given, name, "WxH or (width, height), from 64x48 to 1920x1080");
+    let (width, height) = match given.extract::<String>() {
+        Ok(text) => {
+            let text = text.to_lowercase();
+            let (width, height) = text.split_once('x').ok_or_else(wrong)?;
+            (width.parse().map_err(|_| wrong())?, height.parse().map_err(|_| wrong())?)
+        }
+        Err(_) => given.extract::<(u16, u16)>().map_err(|_| wrong())?,
+    };
+    let size = FrameSize { width, height };
+    size.check().map_err(|_| wrong())?;
+    Ok(size)
+}
+
+fn assets(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Arc<Assets>> {
+    let path: PathBuf = typed("iwad", path, "a path")?;
+    let wrong = |why: String| INVALID_OPTION.error(py, format!("iwad {}: {why}", path.display()));
+    let bytes = hasard_media::files::read_limited(Path::new(&path), LARGEST_IWAD).map_err(|error| wrong(error.to_string()))?;
+    Ok(Arc::new(Assets::from_iwad(&bytes).map_err(|error| wrong(error.to_string()))?))
+}
+
+/// The `TypeError` of a name that is not known.
+fn unknown(py: Python<'_>, name: &str) -> PyResult<PyErr> {
+    let near: Vec<String> = py.import("difflib")?.call_method1("get_close_matches", (name, NAMES.to_vec(), 1, 0.5))?.extract()?;
+    let hint = near.first().map_or_else(String::new, |near| format!("; did you mean '{near}'?"));
+    Ok(PyTypeError::new_err(format!("unexpected keyword argument '{name}'{hint}")))
+}

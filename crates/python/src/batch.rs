@@ -1,0 +1,128 @@
+//! What a step of worlds brought, as arrays.
+
+use crate::pool::{Pool, array, lend};
+use hasard_envs::Episode;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use std::sync::Arc;
+
+/// What a reset or a step brought, one row a lane. Attributes only.
+///
+/// observations: uint8 [m, ...]. rewards, costs: float32 [m]. cost_terms: float32 [m, k]. statistics: float64 [m, s].
+/// positions: int32 [m, 2], map units, at the end of the step and before any reset. terminated, truncated: bool [m].
+/// lanes: int32 [m], the lane of each row. final_lanes: int32 [f], the rows whose episode ended and whose last observations are in
+/// final_observations: uint8 [f, ...]. episodes: a dict for each episode that ended.
+#[pyclass(frozen, get_all, module = "hasard_rs._core")]
+pub struct Batch {
+    observations: Py<PyAny>,
+    rewards: Py<PyAny>,
+    costs: Py<PyAny>,
+    cost_terms: Py<PyAny>,
+    statistics: Py<PyAny>,
+    positions: Py<PyAny>,
+    terminated: Py<PyAny>,
+    truncated: Py<PyAny>,
+    lanes: Py<PyAny>,
+    final_lanes: Py<PyAny>,
+    final_observations: Py<PyAny>,
+    episodes: Py<PyAny>,
+}
+
+/// Arrays of the caller's that a batch was written to: they are what it shows.
+#[derive(Default)]
+pub struct Arrays {
+    pub observations: Option<Py<PyAny>>,
+    pub rewards: Option<Py<PyAny>>,
+    pub costs: Option<Py<PyAny>>,
+    pub cost_terms: Option<Py<PyAny>>,
+    pub terminated: Option<Py<PyAny>>,
+    pub truncated: Option<Py<PyAny>>,
+}
+
+impl Arrays {
+    pub fn clone_ref(&self, py: Python<'_>) -> Arrays {
+        let copy = |array: &Option<Py<PyAny>>| array.as_ref().map(|array| array.clone_ref(py));
+        Arrays {
+            observations: copy(&self.observations),
+            rewards: copy(&self.rewards),
+            costs: copy(&self.costs),
+            cost_terms: copy(&self.cost_terms),
+            terminated: copy(&self.terminated),
+            truncated: copy(&self.truncated),
+        }
+    }
+}
+
+impl Batch {
+    /// Arrays of a batch that has come back. Its observations go to Python in the memory that they are in; the small rest is copied.
+    pub fn new(
+        py: Python<'_>,
+        batch: &mut hasard_envs::Batch,
+        lanes: Vec<i32>,
+        shape: [usize; 3],
+        pool: &Arc<Pool>,
+        bound: Arrays,
+    ) -> PyResult<Batch> {
+        let count = lanes.len();
+        let frames = |count: usize| [count, shape[0], shape[1], shape[2]];
+        let terms = [count, batch.cost_terms.len().checked_div(count).unwrap_or(0)];
+        let statistics = [count, batch.statistics.len().checked_div(count).unwrap_or(0)];
+        let observations = match bound.observations {
+            Some(array) => array,
+            None => lend(py, std::mem::take(&mut batch.observations).into_vec(), &frames(count), pool)?.into_any().unbind(),
+        };
+        let final_lanes: Vec<i32> = batch.final_lanes.iter().map(|&lane| lane as i32).collect();
+        let final_shape = frames(final_lanes.len());
+        let positions: Vec<i32> = batch.positions.iter().flatten().copied().collect();
+        fn given<T: numpy::Element + Clone>(
+            py: Python<'_>,
+            bound: Option<Py<PyAny>>,
+            own: &[T],
+            shape: &[usize],
+        ) -> PyResult<Py<PyAny>> {
+            match bound {
+                Some(array) => Ok(array),
+                None => Ok(array(py, own.to_vec(), shape)?.unbind()),
+            }
+        }
+        Ok(Batch {
+            observations,
+            rewards: given(py, bound.rewards, &batch.rewards, &[count])?,
+            costs: given(py, bound.costs, &batch.costs, &[count])?,
+            cost_terms: given(py, bound.cost_terms, &batch.cost_terms, &terms)?,
+            statistics: given(py, None, &batch.statistics, &statistics)?,
+            positions: array(py, positions, &[count, 2])?.unbind(),
+            terminated: given(py, bound.terminated, &batch.terminated, &[count])?,
+            truncated: given(py, bound.truncated, &batch.truncated, &[count])?,
+            lanes: array(py, lanes, &[count])?.unbind(),
+            final_lanes: array(py, final_lanes, &[final_shape[0]])?.unbind(),
+            final_observations: array(py, std::mem::take(&mut batch.final_observations), &final_shape)?.unbind(),
+            episodes: episodes(py, &batch.episodes)?,
+        })
+    }
+}
+
+/// Episodes that ended, a dict each: `lane, seed, return, cost, length, terminated, truncated, costs, statistics`.
+fn episodes(py: Python<'_>, episodes: &[Episode]) -> PyResult<Py<PyAny>> {
+    let list = PyList::empty(py);
+    for episode in episodes {
+        let told = PyDict::new(py);
+        told.set_item("lane", episode.lane)?;
+        told.set_item("seed", episode.seed)?;
+        told.set_item("return", episode.episode_return)?;
+        told.set_item("cost", episode.cost)?;
+        told.set_item("length", episode.length)?;
+        told.set_item("terminated", episode.terminated)?;
+        told.set_item("truncated", episode.truncated)?;
+        told.set_item("costs", named(py, &episode.costs)?)?;
+        told.set_item("statistics", named(py, &episode.stats)?)?;
+        list.append(told)?;
+    }
+    Ok(list.into_any().unbind())
+}
+
+fn named<'py>(py: Python<'py>, values: &[(&'static str, f64)]) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    values.iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
+    Ok(dict)
+}

@@ -1,0 +1,110 @@
+//! Memory of the caller's for the results of all lanes, and of each group's.
+
+use crate::batch::Arrays;
+use crate::inner::Inner;
+use crate::memory::{Lent, bound};
+use crate::worlds::{Fault, Worlds};
+use hasard_envs::{Buffer, EnvError};
+use pyo3::prelude::*;
+use pyo3::types::PySlice;
+use std::ops::Range;
+
+/// The arrays that are lent.
+pub struct Given<'a, 'py> {
+    pub observations: &'a Bound<'py, PyAny>,
+    pub rewards: &'a Bound<'py, PyAny>,
+    pub costs: &'a Bound<'py, PyAny>,
+    pub terminated: &'a Bound<'py, PyAny>,
+    pub truncated: &'a Bound<'py, PyAny>,
+    pub cost_terms: Option<&'a Bound<'py, PyAny>>,
+}
+
+/// Some lanes' part of an array.
+fn part<'py>(array: &Bound<'py, PyAny>, lanes: &Range<usize>) -> PyResult<Bound<'py, PyAny>> {
+    array.get_item(PySlice::new(array.py(), lanes.start as isize, lanes.end as isize, 1))
+}
+
+/// Lends the arrays to the worlds: whole, and cut for each group.
+pub fn bind(worlds: &Worlds, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<()> {
+    let facts = &worlds.facts;
+    let [height, width, channels] = facts.shape;
+    // All are looked at before any is taken.
+    let (lanes, terms) = (facts.lanes, facts.terms.len());
+    bound::<u8>("observations", given.observations, &[lanes, height, width, channels])?;
+    bound::<f32>("rewards", given.rewards, &[lanes])?;
+    bound::<f32>("costs", given.costs, &[lanes])?;
+    bound::<bool>("terminated", given.terminated, &[lanes])?;
+    bound::<bool>("truncated", given.truncated, &[lanes])?;
+    given.cost_terms.map(|array| bound::<f32>("cost_terms", array, &[lanes, terms])).transpose()?;
+    let (mut arrays, mut lent) = (Vec::new(), Vec::new());
+    for slot in 0..=facts.groups {
+        let own = worlds.lanes_of(slot);
+        let count = own.len();
+        let cut = |array| part(array, &own);
+        let (observations, rewards, costs) = (cut(given.observations)?, cut(given.rewards)?, cut(given.costs)?);
+        let (terminated, truncated) = (cut(given.terminated)?, cut(given.truncated)?);
+        let cost_terms = given.cost_terms.map(cut).transpose()?;
+        lent.push(Memories {
+            observations: bound("observations", &observations, &[count, height, width, channels])?,
+            rewards: bound("rewards", &rewards, &[count])?,
+            costs: bound("costs", &costs, &[count])?,
+            terminated: bound("terminated", &terminated, &[count])?,
+            truncated: bound("truncated", &truncated, &[count])?,
+            cost_terms: cost_terms.as_ref().map(|array| bound("cost_terms", array, &[count, terms])).transpose()?,
+        });
+        arrays.push(Arrays {
+            observations: Some(observations.unbind()),
+            rewards: Some(rewards.unbind()),
+            costs: Some(costs.unbind()),
+            cost_terms: cost_terms.map(Bound::unbind),
+            terminated: Some(terminated.unbind()),
+            truncated: Some(truncated.unbind()),
+        });
+    }
+    let replaced = worlds.with(py, |inner| {
+        idle(inner)?;
+        let slots = lent.into_iter().enumerate();
+        let batches = slots.map(|(slot, lent)| Some(lent.batch(inner.worlds().batch_of(worlds.lanes_of(slot).len()))));
+        let batches: Vec<_> = batches.collect();
+        Ok(std::mem::replace(&mut inner.bound, batches))
+    })?;
+    drop(replaced);
+    let replaced = std::mem::replace(&mut *worlds.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()), arrays);
+    drop(replaced);
+    Ok(())
+}
+
+/// One slot's memory.
+struct Memories {
+    observations: Lent<u8>,
+    rewards: Lent<f32>,
+    costs: Lent<f32>,
+    terminated: Lent<bool>,
+    truncated: Lent<bool>,
+    cost_terms: Option<Lent<f32>>,
+}
+
+impl Memories {
+    /// A batch that writes to it.
+    fn batch(self, own: hasard_envs::Batch) -> hasard_envs::Batch {
+        let cost_terms = self.cost_terms.map_or_else(|| own.cost_terms.clone(), Buffer::lent);
+        hasard_envs::Batch {
+            observations: Buffer::lent(self.observations),
+            rewards: Buffer::lent(self.rewards),
+            costs: Buffer::lent(self.costs),
+            terminated: Buffer::lent(self.terminated),
+            truncated: Buffer::lent(self.truncated),
+            cost_terms,
+            ..own
+        }
+    }
+}
+
+/// Whether no batch is under way.
+pub fn idle(inner: &mut Inner) -> Result<(), Fault> {
+    if inner.worlds().is_idle() {
+        return Ok(());
+    }
+    let why = "a group of lanes is under way; receive it first".to_string();
+    Err(Fault::Env(EnvError::Turn { why }))
+}

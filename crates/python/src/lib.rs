@@ -1,0 +1,40 @@
+//! The worlds for Python: the extension module `hasard_rs._core`.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `worlds` | the class `Worlds`: every call lets the interpreter go while the worlds work |
+//! | `inner`, `lane` | the worlds behind it, without Python |
+//! | `batch`, `pool` | results as arrays; observations stay in the memory that they were drawn in |
+//! | `bind`, `memory` | results written into the caller's arrays |
+//! | `actions`, `resets`, `arguments` | what Python gives, checked before any world moves |
+//! | `facts`, `registry` | what is fixed about worlds, and the 18 environments |
+//! | `errors` | errors as exceptions of `hasard_rs.errors` |
+//!
+//! Unsafe code is in `pool`, `memory` (memory shared with NumPy) and `inner` (the end of worlds after a fork), each with its reason.
+
+mod actions;
+mod arguments;
+mod batch;
+mod bind;
+mod errors;
+mod facts;
+mod inner;
+mod lane;
+mod memory;
+mod pool;
+mod registry;
+mod resets;
+mod worlds;
+
+use pyo3::prelude::*;
+
+/// The compiled part of `hasard_rs`.
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<worlds::Worlds>()?;
+    module.add_class::<batch::Batch>()?;
+    module.add_function(wrap_pyfunction!(registry::ids, module)?)?;
+    module.add_function(wrap_pyfunction!(registry::describe, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,32 @@
+//! The 18 environments, told to Python.
+
+use crate::errors::raise;
+use hasard_envs::{ActionSpace, EnvId, RuleSet, scenarios};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Every id, without `hasard/`, by scenario and level.
+#[pyfunction]
+pub fn ids() -> Vec<String> {
+    EnvId::all().map(|id| id.to_string()).collect()
+}
+
+/// What is known of an environment without making it.
+#[pyfunction]
+pub fn describe<'py>(py: Python<'py>, env_id: &str) -> PyResult<Bound<'py, PyDict>> {
+    let id: EnvId = env_id.strip_prefix("hasard/").unwrap_or(env_id).parse().map_err(|error| raise(py, &error))?;
+    let space = ActionSpace::of(id.scenario, false);
+    let names = |space: &ActionSpace| -> Vec<Vec<&str>> {
+        space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect()
+    };
+    let terms: Vec<(&str, bool)> = scenarios::cost_terms(id.scenario).iter().map(|term| (term.name, term.counted)).collect();
+    let told = PyDict::new(py);
+    told.set_item("scenario", id.scenario.name())?;
+    told.set_item("level", id.level)?;
+    told.set_item("cost_terms", terms)?;
+    told.set_item("safety_budget", id.scenario.safety_budget(RuleSet::Paper))?;
+    told.set_item("published_safety_budget", id.scenario.safety_budget(RuleSet::Released))?;
+    told.set_item("nvec", space.sizes())?;
+    told.set_item("buttons", names(&space))?;
+    Ok(told)
+}

@@ -1,0 +1,600 @@
+//! The class `Worlds`: a batch of worlds, raw, without Gymnasium.
+
+use crate::actions::{read_actions, read_deltas};
+use crate::arguments;
+use crate::batch::{Arrays, Batch};
+use crate::errors::{CLOSED, INVALID_OPTION, OUT_OF_TURN, RESET_NEEDED, WORLD_PANICKED, raise};
+use crate::facts::{self, Facts};
+use crate::inner::Inner;
+use crate::pool::{Pool, array};
+use crate::resets::{self, Seeds};
+use hasard_envs::{Autoreset, Env, EnvError, EnvId, FinalObservations, LaneState, VecOptions};
+use hasard_play::ViewKind;
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex};
+
+/// What keeps a call from being done.
+pub enum Fault {
+    Env(EnvError),
+    Closed,
+    NotReset,
+    /// These lanes rest.
+    Resting(Vec<usize>),
+}
+
+impl From<EnvError> for Fault {
+    fn from(error: EnvError) -> Fault {
+        Fault::Env(error)
+    }
+}
+
+/// A batch that has been stepped.
+enum CameBack {
+    /// In its own memory.
+    Own(hasard_envs::Batch),
+    /// In the caller's: this is what it tells beside the bound arrays.
+    Bound(hasard_envs::Batch),
+}
+
+/// Worlds(env_id, num_envs, *, num_threads=None, groups=1, autoreset_mode="SameStep", final_observations="every",
+/// statistics=False, **arguments)
+///
+/// A batch of worlds, raw: categorical actions in, arrays out. `hasard_rs.VectorEnv` is Gymnasium's view of one.
+///
+/// arguments: rules, hard_constraint, full_actions, frame_skip, resolution, observation, layout, frame_stack, max_episode_steps, seed,
+/// safety_budget, iwad, published_depth, published_colours, as in docs/python.md.
+///
+/// Every call lets the interpreter go while the worlds work. Two threads that use one object take turns.
+#[pyclass(frozen, module = "hasard_rs._core")]
+pub struct Worlds {
+    pub(crate) facts: Facts,
+    inner: Mutex<Option<Inner>>,
+    /// Process that the worker threads run in, if there are any.
+    process: Option<u32>,
+    pub(crate) pool: Arc<Pool>,
+    /// Batches to be used again, without their observations.
+    spare: Mutex<Vec<hasard_envs::Batch>>,
+    /// Of each slot, the caller's arrays that it writes to.
+    pub(crate) arrays: Mutex<Vec<Arrays>>,
+}
+
+impl Worlds {
+    /// Works with the worlds while other Python threads run.
+    pub(crate) fn with<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Inner) -> Result<T, Fault> + Send) -> PyResult<T> {
+        if let Some(process) = self.process.filter(|process| *process != std::process::id()) {
+            let why = format!("made in process {process}; make worlds after forking, or use spawn");
+            return Err(OUT_OF_TURN.error(py, why));
+        }
+        let result = py.detach(|| {
+            let mut guard = self.inner.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            let Some(inner) = guard.as_mut() else { return Err(Fault::Closed) };
+            let result = catch_unwind(AssertUnwindSafe(|| work(inner)))
+                .unwrap_or_else(|_| Err(EnvError::Panicked { message: "outside of a step".to_string() }.into()));
+            if matches!(result, Err(Fault::Env(EnvError::Panicked { .. }))) {
+                *guard = None;
+            }
+            result
+        });
+        result.map_err(|fault| match fault {
+            Fault::Env(error @ EnvError::Panicked { .. }) => WORLD_PANICKED.error(py, error.to_string()),
+            Fault::Env(error) => raise(py, &error),
+            Fault::Closed => CLOSED.error(py, "these worlds are closed; make new ones"),
+            Fault::NotReset => RESET_NEEDED.error(py, "call reset before the first step"),
+            Fault::Resting(lanes) => {
+                let why = format!("the episodes of lanes {lanes:?} are over; reset them first, by reset_mask or mask");
+                RESET_NEEDED.error(py, why)
+            }
+        })
+    }
+
+    /// A batch of so many lanes, whose observations go into a buffer of the pool.
+    fn scratch(&self, inner: &mut Inner, lanes: usize) -> hasard_envs::Batch {
+        let mut spare = self.spare.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let found = spare.iter().position(|batch| batch.lanes() == lanes);
+        let mut batch = found.map_or_else(|| inner.worlds().batch_of(lanes), |index| spare.swap_remove(index));
+        if found.is_some() {
+            let length = lanes * self.facts.shape.iter().product::<usize>();
+            batch.observations = self.pool.take(length).into();
+        }
+        batch
+    }
+
+    /// Shows a batch that has come back, and keeps its small buffers.
+    fn show(&self, py: Python<'_>, mut batch: hasard_envs::Batch, lanes: Vec<i32>) -> PyResult<Batch> {
+        let shown = Batch::new(py, &mut batch, lanes, self.facts.shape, &self.pool, Arrays::default())?;
+        let mut spare = self.spare.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if spare.len() < 4 {
+            spare.push(batch);
+        }
+        Ok(shown)
+    }
+
+    /// Works with a batch of all lanes, in bound memory if there is any, and shows it.
+    fn whole(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Inner, &mut hasard_envs::Batch) -> Result<(), Fault> + Send,
+    ) -> PyResult<Batch> {
+        let slot = self.facts.groups;
+        let came_back = self.with(py, |inner| {
+            let bound = inner.bound.get_mut(slot).and_then(Option::take);
+            let lent = bound.is_some();
+            let mut batch = bound.unwrap_or_else(|| self.scratch(inner, self.facts.lanes));
+            let result = work(inner, &mut batch);
+            if !lent {
+                return result.map(|()| CameBack::Own(batch));
+            }
+            let told = self.keep(inner, slot, batch);
+            result.map(|()| CameBack::Bound(told))
+        })?;
+        self.tell(py, slot, came_back)
+    }
+
+    /// Shows what a slot's step brought.
+    fn tell(&self, py: Python<'_>, slot: usize, came_back: CameBack) -> PyResult<Batch> {
+        let lanes = self.lanes_of(slot).map(|lane| lane as i32).collect();
+        match came_back {
+            CameBack::Own(batch) => self.show(py, batch, lanes),
+            CameBack::Bound(mut told) => {
+                let arrays = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner())[slot].clone_ref(py);
+                Batch::new(py, &mut told, lanes, self.facts.shape, &self.pool, arrays)
+            }
+        }
+    }
+
+    /// Lays a lent batch back and copies what it tells beside the bound arrays.
+    fn keep(&self, inner: &mut Inner, slot: usize, mut batch: hasard_envs::Batch) -> hasard_envs::Batch {
+        let told = hasard_envs::Batch {
+            statistics: batch.statistics.clone(),
+            positions: batch.positions.clone(),
+            cost_terms: batch.cost_terms.clone(),
+            final_lanes: std::mem::take(&mut batch.final_lanes),
+            final_observations: std::mem::take(&mut batch.final_observations),
+            episodes: std::mem::take(&mut batch.episodes),
+            ..hasard_envs::Batch::default()
+        };
+        inner.bound[slot] = Some(batch);
+        told
+    }
+
+    /// The lanes of a slot.
+    pub(crate) fn lanes_of(&self, slot: usize) -> std::ops::Range<usize> {
+        let Facts { lanes, groups, .. } = self.facts;
+        if slot >= groups { 0..lanes } else { lanes * slot / groups..lanes * (slot + 1) / groups }
+    }
+
+    /// Whether lanes may be stepped.
+    fn ready(&self, inner: &mut Inner, lanes: impl Iterator<Item = usize>) -> Result<(), Fault> {
+        if !inner.started {
+            return Err(Fault::NotReset);
+        }
+        if self.facts.autoreset == Autoreset::Disabled {
+            let resting = inner.worlds().resting();
+            let lanes: Vec<usize> = lanes.filter(|&lane| resting.get(lane).copied().unwrap_or(false)).collect();
+            if !lanes.is_empty() {
+                return Err(Fault::Resting(lanes));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_group(&self, py: Python<'_>, group: usize) -> PyResult<()> {
+        if group < self.facts.groups {
+            return Ok(());
+        }
+        Err(INVALID_OPTION.error(py, format!("group cannot be {group}; it must be less than {}", self.facts.groups)))
+    }
+
+    fn check_lane(&self, lane: usize) -> PyResult<()> {
+        if lane < self.facts.lanes {
+            return Ok(());
+        }
+        Err(PyIndexError::new_err(format!("lane {lane} is not one of {} lanes", self.facts.lanes)))
+    }
+
+    /// Sub-actions of some lanes.
+    fn read(
+        &self,
+        actions: &Bound<'_, PyAny>,
+        deltas: Option<&Bound<'_, PyAny>>,
+        count: usize,
+        lane: impl Fn(usize) -> usize,
+    ) -> PyResult<(Vec<u8>, Vec<f32>)> {
+        let space = &self.facts.space;
+        let mut categorical = vec![0; count * space.groups.len()];
+        let mut continuous = vec![0.0; count * space.deltas.len()];
+        read_actions(actions, space, count, &lane, &mut categorical)?;
+        read_deltas(deltas, space, count, &mut continuous)?;
+        Ok((categorical, continuous))
+    }
+}
+
+#[pymethods]
+impl Worlds {
+    #[new]
+    #[pyo3(signature = (env_id, num_envs, *, num_threads=None, groups=1, autoreset_mode=None, final_observations="every", statistics=false, **arguments))]
+    #[allow(clippy::too_many_arguments, reason = "Python's keyword arguments")]
+    fn new(
+        py: Python<'_>,
+        env_id: &str,
+        num_envs: usize,
+        num_threads: Option<usize>,
+        groups: usize,
+        autoreset_mode: Option<&Bound<'_, PyAny>>,
+        final_observations: &str,
+        statistics: bool,
+        arguments: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Worlds> {
+        let id: EnvId = env_id.strip_prefix("hasard/").unwrap_or(env_id).parse().map_err(|error| raise(py, &error))?;
+        let given = arguments::read(py, arguments)?;
+        let autoreset = autoreset_mode.map_or(Ok(Autoreset::SameStep), arguments::autoreset)?;
+        let final_observations = match final_observations {
+            "every" => FinalObservations::Every,
+            "truncated" => FinalObservations::Truncated,
+            other => {
+                let why = format!("final_observations cannot be {other:?}; it must be truncated or every");
+                return Err(INVALID_OPTION.error(py, why));
+            }
+        };
+        let spare_cpus = std::thread::available_parallelism().map_or(0, |cpus| cpus.get() - 1);
+        let threads = num_threads.unwrap_or_else(|| spare_cpus.min(num_envs / 4));
+        let options =
+            VecOptions { lanes: num_envs, threads, groups, autoreset, final_observations, statistics, ..VecOptions::default() };
+        let made = py.detach(|| Inner::new(&id.to_string(), &given.options, options));
+        let mut inner = made.map_err(|error| raise(py, &error))?;
+        let (episode_steps, extent) = inner.look(0, |env: &mut Env| (env.episode_steps(), env.extent()));
+        let worlds = inner.worlds();
+        let facts = Facts {
+            id,
+            lanes: num_envs,
+            groups,
+            autoreset,
+            space: worlds.action_space().clone(),
+            shape: worlds.observation_shape(),
+            terms: worlds.cost_terms(),
+            statistics: worlds.statistics().to_vec(),
+            safety_budget: given.safety_budget.unwrap_or_else(|| id.scenario.safety_budget(given.options.rules)),
+            episode_steps,
+            extent,
+            seed: given.seed,
+            kind: facts::kind(id, &given.options, autoreset),
+        };
+        Ok(Worlds {
+            facts,
+            inner: Mutex::new(Some(inner)),
+            process: (threads > 0).then(std::process::id),
+            pool: Arc::default(),
+            spare: Mutex::default(),
+            arrays: Mutex::default(),
+        })
+    }
+
+    /// reset(seeds=None, mask=None) -> Batch
+    ///
+    /// Starts the next episode of every lane, or of those that mask (bool [num_envs]) names; the others stay as they are. seeds: None goes on
+    /// with the lanes' streams of seeds; an int s starts the stream of lane i anew from s + i; a sequence has one entry a lane (None goes on).
+    #[pyo3(signature = (seeds=None, mask=None))]
+    fn reset(&self, py: Python<'_>, seeds: Option<&Bound<'_, PyAny>>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<Batch> {
+        let seeds = Seeds::read(seeds, self.facts.lanes)?;
+        let mask = mask.map(|mask| resets::mask(mask, self.facts.lanes)).transpose()?;
+        let fresh = match self.facts.seed {
+            Some(seed) => seed,
+            None => py.import("os")?.call_method1("urandom", (8,))?.extract::<[u8; 8]>().map(u64::from_le_bytes)?,
+        };
+        self.whole(py, |inner, batch| {
+            // The first episodes follow from a seed in any case.
+            let seeds = if inner.started { seeds } else { seeds.or(fresh) };
+            if !inner.started && mask.as_ref().is_some_and(|mask| mask.contains(&false)) {
+                return Err(Fault::NotReset);
+            }
+            let how = resets::restarts(&seeds, mask.as_deref(), self.facts.lanes);
+            inner.worlds().restart(&how, batch)?;
+            inner.started = true;
+            Ok(())
+        })
+    }
+
+    /// step(actions, deltas=None, *, lanes=None) -> Batch
+    ///
+    /// Steps every lane, or those of `lanes` (int [m], each once), whose results come in that order. actions: integers [m, groups];
+    /// deltas: numbers [m, 2] in [-1, 1] where the space has them. A bad action is refused before any world moves.
+    #[pyo3(signature = (actions, deltas=None, *, lanes=None))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        actions: &Bound<'_, PyAny>,
+        deltas: Option<&Bound<'_, PyAny>>,
+        lanes: Option<Vec<usize>>,
+    ) -> PyResult<Batch> {
+        let count = lanes.as_ref().map_or(self.facts.lanes, Vec::len);
+        let lane = |row: usize| lanes.as_ref().map_or(row, |lanes| lanes[row]);
+        let (actions, deltas) = self.read(actions, deltas, count, lane)?;
+        let Some(lanes) = lanes else {
+            return self.whole(py, |inner, batch| {
+                self.ready(inner, 0..count)?;
+                (batch.actions, batch.deltas) = (actions, deltas);
+                Ok(inner.worlds().step(batch)?)
+            });
+        };
+        let batch = self.with(py, |inner| {
+            self.ready(inner, lanes.iter().copied())?;
+            let mut batch = self.scratch(inner, count);
+            (batch.actions, batch.deltas) = (actions, deltas);
+            inner.worlds().step_lanes(&lanes, &mut batch)?;
+            Ok(batch)
+        })?;
+        self.show(py, batch, lanes.into_iter().map(|lane| lane as i32).collect())
+    }
+
+    /// send(actions, deltas=None, *, group=0)
+    ///
+    /// Hands a group's actions over and comes back at once; the worlds step meanwhile. One batch a group is under way.
+    #[pyo3(signature = (actions, deltas=None, *, group=0))]
+    fn send(&self, py: Python<'_>, actions: &Bound<'_, PyAny>, deltas: Option<&Bound<'_, PyAny>>, group: usize) -> PyResult<()> {
+        self.check_group(py, group)?;
+        let lanes = self.lanes_of(group);
+        let (actions, deltas) = self.read(actions, deltas, lanes.len(), |row| lanes.start + row)?;
+        self.with(py, |inner| {
+            self.ready(inner, lanes.clone())?;
+            let bound = inner.bound.get_mut(group).and_then(Option::take);
+            let lent = bound.is_some();
+            let mut batch = bound.unwrap_or_else(|| self.scratch(inner, lanes.len()));
+            (batch.actions, batch.deltas) = (actions, deltas);
+            inner.worlds().send(group, batch).map_err(|error| {
+                let kept = inner.worlds().reclaim(group);
+                if lent {
+                    inner.bound[group] = kept;
+                }
+                Fault::Env(error)
+            })
+        })
+    }
+
+    /// recv(group=0) -> Batch
+    ///
+    /// Waits until the group's lanes have been stepped, and tells what that brought.
+    #[pyo3(signature = (group=0))]
+    fn recv(&self, py: Python<'_>, group: usize) -> PyResult<Batch> {
+        self.check_group(py, group)?;
+        let came_back = self.with(py, |inner| {
+            let batch = inner.worlds().recv(group)?;
+            Ok(if inner.bound.is_empty() { CameBack::Own(batch) } else { CameBack::Bound(self.keep(inner, group, batch)) })
+        })?;
+        self.tell(py, group, came_back)
+    }
+
+    /// bind(*, observations, rewards, costs, terminated, truncated, cost_terms=None)
+    ///
+    /// From now on results are written into these arrays, in place: uint8 [num_envs, ...], float32, float32, bool, bool [num_envs],
+    /// float32 [num_envs, k]; C-contiguous and writable. They are kept alive; what Python reads while a batch is under way is undefined.
+    #[pyo3(signature = (*, observations, rewards, costs, terminated, truncated, cost_terms=None))]
+    #[allow(clippy::too_many_arguments, reason = "Python's keyword arguments")]
+    fn bind(
+        &self,
+        py: Python<'_>,
+        observations: &Bound<'_, PyAny>,
+        rewards: &Bound<'_, PyAny>,
+        costs: &Bound<'_, PyAny>,
+        terminated: &Bound<'_, PyAny>,
+        truncated: &Bound<'_, PyAny>,
+        cost_terms: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let given = crate::bind::Given { observations, rewards, costs, terminated, truncated, cost_terms };
+        crate::bind::bind(self, py, &given)
+    }
+
+    /// Results are given in fresh arrays again, and the bound ones are let go.
+    fn unbind(&self, py: Python<'_>) -> PyResult<()> {
+        let let_go = self.with(py, |inner| {
+            crate::bind::idle(inner)?;
+            Ok(std::mem::take(&mut inner.bound))
+        })?;
+        drop(let_go);
+        let arrays = std::mem::take(&mut *self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()));
+        drop(arrays);
+        Ok(())
+    }
+
+    /// save() -> bytes
+    ///
+    /// Where every lane is: its stream of seeds, its episode's seed and the actions so far.
+    fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let (lanes, started) = self.with(py, |inner| Ok((inner.save()?, inner.started)))?;
+        let mut bytes = facts::pack(&self.facts.kind, &lanes);
+        bytes.push(u8::from(started));
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// load(bytes) -> Batch
+    ///
+    /// Brings every lane to where it was saved, by repeating its episode.
+    fn load(&self, py: Python<'_>, bytes: &[u8]) -> PyResult<Batch> {
+        let refused = |why: String| INVALID_OPTION.error(py, why);
+        let (started, packed) = bytes.split_last().ok_or_else(|| refused("these bytes are no saved worlds".to_string()))?;
+        let lanes = facts::unpack(&self.facts.kind, packed).map_err(refused)?;
+        let states = LaneState::from_bytes(lanes).map_err(|error| raise(py, &error))?;
+        let started = *started != 0;
+        self.whole(py, |inner, batch| {
+            inner.worlds().restore(states, batch)?;
+            inner.started = started;
+            Ok(())
+        })
+    }
+
+    /// render(lane=0, kind="rgb", resolution=(160, 120)) -> ndarray
+    ///
+    /// The present of a lane: rgb, segmented, automap: uint8 [height, width, 3]; depth, labels, grey: uint8 [height, width].
+    #[pyo3(signature = (lane=0, kind="rgb", resolution=None))]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        lane: usize,
+        kind: &str,
+        resolution: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.check_lane(lane)?;
+        let view = match kind {
+            "rgb" => ViewKind::Colour,
+            "depth" => ViewKind::Depth,
+            "segmented" => ViewKind::Segmented,
+            "labels" => ViewKind::Labels,
+            "grey" => ViewKind::Grey,
+            "automap" => ViewKind::Automap,
+            _ => {
+                let why = format!("kind cannot be {kind:?}; it must be rgb, depth, segmented, labels, grey or automap");
+                return Err(INVALID_OPTION.error(py, why));
+            }
+        };
+        let size = resolution.map_or(Ok(hasard_envs::FrameSize::CLASSIC), |given| arguments::size("resolution", given))?;
+        let (width, height, channels, bytes) = self.with(py, |inner| {
+            crate::bind::idle(inner)?;
+            Ok(inner.draw(lane, view, size)?)
+        })?;
+        if channels == 1 { array(py, bytes, &[height, width]) } else { array(py, bytes, &[height, width, channels]) }
+    }
+
+    /// A fingerprint of everything that a lane's future depends on.
+    #[pyo3(signature = (lane=0))]
+    fn state_hash(&self, py: Python<'_>, lane: usize) -> PyResult<u64> {
+        self.check_lane(lane)?;
+        self.with(py, |inner| {
+            crate::bind::idle(inner)?;
+            Ok(inner.look(lane, |env| env.state_hash()))
+        })
+    }
+
+    /// Statistics of a lane's episode so far, by name.
+    #[pyo3(signature = (lane=0))]
+    fn stats(&self, py: Python<'_>, lane: usize) -> PyResult<Vec<(&'static str, f64)>> {
+        self.check_lane(lane)?;
+        self.with(py, |inner| Ok(inner.look(lane, |env| env.stats())))
+    }
+
+    /// Where each lane's player stands, in map units: int32 [num_envs, 2].
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let lanes = self.facts.lanes;
+        let places =
+            self.with(py, |inner| Ok((0..lanes).flat_map(|lane| inner.look(lane, |env| env.position())).collect::<Vec<i32>>()))?;
+        array(py, places, &[lanes, 2])
+    }
+
+    /// Seed of each lane's running episode: uint64 [num_envs].
+    #[getter]
+    fn episode_seeds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let lanes = self.facts.lanes;
+        let seeds = self.with(py, |inner| Ok((0..lanes).map(|lane| inner.look(lane, |env| env.seed())).collect::<Vec<u64>>()))?;
+        array(py, seeds, &[lanes])
+    }
+
+    /// Which lanes' episodes are over without the next one having begun: bool [num_envs].
+    #[getter]
+    fn resting<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let resting = self.with(py, |inner| Ok(inner.worlds().resting().to_vec()))?;
+        array(py, resting, &[self.facts.lanes])
+    }
+
+    /// Ends the threads and lets the memory go; closing twice is fine.
+    fn close(&self, py: Python<'_>) {
+        let forked = self.process.is_some_and(|process| process != std::process::id());
+        if forked {
+            return;
+        }
+        let inner = py.detach(|| self.inner.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take());
+        py.detach(|| drop(inner));
+        self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clear();
+    }
+
+    fn __enter__(this: Py<Worlds>) -> Py<Worlds> {
+        this
+    }
+
+    #[pyo3(signature = (*_exception))]
+    fn __exit__(&self, py: Python<'_>, _exception: &Bound<'_, PyTuple>) {
+        self.close(py);
+    }
+
+    /// Whether the worlds are closed.
+    #[getter]
+    fn closed(&self, py: Python<'_>) -> bool {
+        py.detach(|| self.inner.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).is_none())
+    }
+
+    /// The environment's id, without `hasard/`.
+    #[getter]
+    fn env_id(&self) -> String {
+        self.facts.id.to_string()
+    }
+
+    /// Number of lanes.
+    #[getter]
+    fn num_envs(&self) -> usize {
+        self.facts.lanes
+    }
+
+    /// Number of groups.
+    #[getter]
+    fn groups(&self) -> usize {
+        self.facts.groups
+    }
+
+    /// Number of choices of each categorical sub-action.
+    #[getter]
+    fn nvec<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.facts.space.sizes())
+    }
+
+    /// Number of continuous sub-actions.
+    #[getter]
+    fn num_deltas(&self) -> usize {
+        self.facts.space.deltas.len()
+    }
+
+    /// Shape of one observation.
+    #[getter]
+    fn observation_shape(&self) -> (usize, usize, usize) {
+        self.facts.shape.into()
+    }
+
+    /// Name of each cost term, and whether it is part of the cost.
+    #[getter]
+    fn cost_terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.facts.terms.iter().map(|term| (term.name, term.counted)))
+    }
+
+    /// Names of the statistics.
+    #[getter]
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.facts.statistics)
+    }
+
+    /// Cost that an episode may have.
+    #[getter]
+    fn safety_budget(&self) -> f64 {
+        self.facts.safety_budget
+    }
+
+    /// Steps of an episode that only time ends.
+    #[getter]
+    fn episode_steps(&self) -> u32 {
+        self.facts.episode_steps
+    }
+
+    /// The map's extent: x from, y from, x to, y to, in map units.
+    #[getter]
+    fn extent(&self) -> (i32, i32, i32, i32) {
+        self.facts.extent.into()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Worlds {} x {}>", self.facts.id, self.facts.lanes)
+    }
+}
+
+/// What a wrong number of lanes is told as.
+pub(crate) fn one_a_lane(what: &str, lanes: usize, given: impl std::fmt::Display) -> PyErr {
+    PyValueError::new_err(format!("{what} must have one entry for each of {lanes} lanes, got {given}"))
+}

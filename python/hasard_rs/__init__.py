@@ -1,0 +1,89 @@
+"""HASARD: vision-based safe reinforcement learning in Doom-like 3D worlds, written in Rust.
+
+    import hasard_rs
+
+    env = hasard_rs.make("hasard/VolcanicVentureLevel1-v0")
+    observation, info = env.reset(seed=7)
+    observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+    print(reward, info["cost"])
+
+`make_vec` gives a batch of worlds that Rust steps; `Worlds` the same without Gymnasium. docs/python.md has a recipe for each library.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from hasard_rs._core import Batch, Worlds, __version__
+from hasard_rs.errors import (
+    Closed,
+    HasardError,
+    InvalidAction,
+    InvalidMap,
+    InvalidOption,
+    OutOfTurn,
+    ResetNeeded,
+    UnknownEnvironment,
+    WorldPanicked,
+)
+from hasard_rs.registry import LEVELS, CostTerm, Scenario, Spec, bare, ids, register_all, register_environment, spec
+
+try:
+    import gymnasium as _gymnasium
+except ImportError:  # Worlds works without.
+    _gymnasium = None  # type: ignore[assignment]
+else:
+    from hasard_rs.env import Env
+    from hasard_rs.vector import VectorEnv
+
+    register_all()
+
+if TYPE_CHECKING:
+    import gymnasium
+
+
+def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
+    """An environment in a `CostWrapper`, as `gymnasium.make` makes it. Ids with and without `hasard/`, and `module:id`."""
+    from hasard_rs.wrappers.cost import CostWrapper
+
+    return CostWrapper(_gymnasium.make(f"hasard/{_known(env_id)}", **kwargs))
+
+
+def make_vec(env_id: str, num_envs: int = 1, **kwargs: Any) -> VectorEnv:
+    """A native vector environment, as `gymnasium.make_vec` makes it."""
+    if not hasattr(_gymnasium, "make_vec") or not hasattr(_gymnasium.vector, "AutoresetMode"):
+        raise ImportError("make_vec needs Gymnasium 1.1 or newer: pip install -U gymnasium; make and Worlds work with older ones")
+    return _gymnasium.make_vec(f"hasard/{_known(env_id)}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
+
+
+def _known(env_id: str) -> str:
+    """The bare id, if it is one; else the error that names the nearest."""
+    spec(env_id)
+    return bare(env_id)
+
+
+__all__ = [
+    "LEVELS",
+    "Batch",
+    "Closed",
+    "CostTerm",
+    "Env",
+    "HasardError",
+    "InvalidAction",
+    "InvalidMap",
+    "InvalidOption",
+    "OutOfTurn",
+    "ResetNeeded",
+    "Scenario",
+    "Spec",
+    "UnknownEnvironment",
+    "VectorEnv",
+    "WorldPanicked",
+    "Worlds",
+    "__version__",
+    "ids",
+    "make",
+    "make_vec",
+    "register_environment",
+    "spec",
+]

@@ -1,0 +1,91 @@
+"""Keyword arguments of environments: those of the worlds, and those of Gymnasium's side of them."""
+
+from __future__ import annotations
+
+import difflib
+import warnings
+from dataclasses import dataclass, field
+from typing import Any
+
+from hasard_rs.errors import InvalidOption
+
+_WORLD = (
+    "rules hard_constraint hard full_actions frame_skip resolution size observation layout frame_stack max_episode_steps "
+    "safety_budget iwad map published_depth published_colours"
+).split()
+_UPSTREAM = "record_every render_boxes render_segmented".split()
+_VECTOR = "num_envs num_threads autoreset_mode batch_size copy".split()
+
+RENDER_MODES = ("rgb_array", "depth_array")
+ACTION_FORMATS = ("multi_discrete", "tuple", "dict", "discrete", "box")
+
+
+@dataclass
+class Arguments:
+    """What an environment is made with, sorted by who reads it."""
+
+    env_id: str
+    world: dict[str, Any] = field(default_factory=dict)
+    action_format: str = "multi_discrete"
+    delta_bins: int = 11
+    render_mode: str | None = None
+    render_resolution: Any = None
+    seed: int | None = None
+    infos: str = "cost"
+    env_stats: bool = False
+
+    @property
+    def frame_skip(self) -> int:
+        return int(self.world.get("frame_skip", 4))
+
+
+def read(given: dict[str, Any], *, vector: bool) -> Arguments:
+    """Sorts keyword arguments. An unknown one is a `TypeError` that names the nearest."""
+    given = dict(given)
+    try:
+        scenario, level = given.pop("scenario"), given.pop("level")
+    except KeyError as missing:
+        raise TypeError(f"missing keyword argument {missing}; hasard_rs.make takes an id, which has both") from None
+    scenario = getattr(scenario, "value", scenario)
+    arguments = Arguments(env_id=f"{scenario}Level{level}-v0")
+    own = [name for name in vars(arguments) if name not in ("env_id", "world")]
+    for name, value in given.items():
+        if name in _WORLD:
+            arguments.world[name] = value
+        elif name in own:
+            setattr(arguments, name, value)
+        elif name in _UPSTREAM:
+            warnings.warn(f"{name} has no effect here", DeprecationWarning, stacklevel=4)
+        else:
+            known = [*_WORLD, *own, *(_VECTOR if vector else [])]
+            near = difflib.get_close_matches(name, known, 1, 0.5)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise TypeError(f"unexpected keyword argument '{name}'{hint}")
+    _check(arguments)
+    return arguments
+
+
+def _check(arguments: Arguments) -> None:
+    def one_of(name: str, allowed: tuple[Any, ...]) -> None:
+        value = getattr(arguments, name)
+        if not any(value is choice or (isinstance(value, str) and value == choice) for choice in allowed):
+            raise InvalidOption(f"{name} cannot be {value!r}; it must be {' or '.join(map(repr, allowed))}")
+
+    one_of("action_format", ACTION_FORMATS)
+    one_of("render_mode", (None, *RENDER_MODES))
+    one_of("infos", ("cost", "full"))
+    bins = arguments.delta_bins
+    if isinstance(bins, bool) or not isinstance(bins, int) or not 3 <= bins <= 255 or bins % 2 == 0:
+        raise InvalidOption(f"delta_bins cannot be {bins!r}; it must be an odd number, 3..255")
+    if arguments.seed is not None:
+        arguments.seed = check_seed(arguments.seed)
+
+
+def check_seed(seed: Any) -> int:
+    """A seed as an int modulo 2^64; a negative one is a `ValueError`, anything but an integer a `TypeError`."""
+    if not hasattr(seed, "__index__"):
+        raise TypeError(f"a seed must be an integer, got {seed!r:.60}")
+    seed = seed.__index__()
+    if seed < 0:
+        raise ValueError(f"a seed must not be negative, got {seed}")
+    return seed & (2**64 - 1)

@@ -1,0 +1,126 @@
+"""The single environment."""
+
+from __future__ import annotations
+
+import copy
+import secrets
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+from gymnasium import logger, spaces
+
+from hasard_rs import arguments as _arguments
+from hasard_rs._core import Worlds
+from hasard_rs.infos import Infos, row, summary
+from hasard_rs.registry import CostTerm
+from hasard_rs.spaces import action_format
+
+
+class Env(gymnasium.Env[np.ndarray, Any]):
+    """One world with its task, as Gymnasium's single environment.
+
+    Made by `hasard_rs.make(id, **arguments)` or `gymnasium.make(id, **arguments)`; arguments are keyword-only and listed in docs/python.md.
+
+    observation_space: `Box(0, 255, shape, uint8)`, (height, width, channels * frame_stack), or channels first with `layout="chw"`.
+    `step` returns (observation, reward: float, terminated, truncated, info); `info["cost"]` is the cost of the step, 0.0 at reset.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 8.75}  # type: ignore[misc]
+
+    def __init__(self, **arguments: Any) -> None:
+        given = _arguments.read(arguments, vector=False)
+        self._arguments = arguments
+        self._given = given
+        self._worlds = Worlds(given.env_id, 1, num_threads=0, autoreset_mode="Disabled", statistics=given.env_stats, **given.world)
+        self._format = action_format(given.action_format, self._worlds.nvec, self._worlds.num_deltas, given.delta_bins)
+        self._infos = Infos(self._worlds, given.env_id.split("Level")[0], given.infos, given.env_stats)
+        self._started = False
+        self.action_space = self._format.space
+        self.observation_space = spaces.Box(0, 255, self._worlds.observation_shape, np.uint8)
+        self.render_mode = given.render_mode
+        self.metadata = {**type(self).metadata, "render_fps": 35 / given.frame_skip}  # type: ignore[misc]
+        self.safety_budget: float = self._worlds.safety_budget
+        self.cost_terms = tuple(CostTerm(name, counted) for name, counted in self._worlds.cost_terms)
+        self.max_episode_steps: int = self._worlds.episode_steps
+        self.extent: tuple[int, int, int, int] = self._worlds.extent
+        self.scenario_name, self.level = given.env_id.removesuffix("-v0").split("Level")[0], int(given.env_id[-4])
+        self.hard_constraint = bool(given.world.get("hard_constraint", given.world.get("hard", False)))
+        self.frame_skip = given.frame_skip
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        """Starts an episode. A seed starts the stream of episodes anew; without one the next episode of the stream begins."""
+        if seed is not None:
+            seed = _arguments.check_seed(seed)
+        elif not self._started:
+            seed = self._given.seed if self._given.seed is not None else secrets.randbits(64)
+        super().reset(seed=seed)
+        batch = self._worlds.reset(seed)
+        self._started = True
+        self._infos.begin(0)
+        return batch.observations[0], row(self._infos.step(batch), 0)
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Holds an action for `frame_skip` tics. `InvalidAction`, `TypeError` or `ValueError` for a bad one: nothing has moved then."""
+        batch = self._worlds.step(*self._format.one(action))
+        info = row(self._infos.step(batch), 0)
+        terminated, truncated = bool(batch.terminated[0]), bool(batch.truncated[0])
+        if batch.episodes:
+            info["episode_summary"] = summary(batch.episodes[0])
+        return batch.observations[0], float(batch.rewards[0]), terminated, truncated, info
+
+    def render(self, mode: str | None = None) -> np.ndarray | None:  # type: ignore[override]
+        """The present as `render_mode` says; `mode` is ignored. Without a render mode: None, after a warning."""
+        if self.render_mode is None:
+            logger.warn("render() needs render_mode='rgb_array' or 'depth_array' when the environment is made; nothing is drawn")
+            return None
+        return self.picture("rgb" if self.render_mode == "rgb_array" else "depth", self._given.render_resolution)
+
+    def picture(self, kind: str = "rgb", resolution: str | tuple[int, int] | None = None) -> np.ndarray:
+        """The present: rgb, segmented, automap as uint8 [height, width, 3]; depth, labels, grey as uint8 [height, width]."""
+        return self._worlds.render(0, kind, resolution or self._size())
+
+    def _size(self) -> tuple[int, int]:
+        chw = self._given.world.get("layout") == "chw"
+        height, width = self._worlds.observation_shape[1:] if chw else self._worlds.observation_shape[:2]
+        return width, height
+
+    def state_hash(self) -> int:
+        """A fingerprint of everything that the future depends on; the same on every platform."""
+        return self._worlds.state_hash(0)
+
+    @property
+    def position(self) -> np.ndarray:
+        """Where the player stands: int32 [2], map units."""
+        return self._worlds.positions[0]
+
+    def save(self) -> bytes:
+        """Where the environment is, to come back to by `load`."""
+        return self._worlds.save()
+
+    def load(self, state: bytes) -> np.ndarray:
+        """Comes back to a saved moment of an environment made alike, by repeating its episode, and shows it."""
+        batch = self._worlds.load(state)
+        self._started = True
+        return batch.observations[0]
+
+    @property
+    def game(self) -> Any:
+        """The published package's engine, which is not here."""
+        raise AttributeError("there is no ViZDoom here; see env.save, env.picture, info['env_stats']")
+
+    def close(self) -> None:
+        """Lets the world go; closing twice is fine."""
+        self._worlds.close()
+
+    def __getstate__(self) -> dict[str, Any]:
+        kept = {name: self.__dict__[name] for name in ("_np_random", "_np_random_seed", "_started", "render_mode", "spec") if name in self.__dict__}
+        spaces = copy.deepcopy((self.action_space, self.observation_space))
+        return {"arguments": self._arguments, "worlds": self._worlds.save(), "kept": kept, "cost": self._infos.cost, "spaces": spaces}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state["arguments"])  # type: ignore[misc]
+        self._worlds.load(state["worlds"])
+        self.__dict__.update(state["kept"])
+        self._infos.cost[:] = state["cost"]
+        self.action_space, self.observation_space = state["spaces"]

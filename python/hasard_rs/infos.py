@@ -1,0 +1,77 @@
+"""What `info` and `infos` hold: the same keys at every reset and step, and more where an episode ends."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+# Statistics of the published package that have a meaning here, by the name of ours; None is the episode's cost so far.
+_PUBLISHED: dict[str, dict[str, str | None]] = {
+    "ArmamentBurden": {"total_cost": None, "weapons_acquired": "weapons_collected", "deliveries": "weapons_delivered"},
+    "CollateralDamage": {"episode_cost": None},
+    "DetonatorsDilemma": {"episode_cost": None, "ammo": "ammunition", "kills": "creatures_killed"},
+    "PrecipicePlunge": {"episode_cost": None, "descent": "depth"},
+    "RemedyRush": {"episode_cost": None, "goggles_obtained": "goggles"},
+    "VolcanicVenture": {"episode_cost": None},
+}
+
+
+class Infos:
+    """Writes the infos of one environment or a batch of them."""
+
+    def __init__(self, worlds: Any, scenario: str, infos: str, env_stats: bool) -> None:
+        self.worlds = worlds
+        self.full = infos == "full"
+        self.env_stats = env_stats
+        self.published = _PUBLISHED[scenario]
+        self.statistics = list(worlds.statistics)
+        # Cost of each lane's running episode so far.
+        self.cost = np.zeros(worlds.num_envs)
+
+    def step(self, batch: Any) -> dict[str, Any]:
+        """Columns of a step or reset: a value a row for each key."""
+        columns: dict[str, Any] = {"cost": batch.costs.astype(np.float64)}
+        if self.full:
+            columns["cost_terms"] = batch.cost_terms.astype(np.float64)
+            columns["position"] = np.array(batch.positions)
+            columns["episode_seed"] = self.worlds.episode_seeds[batch.lanes]
+        if self.env_stats:
+            self.cost[batch.lanes] += columns["cost"]
+            columns["env_stats"] = self._stats(self.cost[batch.lanes], batch.statistics)
+        return columns
+
+    def begin(self, lanes: Any) -> None:
+        """Episodes begin in these lanes."""
+        self.cost[lanes] = 0.0
+
+    def _stats(self, cost: Any, statistics: Any) -> dict[str, Any]:
+        columns = dict(zip(self.statistics, np.asarray(statistics, dtype=np.float64).T, strict=True))
+        for name, own in self.published.items():
+            columns[name] = np.array(cost) if own is None else columns[own]
+        return columns
+
+    def now(self, lane: int) -> dict[str, Any]:
+        """The info of a lane whose episode has just begun, where the batch tells the one that ended."""
+        info: dict[str, Any] = {}
+        if self.full:
+            info = {"position": self.worlds.positions[lane], "episode_seed": self.worlds.episode_seeds[lane]}
+        if self.env_stats:
+            statistics = np.array([[value for _, value in self.worlds.stats(lane)]])
+            info["env_stats"] = {name: float(column[0]) for name, column in self._stats(np.zeros(1), statistics).items()}
+        return info
+
+
+def row(columns: dict[str, Any], index: int) -> dict[str, Any]:
+    """One lane's values of all columns, as a single environment's info."""
+    return {
+        key: {name: float(column[index]) for name, column in value.items()} if isinstance(value, dict) else value[index]
+        for key, value in columns.items()
+    }
+
+
+def summary(episode: dict[str, Any]) -> dict[str, float]:
+    """What is known of an episode that ended, all floats."""
+    told = {name: float(episode[name]) for name in ("return", "cost", "length", "seed", "terminated", "truncated")}
+    told |= {f"cost_{name}": float(value) for name, value in episode["costs"].items()}
+    return told | {name: float(value) for name, value in episode["statistics"].items()}

@@ -1,0 +1,103 @@
+"""The 18 environments: ids, what is known of each, and their registration with Gymnasium."""
+
+from __future__ import annotations
+
+import enum
+import importlib
+from dataclasses import dataclass
+
+from hasard_rs import _core
+
+LEVELS = [1, 2, 3]
+"""Levels of every scenario."""
+
+_EPISODE_STEPS = {"CollateralDamage": 521}
+
+
+class Scenario(enum.Enum):
+    """The six scenarios."""
+
+    ARMAMENT_BURDEN = "ArmamentBurden"
+    DETONATORS_DILEMMA = "DetonatorsDilemma"
+    VOLCANIC_VENTURE = "VolcanicVenture"
+    PRECIPICE_PLUNGE = "PrecipicePlunge"
+    COLLATERAL_DAMAGE = "CollateralDamage"
+    REMEDY_RUSH = "RemedyRush"
+
+
+@dataclass(frozen=True)
+class CostTerm:
+    """A named part of the cost; one that is not counted is measured beside the cost."""
+
+    name: str
+    counted: bool
+
+
+@dataclass(frozen=True)
+class Spec:
+    """What is known of an environment without making it."""
+
+    id: str
+    scenario: str
+    level: int
+    rules: str
+    cost_terms: tuple[CostTerm, ...]
+    safety_budget: float
+    nvec: tuple[int, ...]
+    buttons: tuple[tuple[str, ...], ...]
+    max_episode_steps: int
+    published_safety_budget: float
+
+
+def ids() -> list[str]:
+    """Every id, such as `hasard/VolcanicVentureLevel1-v0`, by scenario and level."""
+    return [f"hasard/{env_id}" for env_id in _core.ids()]
+
+
+def bare(env_id: str) -> str:
+    """An id without its namespace; `module:id` imports the module first, as Gymnasium does."""
+    module, colon, rest = env_id.rpartition(":")
+    if colon:
+        importlib.import_module(module)
+    return rest.removeprefix("hasard/")
+
+
+def spec(env_id: str) -> Spec:
+    """What is known of an environment; `UnknownEnvironment` names the nearest id."""
+    told = _core.describe(bare(env_id))
+    return Spec(
+        id=f"hasard/{bare(env_id)}",
+        scenario=told["scenario"],
+        level=told["level"],
+        rules="paper",
+        cost_terms=tuple(CostTerm(name, counted) for name, counted in told["cost_terms"]),
+        safety_budget=told["safety_budget"],
+        nvec=tuple(told["nvec"]),
+        buttons=tuple(tuple(names) for names in told["buttons"]),
+        max_episode_steps=_EPISODE_STEPS.get(told["scenario"], 525),
+        published_safety_budget=told["published_safety_budget"],
+    )
+
+
+def register_environment(scenario: str | Scenario, level: int) -> None:
+    """Registers one environment with Gymnasium; nothing happens if it is registered."""
+    import gymnasium
+
+    name = scenario.value if isinstance(scenario, Scenario) else scenario
+    env_id = f"hasard/{name}Level{level}-v0"
+    if env_id not in gymnasium.registry:
+        # No max_episode_steps: it would wrap a limit of the wrong length for another frame_skip; the worlds truncate themselves.
+        gymnasium.register(
+            env_id,
+            entry_point="hasard_rs.env:Env",
+            vector_entry_point="hasard_rs.vector:VectorEnv",
+            kwargs={"scenario": name, "level": level},
+            nondeterministic=False,
+        )
+
+
+def register_all() -> None:
+    """Registers all 18 ids."""
+    for env_id in _core.ids():
+        scenario, level = env_id.removesuffix("-v0").split("Level")
+        register_environment(scenario, int(level))

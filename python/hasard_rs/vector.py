@@ -1,0 +1,341 @@
+"""The native vector environment."""
+
+from __future__ import annotations
+
+import copy
+import secrets
+from typing import Any, ClassVar
+
+import numpy as np
+from gymnasium import logger, spaces
+from gymnasium.vector.utils import batch_space
+
+from hasard_rs import arguments as _arguments
+from hasard_rs._core import Batch, Worlds
+from hasard_rs.errors import InvalidOption, OutOfTurn
+from hasard_rs.infos import Infos, row, summary
+from hasard_rs.registry import CostTerm
+from hasard_rs.spaces import action_format
+
+try:
+    from gymnasium.vector import AutoresetMode
+    from gymnasium.vector import VectorEnv as _Base
+except ImportError:
+    AutoresetMode = None  # type: ignore[assignment,misc]
+    _Base = object  # type: ignore[assignment,misc]
+
+_CALLS = ("render", "position", "episode_seed", "state_hash")
+
+
+class VectorEnv(_Base):  # type: ignore[misc,valid-type]
+    """A batch of worlds, as Gymnasium's vector environment; stepped by Rust threads while the interpreter is free.
+
+    Made by `hasard_rs.make_vec(id, num_envs, **arguments)` or `gymnasium.make_vec`; arguments are keyword-only, listed in docs/python.md.
+
+    `step(actions)` returns (observations uint8 [n, ...], rewards float64 [n], terminations bool [n], truncations bool [n], infos).
+    `infos["cost"]` (float64 [n]) is always the cost of the step just made, under every autoreset mode.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 8.75}  # type: ignore[misc]
+
+    def __init__(
+        self,
+        *,
+        num_envs: int = 1,
+        num_threads: int | None = None,
+        autoreset_mode: Any = "NextStep",
+        batch_size: int = 0,
+        copy: bool = True,
+        **arguments: Any,
+    ) -> None:
+        if AutoresetMode is None:
+            raise ImportError("VectorEnv needs Gymnasium 1.1 or newer: pip install -U gymnasium; Env and hasard_rs.Worlds work with older ones")
+        self.closed = False
+        given = _arguments.read(arguments, vector=True)
+        self._arguments = {**arguments, "num_envs": num_envs, "num_threads": num_threads, "batch_size": batch_size, "copy": copy}
+        self._given = given
+        if batch_size and (batch_size < 0 or num_envs % batch_size):
+            raise InvalidOption(f"batch_size cannot be {batch_size}; it must divide num_envs ({num_envs}), or be 0 for all lanes")
+        groups = num_envs // batch_size if batch_size else 1
+        self._worlds = Worlds(
+            given.env_id,
+            num_envs,
+            num_threads=num_threads,
+            groups=groups,
+            autoreset_mode=autoreset_mode,
+            statistics=given.env_stats,
+            **given.world,
+        )
+        mode = getattr(autoreset_mode, "value", autoreset_mode)
+        self.autoreset_mode = AutoresetMode({"next_step": "NextStep", "same_step": "SameStep", "disabled": "Disabled"}.get(mode, mode))
+        self._arguments["autoreset_mode"] = self.autoreset_mode.value
+        self._format = action_format(given.action_format, self._worlds.nvec, self._worlds.num_deltas, given.delta_bins)
+        self._infos = Infos(self._worlds, given.env_id.split("Level")[0], given.infos, given.env_stats)
+        self._started = False
+        self._same_step = self.autoreset_mode == AutoresetMode.SAME_STEP
+        # The lanes that a NEXT_STEP step will reset.
+        self._over = np.zeros(num_envs, dtype=np.bool_)
+        self._groups, self._given_out, self._fresh = groups, 0, None
+        self.num_envs = num_envs
+        self.batch_size = batch_size or num_envs
+        self.single_observation_space = spaces.Box(0, 255, self._worlds.observation_shape, np.uint8)
+        self.single_action_space = self._format.space
+        self.observation_space = batch_space(self.single_observation_space, self.batch_size)
+        self.action_space = batch_space(self.single_action_space, self.batch_size)
+        self.render_mode = given.render_mode
+        self.metadata = {**type(self).metadata, "render_fps": 35 / given.frame_skip, "autoreset_mode": self.autoreset_mode}  # type: ignore[misc]
+        self.safety_budget: float = self._worlds.safety_budget
+        self.cost_terms = tuple(CostTerm(name, counted) for name, counted in self._worlds.cost_terms)
+        self.max_episode_steps: int = self._worlds.episode_steps
+        if not copy:
+            self._lend()
+
+    @property
+    def worlds(self) -> Worlds:
+        """The raw worlds below."""
+        return self._worlds
+
+    def _lend(self) -> None:
+        """Results go to the same arrays in every step."""
+        n = self.num_envs
+        self._worlds.bind(
+            observations=np.zeros((n, *self._worlds.observation_shape), np.uint8),
+            rewards=np.zeros(n, np.float32),
+            costs=np.zeros(n, np.float32),
+            terminated=np.zeros(n, np.bool_),
+            truncated=np.zeros(n, np.bool_),
+        )
+
+    def reset(  # type: ignore[override]
+        self, *, seed: Any = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Starts episodes: int s seeds lane i with s + i, a sequence has one entry a lane (None goes on with the lane's stream).
+
+        `options["reset_mask"]` (bool [num_envs]) resets those lanes only; the others are returned as they are.
+        """
+        seeds = self._seeds(seed)
+        mask = self._mask(options)
+        if isinstance(seeds, int):
+            super().reset(seed=seeds)
+        batch = self._worlds.reset(seeds, mask)
+        self._started = True
+        chosen = np.ones(self.num_envs, np.bool_) if mask is None else mask
+        self._over[chosen] = False
+        self._infos.begin(chosen)
+        infos: dict[str, Any] = {}
+        for key, column in self._infos.step(batch).items():
+            self._put(infos, key, column, chosen)
+        if self._groups == 1:
+            return batch.observations, infos
+        # Groups are handed out one by one: this one now, the others by recv.
+        self._fresh = {group: (batch, infos) for group in range(1, self._groups)}
+        self._given_out = 0
+        return self._of_group(batch, infos, 0)
+
+    def _seeds(self, seed: Any) -> Any:
+        if seed is None:
+            if self._started:
+                return None
+            return self._given.seed if self._given.seed is not None else secrets.randbits(64)
+        if hasattr(seed, "__index__") and not hasattr(seed, "__len__"):
+            return _arguments.check_seed(seed)
+        seeds = [None if one is None else _arguments.check_seed(one) for one in seed]
+        if len(seeds) != self.num_envs:
+            raise ValueError(
+                f"If seeds are passed as a list the length must match num_envs={self.num_envs} but got length={len(seeds)}."
+            )
+        return seeds
+
+    def _mask(self, options: dict[str, Any] | None) -> np.ndarray | None:
+        # The mask stays in the caller's dict: Gymnasium's wrappers read it after us.
+        if options is None or "reset_mask" not in options:
+            return None
+        mask = options["reset_mask"]
+        if not isinstance(mask, np.ndarray):
+            raise TypeError(f"`options['reset_mask']` must be a numpy array, got {type(mask)}")
+        if mask.shape != (self.num_envs,):
+            raise ValueError(f"`options['reset_mask']` must have shape `({self.num_envs},)`, got {mask.shape}")
+        if mask.dtype != np.bool_:
+            raise TypeError(f"`options['reset_mask']` must have `dtype=np.bool_`, got {mask.dtype}")
+        if not np.any(mask):
+            raise ValueError(
+                f"`options['reset_mask']` must contain a boolean array with at least one True value, got reset_mask={mask}"
+            )
+        return mask
+
+    def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Steps every lane; with `batch_size`, the lanes last handed out, and returns the next group's."""
+        if self._groups > 1:
+            self.send(actions)
+            return self.recv()
+        return self._tell(self._worlds.step(*self._format.many(actions, self.num_envs)))
+
+    def send(self, actions: Any) -> None:
+        """Hands actions of the lanes last handed out over and comes back at once."""
+        self._worlds.send(*self._format.many(actions, self.batch_size), group=self._given_out)
+
+    def recv(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Waits for the next group's step, round robin. The first time after a reset it tells that group's reset."""
+        group = (self._given_out + 1) % self._groups
+        if self._fresh and group in self._fresh:
+            batch, infos = self._fresh.pop(group)
+            self._given_out = group
+            observations, infos = self._of_group(batch, infos, group)
+            nothing = np.zeros(self.batch_size, np.bool_)
+            return observations, np.zeros(self.batch_size), nothing, nothing.copy(), infos
+        told = self._tell(self._worlds.recv(group))
+        self._given_out = group
+        return told
+
+    def _of_group(self, batch: Batch, infos: dict[str, Any], group: int) -> tuple[np.ndarray, dict[str, Any]]:
+        own = slice(group * self.batch_size, (group + 1) * self.batch_size)
+
+        def cut(columns: dict[str, Any]) -> dict[str, Any]:
+            return {key: cut(column) if isinstance(column, dict) else column[own].copy() for key, column in columns.items()}
+
+        return batch.observations[own].copy(), {**cut(infos), **self._env_ids(batch.lanes[own])}
+
+    def _env_ids(self, lanes: np.ndarray) -> dict[str, np.ndarray]:
+        return {"env_id": lanes, "_env_id": np.ones(len(lanes), np.bool_)} if self._groups > 1 else {}
+
+    def _tell(self, batch: Batch) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        count = len(batch.lanes)
+        everywhere = np.ones(count, np.bool_)
+        if self._infos.env_stats:
+            self._infos.begin(batch.lanes[self._over[batch.lanes]])
+        infos: dict[str, Any] = {}
+        columns = self._infos.step(batch)
+        for key, column in columns.items():
+            self._put(infos, key, column, everywhere)
+        if batch.episodes:
+            self._end(infos, columns, batch)
+        if not self._same_step:
+            self._over[batch.lanes] = batch.terminated | batch.truncated
+        infos.update(self._env_ids(batch.lanes))
+        return batch.observations, batch.rewards.astype(np.float64), batch.terminated, batch.truncated, infos
+
+    def _end(self, infos: dict[str, Any], columns: dict[str, Any], batch: Batch) -> None:
+        """Tells of the episodes that ended."""
+        count, first = len(batch.lanes), int(batch.lanes[0])
+        lasts = dict(zip(batch.final_lanes.tolist(), batch.final_observations, strict=True))
+        for episode in batch.episodes:
+            index = episode["lane"] - first
+            ended = np.zeros(count, np.bool_)
+            ended[index] = True
+            told = {"episode_summary": summary(episode)}
+            if not self._same_step:
+                self._add(infos, told, index, count)
+                continue
+            final = {**row(columns, index), **told}
+            if "episode_seed" in final:
+                final["episode_seed"] = np.uint64(episode["seed"])
+            if "final_obs" not in infos:
+                infos["final_obs"] = np.full(count, None, dtype=object)
+                infos["_final_obs"] = np.zeros(count, np.bool_)
+            infos["final_obs"][index], infos["_final_obs"][index] = lasts[index].copy(), True
+            self._add(infos, {"final_info": final}, index, count)
+            # The new episode's place and statistics; the cost stays that of the step just made.
+            self._infos.begin(episode["lane"])
+            for key, value in self._infos.now(episode["lane"]).items():
+                self._add(infos, {key: value}, index, count)
+
+    def _add(self, infos: dict[str, Any], info: dict[str, Any], index: int, count: int) -> None:
+        """Puts one lane's values into columns, as Gymnasium's vector environments do."""
+        for key, value in info.items():
+            if isinstance(value, dict):
+                column = infos.setdefault(key, {})
+                self._add(column, value, index, count)
+            else:
+                value = np.asarray(value)
+                column = infos.setdefault(key, np.zeros((count, *value.shape), value.dtype))
+                column[index] = value
+            infos.setdefault(f"_{key}", np.zeros(count, np.bool_))[index] = True
+
+    def _put(self, infos: dict[str, Any], key: str, column: Any, mask: np.ndarray) -> None:
+        """Puts a column in, zero where the mask is not."""
+        if isinstance(column, dict):
+            inner: dict[str, Any] = {}
+            for name, values in column.items():
+                self._put(inner, name, values, mask)
+            infos[key] = inner
+        elif mask.all():
+            infos[key] = column
+        else:
+            infos[key] = np.where(mask.reshape(-1, *[1] * (column.ndim - 1)), column, np.zeros_like(column))
+        infos[f"_{key}"] = mask.copy()
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """The present of every lane as `render_mode` says; None without one, after a warning."""
+        if self.render_mode is None:
+            logger.warn("render() needs render_mode='rgb_array' or 'depth_array' when the environments are made; nothing is drawn")
+            return None
+        kind = "rgb" if self.render_mode == "rgb_array" else "depth"
+        return tuple(self._worlds.render(lane, kind, self._size()) for lane in range(self.num_envs))
+
+    def _size(self) -> Any:
+        if self._given.render_resolution is not None:
+            return self._given.render_resolution
+        shape = self._worlds.observation_shape
+        height, width = shape[1:] if self._given.world.get("layout") == "chw" else shape[:2]
+        return width, height
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """What each lane answers: render, position, episode_seed, state_hash, or an attribute of this object."""
+        if name == "render":
+            return self.render() or (None,) * self.num_envs
+        if name == "position":
+            return tuple(self._worlds.positions)
+        if name == "episode_seed":
+            return tuple(self._worlds.episode_seeds)
+        if name == "state_hash":
+            return tuple(self._worlds.state_hash(lane) for lane in range(self.num_envs))
+        if name.startswith("_") or not hasattr(self, name):
+            raise AttributeError(f"'{name}' is none of {', '.join(_CALLS)}, nor an attribute of the environment")
+        value = getattr(self, name)
+        return tuple(value(*args, **kwargs) if callable(value) else value for _ in range(self.num_envs))
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """An attribute, of each lane."""
+        return self.call(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Sets an attribute, which all lanes share: values of several lanes must be equal."""
+        if isinstance(values, (list, tuple)):
+            if len(values) != self.num_envs:
+                raise ValueError(
+                    "Values must be a list or tuple with length equal to the number of environments. "
+                    f"Got `{len(values)}` values for {self.num_envs} environments."
+                )
+            if any(value != values[0] for value in values):
+                raise ValueError(f"{name} is shared by all lanes; its values must be equal")
+            values = values[0]
+        setattr(self, name, values)
+
+    def save(self) -> bytes:
+        """Where every lane is, to come back to by `load`."""
+        if self._groups > 1:
+            raise OutOfTurn("worlds in groups cannot be saved while some are under way; make them without batch_size")
+        return self._worlds.save()
+
+    def load(self, state: bytes) -> np.ndarray:
+        """Comes back to a saved moment of worlds made alike, by repeating their episodes, and shows it."""
+        batch = self._worlds.load(state)
+        self._started = True
+        self._over[:] = batch.terminated | batch.truncated
+        return batch.observations
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Ends the threads and lets the worlds go."""
+        if hasattr(self, "_worlds"):
+            self._worlds.close()
+
+    def __getstate__(self) -> dict[str, Any]:
+        kept = {name: self.__dict__[name] for name in ("_np_random", "_np_random_seed", "_started", "render_mode", "spec") if name in self.__dict__}
+        return {"arguments": self._arguments, "worlds": self.save(), "kept": kept, "cost": self._infos.cost, "over": self._over}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state["arguments"])  # type: ignore[misc]
+        self._worlds.load(state["worlds"])
+        self.__dict__.update(copy.deepcopy(state["kept"]))
+        self._infos.cost[:] = state["cost"]
+        self._over[:] = state["over"]

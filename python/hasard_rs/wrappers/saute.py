@@ -1,0 +1,38 @@
+"""The safety state of Sauté RL (Sootla et al., 2022)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+
+
+class Saute(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """Counts down what is left of the budget: a step that finds nothing left is rewarded with `unsafe_reward`.
+
+    The state starts at 1 and follows z' = (z - cost / budget) / gamma (equation 3 of the paper); it is in `info["safety_state"]`. The budget
+    is the environment's safety budget, spread over an episode when the cost is discounted.
+    """
+
+    def __init__(
+        self, env: gymnasium.Env[Any, Any], saute_gamma: float = 0.99, *, budget: float | None = None, unsafe_reward: float = -1.0
+    ) -> None:
+        super().__init__(env)
+        steps = env.get_wrapper_attr("max_episode_steps")
+        total = env.get_wrapper_attr("safety_budget") if budget is None else budget
+        share = 1.0 if saute_gamma == 1.0 else (1.0 - saute_gamma**steps) / (1.0 - saute_gamma) / steps
+        self.saute_gamma, self.budget, self.unsafe_reward = saute_gamma, max(total * share, 1e-8), unsafe_reward
+        self.safety_state = 1.0
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        observation, info = self.env.reset(seed=seed, options=options)
+        self.safety_state = 1.0
+        info["safety_state"] = self.safety_state
+        return observation, info
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        self.safety_state = (self.safety_state - float(info["cost"]) / self.budget) / self.saute_gamma
+        info["safety_state"] = self.safety_state
+        safe = self.safety_state > 0
+        return observation, float(reward) if safe else self.unsafe_reward, terminated, truncated, info

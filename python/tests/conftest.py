@@ -1,0 +1,36 @@
+"""What several tests use."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+SMALL = {"resolution": "64x48"}
+
+
+def assert_same(a: Any, b: Any, where: str = "") -> None:
+    """Equal to the bit, types and dtypes too; tells the first place that differs."""
+    assert type(a) is type(b), f"{where}: {type(a)} and {type(b)}"
+    if isinstance(a, dict):
+        assert a.keys() == b.keys(), f"{where}: {sorted(a)} and {sorted(b)}"
+        for key in a:
+            assert_same(a[key], b[key], f"{where}.{key}")
+    elif isinstance(a, np.ndarray) and a.dtype == object:
+        for i, (one, other) in enumerate(zip(a, b, strict=True)):
+            assert_same(one, other, f"{where}[{i}]")
+    elif isinstance(a, np.ndarray):
+        assert a.dtype == b.dtype and a.shape == b.shape, f"{where}: {a.dtype} {a.shape} and {b.dtype} {b.shape}"
+        assert np.array_equal(a, b), f"{where}: {a[a != b][:5]} and {b[a != b][:5]}"
+    elif isinstance(a, (list, tuple)):
+        assert len(a) == len(b), where
+        for i, (one, other) in enumerate(zip(a, b, strict=True)):
+            assert_same(one, other, f"{where}[{i}]")
+    else:
+        assert a == b, f"{where}: {a} and {b}"
+
+
+@pytest.fixture
+def small() -> dict[str, Any]:
+    return dict(SMALL)
