@@ -23,7 +23,11 @@ pub(crate) fn path(shared: &Shared, name: &str) -> Result<PathBuf, String> {
     let plain = name.ends_with(".episode") && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte));
     let path = shared.episodes.join(name);
     let is_file = std::fs::symlink_metadata(&path).is_ok_and(|data| data.is_file());
-    if plain && !name.starts_with('.') && is_file { Ok(path) } else { Err("there is no such episode; choose one from the table".into()) }
+    if plain && !name.starts_with('.') && is_file {
+        Ok(path)
+    } else {
+        Err("there is no such episode; choose one from the table".into())
+    }
 }
 
 /// Kept episodes and runs, the best within their budgets first.
@@ -34,7 +38,8 @@ pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, 
         catalogue.refresh();
         rows.extend(catalogue.results().iter().filter_map(|run| {
             let last = &run["last"];
-            let (episode_return, cost, budget) = (last["return_mean"].as_f64()?, last["cost_mean"].as_f64()?, run["budget"].as_f64()?);
+            let (episode_return, cost, budget) =
+                (last["return_mean"].as_f64()?, last["cost_mean"].as_f64()?, run["budget"].as_f64()?);
             Some(json!({
                 "who": format!("{}, seed {}", run["algo"].as_str()?, run["seed"]), "env": run["env"], "return": episode_return,
                 "cost": cost, "budget": budget, "within": cost <= budget, "agent": format!("run:{}", run["id"].as_str()?),
@@ -104,7 +109,8 @@ pub(crate) async fn download(State(shared): State<Arc<Shared>>, Query(query): Qu
         aside(move || std::fs::read(path).map_err(|error| error.to_string())).await?
     };
     let bytes = bytes.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
-    let headers = [(header::CONTENT_TYPE, kind.to_owned()), (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\""))];
+    let headers =
+        [(header::CONTENT_TYPE, kind.to_owned()), (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\""))];
     Ok((headers, bytes).into_response())
 }
 

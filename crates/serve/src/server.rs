@@ -82,7 +82,8 @@ impl Server {
     /// # Errors
     /// When the address is taken or not ours.
     pub fn bind(settings: Settings) -> io::Result<Server> {
-        let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).max_blocking_threads(8).enable_all().build()?;
+        let runtime =
+            tokio::runtime::Builder::new_multi_thread().worker_threads(2).max_blocking_threads(8).enable_all().build()?;
         let listener = runtime.block_on(tokio::net::TcpListener::bind(settings.address))?;
         let address = listener.local_addr()?;
         let shared = Shared {
@@ -142,5 +143,7 @@ async fn envs(State(shared): State<Arc<Shared>>) -> Result<Response, Response> {
         })
     })
     .await?;
-    Ok(json_of(&json!({ "envs": envs, "policies": ["random", "sticky:10", "noop", "hold:MOVE_FORWARD"], "zoo": shared.agents.zoo() })))
+    Ok(json_of(
+        &json!({ "envs": envs, "policies": ["random", "sticky:10", "noop", "hold:MOVE_FORWARD"], "zoo": shared.agents.zoo() }),
+    ))
 }

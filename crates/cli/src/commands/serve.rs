@@ -60,6 +60,7 @@ fn open(address: &str) {
 /// Trained agents as the other commands load them.
 #[cfg(feature = "serve")]
 mod trained {
+    use crate::failure::Failure;
     use crate::settings::trained_options;
     use hasard_envs::{Env, EnvOptions};
     use hasard_learn::networks::distribution::ActionShape;
@@ -71,7 +72,10 @@ mod trained {
     impl hasard_serve::Agents for Trained {
         fn options(&self, run: &Path) -> Result<(String, EnvOptions), String> {
             let config = run_config(run).map_err(|error| error.to_string())?;
-            let options = trained_options(&config.env).map_err(|error| error.to_string())?;
+            let options = trained_options(&config.env).map_err(|failure| match failure {
+                Failure::BadInput(why) | Failure::Negative(why) => why,
+                Failure::OutputClosed => String::new(),
+            })?;
             Ok((config.env.id, options))
         }
 

@@ -82,10 +82,14 @@ mod tests {
     #[test]
     fn rows_are_read_from_where_they_were_left_off() {
         let path = std::env::temp_dir().join(format!("hasard-serve-columns-{}", std::process::id()));
-        std::fs::write(&path, "{\"frames\":1,\"cost_mean\":null,\"fps\":5}\n{\"frames\":2,\"cost_mean\":3.5,\"fps\":6}\n{\"fra").unwrap();
+        std::fs::write(&path, "{\"frames\":1,\"cost_mean\":null,\"fps\":5}\n{\"frames\":2,\"cost_mean\":3.5,\"fps\":6}\n{\"fra")
+            .unwrap();
         let mut columns = Columns::default();
         columns.catch_up(&path).unwrap();
-        assert_eq!(columns.thinned(&["cost_mean".into(), "none".into()]), json!({"frames": [1.0, 2.0], "cost_mean": [null, 3.5]}));
+        assert_eq!(
+            columns.thinned(&["cost_mean".into(), "none".into()]),
+            json!({"frames": [1.0, 2.0], "cost_mean": [null, 3.5]})
+        );
         std::fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(b"mes\":9,\"cost_mean\":1}\nrubbish\n").unwrap();
         columns.catch_up(&path).unwrap();
         assert_eq!(columns.thinned(&["cost_mean".into(), "fps".into()])["fps"], json!([5.0, 6.0, null]));

@@ -71,11 +71,14 @@ fn read(path: &Path) -> Option<String> {
 pub(crate) async fn detail(State(shared): State<Arc<Shared>>, Query(query): Query<One>) -> Result<Response, Response> {
     let path = directory(&shared, query.id.clone()).await?;
     let id = query.id;
-    let columns = on_catalogue(Arc::clone(&shared), move |catalogue| catalogue.columns(&id).map(|columns| columns.names())).await?;
+    let columns =
+        on_catalogue(Arc::clone(&shared), move |catalogue| catalogue.columns(&id).map(|columns| columns.names())).await?;
     let body = aside(move || {
-        let config: Value = read(&path.join("config.json")).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or(Value::Null);
+        let config: Value =
+            read(&path.join("config.json")).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or(Value::Null);
         let heatmaps = read(&path.join("heatmaps.jsonl")).unwrap_or_default();
-        let moments = heatmaps.lines().map(|line| serde_json::from_str::<Value>(line).map_or(Value::Null, |line| line["frames"].clone()));
+        let moments =
+            heatmaps.lines().map(|line| serde_json::from_str::<Value>(line).map_or(Value::Null, |line| line["frames"].clone()));
         let moments: Vec<Value> = moments.collect();
         json!({ "config": config, "columns": columns, "heatmaps": moments })
     });

@@ -35,12 +35,23 @@ pub(super) enum Ask {
     Go,
     /// One tic on.
     Tic,
-    Speed { value: f64 },
-    Jump { step: u32 },
+    Speed {
+        value: f64,
+    },
+    Jump {
+        step: u32,
+    },
     /// Keys down and up, by the names of `Key`, and the mouse.
-    Press { key: String },
-    Release { key: String },
-    Mouse { right: f32, down: f32 },
+    Press {
+        key: String,
+    },
+    Release {
+        key: String,
+    },
+    Mouse {
+        right: f32,
+        down: f32,
+    },
     Loose,
     /// The same episode again, or the next one.
     Again,

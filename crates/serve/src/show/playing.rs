@@ -40,8 +40,7 @@ impl Game {
         let stage = Stage::new(&query.env, &query.options()).map_err(|error| error.to_string())?;
         let views = Views::new(&stage, query.size(), &[ViewKind::Colour]).map_err(|error| error.to_string())?;
         let controls = Controls::default();
-        let mut game =
-            Game { folder, seed: query.seed, stage, views, controls, recorder: None, paused: true, fresh: true };
+        let mut game = Game { folder, seed: query.seed, stage, views, controls, recorder: None, paused: true, fresh: true };
         game.restart()?;
         Ok(game)
     }
@@ -146,8 +145,22 @@ impl Game {
 fn key_of(name: &str) -> Option<Key> {
     use Key::*;
     const KEYS: [Key; 16] = [
-        Forward, Backward, Right, Left, TurnLeft, TurnRight, LookUp, LookDown, Attack, Use, Jump, Crouch, Speed, NextWeapon,
-        PreviousWeapon, TurnRound,
+        Forward,
+        Backward,
+        Right,
+        Left,
+        TurnLeft,
+        TurnRight,
+        LookUp,
+        LookDown,
+        Attack,
+        Use,
+        Jump,
+        Crouch,
+        Speed,
+        NextWeapon,
+        PreviousWeapon,
+        TurnRound,
     ];
     KEYS.into_iter().find(|key| key.button() == name)
 }

@@ -58,7 +58,8 @@ impl Rehearsal {
             Performer::Recorded(path) => {
                 let file = EpisodeFile::read(path).map_err(|error| error.to_string())?;
                 let header = file.header();
-                let options = options_from_names(&header.options, &EnvOptions::default(), path).map_err(|error| error.to_string())?;
+                let options =
+                    options_from_names(&header.options, &EnvOptions::default(), path).map_err(|error| error.to_string())?;
                 (header.env.clone(), options, header.seed)
             }
         };
@@ -174,7 +175,8 @@ impl Rehearsal {
     /// What does not change in the course of the episode.
     pub fn scene(&self) -> Value {
         let space = self.env.action_space();
-        let groups: Vec<Vec<&str>> = space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect();
+        let groups: Vec<Vec<&str>> =
+            space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect();
         let scenario = self.env.id().scenario;
         let budget = if self.options.hard { 0.0 } else { scenario.safety_budget(self.options.rules) };
         json!({
