@@ -68,15 +68,19 @@ pub struct EnvArgs {
     /// to play and render, 320x240 to record
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
+    /// `hasard` of the python3 on the path
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
 }
 
 impl EnvArgs {
     /// Whether the task differs from the usual one; size and pictures do not matter.
     pub fn changes_task(&self) -> bool {
-        self.rules != Rules::Paper || self.hard || self.full_actions || self.frame_skip != 4
+        self.rules != Rules::Paper || self.maps.is_some() || self.hard || self.full_actions || self.frame_skip != 4
     }
 }
 
@@ -250,10 +254,16 @@ pub struct BenchArgs {
     /// With --learn: the algorithm
     #[arg(long, default_value = "PPOLag", requires = "learn")]
     pub algo: String,
+    /// With --learn: the preset, but for its epochs and minibatches
+    #[arg(long, default_value = "paper", requires = "learn")]
+    pub preset: String,
+    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512 chooses others
+    #[arg(long, requires = "learn")]
+    pub portable: bool,
     /// Seed
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Print one JSON object
+    /// Print JSON objects, one a line
     #[arg(long)]
     pub json: bool,
     /// How to make the environment
@@ -386,9 +396,13 @@ pub struct TrainArgs {
     /// Sampling and learning run side by side; the default on a graphics card
     #[arg(long = "async", conflicts_with = "sync")]
     pub asynchronous: bool,
-    /// Threads; all cores if absent
+    /// Threads; all cores if absent. Results do not depend on their number
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
+    /// Plain kernels: the same bits on every machine, some six times slower. HASARD_SIMD=plain|avx2|avx512 forces a family
+    /// without leaving a trace in the settings
+    #[arg(long)]
+    pub portable: bool,
     /// Worlds
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub envs: Option<u32>,
@@ -493,9 +507,13 @@ pub struct ReplayArgs {
     /// Frame size
     #[arg(long, value_name = "WxH", default_value_t = Size { width: 640, height: 480 })]
     pub size: Size,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
+    /// `hasard` of the python3 on the path
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
     /// One JSON object about the episode
     #[arg(long)]
     pub json: bool,
@@ -604,9 +622,13 @@ pub struct ContactSheetArgs {
     /// Added to the seed of every moment; 0 draws the moments that were chosen for the documentation
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
+    /// `hasard` of the python3 on the path
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
     /// One JSON object a file
     #[arg(long)]
     pub json: bool,

@@ -101,9 +101,12 @@ impl Agent {
         let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
         let image = ImageShape { height, width, channels };
         let shape = ModelShape::new(image, action, cost_critics, shaping.extra_inputs(), &config.network)?;
-        let mut learner = Learner::new(&config, &shape, &ComputeDevice::Processor);
+        // Wherever it was trained, it acts on the processor.
+        config.device = "cpu".into();
+        let device = ComputeDevice::of(&config)?;
+        let mut learner = Learner::new(&config, &shape, &device);
         loaded.restore_weights(&mut learner)?;
-        let mut actor = Actor::new(&shape, &ComputeDevice::Processor);
+        let mut actor = Actor::new(&shape, &device);
         actor.load(&learner.publish());
         Ok(Agent {
             state: shape.zero_state(lanes),
@@ -135,7 +138,7 @@ impl Agent {
             _ => self.safety.iter().map(|&safety| Shaping::seen(safety)).collect(),
         };
         let width = self.shape.outputs();
-        self.actor.act(observations, &extra, &mut self.state, 0..lanes, &mut self.rows);
+        self.actor.act(observations, &extra, &mut self.state, 0..lanes, &mut self.rows, None);
         let action = &self.shape.action;
         let mut all = Vec::with_capacity(lanes);
         for (row, (seed, step)) in self.rows.chunks_exact(width).zip(&mut self.episodes) {
