@@ -38,6 +38,8 @@ pub enum Command {
     Replay(ReplayArgs),
     /// Make tables, curves and heatmaps from run directories
     Report(ReportArgs),
+    /// Answer with a page in the browser: follow runs, watch agents, play
+    Serve(ServeArgs),
     /// Run many trainings: a grid from a TOML file, or an experiment of the paper by name
     Sweep(SweepArgs),
     /// Write the agent that a run hands out as one small file
@@ -549,6 +551,26 @@ pub struct ReportArgs {
     /// Accepted for uniformity; bootstrap intervals have a fixed seed
     #[arg(long, hide = true, default_value_t = 0)]
     pub seed: u64,
+}
+
+/// `hasard serve`.
+#[derive(Args, Debug)]
+pub struct ServeArgs {
+    /// Folders below which runs are looked for, while they run too
+    #[arg(value_name = "RUNS", default_value = "runs")]
+    pub runs: Vec<PathBuf>,
+    /// Address to listen at; beyond this machine only with the token that is printed
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8350")]
+    pub listen: std::net::SocketAddr,
+    /// What visitors must know; drawn anew if absent and --listen goes beyond this machine
+    #[arg(long, value_name = "TEXT")]
+    pub token: Option<String>,
+    /// Folder in which episodes that are played are kept
+    #[arg(long, value_name = "DIR", default_value = "human")]
+    pub out: PathBuf,
+    /// Open the page in the browser
+    #[arg(long)]
+    pub open: bool,
 }
 
 /// `hasard sweep`.

@@ -38,6 +38,7 @@ fn main() -> ExitCode {
         Command::Record(args) => commands::record::run(&args),
         Command::Replay(args) => commands::record::replay(&args),
         Command::Report(args) => commands::report::run(&args),
+        Command::Serve(args) => commands::serve::run(&args),
         Command::Sweep(args) => commands::sweep::run(&args),
         Command::ExportAgent(args) => commands::export_agent::run(&args),
         Command::ExportWad(args) => commands::export_wad::run(&args),
