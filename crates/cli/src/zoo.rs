@@ -35,7 +35,7 @@ pub fn is_agent(text: &str) -> bool {
 }
 
 /// Names and files of all agents, those of earlier folders first.
-fn agents() -> Vec<(String, PathBuf)> {
+pub fn agents() -> Vec<(String, PathBuf)> {
     let mut all: Vec<(String, PathBuf)> = Vec::new();
     for folder in folders() {
         let mut paths: Vec<PathBuf> =

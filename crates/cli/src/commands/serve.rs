@@ -88,11 +88,14 @@ mod trained {
         }
 
         fn zoo(&self) -> Vec<String> {
-            Vec::new()
+            crate::zoo::agents().into_iter().map(|(name, _)| name).collect()
         }
 
         fn zoo_run(&self, name: &str) -> Result<PathBuf, String> {
-            Err(format!("zoo:{name}: no agents come with this version; name a run"))
+            crate::zoo::find(&format!("zoo:{name}")).map_err(|failure| match failure {
+                Failure::BadInput(why) | Failure::Negative(why) => why,
+                Failure::OutputClosed => String::new(),
+            })
         }
     }
 }
