@@ -72,7 +72,7 @@ def test_every_dtype_order_and_stride_acts_alike() -> None:
 @pytest.mark.parametrize(
     ("arguments", "error", "text"),
     [
-        ({"frame_skip": 0}, hasard_rs.InvalidOption, "frame_skip cannot be 0; it must be 1..35"),
+        ({"frame_skip": 0}, hasard_rs.InvalidOption, "frame_skip cannot be 0; it must be 1..=35"),
         ({"resolution": "10x10"}, hasard_rs.InvalidOption, "resolution"),
         ({"resolution": (64, -48)}, hasard_rs.InvalidOption, "resolution"),
         ({"frame_stack": 17}, hasard_rs.InvalidOption, "frame_stack"),

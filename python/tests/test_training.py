@@ -33,7 +33,7 @@ def test_a_run_directory_is_the_programs(run: hasard_rs.Run) -> None:
     config = json.loads((run.directory / "config.json").read_text())
     assert config["algorithm"] == "PPOLag" and config["env"]["size"] == [64, 48]
     done = subprocess.run(
-        [sys.executable, "-m", "hasard_rs.cli", "eval", str(run.directory), "--episodes", "1", "--json"], capture_output=True, text=True
+        [sys.executable, "-m", "hasard_rs.cli", "eval", str(run.directory), "--episodes", "1", "--seed", "0", "--json"], capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
     agent = hasard_rs.Agent.load(run.directory)

@@ -66,15 +66,19 @@ pub struct EnvArgs {
     /// to play and render, 320x240 to record
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
+    /// `hasard` of the python3 on the path
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
 }
 
 impl EnvArgs {
     /// Whether the task differs from the usual one; size and pictures do not matter.
     pub fn changes_task(&self) -> bool {
-        self.rules != Rules::Paper || self.hard || self.full_actions || self.frame_skip != 4
+        self.rules != Rules::Paper || self.maps.is_some() || self.hard || self.full_actions || self.frame_skip != 4
     }
 }
 
@@ -491,9 +495,13 @@ pub struct ReplayArgs {
     /// Frame size
     #[arg(long, value_name = "WxH", default_value_t = Size { width: 640, height: 480 })]
     pub size: Size,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
+    /// `hasard` of the python3 on the path
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
     /// One JSON object about the episode
     #[arg(long)]
     pub json: bool,
@@ -582,9 +590,13 @@ pub struct ContactSheetArgs {
     /// Added to the seed of every moment; 0 draws the moments that were chosen for the documentation
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
+    /// `hasard` of the python3 on the path
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
     /// One JSON object a file
     #[arg(long)]
     pub json: bool,

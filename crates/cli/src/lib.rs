@@ -10,6 +10,7 @@ mod commands;
 mod contact_sheet;
 mod episode_lines;
 mod settings;
+mod sources;
 
 use args::{Cli, Command};
 use clap::{ArgMatches, CommandFactory, FromArgMatches};

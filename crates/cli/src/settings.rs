@@ -2,12 +2,10 @@
 
 use crate::args::{EnvArgs, LooksArgs, Observation, ObservationArgs, Rules, Size, View};
 use crate::failure::Failure;
-use hasard_engine::assets::Assets;
 use hasard_envs::{EnvError, EnvId, EnvOptions, FrameSize, ObservationKind, Policy, RuleSet};
 use hasard_learn::config::EnvConfig;
 use hasard_play::ViewKind;
 use std::path::Path;
-use std::sync::Arc;
 
 impl From<Rules> for RuleSet {
     fn from(rules: Rules) -> RuleSet {
@@ -31,8 +29,7 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
         full_actions: args.full_actions,
         frame_skip: args.frame_skip,
         size: args.size.unwrap_or(default_size).into(),
-        assets: assets(args.iwad.as_deref())?,
-        ..EnvOptions::default()
+        ..crate::sources::looks(args.maps.as_deref(), args.iwad.as_deref())?
     })
 }
 
@@ -83,10 +80,15 @@ pub fn views(first: View, beside: &[View]) -> Vec<ViewKind> {
     std::iter::once(first).chain(beside.iter().copied()).map(ViewKind::from).collect()
 }
 
-/// The options of the environment that a run was trained in, its pictures among them.
+/// The options of the environment that a run was trained in, its maps and pictures among them.
 pub fn trained_options(env: &EnvConfig) -> Result<EnvOptions, Failure> {
     let options = env.options().map_err(Failure::bad)?;
-    Ok(EnvOptions { assets: assets(env.iwad.as_deref().map(Path::new))?, ..options })
+    let sources = crate::sources::looks(env.maps.as_deref().map(Path::new), env.iwad.as_deref().map(Path::new))?;
+    // A map that cannot be read stops a run before it is announced.
+    if let (Some(maps), Ok(id)) = (&sources.maps, env_id(&env.id)) {
+        maps.level(id, options.rules, options.hard).map_err(Failure::bad)?;
+    }
+    Ok(EnvOptions { maps: sources.maps, assets: sources.assets, ..options })
 }
 
 /// The environment of a training run from flags, in the words of its `config.json`.
@@ -109,29 +111,9 @@ pub fn env_config(id: &str, args: &EnvArgs, observation: &ObservationArgs) -> En
     let looks = &observation.looks;
     (env.published_depth, env.published_colours) = (looks.published_depth, looks.published_colours);
     env.iwad = args.iwad.as_ref().map(|path| path.display().to_string());
+    env.maps = args.maps.as_ref().map(|path| path.display().to_string());
     if let Some(size) = args.size {
         env.size = (size.width, size.height);
     }
     env
-}
-
-/// Where Debian's package puts Freedoom, for `--iwad auto`.
-const FREEDOOM: [&str; 2] = ["/usr/share/games/doom/freedoom2.wad", "/usr/share/games/doom/freedoom1.wad"];
-
-/// Largest IWAD that is read, bytes.
-const LARGEST_IWAD: u64 = 256 << 20;
-
-/// The pictures of `--iwad`, or none for the embedded set.
-pub fn assets(iwad: Option<&Path>) -> Result<Option<Arc<Assets>>, Failure> {
-    let Some(given) = iwad else { return Ok(None) };
-    let path = if given == Path::new("auto") {
-        FREEDOOM.iter().map(Path::new).find(|path| path.exists()).ok_or_else(|| {
-            Failure::bad(format!("--iwad auto: nothing at {}; install Debian's package freedoom, or name a file", FREEDOOM[0]))
-        })?
-    } else {
-        given
-    };
-    let bytes = hasard_media::files::read_limited(path, LARGEST_IWAD).map_err(Failure::bad)?;
-    let assets = Assets::from_iwad(&bytes).map_err(|error| Failure::bad(format!("{}: {error}", path.display())))?;
-    Ok(Some(Arc::new(assets)))
 }

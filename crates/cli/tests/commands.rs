@@ -59,6 +59,26 @@ impl Drop for Folder {
     }
 }
 
+/// A map of ours, written and given back by name, is the built-in one; recordings tell the two apart.
+#[test]
+fn a_map_from_a_file_is_played_and_remembered() {
+    let folder = Folder::new("maps");
+    folder.ok("export-wad RemedyRushLevel1-v0 -o town.wad");
+    let rollout = "rollout RemedyRushLevel1-v0 --episodes 1 --json";
+    assert_eq!(folder.ok(&format!("{rollout} --maps town.wad")), folder.ok(rollout));
+    folder.ok("record RemedyRushLevel1-v0 -o files.episode --steps 5 --maps town.wad");
+    folder.ok("record RemedyRushLevel1-v0 -o built_in.episode --steps 5");
+    folder.ok("replay files.episode --maps town.wad");
+    folder.ok("replay built_in.episode");
+    assert!(folder.refused("replay files.episode").contains("--maps"));
+    assert!(folder.refused("replay built_in.episode --maps town.wad").contains("leave --maps out"));
+    folder.ok("train RemedyRushLevel1-v0 --preset quick --frames 300 --envs 2 --maps town.wad --out run");
+    assert!(String::from_utf8(folder.read("run/config.json")).unwrap().contains("town.wad"));
+    folder.ok("eval run --episodes 1");
+    std::fs::remove_file(folder.0.join("town.wad")).unwrap();
+    assert!(folder.refused("eval run --episodes 1").contains("town.wad"));
+}
+
 #[test]
 fn bad_input_is_one_line_that_names_it_and_the_remedy() {
     let folder = Folder::new("bad");
@@ -85,6 +105,11 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("render RemedyRushLevel1-v0 --iwad empty", &["empty"]),
         ("render RemedyRushLevel1-v0 --iwad folder", &["folder", "is a folder"]),
         ("render RemedyRushLevel1-v0 --iwad none.wad", &["none.wad"]),
+        ("render RemedyRushLevel1-v0 --maps text.wad", &["text.wad", "not a WAD"]),
+        ("rollout RemedyRushLevel1-v0 --maps folder", &["folder", "remedy_rush/level_1.wad"]),
+        ("bench RemedyRushLevel1-v0 --maps none", &["none", "remedy_rush/level_1.wad"]),
+        ("rollout RemedyRushLevel1-v0 --maps folder --iwad none.wad", &["folder"]),
+        ("train RemedyRushLevel1-v0 --maps text.wad --out new", &["text.wad"]),
         ("record RemedyRushLevel1-v0 -o a.avi", &["a.avi", ".mp4, .gif, .episode"]),
         ("record RemedyRushLevel1-v0 -o a", &["--out a", ".mp4"]),
         ("record RemedyRushLevel1-v0 -o a.episode --policy hold:CROUCH", &["--full-actions"]),

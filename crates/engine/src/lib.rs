@@ -7,6 +7,7 @@
 //! | [`assets`] | palette, light tables, textures, sprites, status-bar art: the embedded set, or an IWAD |
 //! | [`wad`] | the container that maps and pictures come in |
 //! | [`world`] | things, movement, sector movers, weapons, monsters, events: plain data, `Clone` is a snapshot |
+//! | [`simd`] | which vector instructions are used: every variant gives the same bits |
 //! | [`render`] | first-person colour, depth and labels, status bar, top-down map |
 //!
 //! The engine knows no reward, no scenario, no thread and no file system.
@@ -19,5 +20,6 @@ pub mod math;
 #[cfg(test)]
 mod mutation;
 pub mod render;
+pub mod simd;
 pub mod wad;
 pub mod world;

@@ -9,6 +9,7 @@ use hasard_engine::assets::Assets;
 use hasard_engine::map::Map;
 use hasard_engine::math::Rng;
 use hasard_engine::render::{Buffers, FrameSize, RenderOptions, Renderer, Scene, TopDown, View};
+use hasard_engine::simd::{Simd, SimdError};
 use hasard_engine::world::{Command, World};
 use std::sync::Arc;
 
@@ -37,6 +38,11 @@ impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
         let id: EnvId = id.parse()?;
         options.check()?;
+        Simd::chosen().map_err(|error| EnvError::Option {
+            option: "the variable HASARD_SIMD",
+            given: error.given,
+            allowed: SimdError::allowed(),
+        })?;
         let (built_in, textures) = scenarios::map_source(id, options.rules, options.hard);
         let file = match (&options.map, &options.maps) {
             (None, Some(maps)) => Some(maps.level(id, options.rules, options.hard)?),
@@ -174,7 +180,7 @@ impl Env {
     #[must_use]
     pub fn left_out(&self) -> Option<String> {
         let parts = &self.blueprint.left_out;
-        (!parts.is_empty()).then(|| format!("map of {}: left out: {}", self.id(), parts.join(", ")))
+        (!parts.is_empty()).then(|| format!("{}: left out: {}", self.blueprint.template.world.map.name, parts.join(", ")))
     }
 
     /// The named parts of the cost.

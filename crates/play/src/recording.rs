@@ -7,6 +7,9 @@ use hasard_media::episode::{EpisodeFile, Header, Outcome};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+/// What a recording says of its maps where they were not the built-in ones. Which files those were is the player's to know.
+const FROM_FILES: &str = "from files";
+
 /// The options that change what happens in an episode, by their names on the command line.
 #[must_use]
 pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
@@ -14,14 +17,14 @@ pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
         RuleSet::Paper => "paper",
         RuleSet::Released => "released",
     };
-    [
+    let maps = options.maps.as_ref().map(|_| ("maps", FROM_FILES.to_owned()));
+    let always = [
         ("rules", rules.to_owned()),
         ("hard", options.hard.to_string()),
         ("full-actions", options.full_actions.to_string()),
         ("frame-skip", options.frame_skip.to_string()),
-    ]
-    .map(|(name, value)| (name.to_owned(), value))
-    .into()
+    ];
+    always.into_iter().chain(maps).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// The options that an episode file names, over those that only concern looks (size, pictures), which `looks` gives.
@@ -38,6 +41,13 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
         frame_stack: 1,
         ..looks.clone()
     };
+    if names.contains_key("maps") != looks.maps.is_some() {
+        let problem = match looks.maps {
+            None => "was recorded on maps from files: name them by --maps",
+            Some(_) => "was recorded on the built-in maps: leave --maps out",
+        };
+        return Err(MediaError::Format { path: file.to_owned(), problem: problem.to_owned() }.into());
+    }
     for (name, value) in names {
         let unknown = || {
             let problem =
@@ -52,6 +62,7 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
                     _ => return Err(unknown().into()),
                 };
             }
+            "maps" if value == FROM_FILES => {}
             "hard" => options.hard = value.parse().map_err(|_| unknown())?,
             "full-actions" => options.full_actions = value.parse().map_err(|_| unknown())?,
             "frame-skip" => {

@@ -36,6 +36,7 @@ impl Stage {
         let shown = EnvOptions {
             frame_skip: 1,
             frame_stack: 1,
+            // Maps that come with an IWAD are drawn with theirs.
             assets: looks.assets.clone(),
             published_depth: looks.published_depth,
             published_colours: looks.published_colours,

@@ -4,14 +4,11 @@ use crate::args::ContactSheetArgs;
 use crate::contact_sheet::layout::{Row, sheet};
 use crate::contact_sheet::moments::{self, Moment};
 use crate::failure::{Failure, Outcome};
-use crate::settings;
-use hasard_engine::assets::Assets;
 use hasard_engine::render::FrameSize;
 use hasard_envs::{Env, EnvId, EnvOptions, Policy, PolicyRun, Scenario};
 use hasard_media::{Picture, files, png};
 use hasard_play::{ViewKind, Views};
 use std::path::Path;
-use std::sync::Arc;
 
 /// The size for people.
 const LARGE: FrameSize = FrameSize { width: 640, height: 480 };
@@ -22,12 +19,12 @@ pub fn run(args: &ContactSheetArgs) -> Outcome {
         [] => Scenario::ALL.to_vec(),
         names => names.iter().map(|name| scenario(name)).collect::<Result<_, _>>()?,
     };
-    let assets = settings::assets(args.iwad.as_deref())?;
+    let looks = crate::sources::looks(args.maps.as_deref(), args.iwad.as_deref())?;
     std::fs::create_dir_all(&args.out)
         .map_err(|error| Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display())))?;
     for scenario in scenarios {
         let moments = moments::of(scenario);
-        let rows = moments.iter().map(|moment| row(scenario, moment, args.seed, assets.clone()));
+        let rows = moments.iter().map(|moment| row(scenario, moment, args.seed, &looks));
         let rows: Vec<Row> = rows.collect::<Result<_, _>>()?;
         let name = file_name(scenario);
         write(&sheet(&rows).in_few_colours(), &args.out.join(format!("{name}_sheet.png")), args.json)?;
@@ -55,9 +52,9 @@ fn file_name(scenario: Scenario) -> String {
 }
 
 /// Plays to a moment and draws it in every view.
-fn row(scenario: Scenario, moment: &Moment, seed: u64, assets: Option<Arc<Assets>>) -> Result<Row, Failure> {
+fn row(scenario: Scenario, moment: &Moment, seed: u64, looks: &EnvOptions) -> Result<Row, Failure> {
     let id = EnvId { scenario, level: moment.level };
-    let options = EnvOptions { size: FrameSize::LEARNER, assets, ..EnvOptions::default() };
+    let options = EnvOptions { size: FrameSize::LEARNER, ..looks.clone() };
     let mut env = Env::new(&id.to_string(), &options).map_err(Failure::bad)?;
     let seed = moment.seed + seed;
     env.reset(seed);
@@ -109,7 +106,7 @@ mod tests {
             assert_eq!(super::scenario(scenario.name()).unwrap(), scenario);
             assert!(moments::cover(scenario) < moments::of(scenario).len());
             for moment in moments::of(scenario) {
-                let row = row(scenario, &moment, 0, None).unwrap();
+                let row = row(scenario, &moment, 0, &EnvOptions::default()).unwrap();
                 assert_eq!((row.large[0].width(), row.small[0].height()), (640, 72));
                 assert!(moment.way.iter().all(|(_, policy)| policy.parse::<Policy>().is_ok()));
             }

@@ -91,8 +91,7 @@ fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions)
 
 /// Runs `hasard replay`.
 pub fn replay(args: &ReplayArgs) -> Outcome {
-    let looks = EnvOptions { assets: settings::assets(args.iwad.as_deref())?, ..EnvOptions::default() };
-    let looks = settings::looking(looks, &args.film.looks);
+    let looks = settings::looking(crate::sources::looks(args.maps.as_deref(), args.iwad.as_deref())?, &args.film.looks);
     let allowed = [("mp4", Kind::Film), ("gif", Kind::Film), ("png", Kind::Picture)];
     let kind = args.out.as_deref().map(|out| Kind::of(out, &allowed)).transpose()?;
     if args.step.is_some() && kind != Some(Kind::Picture) {

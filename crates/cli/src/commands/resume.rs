@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
 /// `--frames` is absent: a resumed run may be given another length.
-const DECIDES: [(&str, &[&str]); 21] = [
+const DECIDES: [(&str, &[&str]); 22] = [
     ("algo", &["/algorithm"]),
     ("preset", &["/preset"]),
     ("curriculum", &["/curriculum"]),
@@ -29,6 +29,7 @@ const DECIDES: [(&str, &[&str]); 21] = [
     ("frame_skip", &["/env/frame_skip"]),
     ("size", &["/env/size"]),
     ("iwad", &["/env/iwad"]),
+    ("maps", &["/env/maps"]),
     ("observation", &["/env/observation"]),
     ("frame_stack", &["/env/frame_stack"]),
     ("published_depth", &["/env/published_depth"]),

@@ -2,6 +2,7 @@
 
 #[cfg(target_arch = "x86_64")]
 use super::convert_wide::Wide;
+use crate::simd::Simd;
 
 /// Weight of red, green and blue in luminance, in 256ths.
 const LUMINANCE: [u32; 3] = [77, 150, 29];
@@ -12,56 +13,69 @@ pub(super) fn luminance(colour: [u8; 3]) -> u8 {
     (sum >> 8) as u8
 }
 
-/// The channels of a palette, a table each.
-fn channels(palette: &[[u8; 3]; 256]) -> [[u8; 256]; 3] {
-    std::array::from_fn(|channel| std::array::from_fn(|i| palette[i][channel]))
+/// A table of colours, in the forms that the ways of looking up want.
+#[derive(Clone, Debug)]
+pub(super) struct Colours {
+    pub palette: [[u8; 3]; 256],
+    /// A table of each channel.
+    channels: [[u8; 256]; 3],
+    /// Red, green and blue from the lowest byte on.
+    words: [u32; 256],
+}
+
+impl Colours {
+    pub fn new(palette: [[u8; 3]; 256]) -> Colours {
+        let channels = std::array::from_fn(|channel| std::array::from_fn(|i| palette[i][channel]));
+        let words = palette.map(|[red, green, blue]| u32::from_le_bytes([red, green, blue, 0]));
+        Colours { palette, channels, words }
+    }
 }
 
 /// Looks every index up.
-fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
+fn look_up(simd: Simd, table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
     #[cfg(target_arch = "x86_64")]
-    let done = Wide::detect().map_or(0, |wide| wide.look_up(table, indices, out));
+    let done = Wide::of(simd).map_or(0, |wide| wide.look_up(table, indices, out));
     #[cfg(not(target_arch = "x86_64"))]
-    let done = 0;
-    look_up_plainly(table, &indices[done..], &mut out[done..]);
-}
-
-fn look_up_plainly(table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
-    for (to, &index) in out.iter_mut().zip(indices) {
+    let (_, done) = (simd, 0);
+    for (to, &index) in out[done..].iter_mut().zip(&indices[done..]) {
         *to = table[usize::from(index)];
     }
 }
 
 /// Red, green, blue of each pixel in turn.
-pub(super) fn rgb_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
-    interleaved(palette, &channels(palette), indices, out);
-}
-
-/// The same with the palette's `channels`, which callers that come often make once.
-fn interleaved(palette: &[[u8; 3]; 256], channels: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) {
+pub(super) fn rgb_interleaved(simd: Simd, colours: &Colours, indices: &[u8], out: &mut [u8]) {
     #[cfg(target_arch = "x86_64")]
-    let done = Wide::detect().map_or(0, |wide| wide.interleaved(channels, indices, out));
+    let done = Wide::of(simd).map_or(0, |wide| wide.interleaved(&colours.channels, indices, out));
     #[cfg(not(target_arch = "x86_64"))]
-    let (_, done) = (channels, 0);
-    rgb_interleaved_plainly(palette, &indices[done..], &mut out[done * 3..]);
+    let (_, done) = (simd, 0);
+    rgb_interleaved_plainly(colours, &indices[done..], &mut out[done * 3..]);
 }
 
-fn rgb_interleaved_plainly(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
-    for (to, &index) in out.chunks_exact_mut(3).zip(indices) {
-        to.copy_from_slice(&palette[usize::from(index)]);
+/// Four pixels at a time, whose stores overlap: each writes a byte too many, which the next one mends.
+fn rgb_interleaved_plainly(colours: &Colours, indices: &[u8], out: &mut [u8]) {
+    let ((fours, rest), (twelves, last)) = (indices.as_chunks::<4>(), out.as_chunks_mut::<12>());
+    for (to, from) in twelves.iter_mut().zip(fours) {
+        let [a, b, c, d] = from.map(|index| colours.words[usize::from(index)]);
+        to[..4].copy_from_slice(&a.to_le_bytes());
+        to[3..7].copy_from_slice(&b.to_le_bytes());
+        to[6..10].copy_from_slice(&c.to_le_bytes());
+        to[8..].copy_from_slice(&(c >> 16 | d << 8).to_le_bytes());
+    }
+    for (to, &index) in last.chunks_exact_mut(3).zip(rest) {
+        to.copy_from_slice(&colours.palette[usize::from(index)]);
     }
 }
 
 /// A plane of red, one of green, one of blue.
-pub(super) fn rgb_planes(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
-    for (table, plane) in channels(palette).iter().zip(out.chunks_exact_mut(indices.len())) {
-        look_up(table, indices, plane);
+pub(super) fn rgb_planes(simd: Simd, colours: &Colours, indices: &[u8], out: &mut [u8]) {
+    for (table, plane) in colours.channels.iter().zip(out.chunks_exact_mut(indices.len())) {
+        look_up(simd, table, indices, plane);
     }
 }
 
 /// Luminance.
-pub(super) fn grey(palette: &[[u8; 3]; 256], indices: &[u8], out: &mut [u8]) {
-    look_up(&palette.map(luminance), indices, out);
+pub(super) fn grey(simd: Simd, colours: &Colours, indices: &[u8], out: &mut [u8]) {
+    look_up(simd, &colours.palette.map(luminance), indices, out);
 }
 
 /// The colour of a class; those beyond the table share its last one.
@@ -88,12 +102,11 @@ pub(super) fn classes_one_byte<const N: usize>(values: &[u8; N], full: u16, clas
 const STRETCH: usize = 1024;
 
 /// Red, green, blue of each pixel in turn, and its depth.
-pub(super) fn rgb_depth_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], depth: &[u8], out: &mut [u8]) {
-    let tables = channels(palette);
+pub(super) fn rgb_depth_interleaved(simd: Simd, colours: &Colours, indices: &[u8], depth: &[u8], out: &mut [u8]) {
     let mut planes = [[0; STRETCH]; 3];
     for ((to, indices), depth) in out.chunks_mut(STRETCH * 4).zip(indices.chunks(STRETCH)).zip(depth.chunks(STRETCH)) {
-        for (table, plane) in tables.iter().zip(&mut planes) {
-            look_up(table, indices, &mut plane[..indices.len()]);
+        for (table, plane) in colours.channels.iter().zip(&mut planes) {
+            look_up(simd, table, indices, &mut plane[..indices.len()]);
         }
         let [red, green, blue] = &planes;
         for ((((to, &red), &green), &blue), &depth) in to.chunks_exact_mut(4).zip(red).zip(green).zip(blue).zip(depth) {
@@ -103,16 +116,16 @@ pub(super) fn rgb_depth_interleaved(palette: &[[u8; 3]; 256], indices: &[u8], de
 }
 
 /// The colour of each class, pixel by pixel.
-pub(super) fn classes_interleaved<const N: usize>(colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
+pub(super) fn classes_interleaved<const N: usize>(simd: Simd, colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
     let mut palette = [[0; 3]; 256];
     palette.iter_mut().zip(colours).for_each(|(to, &colour)| *to = colour);
-    let channels = channels(&palette);
+    let palette = Colours::new(palette);
     let mut indices = [0; STRETCH];
     for (to, classes) in out.chunks_mut(STRETCH * 3).zip(classes.chunks(STRETCH)) {
         // Few pictures hold so many things that a class does not fit a byte.
         if classes.iter().fold(0, |bits, &class| bits | class) < N.min(256) as u16 {
             indices.iter_mut().zip(classes).for_each(|(index, &class)| *index = class as u8);
-            interleaved(&palette, &channels, &indices[..classes.len()], to);
+            rgb_interleaved(simd, &palette, &indices[..classes.len()], to);
         } else {
             for (to, &class) in to.chunks_exact_mut(3).zip(classes) {
                 to.copy_from_slice(&colour_of(colours, class));
@@ -159,33 +172,42 @@ mod tests {
             let depth: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
             let most = if length % 2 == 0 { 1100 } else { 60 };
             let classes: Vec<u16> = (0..length).map(|_| (rng.byte() as u16 * 5) % most).collect();
-            let mut out = vec![0; length * 4];
-            rgb_depth_interleaved(&palette, &indices, &depth, &mut out);
-            for (i, pixel) in out.chunks_exact(4).enumerate() {
-                assert_eq!((&pixel[..3], pixel[3]), (&palette[usize::from(indices[i])][..], depth[i]));
-            }
-            let mut out = vec![0; length * 3];
-            classes_interleaved(&colours, &classes, &mut out);
-            for (i, pixel) in out.chunks_exact(3).enumerate() {
-                assert_eq!(pixel, colour_of(&colours, classes[i]));
+            for simd in Simd::available() {
+                let mut out = vec![0; length * 4];
+                rgb_depth_interleaved(simd, &Colours::new(palette), &indices, &depth, &mut out);
+                for (i, pixel) in out.chunks_exact(4).enumerate() {
+                    assert_eq!((&pixel[..3], pixel[3]), (&palette[usize::from(indices[i])][..], depth[i]));
+                }
+                let mut out = vec![0; length * 3];
+                classes_interleaved(simd, &colours, &classes, &mut out);
+                for (i, pixel) in out.chunks_exact(3).enumerate() {
+                    assert_eq!(pixel, colour_of(&colours, classes[i]));
+                }
             }
         }
     }
 
     #[test]
-    fn wide_and_plain_look_ups_agree() {
+    fn all_ways_of_looking_up_agree() {
         let mut rng = Rng::new(3);
         let palette: [[u8; 3]; 256] = std::array::from_fn(|_| [0; 3].map(|_| rng.byte() as u8));
-        for length in [0, 1, 63, 64, 65, 192, 1000, 9216] {
+        let colours = Colours::new(palette);
+        for length in [0, 1, 3, 4, 63, 64, 65, 192, 1000, 9216] {
             let indices: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
-            let (mut wide, mut plain) = (vec![0; length], vec![0; length]);
-            look_up(&channels(&palette)[1], &indices, &mut wide);
-            look_up_plainly(&channels(&palette)[1], &indices, &mut plain);
-            assert_eq!(wide, plain);
-            let (mut wide, mut plain) = (vec![0; length * 3], vec![0; length * 3]);
-            rgb_interleaved(&palette, &indices, &mut wide);
-            rgb_interleaved_plainly(&palette, &indices, &mut plain);
-            assert_eq!(wide, plain);
+            let pixels: Vec<[u8; 3]> = indices.iter().map(|&index| palette[usize::from(index)]).collect();
+            for simd in Simd::available() {
+                let mut out = vec![0; length * 3];
+                rgb_interleaved(simd, &colours, &indices, &mut out);
+                assert_eq!(out, pixels.concat(), "{simd:?}");
+                let mut out = vec![0; length];
+                grey(simd, &colours, &indices, &mut out);
+                assert!(out.iter().zip(&pixels).all(|(&grey, &pixel)| grey == luminance(pixel)), "{simd:?}");
+                let mut out = vec![0; length * 3];
+                if length > 0 {
+                    rgb_planes(simd, &colours, &indices, &mut out);
+                }
+                assert!((0..length * 3).all(|i| out[i] == pixels[i % length][i / length]), "{simd:?}");
+            }
         }
     }
 }

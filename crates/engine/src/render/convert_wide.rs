@@ -3,9 +3,10 @@
 //!
 //! This file is `unsafe` because vector loads and stores take pointers, and because these functions must not run on a
 //! processor without the instructions. The first is confined to [`load`] and [`store`], which take references to whole
-//! 64-byte arrays; the second to [`Wide::detect`], the only way to get a [`Wide`]. The plain twins are in `convert`,
+//! 64-byte arrays; the second to [`Wide::of`], the only way to get a [`Wide`]. The plain twins are in `convert`,
 //! where a test compares them.
 
+use crate::simd::{Level, Simd};
 use std::arch::x86_64::{
     __m512i, _mm512_loadu_si512, _mm512_mask_blend_epi8, _mm512_mask_permutexvar_epi8, _mm512_movepi8_mask,
     _mm512_permutex2var_epi8, _mm512_storeu_si512,
@@ -19,11 +20,9 @@ pub(super) struct Wide(());
 const LANES: usize = 64;
 
 impl Wide {
-    /// Asks the processor; the answer is remembered by the standard library.
-    pub fn detect() -> Option<Wide> {
-        let found =
-            is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512vbmi");
-        found.then_some(Wide(()))
+    /// Whether these instructions are to be used; whoever has such a [`Simd`] asked the processor.
+    pub fn of(simd: Simd) -> Option<Wide> {
+        (simd.level() == Level::Avx512).then_some(Wide(()))
     }
 
     /// Looks up whole blocks of 64 indices; returns how many indices that were.
@@ -40,8 +39,9 @@ impl Wide {
     }
 }
 
+#[inline]
 #[target_feature(enable = "avx512f")]
-fn load(bytes: &[u8; LANES]) -> __m512i {
+pub(super) fn load(bytes: &[u8; LANES]) -> __m512i {
     // SAFETY: 64 bytes are readable behind a reference to 64 bytes; the load needs no alignment.
     unsafe { _mm512_loadu_si512(bytes.as_ptr().cast()) }
 }
@@ -53,14 +53,16 @@ fn store(bytes: &mut [u8; LANES], vector: __m512i) {
 }
 
 /// A table of 256 bytes in registers.
+#[inline]
 #[target_feature(enable = "avx512f")]
-fn load_table(table: &[u8; 256]) -> [__m512i; 4] {
+pub(super) fn load_table(table: &[u8; 256]) -> [__m512i; 4] {
     let (blocks, _) = table.as_chunks::<LANES>();
     [load(&blocks[0]), load(&blocks[1]), load(&blocks[2]), load(&blocks[3])]
 }
 
+#[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-fn look_up_block(table: [__m512i; 4], indices: __m512i) -> __m512i {
+pub(super) fn look_up_block(table: [__m512i; 4], indices: __m512i) -> __m512i {
     // Each permutation looks at the lower 7 bits and covers one half of the table; the highest bit chooses between them.
     let low = _mm512_permutex2var_epi8(table[0], indices, table[1]);
     let high = _mm512_permutex2var_epi8(table[2], indices, table[3]);

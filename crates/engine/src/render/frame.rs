@@ -1,6 +1,8 @@
 //! The buffers that are drawn into.
 
-use super::depth_level;
+use super::column::{ROW_BLOCK, ROW_GROUP};
+use super::{depth_level, turn};
+use crate::simd::Simd;
 
 /// What a pixel of the class buffer shows where it is no actor.
 pub mod class {
@@ -33,6 +35,42 @@ pub(super) struct Frame {
     pub class: Vec<u16>,
     /// Largest depth of walls, sprites and the sky; floors and ceilings always reach 255.
     pub depth_cap: u8,
+    /// What is drawn by columns.
+    pub columns: Columns,
+}
+
+/// Colour and depth column by column, while walls are drawn.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Columns {
+    /// From one column to the next.
+    stride: usize,
+    colour: Vec<u8>,
+    depth: Vec<u8>,
+}
+
+/// From one column to the next: whole blocks of rows.
+pub(super) fn column_stride(rows: usize) -> usize {
+    rows.next_multiple_of(ROW_BLOCK)
+}
+
+impl Columns {
+    /// Room for `width` columns of `rows` rows.
+    pub fn new(width: usize, rows: usize) -> Columns {
+        let stride = column_stride(rows);
+        Columns { stride, colour: vec![0; width * stride + ROW_GROUP], depth: vec![0; width * stride] }
+    }
+
+    /// The palette indices of a column, and a group of the next one's.
+    #[inline]
+    pub fn colour_of(&mut self, x: usize) -> &mut [u8] {
+        &mut self.colour[x * self.stride..(x + 1) * self.stride + ROW_GROUP]
+    }
+
+    /// The depth of a column.
+    #[inline]
+    pub fn depth_of(&mut self, x: usize) -> &mut [u8] {
+        &mut self.depth[x * self.stride..(x + 1) * self.stride]
+    }
 }
 
 impl Frame {
@@ -42,15 +80,23 @@ impl Frame {
         depth_level(distance).min(self.depth_cap)
     }
 
-    /// Empties the first `rows` rows.
-    pub fn clear<const DEPTH: bool, const CLASS: bool>(&mut self, rows: usize, colour: u8) {
-        let pixels = rows * self.width;
-        self.colour[..pixels].fill(colour);
+    /// Empties the first `rows` rows: walls come next, by columns.
+    pub fn clear<const DEPTH: bool, const CLASS: bool>(&mut self, rows: usize) {
+        self.columns.colour.fill(0);
         if DEPTH {
-            self.depth[..pixels].fill(self.depth_cap);
+            self.columns.depth.fill(self.depth_cap);
         }
         if CLASS {
-            self.class[..pixels].fill(class::WALL);
+            self.class[..rows * self.width].fill(class::WALL);
+        }
+    }
+
+    /// All walls are drawn: whatever comes next is drawn by rows.
+    pub fn end_walls<const DEPTH: bool>(&mut self, simd: Simd, rows: usize) {
+        let Columns { stride, colour, depth } = &self.columns;
+        turn::to_rows(simd, colour, *stride, &mut self.colour, self.width, rows);
+        if DEPTH {
+            turn::to_rows(simd, depth, *stride, &mut self.depth, self.width, rows);
         }
     }
 }

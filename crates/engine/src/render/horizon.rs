@@ -71,13 +71,13 @@ impl RowSlopes {
         if self.horizon.replace(horizon) == Some(horizon) {
             return;
         }
-        let below = |row: u32| (i64::from(row) << 16) - horizon;
+        let (rows, below) = (&view.rows[..view.view_rows], |row: u32| (i64::from(row) << 16) - horizon);
         self.rows.clear();
-        self.rows.extend(view.rows.iter().map(|&row| below(row).abs()));
+        self.rows.extend(rows.iter().map(|&row| below(row).abs()));
         self.distances.clear();
         // The middle of the row decides how far the floor is in it.
         let middle = |row: u32| (below(row) + (1 << 15)).abs().max(NEAREST);
-        self.distances.extend(view.rows.iter().map(|&row| (view.focal_y << 16) / middle(row)));
+        self.distances.extend(rows.iter().map(|&row| (view.focal_y << 16) / middle(row)));
     }
 }
 

@@ -8,6 +8,9 @@
 #![cfg_attr(not(test), deny(clippy::float_arithmetic))]
 
 mod camera;
+mod column;
+#[cfg(target_arch = "x86_64")]
+mod column_wide;
 mod convert;
 #[cfg(target_arch = "x86_64")]
 mod convert_wide;
@@ -17,6 +20,9 @@ mod label;
 mod light;
 mod look;
 mod masked;
+mod narrow;
+#[cfg(target_arch = "x86_64")]
+mod narrow_wide;
 mod openings;
 mod palette;
 mod picture;
@@ -34,6 +40,7 @@ mod sky;
 mod sprite;
 mod status_bar;
 mod top_down;
+mod turn;
 mod view;
 mod walk;
 mod wall;

@@ -1,11 +1,15 @@
 //! What of each column is still open while the world is drawn front to back.
 
+use super::narrow::padded;
+
 /// For each frame column, the rows that nothing has covered yet.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Openings {
-    /// First open row.
+    /// Columns.
+    width: usize,
+    /// First open row; padded for blocks of columns.
     pub top: Vec<i16>,
-    /// One past the last open row.
+    /// One past the last open row; padded.
     pub bottom: Vec<i16>,
     /// A bit for each column that has an open row.
     open: Vec<u64>,
@@ -21,9 +25,10 @@ impl Openings {
     /// Opens every column.
     pub fn reset(&mut self, width: usize, rows: usize) {
         self.top.clear();
-        self.top.resize(width, 0);
+        self.top.resize(padded(width), 0);
+        self.width = width;
         self.bottom.clear();
-        self.bottom.resize(width, rows as i16);
+        self.bottom.resize(padded(width), rows as i16);
         self.open.clear();
         self.open.resize(width.div_ceil(64), u64::MAX);
         if !width.is_multiple_of(64) {
@@ -66,8 +71,8 @@ impl Openings {
     /// Whether so much within the open range is closed that it pays to ask what hides what.
     #[inline]
     pub fn has_holes(&self) -> bool {
-        let outside = self.first + self.top.len() - self.end;
-        (self.closed - outside) * 4 > self.top.len()
+        let outside = self.first + self.width - self.end;
+        (self.closed - outside) * 4 > self.width
     }
 
     /// Closes the columns `first..end`.

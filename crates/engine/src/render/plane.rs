@@ -6,6 +6,7 @@ use super::depth_level;
 use super::frame::{Frame, class};
 use super::horizon::RowSlopes;
 use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::narrow::padded;
 use super::picture::FlatPicture;
 use super::row_walk::RowWalk;
 use crate::map::TextureId;
@@ -46,7 +47,7 @@ pub(super) struct Plane {
     pub first: usize,
     /// One past the last column.
     pub end: usize,
-    /// First row by column; one column more than the frame has.
+    /// First row by column; padded for blocks of columns.
     pub top: Vec<i16>,
     /// One past the last row by column; not below the first where the plane has no row.
     pub bottom: Vec<i16>,
@@ -99,20 +100,20 @@ impl Planes {
         plane.key = key;
         plane.next = std::mem::replace(&mut self.buckets[key.bucket()], index as u16);
         (plane.first, plane.end) = (self.width, 0);
-        // One more than there are columns ends the last span.
-        plane.top.resize(self.width + 1, 0);
-        plane.bottom.resize(self.width + 1, 0);
+        // What is more than there are columns ends the last span.
+        plane.top.resize(padded(self.width), 0);
+        plane.bottom.resize(padded(self.width), 0);
         plane.bottom.fill(i16::MIN);
         index as u16
     }
 
-    /// The rows of the columns `first..end` of a plane: first and one past the last.
+    /// The rows of the columns `first..end` of a plane, and of all beyond: first and one past the last.
     #[inline]
-    pub fn columns(&mut self, index: u16, first: usize, end: usize) -> (&mut [i16], &mut [i16]) {
+    pub fn columns(&mut self, index: u16, first: usize, end: usize) -> [&mut [i16]; 2] {
         let plane = &mut self.list[usize::from(index)];
         plane.first = plane.first.min(first);
         plane.end = plane.end.max(end);
-        (&mut plane.top[first..end], &mut plane.bottom[first..end])
+        [&mut plane.top[first..], &mut plane.bottom[first..]]
     }
 
     /// Another plane with the key of plane `index`, which has a run of rows already where another one is needed.
@@ -295,7 +296,7 @@ mod tests {
         let mut planes = Planes::default();
         planes.reset(columns.len());
         let index = planes.find(KEY);
-        let (tops, bottoms) = planes.columns(index, 0, columns.len());
+        let [tops, bottoms] = planes.columns(index, 0, columns.len());
         for (x, &(top, bottom)) in columns.iter().enumerate().filter(|(_, (top, bottom))| top <= bottom) {
             (tops[x], bottoms[x]) = (top, bottom);
         }

@@ -4,6 +4,7 @@ use super::*;
 use crate::assets::Assets;
 use crate::map::{Map, MapBuilder, Mark, Style, TileGrid};
 use crate::math::{Angle, Fixed, Rng};
+use crate::simd::Simd;
 use crate::world::{ActorKind, World};
 use std::sync::{Arc, OnceLock};
 
@@ -102,6 +103,31 @@ fn renderer(width: u16, height: u16) -> Renderer {
 }
 
 const ALL: Buffers = Buffers { depth: true, labels: true };
+
+#[test]
+fn every_family_of_instructions_draws_the_same_bits() {
+    let (mut world, mut rng) = (yard_world(), Rng::new(33));
+    for (width, height, frames) in [(128, 72, 200), (160, 120, 60), (100, 48, 60), (640, 480, 10), (1001, 700, 3)] {
+        let mut plain = renderer(width, height);
+        plain.set_simd(Simd::PLAIN);
+        for frame in 0..frames {
+            look_anywhere(&mut world, &mut rng);
+            let buffers = [Buffers::default(), ALL][frame % 2];
+            plain.render(&world, 0, buffers);
+            for simd in Simd::available() {
+                let mut other = renderer(width, height);
+                other.set_simd(simd);
+                other.render(&world, 0, buffers);
+                assert!(plain.indices() == other.indices(), "colour of frame {frame}, {width}x{height}, {simd:?}");
+                if buffers.depth {
+                    assert!(plain.depth() == other.depth(), "depth of frame {frame}, {width}x{height}, {simd:?}");
+                    assert!(plain.classes() == other.classes(), "classes of frame {frame}, {width}x{height}, {simd:?}");
+                    assert_eq!(plain.labels(), other.labels(), "{simd:?}");
+                }
+            }
+        }
+    }
+}
 
 #[test]
 fn the_learners_frame_is_the_reduction_of_the_classic_one() {

@@ -1,7 +1,8 @@
 //! The renderer: draws what one player of a world sees.
 
 use super::camera::Camera;
-use super::frame::{Frame, class};
+use super::convert::Colours;
+use super::frame::{Columns, Frame, class};
 use super::horizon::RowSlopes;
 use super::label::{Label, Labels};
 use super::look::Looks;
@@ -16,6 +17,7 @@ use super::sprite::{self, SeenSprite};
 use super::status_bar::{BarState, StatusBar};
 use super::walk::{Walk, WalkScratch};
 use super::{Buffers, SegmentationColours, View, convert, weapon};
+use crate::simd::Simd;
 use crate::world::World;
 use std::sync::Arc;
 
@@ -47,10 +49,11 @@ pub struct Renderer {
     sprite_rows: [Vec<i16>; 2],
     labels: Labels,
     status_bar: StatusBar,
-    palette: [[u8; 3]; 256],
-    /// What tints `palette`.
+    colours: Colours,
+    /// What tints `colours`.
     tint: Tint,
     options: RenderOptions,
+    simd: Simd,
 }
 
 /// Values of the class buffer that are told apart: more actors than any frame shows.
@@ -79,6 +82,7 @@ impl Renderer {
             depth: vec![0; pixels],
             class: vec![class::STATUS_BAR; pixels],
             depth_cap: 255,
+            columns: Columns::new(width, view.view_rows),
         };
         Renderer {
             frame,
@@ -97,9 +101,11 @@ impl Renderer {
             sprite_rows: [Vec::new(), Vec::new()],
             labels: Labels::default(),
             status_bar: StatusBar::new(&scene.bar, &view),
-            palette: scene.assets.palette,
+            colours: Colours::new(scene.assets.palette),
             tint: Tint::default(),
             options: RenderOptions::default(),
+            // Whoever makes renderers for users has told them of a wrong choice.
+            simd: Simd::chosen().unwrap_or(Simd::widest()),
             scene,
             view,
         }
@@ -111,6 +117,11 @@ impl Renderer {
         let rows = self.view.base_rows();
         let cap = if options.published_depth { (255 * rows / 480).min(255) } else { 255 };
         self.frame.depth_cap = cap as u8;
+    }
+
+    /// Draws with these instructions, to compare them: the pixels are the same.
+    pub fn set_simd(&mut self, simd: Simd) {
+        self.simd = simd;
     }
 
     /// Draws what player `player` of `world` sees. The result stays until the next call.
@@ -131,7 +142,7 @@ impl Renderer {
         let camera = Camera::of_player(world, player, &self.view);
         self.slopes.update(&self.view, camera.horizon);
         self.animate(world.tic);
-        self.frame.clear::<DEPTH, CLASS>(self.view.view_rows, 0);
+        self.frame.clear::<DEPTH, CLASS>(self.view.view_rows);
         self.openings.reset(self.view.width(), self.view.view_rows);
         self.planes.reset(self.view.width());
         self.silhouettes.reset();
@@ -150,8 +161,10 @@ impl Renderer {
             silhouettes: &mut self.silhouettes,
             entered: &mut self.entered,
             scratch: &mut self.walk,
+            simd: self.simd,
         };
         walk.run::<DEPTH>();
+        self.frame.end_walls::<DEPTH>(self.simd, self.view.view_rows);
         self.draw_planes::<DEPTH, CLASS>(&camera);
         self.draw_masked::<DEPTH, CLASS>(&camera, world, player);
         self.draw_overlay::<DEPTH, CLASS>(&camera, world, player);
@@ -187,7 +200,7 @@ impl Renderer {
         let tint = Tint::of_player(player, self.options.green_goggles);
         if tint != self.tint {
             self.tint = tint;
-            self.palette = tint.apply(&scene.assets.palette);
+            self.colours = Colours::new(tint.apply(&scene.assets.palette));
         }
     }
 
@@ -239,7 +252,7 @@ impl Renderer {
     /// The colours of the palette indices, with the flashes of the last frame.
     #[must_use]
     pub fn palette(&self) -> &[[u8; 3]; 256] {
-        &self.palette
+        &self.colours.palette
     }
 
     /// The depth of the last frame, if it was drawn: 0 near to 255 far, 7.3 map units a level; weapon and status bar 0.
@@ -273,7 +286,7 @@ impl Renderer {
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_rgb_hwc(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.colour.len() * 3, "a buffer of height * width * 3 bytes is needed");
-        convert::rgb_interleaved(&self.palette, &self.frame.colour, out);
+        convert::rgb_interleaved(self.simd, &self.colours, &self.frame.colour, out);
     }
 
     /// Writes the last frame as a plane of red, one of green, one of blue.
@@ -282,7 +295,7 @@ impl Renderer {
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_rgb_chw(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.colour.len() * 3, "a buffer of 3 * height * width bytes is needed");
-        convert::rgb_planes(&self.palette, &self.frame.colour, out);
+        convert::rgb_planes(self.simd, &self.colours, &self.frame.colour, out);
     }
 
     /// Writes the last frame's luminance.
@@ -291,7 +304,7 @@ impl Renderer {
     /// If `out` is not as long as a frame has pixels.
     pub fn write_grey(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.colour.len(), "a buffer of height * width bytes is needed");
-        convert::grey(&self.palette, &self.frame.colour, out);
+        convert::grey(self.simd, &self.colours, &self.frame.colour, out);
     }
 
     /// Writes the last frame's depth, which must have been asked for.
@@ -309,7 +322,7 @@ impl Renderer {
     /// If `out` is not four times as long as a frame has pixels.
     pub fn write_rgb_depth_hwc(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.colour.len() * 4, "a buffer of height * width * 4 bytes is needed");
-        convert::rgb_depth_interleaved(&self.palette, &self.frame.colour, &self.frame.depth, out);
+        convert::rgb_depth_interleaved(self.simd, &self.colours, &self.frame.colour, &self.frame.depth, out);
     }
 
     /// Writes the last frame with one colour per class, red, green and blue of each pixel in turn; labels must have been
@@ -319,7 +332,7 @@ impl Renderer {
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_segmented_hwc(&self, colours: &SegmentationColours, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.class.len() * 3, "a buffer of height * width * 3 bytes is needed");
-        convert::classes_interleaved(&self.class_colours(colours), &self.frame.class, out);
+        convert::classes_interleaved(self.simd, &self.class_colours(colours), &self.frame.class, out);
     }
 
     /// Writes the last frame with one colour per class as three planes; labels must have been asked for.

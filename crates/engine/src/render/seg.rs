@@ -2,6 +2,7 @@
 
 use super::light::Light;
 use super::look::Look;
+use super::narrow::{Columns, narrow};
 use super::plane::PlaneKey;
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
@@ -179,8 +180,8 @@ impl Walk<'_> {
         }
     }
 
-    /// One pass over the seg's columns: the plane takes the rows up to `edge`, the wall those from there to `wall`, and
-    /// what is left stays open. One pass, because most segs are so narrow that the beginnings and ends of loops count.
+    /// The plane takes the rows up to `edge`, the wall those from there to `wall`, and what is left stays open. Where the
+    /// plane has rows already, another one goes on.
     fn narrow<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
         &mut self,
         seen: &SeenSeg,
@@ -189,47 +190,23 @@ impl Walk<'_> {
         wall: Edge,
     ) -> bool {
         let (first, end) = (seen.first, seen.end);
-        let columns = &self.view.columns[first..end];
-        let first_rows = &self.view.first_row[..];
-        let tops = &mut self.openings.top[first..end];
-        let bottoms = &mut self.openings.bottom[first..end];
-        let uppers = &mut self.scratch.upper[first..end];
-        let lowers = &mut self.scratch.lower[first..end];
-        let (mut walled, mut closed) = (false, false);
-        let mut i = 0;
-        'planes: loop {
-            let (plane_tops, plane_bottoms): (&mut [i16], &mut [i16]) =
-                if PLANE { self.planes.columns(plane, first, end) } else { (&mut [], &mut []) };
-            while i < columns.len() {
-                let (top, bottom) = (i32::from(tops[i]), i32::from(bottoms[i]));
-                let row = edge.row(first_rows, columns[i]).max(top).min(bottom);
-                if PLANE {
-                    let (from, to) = if FLOOR { (row, bottom) } else { (top, row) };
-                    if plane_tops[i] >= plane_bottoms[i] {
-                        (plane_tops[i], plane_bottoms[i]) = (from as i16, to as i16);
-                    } else if from < to {
-                        plane = self.planes.start_another(plane);
-                        continue 'planes;
-                    }
-                }
-                let mut open = row;
-                if WALL {
-                    let far = wall.row(first_rows, columns[i]);
-                    open = if FLOOR { far.max(top).min(row) } else { far.max(row).min(bottom) };
-                    let (upper, lower) = if FLOOR { (open, row) } else { (row, open) };
-                    (uppers[i], lowers[i]) = (upper as i16, lower as i16);
-                    walled |= open != row;
-                }
-                if FLOOR {
-                    bottoms[i] = open as i16;
-                    closed |= (top < bottom) & (top >= open);
-                } else {
-                    tops[i] = open as i16;
-                    closed |= (top < bottom) & (open >= bottom);
-                }
-                i += 1;
+        let (mut walled, mut closed, mut done) = (false, false, 0);
+        while done < end - first {
+            let mut columns = Columns {
+                count: end - first,
+                base: &self.view.columns[first..],
+                top: &mut self.openings.top[first..],
+                bottom: &mut self.openings.bottom[first..],
+                wall: [&mut self.scratch.upper[first..], &mut self.scratch.lower[first..]],
+                plane: if PLANE { self.planes.columns(plane, first, end) } else { [&mut [], &mut []] },
+            };
+            let narrowed = narrow::<FLOOR, PLANE, WALL>(self.simd, &self.view.row_scale, [edge, wall], &mut columns, done);
+            walled |= narrowed.walled;
+            closed |= narrowed.closed;
+            done = narrowed.done;
+            if done < end - first {
+                plane = self.planes.start_another(plane);
             }
-            break;
         }
         if closed {
             self.openings.note_closed(first, end);
@@ -278,7 +255,7 @@ impl Walk<'_> {
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };
         let (tops, bottoms) = (&self.scratch.upper[range.clone()], &self.scratch.lower[range]);
-        shader.draw::<DEPTH>(self.frame, seen.first, tops, bottoms);
+        shader.draw::<DEPTH>(self.simd, self.frame, seen.first, tops, bottoms);
     }
 
     fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {

@@ -4,6 +4,9 @@
 //! grid. Usually the two are the same. At 128x72 the base is 160x120, of which every 1.25th column and 5/3rd row is
 //! drawn, so that the small frame equals the nearest-neighbour reduction of the large one by construction.
 
+use super::column::ROW_GROUP;
+use super::frame::column_stride;
+use super::narrow::padded;
 use super::{FrameSize, SizeError};
 use crate::math::{Angle, Fixed};
 
@@ -29,16 +32,18 @@ pub struct View {
     pub(super) base_view_rows: u32,
     /// Rows of the frame that show the world.
     pub(super) view_rows: usize,
-    /// Base column of each frame column.
+    /// Base column of each frame column, and so on for a block beyond.
     pub(super) columns: Box<[u32]>,
     /// What the base column rises by over [`CHUNK`] frame columns.
     pub(super) chunk_stride: u32,
-    /// Base row of each frame row above the status bar.
+    /// Base row of each frame row above the status bar, then zeros as far as columns are drawn.
     pub(super) rows: Box<[u32]>,
     /// For each base column 0..=width, the first frame column at or right of it.
     pub(super) first_column: Box<[u16]>,
     /// For each base row 0..=view rows, the first frame row at or below it.
     pub(super) first_row: Box<[i16]>,
+    /// The same as a formula.
+    pub(super) row_scale: RowScale,
     /// Vertical focal length in base rows, 16.16: 1.2 times the horizontal one, which is half the width.
     pub(super) focal_y: i64,
     /// `2^32 / vertical focal length`.
@@ -70,12 +75,15 @@ impl View {
     fn sampled(size: FrameSize, base: FrameSize) -> View {
         let (width, height) = (u32::from(base.width), u32::from(base.height));
         let base_view_rows = height - bar_rows(width, height);
-        let columns: Box<[u32]> = (0..u32::from(size.width)).map(|x| x * width / u32::from(size.width)).collect();
+        let columns: Box<[u32]> =
+            (0..padded(usize::from(size.width)) as u32).map(|x| x * width / u32::from(size.width)).collect();
         let all_rows: Vec<u32> = (0..u32::from(size.height)).map(|y| y * height / u32::from(size.height)).collect();
         let view_rows = all_rows.partition_point(|&row| row < base_view_rows);
-        let rows: Box<[u32]> = all_rows[..view_rows].into();
+        let mut rows = all_rows[..view_rows].to_vec();
         let first_column = (0..=width).map(|c| columns.partition_point(|&column| column < c) as u16).collect();
         let first_row = (0..=base_view_rows).map(|r| rows.partition_point(|&row| row < r) as i16).collect();
+
+        rows.resize(column_stride(view_rows) + ROW_GROUP, 0);
 
         let focal_y = i64::from(width) * 6 * 65536 / 10;
         let column_angles = columns.iter().map(|&column| column_angle(width, column)).collect();
@@ -95,9 +103,10 @@ impl View {
             view_rows,
             chunk_stride: columns[CHUNK],
             columns,
-            rows,
+            rows: rows.into(),
             first_column,
             first_row,
+            row_scale: RowScale::new(u32::from(size.height), height, base_view_rows),
             focal_y,
             inverse_focal_y: (1 << 48) / focal_y,
             column_angles,
@@ -137,6 +146,34 @@ fn column_angle(width: u32, column: u32) -> Angle {
     Angle(exact.0.wrapping_add(FINE - 1) & !(FINE - 1))
 }
 
+/// From base rows to the first frame row at or below them, without a table: the frame row `y` shows base row
+/// `y * base height / height`, rounded down, so that the first at or below `row` is `row * height / base height`, rounded up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowScale {
+    pub factor: i32,
+    pub addend: i32,
+    /// One past the last base row that shows the world.
+    pub last: i32,
+}
+
+impl RowScale {
+    /// Fractional bits of the factor; few enough that 1080 rows fit.
+    pub const BITS: u32 = 20;
+
+    fn new(height: u32, base_height: u32, last: u32) -> RowScale {
+        let factor = (height << RowScale::BITS).div_ceil(base_height) as i32;
+        let addend = (((base_height - 1) << RowScale::BITS) / base_height) as i32;
+        RowScale { factor, addend, last: last as i32 }
+    }
+
+    /// The frame row; base rows out of view count as the nearest end of it.
+    #[inline(always)]
+    pub(super) fn frame_row(&self, base: i64) -> i16 {
+        let base = base.clamp(0, i64::from(self.last)) as i32;
+        ((base * self.factor + self.addend) >> RowScale::BITS) as i16
+    }
+}
+
 /// Rows of the status bar: its art is stretched with the screen, by 1.2 more vertically, but never over more than
 /// 32 of 200 parts of the height; 320 columns show it as it is.
 fn bar_rows(width: u32, height: u32) -> u32 {
@@ -174,6 +211,18 @@ mod tests {
         assert_eq!(small.rows[..6], [0, 1, 3, 5, 6, 8]);
         assert_eq!(small.base_view_rows, large.base_view_rows);
         assert_eq!((small.view_rows, small.bar_rows.len()), (60, 12));
+    }
+
+    #[test]
+    fn the_scale_of_rows_is_their_table() {
+        for (width, height) in [(128, 72), (160, 120), (64, 48), (640, 480), (1001, 700), (1920, 1080)] {
+            let view = view(width, height);
+            for (base, &row) in view.first_row.iter().enumerate() {
+                assert_eq!(view.row_scale.frame_row(base as i64), row, "base row {base} of {width}x{height}");
+            }
+            assert_eq!(view.row_scale.frame_row(i64::MIN), 0);
+            assert_eq!(view.row_scale.frame_row(i64::MAX), view.view_rows as i16);
+        }
     }
 
     #[test]

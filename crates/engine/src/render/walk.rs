@@ -4,12 +4,14 @@ use super::View;
 use super::camera::Camera;
 use super::frame::Frame;
 use super::look::Looks;
+use super::narrow::padded;
 use super::openings::Openings;
 use super::plane::Planes;
 use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
 use crate::map::Node;
 use crate::math::Fixed;
+use crate::simd::Simd;
 use crate::world::World;
 
 /// Everything that the walk reads and writes.
@@ -28,6 +30,7 @@ pub(super) struct Walk<'a> {
     /// Sectors that were entered.
     pub entered: &'a mut [bool],
     pub scratch: &'a mut WalkScratch,
+    pub simd: Simd,
 }
 
 /// Memory that the walk reuses.
@@ -50,8 +53,8 @@ impl WalkScratch {
         WalkScratch {
             stack: vec![0; scene.nodes.len() + 2],
             facing: vec![(0, 0); most_segs as usize + 1],
-            upper: vec![0; width],
-            lower: vec![0; width],
+            upper: vec![0; padded(width)],
+            lower: vec![0; padded(width)],
         }
     }
 }

@@ -2,13 +2,15 @@
 
 use super::View;
 use super::camera::Camera;
+use super::column::Column;
 use super::frame::Frame;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::WallPicture;
 use super::scene::{Face, SceneSeg};
+use crate::simd::Simd;
 
 /// Fractional bits of screen rows.
-const ROW_BITS: u32 = 24;
+pub(super) const ROW_BITS: u32 = 24;
 /// Fractional bits of the inverse of a distance.
 pub(super) const INVERSE_BITS: u32 = 44;
 /// Fractional bits of the exact columns of a seg's ends.
@@ -67,9 +69,9 @@ impl TextureLine {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     /// At base column 0.
-    at: i64,
+    pub at: i64,
     /// Its change a column.
-    step: i64,
+    pub step: i64,
 }
 
 impl SeenLine {
@@ -120,6 +122,12 @@ impl SeenLine {
 }
 
 impl Edge {
+    /// The base row at a base column, anywhere.
+    #[inline(always)]
+    pub fn base_row(&self, column: i64) -> i64 {
+        (self.at + self.step * column) >> ROW_BITS
+    }
+
     /// The first frame row that the edge cuts, or one below, at a base column; `first_rows` is [`View::first_row`].
     #[inline]
     pub fn row(&self, first_rows: &[i16], column: u32) -> i32 {
@@ -145,8 +153,8 @@ pub(super) struct WallShader<'a> {
 }
 
 impl WallShader<'_> {
-    /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on.
-    pub fn draw<const DEPTH: bool>(&self, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
+    /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on, into the frame's columns.
+    pub fn draw<const DEPTH: bool>(&self, simd: Simd, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
         let picture = self.picture;
         let start = (self.hung_from * picture.inverse_height) >> 16;
         // Texels are those of the rows' lower edges.
@@ -166,48 +174,12 @@ impl WallShader<'_> {
             let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
             let at = start.wrapping_add(step.wrapping_mul(1 - centre)).wrapping_sub((step * fraction) >> 16) as u32;
             let column = Column { texels, table, at, step: step as u32 };
-            let rows = &self.view.rows[top..bottom];
-            let lines = top * frame.width..bottom * frame.width;
-            let pixels = frame.colour[lines.clone()].chunks_exact_mut(frame.width).map(|line| &mut line[x]);
-            match picture.height {
-                128 => column.draw::<7>(pixels.zip(rows)),
-                64 => column.draw::<6>(pixels.zip(rows)),
-                _ => column.draw_any_height(pixels.zip(rows)),
-            }
+            column.draw(simd, frame.columns.colour_of(x), &self.view.rows, top, bottom);
             if DEPTH {
                 let depth = frame.capped_depth(distance);
-                frame.depth[lines].chunks_exact_mut(frame.width).for_each(|line| line[x] = depth);
+                frame.columns.depth_of(x)[top..bottom].fill(depth);
             }
             // The class of a wall is what the frame was cleared to.
-        }
-    }
-}
-
-/// A column of a wall on its way to the screen.
-struct Column<'a> {
-    texels: &'a [u8],
-    table: &'a [u8; 256],
-    /// Position in the texture at base row 0, as a fraction of its height.
-    at: u32,
-    /// Its change a base row.
-    step: u32,
-}
-
-impl Column<'_> {
-    /// For textures `2^BITS` texels high: fills pixels, each given with its base row.
-    #[inline(always)]
-    fn draw<'p, const BITS: u32>(&self, pixels: impl Iterator<Item = (&'p mut u8, &'p u32)>) {
-        let texels = &self.texels[..1 << BITS];
-        for (pixel, &row) in pixels {
-            let texel = self.at.wrapping_add(self.step.wrapping_mul(row)) >> (32 - BITS);
-            *pixel = self.table[usize::from(texels[texel as usize])];
-        }
-    }
-
-    fn draw_any_height<'p>(&self, pixels: impl Iterator<Item = (&'p mut u8, &'p u32)>) {
-        for (pixel, &row) in pixels {
-            let texel = (u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64) >> 32;
-            *pixel = self.table[usize::from(self.texels[texel as usize])];
         }
     }
 }

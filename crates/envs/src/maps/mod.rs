@@ -15,7 +15,7 @@ use hasard_engine::wad::Wad;
 use std::collections::BTreeSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// Largest file that is read, bytes.
 const LARGEST_FILE: u64 = 256 << 20;
@@ -27,12 +27,16 @@ const MAP: &str = "MAP01";
 const FURTHER_PLAYERS: std::ops::RangeInclusive<i32> = 2..=4;
 
 /// Where maps come from.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, Debug)]
 pub struct Maps {
     /// The folder, or the one file for whatever is played.
     place: PathBuf,
     /// The IWAD that their pictures are laid over.
     iwad: Option<PathBuf>,
+    /// Who is told what is left out.
+    tell: Option<fn(&str)>,
+    /// What was told already.
+    told: Arc<Mutex<BTreeSet<String>>>,
 }
 
 /// A map as its file has it.
@@ -52,7 +56,13 @@ impl Maps {
     /// The maps of a folder, or of one file; drawn with the embedded pictures if `iwad` is none.
     #[must_use]
     pub fn new(place: &Path, iwad: Option<&Path>) -> Maps {
-        Maps { place: place.to_owned(), iwad: iwad.map(Path::to_owned) }
+        Maps { place: place.to_owned(), iwad: iwad.map(Path::to_owned), tell: None, told: Arc::default() }
+    }
+
+    /// The same, saying of each map that is read what its file holds that is not played or drawn as it says: one line, once.
+    #[must_use]
+    pub fn telling(self, tell: fn(&str)) -> Maps {
+        Maps { tell: Some(tell), ..self }
     }
 
     /// Reads the map of an environment.
@@ -87,7 +97,14 @@ impl Maps {
             }
             None => None,
         };
-        Ok(LevelFile { name: shown(&file), source, assets, left_out })
+        let name = shown(&file);
+        if let Some(tell) = self.tell
+            && !left_out.is_empty()
+            && self.told.lock().is_ok_and(|mut told| told.insert(name.clone()))
+        {
+            tell(&format!("{name}: left out: {}", left_out.join(", ")));
+        }
+        Ok(LevelFile { name, source, assets, left_out })
     }
 
     /// The file of an environment's map.

@@ -33,6 +33,9 @@ pub struct EnvConfig {
     /// The file of the pictures that worlds are drawn with; `null` for the embedded set. Whoever makes the worlds reads it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub iwad: Option<String>,
+    /// Where the maps come from; `null` for the built-in ones. Whoever makes the worlds reads them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub maps: Option<String>,
 }
 
 /// Options that are seldom on are written only then.
@@ -57,10 +60,11 @@ impl EnvConfig {
             published_depth: false,
             published_colours: false,
             iwad: None,
+            maps: None,
         }
     }
 
-    /// The same in the environments' own types, without pictures; observations are laid out as the networks read them.
+    /// The same in the environments' own types, without maps and pictures; observations are laid out as the networks read them.
     pub fn options(&self) -> Result<EnvOptions, LearnError> {
         let unknown = |what: &str, given: &str, allowed: &str| {
             LearnError::Config(format!("{what} '{given}' is unknown; use one of {allowed}"))

@@ -127,6 +127,12 @@ impl TrainConfig {
             ("lambda of the advantages", learning.gae_lambda, 0.0, 1.0),
             ("the learning rate", learning.rate, 0.0, 10.0),
             ("the final learning rate", learning.final_rate, 0.0, 10.0),
+            ("the target divergence", learning.target_kl.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the learning rate of the critics", learning.critic_rate.unwrap_or(0.0), 0.0, 10.0),
+            ("gamma of the costs", learning.cost_gamma.unwrap_or(0.0), 0.0, 1.0),
+            ("the final exploration coefficient", learning.final_exploration_coefficient.unwrap_or(0.0), 0.0, 1e3),
+            ("the largest multiplier", self.algorithm_settings.multiplier_limit.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the share of the Fisher matrix", self.algorithm_settings.fisher_fraction, 0.0, 1.0),
             ("the largest gradient norm", learning.max_gradient_norm, 0.0, f64::MAX),
             ("the ratio clip", learning.clip_ratio, 0.0, 10.0),
             ("the value clip", learning.clip_value, 0.0, f64::MAX),
@@ -145,6 +151,9 @@ impl TrainConfig {
                 &"off",
                 &format!("on for {}, whose steps are the policy's alone", self.algorithm),
             );
+        }
+        if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
+            return refuse("the learning rate of the critics", &rate, "null unless network.separate is on");
         }
         if self.frames == 0 {
             return refuse("the number of frames", &self.frames, "at least 1");

@@ -110,6 +110,14 @@ impl Policy {
         Policy { shape: shape.clone(), rows }
     }
 
+    /// The distributions of some of the rows.
+    #[must_use]
+    pub fn of_rows(&self, rows: impl Iterator<Item = usize>) -> Policy {
+        let width = self.shape.parameters();
+        let rows = rows.flat_map(|row| &self.rows[row * width..(row + 1) * width]).copied().collect();
+        Policy { shape: self.shape.clone(), rows }
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {

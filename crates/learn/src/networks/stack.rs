@@ -159,6 +159,31 @@ pub struct ModelSequences<'a> {
     pub initial_state: Vec<Vec<f32>>,
 }
 
+impl<'a> ModelSequences<'a> {
+    /// The trajectories of some lanes, told which lanes these are of the batch.
+    #[must_use]
+    pub fn of_lanes(&self, shape: &ModelShape, lanes: &[usize]) -> ModelSequences<'a> {
+        let all = &self.sequences;
+        let rows = || (0..all.steps).flat_map(|step| lanes.iter().map(move |lane| step * all.lanes + lane));
+        let extra = shape.extra_inputs();
+        let state = |(network, state): (&NetworkShape, &Vec<f32>)| -> Vec<f32> {
+            let units = network.state_size();
+            lanes.iter().flat_map(|lane| &state[lane * units..(lane + 1) * units]).copied().collect()
+        };
+        ModelSequences {
+            sequences: Sequences {
+                steps: all.steps,
+                lanes: lanes.len(),
+                observations: rows().map(|row| all.observations[row]).collect(),
+                extra: rows().flat_map(|row| &all.extra[row * extra..(row + 1) * extra]).copied().collect(),
+                initial_state: Vec::new(),
+                reset: rows().map(|row| all.reset[row]).collect(),
+            },
+            initial_state: shape.networks.iter().zip(&self.initial_state).map(state).collect(),
+        }
+    }
+}
+
 /// All networks of a model, learning.
 pub struct Stack {
     shape: ModelShape,

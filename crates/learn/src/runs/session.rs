@@ -9,6 +9,7 @@ use crate::config::{EnvConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::learning::metrics::Means;
+use crate::learning::passes::Passes;
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{Actor, ImageShape, ModelShape};
@@ -175,20 +176,16 @@ impl Session {
         let done = (self.frames as f64 / self.config.frames as f64).min(1.0);
         self.learner.rate = learning.rate + (learning.final_rate - learning.rate) * done;
         self.means.add("learning_rate", self.learner.rate);
+        let last = learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
+        self.learner.exploration_coefficient =
+            learning.exploration_coefficient + (last - learning.exploration_coefficient) * done;
         let prepared = self.learner.prepare(rollout);
-        let mut lanes: Vec<usize> = (0..rollout.lanes()).collect();
-        let size = lanes.len().div_ceil(learning.minibatches);
-        for epoch in 0..learning.epochs {
-            if learning.minibatches > 1 {
-                Stream::new(self.config.seed, Purpose::Shuffle, self.rollouts, epoch as u64).shuffle(&mut lanes);
-            }
-            for some in lanes.chunks(size) {
-                let mut minibatch = self.learner.minibatch(&prepared, some);
-                let signals = self.watch.signals(&self.config, &minibatch.mean_costs);
-                self.algorithm.constrain(&signals);
-                self.algorithm.update(&mut self.learner, &mut minibatch, &signals, &mut self.means)?;
-            }
+        for (name, share) in prepared.explained_variances(&self.config) {
+            self.means.add(name, share);
         }
+        let passes = Passes::new(&self.config, self.rollouts, rollout.lanes());
+        let signals = |costs: &[f64]| self.watch.signals(&self.config, costs);
+        self.algorithm.learn(&mut self.learner, &prepared, &passes, &signals, &mut self.means)?;
         Ok(())
     }
 }

@@ -1,0 +1,80 @@
+//! One column of a wall, drawn into a frame that lies column by column.
+
+#[cfg(target_arch = "x86_64")]
+use super::column_wide;
+#[cfg(target_arch = "x86_64")]
+use crate::simd::Level;
+use crate::simd::Simd;
+
+/// Rows that are drawn at once at most: columns are whole blocks of these.
+pub(super) const ROW_BLOCK: usize = 64;
+/// Rows that may be written behind a column's last one, and are put back: lists by row are that much longer than a column.
+pub(super) const ROW_GROUP: usize = 8;
+
+/// A column of a wall on its way to the screen.
+pub(super) struct Column<'a> {
+    pub texels: &'a [u8],
+    pub table: &'a [u8; 256],
+    /// Position in the texture at base row 0, as a fraction of its height.
+    pub at: u32,
+    /// Its change a base row.
+    pub step: u32,
+}
+
+impl Column<'_> {
+    /// Draws the frame rows `top..bottom`; `rows` are the base rows. Both lists are padded.
+    #[inline(always)]
+    pub fn draw(&self, simd: Simd, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+        #[cfg(target_arch = "x86_64")]
+        match (simd.level(), self.texels.len()) {
+            // SAFETY: whoever has this `Simd` has the instructions, here and in the arms below.
+            (Level::Avx512, 128) => return unsafe { column_wide::avx512::<7>(self, pixels, rows, top, bottom) },
+            // SAFETY: as above.
+            (Level::Avx512, 64) => return unsafe { column_wide::avx512::<6>(self, pixels, rows, top, bottom) },
+            // SAFETY: as above.
+            (Level::Avx2, 128) => return unsafe { column_wide::avx2::<7>(self, pixels, rows, top, bottom) },
+            // SAFETY: as above.
+            (Level::Avx2, 64) => return unsafe { column_wide::avx2::<6>(self, pixels, rows, top, bottom) },
+            _ => {}
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = simd;
+        self.draw_plainly(pixels, rows, top, bottom);
+    }
+
+    fn draw_plainly(&self, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+        for (pixel, &row) in pixels[top..bottom].iter_mut().zip(&rows[top..bottom]) {
+            let texel = (u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64) >> 32;
+            *pixel = self.table[usize::from(self.texels[texel as usize])];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    #[test]
+    fn all_ways_draw_the_same_column() {
+        let mut rng = Rng::new(4);
+        let table: [u8; 256] = std::array::from_fn(|_| rng.byte() as u8);
+        for round in 0..2000 {
+            let height = [64, 128, 96][round % 3];
+            let length = [60usize, 100, 403][round / 3 % 3];
+            let padded = length.next_multiple_of(ROW_BLOCK) + ROW_GROUP;
+            let texels: Vec<u8> = (0..height).map(|_| rng.byte() as u8).collect();
+            let rows: Vec<u32> = (0..padded as u32).map(|row| row * 5 / 3).collect();
+            let before: Vec<u8> = (0..padded).map(|_| rng.byte() as u8).collect();
+            let (a, b) = (rng.below(length as u32 + 1) as usize, rng.below(length as u32 + 1) as usize);
+            let column = Column { texels: &texels, table: &table, at: rng.next_u64() as u32, step: rng.next_u64() as u32 >> 4 };
+            let mut plain = before.clone();
+            column.draw_plainly(&mut plain, &rows, a.min(b), a.max(b));
+            for simd in Simd::available() {
+                let mut pixels = before.clone();
+                column.draw(simd, &mut pixels, &rows, a.min(b), a.max(b));
+                assert_eq!(pixels, plain, "{simd:?}, rows {a} and {b} of {length}, texture of {height}");
+            }
+        }
+    }
+}

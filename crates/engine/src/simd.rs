@@ -1,0 +1,128 @@
+//! Which vector instructions are used. Every variant gives the same bits; the plain one reads like the formula.
+
+use std::fmt;
+use std::sync::OnceLock;
+
+/// A family of vector instructions that this processor has: there is no other way to come by one.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Simd(Level);
+
+/// The families, from narrow to wide.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Level {
+    /// Whatever the compiler makes of plain code.
+    Plain,
+    /// Vectors of 32 bytes.
+    Avx2,
+    /// Vectors of 64 bytes with masks, and look-ups of 64 bytes at once (Ice Lake and Zen 4 onward).
+    Avx512,
+}
+
+/// The variable that forces a family.
+const VARIABLE: &str = "HASARD_SIMD";
+
+impl Simd {
+    /// What every processor has.
+    pub const PLAIN: Simd = Simd(Level::Plain);
+
+    /// Every family that this processor has, the widest last.
+    #[must_use]
+    pub fn available() -> Vec<Simd> {
+        let mut all = vec![Simd::PLAIN];
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx2") {
+                all.push(Simd(Level::Avx2));
+            }
+            let wide = is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512bw")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx512vbmi");
+            if wide && all.len() == 2 {
+                all.push(Simd(Level::Avx512));
+            }
+        }
+        all
+    }
+
+    /// The widest family of this processor, or the one that the variable `HASARD_SIMD` names.
+    ///
+    /// # Errors
+    /// When the variable names none, or one that this processor lacks.
+    pub fn chosen() -> Result<Simd, SimdError> {
+        static CHOSEN: OnceLock<Result<Simd, SimdError>> = OnceLock::new();
+        let choose = || match std::env::var_os(VARIABLE) {
+            None => Ok(Simd::widest()),
+            Some(name) => Simd::named(&name.to_string_lossy()),
+        };
+        CHOSEN.get_or_init(choose).clone()
+    }
+
+    /// The widest family of this processor.
+    #[must_use]
+    pub fn widest() -> Simd {
+        Simd::available().pop().unwrap_or(Simd::PLAIN)
+    }
+
+    /// The family of a name: `plain`, `avx2` or `avx512`.
+    fn named(name: &str) -> Result<Simd, SimdError> {
+        let there = Simd::available().into_iter().find(|simd| simd.name() == name);
+        there.ok_or_else(|| SimdError { given: name.escape_default().take(40).collect() })
+    }
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self.0 {
+            Level::Plain => "plain",
+            Level::Avx2 => "avx2",
+            Level::Avx512 => "avx512",
+        }
+    }
+
+    /// What may be used.
+    #[inline(always)]
+    pub(crate) const fn level(self) -> Level {
+        self.0
+    }
+}
+
+/// `HASARD_SIMD` names no family of this processor.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct SimdError {
+    /// What was asked for.
+    pub given: String,
+}
+
+impl SimdError {
+    /// What may be asked for.
+    #[must_use]
+    pub fn allowed() -> String {
+        let names: Vec<&str> = Simd::available().into_iter().map(Simd::name).collect();
+        format!("one of {} on this processor", names.join(", "))
+    }
+}
+
+impl fmt::Display for SimdError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{VARIABLE} is {}, but must be {}, or left out", self.given, SimdError::allowed())
+    }
+}
+
+impl std::error::Error for SimdError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn families_are_named_and_unknown_ones_refused() {
+        for simd in Simd::available() {
+            assert_eq!(Simd::named(simd.name()), Ok(simd));
+        }
+        for name in ["", "AVX2", "sse9", "avx512\n"] {
+            assert!(Simd::named(name).unwrap_err().to_string().contains("must be one of plain"));
+        }
+    }
+}
