@@ -45,6 +45,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Record(args) => commands::record::run(&args),
         Command::Replay(args) => commands::record::replay(&args),
         Command::Report(args) => commands::report::run(&args),
+        Command::Serve(args) => commands::serve::run(&args),
         Command::Sweep(args) => commands::sweep::run(&args),
         Command::ExportWad(args) => commands::export_wad::run(&args),
         Command::ContactSheet(args) => commands::contact_sheet::run(&args),

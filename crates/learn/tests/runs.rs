@@ -107,15 +107,18 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
     }
 }
 
-/// The number of learner threads may change rounding; that of samplers and groups changes nothing that is sampled first.
+/// Neither samplers, groups and threads, of whatever number, nor what the samplers keep for the learner changes a bit.
 #[test]
-fn the_first_rollout_does_not_depend_on_how_lanes_are_dealt_out() {
+fn a_run_does_not_depend_on_how_lanes_are_dealt_out() {
     let mut all = Vec::new();
-    for (samplers, groups, world_threads) in [(1, 1, 0), (4, 1, 0), (1, 2, 2), (2, 4, 1)] {
+    for (samplers, groups, world_threads, threads) in
+        [(1, 1, 0, 1), (4, 1, 0, 2), (1, 2, 2, 3), (2, 4, 1, 1), (3, 1, 0, 3), (40, 1, 0, 50)]
+    {
         let mut config = tiny::config(AlgorithmKind::Ppo);
         config.sampling.samplers = samplers;
         config.sampling.groups = groups;
         config.sampling.world_threads = world_threads;
+        config.learning.threads = threads;
         config.frames = 3 * config.frames_per_rollout();
         let path = tiny::directory(&format!("deal-{samplers}-{groups}"));
         tiny::run(Start::Fresh(config), &path).0.unwrap();

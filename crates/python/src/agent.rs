@@ -131,7 +131,7 @@ impl TrainedAgent {
         let seen = py.detach(|| {
             let mut agent = self.agent();
             agent.remember(state.memory.clone())?;
-            let rows = agent.rows(&pixels);
+            let rows = agent.rows(&pixels).to_vec();
             Ok((rows, agent.memory()))
         });
         let (rows, memory) =

@@ -163,6 +163,7 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     config.device.clone_from(&args.device);
     config.frames = args.frames.unwrap_or(config.frames);
     config.sampling.synchronous = args.sync || (args.device == "cpu" && !args.asynchronous);
+    config.learning.portable = args.portable;
     if let Some(threads) = args.threads {
         config.learning.threads = usize::from(threads);
         config.sampling.samplers = usize::from(threads);

@@ -158,14 +158,14 @@ mod tests {
     fn a_step_reaches_the_budget_whatever_the_length_of_episodes() {
         for (steps, cost, budget) in [(525.0, 55.0, 50.0), (525.0, 45.0, 50.0), (10.0, 4.2, 4.0), (2100.0, 900.0, 880.0)] {
             let p: f64 = cost / steps;
-            let theta = (p / (1.0 - p)).ln();
+            let theta = libm::log(p / (1.0 - p));
             let fisher = p * (1.0 - p);
             // The reward is 1 with the action of cost 1: the best step goes to the edge of the budget.
             let (g, b) = (-fisher, fisher);
             let excess = surrogate_excess(&Signal { episode_cost: cost, episode_budget: budget, episode_steps: steps });
             let weights = Plane { q: g * g / fisher, r: g * b / fisher, s: b * b / fisher, excess, radius: 0.05 }.solve();
             let step = -(weights.reward * g + weights.cost * b) / fisher;
-            let after = steps / (1.0 + (-(theta + step)).exp());
+            let after = steps / (1.0 + libm::exp(-(theta + step)));
             let missed = (after - budget).abs() / (cost - budget).abs();
             assert!(missed < 0.1, "episodes of {steps} steps: from {cost} to {after}, budget {budget}");
         }

@@ -52,7 +52,15 @@ impl Case {
     }
 
     fn minibatch(&self) -> Minibatch<'static> {
-        let empty = Sequences { steps: 0, lanes: 0, observations: vec![], extra: vec![], initial_state: vec![], reset: vec![] };
+        let empty = Sequences {
+            steps: 0,
+            lanes: 0,
+            observations: vec![],
+            extra: vec![],
+            initial_state: vec![],
+            reset: vec![],
+            recorded: vec![],
+        };
         let critic = |index: usize| Critic {
             loss_name: format!("critic {index}"),
             advantages: self.advantages[index].clone(),
@@ -60,7 +68,7 @@ impl Case {
             targets: self.targets[index].clone(),
         };
         Minibatch {
-            batch: ModelSequences { sequences: empty, initial_state: vec![] },
+            batch: ModelSequences { sequences: empty, initial_state: vec![], recorded: vec![] },
             taken: Taken { actions: self.actions.clone(), deltas: self.deltas.clone() },
             old_log_probability: self.old_log.iter().map(|&log| f64::from(log)).collect(),
             old_policy: Policy::new(&self.shape, &self.old_outputs, self.shape.parameters()),

@@ -98,7 +98,7 @@ pub fn note_policy(heads: &Heads, minibatch: &Minibatch<'_>, clip: f64, means: &
     let mean = |of: &dyn Fn(f64) -> f64| ratios.iter().map(|&ratio| of(ratio)).sum::<f64>() / ratios.len() as f64;
     means.add("entropy", heads.policy.entropy().mean());
     means.add("kl_divergence", minibatch.old_policy.divergence(&heads.policy).mean());
-    means.add("approx_kl", mean(&|ratio| ratio - 1.0 - ratio.ln()));
+    means.add("approx_kl", mean(&|ratio| ratio - 1.0 - libm::log(ratio)));
     means.add("ratio_deviation", mean(&|ratio| (ratio - 1.0).abs()));
     means.add("clip_fraction", mean(&|ratio| f64::from(u8::from(!(1.0 / (1.0 + clip)..=1.0 + clip).contains(&ratio)))));
 }

@@ -62,4 +62,7 @@ pub struct LearningConfig {
     pub bootstrap_time_outs: bool,
     /// Threads.
     pub threads: usize,
+    /// Plain kernels, whose results have the same bits on every machine; otherwise the fastest that the processor has.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub portable: bool,
 }

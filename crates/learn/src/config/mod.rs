@@ -118,7 +118,8 @@ impl TrainConfig {
         if sampling.world_threads > 256 {
             return refuse("the number of world threads", &sampling.world_threads, "0 to 256");
         }
-        if !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
+        // Alone, samplers share out any number of worlds; groups are all of one size.
+        if sampling.groups > 1 && !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
             let parts = sampling.samplers * sampling.groups;
             return refuse("the number of worlds", &sampling.lanes, &format!("a multiple of samplers times groups ({parts})"));
         }
@@ -219,7 +220,7 @@ mod tests {
             let message = config.check().unwrap_err().to_string();
             assert!(message.contains(word), "{message}");
         };
-        refuse(|c| c.sampling.lanes = 33, "number of worlds");
+        refuse(|c| (c.sampling.lanes, c.sampling.groups) = (33, 2), "number of worlds");
         refuse(|c| c.learning.gamma = 1.5, "gamma");
         refuse(|c| c.learning.rate = f64::NAN, "learning rate");
         refuse(|c| c.constraints[0].budget = -1.0, "budget");

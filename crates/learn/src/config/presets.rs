@@ -50,7 +50,7 @@ impl TrainConfig {
             sampling: SamplingConfig {
                 lanes: 32,
                 rollout: 32,
-                samplers: samplers_for(cores, 32),
+                samplers: cores,
                 world_threads: 0,
                 groups: 1,
                 spread_out: true,
@@ -80,6 +80,7 @@ impl TrainConfig {
                 final_exploration_coefficient: None,
                 bootstrap_time_outs: !released,
                 threads: cores,
+                portable: false,
             },
             algorithm_settings: AlgorithmConfig {
                 penalty_scale: if released && scenario == Some(Scenario::ArmamentBurden) { 0.1 } else { 1.0 },
@@ -122,11 +123,6 @@ impl TrainConfig {
         }
         config
     }
-}
-
-/// As many samplers as cores, as far as they divide the worlds.
-fn samplers_for(cores: usize, lanes: usize) -> usize {
-    (1..=cores.min(lanes)).rev().find(|count| lanes.is_multiple_of(*count)).unwrap_or(1)
 }
 
 /// Settings that learn within minutes.

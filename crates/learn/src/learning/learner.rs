@@ -10,8 +10,9 @@ use crate::learning::metrics::Means;
 use crate::learning::normaliser::{Moments, PixelNormaliser};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::{Policy, Taken};
+use crate::networks::cpu::simd::Kernels;
 use crate::networks::device::ComputeDevice;
-use crate::networks::{ModelSequences, ModelShape, Published, Sequences, Stack};
+use crate::networks::{ModelSequences, ModelShape, Published, RecordedLane, Sequences, Stack};
 use crate::sampling::rollout::Rollout;
 
 /// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of the costs; values of
@@ -120,6 +121,8 @@ pub struct Learner {
     pub exploration_coefficient: f64,
     /// Settings.
     pub config: TrainConfig,
+    /// What computes everything but the networks on a card.
+    kernels: Kernels,
     gradient: Vec<f32>,
     /// The networks do not hold the present parameters yet.
     stale: bool,
@@ -149,6 +152,7 @@ impl Learner {
             rate: config.learning.rate,
             exploration_coefficient: config.learning.exploration_coefficient,
             config: config.clone(),
+            kernels: device.kernels(),
             gradient: vec![0.0; parameters.len()],
             parameters,
             shape: shape.clone(),
@@ -163,16 +167,27 @@ impl Learner {
         &self.shape
     }
 
+    /// The kernels of the processor that compute it, or what comes before and after a card does.
+    #[must_use]
+    pub fn kernels(&self) -> Kernels {
+        self.kernels
+    }
+
     /// The present weights for samplers.
     pub fn publish(&mut self) -> Published {
         self.refresh();
         self.networks.publish(self.version)
     }
 
-    /// Takes over statistics of a rollout and computes its advantages and targets.
-    pub fn prepare<'a>(&mut self, rollout: &'a Rollout) -> Prepared<'a> {
-        self.pixels.update(&rollout.frames(), self.config.learning.threads);
+    /// Takes over the statistics of a rollout's pixels. This comes after it was learned from, so that the networks see what
+    /// they saw when they acted: probability ratios begin at one, and the first forward pass need not be repeated.
+    pub fn absorb(&mut self, rollout: &Rollout) {
+        self.pixels.update(self.kernels, &rollout.frames(), self.config.learning.threads);
         self.stale_pixels = true;
+    }
+
+    /// Computes a rollout's advantages and targets, and takes over the statistics of its returns.
+    pub fn prepare<'a>(&mut self, rollout: &'a Rollout) -> Prepared<'a> {
         let (steps, lanes) = (rollout.steps(), rollout.lanes());
         let (width, first) = (self.shape.outputs(), self.shape.value_column());
         let constraints = self.config.constraints.len();
@@ -240,6 +255,7 @@ impl Learner {
             extra: Vec::new(),
             initial_state: Vec::new(),
             reset: Vec::with_capacity(steps * lanes.len()),
+            recorded: Vec::new(),
         };
         let (mut actions, mut deltas, mut logs, mut policy) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (step, lane) in rows() {
@@ -263,6 +279,14 @@ impl Learner {
             lanes.iter().flat_map(of).collect()
         };
         let initial_state = (0..shape.networks.len()).map(state).collect();
+        let recorded = |network: usize| -> Vec<RecordedLane<'a>> {
+            let of = |&lane: &usize| {
+                let (part, own) = rollout.find(lane);
+                Some(RecordedLane { recording: part.recordings.get(network)?, lane: own })
+            };
+            lanes.iter().filter_map(of).collect()
+        };
+        let recorded = (0..shape.networks.len()).map(recorded).collect();
         let pick = |values: &[f32]| -> Vec<f32> { rows().map(|(step, lane)| values[lane * steps + step]).collect() };
         let critic = |index: usize| Critic {
             loss_name: critic_name("value_loss", &self.config, index),
@@ -271,7 +295,7 @@ impl Learner {
             targets: pick(&prepared.targets[index]),
         };
         Minibatch {
-            batch: ModelSequences { sequences, initial_state },
+            batch: ModelSequences { sequences, initial_state, recorded },
             taken: Taken { actions, deltas },
             old_log_probability: logs,
             old_policy: Policy::new(action, &policy, action.parameters()),
@@ -322,7 +346,7 @@ impl Learner {
     fn step(&mut self, set: usize, gradient: Vec<f32>, networks: Range<usize>, means: &mut Means) -> Result<(), LearnError> {
         let start = self.shape.parameter_range(networks.start).start;
         let end = self.shape.parameter_range(networks.end - 1).end;
-        let norm = crate::networks::cpu::elementwise::sum_of_squares(&gradient[start..end]).sqrt();
+        let norm = crate::networks::cpu::elementwise::sum_of_squares(self.kernels, &gradient[start..end]).sqrt();
         means.add("gradient_norm", norm);
         if !norm.is_finite() {
             return Err(diverged("gradient's norm", norm));
@@ -338,7 +362,7 @@ impl Learner {
                 Some(rate) if network > 0 => rate * self.rate / settings.rate.max(f64::MIN_POSITIVE),
                 _ => self.rate,
             };
-            self.optimisers[set * count + network].step(&gradient[range], parameters, scale, rate, settings);
+            self.optimisers[set * count + network].step(self.kernels, &gradient[range], parameters, scale, rate, settings);
         }
         self.gradient = gradient;
         self.version += 1;
@@ -398,10 +422,8 @@ impl Learner {
     }
 
     /// The gradient in the policy network's parameters from that of its outputs of the last forward pass.
-    pub fn policy_backward(&mut self, batch: &mut ModelSequences<'_>, rows: &[f32]) -> Vec<f32> {
-        let mut gradient = vec![0.0; self.shape.parameter_range(0).len()];
-        self.networks.backward_network(0, batch, rows, &mut gradient);
-        gradient
+    pub fn policy_backward(&mut self, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+        self.networks.backward_network(0, batch, rows, gradient);
     }
 
     /// Replaces the policy network's parameters.
