@@ -38,6 +38,8 @@ pub enum Command {
     Replay(ReplayArgs),
     /// Make tables, curves and heatmaps from run directories
     Report(ReportArgs),
+    /// Answer with a page in the browser: follow runs, watch agents, play
+    Serve(ServeArgs),
     /// Run many trainings: a grid from a TOML file, or an experiment of the paper by name
     Sweep(SweepArgs),
     /// Write an environment's map as a WAD that other engines load
@@ -252,10 +254,16 @@ pub struct BenchArgs {
     /// With --learn: the algorithm
     #[arg(long, default_value = "PPOLag", requires = "learn")]
     pub algo: String,
+    /// With --learn: the preset, but for its epochs and minibatches
+    #[arg(long, default_value = "paper", requires = "learn")]
+    pub preset: String,
+    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512 chooses others
+    #[arg(long, requires = "learn")]
+    pub portable: bool,
     /// Seed
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Print one JSON object
+    /// Print JSON objects, one a line
     #[arg(long)]
     pub json: bool,
     /// How to make the environment
@@ -388,9 +396,13 @@ pub struct TrainArgs {
     /// Sampling and learning run side by side; the default on a graphics card
     #[arg(long = "async", conflicts_with = "sync")]
     pub asynchronous: bool,
-    /// Threads; all cores if absent
+    /// Threads; all cores if absent. Results do not depend on their number
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
+    /// Plain kernels: the same bits on every machine, some six times slower. HASARD_SIMD=plain|avx2|avx512 forces a family
+    /// without leaving a trace in the settings
+    #[arg(long)]
+    pub portable: bool,
     /// Worlds
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub envs: Option<u32>,
@@ -531,6 +543,26 @@ pub struct ReportArgs {
     /// Accepted for uniformity; bootstrap intervals have a fixed seed
     #[arg(long, hide = true, default_value_t = 0)]
     pub seed: u64,
+}
+
+/// `hasard serve`.
+#[derive(Args, Debug)]
+pub struct ServeArgs {
+    /// Folders below which runs are looked for, while they run too
+    #[arg(value_name = "RUNS", default_value = "runs")]
+    pub runs: Vec<PathBuf>,
+    /// Address to listen at; beyond this machine only with the token that is printed
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8350")]
+    pub listen: std::net::SocketAddr,
+    /// What visitors must know; drawn anew if absent and --listen goes beyond this machine
+    #[arg(long, value_name = "TEXT")]
+    pub token: Option<String>,
+    /// Folder in which episodes that are played are kept
+    #[arg(long, value_name = "DIR", default_value = "human")]
+    pub out: PathBuf,
+    /// Open the page in the browser
+    #[arg(long)]
+    pub open: bool,
 }
 
 /// `hasard sweep`.

@@ -4,12 +4,15 @@
     cargo build --release -p hasard && cargo build --release -p hasard-envs --example bare_world
     python beside_published.py TARGET/release whole 100        # Precipice Plunge 1, which draws nothing at random: whole episodes
     python beside_published.py TARGET/release bodies VolcanicVenture 60   # bodies among the floors that the original drew
+    python beside_published.py TARGET/release returns RemedyRush 1 300    # returns and costs in the published map, both engines
+    python beside_published.py TARGET/release returns all 300             # all 24 maps (examples: action_episodes)
 
 Nothing of the published packages is kept; they are run where pip put them. Compared are position, velocity, angle and pitch,
 to 1/65536 map unit and 0.01 degree.
 """
 
 import csv
+import json
 import os
 import subprocess
 import sys
@@ -18,15 +21,11 @@ import tempfile
 import numpy as np
 import vizdoom
 
+from published_engine import FOLDERS, MAPS, Published
+
 VARIABLES = "POSITION_X POSITION_Y POSITION_Z ANGLE PITCH VELOCITY_X VELOCITY_Y VELOCITY_Z".split()
 SIMPLE = "TURN_LEFT TURN_RIGHT MOVE_FORWARD MOVE_BACKWARD LOOK_UP LOOK_DOWN JUMP".split()
 FULL = SIMPLE + "MOVE_LEFT MOVE_RIGHT SPEED CROUCH TURN180 LOOK_UP_DOWN_DELTA TURN_LEFT_RIGHT_DELTA".split()
-FOLDERS = {
-    "ArmamentBurden": "armament_burden",
-    "CollateralDamage": "collateral_damage",
-    "PrecipicePlunge": "precipice_plunge",
-    "VolcanicVenture": "volcanic_venture",
-}
 
 
 def game(scenario, buttons):
@@ -138,11 +137,55 @@ def bodies(programs, scenario, episodes):
         yield seed, len(theirs), first_difference(theirs, ours)
 
 
+def both(programs, scenario, level, hard, episodes):
+    """The same random actions in both engines' worlds of a published map: (return, cost) of each episode, theirs and ours."""
+    name = f"{scenario}Level{level}-v0"
+    listed = subprocess.run([f"{programs}/hasard", "envs", "--json"], capture_output=True, text=True, check=True).stdout
+    groups = next(env["actions"]["simplified"] for env in map(json.loads, listed.splitlines()) if env["id"] == name)
+    original, lines, theirs = Published(scenario, level, hard, groups), [], []
+    for seed in range(1, episodes + 1):
+        rng = np.random.default_rng(7919 * seed)
+        actions = np.stack([rng.integers(0, len(group) + 1, 525) for group in groups], 1)
+        lines.append(f"{seed} " + " ".join("".join(map(str, action)) for action in actions))
+        original.reset(seed)
+        sums = np.zeros(2)
+        for action in actions:
+            _, reward, cost, over = original.step(action)
+            sums += reward, cost
+            if over:
+                break
+        theirs.append(sums)
+    original.close()
+    program = [f"{programs}/examples/action_episodes", MAPS, name, "hard" if hard else "soft"]
+    out = subprocess.run(program, input="\n".join(lines) + "\n", capture_output=True, text=True, check=True).stdout
+    return np.array(theirs), np.array([[float(word) for word in line.split()[:2]] for line in out.splitlines()])
+
+
+def returns(programs, rest):
+    """A table: mean and standard error of returns and costs in both, and how many standard errors lie between."""
+    if rest[0] == "all":
+        maps, episodes = [(name, level, hard) for name in FOLDERS for level, hard in [(1, 0), (1, 1), (2, 0), (3, 0)]], int(rest[1])
+    else:
+        maps, episodes = [(rest[0], int(rest[1].rstrip("h")), rest[1].endswith("h"))], int(rest[2])
+    print("| map | return there | here | standard errors | cost there | here | standard errors |")
+    print("|---|--:|--:|--:|--:|--:|--:|", flush=True)
+    for scenario, level, hard in maps:
+        theirs, ours = both(programs, scenario, level, bool(hard), episodes)
+        cells = []
+        for a, b in zip(theirs.T, ours.T):
+            error = np.sqrt((a.var(ddof=1) + b.var(ddof=1)) / episodes)
+            apart = (b.mean() - a.mean()) / error if error else float(b.mean() != a.mean())
+            cells += [f"{a.mean():.3f}", f"{b.mean():.3f}", f"{apart:+.1f}"]
+        print(f"| {scenario} {level}{' hard' if hard else ''} | " + " | ".join(cells) + " |", flush=True)
+
+
 def main():
     programs, what, *rest = sys.argv[1:]
     programs = os.path.abspath(programs)
     # The published engine leaves files where it is started.
     os.chdir(tempfile.mkdtemp())
+    if what == "returns":
+        return returns(programs, rest)
     runs = whole(programs, int(rest[0])) if what == "whole" else bodies(programs, rest[0], int(rest[1]))
     tics = episodes = astray = 0
     for seed, length, difference in runs:

@@ -4,7 +4,7 @@ mod tiny;
 
 use hasard_envs::{EnvError, Environment, VecEnv, VecOptions};
 use hasard_learn::config::curriculum::Lesson;
-use hasard_learn::config::{AlgorithmKind, EnvConfig, TrainConfig};
+use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::evaluate::{Agent, Choice, Which};
 use hasard_learn::runs::trainer::{Hooks, Start, train};
@@ -46,10 +46,25 @@ fn last_files(run: &Path) -> (Vec<u8>, Vec<u8>, Value) {
 /// multiplier, statistic and row of metrics, for several algorithms and ways of sampling.
 #[test]
 fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
-    for (algorithm, samplers, groups, world_threads) in
-        [(AlgorithmKind::PpoLag, 2, 1, 0), (AlgorithmKind::PpoPid, 1, 2, 1), (AlgorithmKind::PpoSaute, 2, 2, 0)]
-    {
+    for (algorithm, samplers, groups, world_threads) in [
+        (AlgorithmKind::PpoLag, 2, 1, 0),
+        (AlgorithmKind::PpoPid, 1, 2, 1),
+        (AlgorithmKind::PpoSaute, 2, 2, 0),
+        (AlgorithmKind::Cup, 2, 1, 0),
+        (AlgorithmKind::TrpoLag, 2, 1, 0),
+        (AlgorithmKind::TrpoPid, 1, 1, 0),
+    ] {
         let mut config = tiny::config(algorithm);
+        if algorithm == AlgorithmKind::Cup {
+            config.constraints.push(Constraint { term: Some("second".into()), budget: 1.0 });
+        }
+        if algorithm == AlgorithmKind::TrpoPid {
+            // The TRPO family as released.
+            let released = TrainConfig::plain(algorithm, Preset::Released, config.env.clone());
+            config.algorithm_settings = released.algorithm_settings;
+            config.constraint_statistic = released.constraint_statistic;
+            config.network.initialisation = released.network.initialisation;
+        }
         config.sampling.samplers = samplers;
         config.sampling.groups = groups;
         config.sampling.world_threads = world_threads;
@@ -92,15 +107,18 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
     }
 }
 
-/// The number of learner threads may change rounding; that of samplers and groups changes nothing that is sampled first.
+/// Neither samplers, groups and threads, of whatever number, nor what the samplers keep for the learner changes a bit.
 #[test]
-fn the_first_rollout_does_not_depend_on_how_lanes_are_dealt_out() {
+fn a_run_does_not_depend_on_how_lanes_are_dealt_out() {
     let mut all = Vec::new();
-    for (samplers, groups, world_threads) in [(1, 1, 0), (4, 1, 0), (1, 2, 2), (2, 4, 1)] {
+    for (samplers, groups, world_threads, threads) in
+        [(1, 1, 0, 1), (4, 1, 0, 2), (1, 2, 2, 3), (2, 4, 1, 1), (3, 1, 0, 3), (40, 1, 0, 50)]
+    {
         let mut config = tiny::config(AlgorithmKind::Ppo);
         config.sampling.samplers = samplers;
         config.sampling.groups = groups;
         config.sampling.world_threads = world_threads;
+        config.learning.threads = threads;
         config.frames = 3 * config.frames_per_rollout();
         let path = tiny::directory(&format!("deal-{samplers}-{groups}"));
         tiny::run(Start::Fresh(config), &path).0.unwrap();

@@ -5,6 +5,7 @@ mod plain;
 
 use hasard_learn::config::{Convolution, Initialisation};
 use hasard_learn::networks::cpu::network::{CpuActor, CpuLearner};
+use hasard_learn::networks::cpu::simd::Kernels;
 use hasard_learn::networks::{ActingNetwork, ImageShape, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences};
 use hasard_learn::random::{Purpose, Stream};
 use std::sync::Arc;
@@ -74,6 +75,7 @@ impl Case {
             extra: self.extra.clone(),
             initial_state: self.state.clone(),
             reset: self.reset.clone(),
+            recorded: Vec::new(),
         }
     }
 }
@@ -103,7 +105,7 @@ fn outputs_and_gradients_equal_those_of_the_plain_network() {
         let wide: Vec<f64> = parameters.iter().map(|&value| f64::from(value)).collect();
         let expected: Vec<f32> = plain::forward(&shape, &wide, &case.pixels, &batch).iter().map(|&value| value as f32).collect();
         let seeds = normals(expected.len(), 1);
-        let mut learner = CpuLearner::new(&shape, 2);
+        let mut learner = CpuLearner::new(Kernels::available()[0], &shape, 2);
         learner.load(&parameters);
         learner.load_pixels(&case.pixels);
         close(&format!("{name}: output"), &learner.forward(&batch), &expected);
@@ -137,7 +139,7 @@ fn passes_do_not_depend_on_threads_or_on_what_was_before() {
         let batch = case.sequences();
         let seeds = normals(batch.rows() * shape.outputs(), 1);
         let passes = [1, 2, 7].map(|threads| {
-            let mut learner = CpuLearner::new(&shape, threads);
+            let mut learner = CpuLearner::new(Kernels::available()[0], &shape, threads);
             learner.load(&parameters);
             learner.load_pixels(&case.pixels);
             [(); 2].map(|()| {
@@ -163,8 +165,10 @@ fn outputs_and_gradients_equal_those_of_burn() {
         let case = Case::new(&shape, 4, 5);
         let batch = case.sequences();
         let seeds = normals(batch.rows() * shape.outputs(), 1);
-        let networks: [Box<dyn LearningNetwork>; 2] =
-            [Box::new(BurnNetwork::new(&shape, &burn::tensor::Device::flex())), Box::new(CpuLearner::new(&shape, 2))];
+        let networks: [Box<dyn LearningNetwork>; 2] = [
+            Box::new(BurnNetwork::new(&shape, &burn::tensor::Device::flex())),
+            Box::new(CpuLearner::new(Kernels::available()[0], &shape, 2)),
+        ];
         let [(there, there_gradient), (here, here_gradient)] = networks.map(|mut network| {
             network.load(&parameters);
             network.load_pixels(&case.pixels);
@@ -186,13 +190,13 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
     for (name, shape) in shapes() {
         let parameters = shape.initial_parameters(Initialisation::Orthogonal, 6, 0);
         let case = Case::new(&shape, 3, 4);
-        let mut learner = CpuLearner::new(&shape, 2);
+        let mut learner = CpuLearner::new(Kernels::available()[0], &shape, 2);
         learner.load(&parameters);
         learner.load_pixels(&case.pixels);
         let expected = learner.forward(&case.sequences());
         let plain = NetworkWeights::Plain { parameters: Arc::new(parameters.clone()), pixels: Arc::new(case.pixels.clone()) };
         // The learner's own packed weights, or those that the actor packs or uploads itself.
-        let actor = || -> Box<dyn ActingNetwork> { Box::new(CpuActor::new(&shape)) };
+        let actor = || -> Box<dyn ActingNetwork> { Box::new(CpuActor::new(Kernels::available()[0], &shape)) };
         let own = [(true, learner.publish(), actor()), (true, plain.clone(), actor())];
         for (same_kernels, weights, mut actor) in own.into_iter().chain(portable(&shape, plain)) {
             actor.load(&weights);
@@ -207,7 +211,7 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
                 }
                 let mut outputs = vec![0.0; case.lanes * shape.outputs()];
                 let extra = &case.extra[rows.start * shape.extra_inputs..rows.end * shape.extra_inputs];
-                actor.act(&case.observations[rows.clone()].concat(), extra, &mut state, &mut outputs);
+                actor.act(&case.observations[rows.clone()].concat(), extra, &mut state, &mut outputs, None);
                 let expected = &expected[rows.start * shape.outputs()..rows.end * shape.outputs()];
                 if same_kernels {
                     assert_eq!(outputs, expected, "{name}: the same kernels must give the same bits");

@@ -42,7 +42,7 @@ pub use controls::{Controls, Key};
 pub use error::PlayError;
 pub use film::Film;
 pub use panel::{Panel, with_panel};
-pub use recording::{Recorder, Replay, option_names, options_from_names};
+pub use recording::{Recorder, Replay, keep_episode, option_names, options_from_names};
 pub use stage::Stage;
 pub use views::{ViewKind, Views};
 #[cfg(feature = "window")]

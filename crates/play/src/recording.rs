@@ -140,6 +140,23 @@ impl Recorder {
     }
 }
 
+/// Ends a recording and keeps it in a folder, as `ENV-seedN.episode` or, since an episode played again is another result,
+/// under the next free name. Gives its path.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn keep_episode(folder: &Path, env: &Env, seed: u64, recorder: Recorder) -> Result<PathBuf, PlayError> {
+    let mut path = folder.join(format!("{}-seed{seed}.episode", env.id()));
+    for attempt in 2..100_000 {
+        if !path.exists() {
+            break;
+        }
+        path = folder.join(format!("{}-seed{seed}-{attempt}.episode", env.id()));
+    }
+    recorder.finish(env).write(&path)?;
+    Ok(path)
+}
+
 /// Plays a recorded episode again.
 pub struct Replay {
     file: EpisodeFile,

@@ -1,6 +1,6 @@
 //! The window to play in.
 
-use crate::{Controls, Key, Panel, PlayError, Recorder, Stage, ViewKind, Views, with_panel};
+use crate::{Controls, Key, Panel, PlayError, Recorder, Stage, ViewKind, Views, keep_episode, with_panel};
 use hasard_engine::render::FrameSize;
 use hasard_envs::EnvOptions;
 use std::num::NonZeroU32;
@@ -134,16 +134,7 @@ impl App {
         let how = if episode.terminated { "over" } else { "time is up" };
         self.message = format!("{how}; Enter: next episode, R: again");
         if let (Some(folder), Some(recorder)) = (&self.settings.folder, self.recorder.take()) {
-            let file = recorder.finish(self.stage.env());
-            let mut path = folder.join(format!("{}-seed{}.episode", self.settings.env, self.seed));
-            // An episode played again is another result: none is overwritten.
-            for attempt in 2..100_000 {
-                if !path.exists() {
-                    break;
-                }
-                path = folder.join(format!("{}-seed{}-{attempt}.episode", self.settings.env, self.seed));
-            }
-            file.write(&path)?;
+            let path = keep_episode(folder, self.stage.env(), self.seed, recorder)?;
             self.message = format!("{how}; kept as {}. Enter: next, R: again", path.display());
             self.saved.push(path);
         }

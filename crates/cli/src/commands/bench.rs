@@ -5,7 +5,8 @@ use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_envs::{ObservationKind, VecEnv, bench};
 use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
-use hasard_learn::runs::measure::measure;
+use hasard_learn::networks::cpu::simd::Kernels;
+use hasard_learn::runs::measure::{Measurement, measure};
 use serde_json::json;
 
 /// Runs the command.
@@ -53,49 +54,67 @@ pub fn run(args: &BenchArgs) -> Outcome {
 const ROUND_SECONDS: f64 = 5.0;
 const LEAST_ROUNDS: usize = 3;
 
+/// The loop with every family of kernels that this processor has and may use, on one thread and on as many as asked for.
 fn learn(args: &BenchArgs) -> Outcome {
     let env = settings::env_config(&args.env, &args.env_args, &args.observation);
-    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, Preset::Paper, env).map_err(Failure::bad)?;
-    let threads = args.threads as usize;
+    let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
+    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env).map_err(Failure::bad)?;
+    (config.learning.epochs, config.learning.minibatches) = (1, 1);
     config.seed = args.seed;
     config.sampling.lanes = args.envs as usize;
-    (config.learning.threads, config.sampling.samplers) = (threads, threads);
     config.check().map_err(Failure::bad)?;
     let options = settings::trained_options(&config.env)?;
     let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
+    let fastest = Kernels::chosen().map_err(Failure::bad)?;
+    let mut families = Kernels::available();
+    if args.portable || fastest != families[0] {
+        families = vec![if args.portable { Kernels::PORTABLE } else { fastest }];
+    }
+    let mut threads = vec![1, args.threads as usize];
+    threads.dedup();
     let rounds = ((args.seconds / ROUND_SECONDS).ceil() as usize).max(LEAST_ROUNDS);
-    let measured = measure(&config, &make, rounds, args.seconds / rounds as f64, &mut |round| {
-        if !args.json {
-            eprintln!("round {round} of {rounds}");
-        }
-    })
-    .map_err(Failure::bad)?;
+    if !args.json {
+        let worlds = args.envs;
+        say!("{} on {}, preset {preset}, 1 epoch, {worlds} worlds: worlds, inference and learning", config.algorithm, args.env);
+    }
+    for (threads, kernels) in threads.iter().flat_map(|threads| families.iter().map(move |kernels| (*threads, *kernels))) {
+        (config.learning.threads, config.sampling.samplers) = (threads, threads);
+        let mut told = |round| {
+            if !args.json {
+                eprintln!("{kernels}, {threads} thread(s): round {round} of {rounds}");
+            }
+        };
+        let seconds = args.seconds / rounds as f64;
+        let measured = measure(kernels, &config, &make, rounds, seconds, &mut told).map_err(Failure::bad)?;
+        report(args, &config, &measured)?;
+    }
+    Ok(())
+}
+
+fn report(args: &BenchArgs, config: &TrainConfig, measured: &Measurement) -> Outcome {
     if args.json {
         let object = json!({
             "env": args.env,
             "algorithm": config.algorithm.name(),
+            "preset": config.preset.name(),
+            "kernels": measured.kernels.name(),
+            "threads": measured.threads,
             "learning_steps_per_second": measured.steps_per_second,
             "product_flops": measured.product_rate,
             "flop_per_step": measured.flop_per_step,
             "bound_steps_per_second": measured.bound(),
             "share": measured.share(),
             "envs": args.envs,
-            "threads": measured.threads,
             "rounds": measured.rounds,
         });
         say!("{object}");
         return Ok(());
     }
     say!(
-        "{} on {}: {:.0} policy steps/s of worlds, inference and learning (1 epoch), {} worlds, {} thread(s)",
-        config.algorithm,
-        args.env,
+        "{:>8}, {} thread(s): {:.0} steps/s; {:.1} GFLOP/s in large products / {:.1} MFLOP forward and backward = {:.0} steps/s: {:.1} % of that",
+        measured.kernels.name(),
+        measured.threads,
         measured.steps_per_second,
-        args.envs,
-        measured.threads
-    );
-    say!(
-        "{:.1} GFLOP/s in large matrix products / {:.1} MFLOP a step = {:.0} steps/s: {:.1} % of that bound",
         measured.product_rate / 1e9,
         measured.flop_per_step / 1e6,
         measured.bound(),

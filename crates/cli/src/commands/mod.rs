@@ -11,6 +11,7 @@ pub mod render;
 pub mod report;
 mod resume;
 pub mod rollout;
+pub mod serve;
 pub mod sweep;
 pub mod trace;
 pub mod train;

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
 /// `--frames` is absent: a resumed run may be given another length.
-const DECIDES: [(&str, &[&str]); 22] = [
+const DECIDES: [(&str, &[&str]); 23] = [
     ("algo", &["/algorithm"]),
     ("preset", &["/preset"]),
     ("curriculum", &["/curriculum"]),
@@ -21,6 +21,7 @@ const DECIDES: [(&str, &[&str]); 22] = [
     ("sync", &["/sampling/synchronous"]),
     ("asynchronous", &["/sampling/synchronous"]),
     ("threads", &["/learning/threads", "/sampling/samplers"]),
+    ("portable", &["/learning/portable"]),
     ("envs", &["/sampling/lanes"]),
     ("seed", &["/seed"]),
     ("rules", &["/env/rules"]),

@@ -73,7 +73,7 @@ fn style(floor: i32, tag: i32) -> Style {
 }
 
 /// A small map with everything that the format has.
-fn room() -> MapSource {
+pub(super) fn room() -> MapSource {
     let mut builder = MapBuilder::new();
     builder.rectangle(style(0, 0), 0, 0, 512, 384);
     builder.polygon(style(24, 7), &[(64, 64), (200, 90), (120, 220)]);
@@ -88,7 +88,7 @@ fn hall() -> MapSource {
     scenarios::map_source(id, RuleSet::Paper, false).0
 }
 
-fn read_text(bytes: &[u8]) -> bool {
+pub(super) fn read_text(bytes: &[u8]) -> bool {
     let source = match udmf::read(bytes) {
         Ok(source) => source,
         Err(error) => {

@@ -3,6 +3,7 @@
 mod episodes;
 #[cfg(feature = "learn")]
 mod learning;
+mod levels;
 mod maps;
 mod pictures;
 mod runs;
@@ -29,6 +30,7 @@ pub struct Target {
 pub static ALL: &[Target] = &[
     maps::UDMF,
     maps::MAP_WAD,
+    levels::LEVEL,
     pictures::IWAD,
     episodes::EPISODE,
     sweeps::SWEEP,

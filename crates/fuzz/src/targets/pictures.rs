@@ -28,7 +28,7 @@ pub const IWAD: Target = Target {
     memory: 320 << 20,
 };
 
-fn use_pictures(set: &Assets) {
+pub(super) fn use_pictures(set: &Assets) {
     let sound = |image: &Image| {
         let size = usize::from(image.width) * usize::from(image.height);
         image.pixels.len() == size && image.mask.as_ref().is_none_or(|mask| mask.len() == size)
@@ -74,7 +74,7 @@ fn texture_list() -> Vec<u8> {
 }
 
 /// A very small IWAD with one of everything.
-fn sample() -> Vec<u8> {
+pub(super) fn sample() -> Vec<u8> {
     let mut patch_names = 2u32.to_le_bytes().to_vec();
     patch_names.extend(["BRICK", "BARS"].into_iter().flat_map(|name| TextureName::new(name).0));
     let lumps: [(&str, Vec<u8>); 18] = [

@@ -5,7 +5,7 @@
 //! verifies reward, cost and divergence. With several constraints the one furthest above its budget rules the step.
 
 use super::surrogate::{centred, standardised};
-use super::trust_region::{TrustRegion, dot, note, plus, train_critics};
+use super::trust_region::{TrustRegion, dot, plus, train_critics};
 use super::{Algorithm, Signal};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
@@ -16,15 +16,21 @@ use crate::learning::metrics::Means;
 /// Constrained policy optimisation.
 pub struct Cpo {
     region: TrustRegion,
-    gamma: f64,
 }
 
 impl Cpo {
     /// CPO with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> Cpo {
-        Cpo { region: TrustRegion::new(config), gamma: config.learning.gamma }
+        Cpo { region: TrustRegion::new(config) }
     }
+}
+
+/// The cost above budget in the unit of the cost's surrogate, which is a mean over steps: an episode's cost changes by that
+/// mean's change times its steps. (The paper's constraint, equation 10, is on discounted costs, whose surrogate is scaled by
+/// 1 / (1 - gamma) instead; the budgets here are on sums that are not.)
+fn surrogate_excess(signal: &Signal) -> f64 {
+    signal.step_excess()
 }
 
 /// The step's problem in the plane of the two gradients g (of what is minimised) and b (of the cost), all products by the
@@ -114,13 +120,14 @@ impl Algorithm for Cpo {
         let reward_loss = |heads: &Heads| -> Loss { heads.mean([&heads.ratio], |row, [ratio]| -(ratio * advantages[row])) };
         let cost_loss = |heads: &Heads| -> Loss { heads.mean([&heads.ratio], |row, [ratio]| ratio * costs[row]) };
         let region = &self.region;
-        let origin = region.origin(learner, minibatch);
+        let mut origin = region.origin(learner, minibatch);
         let (reward_before, cost_before) = (reward_loss(&origin.heads), cost_loss(&origin.heads));
-        let g = region.gradient(learner, minibatch, &origin, &reward_before);
-        let b = region.gradient(learner, minibatch, &origin, &cost_before);
-        let (x, y) = (region.solve(learner, minibatch, &origin, &g), region.solve(learner, minibatch, &origin, &b));
-        // The surrogate's unit is a discounted step; an episode's excess is brought to it as in P3O.
-        let excess = worst.map_or(-1.0, |index| (1.0 - self.gamma) * signals[index].episode_excess());
+        let g = region.gradient(learner, minibatch, &reward_before);
+        let _ = learner.policy_outputs(&mut minibatch.batch, &origin.parameters);
+        let b = region.gradient(learner, minibatch, &cost_before);
+        let (x, y) = (region.solve(learner, &mut origin, &g).direction, region.solve(learner, &mut origin, &b).direction);
+        // Nothing is known yet: as if there were no budget.
+        let excess = worst.map_or(f64::NEG_INFINITY, |index| surrogate_excess(&signals[index]));
         let plane = Plane { q: dot(&g, &x), r: dot(&g, &y), s: dot(&b, &y), excess, radius: region.radius };
         let weights = plane.solve();
         means.add("policy_loss", reward_before.value);
@@ -128,14 +135,13 @@ impl Algorithm for Cpo {
         let zero = vec![0.0; x.len()];
         let step = plus(&plus(&zero, -weights.reward, &x), -weights.cost, &y);
         let allowed = (-excess).max(0.0);
-        let share = region.search(learner, minibatch, &origin, &step, |heads, divergence| {
+        region.search(learner, minibatch, &origin, &step, means, |heads, divergence| {
             let (reward, cost) = (reward_loss(heads).value, cost_loss(heads).value);
             // While above the budget the reward may fall; the cost may rise by what is left of the budget, no more.
             (excess > 0.0 || reward <= reward_before.value)
                 && cost - cost_before.value <= allowed
                 && divergence <= 1.5 * region.radius
         });
-        note(learner, minibatch, share, means);
         let critics = 1 + learner.shape().cost_critics;
         train_critics(learner, minibatch, critics, means)
     }
@@ -144,6 +150,26 @@ impl Algorithm for Cpo {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// One step brings an episode's cost to its budget. The task: in each of an episode's steps an action of cost 1 is taken
+    /// with probability p = sigmoid(theta), and so the episode costs steps * p. The surrogate's gradient, the mean over steps
+    /// of ratio * (cost - p), is p(1 - p) in theta, which the Fisher matrix is too.
+    #[test]
+    fn a_step_reaches_the_budget_whatever_the_length_of_episodes() {
+        for (steps, cost, budget) in [(525.0, 55.0, 50.0), (525.0, 45.0, 50.0), (10.0, 4.2, 4.0), (2100.0, 900.0, 880.0)] {
+            let p: f64 = cost / steps;
+            let theta = libm::log(p / (1.0 - p));
+            let fisher = p * (1.0 - p);
+            // The reward is 1 with the action of cost 1: the best step goes to the edge of the budget.
+            let (g, b) = (-fisher, fisher);
+            let excess = surrogate_excess(&Signal { episode_cost: cost, episode_budget: budget, episode_steps: steps });
+            let weights = Plane { q: g * g / fisher, r: g * b / fisher, s: b * b / fisher, excess, radius: 0.05 }.solve();
+            let step = -(weights.reward * g + weights.cost * b) / fisher;
+            let after = steps / (1.0 + libm::exp(-(theta + step)));
+            let missed = (after - budget).abs() / (cost - budget).abs();
+            assert!(missed < 0.1, "episodes of {steps} steps: from {cost} to {after}, budget {budget}");
+        }
+    }
 
     /// The closed form against a search over the whole plane of steps (the Fisher matrix taken as the identity).
     #[test]

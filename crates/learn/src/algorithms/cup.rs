@@ -1,16 +1,20 @@
 //! CUP: constrained update projection (Yang et al. 2022, arXiv 2209.07089).
 //!
-//! Two steps on every minibatch: first PPO on the reward alone, then a projection back towards the constraints that
-//! lowers the costs' surrogates, weighted by multipliers, while staying near the policy that acted.
+//! Two steps on every rollout. First PPO on the reward alone, which leaves the policy halfway. Then a projection from there
+//! onto the constraints: it lowers the costs' surrogates, weighted by multipliers, while staying near the policy halfway.
+//! The steps have optimisers of their own, so that the momentum of the one does not drive the other; and where no
+//! multiplier is above zero the policy halfway is its own projection.
 
 use super::multiplier::{Lagrange, Multipliers};
 use super::surrogate::{centred, standardised};
-use super::{Algorithm, Signal, ppo};
+use super::{Algorithm, Signal, Signals, go_through, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::learner::{Critic, Learner, Minibatch, Prepared};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
+use crate::learning::passes::Passes;
+use crate::learning::policy::Policy;
 
 /// Constrained update projection.
 pub struct Cup {
@@ -22,17 +26,17 @@ impl Cup {
     /// CUP with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> Cup {
-        let settings = &config.algorithm_settings;
-        let multipliers = Lagrange::all(settings, config.constraints.len(), Some(settings.multiplier_limit));
+        let multipliers = Lagrange::all(&config.algorithm_settings, config.constraints.len());
         Cup { settings: config.learning.clone(), multipliers }
     }
 
-    /// The loss of the second step.
-    pub(super) fn projection(&self, costs: &[Vec<f64>], heads: &Heads, batch: &Minibatch<'_>, means: &mut Means) -> Loss {
-        let (gamma, lambda) = (self.settings.gamma, self.settings.gae_lambda);
+    /// The loss of the second step: divergence from the policy halfway, and the costs' surrogates from the policy that acted.
+    pub(super) fn projection(&self, halfway: &Policy, costs: &[Critic], heads: &Heads, means: &mut Means) -> Loss {
+        let (gamma, lambda) = (self.settings.cost_gamma.unwrap_or(self.settings.gamma), self.settings.gae_lambda);
         let coefficient = (1.0 - gamma * lambda) / (1.0 - gamma).max(1e-6);
-        let mut total = heads.mean_of(&heads.policy.divergence(&batch.old_policy));
-        for (advantages, multiplier) in costs.iter().zip(self.multipliers()) {
+        let mut total = heads.mean_of(&heads.policy.divergence(halfway));
+        for (cost, multiplier) in costs.iter().zip(self.multipliers()) {
+            let advantages = centred(&cost.advantages);
             let surrogate = heads.mean([&heads.ratio], |row, [ratio]| ratio * advantages[row]);
             total = total + surrogate * (multiplier * coefficient);
         }
@@ -42,6 +46,38 @@ impl Cup {
 }
 
 impl Algorithm for Cup {
+    fn learn(
+        &mut self,
+        learner: &mut Learner,
+        rollout: &Prepared<'_>,
+        passes: &Passes,
+        signals: &Signals<'_>,
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        self.constrain(&signals(&rollout.mean_costs));
+        let made =
+            go_through(passes, means, |lanes, means| self.update(learner, &mut learner.minibatch(rollout, lanes), &[], means))?;
+        means.add("epochs", f64::from(made));
+        if self.multipliers().iter().all(|&multiplier| multiplier == 0.0) {
+            return Ok(());
+        }
+        let lanes = rollout.rollout.lanes();
+        let all: Vec<usize> = (0..lanes).collect();
+        let halfway = learner.policy(&mut learner.minibatch(rollout, &all));
+        let networks = learner.shape().networks.len();
+        go_through(passes, means, |some, means| {
+            let rows = (0..rollout.rollout.steps()).flat_map(|step| some.iter().map(move |lane| step * lanes + lane));
+            let halfway = halfway.of_rows(rows);
+            let projection =
+                |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| self.projection(&halfway, batch.costs(), heads, means);
+            let mut noted = Means::default();
+            learner.descend_networks(0..networks, 1, &mut learner.minibatch(rollout, some), projection, &mut noted)?;
+            noted.get("projection_loss").into_iter().for_each(|loss| means.add("projection_loss", loss));
+            Ok(())
+        })?;
+        Ok(())
+    }
+
     fn update(
         &mut self,
         learner: &mut Learner,
@@ -50,10 +86,7 @@ impl Algorithm for Cup {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let advantages = standardised(minibatch.advantages());
-        learner.descend(minibatch, |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means), means)?;
-
-        let costs: Vec<_> = minibatch.costs().iter().map(|cost| centred(&cost.advantages)).collect();
-        learner.descend(minibatch, |heads, batch, means| self.projection(&costs, heads, batch, means), &mut Means::default())
+        learner.descend(minibatch, |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means), means)
     }
 
     fn weights(&self) -> Option<&Multipliers> {
@@ -62,5 +95,57 @@ impl Algorithm for Cup {
 
     fn weights_mut(&mut self) -> Option<&mut Multipliers> {
         Some(&mut self.multipliers)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algorithms::{ppo, small};
+    use crate::config::AlgorithmKind;
+
+    fn learned(algorithm: &mut dyn Algorithm, config: &TrainConfig, episode_cost: f64) -> Learner {
+        let (mut learner, rollout) = small::learner(config);
+        let signals = |_: &[f64]| vec![Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0 }];
+        for number in 0..3 {
+            let prepared = learner.prepare(&rollout);
+            let passes = Passes::new(config, number, small::LANES);
+            algorithm.learn(&mut learner, &prepared, &passes, &signals, &mut Means::default()).unwrap();
+        }
+        learner
+    }
+
+    /// Within the budget the multiplier is zero, and the policy halfway is what is left; above it the second step moves on
+    /// from there, and leaves the first step's momentum as it was.
+    #[test]
+    fn the_second_step_starts_where_the_first_ended() {
+        let mut config = small::config(AlgorithmKind::Cup);
+        (config.learning.epochs, config.learning.target_kl) = (2, None);
+        config.algorithm_settings.multiplier_rate = 10.0;
+        let halfway = learned(&mut ppo::Ppo::new(&config), &config, 0.0);
+        let within = learned(&mut Cup::new(&config), &config, 0.0);
+        assert!(within.parameters == halfway.parameters && within.optimisers == halfway.optimisers);
+        let above = learned(&mut Cup::new(&config), &config, 100.0);
+        assert_ne!(above.parameters, halfway.parameters);
+        assert_eq!(above.optimisers.iter().map(|adam| adam.steps).collect::<Vec<_>>(), [6, 6]);
+    }
+
+    /// With a vanishing multiplier, the projection of a policy is that policy: it must not be drawn back to the one that acted.
+    #[test]
+    fn a_small_multiplier_does_not_undo_the_first_step() {
+        let mut config = small::config(AlgorithmKind::Cup);
+        (config.learning.epochs, config.learning.target_kl) = (20, None);
+        let (mut learner, rollout) = small::learner(&config);
+        let prepared = learner.prepare(&rollout);
+        let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
+        let cup = Cup::new(&config);
+        let halfway = learner.policy(&mut minibatch);
+        let before = learner.parameters.clone();
+        let costs = minibatch.critics[1..].to_vec();
+        for _ in 0..20 {
+            let loss = |heads: &Heads, _: &Minibatch<'_>, means: &mut Means| cup.projection(&halfway, &costs, heads, means);
+            learner.descend_networks(0..1, 1, &mut minibatch, loss, &mut Means::default()).unwrap();
+        }
+        assert_eq!(learner.parameters, before);
     }
 }

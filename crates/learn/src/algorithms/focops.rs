@@ -6,13 +6,14 @@
 
 use super::multiplier::{Lagrange, Multipliers};
 use super::surrogate::{lagrangian_advantages, standardised, total};
-use super::{Algorithm, Signal};
+use super::{Algorithm, Signal, Signals, go_through};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::dual::Dual;
-use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::learner::{Learner, Minibatch, Prepared};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
+use crate::learning::passes::Passes;
 
 /// First-order constrained optimisation in policy space.
 pub struct Focops {
@@ -31,7 +32,7 @@ impl Focops {
             settings: config.learning.clone(),
             eta: settings.focops_eta,
             temperature: settings.focops_temperature,
-            multipliers: Lagrange::all(settings, config.constraints.len(), Some(settings.multiplier_limit)),
+            multipliers: Lagrange::all(settings, config.constraints.len()),
         }
     }
 
@@ -50,6 +51,22 @@ impl Focops {
 }
 
 impl Algorithm for Focops {
+    /// As in the paper's algorithm 1: the multipliers move once, and the passes end when the policy has left the trust region.
+    fn learn(
+        &mut self,
+        learner: &mut Learner,
+        rollout: &Prepared<'_>,
+        passes: &Passes,
+        signals: &Signals<'_>,
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        self.constrain(&signals(&rollout.mean_costs));
+        let made =
+            go_through(passes, means, |lanes, means| self.update(learner, &mut learner.minibatch(rollout, lanes), &[], means))?;
+        means.add("epochs", f64::from(made));
+        Ok(())
+    }
+
     fn update(
         &mut self,
         learner: &mut Learner,

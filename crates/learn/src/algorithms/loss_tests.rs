@@ -1,6 +1,6 @@
-//! Every loss against an independent one in plain 64-bit arithmetic: value, and gradient in the networks' outputs.
+//! Every loss against one taken from its paper once more, in plain 64-bit arithmetic: value, and gradient in the networks' outputs.
 
-use super::surrogate::{centred, standardised};
+use super::surrogate::standardised;
 use super::{Algorithm, Signal, cup, focops, p3o, ppo};
 use crate::config::{AlgorithmKind, EnvConfig, Exploration, Preset, TrainConfig};
 use crate::learning::learner::{Critic, Minibatch};
@@ -12,6 +12,8 @@ use crate::networks::{ModelSequences, ModelShape, Sequences};
 use crate::random::{Purpose, Stream};
 
 const ROWS: usize = 24;
+/// Large enough to show in comparisons.
+const EXPLORATION: f64 = 0.3;
 
 /// A minibatch of plain numbers: outputs, actions, what was known when they were taken.
 struct Case {
@@ -24,6 +26,7 @@ struct Case {
     advantages: [Vec<f32>; 2],
     old_values: [Vec<f32>; 2],
     targets: [Vec<f32>; 2],
+    exploration: f64,
 }
 
 impl Case {
@@ -45,11 +48,19 @@ impl Case {
         let mut normals = || -> Vec<f32> { (0..ROWS).map(|_| stream.normal() as f32).collect() };
         let advantages = [normals(), normals()];
         let (old_values, targets) = ([normals(), normals()], [normals(), normals()]);
-        Case { shape, outputs, old_outputs, actions, deltas, old_log, advantages, old_values, targets }
+        Case { shape, outputs, old_outputs, actions, deltas, old_log, advantages, old_values, targets, exploration: EXPLORATION }
     }
 
     fn minibatch(&self) -> Minibatch<'static> {
-        let empty = Sequences { steps: 0, lanes: 0, observations: vec![], extra: vec![], initial_state: vec![], reset: vec![] };
+        let empty = Sequences {
+            steps: 0,
+            lanes: 0,
+            observations: vec![],
+            extra: vec![],
+            initial_state: vec![],
+            reset: vec![],
+            recorded: vec![],
+        };
         let critic = |index: usize| Critic {
             loss_name: format!("critic {index}"),
             advantages: self.advantages[index].clone(),
@@ -57,12 +68,13 @@ impl Case {
             targets: self.targets[index].clone(),
         };
         Minibatch {
-            batch: ModelSequences { sequences: empty, initial_state: vec![] },
+            batch: ModelSequences { sequences: empty, initial_state: vec![], recorded: vec![] },
             taken: Taken { actions: self.actions.clone(), deltas: self.deltas.clone() },
             old_log_probability: self.old_log.iter().map(|&log| f64::from(log)).collect(),
             old_policy: Policy::new(&self.shape, &self.old_outputs, self.shape.parameters()),
             critics: vec![critic(0), critic(1)],
             mean_costs: vec![],
+            exploration_coefficient: self.exploration,
         }
     }
 
@@ -199,7 +211,7 @@ impl Case {
                 (v - target).powi(2).max((clipped - target).powi(2))
             }) * settings.value_coefficient
         };
-        settings.exploration_coefficient * exploration + value(0) + value(1)
+        self.exploration * exploration + value(0) + value(1)
     }
 }
 
@@ -208,16 +220,15 @@ fn discrete() -> ActionShape {
 }
 
 fn config(algorithm: AlgorithmKind, preset: Preset) -> TrainConfig {
-    let mut config = TrainConfig::plain(algorithm, preset, EnvConfig::new("test"));
-    // Large enough to show in the comparison.
-    config.learning.exploration_coefficient = 0.3;
-    config
+    TrainConfig::plain(algorithm, preset, EnvConfig::new("test"))
 }
 
 fn signal(episode_cost: f64) -> Signal {
     Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0 }
 }
 
+/// PPO's equations 7 (the clipped surrogate; 1 - epsilon is 1 / (1 + epsilon) here, as in the benchmark's code) and 9 (with the
+/// losses of the values and of exploration).
 #[test]
 fn ppo_and_its_value_and_exploration_losses() {
     for (preset, exploration, spread) in [
@@ -239,9 +250,9 @@ fn ppo_and_its_value_and_exploration_losses() {
 
 #[test]
 fn ppo_with_continuous_parts() {
-    let mut config = config(AlgorithmKind::Ppo, Preset::Paper);
-    config.learning.exploration_coefficient = 0.0;
-    let case = Case::new(ActionShape { sizes: vec![3], deltas: 2 }, 0.1);
+    let config = config(AlgorithmKind::Ppo, Preset::Paper);
+    let mut case = Case::new(ActionShape { sizes: vec![3], deltas: 2 }, 0.1);
+    case.exploration = 0.0;
     let advantages = standardised(&case.advantages[0]);
     case.compare(
         "PPO with normals",
@@ -250,6 +261,8 @@ fn ppo_with_continuous_parts() {
     );
 }
 
+/// P3O's exact penalty: kappa * max(0, E[max(r A_C, clip(r) A_C)] + (1 - gamma) (J_C - d)), added to PPO's loss; the released code
+/// leaves out the clip, counts the excess per step, and has a kappa of 1.
 #[test]
 fn p3o_with_the_penalty_on_and_off() {
     for preset in [Preset::Paper, Preset::Released] {
@@ -280,6 +293,7 @@ fn p3o_with_the_penalty_on_and_off() {
     }
 }
 
+/// FOCOPS' corollary 1 with the indicator of its algorithm 1: samples beyond the trust region do not count.
 #[test]
 fn focops_counts_near_samples_alone() {
     let config = config(AlgorithmKind::Focops, Preset::Paper);
@@ -303,24 +317,67 @@ fn focops_counts_near_samples_alone() {
     );
 }
 
+/// CUP's projection: KL(pi, pi_halfway) + multiplier * (1 - gamma lambda) / (1 - gamma) * E[pi / pi_k A_C], the second problem of
+/// its algorithm 1 with the constraint moved into the objective.
 #[test]
-fn cup_projects_back_towards_the_budget() {
+fn cup_projects_from_the_policy_halfway() {
     let config = config(AlgorithmKind::Cup, Preset::Paper);
     let mut cup = cup::Cup::new(&config);
     (0..300).for_each(|_| cup.constrain(&[signal(60.0)]));
     let multiplier = cup.multipliers()[0];
     assert!(multiplier > 0.1);
-    let case = Case::new(discrete(), 0.3);
-    let costs = centred(&case.advantages[1]);
+    let (case, other) = (Case::new(discrete(), 0.3), Case::new(discrete(), 1.5));
+    let width = case.shape.parameters();
+    let halfway = Policy::new(&case.shape, &other.old_outputs, width);
+    let mean = case.advantages[1].iter().map(|&a| f64::from(a)).sum::<f64>() / ROWS as f64;
     case.compare(
         "CUP",
-        |heads, batch, means| cup.projection(std::slice::from_ref(&costs), heads, batch, means),
+        |heads, batch, means| cup.projection(&halfway, batch.costs(), heads, means),
         |outputs| {
             let coefficient = (1.0 - 0.99 * 0.95) / (1.0 - 0.99);
             Case::mean(|i| {
-                case.divergence_from(case.row(outputs, i), &case.old_row(i))
-                    + multiplier * coefficient * case.ratio(outputs, i) * costs[i]
+                case.divergence_from(case.row(outputs, i), &other.old_row(i))
+                    + multiplier * coefficient * case.ratio(outputs, i) * (f64::from(case.advantages[1][i]) - mean)
             })
         },
     );
+}
+
+/// FOCOPS draws the policy to pi*, proportional to pi_k exp((A - nu A_C) / lambda) (theorem 1): its loss over all actions of a
+/// state, each as often as pi_k takes it, has the gradient of KL(pi, pi*) itself, which is taken here from pi* written out.
+#[test]
+fn focops_goes_to_the_best_policy_of_the_trust_region() {
+    let mut config = config(AlgorithmKind::Focops, Preset::Paper);
+    config.algorithm_settings.focops_eta = 1e9;
+    let focops = focops::Focops::new(&config);
+    let shape = ActionShape { sizes: vec![5], deltas: 0 };
+    let logits = [0.4f32, -0.3, 0.2, 0.9, -0.1];
+    let gains = [1.0, -0.5, 0.25, 0.0, -0.75];
+    let mut case = Case::new(shape, 0.0);
+    case.exploration = 0.0;
+    // One state, acted in by the uniform policy: every action once.
+    let row: Vec<f32> = logits.iter().copied().chain([0.0, 0.0]).collect();
+    (case.outputs, case.old_outputs) = (row.repeat(5), vec![0.0; 25]);
+    (case.actions, case.deltas, case.old_log) = ((0..5).collect(), vec![], vec![-(5f32.ln()); 5]);
+    for values in case.advantages.iter_mut().chain(&mut case.old_values).chain(&mut case.targets) {
+        values.truncate(5);
+    }
+    // The critics' columns have losses of their own.
+    let (_, gradient) = case.found(|heads, batch, means| focops.loss(&gains, heads, batch, means));
+    let divergence = |logits: &[f64]| {
+        let p: Vec<f64> = logits.iter().map(|l| l.exp() / logits.iter().map(|l| l.exp()).sum::<f64>()).collect();
+        let best: Vec<f64> = gains.iter().map(|gain| (gain / 1.5f64).exp() / 5.0).collect();
+        let total: f64 = best.iter().sum();
+        p.iter().zip(&best).map(|(p, best)| p * (p / (best / total)).ln()).sum::<f64>()
+    };
+    for index in 0..5 {
+        let moved = |by: f64| {
+            let mut logits = logits.map(f64::from);
+            logits[index] += by;
+            divergence(&logits)
+        };
+        let expected = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+        let found: f64 = (0..5).map(|row| gradient[row * 7 + index]).sum();
+        assert!((found - expected).abs() < 1e-7, "logit {index}: {found} against {expected}");
+    }
 }

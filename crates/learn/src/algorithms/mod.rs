@@ -14,6 +14,8 @@ mod p3o;
 mod ppo;
 mod ppo_lag;
 mod ppo_pid;
+#[cfg(test)]
+mod small;
 mod surrogate;
 mod trpo;
 mod trpo_lag;
@@ -24,8 +26,9 @@ use serde_json::Value;
 
 use crate::config::{AlgorithmKind, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::learner::{Learner, Minibatch};
+use crate::learning::learner::{Learner, Minibatch, Prepared};
 use crate::learning::metrics::Means;
+use crate::learning::passes::Passes;
 use multiplier::Multipliers;
 
 /// What a constraint costs at present.
@@ -59,8 +62,30 @@ impl Signal {
     }
 }
 
+/// What each constraint costs, told from the mean costs per step of the experience at hand; empty while that is not known.
+pub type Signals<'a> = dyn Fn(&[f64]) -> Vec<Signal> + 'a;
+
 /// An algorithm: what it does with what the worlds brought.
 pub trait Algorithm: Send {
+    /// Learns from a rollout.
+    fn learn(
+        &mut self,
+        learner: &mut Learner,
+        rollout: &Prepared<'_>,
+        passes: &Passes,
+        signals: &Signals<'_>,
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
+        let made = go_through(passes, means, |lanes, means| {
+            let mut minibatch = learner.minibatch(rollout, lanes);
+            let signals = signals(&minibatch.mean_costs);
+            self.constrain(&signals);
+            self.update(learner, &mut minibatch, &signals, means)
+        })?;
+        means.add("epochs", f64::from(made));
+        Ok(())
+    }
+
     /// Improves the policy and the critics on a minibatch. `signals` is empty while no episode has ended yet.
     fn update(
         &mut self,
@@ -108,6 +133,26 @@ pub trait Algorithm: Send {
         }
         Ok(())
     }
+}
+
+/// Makes the passes over a rollout, until the policy has moved as far as it may. Returns how many were made.
+fn go_through(
+    passes: &Passes,
+    means: &mut Means,
+    mut update: impl FnMut(&[usize], &mut Means) -> Result<(), LearnError>,
+) -> Result<u32, LearnError> {
+    let mut made = 0;
+    for epoch in 0..passes.epochs {
+        let mut noted = Means::default();
+        passes.minibatches(epoch).iter().try_for_each(|lanes| update(lanes, &mut noted))?;
+        let divergence = noted.get("kl_divergence");
+        means.absorb(noted);
+        made += 1;
+        if passes.end_at(divergence) {
+            break;
+        }
+    }
+    Ok(made)
 }
 
 /// The algorithm of a run.

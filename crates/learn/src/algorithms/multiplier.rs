@@ -18,7 +18,8 @@ pub struct Lagrange {
 impl Lagrange {
     /// One multiplier a constraint.
     #[must_use]
-    pub fn all(settings: &AlgorithmConfig, constraints: usize, limit: Option<f64>) -> Multipliers {
+    pub fn all(settings: &AlgorithmConfig, constraints: usize) -> Multipliers {
+        let limit = settings.multiplier_limit;
         let one = Lagrange { value: settings.multiplier_initial, rate: settings.multiplier_rate, limit };
         Multipliers::Lagrange(vec![one; constraints])
     }
@@ -41,6 +42,9 @@ pub struct Pid {
     gains: (f64, f64, f64),
     decay: f64,
     delay: usize,
+    /// The largest it may become.
+    #[serde(default)]
+    limit: Option<f64>,
     integral: f64,
     /// Moving average of the excess.
     proportional: f64,
@@ -59,6 +63,7 @@ impl Pid {
             gains: settings.pid_gains,
             decay: settings.pid_decay,
             delay: settings.pid_delay.max(1),
+            limit: settings.multiplier_limit,
             integral: settings.pid_initial,
             proportional: 0.0,
             cost: 0.0,
@@ -71,11 +76,12 @@ impl Pid {
     pub fn update(&mut self, signal: &Signal) {
         let (kp, ki, kd) = self.gains;
         let (excess, cost) = (signal.step_excess(), signal.step_cost());
-        self.integral = (self.integral + ki * excess).max(0.0);
+        self.integral = (self.integral + ki * excess).clamp(0.0, self.limit.unwrap_or(f64::INFINITY));
         self.proportional = self.decay * self.proportional + (1.0 - self.decay) * excess;
         self.cost = self.decay * self.cost + (1.0 - self.decay) * cost;
         let rise = (self.cost - self.costs.front().copied().unwrap_or(0.0)).max(0.0);
-        self.value = (kp * self.proportional + self.integral + kd * rise).max(0.0);
+        let limit = self.limit.unwrap_or(f64::INFINITY);
+        self.value = (kp * self.proportional + self.integral + kd * rise).clamp(0.0, limit);
         if self.costs.len() == self.delay {
             self.costs.pop_front();
         }
@@ -134,7 +140,7 @@ mod tests {
     /// `training.md` §10.
     #[test]
     fn multipliers_follow_the_recorded_numbers() {
-        let mut lagrange = Lagrange::all(&settings(), 1, None);
+        let mut lagrange = Lagrange::all(&settings(), 1);
         let mut pid = Pid::all(&settings(), 1);
         let expected = [
             (1, 0.002_047_62, 0.004_221_43),
@@ -159,7 +165,7 @@ mod tests {
 
     #[test]
     fn multipliers_stay_within_their_bounds() {
-        let mut lagrange = Lagrange::all(&settings(), 1, Some(0.01));
+        let mut lagrange = Lagrange::all(&AlgorithmConfig { multiplier_limit: Some(0.01), ..settings() }, 1);
         lagrange.update(&[signal(0.0)]);
         assert_eq!(lagrange.values()[0], 0.0);
         (0..100).for_each(|_| lagrange.update(&[signal(1.0)]));
@@ -168,13 +174,13 @@ mod tests {
 
     #[test]
     fn saved_multipliers_come_back_as_what_they_were() {
-        for mut multipliers in [Lagrange::all(&settings(), 2, None), Pid::all(&settings(), 2)] {
+        for mut multipliers in [Lagrange::all(&settings(), 2), Pid::all(&settings(), 2)] {
             multipliers.update(&[signal(0.3), signal(0.1)]);
             let saved = serde_json::to_value(&multipliers).unwrap();
             let loaded: Multipliers = serde_json::from_value(saved).unwrap();
             assert_eq!(loaded, multipliers);
             assert!(loaded.is_like(&multipliers));
-            assert!(!loaded.is_like(&Pid::all(&settings(), 1)) && !loaded.is_like(&Lagrange::all(&settings(), 1, None)));
+            assert!(!loaded.is_like(&Pid::all(&settings(), 1)) && !loaded.is_like(&Lagrange::all(&settings(), 1)));
         }
     }
 }

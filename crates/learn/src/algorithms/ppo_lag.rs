@@ -21,7 +21,7 @@ impl PpoLag {
     /// PPOLag with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> PpoLag {
-        PpoLag::moved_by(Lagrange::all(&config.algorithm_settings, config.constraints.len(), None), config)
+        PpoLag::moved_by(Lagrange::all(&config.algorithm_settings, config.constraints.len()), config)
     }
 
     /// The same with multipliers that move by another rule.

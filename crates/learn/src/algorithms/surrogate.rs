@@ -66,19 +66,19 @@ pub fn value_loss(heads: &Heads, value: &Column, critic: &Critic, settings: &Lea
 
 /// The loss that keeps the policy from settling too early.
 #[must_use]
-pub fn exploration_loss(heads: &Heads, settings: &LearningConfig) -> Loss {
-    let loss = match settings.exploration {
+pub fn exploration_loss(heads: &Heads, kind: Exploration, coefficient: f64) -> Loss {
+    let loss = match kind {
         Exploration::SymmetricKl => heads.mean_of(&heads.policy.symmetric_divergence_from_uniform()).at_most(30.0),
         Exploration::Entropy => heads.mean_of(&heads.policy.entropy()) * -1.0,
     };
-    loss * settings.exploration_coefficient
+    loss * coefficient
 }
 
 /// Policy loss, exploration and the losses of all critics as one loss; notes what is worth reporting.
 #[must_use]
 pub fn total(policy_loss: Loss, heads: &Heads, minibatch: &Minibatch<'_>, settings: &LearningConfig, means: &mut Means) -> Loss {
     means.add("policy_loss", policy_loss.value);
-    let exploration = exploration_loss(heads, settings);
+    let exploration = exploration_loss(heads, settings.exploration, minibatch.exploration_coefficient);
     means.add("exploration_loss", exploration.value);
     let mut total = policy_loss + exploration;
     for (value, critic) in heads.values.iter().zip(&minibatch.critics) {
@@ -98,7 +98,7 @@ pub fn note_policy(heads: &Heads, minibatch: &Minibatch<'_>, clip: f64, means: &
     let mean = |of: &dyn Fn(f64) -> f64| ratios.iter().map(|&ratio| of(ratio)).sum::<f64>() / ratios.len() as f64;
     means.add("entropy", heads.policy.entropy().mean());
     means.add("kl_divergence", minibatch.old_policy.divergence(&heads.policy).mean());
-    means.add("approx_kl", mean(&|ratio| ratio - 1.0 - ratio.ln()));
+    means.add("approx_kl", mean(&|ratio| ratio - 1.0 - libm::log(ratio)));
     means.add("ratio_deviation", mean(&|ratio| (ratio - 1.0).abs()));
     means.add("clip_fraction", mean(&|ratio| f64::from(u8::from(!(1.0 / (1.0 + clip)..=1.0 + clip).contains(&ratio)))));
 }

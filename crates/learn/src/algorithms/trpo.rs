@@ -8,7 +8,7 @@
 //! critic never learns.
 
 use super::surrogate::{exploration_loss, standardised};
-use super::trust_region::{TrustRegion, dot, note, train_critics};
+use super::trust_region::{TrustRegion, dot, train_critics};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
@@ -45,29 +45,26 @@ impl Trpo {
         let advantages = standardised(&mixed);
         let reward_advantages = standardised(minibatch.advantages());
         let consistent = self.consistent;
+        let (kind, coefficient) = (self.settings.exploration, minibatch.exploration_coefficient);
         let objective = |heads: &Heads, advantages: &[f64], explore: bool| -> Loss {
             let gain = if consistent { &heads.ratio } else { &heads.log_probability };
             let loss = heads.mean([gain], |row, [gain]| -(gain * advantages[row]));
-            if explore { loss + exploration_loss(heads, &self.settings) } else { loss }
+            if explore { loss + exploration_loss(heads, kind, coefficient) } else { loss }
         };
         let region = &self.region;
-        let origin = region.origin(learner, minibatch);
+        let mut origin = region.origin(learner, minibatch);
         let loss = objective(&origin.heads, &advantages, true);
-        let (gradient, before) = (region.gradient(learner, minibatch, &origin, &loss), loss.value);
+        let before = loss.value;
         means.add("policy_loss", before);
-        let direction = region.solve(learner, minibatch, &origin, &gradient);
-        let product = region.fisher_times(learner, minibatch, &origin, &direction);
-        let curvature = dot(&direction, &product);
-        let mut share = 0.0;
-        if curvature > 0.0 && curvature.is_finite() {
-            let length = (2.0 * region.radius / curvature).sqrt();
-            let step: Vec<f32> = direction.iter().map(|value| (-length * f64::from(*value)) as f32).collect();
-            let searched = if consistent { &advantages } else { &reward_advantages };
-            share = region.search(learner, minibatch, &origin, &step, |heads, divergence| {
-                objective(heads, searched, consistent).value < before && divergence <= region.radius
-            });
-        }
-        note(learner, minibatch, share, means);
+        let gradient = region.gradient(learner, minibatch, &loss);
+        let solution = region.solve(learner, &mut origin, &gradient);
+        let curvature = dot(&solution.direction, &solution.product);
+        let length = if curvature > 0.0 { (2.0 * region.radius / curvature).sqrt() } else { 0.0 };
+        let step: Vec<f32> = solution.direction.iter().map(|value| (-length * f64::from(*value)) as f32).collect();
+        let searched = if consistent { &advantages } else { &reward_advantages };
+        region.search(learner, minibatch, &origin, &step, means, |heads, divergence| {
+            objective(heads, searched, consistent).value < before && divergence <= region.radius
+        });
         let critics = if consistent { 1 + learner.shape().cost_critics } else { 1 };
         train_critics(learner, minibatch, critics, means)
     }

@@ -1,9 +1,9 @@
 //! Steps of the second order: the natural gradient and a line search within a trust region.
 //!
 //! The Fisher matrix F of the policy network is never built. Its product with a vector is J' M J v, where J is the
-//! network's Jacobian and M the Fisher matrix of the action distribution in its own numbers, known in closed form:
-//! J v comes from a central difference of two forward passes, J' from the backward pass. A test holds the product
-//! against a dense Fisher matrix.
+//! network's Jacobian and M the Fisher matrix of the action distribution in its own numbers, known in closed form. J v is
+//! the difference of the outputs a little way along v from those at the origin, and J' the backward pass there: one pass of
+//! each kind a product, of a share of the trajectories. A test holds the product against a dense Fisher matrix.
 
 use super::surrogate::note_policy;
 use crate::config::TrainConfig;
@@ -11,8 +11,10 @@ use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
+use crate::learning::policy::Policy;
+use crate::networks::ModelSequences;
 
-/// Norm of the step of the central difference: far above rounding, far below the curvature of the network.
+/// Norm of the step of the difference: far above rounding, far below the curvature of the network.
 const DIFFERENCE: f64 = 1e-2;
 
 /// Settings of second-order steps.
@@ -21,32 +23,56 @@ pub struct TrustRegion {
     /// Bound of the mean divergence.
     pub radius: f64,
     iterations: usize,
+    fraction: f64,
     damping: f64,
     search_steps: usize,
     search_factor: f64,
 }
 
 /// Where a step starts from: the policy network's parameters and what they say about a minibatch.
-pub struct Origin {
+pub struct Origin<'a> {
     /// Parameters.
     pub parameters: Vec<f32>,
     /// The policy.
     pub heads: Heads,
+    /// The trajectories that the Fisher matrix is taken over.
+    sample: ModelSequences<'a>,
+    /// The policy on them, and its outputs.
+    sample_policy: Policy,
+    sample_outputs: Vec<f32>,
 }
 
-/// Product of two vectors.
+/// A direction x that solves F x = b, and F x as far as it was solved.
+pub struct Solution {
+    /// x.
+    pub direction: Vec<f32>,
+    /// F x.
+    pub product: Vec<f32>,
+}
+
+/// Product of two vectors, summed in 64 bits: eight sums side by side, in an order that depends on nothing.
 #[must_use]
 pub fn dot(a: &[f32], b: &[f32]) -> f64 {
-    a.chunks(4096)
-        .zip(b.chunks(4096))
-        .map(|(a, b)| a.iter().zip(b).map(|(x, y)| f64::from(*x) * f64::from(*y)).sum::<f64>())
-        .sum()
+    let mut sums = [0.0f64; 8];
+    for (a, b) in a.chunks(8).zip(b.chunks(8)) {
+        for ((sum, x), y) in sums.iter_mut().zip(a).zip(b) {
+            *sum += f64::from(*x) * f64::from(*y);
+        }
+    }
+    sums.iter().sum()
+}
+
+/// Adds `scale * b` to a vector, in place: vectors are as long as the network, and a new one costs more than the sum.
+pub fn add(to: &mut [f32], scale: f64, b: &[f32]) {
+    to.iter_mut().zip(b).for_each(|(x, y)| *x += scale as f32 * y);
 }
 
 /// `a + scale * b`.
 #[must_use]
 pub fn plus(a: &[f32], scale: f64, b: &[f32]) -> Vec<f32> {
-    a.iter().zip(b).map(|(x, y)| (f64::from(*x) + scale * f64::from(*y)) as f32).collect()
+    let mut sum = a.to_vec();
+    add(&mut sum, scale, b);
+    sum
 }
 
 impl TrustRegion {
@@ -57,6 +83,7 @@ impl TrustRegion {
         TrustRegion {
             radius: settings.trust_radius,
             iterations: settings.conjugate_iterations,
+            fraction: settings.fisher_fraction,
             damping: settings.fisher_damping,
             search_steps: settings.line_search_steps,
             search_factor: settings.line_search_factor,
@@ -65,78 +92,85 @@ impl TrustRegion {
 
     /// Where steps on a minibatch start from.
     #[must_use]
-    pub fn origin(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>) -> Origin {
+    pub fn origin<'a>(&self, learner: &mut Learner, minibatch: &mut Minibatch<'a>) -> Origin<'a> {
         let parameters = learner.policy_parameters();
-        Origin { heads: learner.policy_heads(minibatch, &parameters), parameters }
+        let lanes = minibatch.batch.sequences.lanes;
+        let count = ((lanes as f64 * self.fraction).round() as usize).clamp(1, lanes);
+        // Spread over all lanes; which ones does not matter, for each is in another episode.
+        let sampled: Vec<usize> = (0..count).map(|index| index * lanes / count).collect();
+        let mut sample = minibatch.batch.of_lanes(learner.shape(), &sampled);
+        let sample_outputs = learner.policy_outputs(&mut sample, &parameters);
+        let action = &learner.shape().action;
+        let sample_policy = Policy::new(action, &sample_outputs, action.parameters());
+        Origin { heads: learner.policy_heads(minibatch, &parameters), parameters, sample, sample_policy, sample_outputs }
     }
 
-    /// Gradient, in the policy network's parameters, of a loss of the policy at the origin.
-    pub fn gradient(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>, origin: &Origin, loss: &Loss) -> Vec<f32> {
-        let _ = learner.policy_outputs(minibatch, &origin.parameters);
-        learner.policy_backward(minibatch, &loss.rows())
+    /// Gradient, in the policy network's parameters, of a loss of the policy at the origin. It must come right after the
+    /// origin itself or another forward pass there.
+    pub fn gradient(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>, loss: &Loss) -> Vec<f32> {
+        let mut gradient = vec![0.0; learner.shape().parameter_range(0).len()];
+        learner.policy_backward(&mut minibatch.batch, &loss.rows(), &mut gradient);
+        gradient
     }
 
-    /// The damped Fisher matrix times a vector.
-    #[must_use]
-    pub fn fisher_times(
-        &self,
-        learner: &mut Learner,
-        minibatch: &mut Minibatch<'_>,
-        origin: &Origin,
-        vector: &[f32],
-    ) -> Vec<f32> {
+    /// The damped Fisher matrix times a vector, written to `product`.
+    pub fn fisher_times(&self, learner: &mut Learner, origin: &mut Origin<'_>, vector: &[f32], product: &mut [f32]) {
         let norm = dot(vector, vector).sqrt();
         if norm == 0.0 {
-            return vec![0.0; vector.len()];
+            return product.fill(0.0);
         }
         let step = DIFFERENCE / norm;
-        let mut moved = |scale| learner.policy_outputs(minibatch, &plus(&origin.parameters, scale, vector));
-        let (ahead, behind) = (moved(step), moved(-step));
-        let change: Vec<f32> = ahead.iter().zip(&behind).map(|(a, b)| (f64::from(a - b) / (2.0 * step)) as f32).collect();
-        let mut rows = origin.heads.policy.fisher_times(&change);
-        let count = minibatch.batch.sequences.rows() as f32;
+        // What will hold the product holds the parameters a little way off first.
+        product.copy_from_slice(&origin.parameters);
+        add(product, step, vector);
+        let moved = learner.policy_outputs(&mut origin.sample, product);
+        let change: Vec<f32> =
+            moved.iter().zip(&origin.sample_outputs).map(|(there, here)| (f64::from(there - here) / step) as f32).collect();
+        let mut rows = origin.sample_policy.fisher_times(&change);
+        let count = origin.sample.sequences.rows() as f32;
         rows.iter_mut().for_each(|value| *value /= count);
-        let _ = learner.policy_outputs(minibatch, &origin.parameters);
-        let product = learner.policy_backward(minibatch, &rows);
-        plus(&product, self.damping, vector)
+        learner.policy_backward(&mut origin.sample, &rows, product);
+        add(product, self.damping, vector);
     }
 
     /// Solves F x = b by conjugate gradients.
     #[must_use]
-    pub fn solve(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>, origin: &Origin, b: &[f32]) -> Vec<f32> {
-        let mut x = vec![0.0; b.len()];
-        let mut rest = b.to_vec();
-        let mut direction = rest.clone();
+    pub fn solve(&self, learner: &mut Learner, origin: &mut Origin<'_>, b: &[f32]) -> Solution {
+        let (mut x, mut product) = (vec![0.0; b.len()], vec![0.0; b.len()]);
+        let (mut rest, mut direction) = (b.to_vec(), b.to_vec());
         let mut size = dot(&rest, &rest);
         for _ in 0..self.iterations {
             if size < 1e-10 {
                 break;
             }
-            let product = self.fisher_times(learner, minibatch, origin, &direction);
+            self.fisher_times(learner, origin, &direction, &mut product);
             let curvature = dot(&direction, &product);
             if curvature <= 0.0 {
                 break;
             }
             let length = size / curvature;
-            x = plus(&x, length, &direction);
-            rest = plus(&rest, -length, &product);
+            add(&mut x, length, &direction);
+            add(&mut rest, -length, &product);
             let smaller = dot(&rest, &rest);
-            direction = plus(&rest, smaller / size, &direction);
+            let share = (smaller / size) as f32;
+            direction.iter_mut().zip(&rest).for_each(|(direction, rest)| *direction = rest + share * *direction);
             size = smaller;
         }
-        x
+        Solution { direction: x, product: plus(b, -1.0, &rest) }
     }
 
     /// Shortens a step until it is accepted; `accept` is asked about the policy after it and its mean divergence from
-    /// the policy that acted. Returns the share of the step that was made: 0 if none was.
+    /// the policy that acted. Reports the step, and the share of it that was made: 0 if none was.
     pub fn search(
         &self,
         learner: &mut Learner,
         minibatch: &mut Minibatch<'_>,
-        origin: &Origin,
+        origin: &Origin<'_>,
         step: &[f32],
+        means: &mut Means,
         mut accept: impl FnMut(&Heads, f64) -> bool,
-    ) -> f64 {
+    ) {
+        let clip = learner.config.learning.clip_ratio;
         let mut share = 1.0;
         for _ in 0..self.search_steps {
             let parameters = plus(&origin.parameters, share, step);
@@ -144,12 +178,15 @@ impl TrustRegion {
             let divergence = minibatch.old_policy.divergence(&heads.policy).mean();
             if divergence.is_finite() && accept(&heads, divergence) {
                 learner.set_policy_parameters(&parameters);
-                return share;
+                note_policy(&heads, minibatch, clip, means);
+                means.add("step_share", share);
+                return;
             }
             share *= self.search_factor;
         }
         learner.set_policy_parameters(&origin.parameters);
-        0.0
+        note_policy(&origin.heads, minibatch, clip, means);
+        means.add("step_share", 0.0);
     }
 }
 
@@ -168,57 +205,30 @@ pub fn train_critics(
         });
         losses.reduce(|sum, loss| sum + loss).expect("the reward has a critic")
     };
-    learner.descend_networks(1..1 + critics, minibatch, loss, means)
-}
-
-/// Reports a finished step.
-pub fn note(learner: &mut Learner, minibatch: &mut Minibatch<'_>, share: f64, means: &mut Means) {
-    let parameters = learner.policy_parameters();
-    let heads = learner.policy_heads(minibatch, &parameters);
-    note_policy(&heads, minibatch, learner.config.learning.clip_ratio, means);
-    means.add("step_share", share);
+    learner.descend_networks(1..1 + critics, 0, minibatch, loss, means)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{AlgorithmKind, EnvConfig, Preset};
-    use crate::networks::device::ComputeDevice;
-    use crate::networks::distribution::ActionShape;
-    use crate::networks::{ImageShape, ModelShape};
+    use crate::algorithms::small;
+    use crate::config::AlgorithmKind;
     use crate::random::{Purpose, Stream};
-    use crate::sampling::rollout::{Part, Rollout};
-
-    /// A small recurrent learner, and a rollout of noise.
-    fn small() -> (Learner, Rollout, TrainConfig) {
-        let mut config = TrainConfig::plain(AlgorithmKind::Trpo, Preset::Paper, EnvConfig::new("test"));
-        config.network.convolutions = vec![];
-        config.network.dense = vec![32];
-        config.network.recurrent = Some(32);
-        config.learning.threads = 1;
-        let image = ImageShape { height: 2, width: 3, channels: 1 };
-        let action = ActionShape { sizes: vec![3, 2], deltas: 1 };
-        let shape = ModelShape::new(image, action, 0, 0, &config.network).unwrap();
-        let learner = Learner::new(&config, &shape, &ComputeDevice::Processor);
-        let mut stream = Stream::new(3, Purpose::Evaluation, 0, 0);
-        let mut part = Part { initial_state: shape.zero_state(2), ..Part::default() };
-        part.prepare(&shape, 3, 2, 1, 1);
-        part.frames.iter_mut().flatten().for_each(|pixel| *pixel = (stream.bits() >> 56) as u8);
-        part.outputs.iter_mut().for_each(|value| *value = stream.normal() as f32);
-        (learner, Rollout { parts: vec![part] }, config)
-    }
 
     /// The product against the dense Fisher matrix by its definition: the mean over samples and actions of the outer
     /// product of the gradient of the log-probability, gradients by the backward pass.
     #[test]
     fn fisher_products_equal_those_of_the_dense_matrix() {
-        let (mut learner, rollout, config) = small();
+        let config = small::config(AlgorithmKind::Trpo);
+        let (mut learner, rollout) = small::learner(&config);
+        // As in the middle of a run, where pixels have been seen.
+        learner.absorb(&rollout);
         let prepared = learner.prepare(&rollout);
-        let mut minibatch = learner.minibatch(&prepared, &[0, 1]);
+        let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
         let region = TrustRegion::new(&config);
-        let origin = region.origin(&mut learner, &mut minibatch);
+        let mut origin = region.origin(&mut learner, &mut minibatch);
         let (count, width) = (origin.parameters.len(), learner.shape().action.parameters());
-        let outputs = learner.policy_outputs(&mut minibatch, &origin.parameters);
+        let outputs = learner.policy_outputs(&mut minibatch.batch, &origin.parameters);
         let rows = outputs.len() / width;
         let mut fisher = vec![0.0f64; count * count];
         let mut add = |gradient: &[f32], weight: f64| {
@@ -231,12 +241,14 @@ mod tests {
         for row in 0..rows {
             let outputs = &outputs[row * width..(row + 1) * width];
             let mut gradient_of = |direction: &[f64]| {
-                let _ = learner.policy_outputs(&mut minibatch, &origin.parameters);
+                let _ = learner.policy_outputs(&mut minibatch.batch, &origin.parameters);
                 let mut seeds = vec![0.0; rows * width];
                 for (seed, value) in seeds[row * width..].iter_mut().zip(direction) {
                     *seed = *value as f32;
                 }
-                learner.policy_backward(&mut minibatch, &seeds)
+                let mut gradient = vec![0.0; count];
+                learner.policy_backward(&mut minibatch.batch, &seeds, &mut gradient);
+                gradient
             };
             for (first, size) in [(0, 3), (3, 2)] {
                 let exp: Vec<f64> = outputs[first..first + size].iter().map(|&l| f64::from(l).exp()).collect();
@@ -260,7 +272,8 @@ mod tests {
         let mut stream = Stream::new(4, Purpose::Evaluation, 0, 0);
         for _ in 0..3 {
             let vector: Vec<f32> = (0..count).map(|_| stream.normal() as f32).collect();
-            let product = region.fisher_times(&mut learner, &mut minibatch, &origin, &vector);
+            let mut product = vec![0.0; count];
+            region.fisher_times(&mut learner, &mut origin, &vector, &mut product);
             let expected: Vec<f64> = (0..count)
                 .map(|i| {
                     let row = &fisher[i * count..(i + 1) * count];
@@ -277,9 +290,12 @@ mod tests {
         // And the solution of F x = b, put back in, gives b.
         let b: Vec<f32> = (0..count).map(|_| stream.normal() as f32).collect();
         let region = TrustRegion { iterations: 60, ..region };
-        let x = region.solve(&mut learner, &mut minibatch, &origin, &b);
-        let back = region.fisher_times(&mut learner, &mut minibatch, &origin, &x);
+        let x = region.solve(&mut learner, &mut origin, &b);
+        let mut back = vec![0.0; count];
+        region.fisher_times(&mut learner, &mut origin, &x.direction, &mut back);
         let rest = plus(&back, -1.0, &b);
         assert!(dot(&rest, &rest) < 1e-3 * dot(&b, &b), "{} of {}", dot(&rest, &rest), dot(&b, &b));
+        let told = plus(&back, -1.0, &x.product);
+        assert!(dot(&told, &told) < 1e-3 * dot(&b, &b), "what is told of the product");
     }
 }

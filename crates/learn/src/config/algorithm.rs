@@ -43,11 +43,22 @@ impl AlgorithmKind {
         !matches!(self, Self::Ppo | Self::PpoCost | Self::PpoSaute | Self::Trpo)
     }
 
+    /// Optimiser states of each network: CUP's two steps have one each.
+    #[must_use]
+    pub const fn optimisers(self) -> usize {
+        if matches!(self, Self::Cup) { 2 } else { 1 }
+    }
+
     /// Whether policy and critics are networks of their own, as second-order steps want it.
     #[must_use]
     pub const fn separates_networks(self) -> bool {
         matches!(self, Self::Trpo | Self::TrpoLag | Self::TrpoPid | Self::Cpo)
     }
+}
+
+/// As in TRPO's paper: the Fisher matrix needs less data than the gradient.
+const fn a_tenth() -> f64 {
+    0.1
 }
 
 /// Numbers of single algorithms.
@@ -83,6 +94,9 @@ pub struct AlgorithmConfig {
     pub trust_radius: f64,
     /// Second-order algorithms: iterations of the conjugate-gradient method.
     pub conjugate_iterations: usize,
+    /// Second-order algorithms: share of a rollout's trajectories that the Fisher matrix is taken over.
+    #[serde(default = "a_tenth")]
+    pub fisher_fraction: f64,
     /// Second-order algorithms: multiple of the identity added to the Fisher matrix.
     pub fisher_damping: f64,
     /// Second-order algorithms: tries of the line search.
@@ -96,8 +110,8 @@ pub struct AlgorithmConfig {
     pub focops_eta: f64,
     /// FOCOPS: temperature.
     pub focops_temperature: f64,
-    /// FOCOPS and CUP: largest multiplier.
-    pub multiplier_limit: f64,
+    /// Lagrangian algorithms: largest multiplier; `null` for none.
+    pub multiplier_limit: Option<f64>,
     /// IPO: steepness of the barrier.
     pub ipo_kappa: f64,
     /// IPO: largest penalty.

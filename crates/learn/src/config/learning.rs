@@ -33,7 +33,17 @@ pub struct LearningConfig {
     pub adam_betas: (f64, f64),
     /// Adam's epsilon.
     pub adam_epsilon: f64,
-    /// Norm that gradients are cut down to.
+    /// Divergence of the policy from the one that acted, mean over a pass, after which a rollout is learned from no further;
+    /// `null` for all passes in any case.
+    #[serde(default)]
+    pub target_kl: Option<f64>,
+    /// Learning rate of critics that are networks of their own; `null` for that of the policy. It follows the same schedule.
+    #[serde(default)]
+    pub critic_rate: Option<f64>,
+    /// Discount of costs; `null` for that of rewards.
+    #[serde(default)]
+    pub cost_gamma: Option<f64>,
+    /// Norm that gradients are cut down to; 0 for none.
     pub max_gradient_norm: f64,
     /// Clipping of the probability ratio: 1/(1+clip) to 1+clip.
     pub clip_ratio: f64,
@@ -45,8 +55,14 @@ pub struct LearningConfig {
     pub exploration: Exploration,
     /// Its weight.
     pub exploration_coefficient: f64,
+    /// Its weight at the end of the run, reached linearly; `null` for a constant one.
+    #[serde(default)]
+    pub final_exploration_coefficient: Option<f64>,
     /// Time-outs count as cut-off rather than as ends: the value of what would have come is added.
     pub bootstrap_time_outs: bool,
     /// Threads.
     pub threads: usize,
+    /// Plain kernels, whose results have the same bits on every machine; otherwise the fastest that the processor has.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub portable: bool,
 }

@@ -118,7 +118,8 @@ impl TrainConfig {
         if sampling.world_threads > 256 {
             return refuse("the number of world threads", &sampling.world_threads, "0 to 256");
         }
-        if !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
+        // Alone, samplers share out any number of worlds; groups are all of one size.
+        if sampling.groups > 1 && !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
             let parts = sampling.samplers * sampling.groups;
             return refuse("the number of worlds", &sampling.lanes, &format!("a multiple of samplers times groups ({parts})"));
         }
@@ -127,6 +128,12 @@ impl TrainConfig {
             ("lambda of the advantages", learning.gae_lambda, 0.0, 1.0),
             ("the learning rate", learning.rate, 0.0, 10.0),
             ("the final learning rate", learning.final_rate, 0.0, 10.0),
+            ("the target divergence", learning.target_kl.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the learning rate of the critics", learning.critic_rate.unwrap_or(0.0), 0.0, 10.0),
+            ("gamma of the costs", learning.cost_gamma.unwrap_or(0.0), 0.0, 1.0),
+            ("the final exploration coefficient", learning.final_exploration_coefficient.unwrap_or(0.0), 0.0, 1e3),
+            ("the largest multiplier", self.algorithm_settings.multiplier_limit.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the share of the Fisher matrix", self.algorithm_settings.fisher_fraction, 0.0, 1.0),
             ("the largest gradient norm", learning.max_gradient_norm, 0.0, f64::MAX),
             ("the ratio clip", learning.clip_ratio, 0.0, 10.0),
             ("the value clip", learning.clip_value, 0.0, f64::MAX),
@@ -145,6 +152,9 @@ impl TrainConfig {
                 &"off",
                 &format!("on for {}, whose steps are the policy's alone", self.algorithm),
             );
+        }
+        if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
+            return refuse("the learning rate of the critics", &rate, "null unless network.separate is on");
         }
         if self.frames == 0 {
             return refuse("the number of frames", &self.frames, "at least 1");
@@ -210,7 +220,7 @@ mod tests {
             let message = config.check().unwrap_err().to_string();
             assert!(message.contains(word), "{message}");
         };
-        refuse(|c| c.sampling.lanes = 33, "number of worlds");
+        refuse(|c| (c.sampling.lanes, c.sampling.groups) = (33, 2), "number of worlds");
         refuse(|c| c.learning.gamma = 1.5, "gamma");
         refuse(|c| c.learning.rate = f64::NAN, "learning rate");
         refuse(|c| c.constraints[0].budget = -1.0, "budget");

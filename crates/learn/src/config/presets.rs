@@ -20,6 +20,8 @@ impl TrainConfig {
         let episode_steps = (EPISODE_TICS / env.frame_skip.max(1)).max(1);
         let scenario = env.scenario();
         let separate = algorithm.separates_networks();
+        // As their papers have it: ten passes over minibatches of 64 steps. The benchmark's own algorithms pass once over all.
+        let repeats = matches!(algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup | AlgorithmKind::Ipo);
         let mut config = TrainConfig {
             algorithm,
             preset,
@@ -48,7 +50,7 @@ impl TrainConfig {
             sampling: SamplingConfig {
                 lanes: 32,
                 rollout: 32,
-                samplers: samplers_for(cores, 32),
+                samplers: cores,
                 world_threads: 0,
                 groups: 1,
                 spread_out: true,
@@ -57,22 +59,28 @@ impl TrainConfig {
                 max_policy_lag: 1000,
             },
             learning: LearningConfig {
-                epochs: 1,
-                minibatches: 1,
+                epochs: if repeats { 10 } else { 1 },
+                minibatches: if repeats { 16 } else { 1 },
                 gamma: 0.99,
                 gae_lambda: 0.95,
                 rate: 1e-4,
                 final_rate: 1e-4,
                 adam_betas: (0.9, 0.999),
                 adam_epsilon: if released && separate { 1e-8 } else { 1e-6 },
+                // FOCOPS stops there, and CUP's code is built on its.
+                target_kl: (repeats && algorithm != AlgorithmKind::Ipo).then_some(0.02),
+                critic_rate: None,
+                cost_gamma: None,
                 max_gradient_norm: 4.0,
                 clip_ratio: 0.1,
                 clip_value: if released { 0.2 } else { 1.0 },
                 value_coefficient: 0.5,
                 exploration: Exploration::SymmetricKl,
                 exploration_coefficient: 0.001,
+                final_exploration_coefficient: None,
                 bootstrap_time_outs: !released,
                 threads: cores,
+                portable: false,
             },
             algorithm_settings: AlgorithmConfig {
                 penalty_scale: if released && scenario == Some(Scenario::ArmamentBurden) { 0.1 } else { 1.0 },
@@ -96,13 +104,14 @@ impl TrainConfig {
                 saute_horizon: f64::from(if released { EPISODE_TICS } else { episode_steps }),
                 trust_radius: 0.01,
                 conjugate_iterations: 10,
+                fisher_fraction: 0.1,
                 fisher_damping: 0.1,
                 line_search_steps: 5,
                 line_search_factor: 0.5,
                 trpo_consistent: !released,
                 focops_eta: 0.02,
                 focops_temperature: 1.5,
-                multiplier_limit: 2.0,
+                multiplier_limit: matches!(algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup).then_some(2.0),
                 ipo_kappa: 0.01,
                 ipo_limit: 1.0,
             },
@@ -116,18 +125,15 @@ impl TrainConfig {
     }
 }
 
-/// As many samplers as cores, as far as they divide the worlds.
-fn samplers_for(cores: usize, lanes: usize) -> usize {
-    (1..=cores.min(lanes)).rev().find(|count| lanes.is_multiple_of(*count)).unwrap_or(1)
-}
-
 /// Settings that learn within minutes.
 fn quicken(config: &mut TrainConfig) {
     config.frames = 4_000_000;
     config.learning.rate = 5e-4;
     config.learning.final_rate = 1e-4;
-    config.learning.epochs = 2;
-    config.learning.minibatches = 2;
+    // A trust region is made for one step a rollout.
+    let passes = if config.algorithm.separates_networks() { 1 } else { 2 };
+    config.learning.epochs = passes;
+    config.learning.minibatches = passes;
     config.algorithm_settings.multiplier_rate = 0.02;
     config.reporting.report_seconds = 5.0;
 }

@@ -37,7 +37,7 @@ impl<const N: usize> Dual<N> {
     /// The exponential.
     #[must_use]
     pub fn exp(self) -> Dual<N> {
-        let value = self.value.exp();
+        let value = libm::exp(self.value);
         self.chain(value, value)
     }
 

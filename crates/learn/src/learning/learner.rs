@@ -10,8 +10,9 @@ use crate::learning::metrics::Means;
 use crate::learning::normaliser::{Moments, PixelNormaliser};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::{Policy, Taken};
+use crate::networks::cpu::simd::Kernels;
 use crate::networks::device::ComputeDevice;
-use crate::networks::{ModelSequences, ModelShape, Published, Sequences, Stack};
+use crate::networks::{ModelSequences, ModelShape, Published, RecordedLane, Sequences, Stack};
 use crate::sampling::rollout::Rollout;
 
 /// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of the costs; values of
@@ -27,6 +28,32 @@ pub struct Prepared<'a> {
     pub old_values: Vec<Vec<f32>>,
     /// Mean cost of each constraint per step.
     pub mean_costs: Vec<f64>,
+}
+
+impl Prepared<'_> {
+    /// Share of the variance of each critic's targets that its values explain: 1 is perfect, 0 no better than their mean.
+    #[must_use]
+    pub fn explained_variances(&self, config: &TrainConfig) -> Vec<(String, f64)> {
+        let variance = |values: &mut dyn Iterator<Item = f64>| {
+            let (count, sum, squares) = values.fold((0.0, 0.0, 0.0), |(n, s, q), v| (n + 1.0, s + v, q + v * v));
+            squares / count - (sum / count) * (sum / count)
+        };
+        let share = |(critic, (targets, values)): (usize, (&Vec<f32>, &Vec<f32>))| {
+            let all = variance(&mut targets.iter().map(|&target| f64::from(target)));
+            let rest = variance(&mut targets.iter().zip(values).map(|(target, value)| f64::from(target - value)));
+            (critic_name("explained_variance", config, critic), 1.0 - rest / all)
+        };
+        self.targets.iter().zip(&self.old_values).enumerate().map(share).collect()
+    }
+}
+
+/// What a number of a critic is called in reports: that of a cost says so, that of a named cost says which.
+fn critic_name(what: &str, config: &TrainConfig, critic: usize) -> String {
+    match critic.checked_sub(1).map(|index| &config.constraints[index].term) {
+        None => what.into(),
+        Some(None) => format!("cost_{what}"),
+        Some(Some(term)) => format!("cost_{what}/{term}"),
+    }
 }
 
 /// What a critic has to learn, and what it says about the actions taken; a number a row.
@@ -56,6 +83,8 @@ pub struct Minibatch<'a> {
     pub critics: Vec<Critic>,
     /// Mean cost of each constraint per step.
     pub mean_costs: Vec<f64>,
+    /// Weight of the exploration loss at present.
+    pub exploration_coefficient: f64,
 }
 
 impl Minibatch<'_> {
@@ -78,7 +107,7 @@ pub struct Learner {
     networks: Stack,
     /// Flat parameters of all networks.
     pub parameters: Vec<f32>,
-    /// One optimiser a network.
+    /// One optimiser a network; for algorithms of two steps, those of the second after those of the first.
     pub optimisers: Vec<Adam>,
     /// Statistics of pixels.
     pub pixels: PixelNormaliser,
@@ -88,8 +117,12 @@ pub struct Learner {
     pub version: u64,
     /// Learning rate of the next update.
     pub rate: f64,
+    /// Weight of the exploration loss of the next update.
+    pub exploration_coefficient: f64,
     /// Settings.
     pub config: TrainConfig,
+    /// What computes everything but the networks on a card.
+    kernels: Kernels,
     gradient: Vec<f32>,
     /// The networks do not hold the present parameters yet.
     stale: bool,
@@ -109,12 +142,17 @@ impl Learner {
             .collect();
         Learner {
             networks: Stack::new(shape, device, config.learning.threads),
-            optimisers: shape.networks.iter().map(|network| Adam::new(network.parameter_count())).collect(),
+            optimisers: std::iter::repeat_n(&shape.networks, config.algorithm.optimisers())
+                .flatten()
+                .map(|network| Adam::new(network.parameter_count()))
+                .collect(),
             pixels: PixelNormaliser::new(shape.pixels()),
             returns: vec![Moments::default(); 1 + shape.cost_critics],
             version: 0,
             rate: config.learning.rate,
+            exploration_coefficient: config.learning.exploration_coefficient,
             config: config.clone(),
+            kernels: device.kernels(),
             gradient: vec![0.0; parameters.len()],
             parameters,
             shape: shape.clone(),
@@ -129,16 +167,27 @@ impl Learner {
         &self.shape
     }
 
+    /// The kernels of the processor that compute it, or what comes before and after a card does.
+    #[must_use]
+    pub fn kernels(&self) -> Kernels {
+        self.kernels
+    }
+
     /// The present weights for samplers.
     pub fn publish(&mut self) -> Published {
         self.refresh();
         self.networks.publish(self.version)
     }
 
-    /// Takes over statistics of a rollout and computes its advantages and targets.
-    pub fn prepare<'a>(&mut self, rollout: &'a Rollout) -> Prepared<'a> {
-        self.pixels.update(&rollout.frames(), self.config.learning.threads);
+    /// Takes over the statistics of a rollout's pixels. This comes after it was learned from, so that the networks see what
+    /// they saw when they acted: probability ratios begin at one, and the first forward pass need not be repeated.
+    pub fn absorb(&mut self, rollout: &Rollout) {
+        self.pixels.update(self.kernels, &rollout.frames(), self.config.learning.threads);
         self.stale_pixels = true;
+    }
+
+    /// Computes a rollout's advantages and targets, and takes over the statistics of its returns.
+    pub fn prepare<'a>(&mut self, rollout: &'a Rollout) -> Prepared<'a> {
         let (steps, lanes) = (rollout.steps(), rollout.lanes());
         let (width, first) = (self.shape.outputs(), self.shape.value_column());
         let constraints = self.config.constraints.len();
@@ -174,7 +223,8 @@ impl Learner {
                 }
                 let out = &mut advantages[lane * steps..(lane + 1) * steps];
                 let lane_values = Lane { rewards: &rewards, done: &done, cut_off_values: &cut_off_values, values: &values };
-                generalised_advantages(lane_values, settings.gamma as f32, settings.gae_lambda as f32, out);
+                let gamma = if critic == 0 { settings.gamma } else { settings.cost_gamma.unwrap_or(settings.gamma) };
+                generalised_advantages(lane_values, gamma as f32, settings.gae_lambda as f32, out);
                 for step in 0..steps {
                     returns[lane * steps + step] = out[step] + values[step];
                     old_values[lane * steps + step] = normalised[step];
@@ -205,6 +255,7 @@ impl Learner {
             extra: Vec::new(),
             initial_state: Vec::new(),
             reset: Vec::with_capacity(steps * lanes.len()),
+            recorded: Vec::new(),
         };
         let (mut actions, mut deltas, mut logs, mut policy) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (step, lane) in rows() {
@@ -228,29 +279,29 @@ impl Learner {
             lanes.iter().flat_map(of).collect()
         };
         let initial_state = (0..shape.networks.len()).map(state).collect();
+        let recorded = |network: usize| -> Vec<RecordedLane<'a>> {
+            let of = |&lane: &usize| {
+                let (part, own) = rollout.find(lane);
+                Some(RecordedLane { recording: part.recordings.get(network)?, lane: own })
+            };
+            lanes.iter().filter_map(of).collect()
+        };
+        let recorded = (0..shape.networks.len()).map(recorded).collect();
         let pick = |values: &[f32]| -> Vec<f32> { rows().map(|(step, lane)| values[lane * steps + step]).collect() };
         let critic = |index: usize| Critic {
-            loss_name: self.critic_loss_name(index),
+            loss_name: critic_name("value_loss", &self.config, index),
             advantages: pick(&prepared.advantages[index]),
             old_values: pick(&prepared.old_values[index]),
             targets: pick(&prepared.targets[index]),
         };
         Minibatch {
-            batch: ModelSequences { sequences, initial_state },
+            batch: ModelSequences { sequences, initial_state, recorded },
             taken: Taken { actions, deltas },
             old_log_probability: logs,
             old_policy: Policy::new(action, &policy, action.parameters()),
             critics: (0..self.returns.len()).map(critic).collect(),
             mean_costs: mean_costs(rollout, lanes, self.config.constraints.len()),
-        }
-    }
-
-    /// What the loss of a critic is called in reports: that of a named cost has the name in it.
-    fn critic_loss_name(&self, critic: usize) -> String {
-        match critic.checked_sub(1).map(|index| &self.config.constraints[index].term) {
-            None => "value_loss".into(),
-            Some(None) => "cost_value_loss".into(),
-            Some(Some(term)) => format!("cost_value_loss/{term}"),
+            exploration_coefficient: self.exploration_coefficient,
         }
     }
 
@@ -290,21 +341,28 @@ impl Learner {
         Ok(gradient)
     }
 
-    /// One step of Adam down a gradient, for some of the networks; its norm is cut down to the largest allowed.
-    pub fn step(&mut self, gradient: Vec<f32>, networks: Range<usize>, means: &mut Means) -> Result<(), LearnError> {
+    /// One step of Adam down a gradient, for some of the networks; its norm is cut down to the largest allowed. `set` counts
+    /// the optimisers of algorithms of two steps.
+    fn step(&mut self, set: usize, gradient: Vec<f32>, networks: Range<usize>, means: &mut Means) -> Result<(), LearnError> {
         let start = self.shape.parameter_range(networks.start).start;
         let end = self.shape.parameter_range(networks.end - 1).end;
-        let norm = crate::networks::cpu::elementwise::sum_of_squares(&gradient[start..end]).sqrt();
+        let norm = crate::networks::cpu::elementwise::sum_of_squares(self.kernels, &gradient[start..end]).sqrt();
         means.add("gradient_norm", norm);
         if !norm.is_finite() {
             return Err(diverged("gradient's norm", norm));
         }
         let settings = &self.config.learning;
-        let scale = (settings.max_gradient_norm / norm.max(1e-12)).min(1.0);
+        let largest = settings.max_gradient_norm;
+        let scale = if largest > 0.0 { (largest / norm.max(1e-12)).min(1.0) } else { 1.0 };
+        let count = self.shape.networks.len();
         for network in networks {
             let range = self.shape.parameter_range(network);
             let parameters = &mut self.parameters[range.clone()];
-            self.optimisers[network].step(&gradient[range], parameters, scale, self.rate, settings);
+            let rate = match settings.critic_rate {
+                Some(rate) if network > 0 => rate * self.rate / settings.rate.max(f64::MIN_POSITIVE),
+                _ => self.rate,
+            };
+            self.optimisers[set * count + network].step(self.kernels, &gradient[range], parameters, scale, rate, settings);
         }
         self.gradient = gradient;
         self.version += 1;
@@ -319,19 +377,28 @@ impl Learner {
         loss: impl FnOnce(&Heads, &Minibatch<'_>, &mut Means) -> Loss,
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        self.descend_networks(0..self.shape.networks.len(), minibatch, loss, means)
+        self.descend_networks(0..self.shape.networks.len(), 0, minibatch, loss, means)
     }
 
-    /// As [`Learner::descend`] for some of the networks.
+    /// As [`Learner::descend`] for some of the networks, with one of the sets of optimisers.
     pub fn descend_networks(
         &mut self,
         networks: Range<usize>,
+        set: usize,
         minibatch: &mut Minibatch<'_>,
         loss: impl FnOnce(&Heads, &Minibatch<'_>, &mut Means) -> Loss,
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let gradient = self.gradient(networks.clone(), minibatch, loss, means)?;
-        self.step(gradient, networks, means)
+        self.step(set, gradient, networks, means)
+    }
+
+    /// The policy at present, as it sees a minibatch.
+    pub fn policy(&mut self, minibatch: &mut Minibatch<'_>) -> Policy {
+        self.refresh();
+        let width = self.shape.outputs();
+        let outputs = self.networks.forward(0..1, &mut minibatch.batch);
+        Policy::new(&self.shape.action, &outputs, width)
     }
 
     /// The policy network's parameters. Only for models of separate networks, as all that follows.
@@ -341,25 +408,22 @@ impl Learner {
     }
 
     /// Policy outputs under other parameters of the policy network.
-    pub fn policy_outputs(&mut self, minibatch: &mut Minibatch<'_>, parameters: &[f32]) -> Vec<f32> {
+    pub fn policy_outputs(&mut self, batch: &mut ModelSequences<'_>, parameters: &[f32]) -> Vec<f32> {
         self.refresh_pixels();
         self.stale = true;
         self.networks.load_network(0, parameters);
-        self.networks.forward_network(0, &mut minibatch.batch)
+        self.networks.forward_network(0, batch)
     }
 
     /// The policy under other parameters of its network, as heads without values.
     pub fn policy_heads(&mut self, minibatch: &mut Minibatch<'_>, parameters: &[f32]) -> Heads {
-        let outputs = self.policy_outputs(minibatch, parameters);
+        let outputs = self.policy_outputs(&mut minibatch.batch, parameters);
         Heads::new(&self.shape, &outputs, self.shape.action.parameters(), minibatch)
     }
 
-    /// The gradient in the policy network's parameters from that of its outputs of the last
-    /// [`Learner::policy_outputs`].
-    pub fn policy_backward(&mut self, minibatch: &mut Minibatch<'_>, rows: &[f32]) -> Vec<f32> {
-        let mut gradient = vec![0.0; self.shape.parameter_range(0).len()];
-        self.networks.backward_network(0, &mut minibatch.batch, rows, &mut gradient);
-        gradient
+    /// The gradient in the policy network's parameters from that of its outputs of the last forward pass.
+    pub fn policy_backward(&mut self, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+        self.networks.backward_network(0, batch, rows, gradient);
     }
 
     /// Replaces the policy network's parameters.

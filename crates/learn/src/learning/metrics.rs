@@ -30,6 +30,16 @@ impl Means {
         self.sums.iter().find(|(other, ..)| *other == name).map(|(_, sum, count)| sum / *count as f64)
     }
 
+    /// Adds everything that was added to others.
+    pub fn absorb(&mut self, others: Means) {
+        for (name, sum, count) in others.sums {
+            match self.sums.iter_mut().find(|(own, ..)| *own == name) {
+                Some((_, own, times)) => (*own, *times) = (*own + sum, *times + count),
+                None => self.sums.push((name, sum, count)),
+            }
+        }
+    }
+
     /// All means, and a fresh start.
     pub fn take(&mut self) -> Vec<(Cow<'static, str>, f64)> {
         self.sums.drain(..).map(|(name, sum, count)| (name, sum / count as f64)).collect()
@@ -48,6 +58,10 @@ mod tests {
         means.add("a", 3.0);
         means.add("a", f64::NAN);
         assert_eq!(means.get("a"), Some(2.0));
+        let mut more = Means::default();
+        more.absorb(means.clone());
+        more.absorb(means.clone());
+        assert_eq!(more.get("a"), Some(2.0));
         assert_eq!(means.take(), [("a".into(), 2.0), ("b".into(), 5.0)]);
         assert_eq!(means.get("a"), None);
     }

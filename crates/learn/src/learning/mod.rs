@@ -8,4 +8,5 @@ pub mod loss;
 pub mod metrics;
 pub mod normaliser;
 pub mod optimiser;
+pub mod passes;
 pub mod policy;

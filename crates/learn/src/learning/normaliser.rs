@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::networks::PixelScale;
-use crate::networks::cpu::simd::vectorised;
+use crate::networks::cpu::simd::{Kernels, vectorised};
+use crate::networks::cpu::threads::in_parallel;
 
 /// Added to variances before their root is taken.
 const EPSILON: f64 = 1e-5;
@@ -85,7 +86,7 @@ impl PixelNormaliser {
 
     /// Merges a batch of frames, working on `threads` threads. Sums are whole numbers, so neither the order of frames
     /// nor the number of threads changes a bit.
-    pub fn update(&mut self, frames: &[&[u8]], threads: usize) {
+    pub fn update(&mut self, kernels: Kernels, frames: &[&[u8]], threads: usize) {
         if frames.is_empty() {
             return;
         }
@@ -94,47 +95,38 @@ impl PixelNormaliser {
         let total = self.count + count;
         let (old_count, pixels) = (self.count, self.mean.len());
         let share = pixels.div_ceil(threads.max(1)).next_multiple_of(BLOCK);
-        std::thread::scope(|scope| {
-            let parts = self.mean.chunks_mut(share).zip(self.variance.chunks_mut(share));
-            let mut work = Vec::new();
-            for (part, (means, variances)) in parts.enumerate() {
-                work.push(move || {
-                    let (mut sums, mut squares) = ([0u32; BLOCK], [0u32; BLOCK]);
-                    for (block, (means, variances)) in means.chunks_mut(BLOCK).zip(variances.chunks_mut(BLOCK)).enumerate() {
-                        let first = part * share + block * BLOCK;
-                        let (mut sum, mut square) = ([0u64; BLOCK], [0u64; BLOCK]);
-                        // 32 bits hold the squares of 66,000 pixels.
-                        for some in frames.chunks(65_536) {
-                            sums.fill(0);
-                            squares.fill(0);
-                            for frame in some {
-                                add_pixels(&frame[first..first + means.len()], &mut sums, &mut squares);
-                            }
-                            for lane in 0..means.len() {
-                                sum[lane] += u64::from(sums[lane]);
-                                square[lane] += u64::from(squares[lane]);
-                            }
+        let parts = self.mean.chunks_mut(share).zip(self.variance.chunks_mut(share));
+        let mut work = Vec::new();
+        for (part, (means, variances)) in parts.enumerate() {
+            work.push(move || {
+                let (mut sums, mut squares) = ([0u32; BLOCK], [0u32; BLOCK]);
+                for (block, (means, variances)) in means.chunks_mut(BLOCK).zip(variances.chunks_mut(BLOCK)).enumerate() {
+                    let first = part * share + block * BLOCK;
+                    let (mut sum, mut square) = ([0u64; BLOCK], [0u64; BLOCK]);
+                    // 32 bits hold the squares of 66,000 pixels.
+                    for some in frames.chunks(65_536) {
+                        sums.fill(0);
+                        squares.fill(0);
+                        for frame in some {
+                            add_pixels(kernels, &frame[first..first + means.len()], &mut sums, &mut squares);
                         }
                         for lane in 0..means.len() {
-                            let mean = sum[lane] as f64 / count;
-                            let deviations = square[lane] as f64 - mean * sum[lane] as f64;
-                            let variance = (deviations / (count - 1.0).max(1.0)).max(0.0) / (255.0 * 255.0);
-                            let mut moments = Moments { count: old_count, mean: means[lane], variance: variances[lane] };
-                            moments.merge(count, mean / 255.0, variance);
-                            (means[lane], variances[lane]) = (moments.mean, moments.variance);
+                            sum[lane] += u64::from(sums[lane]);
+                            square[lane] += u64::from(squares[lane]);
                         }
                     }
-                });
-            }
-            let mut work = work.into_iter();
-            let own = work.next();
-            for other in work {
-                scope.spawn(other);
-            }
-            if let Some(mut own) = own {
-                own();
-            }
-        });
+                    for lane in 0..means.len() {
+                        let mean = sum[lane] as f64 / count;
+                        let deviations = square[lane] as f64 - mean * sum[lane] as f64;
+                        let variance = (deviations / (count - 1.0).max(1.0)).max(0.0) / (255.0 * 255.0);
+                        let mut moments = Moments { count: old_count, mean: means[lane], variance: variances[lane] };
+                        moments.merge(count, mean / 255.0, variance);
+                        (means[lane], variances[lane]) = (moments.mean, moments.variance);
+                    }
+                }
+            });
+        }
+        in_parallel(work);
         self.count = total;
     }
 
@@ -185,7 +177,7 @@ mod tests {
         let run = |threads| {
             let mut normaliser = PixelNormaliser::new(pixels);
             for part in [early, late] {
-                normaliser.update(&part.iter().map(Vec::as_slice).collect::<Vec<_>>(), threads);
+                normaliser.update(Kernels::PORTABLE, &part.iter().map(Vec::as_slice).collect::<Vec<_>>(), threads);
             }
             normaliser
         };

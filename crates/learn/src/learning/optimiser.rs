@@ -2,6 +2,8 @@
 
 use crate::config::LearningConfig;
 use crate::networks::cpu::elementwise::{AdamStep, adam};
+use crate::networks::cpu::simd::Kernels;
+use crate::networks::cpu::threads::in_parallel;
 
 /// Adam (Kingma and Ba 2015) over a flat parameter vector.
 #[derive(Clone, PartialEq, Debug)]
@@ -22,7 +24,15 @@ impl Adam {
     }
 
     /// One step down `gradient * scale`.
-    pub fn step(&mut self, gradient: &[f32], parameters: &mut [f32], scale: f64, rate: f64, settings: &LearningConfig) {
+    pub fn step(
+        &mut self,
+        kernels: Kernels,
+        gradient: &[f32],
+        parameters: &mut [f32],
+        scale: f64,
+        rate: f64,
+        settings: &LearningConfig,
+    ) {
         self.steps += 1;
         let (beta1, beta2) = settings.adam_betas;
         let power = self.steps.min(i32::MAX as u64) as i32;
@@ -36,19 +46,15 @@ impl Adam {
         };
         // Every parameter is its own; stretches go to threads because the pass is bound by memory.
         let stretch = parameters.len().div_ceil(settings.threads.max(1)).max(1 << 16);
-        std::thread::scope(|scope| {
-            let mut parts = gradient
-                .chunks(stretch)
-                .zip(self.first.chunks_mut(stretch))
-                .zip(self.second.chunks_mut(stretch))
-                .zip(parameters.chunks_mut(stretch));
-            let own = parts.next();
-            for (((gradient, first), second), parameters) in parts {
-                scope.spawn(move || adam(step, gradient, first, second, parameters));
-            }
-            if let Some((((gradient, first), second), parameters)) = own {
-                adam(step, gradient, first, second, parameters);
-            }
-        });
+        let parts = gradient
+            .chunks(stretch)
+            .zip(self.first.chunks_mut(stretch))
+            .zip(self.second.chunks_mut(stretch))
+            .zip(parameters.chunks_mut(stretch));
+        in_parallel(
+            parts.map(|(((gradient, first), second), parameters)| {
+                move || adam(kernels, step, gradient, first, second, parameters)
+            }),
+        );
     }
 }

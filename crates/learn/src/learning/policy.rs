@@ -81,7 +81,7 @@ struct Normal {
 
 impl Normal {
     fn variance(self) -> f64 {
-        (2.0 * self.log_deviation).exp()
+        libm::exp(2.0 * self.log_deviation)
     }
 }
 
@@ -99,7 +99,7 @@ impl Policy {
             for &size in &shape.sizes {
                 let (logits, after) = rest.split_at_mut(size);
                 let largest = logits.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let total = largest + logits.iter().map(|logit| (logit - largest).exp()).sum::<f64>().ln();
+                let total = largest + libm::log(logits.iter().map(|logit| libm::exp(logit - largest)).sum::<f64>());
                 logits.iter_mut().for_each(|logit| *logit -= total);
                 rest = after;
             }
@@ -108,6 +108,14 @@ impl Policy {
             }
         }
         Policy { shape: shape.clone(), rows }
+    }
+
+    /// The distributions of some of the rows.
+    #[must_use]
+    pub fn of_rows(&self, rows: impl Iterator<Item = usize>) -> Policy {
+        let width = self.shape.parameters();
+        let rows = rows.flat_map(|row| &self.rows[row * width..(row + 1) * width]).copied().collect();
+        Policy { shape: self.shape.clone(), rows }
     }
 
     /// Number of rows.
@@ -153,12 +161,12 @@ impl Policy {
         self.sum_over_parts(
             |row, index, logs, _, slopes| {
                 let choice = usize::from(taken.actions[row * groups + index]);
-                slopes.iter_mut().zip(logs).for_each(|(slope, log)| *slope = -log.exp());
+                slopes.iter_mut().zip(logs).for_each(|(slope, log)| *slope = -libm::exp(*log));
                 slopes[choice] += 1.0;
                 logs[choice]
             },
             |row, index, normal, _, slopes| {
-                let deviation = normal.log_deviation.exp();
+                let deviation = libm::exp(normal.log_deviation);
                 let draw = (f64::from(taken.deltas[row * deltas + index]) - normal.mean) / deviation;
                 slopes.copy_from_slice(&[draw / deviation, draw * draw - 1.0]);
                 -0.5 * draw * draw - normal.log_deviation - LOG_ROOT_TAU
@@ -171,8 +179,8 @@ impl Policy {
     pub fn entropy(&self) -> Column {
         self.sum_over_parts(
             |_, _, logs, _, slopes| {
-                let entropy = -logs.iter().map(|log| log.exp() * log).sum::<f64>();
-                slopes.iter_mut().zip(logs).for_each(|(slope, log)| *slope = -log.exp() * (log + entropy));
+                let entropy = -logs.iter().map(|log| libm::exp(*log) * log).sum::<f64>();
+                slopes.iter_mut().zip(logs).for_each(|(slope, log)| *slope = -libm::exp(*log) * (log + entropy));
                 entropy
             },
             |_, _, normal, _, slopes| {
@@ -190,9 +198,9 @@ impl Policy {
             |_, _, logs, _, slopes| {
                 // Half of KL(p, u) + KL(u, p): the constants ln(size) cancel.
                 let uniform = 1.0 / logs.len() as f64;
-                let mean_log = logs.iter().map(|log| log.exp() * log).sum::<f64>();
+                let mean_log = logs.iter().map(|log| libm::exp(*log) * log).sum::<f64>();
                 for (slope, log) in slopes.iter_mut().zip(logs) {
-                    let p = log.exp();
+                    let p = libm::exp(*log);
                     *slope = 0.5 * (p * (log - mean_log) + p - uniform);
                 }
                 0.5 * (mean_log - uniform * logs.iter().sum::<f64>())
@@ -215,9 +223,9 @@ impl Policy {
         self.sum_over_parts(
             |row, _, logs, first, slopes| {
                 let others = &other.rows[row * width + first..];
-                let sum = logs.iter().zip(others).map(|(log, other)| log.exp() * (log - other)).sum::<f64>();
+                let sum = logs.iter().zip(others).map(|(log, other)| libm::exp(*log) * (log - other)).sum::<f64>();
                 for ((slope, log), other) in slopes.iter_mut().zip(logs).zip(others) {
-                    *slope = log.exp() * (log - other - sum);
+                    *slope = libm::exp(*log) * (log - other - sum);
                 }
                 sum
             },
@@ -240,9 +248,9 @@ impl Policy {
         let products = self.sum_over_parts(
             |row, _, logs, first, products| {
                 let vector = &vectors[row * width + first..];
-                let mean: f64 = logs.iter().zip(vector).map(|(log, v)| log.exp() * f64::from(*v)).sum();
+                let mean: f64 = logs.iter().zip(vector).map(|(log, v)| libm::exp(*log) * f64::from(*v)).sum();
                 for ((product, log), v) in products.iter_mut().zip(logs).zip(vector) {
-                    *product = log.exp() * (f64::from(*v) - mean);
+                    *product = libm::exp(*log) * (f64::from(*v) - mean);
                 }
                 0.0
             },

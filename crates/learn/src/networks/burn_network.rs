@@ -10,7 +10,7 @@ use burn::tensor::module::conv2d;
 use burn::tensor::ops::ConvOptions;
 use burn::tensor::{Device, Int, Tensor, TensorData};
 
-use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences};
+use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, Sequences};
 
 /// One network on a burn device.
 pub struct BurnNetwork {
@@ -153,7 +153,7 @@ impl ActingNetwork for BurnNetwork {
         self.load_pixels_on(pixels, &device);
     }
 
-    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32]) {
+    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32], _: Option<Place<'_>>) {
         let observations: Vec<&[u8]> = observations.chunks_exact(self.shape.image.size()).collect();
         let lanes = observations.len();
         let batch = Sequences {
@@ -163,6 +163,7 @@ impl ActingNetwork for BurnNetwork {
             extra: extra.to_vec(),
             initial_state: state.to_vec(),
             reset: vec![false; lanes],
+            recorded: Vec::new(),
         };
         let (tensor, after) = self.run(&batch, &self.device);
         outputs.copy_from_slice(&to_vec(tensor));

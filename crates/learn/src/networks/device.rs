@@ -3,19 +3,42 @@
 #[cfg(feature = "graphics")]
 use burn::tensor::Device;
 
+use crate::config::TrainConfig;
 use crate::error::LearnError;
+use crate::networks::cpu::simd::Kernels;
 
 /// A place to compute.
 #[derive(Clone, Debug)]
 pub enum ComputeDevice {
     /// The processor, with the kernels of [`crate::networks::cpu`].
-    Processor,
+    Processor(Kernels),
     /// A device of the `burn` crate.
     #[cfg(feature = "graphics")]
     Burn(Device),
 }
 
 impl ComputeDevice {
+    /// The device that a run's settings name, with the kernels that they ask for.
+    ///
+    /// # Errors
+    /// As [`ComputeDevice::named`].
+    pub fn of(config: &TrainConfig) -> Result<ComputeDevice, LearnError> {
+        match ComputeDevice::named(&config.device)? {
+            ComputeDevice::Processor(_) if config.learning.portable => Ok(ComputeDevice::Processor(Kernels::PORTABLE)),
+            device => Ok(device),
+        }
+    }
+
+    /// The kernels that compute what is on the processor: everything, or what comes before and after the networks.
+    #[must_use]
+    pub fn kernels(&self) -> Kernels {
+        match self {
+            ComputeDevice::Processor(kernels) => *kernels,
+            #[cfg(feature = "graphics")]
+            ComputeDevice::Burn(_) => Kernels::available()[0],
+        }
+    }
+
     /// The device of a name: `cpu`; with the cargo features of the same names `vulkan`, `cuda` and `wgpu` (Metal, Direct3D or
     /// Vulkan, whatever there is), with a colon and a number for another than the first; and, with any of them, `flex`
     /// (burn's processor backend, for comparison).
@@ -28,7 +51,7 @@ impl ComputeDevice {
             .parse()
             .map_err(|_| LearnError::Config(format!("device '{name}' has no number after the colon; write {kind}:0")))?;
         match kind {
-            "cpu" => Ok(ComputeDevice::Processor),
+            "cpu" => Ok(ComputeDevice::Processor(Kernels::chosen()?)),
             "vulkan" | "cuda" | "wgpu" | "flex" => card(kind, name, number),
             _ => Err(LearnError::Config(format!("device '{name}' is unknown; use one of cpu, flex, vulkan, cuda, wgpu"))),
         }
@@ -89,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_processor_is_always_there_and_unknown_devices_are_refused() {
-        assert!(matches!(ComputeDevice::named("cpu"), Ok(ComputeDevice::Processor)));
+        assert!(matches!(ComputeDevice::named("cpu"), Ok(ComputeDevice::Processor(_))));
         #[cfg(feature = "graphics")]
         assert!(matches!(ComputeDevice::named("flex"), Ok(ComputeDevice::Burn(_))));
         for bad in ["tpu", "cuda:x", ""] {

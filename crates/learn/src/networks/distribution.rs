@@ -39,20 +39,20 @@ impl ActionShape {
             let mut passed = 0.0;
             let mut choice = size - 1;
             for (index, &logit) in logits.iter().enumerate() {
-                passed += f64::from(logit - largest).exp() / sum;
+                passed += libm::exp(f64::from(logit - largest)) / sum;
                 if draw < passed {
                     choice = index;
                     break;
                 }
             }
             *action = choice as u8;
-            log_probability += f64::from(logits[choice] - largest) - sum.ln();
+            log_probability += f64::from(logits[choice] - largest) - libm::log(sum);
             first += size;
         }
         for (parameters, delta) in row[first..self.parameters()].chunks_exact(2).zip(deltas) {
             let log_deviation = f64::from(parameters[1]).clamp(-LOG_DEVIATION, LOG_DEVIATION);
             let draw = stream.normal();
-            *delta = (f64::from(parameters[0]) + draw * log_deviation.exp()) as f32;
+            *delta = (f64::from(parameters[0]) + draw * libm::exp(log_deviation)) as f32;
             log_probability += -0.5 * draw * draw - log_deviation - LOG_ROOT_TAU;
         }
         log_probability as f32
@@ -74,7 +74,7 @@ impl ActionShape {
 
 fn softmax_parts(logits: &[f32]) -> (f32, f64) {
     let largest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    (largest, logits.iter().map(|&logit| f64::from(logit - largest).exp()).sum())
+    (largest, logits.iter().map(|&logit| libm::exp(f64::from(logit - largest))).sum())
 }
 
 #[cfg(test)]

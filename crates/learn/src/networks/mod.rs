@@ -10,6 +10,8 @@ mod network;
 mod shape;
 mod stack;
 
-pub use network::{ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Published, Sequences};
+pub use network::{
+    ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Place, Published, RecordedLane, Recording, Sequences,
+};
 pub use shape::{ImageShape, NetworkShape, Parameter, ParameterKind};
-pub use stack::{Actor, ModelSequences, ModelShape, Stack};
+pub use stack::{Actor, ModelSequences, ModelShape, Notes, Stack};

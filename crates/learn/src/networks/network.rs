@@ -1,8 +1,10 @@
 //! What can be done with a network, whatever device it lives on.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::shape::NetworkShape;
+use crate::networks::cpu::tape::Tape;
 use crate::networks::cpu::weights::PackedWeights;
 
 /// What turns an 8-bit pixel into the network's input: `clamp(pixel * scale + shift, -5, 5)`, in the image's order.
@@ -37,6 +39,8 @@ pub struct Sequences<'a> {
     pub initial_state: Vec<f32>,
     /// Rows before which the state is reset to zero, because the episode before has ended.
     pub reset: Vec<bool>,
+    /// What was computed of each lane when it was acted in; empty if nothing was kept.
+    pub recorded: Vec<RecordedLane<'a>>,
 }
 
 impl Sequences<'_> {
@@ -75,13 +79,68 @@ pub struct Published {
     pub networks: Vec<NetworkWeights>,
 }
 
-/// A network that acts: one step at a time, nothing kept for a backward pass.
+/// What an acting network computed in a rollout. A learner that holds the very same weights need not compute it again:
+/// outputs of a row depend neither on the rows beside it nor on who computes them, bit for bit.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    pub(crate) tape: Tape,
+    /// What all steps were computed with.
+    made_with: Option<(Arc<PackedWeights>, Arc<PixelScale>)>,
+    /// They were not computed with one set of weights.
+    mixed: bool,
+}
+
+impl Recording {
+    /// Forgets what was recorded, and keeps the memory.
+    pub fn clear(&mut self) {
+        (self.made_with, self.mixed) = (None, false);
+    }
+
+    /// Notes what a step is computed with.
+    pub(crate) fn note(&mut self, weights: &Arc<PackedWeights>, pixels: &Arc<PixelScale>) {
+        self.mixed |= self.made_with.is_some() && !self.holds(weights, pixels);
+        self.made_with = Some((Arc::clone(weights), Arc::clone(pixels)));
+    }
+
+    /// Whether all of it was computed with these very weights.
+    pub(crate) fn holds(&self, weights: &Arc<PackedWeights>, pixels: &Arc<PixelScale>) -> bool {
+        let same = |own: &(Arc<PackedWeights>, Arc<PixelScale>)| Arc::ptr_eq(&own.0, weights) && Arc::ptr_eq(&own.1, pixels);
+        !self.mixed && self.made_with.as_ref().is_some_and(same)
+    }
+}
+
+/// One lane of a recording.
+#[derive(Clone, Copy, Debug)]
+pub struct RecordedLane<'a> {
+    /// The recording.
+    pub recording: &'a Recording,
+    /// The lane's number in it.
+    pub lane: usize,
+}
+
+/// Where an acting network notes a step.
+#[derive(Debug)]
+pub struct Place<'a> {
+    /// In which recording, of how many steps and lanes.
+    pub recording: &'a mut Recording,
+    /// Steps of the recording.
+    pub steps: usize,
+    /// Lanes of the recording.
+    pub all_lanes: usize,
+    /// Which step.
+    pub step: usize,
+    /// Which lanes.
+    pub lanes: Range<usize>,
+}
+
+/// A network that acts: one step at a time.
 pub trait ActingNetwork: Send {
     /// Takes over weights.
     fn load(&mut self, weights: &NetworkWeights);
 
-    /// Outputs for one step of some lanes; `state` is replaced by the state after.
-    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32]);
+    /// Outputs for one step of some lanes; `state` is replaced by the state after. Networks that can do so note in `place`
+    /// what a backward pass needs.
+    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32], place: Option<Place<'_>>);
 }
 
 /// A network that learns.

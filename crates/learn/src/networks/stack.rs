@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::network::{ActingNetwork, LearningNetwork, PixelScale, Published, Sequences};
+use super::network::{ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences};
 use super::shape::{ImageShape, NetworkShape};
 use crate::config::NetworkConfig;
 use crate::error::LearnError;
@@ -100,6 +100,26 @@ fn place_columns(rows: &mut [f32], width: usize, first: usize, from: &[f32], cou
     }
 }
 
+/// Where the networks of a model note a step.
+#[derive(Debug)]
+pub struct Notes<'a> {
+    /// One a network, or none at all.
+    pub recordings: &'a mut [Recording],
+    /// Steps of each recording.
+    pub steps: usize,
+    /// Lanes of each recording.
+    pub all_lanes: usize,
+    /// The step.
+    pub step: usize,
+}
+
+impl Notes<'_> {
+    fn place(&mut self, network: usize, lanes: &Range<usize>) -> Option<Place<'_>> {
+        let recording = self.recordings.get_mut(network)?;
+        Some(Place { recording, steps: self.steps, all_lanes: self.all_lanes, step: self.step, lanes: lanes.clone() })
+    }
+}
+
 /// All networks of a model, acting.
 pub struct Actor {
     shape: ModelShape,
@@ -114,7 +134,7 @@ impl Actor {
     pub fn new(shape: &ModelShape, device: &ComputeDevice) -> Actor {
         let network = |shape: &NetworkShape| -> Box<dyn ActingNetwork> {
             match device {
-                ComputeDevice::Processor => Box::new(CpuActor::new(shape)),
+                ComputeDevice::Processor(kernels) => Box::new(CpuActor::new(*kernels, shape)),
                 #[cfg(feature = "graphics")]
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
@@ -134,17 +154,27 @@ impl Actor {
     }
 
     /// Output rows of one step for the lanes `lanes` of `state`, which becomes the state after.
-    pub fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [Vec<f32>], lanes: Range<usize>, rows: &mut [f32]) {
+    pub fn act(
+        &mut self,
+        observations: &[u8],
+        extra: &[f32],
+        state: &mut [Vec<f32>],
+        lanes: Range<usize>,
+        rows: &mut [f32],
+        mut notes: Option<Notes<'_>>,
+    ) {
         let mut first = 0;
-        for ((network, shape), state) in self.networks.iter_mut().zip(&self.shape.networks).zip(state) {
+        let networks = self.networks.iter_mut().zip(&self.shape.networks).zip(state).enumerate();
+        for (index, ((network, shape), state)) in networks {
+            let place = notes.as_mut().and_then(|notes| notes.place(index, &lanes));
             let units = shape.state_size();
             let state = &mut state[lanes.start * units..lanes.end * units];
             if self.shape.networks.len() == 1 {
-                return network.act(observations, extra, state, rows);
+                return network.act(observations, extra, state, rows, place);
             }
             let count = shape.outputs();
             self.outputs.resize(lanes.len() * count, 0.0);
-            network.act(observations, extra, state, &mut self.outputs);
+            network.act(observations, extra, state, &mut self.outputs, place);
             place_columns(rows, self.shape.outputs(), first, &self.outputs, count);
             first += count;
         }
@@ -153,10 +183,47 @@ impl Actor {
 
 /// Trajectories for all networks of a model.
 pub struct ModelSequences<'a> {
-    /// Everything but the state, which the networks have apart.
+    /// Everything but the state and what was recorded, which the networks have apart.
     pub sequences: Sequences<'a>,
     /// State before the first step, one vector a network.
     pub initial_state: Vec<Vec<f32>>,
+    /// What was recorded of each lane, one vector a network; empty if nothing was.
+    pub recorded: Vec<Vec<RecordedLane<'a>>>,
+}
+
+impl<'a> ModelSequences<'a> {
+    /// As one network has them.
+    fn of(&mut self, network: usize) -> &Sequences<'a> {
+        self.sequences.initial_state.clone_from(&self.initial_state[network]);
+        self.sequences.recorded.clear();
+        self.sequences.recorded.extend(self.recorded.get(network).into_iter().flatten());
+        &self.sequences
+    }
+
+    /// The trajectories of some lanes, told which lanes these are of the batch.
+    #[must_use]
+    pub fn of_lanes(&self, shape: &ModelShape, lanes: &[usize]) -> ModelSequences<'a> {
+        let all = &self.sequences;
+        let rows = || (0..all.steps).flat_map(|step| lanes.iter().map(move |lane| step * all.lanes + lane));
+        let extra = shape.extra_inputs();
+        let state = |(network, state): (&NetworkShape, &Vec<f32>)| -> Vec<f32> {
+            let units = network.state_size();
+            lanes.iter().flat_map(|lane| &state[lane * units..(lane + 1) * units]).copied().collect()
+        };
+        ModelSequences {
+            sequences: Sequences {
+                steps: all.steps,
+                lanes: lanes.len(),
+                observations: rows().map(|row| all.observations[row]).collect(),
+                extra: rows().flat_map(|row| &all.extra[row * extra..(row + 1) * extra]).copied().collect(),
+                initial_state: Vec::new(),
+                reset: rows().map(|row| all.reset[row]).collect(),
+                recorded: Vec::new(),
+            },
+            initial_state: shape.networks.iter().zip(&self.initial_state).map(state).collect(),
+            recorded: self.recorded.iter().map(|all| lanes.iter().filter_map(|&lane| all.get(lane).copied()).collect()).collect(),
+        }
+    }
 }
 
 /// All networks of a model, learning.
@@ -171,7 +238,7 @@ impl Stack {
     pub fn new(shape: &ModelShape, device: &ComputeDevice, threads: usize) -> Stack {
         let network = |shape: &NetworkShape| -> Box<dyn LearningNetwork> {
             match device {
-                ComputeDevice::Processor => Box::new(CpuLearner::new(shape, threads)),
+                ComputeDevice::Processor(kernels) => Box::new(CpuLearner::new(*kernels, shape, threads)),
                 #[cfg(feature = "graphics")]
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
@@ -223,8 +290,7 @@ impl Stack {
 
     /// Output rows of one network alone.
     pub fn forward_network(&mut self, network: usize, batch: &mut ModelSequences<'_>) -> Vec<f32> {
-        batch.sequences.initial_state.clone_from(&batch.initial_state[network]);
-        self.networks[network].forward(&batch.sequences)
+        self.networks[network].forward(batch.of(network))
     }
 
     /// The gradient of the parameters of some networks from that of the output rows of the last forward pass; what
@@ -244,7 +310,6 @@ impl Stack {
 
     /// The gradient of one network's parameters.
     pub fn backward_network(&mut self, network: usize, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
-        batch.sequences.initial_state.clone_from(&batch.initial_state[network]);
-        self.networks[network].backward(&batch.sequences, rows, gradient);
+        self.networks[network].backward(batch.of(network), rows, gradient);
     }
 }

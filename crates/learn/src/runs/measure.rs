@@ -5,6 +5,8 @@ use std::time::Instant;
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::networks::cpu::product::{Left, Right, Size, multiply};
+use crate::networks::cpu::simd::Kernels;
+use crate::networks::device::ComputeDevice;
 use crate::runs::session::{Beginning, MakeWorlds, Session};
 
 /// A measurement: medians over its rounds.
@@ -14,8 +16,11 @@ pub struct Measurement {
     pub steps_per_second: f64,
     /// Rate of large products of 32-bit matrices on the same threads, in floating-point operations a second.
     pub product_rate: f64,
-    /// Floating-point operations of a policy step: one inference and one training sample an epoch.
+    /// Floating-point operations of a policy step: forward once and backward once an epoch, counted from the shape. Acting
+    /// costs nothing here, since a learner that takes turns with the samplers need not repeat it.
     pub flop_per_step: f64,
+    /// What computed both.
+    pub kernels: Kernels,
     /// Threads.
     pub threads: usize,
     /// Rounds.
@@ -39,16 +44,17 @@ impl Measurement {
 /// Side of the products that the bound is taken from.
 const SIDE: usize = 1024;
 
-/// Measures the training loop, about `seconds` in each round, and the products in turns, so that whatever else the machine does meets both alike.
-/// Nothing is written to the disk.
+/// Measures the training loop, about `seconds` in each round, and the products in turns, so that
+/// whatever else the machine does meets both alike. Nothing is written to the disk.
 pub fn measure(
+    kernels: Kernels,
     config: &TrainConfig,
     make_worlds: &MakeWorlds<'_>,
     rounds: usize,
     seconds: f64,
     round_done: &mut dyn FnMut(usize),
 ) -> Result<Measurement, LearnError> {
-    let mut session = Session::new(config.clone(), &Beginning::Nothing, make_worlds)?;
+    let mut session = Session::on(&ComputeDevice::Processor(kernels), config.clone(), &Beginning::Nothing, make_worlds)?;
     let mut warn = |_| {};
     // The first rollouts fill buffers.
     for _ in 0..2 {
@@ -59,7 +65,7 @@ pub fn measure(
     let (mut loops, mut products) = (Vec::new(), Vec::new());
     let mut rollout = session.turn(&mut warn)?;
     for round in 0..rounds.max(1) {
-        products.push(product_rate(threads));
+        products.push(product_rate(kernels, threads));
         let start = Instant::now();
         let mut steps = 0;
         while steps == 0 || start.elapsed().as_secs_f64() < seconds {
@@ -76,7 +82,8 @@ pub fn measure(
     Ok(Measurement {
         steps_per_second: median(loops),
         product_rate: median(products),
-        flop_per_step: sum(|network| network.forward_flop()) + epochs * sum(|network| network.training_flop()),
+        flop_per_step: epochs * sum(|network| network.training_flop()),
+        kernels,
         threads,
         rounds: rounds.max(1),
     })
@@ -88,7 +95,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// Floating-point operations a second of large products, one on each thread.
-fn product_rate(threads: usize) -> f64 {
+fn product_rate(kernels: Kernels, threads: usize) -> f64 {
     let left = vec![0.5f32; SIDE * SIDE];
     let right = vec![0.25f32; SIDE * SIDE];
     let start = Instant::now();
@@ -99,7 +106,7 @@ fn product_rate(threads: usize) -> f64 {
             while start.elapsed().as_secs_f64() < 0.3 {
                 let size = Size { rows: SIDE, columns: SIDE, inner: SIDE };
                 let factor = Left { data: &left, row_stride: SIDE, inner_stride: 1 };
-                multiply(size, factor, Right::panels(&right, SIDE), &mut out, SIDE, false);
+                multiply(kernels, size, factor, Right::panels(&right, SIDE), &mut out, SIDE, false);
                 count += 1;
             }
             count

@@ -17,6 +17,8 @@ pub struct Report {
     pub level: Option<u8>,
     /// Updates.
     pub updates: u64,
+    /// Kernels that computed it, and on how many threads.
+    pub made_with: (&'static str, usize),
     /// Seconds of work.
     pub wall_seconds: f64,
     /// Frames per second since the last report.
@@ -64,6 +66,7 @@ impl Report {
             total_frames: config.frames,
             level: None,
             updates: 0,
+            made_with: ("", config.learning.threads),
             wall_seconds: 0.0,
             frames_per_second: 0.0,
             episodes: watch.episodes,
@@ -95,6 +98,8 @@ impl Report {
             put("level", json!(level));
         }
         put("updates", json!(self.updates));
+        put("kernels", json!(self.made_with.0));
+        put("threads", json!(self.made_with.1));
         put("wall_s", json!(self.wall_seconds));
         put("fps", json!(self.frames_per_second));
         put("episodes", json!(self.episodes));

@@ -9,6 +9,8 @@ use crate::config::{EnvConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::learning::metrics::Means;
+use crate::learning::passes::Passes;
+use crate::networks::cpu::threads::deal;
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{Actor, ImageShape, ModelShape};
@@ -80,17 +82,27 @@ pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, 
 impl Session {
     /// Makes everything, and lets the samplers begin.
     pub fn new(config: TrainConfig, beginning: &Beginning<'_>, make_worlds: &MakeWorlds<'_>) -> Result<Session, LearnError> {
-        let device = ComputeDevice::named(&config.device)?;
+        let device = ComputeDevice::of(&config)?;
+        Session::on(&device, config, beginning, make_worlds)
+    }
+
+    /// As [`Session::new`], on a device that the settings do not name.
+    pub fn on(
+        device: &ComputeDevice,
+        config: TrainConfig,
+        beginning: &Beginning<'_>,
+        make_worlds: &MakeWorlds<'_>,
+    ) -> Result<Session, LearnError> {
         let sampling = &config.sampling;
-        let lanes = sampling.lanes / sampling.samplers;
+        let shares: Vec<_> = deal(sampling.lanes, sampling.samplers).collect();
         let mut worlds = Vec::new();
-        for index in 0..sampling.samplers {
+        for share in &shares {
             let options = VecOptions {
-                lanes,
+                lanes: share.len(),
                 threads: sampling.world_threads,
                 groups: sampling.groups,
                 seed: Stream::new(config.seed, Purpose::Worlds, 0, 0).bits(),
-                first_lane: (index * lanes) as u64,
+                first_lane: share.start as u64,
                 final_observations: FinalObservations::Truncated,
                 ..VecOptions::default()
             };
@@ -98,11 +110,11 @@ impl Session {
         }
         let extent = worlds[0].extent();
         let shape = model_shape(&config, &worlds[0])?;
-        let mut learner = Learner::new(&config, &shape, &device);
+        let mut learner = Learner::new(&config, &shape, device);
         let mut algorithm = algorithms::make(&config);
         let mut watch = Watch::new(&config);
         let (mut frames, mut rollouts) = (0, 0);
-        let mut states: Vec<Option<SamplerState>> = vec![None; sampling.samplers];
+        let mut states: Vec<Option<SamplerState>> = vec![None; shares.len()];
         match beginning {
             Beginning::Nothing => {}
             Beginning::Weights(loaded) => loaded.restore_weights(&mut learner)?,
@@ -113,7 +125,7 @@ impl Session {
             }
             Beginning::Everything(loaded) => {
                 let saved = loaded.restore(&mut learner)?;
-                if saved.len() != sampling.samplers {
+                if saved.len() != shares.len() {
                     return Err(LearnError::Config("the checkpoint has another number of samplers".into()));
                 }
                 states = saved.into_iter().map(Some).collect();
@@ -125,10 +137,13 @@ impl Session {
             }
         }
         let mut samplers = Vec::new();
-        for (index, (worlds, state)) in worlds.into_iter().zip(states).enumerate() {
-            let actor = Actor::new(&shape, &device);
+        for ((worlds, state), share) in worlds.into_iter().zip(states).zip(shares) {
+            let actor = Actor::new(&shape, device);
             let shaping = Shaping::new(&config);
-            let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, index * lanes, config.seed)?;
+            let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, share.start, config.seed)?;
+            if sampling.synchronous {
+                sampler.record();
+            }
             match state {
                 Some(state) => sampler.restore(state)?,
                 None if sampling.spread_out => sampler.spread_out(sampling.lanes, config.episode_steps)?,
@@ -175,20 +190,17 @@ impl Session {
         let done = (self.frames as f64 / self.config.frames as f64).min(1.0);
         self.learner.rate = learning.rate + (learning.final_rate - learning.rate) * done;
         self.means.add("learning_rate", self.learner.rate);
+        let last = learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
+        self.learner.exploration_coefficient =
+            learning.exploration_coefficient + (last - learning.exploration_coefficient) * done;
         let prepared = self.learner.prepare(rollout);
-        let mut lanes: Vec<usize> = (0..rollout.lanes()).collect();
-        let size = lanes.len().div_ceil(learning.minibatches);
-        for epoch in 0..learning.epochs {
-            if learning.minibatches > 1 {
-                Stream::new(self.config.seed, Purpose::Shuffle, self.rollouts, epoch as u64).shuffle(&mut lanes);
-            }
-            for some in lanes.chunks(size) {
-                let mut minibatch = self.learner.minibatch(&prepared, some);
-                let signals = self.watch.signals(&self.config, &minibatch.mean_costs);
-                self.algorithm.constrain(&signals);
-                self.algorithm.update(&mut self.learner, &mut minibatch, &signals, &mut self.means)?;
-            }
+        for (name, share) in prepared.explained_variances(&self.config) {
+            self.means.add(name, share);
         }
+        let passes = Passes::new(&self.config, self.rollouts, rollout.lanes());
+        let signals = |costs: &[f64]| self.watch.signals(&self.config, costs);
+        self.algorithm.learn(&mut self.learner, &prepared, &passes, &signals, &mut self.means)?;
+        self.learner.absorb(rollout);
         Ok(())
     }
 }

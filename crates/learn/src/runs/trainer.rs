@@ -28,6 +28,7 @@ pub struct Hooks<'a> {
 }
 
 /// How a run begins.
+#[derive(Clone)]
 pub enum Start<'a> {
     /// In a new directory.
     Fresh(TrainConfig),
@@ -85,12 +86,12 @@ fn begin(
     match start {
         Start::Fresh(config) => {
             config.check()?;
-            ComputeDevice::named(&config.device)?;
+            ComputeDevice::of(&config)?;
             Ok((RunDirectory::create(directory, &config)?, config, Beginning::Nothing))
         }
         Start::From(config, other) => {
             config.check()?;
-            ComputeDevice::named(&config.device)?;
+            ComputeDevice::of(&config)?;
             let loaded = Store::new(other, 1).newest(hooks.warn)?;
             let loaded = loaded.ok_or_else(|| LearnError::content(other, "no checkpoint to take weights from is here"))?;
             Ok((RunDirectory::create(directory, &config)?, config, Beginning::Weights(Box::new(loaded))))
@@ -216,6 +217,7 @@ impl<'a> Trainer<'a> {
         report.frames = self.session.frames;
         report.level = self.config.curriculum.get(self.lesson).map(|lesson| lesson.level);
         report.updates = self.session.learner.version;
+        report.made_with = (self.session.learner.kernels().name(), self.session.config.learning.threads);
         report.wall_seconds = self.wall_seconds();
         report.frames_per_second = frames_per_second;
         report

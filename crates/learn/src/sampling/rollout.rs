@@ -2,7 +2,7 @@
 
 use hasard_envs::Episode;
 
-use crate::networks::ModelShape;
+use crate::networks::{ModelShape, Recording};
 
 /// Steps of a sampler's lanes. Step `t` of lane `l` is row `t * lanes + l`; all buffers are reused.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +41,8 @@ pub struct Part {
     pub versions: Vec<u64>,
     /// Episodes that ended.
     pub episodes: Vec<Episode>,
+    /// What each network computed of the steps, if the learner may find a use for it.
+    pub recordings: Vec<Recording>,
 }
 
 impl Part {
@@ -64,6 +66,7 @@ impl Part {
         self.cut_off.clear();
         self.versions.resize(steps, 0);
         self.episodes.clear();
+        self.recordings.iter_mut().for_each(Recording::clear);
     }
 
     /// The observation of a lane at a step; step `steps` is the one after the last.
@@ -80,7 +83,7 @@ impl Part {
 /// Parts of all samplers, their lanes one after the other.
 #[derive(Clone, Debug)]
 pub struct Rollout {
-    /// One a sampler, all of equal size.
+    /// One a sampler, of as many steps each.
     pub parts: Vec<Part>,
 }
 
@@ -94,7 +97,7 @@ impl Rollout {
     /// Lanes of all parts.
     #[must_use]
     pub fn lanes(&self) -> usize {
-        self.parts.len() * self.parts[0].lanes
+        self.parts.iter().map(|part| part.lanes).sum()
     }
 
     /// Rows of all parts.
@@ -106,8 +109,14 @@ impl Rollout {
     /// The part that a lane is in, and its number there.
     #[must_use]
     pub fn find(&self, lane: usize) -> (&Part, usize) {
-        let lanes = self.parts[0].lanes;
-        (&self.parts[lane / lanes], lane % lanes)
+        let mut own = lane;
+        for part in &self.parts {
+            if own < part.lanes {
+                return (part, own);
+            }
+            own -= part.lanes;
+        }
+        panic!("lane {lane} of {}", self.lanes());
     }
 
     /// All frames, those after the last step too.

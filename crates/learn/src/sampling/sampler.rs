@@ -10,7 +10,7 @@ use hasard_envs::{Batch, LaneState, VecEnv};
 use crate::config::Constraint;
 use crate::config::constraint::find_terms;
 use crate::error::LearnError;
-use crate::networks::{Actor, ModelShape, Published};
+use crate::networks::{Actor, ModelShape, Notes, Published};
 use crate::random::{Purpose, Stream};
 use crate::sampling::rollout::Part;
 use crate::sampling::shaping::Shaping;
@@ -48,6 +48,8 @@ pub struct Sampler {
     safety: Vec<f64>,
     steps: u64,
     after_state: Vec<Vec<f32>>,
+    /// What is computed is kept for the learner.
+    recording: bool,
 }
 
 impl Sampler {
@@ -84,6 +86,7 @@ impl Sampler {
             seed,
             batches,
             steps: 0,
+            recording: false,
         })
     }
 
@@ -91,6 +94,11 @@ impl Sampler {
     #[must_use]
     pub fn lanes(&self) -> usize {
         self.worlds.lanes()
+    }
+
+    /// Keeps what the networks compute, for a learner that will have the same weights.
+    pub fn record(&mut self) {
+        self.recording = true;
     }
 
     /// Puts every lane somewhere else in its first episode: of all `total` lanes of the run, each starts after so many
@@ -150,6 +158,7 @@ impl Sampler {
         let groups = self.worlds.groups();
         part.prepare(&self.shape, steps, self.lanes(), groups, self.constraints.len());
         part.initial_state.clone_from(&self.state);
+        part.recordings.resize_with(if self.recording { self.shape.networks.len() } else { 0 }, Default::default);
         for step in 0..steps {
             let published = Arc::clone(&newest.read().unwrap_or_else(|poisoned| poisoned.into_inner()));
             self.actor.load(&published);
@@ -180,6 +189,7 @@ impl Sampler {
                 &mut self.after_state,
                 lanes,
                 &mut part.outputs[rows.start * outputs..rows.end * outputs],
+                None,
             );
         }
         Ok(())
@@ -203,7 +213,8 @@ impl Sampler {
         self.write_extra(part, step, lanes.clone());
         let out = &mut part.outputs[rows.start * outputs..rows.end * outputs];
         let extra = &part.extra[rows.start * extra..rows.end * extra];
-        self.actor.act(&batch.observations, extra, &mut self.state, lanes.clone(), out);
+        let notes = Notes { recordings: &mut part.recordings, steps: part.steps, all_lanes: part.lanes, step };
+        self.actor.act(&batch.observations, extra, &mut self.state, lanes.clone(), out, Some(notes));
         let action = &self.shape.action;
         let (count, deltas) = (action.sizes.len(), action.deltas);
         for (index, lane) in lanes.clone().enumerate() {
@@ -252,7 +263,7 @@ impl Sampler {
             }
             let seen = [Shaping::seen(self.safety[lane])];
             let extra = &seen[..self.shape.extra_inputs()];
-            self.actor.act(observation, extra, &mut self.after_state, 0..1, &mut row);
+            self.actor.act(observation, extra, &mut self.after_state, 0..1, &mut row, None);
             part.cut_off.push((first_row + lane, row));
         }
         for lane in lanes {

@@ -73,7 +73,7 @@ fn saute_unit(budget: f64, gamma: f64, horizon: f64) -> f64 {
     if gamma >= 1.0 {
         return budget;
     }
-    budget * (1.0 - gamma.powf(horizon)) / (1.0 - gamma) / horizon
+    budget * (1.0 - libm::pow(gamma, horizon)) / (1.0 - gamma) / horizon
 }
 
 #[cfg(test)]

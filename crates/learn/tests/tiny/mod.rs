@@ -20,29 +20,39 @@ pub const SIDE: usize = 6;
 /// poor, and costs 1 either way; anything else brings and costs nothing.
 ///
 /// Without a budget it is best always to take the risk: return 7, cost 10. Under a budget of 4 it is best to take it in
-/// four fifths of the rich steps alone: return 4, cost 4.
+/// four fifths of the rich steps alone: return 4, cost 4. As a trap the risk loses 0.4 when poor: without a budget it is best
+/// to take it when rich alone, return 5, where a policy that is blind to the picture gets 3 at most.
+///
+/// The second cost is 1 for another sub-action that does nothing else.
 pub struct Risk {
     space: ActionSpace,
+    /// Reward of a risk when poor.
+    poor: f64,
     rng: Rng,
     seed: u64,
     rich: bool,
     steps: u32,
-    sums: (f64, f64),
+    sums: (f64, [f64; 2]),
     last: [f64; 2],
     times_out: bool,
 }
 
 impl Risk {
     pub fn new(times_out: bool) -> Risk {
+        Risk::with_poor(times_out, 0.4)
+    }
+
+    pub fn with_poor(times_out: bool, poor: f64) -> Risk {
         let button = |index: usize| (BUTTONS[index].0, BUTTONS[index].1);
         let group = |count: usize| ActionGroup { buttons: (0..count).map(button).collect() };
         Risk {
             space: ActionSpace { groups: vec![group(1), group(2)], deltas: vec![] },
+            poor,
             rng: Rng::new(0),
             seed: 0,
             rich: false,
             steps: 0,
-            sums: (0.0, 0.0),
+            sums: (0.0, [0.0; 2]),
             last: [0.0; 2],
             times_out,
         }
@@ -71,7 +81,7 @@ impl Environment for Risk {
         self.seed = seed;
         self.rich = self.rng.below(2) == 1;
         self.steps = 0;
-        self.sums = (0.0, 0.0);
+        self.sums = (0.0, [0.0; 2]);
         self.last = [0.0; 2];
     }
 
@@ -80,11 +90,12 @@ impl Environment for Risk {
             return Step { terminated: !self.times_out, truncated: self.times_out, ..Step::default() };
         }
         let risk = actions[0] == 1;
-        let reward = if risk { if self.rich { 1.0 } else { 0.4 } } else { 0.0 };
+        let reward = if risk { if self.rich { 1.0 } else { self.poor } } else { 0.0 };
         let cost = if risk { 1.0 } else { 0.0 };
         self.last = [cost, if actions[1] == 2 { 1.0 } else { 0.0 }];
         self.sums.0 += reward;
-        self.sums.1 += cost;
+        self.sums.1[0] += self.last[0];
+        self.sums.1[1] += self.last[1];
         self.steps += 1;
         self.rich = self.rng.below(2) == 1;
         Step { reward, cost, terminated: self.ended() && !self.times_out, truncated: self.ended() && self.times_out }
@@ -106,8 +117,8 @@ impl Environment for Risk {
             lane: 0,
             seed: self.seed,
             episode_return: self.sums.0,
-            cost: self.sums.1,
-            costs: vec![("risk", self.sums.1), ("second", 0.0)],
+            cost: self.sums.1[0],
+            costs: vec![("risk", self.sums.1[0]), ("second", self.sums.1[1])],
             length: self.steps,
             terminated: self.ended() && !self.times_out,
             truncated: self.ended() && self.times_out,
@@ -164,8 +175,9 @@ impl Environment for Broken {
 }
 
 /// A batch of the task.
-pub fn worlds(_: &EnvConfig, options: VecOptions) -> Result<VecEnv, hasard_envs::EnvError> {
-    VecEnv::from_fn(options, |_| Ok(Box::new(Risk::new(true))))
+pub fn worlds(env: &EnvConfig, options: VecOptions) -> Result<VecEnv, hasard_envs::EnvError> {
+    let poor = if env.id == "Trap" { -0.4 } else { 0.4 };
+    VecEnv::from_fn(options, |_| Ok(Box::new(Risk::with_poor(true, poor))))
 }
 
 /// Settings that solve the task in seconds.

@@ -6,13 +6,16 @@
 //! that do not exist; they are cheap, ignored going forward and zero going backward. Other convolutions copy patches.
 
 use super::elementwise::NOWHERE;
-use super::product::{Left, PANEL, Right, Size, multiply};
+use super::product::{Left, Right, Size, multiply};
+use super::simd::Kernels;
+use super::tile::PANEL;
 use crate::config::Convolution;
 use crate::networks::ImageShape;
 
 /// How an image is stored as the input of a convolution, and the sizes of the products.
 #[derive(Clone, Debug)]
 pub struct ConvolutionPlan {
+    kernels: Kernels,
     input: ImageShape,
     output: ImageShape,
     kernel: usize,
@@ -41,7 +44,7 @@ pub struct ConvolutionPlan {
 impl ConvolutionPlan {
     /// The plan for a convolution on an image that it fits on.
     #[must_use]
-    pub fn new(input: ImageShape, convolution: &Convolution) -> ConvolutionPlan {
+    pub fn new(kernels: Kernels, input: ImageShape, convolution: &Convolution) -> ConvolutionPlan {
         let output = input.after(convolution).expect("checked shape");
         let Convolution { kernel, stride, .. } = *convolution;
         let blocks = kernel.is_multiple_of(stride).then_some(kernel / stride);
@@ -91,6 +94,7 @@ impl ConvolutionPlan {
         let lead = blocks.map_or(0, |side| (side - 1) * (grid_width + 1));
         let pixels = || (0..output.height).flat_map(|y| (0..output.width).map(move |x| (y, x)));
         ConvolutionPlan {
+            kernels,
             raw_places: pixels().map(|(y, x)| (y * grid_width + x) * output.channels).collect(),
             gradient_places: pixels().map(|(y, x)| (lead + y * grid_width + x) * output.channels).collect(),
             stored: if blocks.is_some() { grid_width * grid_height * block_size } else { input.size() },
@@ -159,7 +163,7 @@ impl ConvolutionPlan {
 
     /// Weights for [`ConvolutionPlan::forward`].
     pub fn pack_forward(&self, weights: &[f32], packed: &mut [f32]) {
-        super::product::pack(&self.ordered(weights), self.depth(), self.output.channels, packed);
+        super::pack::pack(&self.ordered(weights), self.depth(), self.output.channels, packed);
     }
 
     /// Weights for [`ConvolutionPlan::input_gradient`]; the same number of values.
@@ -167,7 +171,7 @@ impl ConvolutionPlan {
         let ordered = self.ordered(weights);
         let channels = self.output.channels;
         let Some(side) = self.blocks else {
-            return super::product::pack_transposed(&ordered, channels, self.depth(), packed);
+            return super::pack::pack_transposed(&ordered, channels, self.depth(), packed);
         };
         // For each row of blocks a matrix from the gradients of `side` neighbouring pixels to one block.
         let block = self.block_size();
@@ -192,7 +196,7 @@ impl ConvolutionPlan {
             self.copy_patches(stored, patches);
             let size = Size { rows: self.output.height * self.output.width, columns: channels, inner: depth };
             let left = Left { data: patches, row_stride: depth, inner_stride: 1 };
-            return multiply(size, left, Right::panels(weights, depth), raw, channels, false);
+            return multiply(self.kernels, size, left, Right::panels(weights, depth), raw, channels, false);
         };
         let inner = side * self.block_size();
         for part in 0..side {
@@ -203,7 +207,7 @@ impl ConvolutionPlan {
             };
             let right = Right { data: &weights[part * inner * PANEL..], panel_stride: depth * PANEL, inner_stride: PANEL };
             let size = Size { rows: self.rows(), columns: channels, inner };
-            multiply(size, left, right, raw, channels, part > 0);
+            multiply(self.kernels, size, left, right, raw, channels, part > 0);
         }
     }
 
@@ -215,7 +219,7 @@ impl ConvolutionPlan {
             self.copy_patches(stored, patches);
             let size = Size { rows: depth, columns: channels, inner: self.output.height * self.output.width };
             let left = Left { data: patches, row_stride: 1, inner_stride: depth };
-            return multiply(size, left, right, weights, channels, true);
+            return multiply(self.kernels, size, left, right, weights, channels, true);
         };
         let rows = side * self.block_size();
         for part in 0..side {
@@ -225,7 +229,7 @@ impl ConvolutionPlan {
                 inner_stride: self.block_size(),
             };
             let size = Size { rows, columns: channels, inner: self.rows() };
-            multiply(size, left, right, &mut weights[part * rows * channels..], channels, true);
+            multiply(self.kernels, size, left, right, &mut weights[part * rows * channels..], channels, true);
         }
     }
 
@@ -233,7 +237,7 @@ impl ConvolutionPlan {
     pub fn unorder(&self, ordered: &[f32], canonical: &mut [f32]) {
         let channels = self.output.channels;
         for (&row, values) in self.weight_rows.iter().zip(ordered.chunks_exact(channels)) {
-            super::elementwise::add(&mut canonical[row * channels..(row + 1) * channels], values);
+            super::elementwise::add(self.kernels, &mut canonical[row * channels..(row + 1) * channels], values);
         }
     }
 
@@ -243,17 +247,24 @@ impl ConvolutionPlan {
         let Some(side) = self.blocks else {
             let size = Size { rows: self.output.height * self.output.width, columns: depth, inner: channels };
             let left = Left { data: gradient, row_stride: channels, inner_stride: 1 };
-            multiply(size, left, Right::panels(weights, channels), patches, depth, false);
+            multiply(self.kernels, size, left, Right::panels(weights, channels), patches, depth, false);
             return self.add_patches(patches, stored);
         };
         let (inner, block) = (side * channels, self.block_size());
         for part in 0..side {
             // Block b receives from the pixels b - part * grid_width - (0..side): they are contiguous, the farthest first.
-            let first = self.lead() - part * self.grid_width - (side - 1);
-            let left = Left { data: &gradient[first * channels..], row_stride: channels, inner_stride: 1 };
-            let size = Size { rows: self.grid_width * self.grid_height, columns: block, inner };
+            // Rows of blocks above the first such pixel or below the last receive nothing.
             let right = Right::panels(&weights[part * inner * block..(part + 1) * inner * block], inner);
-            multiply(size, left, right, stored, block, part > 0);
+            let mut receive = |from: usize, to: usize, accumulate: bool| {
+                let size = Size { rows: (to - from) * self.grid_width, columns: block, inner };
+                let first = self.lead() + (from - part) * self.grid_width - (side - 1);
+                let left = Left { data: &gradient[first * channels..], row_stride: channels, inner_stride: 1 };
+                multiply(self.kernels, size, left, right, &mut stored[from * self.grid_width * block..], block, accumulate);
+            };
+            // All but the last of them were reached by the part before already.
+            let fresh = if part == 0 { 0 } else { part + self.output.height - 1 };
+            receive(part, fresh, part > 0);
+            receive(fresh, part + self.output.height, false);
         }
     }
 
@@ -279,7 +290,7 @@ impl ConvolutionPlan {
         let run = self.kernel * self.input.channels;
         stored.fill(0.0);
         for (to, from) in self.patch_rows() {
-            super::elementwise::add(&mut stored[to..to + run], &patches[from..from + run]);
+            super::elementwise::add(self.kernels, &mut stored[to..to + run], &patches[from..from + run]);
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Exponentials are a polynomial of relative error below 2e-7, because the system's are neither vectorised nor equal on
 //! all machines.
 
-use super::simd::vectorised;
+use super::simd::{Kernels, vectorised};
 
 /// e^x for x in about -87..88, clamped outside.
 #[inline(always)]
@@ -98,9 +98,9 @@ vectorised! {
 }
 
 vectorised! {
-    /// Adds biases to rows of exactly their width.
-    pub fn bias_rows(rows: &mut [f32], bias: &[f32]) {
-        for row in rows.chunks_exact_mut(bias.len()) {
+    /// Adds biases to rows that are `stride` apart.
+    pub fn bias_rows(rows: &mut [f32], stride: usize, bias: &[f32]) {
+        for row in rows.chunks_mut(stride) {
             for (value, bias) in row.iter_mut().zip(bias) {
                 *value += *bias;
             }
@@ -140,62 +140,73 @@ vectorised! {
     }
 }
 
+/// Numbers that [`gru_gates`] and its backward step work on at once, in arrays of their own: slices might overlap for all
+/// that the compiler knows, and would be walked one number at a time.
+const BLOCK: usize = 16;
+
+#[inline(always)]
+fn block(values: &[f32], at: usize) -> [f32; BLOCK] {
+    values[at..at + BLOCK].try_into().expect("a whole block")
+}
+
 vectorised! {
-    /// One step of a GRU for some lanes. `from_input` and `from_state` are the products with the weights, biases still
-    /// missing; they become the gates (reset, update, candidate) and, in the third part of `from_state`, the candidate's
-    /// share of the state, which the backward pass needs.
+    /// One step of a GRU for one lane. `gates` and `from_state` are the products of input and state with their weights,
+    /// biases still missing; `gates` becomes the gates (reset, update, candidate), `share` the candidate's share of the
+    /// state, which the backward pass needs, and `after` the new state.
     pub fn gru_gates(
-        from_input: &mut [f32], from_state: &mut [f32], input_bias: &[f32], state_bias: &[f32], before: &[f32],
+        gates: &mut [f32], from_state: &[f32], input_bias: &[f32], state_bias: &[f32], before: &[f32], share: &mut [f32],
         after: &mut [f32],
     ) {
-        let units = input_bias.len() / 3;
-        let lanes = from_input.chunks_exact_mut(3 * units).zip(from_state.chunks_exact_mut(3 * units));
-        for ((input, state), (before, after)) in lanes.zip(before.chunks_exact(units).zip(after.chunks_exact_mut(units))) {
-            let (reset, rest) = input.split_at_mut(units);
-            let (update, candidate) = rest.split_at_mut(units);
-            let (state_reset, rest) = state.split_at_mut(units);
-            let (state_update, state_candidate) = rest.split_at_mut(units);
-            let (bi, bs) = (input_bias, state_bias);
-            for unit in 0..units {
-                let r = sigmoid(reset[unit] + bi[unit] + state_reset[unit] + bs[unit]);
-                let z = sigmoid(update[unit] + bi[units + unit] + state_update[unit] + bs[units + unit]);
-                let share = state_candidate[unit] + bs[2 * units + unit];
-                let n = tanh(candidate[unit] + bi[2 * units + unit] + r * share);
-                reset[unit] = r;
-                update[unit] = z;
-                candidate[unit] = n;
-                state_candidate[unit] = share;
-                after[unit] = n + z * (before[unit] - n);
+        let units = before.len();
+        for unit in (0..units).step_by(BLOCK) {
+            let [reset, update, candidate] = [unit, units + unit, 2 * units + unit];
+            let [mut r, mut z, mut n] = [block(gates, reset), block(gates, update), block(gates, candidate)];
+            let [sr, sz, sn] = [block(from_state, reset), block(from_state, update), block(from_state, candidate)];
+            let [ir, iz, ic] = [block(input_bias, reset), block(input_bias, update), block(input_bias, candidate)];
+            let [br, bz, bc] = [block(state_bias, reset), block(state_bias, update), block(state_bias, candidate)];
+            let state = block(before, unit);
+            let (mut shares, mut states) = ([0.0; BLOCK], [0.0; BLOCK]);
+            for i in 0..BLOCK {
+                r[i] = sigmoid(r[i] + ir[i] + sr[i] + br[i]);
+                z[i] = sigmoid(z[i] + iz[i] + sz[i] + bz[i]);
+                shares[i] = sn[i] + bc[i];
+                n[i] = tanh(n[i] + ic[i] + r[i] * shares[i]);
+                states[i] = n[i] + z[i] * (state[i] - n[i]);
             }
+            gates[reset..reset + BLOCK].copy_from_slice(&r);
+            gates[update..update + BLOCK].copy_from_slice(&z);
+            gates[candidate..candidate + BLOCK].copy_from_slice(&n);
+            share[unit..unit + BLOCK].copy_from_slice(&shares);
+            after[unit..unit + BLOCK].copy_from_slice(&states);
         }
     }
 }
 
 vectorised! {
-    /// The backward step of [`gru_gates`]. `gates` and `share` are what it left; both are replaced by the gradients of
-    /// the products: `gates` by those of the input's, `share` by those of the state's. `carry` is the gradient of the
-    /// state after, and becomes the direct part of the gradient of the state before.
-    pub fn gru_gates_backward(gates: &mut [f32], share: &mut [f32], before: &[f32], carry: &mut [f32], units: usize) {
-        let lanes = gates.chunks_exact_mut(3 * units).zip(share.chunks_exact_mut(3 * units));
-        for ((gates, share), (before, carry)) in lanes.zip(before.chunks_exact(units).zip(carry.chunks_exact_mut(units))) {
-            let (reset, rest) = gates.split_at_mut(units);
-            let (update, candidate) = rest.split_at_mut(units);
-            let (share_reset, rest) = share.split_at_mut(units);
-            let (share_update, share_candidate) = rest.split_at_mut(units);
-            for unit in 0..units {
-                let (r, z, n) = (reset[unit], update[unit], candidate[unit]);
-                let d = carry[unit];
-                let d_candidate = d * (1.0 - z) * (1.0 - n * n);
-                let d_update = d * (before[unit] - n) * z * (1.0 - z);
-                let d_reset = d_candidate * share_candidate[unit] * r * (1.0 - r);
-                reset[unit] = d_reset;
-                update[unit] = d_update;
-                candidate[unit] = d_candidate;
-                share_reset[unit] = d_reset;
-                share_update[unit] = d_update;
-                share_candidate[unit] = d_candidate * r;
-                carry[unit] = d * z;
+    /// The backward step of [`gru_gates`], from what it left. `input_sums` and `state_sums` become the gradients of the two
+    /// products; `carry` is the gradient of the state after, and becomes the direct part of that of the state before.
+    pub fn gru_gates_backward(
+        gates: &[f32], share: &[f32], before: &[f32], carry: &mut [f32], input_sums: &mut [f32], state_sums: &mut [f32],
+    ) {
+        let units = before.len();
+        for unit in (0..units).step_by(BLOCK) {
+            let [reset, update, candidate] = [unit, units + unit, 2 * units + unit];
+            let [r, z, n] = [block(gates, reset), block(gates, update), block(gates, candidate)];
+            let [share, state, mut d] = [block(share, unit), block(before, unit), block(carry, unit)];
+            let [mut d_reset, mut d_update, mut d_candidate, mut d_share] = [[0.0; BLOCK]; 4];
+            for i in 0..BLOCK {
+                d_candidate[i] = d[i] * (1.0 - z[i]) * (1.0 - n[i] * n[i]);
+                d_update[i] = d[i] * (state[i] - n[i]) * z[i] * (1.0 - z[i]);
+                d_reset[i] = d_candidate[i] * share[i] * r[i] * (1.0 - r[i]);
+                d_share[i] = d_candidate[i] * r[i];
+                d[i] *= z[i];
             }
+            for (sums, last) in [(&mut *input_sums, d_candidate), (&mut *state_sums, d_share)] {
+                sums[reset..reset + BLOCK].copy_from_slice(&d_reset);
+                sums[update..update + BLOCK].copy_from_slice(&d_update);
+                sums[candidate..candidate + BLOCK].copy_from_slice(&last);
+            }
+            carry[unit..unit + BLOCK].copy_from_slice(&d);
         }
     }
 }
@@ -211,11 +222,11 @@ vectorised! {
 
 /// Sum of squares, in blocks so that it neither loses small terms nor depends on anything but its input.
 #[must_use]
-pub fn sum_of_squares(values: &[f32]) -> f64 {
+pub fn sum_of_squares(kernels: Kernels, values: &[f32]) -> f64 {
     let mut total = 0.0;
     for block in values.chunks(4096) {
         let mut sum = 0.0;
-        block_square_sum(block, &mut sum);
+        block_square_sum(kernels, block, &mut sum);
         total += f64::from(sum);
     }
     total
@@ -301,7 +312,7 @@ mod tests {
                 beta2: 0.999,
                 epsilon: 1e-6,
             };
-            adam(step, g, &mut m, &mut v, &mut p);
+            adam(Kernels::PORTABLE, step, g, &mut m, &mut v, &mut p);
             for i in 0..3 {
                 let g = f64::from(g[i]) * 0.5;
                 em[i] = 0.9 * em[i] + 0.1 * g;

@@ -1,12 +1,25 @@
 //! The network on the processor: fused kernels that reach most of what its multiply-add units can do.
 //!
+//! From the bottom up: [`simd`] chooses the kernels, [`tile`], [`product`], [`outer`] and [`pack`] multiply matrices,
+//! [`elementwise`] does the rest of the arithmetic, [`convolution`] turns convolutions into products; [`forward`] writes a
+//! [`tape`] that [`backward`], [`encoder_gradient`] and [`gradient`] read; [`network`] is what the rest of the crate sees.
+//!
 //! Tests hold outputs and gradients against a plain network in 64 bits, written down from its definition; and, where graphics
 //! cards are built in, against their twin in the `burn` crate.
 
+pub mod backward;
 pub mod convolution;
 pub mod elementwise;
+pub mod encoder_gradient;
+pub mod forward;
+pub mod gradient;
 pub mod network;
-pub mod pass;
+pub mod outer;
+pub mod pack;
+mod pixels;
 pub mod product;
 pub mod simd;
+pub mod tape;
+pub mod threads;
+pub mod tile;
 pub mod weights;

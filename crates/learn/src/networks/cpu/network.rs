@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use super::elementwise::add;
-use super::pass::{Input, Pass};
+use super::backward::RowGradients;
+use super::forward::{Forward, Input};
+use super::gradient::{Finished, ParameterGradients};
+use super::simd::Kernels;
+use super::tape::{Tape, TapeLane};
+use super::threads::{deal, in_parallel};
 use super::weights::{Backward, PackedWeights, Plan, stored_pixels};
-use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences};
+use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, RecordedLane, Sequences};
 
-/// A network that learns on a number of threads, each with lanes of its own.
-///
-/// Nothing is shared between the threads but the weights; their gradients are added in the order of the lanes, so that
-/// a result depends on the number of shards but never on timing.
+/// A network that learns on a number of threads. Its results do not depend on the number.
 pub struct CpuLearner {
     plan: Arc<Plan>,
     weights: Arc<PackedWeights>,
@@ -18,112 +19,53 @@ pub struct CpuLearner {
     spare: Vec<Arc<PackedWeights>>,
     backward: Backward,
     pixels: Arc<PixelScale>,
-    shards: Vec<Shard>,
-}
-
-#[derive(Default)]
-struct Shard {
-    pass: Pass,
-    gradient: Vec<f32>,
-    outputs: Vec<f32>,
-}
-
-/// The lanes of a shard cut out of a batch, still ordered by time, then by lane.
-struct Cut<'a> {
-    first: usize,
-    lanes: usize,
-    steps: usize,
-    observations: Vec<&'a [u8]>,
-    extra: Vec<f32>,
-    initial_state: Vec<f32>,
-    reset: Vec<bool>,
-    pixels: &'a PixelScale,
-}
-
-impl<'a> Cut<'a> {
-    fn new(shape: &NetworkShape, batch: &Sequences<'a>, pixels: &'a PixelScale, first: usize, lanes: usize) -> Cut<'a> {
-        let mut cut = Cut {
-            first,
-            lanes,
-            steps: batch.steps,
-            observations: Vec::with_capacity(lanes * batch.steps),
-            extra: Vec::new(),
-            initial_state: batch.initial_state[first * shape.state_size()..(first + lanes) * shape.state_size()].to_vec(),
-            reset: Vec::with_capacity(lanes * batch.steps),
-            pixels,
-        };
-        for step in 0..batch.steps {
-            let rows = step * batch.lanes + first..step * batch.lanes + first + lanes;
-            cut.observations.extend_from_slice(&batch.observations[rows.clone()]);
-            cut.extra.extend_from_slice(&batch.extra[rows.start * shape.extra_inputs..rows.end * shape.extra_inputs]);
-            cut.reset.extend_from_slice(&batch.reset[rows]);
-        }
-        cut
-    }
-
-    fn input(&self) -> Input<'_> {
-        Input {
-            steps: self.steps,
-            lanes: self.lanes,
-            observations: &self.observations,
-            extra: &self.extra,
-            initial_state: &self.initial_state,
-            reset: &self.reset,
-            pixels: self.pixels,
-        }
-    }
+    threads: usize,
+    /// Forward passes of the last batch, their lanes one after the other; unused when all of it was recorded.
+    passes: Vec<(Forward, Tape)>,
+    /// The last forward pass was found in recordings.
+    recorded: bool,
+    rows: Vec<RowGradients>,
+    parameters: ParameterGradients,
 }
 
 impl CpuLearner {
     /// A learner of a checked shape on `threads` threads.
     #[must_use]
-    pub fn new(shape: &NetworkShape, threads: usize) -> CpuLearner {
+    pub fn new(kernels: Kernels, shape: &NetworkShape, threads: usize) -> CpuLearner {
         CpuLearner {
-            plan: Arc::new(Plan::new(shape)),
+            plan: Arc::new(Plan::new(kernels, shape)),
             weights: Arc::default(),
             spare: Vec::new(),
             backward: Backward::default(),
             pixels: Arc::new(PixelScale::unit(0)),
-            shards: (0..threads.max(1)).map(|_| Shard::default()).collect(),
+            threads: threads.max(1),
+            passes: Vec::new(),
+            recorded: false,
+            rows: Vec::new(),
+            parameters: ParameterGradients::default(),
         }
     }
 
-    /// Runs `work` for every shard, on a thread of its own but for the first.
-    fn each_shard(
-        &mut self,
-        batch: &Sequences<'_>,
-        work: impl Fn(&Plan, &PackedWeights, &Backward, &mut Shard, &Cut<'_>) + Sync,
-    ) {
-        let cuts = cuts(&self.plan.shape, batch, &self.pixels, self.shards.len());
-        let (plan, weights, backward, work) = (&*self.plan, &*self.weights, &self.backward, &work);
-        std::thread::scope(|scope| {
-            let mut pairs = self.shards.iter_mut().zip(&cuts);
-            let own = pairs.next();
-            for (shard, cut) in pairs {
-                scope.spawn(move || work(plan, weights, backward, shard, cut));
-            }
-            if let Some((shard, cut)) = own {
-                work(plan, weights, backward, shard, cut);
-            }
-        });
+    /// Where the activations of each lane of the last forward pass are.
+    fn tapes<'a>(&'a self, batch: &'a Sequences<'_>) -> Vec<TapeLane<'a>> {
+        if self.recorded {
+            return batch.recorded.iter().map(|lane| TapeLane { tape: &lane.recording.tape, lane: lane.lane }).collect();
+        }
+        let lanes = self.passes.iter().flat_map(|(_, tape)| (0..tape.lanes).map(move |lane| TapeLane { tape, lane }));
+        lanes.collect()
     }
 }
 
-/// Lanes of each shard: as equal as they can be, the larger ones first.
-fn lane_counts(lanes: usize, shards: usize) -> impl Iterator<Item = usize> {
-    let count = shards.min(lanes).max(1);
-    (0..count).map(move |shard| lanes / count + usize::from(shard < lanes % count))
-}
-
-/// A batch dealt out to shards.
-fn cuts<'a>(shape: &NetworkShape, batch: &Sequences<'a>, pixels: &'a PixelScale, shards: usize) -> Vec<Cut<'a>> {
-    let mut first = 0;
-    lane_counts(batch.lanes, shards)
-        .map(|lanes| {
-            first += lanes;
-            Cut::new(shape, batch, pixels, first - lanes, lanes)
-        })
-        .collect()
+/// Rows of a batch, which it has by time, ordered by lane.
+fn by_lane<T: Copy>(batch: &Sequences<'_>, values: &[T], width: usize) -> Vec<T> {
+    let mut ordered = Vec::with_capacity(values.len());
+    for lane in 0..batch.lanes {
+        for step in 0..batch.steps {
+            let row = step * batch.lanes + lane;
+            ordered.extend_from_slice(&values[row * width..(row + 1) * width]);
+        }
+    }
+    ordered
 }
 
 impl LearningNetwork for CpuLearner {
@@ -135,17 +77,13 @@ impl LearningNetwork for CpuLearner {
         let free = self.spare.iter().position(|spare| Arc::strong_count(spare) == 1);
         let mut fresh = free.map_or_else(Arc::default, |index| self.spare.swap_remove(index));
         let packed = Arc::get_mut(&mut fresh).expect("nobody else holds it");
-        let plan = &self.plan;
-        if self.shards.len() > 1 {
-            let backward = &mut self.backward;
-            std::thread::scope(|scope| {
-                scope.spawn(|| backward.load(plan, parameters));
-                packed.load(plan, parameters);
-            });
-        } else {
-            self.backward.load(plan, parameters);
-            packed.load(plan, parameters);
+        let (plan, backward) = (&self.plan, &mut self.backward);
+        let mut work: Vec<Box<dyn FnOnce() + Send + '_>> =
+            vec![Box::new(|| packed.load(plan, parameters)), Box::new(|| backward.load(plan, parameters))];
+        if self.threads == 1 {
+            work.drain(..).for_each(|work| work());
         }
+        in_parallel(work);
         self.spare.push(std::mem::replace(&mut self.weights, fresh));
     }
 
@@ -158,45 +96,69 @@ impl LearningNetwork for CpuLearner {
     }
 
     fn forward(&mut self, batch: &Sequences<'_>) -> Vec<f32> {
-        self.each_shard(batch, |plan, weights, _, shard, cut| {
-            let (outputs, padded) = (plan.shape.outputs(), plan.padded_outputs);
-            let rows = shard.pass.forward(plan, weights, &cut.input());
-            shard.outputs.clear();
-            for row in rows.chunks_exact(padded).take(cut.steps * cut.lanes) {
-                shard.outputs.extend_from_slice(&row[..outputs]);
-            }
-        });
-        let outputs = self.plan.shape.outputs();
+        let (steps, lanes) = (batch.steps, batch.lanes);
+        let usable =
+            |lane: &RecordedLane<'_>| lane.recording.holds(&self.weights, &self.pixels) && lane.recording.tape.steps == steps;
+        self.recorded = batch.recorded.len() == lanes && batch.recorded.iter().all(usable);
+        if !self.recorded {
+            let shape = &self.plan.shape;
+            let (units, extra_inputs) = (shape.state_size(), shape.extra_inputs);
+            let observations = by_lane(batch, &batch.observations, 1);
+            let (extra, reset) = (by_lane(batch, &batch.extra, extra_inputs), by_lane(batch, &batch.reset, 1));
+            let dealt = deal(lanes, self.threads);
+            self.passes.resize_with(dealt.clone().count(), Default::default);
+            let (plan, weights, pixels) = (&*self.plan, &*self.weights, &*self.pixels);
+            in_parallel(self.passes.iter_mut().zip(dealt).map(|((forward, tape), lanes)| {
+                let rows = lanes.start * steps..lanes.end * steps;
+                let input = Input {
+                    observations: &observations[rows.clone()],
+                    extra: &extra[rows.start * extra_inputs..rows.end * extra_inputs],
+                    state: &batch.initial_state[lanes.start * units..lanes.end * units],
+                    reset: &reset[rows],
+                    pixels,
+                };
+                move || {
+                    tape.prepare(plan, steps, lanes.len());
+                    forward.run(plan, weights, &input, 0..steps, 0..lanes.len(), tape);
+                }
+            }));
+        }
+        let (outputs, padded) = (self.plan.shape.outputs(), self.plan.padded_outputs);
         let mut all = vec![0.0; batch.rows() * outputs];
-        let mut first = 0;
-        for (shard, lanes) in self.shards.iter().zip(lane_counts(batch.lanes, self.shards.len())) {
-            for (step, rows) in shard.outputs.chunks_exact(lanes * outputs).enumerate() {
-                let start = (step * batch.lanes + first) * outputs;
-                all[start..start + rows.len()].copy_from_slice(rows);
+        for (lane, tape) in self.tapes(batch).into_iter().enumerate() {
+            for (step, row) in tape.of(&tape.tape.outputs, padded).chunks_exact(padded).enumerate() {
+                all[(step * lanes + lane) * outputs..][..outputs].copy_from_slice(&row[..outputs]);
             }
-            first += lanes;
         }
         all
     }
 
     fn backward(&mut self, batch: &Sequences<'_>, output_gradient: &[f32], gradient: &mut [f32]) {
-        let length = gradient.len();
-        self.each_shard(batch, |plan, _, backward, shard, cut| {
-            let outputs = plan.shape.outputs();
-            let mut own = Vec::with_capacity(cut.steps * cut.lanes * outputs);
-            for step in 0..cut.steps {
-                let start = (step * batch.lanes + cut.first) * outputs;
-                own.extend_from_slice(&output_gradient[start..start + cut.lanes * outputs]);
+        let (plan, steps) = (Arc::clone(&self.plan), batch.steps);
+        let (outputs, padded) = (plan.shape.outputs(), plan.padded_outputs);
+        let (observations, reset) = (by_lane(batch, &batch.observations, 1), by_lane(batch, &batch.reset, 1));
+        let output_gradient = by_lane(batch, output_gradient, outputs);
+        let (mut rows, mut parameters) = (std::mem::take(&mut self.rows), std::mem::take(&mut self.parameters));
+        let lanes = self.tapes(batch);
+        let dealt = deal(batch.lanes, self.threads);
+        rows.resize_with(dealt.clone().count(), Default::default);
+        in_parallel(rows.iter_mut().zip(dealt).map(|(rows, own)| {
+            let (plan, back, lanes) = (&*plan, &self.backward, &lanes[own.clone()]);
+            let reset = &reset[own.start * steps..own.end * steps];
+            let from = &output_gradient[own.start * steps * outputs..own.end * steps * outputs];
+            move || {
+                rows.outputs.clear();
+                rows.outputs.resize(own.len() * steps * padded, 0.0);
+                for (to, from) in rows.outputs.chunks_exact_mut(padded).zip(from.chunks_exact(outputs)) {
+                    to[..outputs].copy_from_slice(from);
+                }
+                rows.run(plan, back, lanes, reset);
             }
-            shard.gradient.clear();
-            shard.gradient.resize(length, 0.0);
-            shard.pass.backward(plan, backward, &cut.input(), &own, &mut shard.gradient);
-        });
-        let used = self.shards.len().min(batch.lanes).max(1);
-        gradient.copy_from_slice(&self.shards[0].gradient);
-        for shard in &self.shards[1..used] {
-            add(gradient, &shard.gradient);
-        }
+        }));
+        let dealt: Vec<&RowGradients> = rows.iter().collect();
+        let finished = Finished { lanes: &lanes, observations: &observations, pixels: &self.pixels, rows: &dealt };
+        parameters.run(&plan, &self.backward, &finished, self.threads, gradient);
+        (self.rows, self.parameters) = (rows, parameters);
     }
 }
 
@@ -205,18 +167,21 @@ pub struct CpuActor {
     plan: Arc<Plan>,
     weights: Arc<PackedWeights>,
     pixels: Arc<PixelScale>,
-    pass: Pass,
+    forward: Forward,
+    /// What is computed without a recording.
+    tape: Tape,
 }
 
 impl CpuActor {
     /// An actor of a checked shape.
     #[must_use]
-    pub fn new(shape: &NetworkShape) -> CpuActor {
+    pub fn new(kernels: Kernels, shape: &NetworkShape) -> CpuActor {
         CpuActor {
-            plan: Arc::new(Plan::new(shape)),
+            plan: Arc::new(Plan::new(kernels, shape)),
             weights: Arc::default(),
             pixels: Arc::new(PixelScale::unit(0)),
-            pass: Pass::default(),
+            forward: Forward::default(),
+            tape: Tape::default(),
         }
     }
 }
@@ -236,19 +201,29 @@ impl ActingNetwork for CpuActor {
         }
     }
 
-    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32]) {
-        let shape = &self.plan.shape;
-        let observations: Vec<&[u8]> = observations.chunks_exact(shape.image.size()).collect();
-        let lanes = observations.len();
-        let input =
-            Input { steps: 1, lanes, observations: &observations, extra, initial_state: state, reset: &[], pixels: &self.pixels };
-        let rows = self.pass.forward(&self.plan, &self.weights, &input);
-        let width = shape.outputs();
-        for (to, from) in outputs.chunks_exact_mut(width).zip(rows.chunks_exact(self.plan.padded_outputs)) {
-            to.copy_from_slice(&from[..width]);
+    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32], place: Option<Place<'_>>) {
+        let plan = &*self.plan;
+        let observations: Vec<&[u8]> = observations.chunks_exact(plan.shape.image.size()).collect();
+        let input = Input { observations: &observations, extra, state, reset: &[], pixels: &self.pixels };
+        let (tape, step, lanes) = match place {
+            Some(place) => {
+                place.recording.note(&self.weights, &self.pixels);
+                place.recording.tape.prepare(plan, place.steps, place.all_lanes);
+                (&mut place.recording.tape, place.step, place.lanes)
+            }
+            None => {
+                self.tape.prepare(plan, 1, observations.len());
+                (&mut self.tape, 0, 0..observations.len())
+            }
+        };
+        self.forward.run(plan, &self.weights, &input, step..step + 1, lanes.clone(), tape);
+        let (width, padded, steps) = (plan.shape.outputs(), plan.padded_outputs, tape.steps);
+        for (lane, to) in lanes.zip(outputs.chunks_exact_mut(width)) {
+            let row = lane * steps + step;
+            to.copy_from_slice(&tape.outputs[row * padded..row * padded + width]);
         }
-        if let Some(units) = shape.recurrent {
-            state.copy_from_slice(self.pass.final_state(units, lanes));
+        if plan.shape.recurrent.is_some() {
+            state.copy_from_slice(self.forward.final_state());
         }
     }
 }

@@ -1,17 +1,14 @@
-//! Matrix products: one register tile under all of them.
+//! Matrix products, block by block over the register tile of [`super::tile`].
 //!
-//! A tile keeps up to 12 rows x 32 columns of the result in registers and walks the inner dimension once. Both factors
-//! are read in place through strides, so a convolution is a product whose rows overlap in memory, a weight gradient is
-//! a product with rows and inner dimension exchanged, and nothing but weights is ever repacked. On this project's
-//! machines a tile runs at over 90 % of what the multiply-add units can do, for all the shapes of the network.
+//! Both factors are read in place through strides, so a convolution is a product whose rows overlap in memory and the
+//! gradient of its weights one with rows and inner dimension exchanged. Weights are repacked once an update, and the long
+//! factors of the dense layers' gradients on their way ([`super::outer`]). Tiles run at over 90 % of what the multiply-add
+//! units can do.
 //!
-//! The unsafe code stays in this file: [`multiply`] asserts that every address it will touch lies inside its slices,
-//! and the tests compare each level with plain loops.
+//! [`multiply`] asserts that every address that it will touch lies inside its slices.
 
-use super::simd::Level;
-
-/// Columns of a tile; widths of results are multiples of it.
-pub const PANEL: usize = 32;
+use super::simd::{Kernels, Level};
+use super::tile::{PANEL, Tile, tallest, tiles};
 
 /// Left factor: element (row, inner) is `data[row * row_stride + inner * inner_stride]`.
 #[derive(Clone, Copy)]
@@ -42,7 +39,7 @@ impl<'a> Right<'a> {
         Right { data, panel_stride: PANEL, inner_stride: width }
     }
 
-    /// A matrix of `inner` rows stored panel after panel, as [`pack`] does.
+    /// A matrix of `inner` rows stored panel after panel, as [`super::pack::pack`] does.
     #[must_use]
     pub fn panels(data: &'a [f32], inner: usize) -> Right<'a> {
         Right { data, panel_stride: inner * PANEL, inner_stride: PANEL }
@@ -62,17 +59,33 @@ pub struct Size {
 
 /// Bytes of the left factor that stay in the second-level cache while the panels of the right one pass by.
 const BLOCK_BYTES: usize = 384 * 1024;
+/// Longest stretch of the inner dimension that is walked at once: a panel of so many rows stays in the second-level cache, and
+/// with short registers, which read it twice as often, nearly in the first.
+pub(super) const fn stretch(kernels: Kernels) -> usize {
+    match kernels.level() {
+        Level::Avx512 => 2048,
+        Level::Avx2 | Level::Portable => 512,
+    }
+}
+
+/// The inner dimension dealt into stretches of nearly equal length, as (first, length).
+pub(super) fn stretches(kernels: Kernels, inner: usize) -> impl Iterator<Item = (usize, usize)> {
+    let count = inner.div_ceil(stretch(kernels)).max(1);
+    let (length, longer) = (inner / count, inner % count);
+    (0..count).map(move |part| (part * length + part.min(longer), length + usize::from(part < longer)))
+}
+
+/// Rows of the left factor in a block, for a stretch of the inner dimension.
+pub(super) fn block_rows(kernels: Kernels, inner: usize) -> usize {
+    (BLOCK_BYTES / size_of::<f32>() / inner.clamp(1, stretch(kernels))).next_multiple_of(tallest(kernels))
+}
 
 /// `out = left * right`, or `out += left * right`; row `i` of the result starts at `out[i * out_stride]`.
 ///
 /// # Panics
 /// If the size reaches outside a slice, or `columns` is no multiple of [`PANEL`].
-pub fn multiply(size: Size, left: Left<'_>, right: Right<'_>, out: &mut [f32], out_stride: usize, accumulate: bool) {
-    multiply_with(Level::detect(), size, left, right, out, out_stride, accumulate);
-}
-
-fn multiply_with(
-    level: Level,
+pub fn multiply(
+    kernels: Kernels,
     size: Size,
     left: Left<'_>,
     right: Right<'_>,
@@ -87,220 +100,55 @@ fn multiply_with(
     }
     assert!(columns.is_multiple_of(PANEL), "product of {columns} columns, not a multiple of {PANEL}");
     assert!((rows - 1) * left.row_stride + (inner - 1) * left.inner_stride < left.data.len(), "left factor too short");
-    let last_panel = columns / PANEL - 1;
+    let panels = columns / PANEL;
     assert!(
-        last_panel * right.panel_stride + (inner - 1) * right.inner_stride + PANEL <= right.data.len(),
+        (panels - 1) * right.panel_stride + (inner - 1) * right.inner_stride + PANEL <= right.data.len(),
         "right factor too short"
     );
     assert!((rows - 1) * out_stride + columns <= out.len() && (rows == 1 || out_stride >= columns), "result too short");
-    let tallest = match level {
-        Level::Avx512 => 12,
-        Level::Avx2 => 3,
-        Level::Portable => 4,
-    };
-    let block = (BLOCK_BYTES / 4 / inner).next_multiple_of(tallest).min(rows);
-    let mut first = 0;
-    while first < rows {
-        let end = (first + block).min(rows);
-        for panel in 0..=last_panel {
-            let mut row = first;
-            while row < end {
-                // Tiles of nearly equal height: 16 rows are 8 + 8 rather than 12 + 4, which keeps the units busy.
-                let left_rows = end - row;
-                let height = left_rows.div_ceil(left_rows.div_ceil(tallest));
-                let tile = Tile {
-                    inner,
-                    row_stride: left.row_stride,
-                    left_inner: left.inner_stride,
-                    right_inner: right.inner_stride,
-                    out_stride,
-                    accumulate,
-                };
-                // SAFETY: the assertions above bound every element of the tile: rows `row..row + height` of the left
-                // factor and of the result, panel `panel` of the right factor and of the result, all inner indices.
-                // The level was detected on this processor, or is one that it includes.
-                unsafe {
-                    tile.run(
-                        level,
-                        height,
-                        left.data.as_ptr().add(row * left.row_stride),
-                        right.data.as_ptr().add(panel * right.panel_stride),
-                        out.as_mut_ptr().add(row * out_stride + panel * PANEL),
-                    );
-                }
-                row += height;
-            }
-        }
-        first = end;
-    }
-}
-
-/// Strides of a tile.
-#[derive(Clone, Copy)]
-struct Tile {
-    inner: usize,
-    row_stride: usize,
-    left_inner: usize,
-    right_inner: usize,
-    out_stride: usize,
-    accumulate: bool,
-}
-
-impl Tile {
-    /// # Safety
-    /// All elements of the tile must lie inside the allocations behind the pointers; the processor must have `level`.
-    #[inline]
-    unsafe fn run(self, level: Level, height: usize, left: *const f32, right: *const f32, out: *mut f32) {
-        macro_rules! heights {
-            ($function:ident: $($height:literal)*) => {
-                match height {
-                    // SAFETY: as the caller promised.
-                    $($height => unsafe { $function::<$height>(self, left, right, out) },)*
-                    _ => unreachable!("tile height"),
-                }
-            };
-        }
-        match level {
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => heights!(tile_avx512: 1 2 3 4 5 6 7 8 9 10 11 12),
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => heights!(tile_avx2: 1 2 3),
-            _ => heights!(tile_portable: 1 2 3 4),
-        }
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f")]
-unsafe fn tile_avx512<const ROWS: usize>(tile: Tile, mut left: *const f32, mut right: *const f32, out: *mut f32) {
-    use std::arch::x86_64::{_mm512_fmadd_ps, _mm512_loadu_ps, _mm512_set1_ps, _mm512_setzero_ps, _mm512_storeu_ps};
-    // SAFETY: see `Tile::run`.
-    unsafe {
-        let mut sums = [[_mm512_setzero_ps(); 2]; ROWS];
-        if tile.accumulate {
-            for (row, pair) in sums.iter_mut().enumerate() {
-                for (half, sum) in pair.iter_mut().enumerate() {
-                    *sum = _mm512_loadu_ps(out.add(row * tile.out_stride + 16 * half));
+    for (start, length) in stretches(kernels, inner) {
+        let mut tile = Tile {
+            inner: length,
+            row_stride: left.row_stride,
+            left_inner: left.inner_stride,
+            right_inner: right.inner_stride,
+            out_stride,
+            accumulate: accumulate || start > 0,
+            ahead: None,
+        };
+        let block = block_rows(kernels, length);
+        for first in (0..rows).step_by(block) {
+            let block_rows = block.min(rows - first);
+            for panel in 0..panels {
+                for (row, height) in tiles(kernels, block_rows) {
+                    // The last tile of a panel fetches the next panel: with few rows, weights come from afar all the time.
+                    tile.ahead = (row + height == block_rows && panel + 1 < panels).then_some(right.panel_stride);
+                    let row = first + row;
+                    // SAFETY: the assertions above bound every element of the tile: rows `row..row + height` of the left
+                    // factor and of the result, panel `panel` of the right factor and of the result, and the inner indices
+                    // `start..start + length`.
+                    unsafe {
+                        tile.run(
+                            kernels,
+                            height,
+                            left.data.as_ptr().add(row * left.row_stride + start * left.inner_stride),
+                            right.data.as_ptr().add(panel * right.panel_stride + start * right.inner_stride),
+                            out.as_mut_ptr().add(row * out_stride + panel * PANEL),
+                        );
+                    }
                 }
             }
-        }
-        for _ in 0..tile.inner {
-            let low = _mm512_loadu_ps(right);
-            let high = _mm512_loadu_ps(right.add(16));
-            for (row, pair) in sums.iter_mut().enumerate() {
-                let factor = _mm512_set1_ps(*left.add(row * tile.row_stride));
-                pair[0] = _mm512_fmadd_ps(factor, low, pair[0]);
-                pair[1] = _mm512_fmadd_ps(factor, high, pair[1]);
-            }
-            left = left.wrapping_add(tile.left_inner);
-            right = right.wrapping_add(tile.right_inner);
-        }
-        for (row, pair) in sums.iter().enumerate() {
-            for (half, sum) in pair.iter().enumerate() {
-                _mm512_storeu_ps(out.add(row * tile.out_stride + 16 * half), *sum);
-            }
-        }
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn tile_avx2<const ROWS: usize>(tile: Tile, mut left: *const f32, mut right: *const f32, out: *mut f32) {
-    use std::arch::x86_64::{_mm256_fmadd_ps, _mm256_loadu_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_storeu_ps};
-    // SAFETY: see `Tile::run`.
-    unsafe {
-        let mut sums = [[_mm256_setzero_ps(); 4]; ROWS];
-        if tile.accumulate {
-            for (row, quads) in sums.iter_mut().enumerate() {
-                for (quarter, sum) in quads.iter_mut().enumerate() {
-                    *sum = _mm256_loadu_ps(out.add(row * tile.out_stride + 8 * quarter));
-                }
-            }
-        }
-        for _ in 0..tile.inner {
-            let mut columns = [_mm256_setzero_ps(); 4];
-            for (quarter, column) in columns.iter_mut().enumerate() {
-                *column = _mm256_loadu_ps(right.add(8 * quarter));
-            }
-            for (row, quads) in sums.iter_mut().enumerate() {
-                let factor = _mm256_set1_ps(*left.add(row * tile.row_stride));
-                for (sum, column) in quads.iter_mut().zip(columns) {
-                    *sum = _mm256_fmadd_ps(factor, column, *sum);
-                }
-            }
-            left = left.wrapping_add(tile.left_inner);
-            right = right.wrapping_add(tile.right_inner);
-        }
-        for (row, quads) in sums.iter().enumerate() {
-            for (quarter, sum) in quads.iter().enumerate() {
-                _mm256_storeu_ps(out.add(row * tile.out_stride + 8 * quarter), *sum);
-            }
-        }
-    }
-}
-
-unsafe fn tile_portable<const ROWS: usize>(tile: Tile, mut left: *const f32, mut right: *const f32, out: *mut f32) {
-    // SAFETY: see `Tile::run`.
-    unsafe {
-        let mut sums = [[0.0f32; PANEL]; ROWS];
-        if tile.accumulate {
-            for (row, sums) in sums.iter_mut().enumerate() {
-                *sums = out.add(row * tile.out_stride).cast::<[f32; PANEL]>().read();
-            }
-        }
-        for _ in 0..tile.inner {
-            let columns = right.cast::<[f32; PANEL]>().read();
-            for (row, sums) in sums.iter_mut().enumerate() {
-                let factor = *left.add(row * tile.row_stride);
-                for (sum, column) in sums.iter_mut().zip(columns) {
-                    *sum += factor * column;
-                }
-            }
-            left = left.wrapping_add(tile.left_inner);
-            right = right.wrapping_add(tile.right_inner);
-        }
-        for (row, sums) in sums.iter().enumerate() {
-            out.add(row * tile.out_stride).cast::<[f32; PANEL]>().write(*sums);
-        }
-    }
-}
-
-/// Stores a matrix of `inner` rows and `columns` columns, row by row in `source`, panel after panel in `packed`.
-///
-/// A panel is read front to back by a tile; row by row the same reads would be kilobytes apart.
-pub fn pack(source: &[f32], inner: usize, columns: usize, packed: &mut [f32]) {
-    assert!(columns.is_multiple_of(PANEL) && source.len() == inner * columns && packed.len() == source.len());
-    for (row, values) in source.chunks_exact(columns).enumerate() {
-        for (panel, part) in values.chunks_exact(PANEL).enumerate() {
-            let start = (panel * inner + row) * PANEL;
-            packed[start..start + PANEL].copy_from_slice(part);
-        }
-    }
-}
-
-/// As [`pack`], of the transpose: `source` has `columns` rows of `inner` columns.
-pub fn pack_transposed(source: &[f32], inner: usize, columns: usize, packed: &mut [f32]) {
-    assert!(columns.is_multiple_of(PANEL) && source.len() == inner * columns && packed.len() == source.len());
-    const BLOCK: usize = 16;
-    for (rows, panel) in source.chunks_exact(PANEL * inner).zip(packed.chunks_exact_mut(PANEL * inner)) {
-        let mut first = 0;
-        while first < inner {
-            let end = (first + BLOCK).min(inner);
-            for (lane, row) in rows.chunks_exact(inner).enumerate() {
-                for index in first..end {
-                    panel[index * PANEL + lane] = row[index];
-                }
-            }
-            first = end;
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
+    use super::super::pack::pack;
     use super::*;
 
-    fn noise(length: usize, seed: u32) -> Vec<f32> {
+    /// Numbers between -1 and 1.
+    pub fn noise(length: usize, seed: u32) -> Vec<f32> {
         let mut state = seed;
         (0..length)
             .map(|_| {
@@ -310,18 +158,10 @@ mod tests {
             .collect()
     }
 
-    fn levels() -> Vec<Level> {
-        match Level::detect() {
-            Level::Avx512 => vec![Level::Avx512, Level::Avx2, Level::Portable],
-            Level::Avx2 => vec![Level::Avx2, Level::Portable],
-            Level::Portable => vec![Level::Portable],
-        }
-    }
-
-    /// Every level, tile height and way of striding equals plain loops.
+    /// Every family, tile height and way of striding equals plain loops.
     #[test]
     fn products_equal_plain_loops() {
-        for level in levels() {
+        for kernels in Kernels::available() {
             for rows in [1, 2, 3, 5, 7, 8, 11, 12, 13, 16, 23, 25, 40] {
                 for (columns, inner) in [(32, 1), (64, 9), (96, 130)] {
                     let size = Size { rows, columns, inner };
@@ -340,7 +180,7 @@ mod tests {
                             let stride = columns + 4;
                             let before = noise(rows * stride, 4);
                             let mut out = before.clone();
-                            multiply_with(level, size, left, right, &mut out, stride, accumulate);
+                            multiply(kernels, size, left, right, &mut out, stride, accumulate);
                             for row in 0..rows {
                                 for column in 0..stride {
                                     let at = row * stride + column;
@@ -355,7 +195,7 @@ mod tests {
                                     };
                                     assert!(
                                         (f64::from(out[at]) - expected).abs() < 2e-5,
-                                        "{level:?} {size:?} row {row} column {column}: {} against {expected}",
+                                        "{kernels} {size:?} row {row} column {column}: {} against {expected}",
                                         out[at]
                                     );
                                 }
@@ -367,20 +207,57 @@ mod tests {
         }
     }
 
+    /// Longer than any stretch: at 640x480 the first dense layer sums 136,192 terms, at 1280x720 429,312. One column is compared in full, with a
+    /// plain sum in twice the precision.
     #[test]
-    fn transposed_packing_equals_packing_of_the_transpose() {
-        let (inner, columns) = (19, 64);
-        let matrix = noise(inner * columns, 5);
-        let mut transpose = vec![0.0; matrix.len()];
-        for row in 0..inner {
-            for column in 0..columns {
-                transpose[column * inner + row] = matrix[row * columns + column];
+    fn long_products_end_and_equal_plain_sums() {
+        for inner in [2049, 98_305, 136_192, 429_312] {
+            let (left, right) = (noise(2 * inner, 1), noise(inner * PANEL, 2));
+            for kernels in Kernels::available() {
+                let mut out = vec![0.0; 2 * PANEL];
+                let factor = Left { data: &left, row_stride: inner, inner_stride: 1 };
+                multiply(
+                    kernels,
+                    Size { rows: 2, columns: PANEL, inner },
+                    factor,
+                    Right::panels(&right, inner),
+                    &mut out,
+                    PANEL,
+                    false,
+                );
+                for (row, column) in [(0, 0), (1, 31)] {
+                    let term = |k: usize| f64::from(left[row * inner + k]) * f64::from(right[k * PANEL + column]);
+                    let expected: f64 = (0..inner).map(term).sum();
+                    let found = f64::from(out[row * PANEL + column]);
+                    assert!((found - expected).abs() < 1e-6 * inner as f64, "{kernels} {inner}: {found}, not {expected}");
+                }
             }
         }
-        let (mut a, mut b) = (vec![0.0; matrix.len()], vec![0.0; matrix.len()]);
-        pack(&matrix, inner, columns, &mut a);
-        pack_transposed(&transpose, inner, columns, &mut b);
-        assert_eq!(a, b);
+    }
+
+    /// The families that fuse multiplication and addition agree bit by bit, and so do any two ways of dealing out rows.
+    #[test]
+    fn neither_the_width_of_registers_nor_the_number_of_rows_changes_a_bit() {
+        let (rows, inner, columns) = (29, 1300, 64);
+        let (left, right) = (noise(rows * inner, 1), noise(inner * columns, 2));
+        let product = |kernels: Kernels, parts: &[usize]| {
+            let mut out = vec![0.0; rows * columns];
+            let mut first = 0;
+            for &rows in parts {
+                let factor = Left { data: &left[first * inner..], row_stride: inner, inner_stride: 1 };
+                let size = Size { rows, columns, inner };
+                multiply(kernels, size, factor, Right::panels(&right, inner), &mut out[first * columns..], columns, false);
+                first += rows;
+            }
+            out
+        };
+        let fused: Vec<_> = Kernels::available().into_iter().filter(|&kernels| kernels != Kernels::PORTABLE).collect();
+        for &kernels in fused.iter().chain(&[Kernels::PORTABLE]) {
+            assert_eq!(product(kernels, &[rows]), product(kernels, &[1, 13, 15]), "{kernels}");
+        }
+        for pair in fused.windows(2) {
+            assert_eq!(product(pair[0], &[rows]), product(pair[1], &[rows]));
+        }
     }
 
     #[test]
@@ -389,6 +266,6 @@ mod tests {
         let size = Size { rows: 4, columns: 32, inner: 8 };
         let (left, right) = (vec![0.0; 31], vec![0.0; 256]);
         let left = Left { data: &left, row_stride: 8, inner_stride: 1 };
-        multiply(size, left, Right::panels(&right, 8), &mut [0.0; 128], 32, false);
+        multiply(Kernels::PORTABLE, size, left, Right::panels(&right, 8), &mut [0.0; 128], 32, false);
     }
 }

@@ -2,12 +2,16 @@
 
 use super::convolution::ConvolutionPlan;
 use super::elementwise::NOWHERE;
-use super::product::{PANEL, pack, pack_transposed};
+use super::pack::{pack, pack_transposed};
+use super::simd::Kernels;
+use super::tile::PANEL;
 use crate::networks::{NetworkShape, Parameter, PixelScale};
 
 /// What follows from a shape once and for all: plans of the convolutions, places of parameters.
 #[derive(Clone, Debug)]
 pub struct Plan {
+    /// What computes it.
+    pub kernels: Kernels,
     /// The shape.
     pub shape: NetworkShape,
     /// A plan for each convolution.
@@ -21,11 +25,12 @@ pub struct Plan {
 impl Plan {
     /// The plan of a checked shape.
     #[must_use]
-    pub fn new(shape: &NetworkShape) -> Plan {
+    pub fn new(kernels: Kernels, shape: &NetworkShape) -> Plan {
         let images = shape.images();
         let convolutions =
-            shape.convolutions.iter().zip(&images).map(|(layer, &image)| ConvolutionPlan::new(image, layer)).collect();
+            shape.convolutions.iter().zip(&images).map(|(layer, &image)| ConvolutionPlan::new(kernels, image, layer)).collect();
         Plan {
+            kernels,
             convolutions,
             parameters: shape.parameters(),
             padded_outputs: shape.outputs().next_multiple_of(PANEL),

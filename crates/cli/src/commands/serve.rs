@@ -1,0 +1,105 @@
+//! `hasard serve`: the page in the browser.
+
+use crate::args::ServeArgs;
+use crate::failure::{Failure, Outcome};
+
+/// Runs the command.
+#[cfg(feature = "serve")]
+pub fn run(args: &ServeArgs) -> Outcome {
+    let beyond = !args.listen.ip().is_loopback();
+    let token = match &args.token {
+        Some(token) if token.len() < 8 || !token.bytes().all(|byte| byte.is_ascii_alphanumeric()) => {
+            return Err(Failure::bad("--token: give at least 8 letters and digits"));
+        }
+        Some(token) => Some(token.clone()),
+        None if beyond => Some(drawn_token()?),
+        None => None,
+    };
+    let settings = hasard_serve::Settings {
+        address: args.listen,
+        token: token.clone(),
+        folders: args.runs.clone(),
+        episodes: args.out.clone(),
+        agents: std::sync::Arc::new(trained::Trained),
+    };
+    let taken = |error: std::io::Error| Failure::bad(format!("--listen {}: {error}; choose another port", args.listen));
+    let server = hasard_serve::Server::bind(settings).map_err(taken)?;
+    let query = token.map_or_else(String::new, |token| format!("?token={token}"));
+    let address = format!("http://{}/{query}", server.address());
+    say!("{address}");
+    if args.open {
+        open(&address);
+    }
+    server.run().map_err(Failure::bad)
+}
+
+/// Sixteen bytes of the system's randomness.
+#[cfg(feature = "serve")]
+fn drawn_token() -> Result<String, Failure> {
+    use std::hash::{BuildHasher, Hasher};
+    // The standard library seeds each of these from the system.
+    let draw = || std::collections::hash_map::RandomState::new().build_hasher().finish();
+    Ok(format!("{:016x}{:016x}", draw(), draw()))
+}
+
+/// Asks the desktop to show an address; without a desktop the printed one is there.
+#[cfg(feature = "serve")]
+fn open(address: &str) {
+    let program = if cfg!(target_os = "macos") {
+        "open"
+    } else if cfg!(windows) {
+        "explorer"
+    } else {
+        "xdg-open"
+    };
+    if std::process::Command::new(program).arg(address).spawn().is_err() {
+        eprintln!("hasard: no {program} on this machine; open the address yourself");
+    }
+}
+
+/// Trained agents as the other commands load them.
+#[cfg(feature = "serve")]
+mod trained {
+    use crate::failure::Failure;
+    use crate::settings::trained_options;
+    use hasard_envs::{Env, EnvOptions};
+    use hasard_learn::networks::distribution::ActionShape;
+    use hasard_learn::runs::evaluate::{Agent, Choice, Which, run_config};
+    use std::path::{Path, PathBuf};
+
+    pub struct Trained;
+
+    impl hasard_serve::Agents for Trained {
+        fn options(&self, run: &Path) -> Result<(String, EnvOptions), String> {
+            let config = run_config(run).map_err(|error| error.to_string())?;
+            let options = trained_options(&config.env).map_err(|failure| match failure {
+                Failure::BadInput(why) | Failure::Negative(why) => why,
+                Failure::OutputClosed => String::new(),
+            })?;
+            Ok((config.env.id, options))
+        }
+
+        fn load(&self, run: &Path, best: bool, choice: Choice, env: &Env) -> Result<Agent, String> {
+            let space = env.action_space();
+            let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
+            let which = if best { Which::Best } else { Which::Latest };
+            let mut warn = |text: String| eprintln!("hasard: {text}");
+            Agent::load(run, which, choice, 1, env.observation_shape(), action, &mut warn).map_err(|error| error.to_string())
+        }
+
+        fn zoo(&self) -> Vec<String> {
+            Vec::new()
+        }
+
+        fn zoo_run(&self, name: &str) -> Result<PathBuf, String> {
+            Err(format!("zoo:{name}: no agents come with this version; name a run"))
+        }
+    }
+}
+
+/// Runs the command.
+#[cfg(not(feature = "serve"))]
+pub fn run(args: &ServeArgs) -> Outcome {
+    let problem = "this hasard was built without its page; build it with: cargo build --release -p hasard --features serve";
+    Err(Failure::bad(format!("serve {}: {problem}", args.listen)))
+}

@@ -1,0 +1,66 @@
+//! How often a rollout is gone through, and in which parts.
+
+use crate::config::TrainConfig;
+use crate::random::{Purpose, Stream};
+
+/// The passes over one rollout.
+#[derive(Clone, Debug)]
+pub struct Passes {
+    seed: u64,
+    /// Number of the rollout.
+    rollout: u64,
+    lanes: usize,
+    /// How many.
+    pub epochs: usize,
+    minibatches: usize,
+    target_kl: Option<f64>,
+}
+
+impl Passes {
+    /// The passes over a rollout of a number of lanes, the `rollout`th of the run.
+    #[must_use]
+    pub fn new(config: &TrainConfig, rollout: u64, lanes: usize) -> Passes {
+        let learning = &config.learning;
+        let (epochs, minibatches, target_kl) = (learning.epochs, learning.minibatches, learning.target_kl);
+        Passes { seed: config.seed, rollout, lanes, epochs, minibatches, target_kl }
+    }
+
+    /// The lanes of each minibatch of a pass: dealt anew every time, unless one minibatch takes them all.
+    #[must_use]
+    pub fn minibatches(&self, epoch: usize) -> Vec<Vec<usize>> {
+        let mut lanes: Vec<usize> = (0..self.lanes).collect();
+        if self.minibatches > 1 {
+            Stream::new(self.seed, Purpose::Shuffle, self.rollout, epoch as u64).shuffle(&mut lanes);
+        }
+        lanes.chunks(self.lanes.div_ceil(self.minibatches)).map(<[usize]>::to_vec).collect()
+    }
+
+    /// Whether the policy has moved far enough.
+    #[must_use]
+    pub fn end_at(&self, divergence: Option<f64>) -> bool {
+        matches!((self.target_kl, divergence), (Some(target), Some(divergence)) if divergence > target)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{AlgorithmKind, EnvConfig, Preset};
+
+    #[test]
+    fn every_lane_is_in_one_minibatch_of_a_pass_and_passes_differ() {
+        let mut config = TrainConfig::plain(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("test"));
+        assert_eq!(Passes::new(&config, 3, 4).minibatches(0), [[0, 1, 2, 3]]);
+        config.learning.minibatches = 3;
+        config.learning.target_kl = Some(0.02);
+        let passes = Passes::new(&config, 3, 8);
+        let (first, second) = (passes.minibatches(0), passes.minibatches(1));
+        assert_eq!(first.iter().map(Vec::len).collect::<Vec<_>>(), [3, 3, 2]);
+        let mut all = first.concat();
+        all.sort_unstable();
+        assert_eq!(all, (0..8).collect::<Vec<_>>());
+        assert_ne!(first, second);
+        assert_ne!(first, Passes::new(&config, 4, 8).minibatches(0));
+        assert!(passes.end_at(Some(0.03)) && !passes.end_at(Some(0.01)) && !passes.end_at(None));
+    }
+}

@@ -1,0 +1,114 @@
+//! The backward pass through heads, GRU and dense layers, row by row: gradients of every layer's sums for some lanes.
+//!
+//! What is a sum over rows, the gradient of weights, comes after ([`super::gradient`]); what is done here for one lane does not
+//! depend on the lanes beside it.
+
+use super::elementwise::{add, elu_backward_rows, gru_gates_backward};
+use super::forward::sized;
+use super::product::{Left, Right, Size, multiply};
+use super::tape::TapeLane;
+use super::weights::{Backward, Plan};
+
+/// Gradients of some lanes; rows as in their tape, by lane, then by time, but where something else is said.
+#[derive(Default)]
+pub struct RowGradients {
+    /// Lanes.
+    pub lanes: usize,
+    /// Of the outputs, padded to whole panels.
+    pub outputs: Vec<f32>,
+    /// Of the products of the GRU's input.
+    pub input_sums: Vec<f32>,
+    /// Of the products of the GRU's state; by time, then by lane.
+    pub state_sums: Vec<f32>,
+    /// Of the sums of each dense layer.
+    pub dense: Vec<Vec<f32>>,
+    /// Of the features.
+    pub features: Vec<f32>,
+    core: Vec<f32>,
+    carry: Vec<f32>,
+}
+
+impl RowGradients {
+    /// Computes all of them from `outputs`. `reset` says before which rows the state was zeroed.
+    pub fn run(&mut self, plan: &Plan, back: &Backward, lanes: &[TapeLane<'_>], reset: &[bool]) {
+        let (kernels, shape) = (plan.kernels, &plan.shape);
+        let steps = lanes.first().map_or(0, |lane| lane.tape.steps);
+        let rows = steps * lanes.len();
+        self.lanes = lanes.len();
+        self.dense.resize_with(shape.dense.len(), Vec::new);
+        let padded = plan.padded_outputs;
+        let units = shape.dense[shape.dense.len() - 1];
+        let from_outputs = Left { data: &self.outputs, row_stride: padded, inner_stride: 1 };
+        let heads = Right::panels(&back.heads, padded);
+        let last = sized(&mut self.dense[shape.dense.len() - 1], rows * units);
+        if let Some(state) = shape.recurrent {
+            let core = sized(&mut self.core, rows * state);
+            multiply(kernels, Size { rows, columns: state, inner: padded }, from_outputs, heads, core, state, false);
+            self.recur(plan, back, lanes, reset, state);
+            let last = &mut self.dense[shape.dense.len() - 1];
+            let left = Left { data: &self.input_sums, row_stride: 3 * state, inner_stride: 1 };
+            let size = Size { rows, columns: units, inner: 3 * state };
+            multiply(kernels, size, left, Right::panels(&back.gru_input, 3 * state), last, units, false);
+        } else {
+            multiply(kernels, Size { rows, columns: units, inner: padded }, from_outputs, heads, last, units, false);
+        }
+        for index in (0..shape.dense.len()).rev() {
+            let units = shape.dense[index];
+            let (earlier, rest) = self.dense.split_at_mut(index);
+            let sums = &mut rest[0][..rows * units];
+            for (sums, lane) in sums.chunks_exact_mut((steps * units).max(1)).zip(lanes) {
+                let (output, width) = match lane.tape.dense.get(index) {
+                    Some(output) => (output, units),
+                    None => (&lane.tape.core_input, shape.core_inputs()),
+                };
+                elu_backward_rows(kernels, sums, units, lane.of(output, width), width);
+            }
+            let (to, inputs) = match earlier.last_mut() {
+                Some(before) => (before, shape.dense[index - 1]),
+                // Nothing flows into an image.
+                None if plan.convolutions.is_empty() => break,
+                None => (&mut self.features, shape.features()),
+            };
+            let to = sized(to, rows * inputs);
+            let left = Left { data: sums, row_stride: units, inner_stride: 1 };
+            let size = Size { rows, columns: inputs, inner: units };
+            multiply(kernels, size, left, Right::panels(&back.dense[index], units), to, inputs, false);
+        }
+    }
+
+    /// From the gradient of the states after each step to those of the GRU's products.
+    fn recur(&mut self, plan: &Plan, back: &Backward, lanes: &[TapeLane<'_>], reset: &[bool], units: usize) {
+        let (kernels, count) = (plan.kernels, lanes.len());
+        let steps = lanes.first().map_or(0, |lane| lane.tape.steps);
+        let input_sums = sized(&mut self.input_sums, steps * count * 3 * units);
+        let state_sums = sized(&mut self.state_sums, steps * count * 3 * units);
+        let carry = sized(&mut self.carry, count * units);
+        carry.fill(0.0);
+        for step in (0..steps).rev() {
+            let state_sums = &mut state_sums[step * count * 3 * units..(step + 1) * count * 3 * units];
+            let each = lanes.iter().zip(carry.chunks_exact_mut(units)).zip(state_sums.chunks_exact_mut(3 * units));
+            for (lane, ((source, carry), state_sums)) in each.enumerate() {
+                let row = lane * steps + step;
+                add(kernels, carry, &self.core[row * units..(row + 1) * units]);
+                let of = |width: usize| step * width..(step + 1) * width;
+                gru_gates_backward(
+                    kernels,
+                    &source.of(&source.tape.gates, 3 * units)[of(3 * units)],
+                    &source.of(&source.tape.share, units)[of(units)],
+                    &source.of(&source.tape.before, units)[of(units)],
+                    carry,
+                    &mut input_sums[row * 3 * units..(row + 1) * 3 * units],
+                    state_sums,
+                );
+            }
+            let size = Size { rows: count, columns: units, inner: 3 * units };
+            let left = Left { data: state_sums, row_stride: 3 * units, inner_stride: 1 };
+            multiply(kernels, size, left, Right::panels(&back.gru_hidden, 3 * units), carry, units, true);
+            for (lane, carry) in carry.chunks_exact_mut(units).enumerate() {
+                if reset[lane * steps + step] {
+                    carry.fill(0.0);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The backward pass through the convolutions, image by image, gathering the gradients of their weights.
+
+use super::convolution::ConvolutionPlan;
+use super::elementwise::{add, add_column_sums, elu_backward_gather};
+use super::forward::{output_places, sized};
+use super::pixels::store_pixels;
+use super::tape::TapeLane;
+use super::weights::{Backward, Plan};
+use crate::networks::PixelScale;
+
+/// Gradients of the convolutions' weights and biases over some lanes, weights in the order of the stored inputs.
+#[derive(Default)]
+pub struct EncoderGradient {
+    layers: Vec<(Vec<f32>, Vec<f32>)>,
+}
+
+/// Buffers of the pass, one set a thread.
+#[derive(Default)]
+pub struct Scratch {
+    bytes: Vec<u8>,
+    image: Vec<f32>,
+    patches: Vec<f32>,
+    /// Gradient of each layer's sums, zero around the pixels that exist.
+    padded: Vec<Vec<f32>>,
+    /// Gradient of each layer's input.
+    stored: Vec<Vec<f32>>,
+}
+
+impl Scratch {
+    /// Makes room for a plan.
+    pub fn prepare(&mut self, plan: &Plan) {
+        let layers = plan.convolutions.len();
+        self.padded.resize_with(layers, Vec::new);
+        self.stored.resize_with(layers, Vec::new);
+        for (layer, convolution) in plan.convolutions.iter().enumerate() {
+            sized(&mut self.padded[layer], convolution.gradient_size()).fill(0.0);
+            sized(&mut self.stored[layer], if layer > 0 { convolution.stored } else { 0 });
+        }
+    }
+}
+
+impl EncoderGradient {
+    /// Forgets what was gathered.
+    pub fn clear(&mut self, plan: &Plan) {
+        self.layers.resize_with(plan.convolutions.len(), Default::default);
+        for ((weights, biases), convolution) in self.layers.iter_mut().zip(&plan.convolutions) {
+            sized(weights, convolution.depth() * convolution.channels()).fill(0.0);
+            sized(biases, convolution.channels()).fill(0.0);
+        }
+    }
+
+    /// Adds the gradients of one lane, from those of its features.
+    #[allow(clippy::too_many_arguments, reason = "the pieces of a pass")]
+    pub fn add_lane(
+        &mut self,
+        plan: &Plan,
+        back: &Backward,
+        pixels: &PixelScale,
+        lane: TapeLane<'_>,
+        observations: &[&[u8]],
+        feature_gradient: &[f32],
+        scratch: &mut Scratch,
+    ) {
+        let kernels = plan.kernels;
+        let features = plan.shape.features();
+        let layers = plan.convolutions.len();
+        let places: Vec<_> = (0..layers).map(|layer| output_places(plan, layer)).collect();
+        for (step, observation) in observations.iter().enumerate() {
+            for layer in (0..layers).rev() {
+                let convolution = &plan.convolutions[layer];
+                let (weights, biases) = &mut self.layers[layer];
+                let padded = &mut scratch.padded[layer][..];
+                let row = |buffer, width: usize| &lane.of(buffer, width)[step * width..(step + 1) * width];
+                let (d, output): (&[f32], &[f32]) = match plan.convolutions.get(layer + 1) {
+                    None => (&feature_gradient[step * features..][..features], row(&lane.tape.features, features)),
+                    Some(next) => (&scratch.stored[layer + 1], row(&lane.tape.activations[layer], next.stored)),
+                };
+                let targets = &convolution.gradient_places;
+                elu_backward_gather(kernels, d, output, &places[layer], convolution.channels(), targets, padded);
+                add_column_sums(kernels, padded, biases);
+                let stored: &[f32] = if layer == 0 {
+                    let image = sized(&mut scratch.image, convolution.stored);
+                    store_pixels(kernels, plan.shape.image, convolution, observation, pixels, &mut scratch.bytes, image);
+                    image
+                } else {
+                    row(&lane.tape.activations[layer - 1], convolution.stored)
+                };
+                let patches = sized(&mut scratch.patches, convolution.patch_size());
+                convolution.weight_gradient(stored, patches, padded, weights);
+                if layer > 0 {
+                    convolution.input_gradient(padded, &back.convolutions[layer], patches, &mut scratch.stored[layer]);
+                }
+            }
+        }
+    }
+
+    /// Adds the gradients of a layer to those of its parameters.
+    pub fn add_to(&self, layer: usize, convolution: &ConvolutionPlan, plan: &Plan, weights: &mut [f32], biases: &mut [f32]) {
+        let (own_weights, own_biases) = &self.layers[layer];
+        convolution.unorder(own_weights, weights);
+        add(plan.kernels, biases, own_biases);
+    }
+}

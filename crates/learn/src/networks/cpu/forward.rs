@@ -1,0 +1,192 @@
+//! The forward pass: of whole trajectories when learning, of one step at a time when acting. Both are the same code and write
+//! to a [`Tape`]; a row's numbers do not depend on the rows that are computed with it.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use super::elementwise::{bias_elu_rows, bias_elu_scatter, bias_rows, gru_gates, scale_pixels};
+use super::pixels::store_pixels;
+use super::product::{Left, Right, Size, multiply};
+use super::tape::{Rows, Tape};
+use super::weights::{PackedWeights, Plan};
+use crate::networks::PixelScale;
+
+/// What the rows of a forward pass read, ordered by lane, then by time.
+pub struct Input<'a> {
+    /// One image a row.
+    pub observations: &'a [&'a [u8]],
+    /// Extra inputs of each row.
+    pub extra: &'a [f32],
+    /// State of each lane before the first step.
+    pub state: &'a [f32],
+    /// Rows before which the state is zeroed; empty if none.
+    pub reset: &'a [bool],
+    /// How pixels enter, in the order of the first layer's stored input.
+    pub pixels: &'a PixelScale,
+}
+
+/// Buffers of a forward pass that nothing needs afterwards.
+#[derive(Default)]
+pub struct Forward {
+    bytes: Vec<u8>,
+    image: Vec<f32>,
+    raw: Vec<f32>,
+    patches: Vec<f32>,
+    state: Vec<f32>,
+    from_state: Vec<f32>,
+}
+
+/// Where the pixels of each convolution's output go: into the next one's input, or row by row behind the last.
+pub(super) fn output_places(plan: &Plan, layer: usize) -> Cow<'_, [usize]> {
+    match plan.convolutions.get(layer + 1) {
+        Some(next) => Cow::Borrowed(&next.places),
+        None => {
+            let convolution = &plan.convolutions[layer];
+            (0..convolution.raw_places.len()).map(|pixel| pixel * convolution.channels()).collect()
+        }
+    }
+}
+
+pub(super) fn sized<T: Clone + Default>(buffer: &mut Vec<T>, length: usize) -> &mut [T] {
+    if buffer.len() < length {
+        buffer.resize(length, T::default());
+    }
+    &mut buffer[..length]
+}
+
+impl Forward {
+    /// Computes some lanes at one step, or at all of the tape's.
+    pub fn run(
+        &mut self,
+        plan: &Plan,
+        weights: &PackedWeights,
+        input: &Input<'_>,
+        steps: Range<usize>,
+        lanes: Range<usize>,
+        tape: &mut Tape,
+    ) {
+        let (kernels, shape) = (plan.kernels, &plan.shape);
+        let rows = Rows::new(tape, &steps, &lanes);
+        assert_eq!(input.observations.len(), rows.count, "one observation a row");
+        self.encode(plan, weights, input, rows, tape);
+        dense(plan, weights, input, rows, tape);
+        if let Some(units) = shape.recurrent {
+            self.recur(plan, units, weights, input, steps, lanes, tape);
+        }
+        let (inputs, padded) = (shape.head_inputs(), plan.padded_outputs);
+        let core = if shape.recurrent.is_some() { &tape.after } else { &tape.core_input };
+        let left = Left { data: &core[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
+        let size = Size { rows: rows.count, columns: padded, inner: inputs };
+        let outputs = &mut tape.outputs[rows.span(padded)];
+        multiply(kernels, size, left, Right::panels(&weights.heads, inputs), outputs, rows.stride * padded, false);
+        bias_rows(kernels, outputs, rows.stride * padded, &weights.head_biases);
+    }
+
+    /// State of each lane after the last step of the last pass.
+    #[must_use]
+    pub fn final_state(&self) -> &[f32] {
+        &self.state
+    }
+
+    /// Convolutions of every row, and the features that they end in.
+    fn encode(&mut self, plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, tape: &mut Tape) {
+        let kernels = plan.kernels;
+        let features = plan.shape.features();
+        let places: Vec<_> = (0..plan.convolutions.len()).map(|layer| output_places(plan, layer)).collect();
+        for (row, observation) in rows.iter().zip(input.observations) {
+            let to = &mut tape.features[row * features..(row + 1) * features];
+            let Some(first) = plan.convolutions.first() else {
+                scale_pixels(kernels, observation, &input.pixels.scale, &input.pixels.shift, to);
+                continue;
+            };
+            let image = sized(&mut self.image, first.stored);
+            store_pixels(kernels, plan.shape.image, first, observation, input.pixels, &mut self.bytes, image);
+            for (layer, convolution) in plan.convolutions.iter().enumerate() {
+                let (earlier, rest) = tape.activations.split_at_mut(layer);
+                let stored: &[f32] = match earlier.last() {
+                    None => &self.image[..convolution.stored],
+                    Some(before) => &before[row * convolution.stored..(row + 1) * convolution.stored],
+                };
+                let patches = sized(&mut self.patches, convolution.patch_size());
+                let raw = sized(&mut self.raw, convolution.raw_size());
+                convolution.forward(stored, &weights.convolutions[layer], patches, raw);
+                let to = match plan.convolutions.get(layer + 1) {
+                    Some(next) => &mut rest[0][row * next.stored..(row + 1) * next.stored],
+                    None => &mut tape.features[row * features..(row + 1) * features],
+                };
+                let bias = &weights.convolution_biases[layer];
+                bias_elu_scatter(kernels, raw, &convolution.raw_places, bias, &places[layer], to);
+            }
+        }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "the pieces of a pass")]
+    fn recur(
+        &mut self,
+        plan: &Plan,
+        units: usize,
+        weights: &PackedWeights,
+        input: &Input<'_>,
+        steps: Range<usize>,
+        lanes: Range<usize>,
+        tape: &mut Tape,
+    ) {
+        let (kernels, inputs) = (plan.kernels, plan.shape.core_inputs());
+        let rows = Rows::new(tape, &steps, &lanes);
+        let size = Size { rows: rows.count, columns: 3 * units, inner: inputs };
+        let left = Left { data: &tape.core_input[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
+        let gates = &mut tape.gates[rows.span(3 * units)];
+        multiply(kernels, size, left, Right::panels(&weights.gru_input, inputs), gates, rows.stride * 3 * units, false);
+        self.state.clear();
+        self.state.extend_from_slice(input.state);
+        let from_state = sized(&mut self.from_state, lanes.len() * 3 * units);
+        let [input_bias, state_bias] = &weights.gru_biases;
+        for (index, step) in steps.clone().enumerate() {
+            for (lane, state) in self.state.chunks_exact_mut(units).enumerate() {
+                if input.reset.get(lane * steps.len() + index).is_some_and(|&reset| reset) {
+                    state.fill(0.0);
+                }
+            }
+            let size = Size { rows: lanes.len(), columns: 3 * units, inner: units };
+            let left = Left { data: &self.state, row_stride: units, inner_stride: 1 };
+            multiply(kernels, size, left, Right::panels(&weights.gru_hidden, units), from_state, 3 * units, false);
+            let each = self.state.chunks_exact_mut(units).zip(from_state.chunks_exact(3 * units));
+            for (lane, (state, from_state)) in lanes.clone().zip(each) {
+                let row = lane * tape.steps + step;
+                let of = |width: usize| row * width..(row + 1) * width;
+                let (gates, share) = (&mut tape.gates[of(3 * units)], &mut tape.share[of(units)]);
+                let (before, after) = (&mut tape.before[of(units)], &mut tape.after[of(units)]);
+                before.copy_from_slice(state);
+                gru_gates(kernels, gates, from_state, input_bias, state_bias, before, share, after);
+                state.copy_from_slice(after);
+            }
+        }
+    }
+}
+
+/// Dense layers, and the extra inputs behind the last.
+fn dense(plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, tape: &mut Tape) {
+    let (kernels, shape) = (plan.kernels, &plan.shape);
+    for (index, &units) in shape.dense.iter().enumerate() {
+        let (earlier, rest) = tape.dense.split_at_mut(index);
+        let (from, inputs) = match earlier.last() {
+            None => (&tape.features, shape.features()),
+            Some(before) => (before, shape.dense[index - 1]),
+        };
+        let (to, width) = match rest.first_mut() {
+            Some(to) => (to, units),
+            None => (&mut tape.core_input, shape.core_inputs()),
+        };
+        let size = Size { rows: rows.count, columns: units, inner: inputs };
+        let left = Left { data: &from[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
+        let (to, stride) = (&mut to[rows.span(width)], rows.stride * width);
+        multiply(kernels, size, left, Right::panels(&weights.dense[index], inputs), to, stride, false);
+        bias_elu_rows(kernels, to, stride, &weights.dense_biases[index]);
+    }
+    let (inputs, extra) = (shape.core_inputs(), shape.extra_inputs);
+    if extra > 0 {
+        for (row, extra) in rows.iter().zip(input.extra.chunks_exact(extra)) {
+            tape.core_input[(row + 1) * inputs - extra.len()..(row + 1) * inputs].copy_from_slice(extra);
+        }
+    }
+}

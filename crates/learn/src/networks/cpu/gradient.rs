@@ -1,0 +1,208 @@
+//! Gradients of parameters: sums over the rows of a batch, dealt out to threads.
+//!
+//! Threads share out the numbers of a dense layer's gradient, each of them summed over all rows in order, and the lanes of
+//! the convolutions' in a number of groups that follows from the batch alone. So no bit depends on the number of threads.
+
+use super::backward::RowGradients;
+use super::elementwise::add;
+use super::encoder_gradient::{EncoderGradient, Scratch};
+use super::outer::{Workspace, sum_outer_products};
+use super::simd::Kernels;
+use super::tape::{Tape, TapeLane};
+use super::threads::{deal, in_parallel};
+use super::weights::{Backward, Plan};
+use crate::networks::PixelScale;
+
+/// Most groups that lanes are dealt into, which bounds memory and the threads that convolutions keep busy.
+const MOST_GROUPS: usize = 16;
+
+/// Buffers that are used again.
+#[derive(Default)]
+pub struct ParameterGradients {
+    threads: Vec<(Scratch, Workspace)>,
+    groups: Vec<EncoderGradient>,
+    joined_heads: Vec<f32>,
+    joined_biases: Vec<f32>,
+}
+
+/// A batch whose row gradients are known.
+pub struct Finished<'a> {
+    /// Where each lane's activations are.
+    pub lanes: &'a [TapeLane<'a>],
+    /// Images, by lane, then by time.
+    pub observations: &'a [&'a [u8]],
+    /// How pixels enter.
+    pub pixels: &'a PixelScale,
+    /// Gradients of rows, their lanes one after the other.
+    pub rows: &'a [&'a RowGradients],
+}
+
+/// Part of the gradient of one layer's weights, or all of its biases'.
+enum Job<'a> {
+    Weights { factors: &'a Factors<'a>, first: usize, out: &'a mut [f32] },
+    Biases { factors: &'a Factors<'a>, out: &'a mut [f32] },
+}
+
+/// The factors of a weight gradient, row by row.
+struct Factors<'a> {
+    inputs: Vec<&'a [f32]>,
+    sums: Vec<&'a [f32]>,
+    width: usize,
+    columns: usize,
+}
+
+impl<'a> Factors<'a> {
+    /// Rows of the gradient for every thread.
+    fn deal_out<'b>(&'b self, mut out: &'b mut [f32], jobs: &mut [Vec<Job<'b>>]) {
+        for (rows, jobs) in deal(out.len() / self.columns, jobs.len()).zip(jobs) {
+            let part;
+            (part, out) = out.split_at_mut(rows.len() * self.columns);
+            jobs.push(Job::Weights { factors: self, first: rows.start, out: part });
+        }
+    }
+}
+
+impl Job<'_> {
+    fn run(self, kernels: Kernels, workspace: &mut Workspace) {
+        match self {
+            Job::Weights { factors, first, out } => {
+                let rows = first..first + out.len() / factors.columns;
+                sum_outer_products(kernels, &factors.inputs, rows, &factors.sums, factors.columns, out, workspace);
+            }
+            Job::Biases { factors, out } => {
+                out.fill(0.0);
+                factors.sums.iter().for_each(|row| add(kernels, out, row));
+            }
+        }
+    }
+}
+
+impl<'a> Finished<'a> {
+    /// The factors of every dense layer and of the GRU, in the order of the parameters.
+    fn layers(&self, plan: &Plan) -> Vec<Factors<'a>> {
+        let shape = &plan.shape;
+        let mut layers = Vec::new();
+        for (index, &units) in shape.dense.iter().enumerate() {
+            let input = |tape: &'a Tape| -> &'a [f32] { if index == 0 { &tape.features } else { &tape.dense[index - 1] } };
+            layers.push(self.factors(input, plan.dense(index).inputs, |rows| &rows.dense[index], units, false));
+        }
+        if let Some(units) = shape.recurrent {
+            let inputs = shape.core_inputs();
+            layers.push(self.factors(|tape| &tape.core_input, inputs, |rows| &rows.input_sums, 3 * units, false));
+            layers.push(self.factors(|tape| &tape.before, units, |rows| &rows.state_sums, 3 * units, true));
+        }
+        layers
+    }
+
+    /// One buffer of the tapes and the row gradients that belong to it.
+    fn factors(
+        &self,
+        input: impl Fn(&'a Tape) -> &'a [f32],
+        width: usize,
+        sums: impl Fn(&'a RowGradients) -> &'a [f32],
+        columns: usize,
+        by_time: bool,
+    ) -> Factors<'a> {
+        let steps = self.lanes.first().map_or(0, |lane| lane.tape.steps);
+        let inputs = self.lanes.iter().flat_map(|lane| lane.of(input(lane.tape), width).chunks_exact(width)).collect();
+        let rows = self.rows.iter().flat_map(|rows| {
+            let sums = sums(rows);
+            (0..rows.lanes).flat_map(move |lane| {
+                (0..steps).map(move |step| {
+                    let row = if by_time { step * rows.lanes + lane } else { lane * steps + step };
+                    &sums[row * columns..(row + 1) * columns]
+                })
+            })
+        });
+        Factors { inputs, sums: rows.collect(), width, columns }
+    }
+}
+
+impl ParameterGradients {
+    /// Writes the gradients of all parameters to `gradient`, on `threads` threads.
+    pub fn run(&mut self, plan: &Plan, back: &Backward, batch: &Finished<'_>, threads: usize, gradient: &mut [f32]) {
+        let (kernels, shape) = (plan.kernels, &plan.shape);
+        let steps = batch.lanes.first().map_or(0, |lane| lane.tape.steps);
+        let layers = batch.layers(plan);
+        let heads = batch.factors(|tape| tape.core(plan), shape.head_inputs(), |rows| &rows.outputs, plan.padded_outputs, false);
+        let (convolutions, mut rest) = gradient.split_at_mut(plan.dense(0).offset);
+        let mut jobs: Vec<Vec<Job<'_>>> = (0..threads).map(|_| Vec::new()).collect();
+        for (index, factors) in layers.iter().enumerate() {
+            let (weights, biases);
+            (weights, rest) = rest.split_at_mut(factors.width * factors.columns);
+            (biases, rest) = rest.split_at_mut(factors.columns);
+            factors.deal_out(weights, &mut jobs);
+            jobs[index % threads].push(Job::Biases { factors, out: biases });
+        }
+        deal_out_heads(&heads, &mut self.joined_heads, &mut self.joined_biases, &mut jobs);
+
+        let features = shape.features();
+        let feature_gradients: Vec<&[f32]> = batch
+            .rows
+            .iter()
+            .flat_map(|rows| (0..rows.lanes).map(|lane| rows.features.get(lane * steps * features..).unwrap_or(&[])))
+            .collect();
+        let lanes: Vec<_> = deal(batch.lanes.len(), MOST_GROUPS).collect();
+        self.groups.resize_with(lanes.len(), Default::default);
+        self.threads.resize_with(threads, Default::default);
+        let mut groups = self.groups.iter_mut().zip(&lanes);
+        let mut shares = deal(lanes.len(), threads);
+        let work = self.threads.iter_mut().zip(jobs).map(|((scratch, workspace), jobs)| {
+            let groups: Vec<_> = groups.by_ref().take(shares.next().map_or(0, |share| share.len())).collect();
+            let feature_gradients = &feature_gradients;
+            move || {
+                if !plan.convolutions.is_empty() {
+                    scratch.prepare(plan);
+                    for (group, lanes) in groups {
+                        group.clear(plan);
+                        for lane in lanes.clone() {
+                            let observations = &batch.observations[lane * steps..(lane + 1) * steps];
+                            let from = feature_gradients[lane];
+                            group.add_lane(plan, back, batch.pixels, batch.lanes[lane], observations, from, scratch);
+                        }
+                    }
+                }
+                jobs.into_iter().for_each(|job| job.run(kernels, workspace));
+            }
+        });
+        in_parallel(work);
+
+        let mut rest = convolutions;
+        let mut work = Vec::new();
+        for (layer, convolution) in plan.convolutions.iter().enumerate() {
+            let (weights, biases);
+            (weights, rest) = rest.split_at_mut(plan.convolution(layer).size());
+            (biases, rest) = rest.split_at_mut(convolution.channels());
+            let groups = &self.groups;
+            work.push(move || {
+                weights.fill(0.0);
+                biases.fill(0.0);
+                groups.iter().for_each(|group| group.add_to(layer, convolution, plan, weights, biases));
+            });
+        }
+        in_parallel(work);
+        self.split_heads(plan, gradient);
+    }
+
+    /// From the heads side by side to the parameters of each.
+    fn split_heads(&self, plan: &Plan, gradient: &mut [f32]) {
+        let mut first = 0;
+        for (index, &count) in plan.shape.heads.iter().enumerate() {
+            let parameter = plan.head(index);
+            let rows = self.joined_heads.chunks_exact(plan.padded_outputs);
+            for (to, from) in gradient[parameter.range()].chunks_exact_mut(count).zip(rows) {
+                to.copy_from_slice(&from[first..first + count]);
+            }
+            gradient[plan.after(parameter).range()].copy_from_slice(&self.joined_biases[first..first + count]);
+            first += count;
+        }
+    }
+}
+
+/// The heads' gradients go to scratch: there they lie side by side, padded to whole panels.
+fn deal_out_heads<'a>(factors: &'a Factors<'a>, weights: &'a mut Vec<f32>, biases: &'a mut Vec<f32>, jobs: &mut [Vec<Job<'a>>]) {
+    weights.resize(factors.width * factors.columns, 0.0);
+    biases.resize(factors.columns, 0.0);
+    factors.deal_out(weights, jobs);
+    jobs[0].push(Job::Biases { factors, out: biases });
+}

@@ -1,0 +1,148 @@
+//! Sums of outer products: the gradient of a dense layer's weights, from its inputs and the gradients of its sums.
+//!
+//! The inner dimension are the rows of a batch. They may lie anywhere, since both factors are repacked on their way: read in
+//! place, numbers that belong together would be kilobytes apart and push each other out of the nearest cache.
+
+use std::ops::Range;
+
+use super::product::{block_rows, stretches};
+use super::simd::Kernels;
+use super::tile::{PANEL, Tile, tiles};
+
+/// Memory for repacked factors.
+#[derive(Default)]
+pub struct Workspace {
+    left: Vec<f32>,
+    right: Vec<f32>,
+}
+
+/// `out[i][j]` = the sum over all rows k of `inputs[k][rows.start + i] * sums[k][j]`; `out` has `columns` columns.
+///
+/// # Panics
+/// If a row is too short, the two numbers of rows differ, `out` has another size, or `columns` is no multiple of [`PANEL`].
+pub fn sum_outer_products(
+    kernels: Kernels,
+    inputs: &[&[f32]],
+    rows: Range<usize>,
+    sums: &[&[f32]],
+    columns: usize,
+    out: &mut [f32],
+    workspace: &mut Workspace,
+) {
+    assert!(columns.is_multiple_of(PANEL), "product of {columns} columns, not a multiple of {PANEL}");
+    assert!(inputs.len() == sums.len() && out.len() == rows.len() * columns, "sizes of an outer product");
+    if inputs.is_empty() || columns == 0 {
+        return out.fill(0.0);
+    }
+    for (start, length) in stretches(kernels, inputs.len()) {
+        let (inputs, sums) = (&inputs[start..start + length], &sums[start..start + length]);
+        let block = block_rows(kernels, length);
+        pack_panels(sums, columns, &mut workspace.right);
+        for (out, first) in out.chunks_mut(block * columns).zip(rows.clone().step_by(block)) {
+            let count = out.len() / columns;
+            pack_block(kernels, inputs, first, count, &mut workspace.left);
+            for (panel, right) in workspace.right.chunks_exact(length * PANEL).enumerate() {
+                for (row, height) in tiles(kernels, count) {
+                    let tile = Tile {
+                        inner: length,
+                        row_stride: 1,
+                        left_inner: height,
+                        right_inner: PANEL,
+                        out_stride: columns,
+                        accumulate: start > 0,
+                        ahead: (row + height == count).then_some(length * PANEL),
+                    };
+                    let left = &workspace.left[row * length..][..height * length];
+                    let out = &mut out[row * columns + panel * PANEL..][..(height - 1) * columns + PANEL];
+                    // SAFETY: the three slices are exactly the tile's elements.
+                    unsafe { tile.run(kernels, height, left.as_ptr(), right.as_ptr(), out.as_mut_ptr()) };
+                }
+            }
+        }
+    }
+}
+
+/// The rows as [`super::pack::pack`] stores them.
+fn pack_panels(rows: &[&[f32]], columns: usize, packed: &mut Vec<f32>) {
+    packed.resize(rows.len() * columns, 0.0);
+    for (k, row) in rows.iter().enumerate() {
+        for (panel, values) in row[..columns].chunks_exact(PANEL).enumerate() {
+            packed[(panel * rows.len() + k) * PANEL..][..PANEL].copy_from_slice(values);
+        }
+    }
+}
+
+/// Columns `first..first + count` of the inputs, tile after tile; in a tile one row of numbers after the other.
+fn pack_block(kernels: Kernels, inputs: &[&[f32]], first: usize, count: usize, packed: &mut Vec<f32>) {
+    packed.resize(count * inputs.len(), 0.0);
+    let mut all = tiles(kernels, count).peekable();
+    // At most two heights occur, the taller first.
+    while let Some(&(start, height)) = all.peek() {
+        let mut same = 0;
+        while all.next_if(|tile| tile.1 == height).is_some() {
+            same += 1;
+        }
+        let part = &mut packed[start * inputs.len()..][..same * height * inputs.len()];
+        macro_rules! heights {
+            ($($height:literal)*) => {
+                match height {
+                    $($height => pack_tiles::<$height>(inputs, first + start, part),)*
+                    _ => unreachable!("tile height"),
+                }
+            };
+        }
+        heights!(1 2 3 4 5 6 7 8 9 10 11 12);
+    }
+}
+
+/// Tiles of a height known when this is compiled, so that a copy is a move or two rather than a call.
+fn pack_tiles<const HEIGHT: usize>(inputs: &[&[f32]], first: usize, packed: &mut [f32]) {
+    let length = inputs.len() * HEIGHT;
+    let count = packed.len() / length;
+    for (k, row) in inputs.iter().enumerate() {
+        for (tile, values) in row[first..first + count * HEIGHT].chunks_exact(HEIGHT).enumerate() {
+            packed[tile * length + k * HEIGHT..][..HEIGHT].copy_from_slice(values);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::product::tests::noise;
+    use super::*;
+
+    /// Every family, with more rows than a stretch of the inner dimension and more columns than a block.
+    #[test]
+    fn sums_equal_plain_loops() {
+        for kernels in Kernels::available() {
+            for (count, width, columns, rows) in [(1, 40, 32, 3..40), (5, 300, 64, 0..300), (1100, 50, 96, 7..48)] {
+                let (inputs, sums) = (noise(count * width, 1), noise(count * columns, 2));
+                let (inputs, sums): (Vec<_>, Vec<_>) = (inputs.chunks(width).collect(), sums.chunks(columns).collect());
+                let mut out = vec![7.0; rows.len() * columns];
+                sum_outer_products(kernels, &inputs, rows.clone(), &sums, columns, &mut out, &mut Workspace::default());
+                for (i, row) in rows.clone().enumerate() {
+                    for column in 0..columns {
+                        let terms = inputs.iter().zip(&sums).map(|(x, d)| f64::from(x[row]) * f64::from(d[column]));
+                        let (expected, found) = (terms.sum::<f64>(), f64::from(out[i * columns + column]));
+                        assert!((expected - found).abs() < 1e-4, "{kernels} {count} {row} {column}: {found}, not {expected}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// The order of summation is that of the rows, wherever the part of the result begins.
+    #[test]
+    fn parts_of_a_result_have_the_bits_of_the_whole() {
+        for kernels in Kernels::available() {
+            let (inputs, sums) = (noise(700 * 70, 1), noise(700 * 32, 2));
+            let (inputs, sums): (Vec<_>, Vec<_>) = (inputs.chunks(70).collect(), sums.chunks(32).collect());
+            let part = |rows: Range<usize>| {
+                let mut out = vec![0.0; rows.len() * 32];
+                sum_outer_products(kernels, &inputs, rows, &sums, 32, &mut out, &mut Workspace::default());
+                out
+            };
+            assert_eq!(part(0..70), [part(0..11), part(11..23), part(23..70)].concat());
+        }
+    }
+}

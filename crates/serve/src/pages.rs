@@ -1,0 +1,24 @@
+//! The pages, embedded: plain HTML, CSS and ES modules without a build step.
+
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+
+const FILES: [(&str, &str, &str); 11] = [
+    ("/", "text/html; charset=utf-8", include_str!("pages/index.html")),
+    ("/style.css", "text/css; charset=utf-8", include_str!("pages/style.css")),
+    ("/app.js", "text/javascript", include_str!("pages/app.js")),
+    ("/dom.js", "text/javascript", include_str!("pages/dom.js")),
+    ("/chart.js", "text/javascript", include_str!("pages/chart.js")),
+    ("/runs.js", "text/javascript", include_str!("pages/runs.js")),
+    ("/run.js", "text/javascript", include_str!("pages/run.js")),
+    ("/screen.js", "text/javascript", include_str!("pages/screen.js")),
+    ("/watch.js", "text/javascript", include_str!("pages/watch.js")),
+    ("/play.js", "text/javascript", include_str!("pages/play.js")),
+    ("/favicon.ico", "image/svg+xml", include_str!("pages/icon.svg")),
+];
+
+/// The file of a path, if there is one.
+pub(crate) fn page(path: &str) -> Option<Response> {
+    let (_, kind, text) = FILES.iter().find(|(name, _, _)| *name == path)?;
+    Some(([(header::CONTENT_TYPE, *kind)], *text).into_response())
+}

@@ -1,0 +1,55 @@
+// Elements from data. Text is always set as text, so that nothing in a run's name or settings is ever markup.
+export function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
+    else if (value === true) element.setAttribute(name, '');
+    else if (value !== false && value != null) element.setAttribute(name, value);
+  }
+  element.append(...children.filter((child) => child != null));
+  return element;
+}
+
+export function field(label, control) {
+  return make('label', {}, label, control);
+}
+
+export function choose(options, value, onchange) {
+  const select = make('select', { onchange: () => onchange?.(select.value) });
+  for (const option of options) {
+    const [key, text] = Array.isArray(option) ? option : [option, option];
+    select.append(make('option', { value: key, selected: key === value }, text));
+  }
+  return select;
+}
+
+export function number(value, digits = 2) {
+  return value == null || Number.isNaN(value) ? '–' : Number(value).toLocaleString('en', { maximumFractionDigits: digits });
+}
+
+// Asks the server; when it is away, says so and tries again until it is back.
+const link = document.getElementById('link');
+export async function ask(path) {
+  let answer;
+  try {
+    answer = await fetch(path);
+    link.textContent = '';
+  } catch (error) {
+    link.textContent = 'The server does not answer; trying again.';
+    return null;
+  }
+  const body = await answer.json();
+  if (!answer.ok) throw new Error(body.error ?? answer.statusText);
+  return body;
+}
+
+// The part of the address after the #: a page's name and its state.
+export function state() {
+  const [page, query] = location.hash.slice(1).split('?');
+  return { page: page || 'runs', query: new URLSearchParams(query) };
+}
+
+export function keepState(page, query) {
+  const kept = new URLSearchParams([...Object.entries(query)].filter(([, value]) => value !== '' && value != null && value !== false));
+  history.replaceState(null, '', `#${page}?${kept}`);
+}

@@ -1,0 +1,59 @@
+// A show over a WebSocket: pictures onto canvases, numbers and words to whoever listens. Comes back when the server does.
+export class Screen {
+  constructor(path, canvases, { onframe, onwords, onlink }) {
+    Object.assign(this, { path, canvases, onframe, onwords, onlink, ended: false });
+    this.open();
+  }
+
+  open() {
+    const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}${this.path()}`);
+    socket.binaryType = 'arraybuffer';
+    this.socket = socket;
+    let failed = false;
+    socket.onopen = () => this.onlink('');
+    socket.onmessage = async ({ data }) => {
+      if (typeof data === 'string') {
+        const words = JSON.parse(data);
+        if (words.kind === 'error') { failed = true; this.onlink(words.why); } else this.onwords(words);
+        return;
+      }
+      const length = new DataView(data).getUint32(0, true);
+      const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
+      let at = 4 + length;
+      const pictures = await Promise.all(header.pictures.map(async ({ view, bytes }) => {
+        const blob = new Blob([new Uint8Array(data, at, bytes)], { type: 'image/jpeg' });
+        at += bytes;
+        return [view, await createImageBitmap(blob)];
+      }));
+      for (const [view, picture] of pictures) {
+        const canvas = this.canvases[view];
+        if (!canvas) continue;
+        if (canvas.width !== picture.width || canvas.height !== picture.height) [canvas.width, canvas.height] = [picture.width, picture.height];
+        canvas.getContext('2d').drawImage(picture, 0, 0);
+        picture.close();
+      }
+      this.onframe(header);
+      this.ask({ do: 'ack' });
+    };
+    socket.onclose = () => {
+      if (this.ended || failed || socket !== this.socket) return;
+      this.onlink('The server does not answer; trying again.');
+      setTimeout(() => !this.ended && socket === this.socket && this.open(), 1500);
+    };
+  }
+
+  ask(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  again() {
+    const old = this.socket;
+    this.open();
+    old.close();
+  }
+
+  end() {
+    this.ended = true;
+    this.socket.close();
+  }
+}

@@ -1,0 +1,209 @@
+//! Which runs there are and how far they are.
+
+use super::columns::Columns;
+use hasard_report::run::Config;
+use serde_json::{Map, Value, json};
+use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+/// How deep runs are looked for below a folder: sweeps put them at `sweep/env/algo/seed`.
+const MAX_DEPTH: usize = 8;
+/// Runs that are listed at most.
+const MAX_RUNS: usize = 20_000;
+/// Time between two looks at how far the runs are, and between two searches for new ones.
+const LOOK_EVERY: Duration = Duration::from_millis(700);
+const SEARCH_EVERY: Duration = Duration::from_secs(2);
+/// A run that wrote nothing for so long does not run.
+const ALIVE: Duration = Duration::from_secs(90);
+/// Bytes at a file's end among which its last row is looked for.
+const TAIL: u64 = 32 << 10;
+/// Runs whose columns are kept in memory.
+const KEPT: usize = 200;
+/// What the list tells of a run's last row.
+const TOLD: [&str; 10] =
+    ["frames", "fps", "wall_s", "episodes", "return_mean", "cost_mean", "length_mean", "budget", "multiplier", "multipliers"];
+
+struct Run {
+    path: PathBuf,
+    name: String,
+    config: Config,
+    bytes: u64,
+    modified: SystemTime,
+    last: Map<String, Value>,
+    alive: bool,
+    /// Number of the change that made it what it is.
+    change: u64,
+}
+
+/// All runs below some folders.
+pub(crate) struct Catalogue {
+    folders: Vec<PathBuf>,
+    runs: BTreeMap<String, Run>,
+    kept: HashMap<String, (Columns, u64)>,
+    uses: u64,
+    changes: u64,
+    looked: Option<Instant>,
+    searched: Option<Instant>,
+}
+
+impl Catalogue {
+    pub fn new(folders: Vec<PathBuf>) -> Catalogue {
+        // Links in the given names are the user's; links below them are not followed.
+        let folders = folders.into_iter().map(|folder| folder.canonicalize().unwrap_or(folder)).collect();
+        Catalogue { folders, runs: BTreeMap::new(), kept: HashMap::new(), uses: 0, changes: 0, looked: None, searched: None }
+    }
+
+    /// Finds new runs and how far the known ones are, unless that was done just now.
+    pub fn refresh(&mut self) {
+        let due = |last: Option<Instant>, every| last.is_none_or(|last| last.elapsed() >= every);
+        if due(self.searched, SEARCH_EVERY) {
+            for folder in self.folders.clone() {
+                self.search(&folder, &folder, 0);
+            }
+            self.searched = Some(Instant::now());
+        }
+        if due(self.looked, LOOK_EVERY) {
+            let now = SystemTime::now();
+            for run in self.runs.values_mut() {
+                if run.look(now) {
+                    self.changes += 1;
+                    run.change = self.changes;
+                }
+            }
+            self.looked = Some(Instant::now());
+        }
+    }
+
+    fn search(&mut self, top: &Path, folder: &Path, depth: usize) {
+        let config = folder.join("config.json");
+        if std::fs::symlink_metadata(&config).is_ok_and(|data| data.is_file()) {
+            let id = id_of(folder);
+            if !self.runs.contains_key(&id)
+                && self.runs.len() < MAX_RUNS
+                && let Ok(config) = Config::read(&config)
+            {
+                let name = folder.strip_prefix(top).ok().filter(|name| !name.as_os_str().is_empty());
+                let name = name.or_else(|| folder.file_name().map(Path::new)).unwrap_or(folder).display().to_string();
+                let run = Run {
+                    path: folder.to_owned(),
+                    name,
+                    config,
+                    bytes: u64::MAX,
+                    modified: SystemTime::UNIX_EPOCH,
+                    last: Map::new(),
+                    alive: false,
+                    change: 0,
+                };
+                self.runs.insert(id, run);
+                self.looked = None;
+            }
+            return;
+        }
+        let Ok(entries) = std::fs::read_dir(folder) else { return };
+        for entry in entries.flatten() {
+            if depth < MAX_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                self.search(top, &entry.path(), depth + 1);
+            }
+        }
+    }
+
+    /// The directory of a run.
+    pub fn path(&self, id: &str) -> Option<PathBuf> {
+        self.runs.get(id).map(|run| run.path.clone())
+    }
+
+    /// The runs that changed after a number of changes, and that number now.
+    pub fn changed_since(&self, since: u64) -> Value {
+        // A server that began anew counts from 0: whoever has seen more has seen another one.
+        let since = if since > self.changes { 0 } else { since };
+        let runs: Vec<Value> = self.runs.iter().filter(|(_, run)| run.change > since).map(|(id, run)| run.told(id)).collect();
+        let folders: Vec<String> = self.folders.iter().map(|folder| folder.display().to_string()).collect();
+        json!({ "change": self.changes, "whole": since == 0, "runs": runs, "count": self.runs.len(), "folders": folders })
+    }
+
+    /// What each run ended with lately, for the table of the best.
+    pub fn results(&self) -> Vec<Value> {
+        self.runs.iter().map(|(id, run)| run.told(id)).collect()
+    }
+
+    /// A run's columns as far as its file goes now.
+    pub fn columns(&mut self, id: &str) -> Option<&Columns> {
+        let path = self.runs.get(id)?.path.join("metrics.jsonl");
+        if !self.kept.contains_key(id)
+            && self.kept.len() >= KEPT
+            && let Some(oldest) = self.kept.iter().min_by_key(|(_, (_, used))| *used).map(|(id, _)| id.clone())
+        {
+            self.kept.remove(&oldest);
+        }
+        self.uses += 1;
+        let (columns, used) = self.kept.entry(id.to_owned()).or_default();
+        *used = self.uses;
+        // A run without rows has no columns yet.
+        let _ = columns.catch_up(&path);
+        Some(columns)
+    }
+}
+
+impl Run {
+    /// Looks at the end of its rows; whether anything changed.
+    fn look(&mut self, now: SystemTime) -> bool {
+        let path = self.path.join("metrics.jsonl");
+        let data = std::fs::symlink_metadata(&path).ok().filter(std::fs::Metadata::is_file);
+        let (bytes, modified) = data.map_or((0, SystemTime::UNIX_EPOCH), |data| (data.len(), data.modified().unwrap_or(now)));
+        let done = self.config.frames.is_some_and(|frames| self.frames() >= frames);
+        let alive = !done && bytes > 0 && now.duration_since(modified).unwrap_or_default() < ALIVE;
+        if (bytes, modified, alive) == (self.bytes, self.modified, self.alive) {
+            return false;
+        }
+        if (bytes, modified) != (self.bytes, self.modified)
+            && let Some(last) = last_row(&path, bytes)
+        {
+            self.last = last;
+        }
+        (self.bytes, self.modified, self.alive) = (bytes, modified, alive);
+        true
+    }
+
+    fn frames(&self) -> f64 {
+        self.last.get("frames").and_then(Value::as_f64).unwrap_or(0.0)
+    }
+
+    fn told(&self, id: &str) -> Value {
+        let config = &self.config;
+        let last: Map<String, Value> =
+            TOLD.iter().filter_map(|name| Some(((*name).to_owned(), self.last.get(*name)?.clone()))).collect();
+        let total = config.frames;
+        let state = if total.is_some_and(|total| self.frames() >= total) {
+            "done"
+        } else if self.alive {
+            "running"
+        } else {
+            "stopped"
+        };
+        json!({
+            "id": id, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
+            "budget": config.safety_budget, "total": total, "state": state, "last": last, "options": config.options,
+        })
+    }
+}
+
+/// The last whole row of a file.
+fn last_row(path: &Path, bytes: u64) -> Option<Map<String, Value>> {
+    let mut file = File::open(path).ok()?;
+    file.seek(SeekFrom::Start(bytes.saturating_sub(TAIL))).ok()?;
+    let mut tail = Vec::new();
+    file.take(TAIL).read_to_end(&mut tail).ok()?;
+    let end = tail.iter().rposition(|byte| *byte == b'\n')?;
+    tail[..end].split(|byte| *byte == b'\n').rev().find_map(|line| serde_json::from_slice(line).ok())
+}
+
+/// A name of a path that says nothing of it and stays the same.
+fn id_of(path: &Path) -> String {
+    let mut hasher = DefaultHasher::new();
+    path.hash(&mut hasher);
+    format!("{:016x}", hasher.finish())
+}

@@ -1,0 +1,114 @@
+//! The numbers of a `metrics.jsonl`, a column a name.
+
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+/// Points of a curve that are sent: more than a chart has pixels.
+const POINTS: usize = 800;
+/// Bytes that are read at a time: what is beyond is read when it is asked for next.
+const LARGEST_READ: u64 = 64 << 20;
+
+/// Columns as far as the file was read.
+#[derive(Default)]
+pub(crate) struct Columns {
+    read: u64,
+    frames: Vec<f64>,
+    values: BTreeMap<String, Vec<f32>>,
+}
+
+impl Columns {
+    /// Reads what was added to the file. A file that became shorter (a resumed run takes rows back) is read anew.
+    pub fn catch_up(&mut self, path: &Path) -> std::io::Result<()> {
+        let mut file = File::open(path)?;
+        if file.metadata()?.len() < self.read {
+            *self = Columns::default();
+        }
+        file.seek(SeekFrom::Start(self.read))?;
+        let mut bytes = Vec::new();
+        file.take(LARGEST_READ).read_to_end(&mut bytes)?;
+        // The last line may be half written.
+        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        for line in bytes[..whole].split(|byte| *byte == b'\n') {
+            if let Ok(row) = serde_json::from_slice(line) {
+                self.add(&row);
+            }
+        }
+        self.read += whole as u64;
+        Ok(())
+    }
+
+    fn add(&mut self, row: &Map<String, Value>) {
+        let Some(frames) = row.get("frames").and_then(Value::as_f64) else { return };
+        let rows = self.frames.len();
+        self.frames.push(frames);
+        for (name, value) in row {
+            let Some(value) = value.as_f64().filter(|_| name != "frames") else { continue };
+            let column = self.values.entry(name.clone()).or_default();
+            column.resize(rows, f32::NAN);
+            column.push(value as f32);
+        }
+    }
+
+    /// Names of the columns.
+    pub fn names(&self) -> Vec<String> {
+        self.values.keys().cloned().collect()
+    }
+
+    /// Some columns as lists of frames and values, with no more points than a chart can show.
+    pub fn thinned(&self, names: &[String]) -> Value {
+        let every = self.frames.len().div_ceil(POINTS).max(1);
+        // The last row is always there: it is where a running curve moves.
+        let rows: Vec<usize> = (0..self.frames.len()).rev().step_by(every).collect();
+        let mut all = Map::new();
+        all.insert("frames".into(), rows.iter().rev().map(|row| json!(self.frames[*row])).collect());
+        for name in names {
+            if let Some(column) = self.values.get(name) {
+                let value = |row: &usize| json!(column.get(*row).filter(|value| value.is_finite()));
+                all.insert(name.clone(), rows.iter().rev().map(value).collect());
+            }
+        }
+        Value::Object(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    #[test]
+    fn rows_are_read_from_where_they_were_left_off() {
+        let path = std::env::temp_dir().join(format!("hasard-serve-columns-{}", std::process::id()));
+        std::fs::write(&path, "{\"frames\":1,\"cost_mean\":null,\"fps\":5}\n{\"frames\":2,\"cost_mean\":3.5,\"fps\":6}\n{\"fra")
+            .unwrap();
+        let mut columns = Columns::default();
+        columns.catch_up(&path).unwrap();
+        assert_eq!(
+            columns.thinned(&["cost_mean".into(), "none".into()]),
+            json!({"frames": [1.0, 2.0], "cost_mean": [null, 3.5]})
+        );
+        std::fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(b"mes\":9,\"cost_mean\":1}\nrubbish\n").unwrap();
+        columns.catch_up(&path).unwrap();
+        assert_eq!(columns.thinned(&["cost_mean".into(), "fps".into()])["fps"], json!([5.0, 6.0, null]));
+        assert_eq!(columns.frames, [1.0, 2.0, 9.0]);
+        // The run was resumed from before: its later rows are gone.
+        std::fs::write(&path, "{\"frames\":1,\"fps\":7}\n").unwrap();
+        columns.catch_up(&path).unwrap();
+        assert_eq!((columns.frames, columns.values["fps"].as_slice()), (vec![1.0], &[7.0][..]));
+        std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn long_curves_are_thinned_and_keep_their_end() {
+        let mut columns = Columns::default();
+        for k in 0..5000 {
+            columns.add(json!({"frames": k, "fps": k}).as_object().unwrap());
+        }
+        let curve = columns.thinned(&["fps".into()]);
+        let fps = curve["fps"].as_array().unwrap();
+        assert!(fps.len() <= POINTS && fps.last() == Some(&json!(4999.0)));
+    }
+}

@@ -1,0 +1,157 @@
+//! Run directories: found while they run, read from where they were left off.
+
+mod catalogue;
+mod columns;
+
+pub(crate) use catalogue::Catalogue;
+
+use crate::answer::{aside, json_of, refusal};
+use crate::server::Shared;
+use axum::extract::{Query, State};
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, PoisonError};
+
+/// Runs of a chart at a time.
+const MAX_CHOSEN: usize = 100;
+/// Largest file of settings, heatmaps or pictures of a run that is read.
+const LARGEST_FILE: u64 = 64 << 20;
+
+#[derive(Deserialize)]
+pub(crate) struct Since {
+    /// Changes that the asker has seen.
+    #[serde(default)]
+    since: u64,
+}
+
+/// Works on the catalogue, away from the threads that answer.
+async fn on_catalogue<T: Send + 'static>(
+    shared: Arc<Shared>,
+    work: impl FnOnce(&mut Catalogue) -> T + Send + 'static,
+) -> Result<T, Response> {
+    // The catalogue only caches files: after a panic, what it holds is still read again.
+    aside(move || work(&mut shared.catalogue.lock().unwrap_or_else(PoisonError::into_inner))).await
+}
+
+/// The directory of a run by its id; paths never come from outside.
+pub(crate) async fn directory(shared: &Arc<Shared>, id: String) -> Result<PathBuf, Response> {
+    let found = on_catalogue(Arc::clone(shared), move |catalogue| {
+        catalogue.refresh();
+        catalogue.path(&id)
+    });
+    found.await?.ok_or_else(|| refusal(StatusCode::NOT_FOUND, "there is no such run; choose one from the list of runs"))
+}
+
+/// Every run that changed since.
+pub(crate) async fn list(State(shared): State<Arc<Shared>>, Query(query): Query<Since>) -> Result<Response, Response> {
+    let listing = on_catalogue(shared, move |catalogue| {
+        catalogue.refresh();
+        catalogue.changed_since(query.since)
+    });
+    Ok(json_of(&listing.await?))
+}
+
+#[derive(Deserialize)]
+pub(crate) struct One {
+    id: String,
+    /// The number of a moment.
+    #[serde(default)]
+    at: usize,
+}
+
+fn read(path: &Path) -> Option<String> {
+    let size = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?.len();
+    (size <= LARGEST_FILE).then(|| std::fs::read_to_string(path).ok()).flatten()
+}
+
+/// Settings of a run, names of its columns, moments of its heatmaps.
+pub(crate) async fn detail(State(shared): State<Arc<Shared>>, Query(query): Query<One>) -> Result<Response, Response> {
+    let path = directory(&shared, query.id.clone()).await?;
+    let id = query.id;
+    let columns =
+        on_catalogue(Arc::clone(&shared), move |catalogue| catalogue.columns(&id).map(|columns| columns.names())).await?;
+    let body = aside(move || {
+        let config: Value =
+            read(&path.join("config.json")).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or(Value::Null);
+        let heatmaps = read(&path.join("heatmaps.jsonl")).unwrap_or_default();
+        let moments =
+            heatmaps.lines().map(|line| serde_json::from_str::<Value>(line).map_or(Value::Null, |line| line["frames"].clone()));
+        let moments: Vec<Value> = moments.collect();
+        json!({ "config": config, "columns": columns, "heatmaps": moments })
+    });
+    Ok(json_of(&body.await?))
+}
+
+/// One heatmap of a run.
+pub(crate) async fn heatmap(State(shared): State<Arc<Shared>>, Query(query): Query<One>) -> Result<Response, Response> {
+    let path = directory(&shared, query.id).await?;
+    let line = aside(move || {
+        let text = read(&path.join("heatmaps.jsonl"))?;
+        serde_json::from_str::<Value>(text.lines().nth(query.at)?).ok()
+    });
+    Ok(json_of(&line.await?.ok_or_else(|| refusal(StatusCode::NOT_FOUND, "this run has no such heatmap"))?))
+}
+
+/// The map that heatmaps lie over.
+pub(crate) async fn automap(State(shared): State<Arc<Shared>>, Query(query): Query<One>) -> Result<Response, Response> {
+    let path = directory(&shared, query.id).await?.join("automap.png");
+    let picture = aside(move || hasard_media::png::read(&path).ok().map(|picture| hasard_media::png::encode(&picture))).await?;
+    let bytes = picture.ok_or_else(|| refusal(StatusCode::NOT_FOUND, "this run has no automap"))?;
+    Ok(([(header::CONTENT_TYPE, "image/png")], bytes).into_response())
+}
+
+#[derive(Deserialize)]
+pub(crate) struct Chosen {
+    /// Ids of runs, separated by commas.
+    runs: String,
+    /// Names of columns, separated by commas.
+    #[serde(default)]
+    columns: String,
+}
+
+impl Chosen {
+    fn ids(&self) -> Result<Vec<String>, Response> {
+        let ids: Vec<String> = self.runs.split(',').filter(|id| !id.is_empty()).map(str::to_owned).collect();
+        if ids.is_empty() || ids.len() > MAX_CHOSEN {
+            return Err(refusal(StatusCode::BAD_REQUEST, "choose 1 to 100 runs"));
+        }
+        Ok(ids)
+    }
+}
+
+/// Columns of some runs, thinned to what a chart can show.
+pub(crate) async fn curves(State(shared): State<Arc<Shared>>, Query(query): Query<Chosen>) -> Result<Response, Response> {
+    let ids = query.ids()?;
+    let names: Vec<String> = query.columns.split(',').take(8).map(str::to_owned).collect();
+    let body = on_catalogue(shared, move |catalogue| {
+        let curve = |id: &String| Some((id.clone(), catalogue.columns(id)?.thinned(&names)));
+        ids.iter().filter_map(curve).collect::<serde_json::Map<String, Value>>()
+    });
+    Ok(json_of(&Value::Object(body.await?)))
+}
+
+/// The report of some runs, as `hasard report` writes it.
+pub(crate) async fn report(State(shared): State<Arc<Shared>>, Query(query): Query<Chosen>) -> Result<Response, Response> {
+    let Ok(_place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {
+        return Err(refusal(StatusCode::SERVICE_UNAVAILABLE, "films or reports are in the making; ask again in a moment"));
+    };
+    let ids = query.ids()?;
+    let paths = on_catalogue(shared, move |catalogue| ids.iter().filter_map(|id| catalogue.path(id)).collect::<Vec<_>>()).await?;
+    let page = aside(move || {
+        static NUMBER: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+        let number = NUMBER.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let folder = std::env::temp_dir().join(format!("hasard-serve-report-{}-{number}", std::process::id()));
+        let written = hasard_report::write_report(&paths, &folder, "Runs");
+        let page = written.and_then(|written| std::fs::read(written.page).map_err(|error| error.to_string()));
+        let _ = std::fs::remove_dir_all(folder);
+        page
+    });
+    let page = page.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
+    // The report is one page with its pictures and style within; no script of it runs here.
+    let policy = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'none'";
+    let headers = [(header::CONTENT_TYPE, "text/html; charset=utf-8"), (header::CONTENT_SECURITY_POLICY, policy)];
+    Ok((headers, page).into_response())
+}

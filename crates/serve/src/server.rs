@@ -1,0 +1,149 @@
+//! The socket, the routes and what they share.
+
+use crate::answer::{aside, json_of, refusal};
+use crate::door::{CONNECTIONS, Door};
+use crate::runs::Catalogue;
+use crate::{episodes, guard, pages, runs, show};
+use axum::Router;
+use axum::extract::{DefaultBodyLimit, State};
+use axum::http::{StatusCode, Uri};
+use axum::response::Response;
+use axum::routing::get;
+use hasard_envs::{Env, EnvId, EnvOptions, RuleSet};
+use hasard_learn::runs::evaluate::{Agent, Choice};
+use serde_json::{Value, json};
+use std::io;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock};
+use tokio::sync::Semaphore;
+
+/// Viewers and players at a time.
+const SHOWS: usize = 64;
+/// Films and reports in the making at a time: each keeps a core busy.
+const LONG_JOBS: usize = 2;
+
+/// Trained agents, which only the program knows how to find and to equip.
+pub trait Agents: Send + Sync {
+    /// Options of the environment that the agent of a run was trained in, and its id.
+    ///
+    /// # Errors
+    /// One line that names the run and the remedy.
+    fn options(&self, run: &Path) -> Result<(String, EnvOptions), String>;
+    /// The agent of a run for one world like this one: the newest checkpoint, or the best.
+    ///
+    /// # Errors
+    /// As above.
+    fn load(&self, run: &Path, best: bool, choice: Choice, env: &Env) -> Result<Agent, String>;
+    /// Names of agents that come with the program.
+    fn zoo(&self) -> Vec<String>;
+    /// The directory of one of those.
+    ///
+    /// # Errors
+    /// As above.
+    fn zoo_run(&self, name: &str) -> Result<PathBuf, String>;
+}
+
+/// What is served, and to whom.
+pub struct Settings {
+    /// Address to listen at.
+    pub address: SocketAddr,
+    /// What a visitor must know; `None` lets everybody in who reaches the address.
+    pub token: Option<String>,
+    /// Folders in which runs are looked for.
+    pub folders: Vec<PathBuf>,
+    /// Folder in which played episodes are kept.
+    pub episodes: PathBuf,
+    /// Trained agents.
+    pub agents: Arc<dyn Agents>,
+}
+
+/// What the routes share.
+pub(crate) struct Shared {
+    pub token: Option<String>,
+    pub episodes: PathBuf,
+    pub agents: Arc<dyn Agents>,
+    pub catalogue: Mutex<Catalogue>,
+    pub shows: Arc<Semaphore>,
+    pub long_jobs: Arc<Semaphore>,
+}
+
+/// A server that listens.
+pub struct Server {
+    runtime: tokio::runtime::Runtime,
+    door: Door,
+    address: SocketAddr,
+    shared: Arc<Shared>,
+}
+
+impl Server {
+    /// Begins to listen.
+    ///
+    /// # Errors
+    /// When the address is taken or not ours.
+    pub fn bind(settings: Settings) -> io::Result<Server> {
+        let runtime =
+            tokio::runtime::Builder::new_multi_thread().worker_threads(2).max_blocking_threads(8).enable_all().build()?;
+        let listener = runtime.block_on(tokio::net::TcpListener::bind(settings.address))?;
+        let address = listener.local_addr()?;
+        let shared = Shared {
+            token: settings.token,
+            episodes: settings.episodes,
+            agents: settings.agents,
+            catalogue: Mutex::new(Catalogue::new(settings.folders)),
+            shows: Arc::new(Semaphore::new(SHOWS)),
+            long_jobs: Arc::new(Semaphore::new(LONG_JOBS)),
+        };
+        let door = Door { listener, places: Arc::new(Semaphore::new(CONNECTIONS)) };
+        Ok(Server { runtime, door, address, shared: Arc::new(shared) })
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Answers until the process ends.
+    ///
+    /// # Errors
+    /// Never in practice: what a connection brings ends that connection alone.
+    pub fn run(self) -> io::Result<()> {
+        let routes = Router::new()
+            .route("/api/envs", get(envs))
+            .route("/api/runs", get(runs::list))
+            .route("/api/run", get(runs::detail))
+            .route("/api/curves", get(runs::curves))
+            .route("/api/heatmap", get(runs::heatmap))
+            .route("/api/automap", get(runs::automap))
+            .route("/api/report", get(runs::report))
+            .route("/api/best", get(episodes::best))
+            .route("/api/episode", get(episodes::download))
+            .route("/api/watch", get(show::watch))
+            .route("/api/play", get(show::play))
+            .fallback(page)
+            .layer(DefaultBodyLimit::max(1024))
+            .layer(axum::middleware::from_fn_with_state(Arc::clone(&self.shared), guard::guard))
+            .with_state(Arc::clone(&self.shared));
+        self.runtime.block_on(async move { axum::serve(self.door, routes).await })
+    }
+}
+
+async fn page(uri: Uri) -> Response {
+    pages::page(uri.path()).unwrap_or_else(|| refusal(StatusCode::NOT_FOUND, "there is no such page"))
+}
+
+/// Environments, fixed policies and zoo agents: what can be watched and played without a run.
+async fn envs(State(shared): State<Arc<Shared>>) -> Result<Response, Response> {
+    static ENVS: OnceLock<Value> = OnceLock::new();
+    let envs = aside(|| {
+        ENVS.get_or_init(|| {
+            let of = |id: EnvId| json!({ "id": id.to_string(), "budget": id.scenario.safety_budget(RuleSet::Paper) });
+            EnvId::all().map(of).collect()
+        })
+    })
+    .await?;
+    Ok(json_of(
+        &json!({ "envs": envs, "policies": ["random", "sticky:10", "noop", "hold:MOVE_FORWARD"], "zoo": shared.agents.zoo() }),
+    ))
+}

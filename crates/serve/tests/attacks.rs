@@ -1,0 +1,192 @@
+//! What a hostile page, neighbour or file tries, and what it gets.
+
+mod common;
+
+use common::{folder, get, raw, serve, status, write_run};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+use tungstenite::Message;
+
+#[test]
+fn another_origin_and_another_name_are_refused() {
+    let address = serve(&folder("origin"), None);
+    assert_eq!(status(&get(address, "/api/runs", "")), 200);
+    assert_eq!(status(&get(address, "/api/runs", &format!("Origin: http://{address}\r\n"))), 200);
+    assert_eq!(status(&get(address, "/api/runs", "Origin: http://evil.example\r\n")), 403);
+    assert_eq!(status(&get(address, "/api/runs", "Origin: null\r\n")), 403);
+    assert_eq!(status(&get(address, "/api/runs", "Sec-Fetch-Site: cross-site\r\n")), 403);
+    // DNS rebinding: the name of another site points here.
+    assert_eq!(status(&raw(address, "GET /api/runs HTTP/1.1\r\nHost: evil.example:8350\r\nConnection: close\r\n\r\n")), 403);
+    let two = "GET /api/runs HTTP/1.1\r\nHost: 127.0.0.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n";
+    assert!(matches!(status(&raw(address, two)), 400 | 403));
+    // A WebSocket across sites.
+    let upgrade = "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n";
+    let request = |origin: &str| {
+        format!(
+            "GET /api/watch?env=RemedyRushLevel1-v0 HTTP/1.1\r\nHost: {address}\r\nConnection: Upgrade\r\n{upgrade}Origin: {origin}\r\n\r\n"
+        )
+    };
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.write_all(request("http://evil.example").as_bytes()).unwrap();
+    let mut head = [0; 12];
+    stream.read_exact(&mut head).unwrap();
+    assert_eq!(&head, b"HTTP/1.1 403");
+    // Nothing is written to by anybody.
+    assert_eq!(
+        status(&raw(
+            address,
+            &format!("POST /api/runs HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Length: 0\r\n\r\n")
+        )),
+        405
+    );
+}
+
+#[test]
+fn without_the_token_nothing_is_told() {
+    let address = serve(&folder("token"), Some("letmein12345"));
+    for path in ["/", "/api/runs", "/app.js", "/api/watch?env=RemedyRushLevel1-v0", "/?token=wrong", "/?token="] {
+        assert_eq!(status(&get(address, path, "")), 401, "{path}");
+    }
+    assert_eq!(status(&get(address, "/api/runs", "Cookie: hasard-token=letmein1234\r\n")), 401);
+    let given = get(address, "/?token=letmein12345", "");
+    assert!(status(&given) == 303 && given.contains("hasard-token=letmein12345; HttpOnly; SameSite=Strict"), "{given}");
+    assert_eq!(status(&get(address, "/api/runs", "Cookie: a=b; hasard-token=letmein12345\r\n")), 200);
+}
+
+#[test]
+fn paths_stay_in_the_given_folders() {
+    let folder = folder("paths");
+    write_run(&folder, "a", 3);
+    std::fs::write(folder.join("secret.episode"), "secret").unwrap();
+    std::fs::create_dir_all(folder.join("elsewhere")).unwrap();
+    write_run(&folder.join("elsewhere"), "hidden", 3);
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(folder.join("secret.episode"), folder.join("human/link.episode")).unwrap();
+        std::os::unix::fs::symlink(folder.join("elsewhere"), folder.join("runs/link")).unwrap();
+    }
+    let address = serve(&folder, None);
+    for name in [
+        "../secret.episode",
+        "..%2fsecret.episode",
+        "%2e%2e%2fsecret.episode",
+        "link.episode",
+        "/etc/passwd",
+        "..%5csecret.episode",
+        "a%00.episode",
+    ] {
+        let answer = get(address, &format!("/api/episode?name={name}"), "");
+        assert!(matches!(status(&answer), 400 | 404) && !answer.contains("secret\r"), "{name}: {answer}");
+    }
+    for path in ["/../Cargo.toml", "/%2e%2e/%2e%2e/etc/passwd", "/..%2fetc", "//etc/passwd", "/api/../../etc/passwd"] {
+        assert!(matches!(status(&get(address, path, "")), 400 | 404), "{path}");
+    }
+    assert_eq!(status(&get(address, "/api/heatmap?id=../../etc/passwd", "")), 404);
+    let runs = get(address, "/api/runs", "");
+    assert!(runs.contains("\"name\":\"a\"") && !runs.contains("hidden"), "{runs}");
+}
+
+#[test]
+fn a_script_in_a_name_stays_text() {
+    let folder = folder("script");
+    let name = "<script>alert(1)<";
+    write_run(&folder, name, 2);
+    let address = serve(&folder, None);
+    let runs = get(address, "/api/runs", "");
+    // It is data in a JSON document that no browser takes for a page.
+    assert!(runs.contains("content-type: application/json") && runs.contains("x-content-type-options: nosniff"), "{runs}");
+    let page = get(address, "/", "");
+    assert!(page.contains("default-src 'none'; script-src 'self'") && !page.contains("alert"));
+    let id = runs.split("\"id\":\"").nth(1).unwrap().split('"').next().unwrap();
+    let report = get(address, &format!("/api/report?runs={id}"), "");
+    assert!(status(&report) == 200 && !report.contains("<script>alert"), "{}", &report[..500.min(report.len())]);
+}
+
+fn connect(address: std::net::SocketAddr, path: &str) -> tungstenite::WebSocket<TcpStream> {
+    let stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    tungstenite::client(format!("ws://{address}{path}"), stream).unwrap().0
+}
+
+/// Whether the server ends a connection soon.
+fn ends(mut socket: tungstenite::WebSocket<TcpStream>) -> bool {
+    let begun = Instant::now();
+    while begun.elapsed() < Duration::from_secs(15) {
+        match socket.read() {
+            Ok(Message::Close(_)) | Err(_) => return true,
+            Ok(_) => {}
+        }
+    }
+    false
+}
+
+#[test]
+fn rubbish_ends_its_own_connection_alone() {
+    let address = serve(&folder("rubbish"), None);
+    let watch = "/api/watch?env=RemedyRushLevel1-v0&size=64x48";
+    let mut good = connect(address, watch);
+    for message in
+        [Message::text("{"), Message::text("{\"do\":\"erase\"}"), Message::binary(vec![0; 100]), Message::text("x".repeat(5000))]
+    {
+        let mut bad = connect(address, watch);
+        bad.send(message).unwrap();
+        assert!(ends(bad));
+    }
+    // A frame that says that it is 100 MB long: it is refused by its head.
+    let mut bad = connect(address, watch);
+    let mut head = vec![0x82, 0x80 | 127];
+    head.extend(100_000_000u64.to_be_bytes());
+    head.extend([1, 2, 3, 4]);
+    bad.get_mut().write_all(&head).unwrap();
+    assert!(ends(bad));
+    // A flood.
+    let mut bad = connect(address, watch);
+    for _ in 0..3000 {
+        if bad.send(Message::text("{\"do\":\"tic\"}")).is_err() {
+            break;
+        }
+    }
+    assert!(ends(bad));
+    good.send(Message::text("{\"do\":\"pause\"}")).unwrap();
+    let begun = Instant::now();
+    let mut frames = 0;
+    while frames == 0 {
+        assert!(begun.elapsed() < Duration::from_secs(15));
+        frames += u32::from(good.read().unwrap().is_binary());
+    }
+}
+
+/// A viewer that does not say that it saw a frame gets two, and then none.
+#[test]
+fn a_slow_viewer_gets_fewer_frames_and_no_queue() {
+    let address = serve(&folder("slow"), None);
+    let mut slow = connect(address, "/api/watch?env=RemedyRushLevel1-v0&size=64x48");
+    let mut frames = 0;
+    while let Ok(message) = slow.read() {
+        frames += u32::from(message.is_binary());
+        if frames == 2 {
+            // A queue would show itself at once.
+            slow.get_mut().set_read_timeout(Some(Duration::from_secs(3))).unwrap();
+        }
+    }
+    assert_eq!(frames, 2);
+}
+
+#[test]
+fn ten_thousand_sockets_do_not_lock_others_out_for_long() {
+    let address = serve(&folder("sockets"), None);
+    // As many at a time as this process may open, ten thousand in all.
+    let mut open = std::collections::VecDeque::new();
+    for _ in 0..10_000 {
+        if open.len() == 400 {
+            open.pop_front();
+        }
+        if let Ok(stream) = TcpStream::connect_timeout(&address, Duration::from_secs(5)) {
+            open.push_back(stream);
+        }
+    }
+    assert_eq!(status(&get(address, "/api/runs", "")), 200);
+    drop(open);
+    assert_eq!(status(&get(address, "/", "")), 200);
+}

@@ -1,0 +1,166 @@
+//! The pages in a real browser.
+
+#[path = "common/browser.rs"]
+mod browser;
+mod common;
+
+use browser::Browser;
+use common::{folder, serve, serve_at, write_run};
+use serde_json::json;
+
+#[test]
+fn runs_appear_move_and_are_compared() {
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let folder = folder("chromium-runs");
+    let address = serve(&folder, None);
+    browser.go(&format!("http://{address}/"));
+    browser.wait("document.body.innerText.includes('No runs yet') && document.body.innerText.includes('hasard train')");
+    browser.photograph("serve_empty");
+    write_run(&folder, "first<img src=x onerror=document.title='bad'>", 20);
+    write_run(&folder, "second", 900);
+    browser.wait("document.querySelectorAll('tbody input').length == 2");
+    browser.wait("document.body.innerText.includes('<img src=x')");
+    assert_ne!(browser.script("return document.title"), json!("bad"));
+    browser.script("document.querySelectorAll('tbody input').forEach((box) => box.click())");
+    browser.wait("location.hash.includes('chosen=') && !document.querySelector('.charts').closest('section').hidden");
+    browser.wait("[...document.querySelectorAll('progress')].some((bar) => bar.value == 90000)");
+    // The training goes on: the row moves without reloading.
+    write_run(&folder, "second", 990);
+    browser.wait("[...document.querySelectorAll('progress')].some((bar) => bar.value == 99000)");
+    browser.photograph("serve_runs");
+    browser.script("document.querySelector('tbody a').click()");
+    browser.wait("document.body.innerText.includes('Settings') && document.body.innerText.includes('PPOLag in Remedy')");
+    browser.wait("[...document.querySelectorAll('tbody th')].some((cell) => cell.innerText == 'algorithm')");
+    browser.photograph("serve_run");
+    // Everything that the page asks for is answered, except the map that these runs lack.
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn an_agent_is_watched_paused_and_its_harm_jumped_to() {
+    let Some(browser) = Browser::open(1280, 1100, false) else { return };
+    let address = serve(&folder("chromium-watch"), None);
+    browser.go(&format!("http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3"));
+    let step = "Number(document.querySelector('#numbers b')?.innerText)";
+    browser.wait(&format!("{step} > 5"));
+    browser.wait("document.querySelector('[data-kind=harm]')");
+    browser.script("document.getElementById('go').click()");
+    browser.wait("document.getElementById('go').innerText == 'Go on'");
+    browser.script("document.querySelector('[data-kind=harm]').click()");
+    browser.wait(&format!("{step} == parseInt(document.querySelector('[data-kind=harm]').innerText) - 1"));
+    let at = browser.script(&format!("return {step}"));
+    // The view is no plain black.
+    browser.wait("(() => { const c = document.querySelector('canvas.view'); const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; return new Set(d).size > 20; })()");
+    browser.photograph("serve_watch");
+    browser.script("document.getElementById('copy').click()");
+    browser.wait("location.hash.includes('paused=true')");
+    let link = browser.script("return location.href");
+    browser.go(link.as_str().unwrap());
+    browser.wait(&format!("{step} == {at} && document.getElementById('go').innerText == 'Go on'"));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn an_episode_is_played_kept_and_found_in_the_table() {
+    let Some(browser) = Browser::open(1280, 1000, true) else { return };
+    let folder = folder("chromium-play");
+    let address = serve(&folder, None);
+    // Under the hard constraint lava ends the episode soon.
+    browser.go(&format!("http://{address}/#play?env=VolcanicVentureLevel1-v0&seed=3&hard=true&size=320x240"));
+    browser.wait("document.querySelector('#numbers b')");
+    browser.photograph("serve_play_dark");
+    browser.script("document.getElementById('begin').click()");
+    browser.keys(&["w"], true);
+    browser.wait("document.querySelector('#words').innerText.includes('kept as')");
+    browser.keys(&["w"], false);
+    browser.wait("document.querySelector('#best').innerText.includes('human')");
+    assert_eq!(std::fs::read_dir(folder.join("human")).unwrap().count(), 1);
+    let film = browser.script("return document.querySelector('#best a[href*=mp4]').href");
+    let path = film.as_str().unwrap().split_once(&address.to_string()).unwrap().1.to_owned();
+    let answer = common::get(address, &path, "");
+    assert!(common::status(&answer) == 200 && answer.contains("video/mp4") && answer.contains("ftyp"));
+    // It plays here too.
+    browser.script("document.body.append(Object.assign(document.createElement('video'), { src: document.querySelector('#best a[href*=mp4]').href, id: 'film', muted: true })); document.getElementById('film').play()");
+    browser.wait("document.getElementById('film').currentTime > 0.2 && document.getElementById('film').videoWidth == 320");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn pages_are_photographed_light_dark_and_narrow() {
+    let folder = folder("chromium-photographs");
+    for k in 0..30 {
+        write_run(&folder, &format!("remedy/PPOLag/seed{k}"), 100 + 10 * k);
+    }
+    let address = serve(&folder, None);
+    let pages = [
+        ("runs", "runs"),
+        ("watch", "watch?env=RemedyRushLevel1-v0&agent=sticky:10&seed=1"),
+        ("play", "play?env=ArmamentBurdenLevel1-v0&full=true"),
+    ];
+    for (kind, width, height, dark) in
+        [("light", 1400, 1000, false), ("dark", 1400, 1000, true), ("narrow", 380, 1600, false), ("wide", 2560, 1200, false)]
+    {
+        let Some(browser) = Browser::open(width, height, dark) else { return };
+        for (name, page) in pages {
+            browser.go(&format!("http://{address}/#{page}"));
+            browser.wait(if name == "runs" {
+                "document.querySelectorAll('tbody input').length == 30"
+            } else {
+                "document.querySelector('#numbers b')"
+            });
+            if name == "runs" {
+                browser.script("[...document.querySelectorAll('tbody input')].slice(0, 3).forEach((box) => box.click())");
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1500));
+            // Nothing is wider than the window.
+            let wide = browser.script("return document.documentElement.scrollWidth");
+            assert!(wide.as_u64().unwrap() <= u64::from(width), "{name} {kind}: {wide}");
+            browser.photograph(&format!("serve_{name}_{kind}"));
+        }
+        assert_eq!(browser.errors(), Vec::<String>::new(), "{kind}");
+    }
+}
+
+/// A page whose server dies says so, and goes on when it is back.
+#[test]
+fn a_server_that_is_away_is_told_of_and_comes_back() {
+    let Some(browser) = Browser::open(900, 700, false) else { return };
+    let folder = folder("chromium-away");
+    write_run(&folder, "one", 5);
+    // A process of its own, so that it can die: this test binary, asked to serve.
+    let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let begin = || {
+        let mut command = std::process::Command::new(std::env::current_exe().unwrap());
+        command
+            .args(["--ignored", "--exact", "serve_in_a_process"])
+            .env("HASARD_SERVE_TEST", format!("127.0.0.1:{port}|{}", folder.display()));
+        command.stdout(std::process::Stdio::null()).spawn().unwrap()
+    };
+    let mut server = begin();
+    while std::net::TcpStream::connect(("127.0.0.1", port)).is_err() {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    browser.go(&format!("http://127.0.0.1:{port}/"));
+    browser.wait("document.querySelectorAll('tbody input').length == 1");
+    server.kill().unwrap();
+    server.wait().unwrap();
+    browser.wait("document.getElementById('link').innerText.includes('does not answer')");
+    write_run(&folder, "two", 5);
+    let mut server = begin();
+    browser.wait("document.getElementById('link').innerText == '' && document.querySelectorAll('tbody input').length == 2");
+    server.kill().unwrap();
+    server.wait().unwrap();
+}
+
+#[test]
+#[ignore = "a server in a process of its own, begun by the test above"]
+fn serve_in_a_process() {
+    let Some((address, folder)) = std::env::var("HASARD_SERVE_TEST")
+        .ok()
+        .and_then(|given| given.split_once('|').map(|(a, b)| (a.to_owned(), b.to_owned())))
+    else {
+        return;
+    };
+    serve_at(&address, folder.as_ref(), None);
+    std::thread::sleep(std::time::Duration::from_secs(300));
+}

@@ -1,0 +1,155 @@
+//! A Chromium steered over WebDriver, by as little of the protocol as the tests need.
+
+use serde_json::{Value, json};
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A browser window; closed when dropped.
+pub struct Browser {
+    driver: Child,
+    port: u16,
+    session: String,
+}
+
+impl Browser {
+    /// Opens a window, or says why there is none.
+    pub fn open(width: u32, height: u32, dark: bool) -> Option<Browser> {
+        if Command::new("chromedriver").arg("--version").stdout(Stdio::null()).status().is_err() {
+            eprintln!("skipped: no chromedriver on this machine (apt-get install chromium chromium-driver)");
+            return None;
+        }
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let mut driver = Command::new("chromedriver");
+        let driver = driver.arg(format!("--port={port}")).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let mut browser = Browser { driver, port, session: String::new() };
+        let begun = Instant::now();
+        while TcpStream::connect(("127.0.0.1", port)).is_err() {
+            assert!(begun.elapsed() < Duration::from_secs(30), "chromedriver does not answer");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        let mut args =
+            vec!["--headless=new".to_owned(), "--no-sandbox".into(), "--disable-gpu".into(), "--disable-dev-shm-usage".into()];
+        args.push(format!("--window-size={width},{height}"));
+        if dark {
+            args.push("--force-prefers-color-scheme=dark".into());
+            args.push("--blink-settings=preferredColorScheme=0".into());
+        }
+        let options = json!({ "args": args });
+        let wanted = json!({ "goog:chromeOptions": options, "goog:loggingPrefs": { "browser": "ALL" } });
+        let made = browser.ask("POST", "/session", &json!({ "capabilities": { "alwaysMatch": wanted } }));
+        browser.session = made["sessionId"].as_str().unwrap_or_else(|| panic!("no session: {made}")).to_owned();
+        // Headless windows have a least width; the emulation does not.
+        let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        browser.chrome("Emulation.setDeviceMetricsOverride", &metrics);
+        let scheme = json!([{ "name": "prefers-color-scheme", "value": if dark { "dark" } else { "light" } }]);
+        browser.chrome("Emulation.setEmulatedMedia", &json!({ "features": scheme }));
+        Some(browser)
+    }
+
+    fn ask(&self, method: &str, path: &str, body: &Value) -> Value {
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(120))).unwrap();
+        let body = if method == "POST" { body.to_string() } else { String::new() };
+        let head = format!(
+            "{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nConnection: close\r\nContent-Length: {}\r\n\r\n",
+            self.port,
+            body.len()
+        );
+        stream.write_all((head + &body).as_bytes()).unwrap();
+        // The driver keeps connections open whatever it is asked: the length in its head ends the answer.
+        let (mut bytes, mut part) = (Vec::new(), [0; 1 << 16]);
+        let head_end = |bytes: &[u8]| bytes.windows(4).position(|four| four == b"\r\n\r\n").map(|at| at + 4);
+        let length = |head: &[u8]| -> Option<usize> {
+            let head = String::from_utf8_lossy(head).to_ascii_lowercase();
+            head.split("content-length:").nth(1)?.split("\r\n").next()?.trim().parse().ok()
+        };
+        let at = loop {
+            let read = stream.read(&mut part).unwrap_or(0);
+            bytes.extend(&part[..read]);
+            match head_end(&bytes) {
+                Some(at) if read == 0 || length(&bytes[..at]).is_some_and(|length| bytes.len() >= at + length) => break at,
+                None if read == 0 => break 0,
+                _ => {}
+            }
+        };
+        let answer: Value = serde_json::from_slice(&bytes[at..]).unwrap_or(Value::Null);
+        answer["value"].clone()
+    }
+
+    fn here(&self, method: &str, path: &str, body: &Value) -> Value {
+        self.ask(method, &format!("/session/{}{path}", self.session), body)
+    }
+
+    fn chrome(&self, command: &str, params: &Value) {
+        self.here("POST", "/goog/cdp/execute", &json!({ "cmd": command, "params": params }));
+    }
+
+    /// Goes to an address.
+    pub fn go(&self, address: &str) {
+        self.here("POST", "/url", &json!({ "url": "about:blank" }));
+        self.here("POST", "/url", &json!({ "url": address }));
+    }
+
+    /// What a script returns.
+    pub fn script(&self, text: &str) -> Value {
+        self.here("POST", "/execute/sync", &json!({ "script": text, "args": [] }))
+    }
+
+    /// Waits until a script returns true.
+    pub fn wait(&self, text: &str) {
+        let begun = Instant::now();
+        while self.script(&format!("return Boolean({text})")) != json!(true) {
+            if begun.elapsed() > Duration::from_secs(60) {
+                panic!("not in a minute: {text}; the page says {}", self.script("return document.body.innerText"));
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    }
+
+    /// Presses keys one after the other (`down`) or lets them go.
+    pub fn keys(&self, keys: &[&str], down: bool) {
+        let kind = if down { "keyDown" } else { "keyUp" };
+        let actions: Vec<Value> = keys.iter().map(|key| json!({ "type": kind, "value": key })).collect();
+        self.here("POST", "/actions", &json!({ "actions": [{ "type": "key", "id": "keys", "actions": actions }] }));
+    }
+
+    /// Errors that the console shows.
+    pub fn errors(&self) -> Vec<String> {
+        let log = self.here("POST", "/se/log", &json!({ "type": "browser" }));
+        let lines = log.as_array().cloned().unwrap_or_default();
+        lines.iter().filter(|line| line["level"] == "SEVERE").map(|line| line["message"].to_string()).collect()
+    }
+
+    /// Keeps a picture of the window where `HASARD_KEEP_PICTURES` says.
+    pub fn photograph(&self, name: &str) {
+        let Some(place) = std::env::var_os("HASARD_KEEP_PICTURES").map(PathBuf::from) else { return };
+        let picture = self.here("GET", "/screenshot", &Value::Null);
+        std::fs::write(place.join(format!("{name}.png")), base64(picture.as_str().unwrap())).unwrap();
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        self.here("DELETE", "", &Value::Null);
+        let _ = self.driver.kill();
+        let _ = self.driver.wait();
+    }
+}
+
+fn base64(text: &str) -> Vec<u8> {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut bytes = Vec::with_capacity(text.len() * 3 / 4);
+    let (mut bits, mut count) = (0u32, 0);
+    for value in text.bytes().filter_map(|letter| LETTERS.iter().position(|one| *one == letter)) {
+        bits = bits << 6 | value as u32;
+        count += 6;
+        if count >= 8 {
+            count -= 8;
+            bytes.push((bits >> count) as u8);
+        }
+    }
+    bytes
+}
