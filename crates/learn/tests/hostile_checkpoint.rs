@@ -33,7 +33,7 @@ fn change(checkpoint: &Path, spoil: impl FnOnce(&mut Vec<u8>)) {
 
 /// The message that a resumed run ends with.
 fn refused(path: &Path) -> String {
-    let message = run(Start::Resume { settings: &["frames=1024".into()] }, path).0.unwrap_err();
+    let message = run(Start::Resume { settings: vec!["frames=1024".into()] }, path).0.unwrap_err();
     assert!(!message.contains("panicked") && !message.contains(char::is_control), "{message}");
     message
 }

@@ -116,7 +116,7 @@ fn a_full_disk_ends_the_run_with_an_error_and_loses_nothing() {
     assert!(message.contains("metrics.jsonl") && message.contains("No space left"), "{message}");
     assert!(message.contains("--resume"), "{message}");
     fs::remove_file(&log).unwrap();
-    let (result, _, warnings) = tiny::run(Start::Resume { settings: &[format!("frames={}", 2 * config.frames)] }, &path);
+    let (result, _, warnings) = tiny::run(Start::Resume { settings: vec![format!("frames={}", 2 * config.frames)] }, &path);
     assert_eq!(result.unwrap().last.frames, 2 * config.frames);
     assert!(warnings.is_empty(), "{warnings:?}");
     fs::remove_dir_all(path).unwrap();

@@ -258,7 +258,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
         for checkpoint in checkpoints(&path) {
             truncate(&checkpoint.join("state.json"));
         }
-        let message = tiny::run(Start::Resume { settings: &[format!("frames={}", config.frames * 2)] }, &path).0.unwrap_err();
+        let message = tiny::run(Start::Resume { settings: vec![format!("frames={}", config.frames * 2)] }, &path).0.unwrap_err();
         assert!(message.contains("every checkpoint is damaged"), "{message}");
         fs::remove_dir_all(path).unwrap();
     }
@@ -546,7 +546,7 @@ fn a_run_goes_on_with_other_settings_and_says_so() {
         let path = tiny::directory(&format!("goes-on-{samplers}"));
         copy(&begun, &path);
         let settings: Vec<String> = settings.iter().cloned().chain([format!("sampling.samplers={samplers}")]).collect();
-        let (summary, reports, _) = tiny::run(Start::Resume { settings: &settings }, &path);
+        let (summary, reports, _) = tiny::run(Start::Resume { settings: settings.to_vec() }, &path);
         assert_eq!(summary.unwrap().last.frames, frames(4));
         assert!(
             reports.iter().all(|report| report.learning.iter().any(|(name, rate)| *name == "learning_rate" && *rate == 1e-4))
@@ -562,9 +562,9 @@ fn a_run_goes_on_with_other_settings_and_says_so() {
     // Another seed is another run, and what cannot change is refused by name.
     let same = tiny::directory("same-seed");
     copy(&begun, &same);
-    tiny::run(Start::Resume { settings: &[settings[0].clone(), settings[2].clone()] }, &same).0.unwrap();
+    tiny::run(Start::Resume { settings: vec![settings[0].clone(), settings[2].clone()] }, &same).0.unwrap();
     assert!(last_files(&same).0 != ends[0]);
-    let refused = tiny::run(Start::Resume { settings: &["learning.gamma=0.5".into()] }, &same).0.unwrap_err();
+    let refused = tiny::run(Start::Resume { settings: vec!["learning.gamma=0.5".into()] }, &same).0.unwrap_err();
     assert!(refused.contains("learning.gamma") && refused.contains("--init-from"), "{refused}");
     fs::remove_dir_all(begun).unwrap();
     fs::remove_dir_all(same).unwrap();
@@ -605,7 +605,7 @@ fn two_constraints_are_kept_apart_and_resumed() {
     let half = config.frames / 2;
     tiny::run(Start::Fresh(TrainConfig { frames: half, ..config.clone() }), &broken).0.unwrap();
     let settings = [format!("frames={}", config.frames)];
-    tiny::run(Start::Resume { settings: &settings }, &broken).0.unwrap();
+    tiny::run(Start::Resume { settings: settings.to_vec() }, &broken).0.unwrap();
     assert!(last_files(&straight).0 == last_files(&broken).0, "weights differ");
     assert!(last_files(&straight).1 == last_files(&broken).1, "optimisers or lanes differ");
     fs::remove_dir_all(straight).unwrap();

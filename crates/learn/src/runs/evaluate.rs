@@ -9,7 +9,7 @@ use crate::runs::agent::TrainedPolicy;
 use crate::runs::session::MakeWorlds;
 use crate::sampling::gather::panic_text;
 
-pub use crate::runs::agent::{Action, Agent, Choice, Thought, Which, run_config};
+pub use crate::runs::agent::{Action, Agent, Choice, Memory, Thought, Which, run_config};
 
 /// Most worlds that one agent acts in side by side.
 const MOST_LANES: usize = 32;

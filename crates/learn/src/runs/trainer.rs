@@ -29,6 +29,7 @@ pub struct Hooks<'a> {
 }
 
 /// How a run begins.
+#[derive(Clone)]
 pub enum Start<'a> {
     /// In a new directory.
     Fresh(TrainConfig),
@@ -36,7 +37,7 @@ pub enum Start<'a> {
     /// and are written down in it.
     Resume {
         /// Settings that are to be others than before.
-        settings: &'a [String],
+        settings: Vec<String>,
     },
     /// In a new directory, with the weights and normalisers of another run.
     From(TrainConfig, &'a Path),
@@ -44,7 +45,7 @@ pub enum Start<'a> {
 
 impl Start<'_> {
     /// From the last checkpoint in the directory, as before.
-    pub const RESUME: Start<'static> = Start::Resume { settings: &[] };
+    pub const RESUME: Start<'static> = Start::Resume { settings: Vec::new() };
 }
 
 /// How a run ended.
@@ -115,7 +116,7 @@ fn begin(
             if loaded.is_none() {
                 (hooks.warn)(format!("{}: no checkpoint was written yet; the run starts again", directory.display()));
             }
-            let config = before.resumed_with(settings, at)?;
+            let config = before.resumed_with(&settings, at)?;
             if config != before {
                 run.rewrite_config(&config)?;
             }
