@@ -15,6 +15,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from hasard_rs._core import Batch, Worlds, __version__
+from hasard_rs.agent import Agent, Run, report, train
 from hasard_rs.errors import (
     Closed,
     HasardError,
@@ -64,6 +65,7 @@ def _known(env_id: str) -> str:
 
 __all__ = [
     "LEVELS",
+    "Agent",
     "Batch",
     "Closed",
     "CostTerm",
@@ -74,6 +76,7 @@ __all__ = [
     "InvalidOption",
     "OutOfTurn",
     "ResetNeeded",
+    "Run",
     "Scenario",
     "Spec",
     "UnknownEnvironment",
@@ -85,5 +88,7 @@ __all__ = [
     "make",
     "make_vec",
     "register_environment",
+    "report",
     "spec",
+    "train",
 ]

@@ -1,7 +1,6 @@
 //! How a command fails, and the one line that says so.
 
 use std::io;
-use std::process::ExitCode;
 
 /// Why a command did not end well; decides the exit code.
 #[derive(Debug)]
@@ -38,12 +37,18 @@ impl From<io::Error> for Failure {
     }
 }
 
-/// Prints `--help` and `--version` as they are, and a usage error as one line.
-pub fn report_usage(error: &clap::Error) -> ExitCode {
+/// Prints `--help` and `--version` as they are, and a usage error as one line; gives the exit code.
+pub fn report_usage(error: &clap::Error) -> u8 {
     if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         let _ = error.print();
-        return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+        return if error.use_stderr() { 2 } else { 0 };
     }
+    eprintln!("hasard: {} (see `{} --help`)", usage_line(error), command());
+    2
+}
+
+/// A usage error as one line.
+pub fn usage_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let parts: Vec<&str> = text
         .lines()
@@ -51,8 +56,7 @@ pub fn report_usage(error: &clap::Error) -> ExitCode {
         .filter(|line| !line.is_empty() && !line.starts_with("Usage:") && !line.starts_with("For more information"))
         .collect();
     let line = presentable(&parts.join("; ").replace(":; ", ": "));
-    eprintln!("hasard: {} (see `{} --help`)", line.strip_prefix("error: ").unwrap_or(&line), command());
-    ExitCode::from(2)
+    line.strip_prefix("error: ").unwrap_or(&line).to_string()
 }
 
 /// The program and, if the first argument names one, its command: whose help says more.

@@ -19,6 +19,7 @@ import random
 import re
 import statistics
 import subprocess
+import tempfile
 import time
 
 SCENARIOS = ["ArmamentBurden", "RemedyRush", "CollateralDamage", "VolcanicVenture", "PrecipicePlunge", "DetonatorsDilemma"]
@@ -86,6 +87,9 @@ def main():
     parser.add_argument("--simd", choices=["plain", "avx2", "avx512"], help="what ours may use (HASARD_SIMD)")
     parser.add_argument("--program", default="target/release/examples/step_cost", help="the built example")
     given = parser.parse_args()
+    program = str(pathlib.Path(given.program).resolve())
+    # The published engine leaves its settings where it runs.
+    os.chdir(tempfile.mkdtemp(prefix="beside_published_speed_"))
     if given.simd:
         os.environ["HASARD_SIMD"] = given.simd
     names = [(scenario, level) for scenario in SCENARIOS for level in (1, 2, 3)]
@@ -97,7 +101,7 @@ def main():
         environment = f"{scenario}Level{level}-v0"
         published = Published(scenario, level)
         published.steps_per_second(0.2)
-        pairs = [(published.steps_per_second(given.seconds), ours(given.program, environment, given.seconds)) for _ in range(given.rounds)]
+        pairs = [(published.steps_per_second(given.seconds), ours(program, environment, given.seconds)) for _ in range(given.rounds)]
         published.game.close()
         ratios = [mine / theirs for theirs, mine in pairs]
         medians.append(statistics.median(ratios))

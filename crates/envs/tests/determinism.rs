@@ -235,7 +235,8 @@ fn outlook(env: &mut Env, seed: u64) -> u64 {
         hasher.write_u64(paid.cost.to_bits());
         if step % 6 == 5 {
             env.observe(&mut frame);
-            hasher.write(&frame);
+            // The face in the status bar, below row 40, glances about by chance everywhere.
+            hasher.write(&frame[..64 * 40 * 3]);
         }
     }
     hasher.finish()

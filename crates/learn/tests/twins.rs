@@ -105,12 +105,16 @@ fn outputs_and_gradients_equal_those_of_the_plain_network() {
         let wide: Vec<f64> = parameters.iter().map(|&value| f64::from(value)).collect();
         let expected: Vec<f32> = plain::forward(&shape, &wide, &case.pixels, &batch).iter().map(|&value| value as f32).collect();
         let seeds = normals(expected.len(), 1);
-        let mut learner = CpuLearner::new(Kernels::available()[0], &shape, 2);
-        learner.load(&parameters);
-        learner.load_pixels(&case.pixels);
-        close(&format!("{name}: output"), &learner.forward(&batch), &expected);
-        let mut gradient = vec![f32::NAN; parameters.len()];
-        learner.backward(&batch, &seeds, &mut gradient);
+        let gradients = Kernels::available().into_iter().map(|kernels| {
+            let mut learner = CpuLearner::new(kernels, &shape, 2);
+            learner.load(&parameters);
+            learner.load_pixels(&case.pixels);
+            close(&format!("{name}, {kernels}: output"), &learner.forward(&batch), &expected);
+            let mut gradient = vec![f32::NAN; parameters.len()];
+            learner.backward(&batch, &seeds, &mut gradient);
+            (kernels, gradient)
+        });
+        let gradients: Vec<_> = gradients.collect();
         for parameter in shape.parameters() {
             let direction = normals(parameter.size(), 2 + parameter.offset as u64);
             let moved = |by: f64| -> f64 {
@@ -122,10 +126,13 @@ fn outputs_and_gradients_equal_those_of_the_plain_network() {
                 outputs.iter().zip(&seeds).map(|(output, seed)| output * f64::from(*seed)).sum()
             };
             let expected = (moved(1e-6) - moved(-1e-6)) / 2e-6;
-            let own = &gradient[parameter.range()];
-            let found: f64 = own.iter().zip(&direction).map(|(g, d)| f64::from(*g) * f64::from(*d)).sum();
-            let size = own.iter().map(|g| f64::from(*g).powi(2)).sum::<f64>().sqrt();
-            assert!((found - expected).abs() <= 1e-4 * size, "{name}: {} along {found}, {expected}", parameter.name);
+            for (kernels, gradient) in &gradients {
+                let own = &gradient[parameter.range()];
+                let found: f64 = own.iter().zip(&direction).map(|(g, d)| f64::from(*g) * f64::from(*d)).sum();
+                let size = own.iter().map(|g| f64::from(*g).powi(2)).sum::<f64>().sqrt();
+                let name = format!("{name}, {kernels}: {}", parameter.name);
+                assert!((found - expected).abs() <= 1e-4 * size, "{name} along {found}, {expected}");
+            }
         }
     }
 }

@@ -35,6 +35,10 @@ fn contiguous<'py, T: numpy::Element>(
         let dtype = array.getattr("dtype")?;
         return Err(PyTypeError::new_err(format!("{name} must be {what}, got dtype {dtype}")));
     }
+    // NumPy makes a row of a scalar where it is asked for contiguous memory.
+    if array.getattr("ndim")?.extract::<usize>()? == 0 {
+        return Err(PyTypeError::new_err(format!("{name} must be an array, got a scalar")));
+    }
     let typed = function(&CONTIGUOUS, "ascontiguousarray")?.call1((array, numpy::dtype::<T>(py)))?;
     Ok(typed.cast_into::<PyArrayDyn<T>>()?)
 }

@@ -8,11 +8,13 @@
 //! | `bind`, `memory` | results written into the caller's arrays |
 //! | `actions`, `resets`, `arguments` | what Python gives, checked before any world moves |
 //! | `facts`, `registry` | what is fixed about worlds, and the 18 environments |
+//! | `program`, `agent` | the program `hasard`, training, and trained agents |
 //! | `errors` | errors as exceptions of `hasard_rs.errors` |
 //!
 //! Unsafe code is in `pool`, `memory` (memory shared with NumPy) and `inner` (the end of worlds after a fork), each with its reason.
 
 mod actions;
+mod agent;
 mod arguments;
 mod batch;
 mod bind;
@@ -22,6 +24,7 @@ mod inner;
 mod lane;
 mod memory;
 mod pool;
+mod program;
 mod registry;
 mod resets;
 mod worlds;
@@ -34,6 +37,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<worlds::Worlds>()?;
     module.add_class::<batch::Batch>()?;
+    module.add_class::<agent::TrainedAgent>()?;
+    module.add_class::<agent::AgentState>()?;
+    module.add_function(wrap_pyfunction!(program::main, module)?)?;
+    module.add_function(wrap_pyfunction!(program::train, module)?)?;
     module.add_function(wrap_pyfunction!(registry::ids, module)?)?;
     module.add_function(wrap_pyfunction!(registry::describe, module)?)?;
     Ok(())

@@ -32,7 +32,11 @@ pub fn run(args: &SweepArgs) -> Outcome {
         }
         return Ok(());
     }
-    let program = std::env::current_exe().map_err(|error| Failure::bad(format!("this program's own path: {error}")))?;
+    // The Python package tells where its script is: there this process is the interpreter.
+    let program = match std::env::var_os("HASARD_PROGRAM") {
+        Some(program) => program.into(),
+        None => std::env::current_exe().map_err(|error| Failure::bad(format!("this program's own path: {error}")))?,
+    };
     let total = jobs.len();
     // A reader who goes away does not stop the runs.
     let summary = run_jobs(&program, &jobs, sweep.parallel, |index, event| {

@@ -4,18 +4,27 @@ use crate::args::TrainArgs;
 use crate::automap;
 use crate::failure::{Failure, Outcome};
 use clap::ArgMatches;
-use hasard_envs::{EnvId, VecEnv};
+use hasard_envs::{EnvId, EnvOptions, VecEnv};
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::{Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::interrupt::stop_on_interrupt;
 use hasard_learn::runs::progress_bar::{Bar, line};
 use hasard_learn::runs::report::Report;
 use hasard_learn::runs::run_directory::read_config;
-use hasard_learn::runs::trainer::{Hooks, Start, train};
+use hasard_learn::runs::trainer::{Hooks, Start, Summary, train};
 use std::path::{Path, PathBuf};
 
-/// Runs the command; `typed` tells which flags were given and which have their default.
-pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
+/// A run about to begin.
+pub struct Begun<'a> {
+    /// Its directory.
+    pub directory: PathBuf,
+    start: Start<'a>,
+    config: TrainConfig,
+    options: EnvOptions,
+}
+
+/// What the words of the command begin; `typed` tells which flags were given and which have their default.
+pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, Failure> {
     let directory =
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("runs/{}-{}-seed{}", args.env, args.algo, args.seed)));
     let (start, config) = if args.resume && directory.join("config.json").exists() {
@@ -37,17 +46,52 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         (start, config)
     };
     let options = crate::settings::trained_options(&config.env)?;
-    let stop = stop_on_interrupt().map_err(Failure::bad)?;
-    let bar = (!args.json && !args.quiet).then(|| Bar::new(args.frames.unwrap_or(config.frames)));
-    let mut first: Option<Report> = None;
-    let (mut drawn, mut failed_drawing) = (false, None);
-    let mut hear = |report: &Report| {
-        // Not before: the directory is the run's own only once it has begun.
-        if !std::mem::replace(&mut drawn, true)
-            && let Err(error) = automap::keep(&config, &options, &directory)
-        {
-            failed_drawing = Some(error);
+    Ok(Begun { directory, start, config, options })
+}
+
+impl Begun<'_> {
+    /// Trains, and keeps the pictures of the map beside what is learned. Gives the run's directory and how it ended.
+    pub fn train(self, hooks: &mut Hooks<'_>) -> Result<(PathBuf, Summary), Failure> {
+        self.train_told(hooks, |_| {})
+    }
+
+    /// The same, telling once when the directory is the run's own: when the first worlds are made.
+    fn train_told(self, hooks: &mut Hooks<'_>, begins: impl Fn(&Begun<'_>)) -> Result<(PathBuf, Summary), Failure> {
+        let (mut drawn, mut failed_drawing) = (false, None);
+        let told = std::cell::Cell::new(false);
+        let report = &mut *hooks.report;
+        let mut hear = |row: &Report| {
+            // Not before: the directory is the run's own only once it has begun.
+            if !std::mem::replace(&mut drawn, true)
+                && let Err(error) = automap::keep(&self.config, &self.options, &self.directory)
+            {
+                failed_drawing = Some(error);
+            }
+            report(row);
+        };
+        let make = |env: &EnvConfig, worlds| {
+            if !told.replace(true) {
+                begins(&self);
+            }
+            VecEnv::new(&env.id, &self.options, worlds)
+        };
+        let mut hooks = Hooks { stop: hooks.stop, report: &mut hear, warn: &mut *hooks.warn };
+        let summary = train(self.start.clone(), &self.directory, &make, &mut hooks).map_err(Failure::bad)?;
+        match failed_drawing {
+            Some(error) => Err(error),
+            None => Ok((self.directory.clone(), summary)),
         }
+    }
+}
+
+/// Runs the command, telling the terminal.
+pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
+    let begun = begin(args, typed)?;
+    let stop = stop_on_interrupt().map_err(Failure::bad)?;
+    let bar = (!args.json && !args.quiet).then(|| Bar::new(args.frames.unwrap_or(begun.config.frames)));
+    let id = begun.config.env.id.clone();
+    let mut first: Option<Report> = None;
+    let mut hear = |report: &Report| {
         if first.is_none() && report.means.is_some() {
             first = Some(report.clone());
         }
@@ -62,19 +106,12 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         Some(bar) => bar.print(&format!("hasard: {text}")),
         None => eprintln!("hasard: {text}"),
     };
-    // Said once the directory is the run's own, when the first worlds are made.
-    let described = std::cell::Cell::new(bar.is_none());
-    let make = |env: &EnvConfig, worlds| {
-        if !described.replace(true) {
-            describe(&config, &directory);
-        }
-        VecEnv::new(&env.id, &options, worlds)
-    };
     let mut hooks = Hooks { stop: &stop, report: &mut hear, warn: &mut warn };
-    let summary = train(start, &directory, &make, &mut hooks).map_err(Failure::bad)?;
-    if let Some(error) = failed_drawing {
-        return Err(error);
-    }
+    let (directory, summary) = begun.train_told(&mut hooks, |begun| {
+        if bar.is_some() {
+            describe(&begun.config, &begun.directory);
+        }
+    })?;
     if let Some(bar) = &bar {
         bar.finish();
         if let Some(first) = &first {
@@ -83,7 +120,7 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         eprintln!("last:  {}", line(&summary.last));
         let name = directory.display();
         match summary.stopped {
-            true => eprintln!("stopped; go on with: hasard train {} --resume --out {name}", config.env.id),
+            true => eprintln!("stopped; go on with: hasard train {id} --resume --out {name}"),
             false => eprintln!("{name} is a run directory: hasard eval {name}, hasard report {name}"),
         }
     }

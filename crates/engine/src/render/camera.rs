@@ -73,6 +73,12 @@ impl Camera {
         }
     }
 
+    /// What something that changes by `step` a row changes by from the lower edge of base row 0 to the horizon.
+    #[inline]
+    pub fn to_horizon(&self, step: i64) -> i64 {
+        step * ((self.horizon >> 16) - 1) + ((step * (self.horizon & 0xFFFF)) >> 16)
+    }
+
     /// How far a point is to the right of the left edge of the view, and to the left of the right edge, both in units
     /// in which their sum is twice the distance forward; 16.16.
     #[inline]

@@ -1,16 +1,17 @@
 //! The buffers that are drawn into.
 
 use super::column::{ROW_BLOCK, ROW_GROUP};
-use super::{depth_level, turn};
+use super::depth::Depths;
+use super::turn;
 use crate::simd::Simd;
 
 /// What a pixel of the class buffer shows where it is no actor.
 pub mod class {
     /// A wall, a fence, or nothing at all.
     pub const WALL: u16 = 0;
-    /// A floor.
+    /// A floor with a picture of 64 by 64 texels.
     pub const FLOOR: u16 = 1;
-    /// A ceiling.
+    /// A ceiling with one.
     pub const CEILING: u16 = 2;
     /// The sky.
     pub const SKY: u16 = 3;
@@ -18,6 +19,10 @@ pub mod class {
     pub const STATUS_BAR: u16 = 4;
     /// The player's own weapon.
     pub const WEAPON: u16 = 5;
+    /// A floor whose picture is no square of 64 texels: published labels take it for a wall.
+    pub const OTHER_FLOOR: u16 = 6;
+    /// A ceiling whose picture is none.
+    pub const OTHER_CEILING: u16 = 7;
     /// The first actor in the list of labels; the next ones count up.
     pub const FIRST_ACTOR: u16 = 16;
 }
@@ -33,8 +38,8 @@ pub(super) struct Frame {
     pub depth: Vec<u8>,
     /// Classes and actors.
     pub class: Vec<u16>,
-    /// Largest depth of walls, sprites and the sky; floors and ceilings always reach 255.
-    pub depth_cap: u8,
+    /// How depth is told.
+    pub depths: Depths,
     /// What is drawn by columns.
     pub columns: Columns,
 }
@@ -74,17 +79,11 @@ impl Columns {
 }
 
 impl Frame {
-    /// Depth of a wall, sprite or the sky at a distance in 16.16 map units.
-    #[inline]
-    pub fn capped_depth(&self, distance: i64) -> u8 {
-        depth_level(distance).min(self.depth_cap)
-    }
-
     /// Empties the first `rows` rows: walls come next, by columns.
     pub fn clear<const DEPTH: bool, const CLASS: bool>(&mut self, rows: usize) {
         self.columns.colour.fill(0);
         if DEPTH {
-            self.columns.depth.fill(self.depth_cap);
+            self.columns.depth.fill(self.depths.farthest());
         }
         if CLASS {
             self.class[..rows * self.width].fill(class::WALL);

@@ -26,6 +26,11 @@ impl Light {
         Light { base: (64 << 16) - (level << 14), most: NEAREST }
     }
 
+    /// The table of what is as near as counts: the player's own weapon.
+    pub fn nearest_table(self) -> usize {
+        self.table(NEAREST)
+    }
+
     /// The table where `nearness` is [`ONE_TABLE_DISTANCE`] divided by the distance, 16.16.
     #[inline]
     pub fn table(self, nearness: i64) -> usize {

@@ -144,8 +144,8 @@ impl Masked<'_> {
             let u = along.at(column, distance) >> 16;
             let texels = picture.column(u.rem_euclid(i64::from(picture.width)) as u32);
             let step = (distance * self.view.inverse_focal_y) >> 16;
-            let at = ((hung_from - self.camera.z) << 16) + step - ((step * self.camera.horizon) >> 16);
-            let depth = self.frame.capped_depth(distance);
+            let at = ((hung_from - self.camera.z) << 16) - self.camera.to_horizon(step);
+            let depth = self.frame.depths.wall(distance);
             for row in rows.start as usize..rows.end as usize {
                 let v = (at + step * i64::from(self.view.rows[row])) >> 32;
                 let texel = texels[v.clamp(0, i64::from(picture.height) - 1) as usize];

@@ -14,6 +14,7 @@ mod column_wide;
 mod convert;
 #[cfg(target_arch = "x86_64")]
 mod convert_wide;
+mod depth;
 mod frame;
 mod horizon;
 mod label;
@@ -62,10 +63,4 @@ pub struct Buffers {
     pub depth: bool,
     /// What each pixel shows, and the list of actors in view.
     pub labels: bool,
-}
-
-/// The depth buffer's value for a distance in 16.16 map units: 7.3 units a level, as measured.
-#[inline]
-fn depth_level(distance: i64) -> u8 {
-    (distance * 10 / (73 << 16)).min(255) as u8
 }

@@ -29,8 +29,8 @@ const DAMAGE_ALPHA: [u8; 101] = [
     173, 175, 176, 178, 179, 181, 182, 183, 185, 186, 187, 189, 190, 191, 192, 194, 195, 196, 197, 198, 200, 201, 202, 203, 204,
     205, 206, 207, 209, 210, 211, 212, 213, 214, 215, 216, 217, 218, 219, 220, 221, 221, 222, 223, 224, 225, 226,
 ];
-/// Green of the radiation suit, an eighth of the whole.
-const SUIT: [u8; 3] = [0, 255, 0];
+/// Green of the radiation suit, an eighth of the whole; one less than full, as measured.
+const SUIT: [u8; 3] = [0, 254, 0];
 const SUIT_ALPHA: i64 = 32;
 /// Power-ups blink in their last tics, by this bit of what is left.
 const BLINK_TICS: u32 = 128;
@@ -117,6 +117,14 @@ mod tests {
         // that the colour is 215 * 0.2074 + 255 * 0.7926 = 246 red and 186 * 0.2074 = 38 green.
         assert_eq!(both[0], ((100 * 24 + 246 * 232) >> 8) as u8);
         assert_eq!(both[1], ((100 * 24 + 38 * 232) >> 8) as u8);
+    }
+
+    #[test]
+    fn a_suit_tints_greys_as_measured() {
+        for (grey, [red, green]) in [(55, [48, 79]), (47, [41, 72])] {
+            let tinted = Tint { suit: true, ..Tint::default() }.apply(&[[grey; 3]; 256])[0];
+            assert_eq!(tinted, [red, green, red]);
+        }
     }
 
     #[test]

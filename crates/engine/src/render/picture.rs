@@ -142,6 +142,8 @@ pub(super) struct Textures {
     pub flats: Vec<FlatPicture>,
     /// By frame.
     pub masked: Vec<MaskedPicture>,
+    /// By frame: whether it is a square of 64 texels.
+    pub squares: Vec<bool>,
 }
 
 impl Textures {
@@ -156,6 +158,7 @@ impl Textures {
             self.walls.push(WallPicture::new(image));
             self.flats.push(FlatPicture::new(image));
             self.masked.push(MaskedPicture::new(image));
+            self.squares.push((image.width, image.height) == (64, 64));
         }
         self.list.push(Texture { first, frames, tics: u32::from(entry.tics).max(1) });
     }

@@ -2,7 +2,6 @@
 
 use super::View;
 use super::camera::Camera;
-use super::depth_level;
 use super::frame::{Frame, class};
 use super::horizon::RowSlopes;
 use super::light::{Light, ONE_TABLE_DISTANCE};
@@ -219,13 +218,14 @@ pub(super) struct PlaneShader<'a> {
 }
 
 impl<'a> PlaneShader<'a> {
-    /// For a plane at `height` in a sector of light `light`.
+    /// For the plane of a key, whose picture is a `square` of 64 texels or another one.
     pub fn new(
         camera: &'a Camera,
         view: &'a View,
         slopes: &'a RowSlopes,
         tables: &'a [[u8; 256]; 32],
         key: PlaneKey,
+        square: bool,
     ) -> PlaneShader<'a> {
         let above = i64::from(key.height.0) > camera.z;
         let height = (i64::from(key.height.0) - camera.z).abs().max(256);
@@ -238,7 +238,12 @@ impl<'a> PlaneShader<'a> {
             slopes,
             light: Light::new(camera, i32::from(key.light)),
             nearness,
-            class: if above { class::CEILING } else { class::FLOOR },
+            class: match (above, square) {
+                (false, true) => class::FLOOR,
+                (false, false) => class::OTHER_FLOOR,
+                (true, true) => class::CEILING,
+                (true, false) => class::OTHER_CEILING,
+            },
         }
     }
 
@@ -262,7 +267,8 @@ impl<'a> PlaneShader<'a> {
             }
         }
         if DEPTH {
-            frame.depth[start + first..start + end].fill(depth_level(distance));
+            let depth = frame.depths.plane(distance);
+            frame.depth[start + first..start + end].fill(depth);
         }
         if CLASS {
             frame.class[start + first..start + end].fill(self.class);

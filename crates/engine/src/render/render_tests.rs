@@ -5,7 +5,7 @@ use crate::assets::Assets;
 use crate::map::{Map, MapBuilder, Mark, Style, TileGrid};
 use crate::math::{Angle, Fixed, Rng};
 use crate::simd::Simd;
-use crate::world::{ActorKind, World};
+use crate::world::{ActorKind, Weapon, World};
 use std::sync::{Arc, OnceLock};
 
 const STYLE: Style = Style {
@@ -173,11 +173,19 @@ fn buffers_do_not_change_the_colours() {
 #[test]
 fn a_used_renderer_draws_as_a_new_one() {
     let (mut world, mut rng) = (yard_world(), Rng::new(23));
-    let mut used = renderer(128, 72);
-    for _ in 0..60 {
+    let sizes = [(128, 72), (64, 48), (320, 240), (641, 480)];
+    let mut renderers = sizes.map(|(width, height)| renderer(width, height));
+    for frame in 0..120 {
         look_anywhere(&mut world, &mut rng);
+        let id = world.players[0].actor;
+        world.get_mut(id).unwrap().health = rng.between(1, 1200);
+        let player = &mut world.players[0];
+        player.weapons = rng.below(1 << 9) as u16;
+        player.keys = rng.below(4) as u8;
+        player.weapon = [None, Some(Weapon::Pistol), Some(Weapon::Bfg9000)][rng.below(3) as usize];
+        let ((width, height), used) = (sizes[frame % 4], &mut renderers[frame % 4]);
         used.render(&world, 0, ALL);
-        let mut new = renderer(128, 72);
+        let mut new = renderer(width, height);
         new.render(&world, 0, ALL);
         assert_eq!(used.indices(), new.indices());
         assert_eq!((used.depth(), used.classes(), used.palette()), (new.depth(), new.classes(), new.palette()));

@@ -2,6 +2,7 @@
 
 use super::camera::Camera;
 use super::convert::Colours;
+use super::depth::Depths;
 use super::frame::{Columns, Frame, class};
 use super::horizon::RowSlopes;
 use super::label::{Label, Labels};
@@ -65,8 +66,8 @@ pub struct RenderOptions {
     /// Light amplification (Infrared goggles) has a strong green hue, as the paper says; the published engine only
     /// brightens.
     pub green_goggles: bool,
-    /// Depth of walls, sprites and sky ends at `255 * height / 480` in frames less than 480 rows high, as the published
-    /// engine's does: at 63 in learners' frames.
+    /// Depth is what the published engine tells: by a formula each for walls, floors and sprites, and except on floors
+    /// it ends at `255 * height / 480` in frames less than 480 rows high, at 63 in learners' frames.
     pub published_depth: bool,
 }
 
@@ -81,7 +82,7 @@ impl Renderer {
             colour: vec![0; pixels],
             depth: vec![0; pixels],
             class: vec![class::STATUS_BAR; pixels],
-            depth_cap: 255,
+            depths: Depths::default(),
             columns: Columns::new(width, view.view_rows),
         };
         Renderer {
@@ -114,9 +115,8 @@ impl Renderer {
     /// Chooses what is drawn otherwise from the next frame on.
     pub fn set_options(&mut self, options: RenderOptions) {
         self.options = options;
-        let rows = self.view.base_rows();
-        let cap = if options.published_depth { (255 * rows / 480).min(255) } else { 255 };
-        self.frame.depth_cap = cap as u8;
+        let published = || Depths::published(self.view.base_rows());
+        self.frame.depths = if options.published_depth { published() } else { Depths::default() };
     }
 
     /// Draws with these instructions, to compare them: the pixels are the same.
@@ -233,9 +233,9 @@ impl Renderer {
                     shader.span::<DEPTH, CLASS>(&mut self.frame, &self.sky_columns, span);
                 }
             } else {
-                let shader = PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key);
-                let picture = self.pictures[usize::from(plane.key.texture.0)];
-                let flat = &self.scene.textures.flats[picture as usize];
+                let picture = self.pictures[usize::from(plane.key.texture.0)] as usize;
+                let (flat, square) = (&self.scene.textures.flats[picture], self.scene.textures.squares[picture]);
+                let shader = PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key, square);
                 for &span in spans {
                     shader.span::<DEPTH, CLASS>(&mut self.frame, flat, span);
                 }
@@ -344,8 +344,9 @@ impl Renderer {
         convert::classes_planes(&self.class_colours(colours), &self.frame.class, out);
     }
 
-    /// Writes the last frame's labels as the published engine gives them: 0 for surfaces, the `n`th of `N` actors
-    /// `n * 255 / (N + 1)`, the weapon 255; labels must have been asked for.
+    /// Writes the last frame's labels as the published engine gives them: 1 for floors and ceilings with a picture of 64 by
+    /// 64 texels, 0 for other surfaces, the `n`th of `N` actors `n * 255 / (N + 1)`, the weapon 255; labels must have been
+    /// asked for.
     ///
     /// # Panics
     /// If `out` is not as long as a frame has pixels.
@@ -354,9 +355,11 @@ impl Renderer {
         let count = self.labels.list.len() + 1;
         let mut values = [0; CLASSES];
         values[usize::from(class::WEAPON)] = 255;
+        let ones = [class::FLOOR, class::CEILING];
+        ones.iter().for_each(|&class| values[usize::from(class)] = 1);
         let actors = &mut values[usize::from(class::FIRST_ACTOR)..];
         actors.iter_mut().take(count - 1).enumerate().for_each(|(index, value)| *value = ((index + 1) * 255 / count) as u8);
-        convert::classes_one_byte(&values, class::WEAPON, &self.frame.class, out);
+        convert::classes_one_byte(&values, class::WEAPON, ones, &self.frame.class, out);
     }
 
     /// The colour of each value of the class buffer.

@@ -3,8 +3,8 @@
 use super::frame::class;
 use crate::world::ActorKind;
 
-/// Number of classes that are no actors: wall, floor, ceiling, sky, status bar, weapon.
-const SURFACES: usize = 6;
+/// Number of classes that are no actors: wall, floor, ceiling, sky, status bar, weapon, other floors, other ceilings.
+const SURFACES: usize = 8;
 
 /// Colours that differ by no more than this in every channel are easily taken for each other.
 const NEARLY_ALIKE: u8 = 30;
@@ -31,7 +31,8 @@ impl SegmentationColours {
     /// No two classes alike, nor nearly so: some channel differs by more than `NEARLY_ALIKE`.
     #[must_use]
     pub fn distinct() -> SegmentationColours {
-        let surfaces = [[0, 0, 0], [60, 60, 60], [128, 128, 128], [150, 200, 255], [20, 30, 100], [255, 255, 255]];
+        let (floor, ceiling) = ([60, 60, 60], [128, 128, 128]);
+        let surfaces = [[0, 0, 0], floor, ceiling, [150, 200, 255], [20, 30, 100], [255, 255, 255], floor, ceiling];
         // A walk through a 5 x 5 x 5 cube of colours that comes by each once; its stride and start are those of all that
         // leave the classes of a scenario farthest apart. What is dark, as walls and floors are, or nearly the colour of
         // a surface is passed over.
@@ -43,15 +44,16 @@ impl SegmentationColours {
         SegmentationColours { surfaces, actors }
     }
 
-    /// The published colours, several of which are alike: walls, floors, sky and status bar are black together.
+    /// The published colours, several of which are alike: floors and ceilings with a picture of 64 by 64 texels are grey
+    /// together, all other surfaces black.
     #[must_use]
     pub fn published() -> SegmentationColours {
         let mut actors = [[200; 3]; ActorKind::COUNT];
         for kind in ActorKind::all() {
             actors[kind as usize] = published(kind);
         }
-        let [dark, ceiling, own] = [[0; 3], [128; 3], [255; 3]];
-        SegmentationColours { surfaces: [dark, dark, ceiling, dark, dark, own], actors }
+        let [dark, plane, own] = [[0; 3], [128; 3], [255; 3]];
+        SegmentationColours { surfaces: [dark, plane, plane, dark, dark, own, dark, dark], actors }
     }
 
     /// The colour of a surface class, see [`class`].
@@ -116,8 +118,9 @@ mod tests {
     #[test]
     fn distinct_colours_are_distinct() {
         let colours = SegmentationColours::distinct();
-        let all: Vec<[u8; 3]> = colours.surfaces.iter().chain(&colours.actors).copied().collect();
-        assert_eq!(all.len(), SURFACES + ActorKind::COUNT);
+        // The last two surfaces share the colours of the floor and the ceiling.
+        let all: Vec<[u8; 3]> = colours.surfaces[..SURFACES - 2].iter().chain(&colours.actors).copied().collect();
+        assert_eq!(all.len(), SURFACES - 2 + ActorKind::COUNT);
         for (i, &colour) in all.iter().enumerate() {
             assert!(all[..i].iter().all(|&other| difference(colour, other) > NEARLY_ALIKE), "{colour:?}");
         }

@@ -44,7 +44,7 @@ impl SkyShader<'_> {
             *pixel = self.table[usize::from(self.picture.pixels[column as usize + v])];
         }
         if DEPTH {
-            let depth = frame.depth_cap;
+            let depth = frame.depths.farthest();
             frame.depth[start + first..start + end].fill(depth);
         }
         if CLASS {

@@ -24,8 +24,6 @@ pub(super) struct SeenSprite {
     pub kind: ActorKind,
     /// Index into [`Scene::sprite_pictures`].
     pub picture: u32,
-    /// Drawn left to right reversed.
-    pub mirrored: bool,
     /// Shines through by half.
     pub translucent: bool,
     /// Distance, 16.16.
@@ -46,10 +44,10 @@ pub(super) struct SeenSprite {
     /// Frame rows before clipping.
     pub first_row: i16,
     pub end_row: i16,
-    /// Texture column at base column 0 and its change a column.
+    /// Texture column at base column 0 and its change a column, 16.16; mirrored pictures are walked from their right end.
     u: i64,
     u_step: i64,
-    /// Texture row at the middle of base row 0 and its change a row.
+    /// Texture row at the lower edge of base row 0 and its change a row.
     v: i64,
     v_step: i64,
 }
@@ -90,22 +88,23 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
     let picture = scene.sprite_pictures.get(index as usize)?.as_ref()?;
 
     let width = i64::from(view.base_width);
+    // The picture is stretched over whole columns. A mirrored one hangs by its mirrored anchor.
+    let mirrored = frame.mirrored[rotation];
+    let texels = i64::from(picture.width);
+    let offset = i64::from(picture.offset_x);
+    let across = (left - right) / 2 - (if mirrored { texels - 1 - offset } else { offset } << 16);
     // The outermost rays are as far to the side as forward.
-    let u_step = (distance << (TEXEL_BITS - 15)) / width;
-    let across = (left - right) / 2;
-    let u = -u_step * (width - 1) / 2 - ((across - (i64::from(picture.offset_x) << 16)) << (TEXEL_BITS - 16));
-    let column = |texel: u32| {
-        let base = ((i64::from(texel) << TEXEL_BITS) - u + u_step - 1).div_euclid(u_step);
-        usize::from(view.first_column[base.clamp(0, width) as usize])
-    };
-    let (first, end) = (column(0), column(picture.width));
+    let ends = [across, across + (texels << 16)].map(|across| (width + (across * width).div_euclid(distance)) >> 1);
+    let [first, end] = ends.map(|column| usize::from(view.first_column[column.clamp(0, width) as usize]));
     if first >= end {
         return None;
     }
+    let u_step = (texels << 16) / (ends[1] - ends[0]);
+    let (u, u_step) = if mirrored { ((texels << 16) - 1 + u_step * ends[0], -u_step) } else { (-u_step * ends[0], u_step) };
     let top = actor.z + Fixed::from_int(picture.offset_y);
     let v_step = (distance * view.inverse_focal_y) >> (48 - TEXEL_BITS);
     let above = i64::from(top.0) - camera.z;
-    let v = (above << (TEXEL_BITS - 16)) + v_step / 2 - v_step * (camera.horizon >> 16);
+    let v = (above << (TEXEL_BITS - 16)) - camera.to_horizon(v_step);
     let row = |texel: u32| {
         let base = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
         view.first_row[base.clamp(0, i64::from(view.base_view_rows)) as usize]
@@ -123,7 +122,6 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
         slot,
         kind: actor.kind,
         picture: index,
-        mirrored: frame.mirrored[rotation],
         translucent: matches!(actor.kind, ActorKind::BulletPuff | ActorKind::RocketSmokeTrail | ActorKind::BlurSphere),
         distance,
         inverse: (1 << (INVERSE_BITS + 16)) / distance,
@@ -181,16 +179,15 @@ impl SeenSprite {
         class: u16,
     ) -> Covered {
         let table = &scene.assets.light_tables[self.table];
-        let depth = frame.capped_depth(self.distance);
+        let depth = frame.depths.sprite(self.distance, view.focal_y);
         let mut covered = Covered::NOTHING;
         for (x, (&top, &bottom)) in (self.first..self.end).zip(open.0.iter().zip(open.1)) {
             let (top, bottom) = (top.max(self.first_row), bottom.min(self.end_row));
             if top >= bottom {
                 continue;
             }
-            let u = ((self.u + self.u_step * i64::from(view.columns[x])) >> TEXEL_BITS) as u32;
-            let u = if self.mirrored { picture.width - 1 - u } else { u };
-            let texels = picture.column(u);
+            let u = (self.u + self.u_step * i64::from(view.columns[x])) >> 16;
+            let texels = picture.column(u as u32);
             let rows = top as usize..bottom as usize;
             let start = rows.start * frame.width + x;
             let pixels = frame.colour[start..].iter_mut().step_by(frame.width);

@@ -4,6 +4,7 @@
 use super::View;
 use super::frame::Frame;
 use super::picture::MaskedPicture;
+use super::view::{BAR_ART_HEIGHT, BAR_ART_WIDTH, bar_scale};
 use crate::assets::Assets;
 use crate::map::TextureName;
 use crate::world::{Face, Weapon, World};
@@ -99,21 +100,25 @@ impl BarState {
             Weapon::Bfg9000.bit(),
         ]
         .map(|bits| player.weapons & bits != 0);
+        let ammo: [i32; 4] = std::array::from_fn(|i| player.ammo[i] + player.just_spent[i]);
         BarState {
-            ammo: player.weapon.map(|weapon| player.ammo[weapon.ammo_type()].clamp(0, LARGEST)),
+            ammo: player.weapon.map(|weapon| ammo[weapon.ammo_type()].clamp(0, LARGEST)),
             health,
             arms,
             face: player.face_state.shown,
             face_band: usize::from(world.face_band(index)),
             armour: player.armor.clamp(0, LARGEST),
             keys: player.keys,
-            stock: std::array::from_fn(|i| [player.ammo[i], player.max_ammo[i]].map(|n| n.clamp(0, LARGEST))),
+            stock: std::array::from_fn(|i| [ammo[i], player.max_ammo[i]].map(|n| n.clamp(0, LARGEST))),
         }
     }
 }
 
-/// Columns of the art that each part takes: ammunition, health, arms, face, armour, keys, stock.
-const PARTS: [[usize; 2]; 7] = [[0, 48], [48, 104], [104, 143], [143, 179], [179, 236], [236, 249], [249, 320]];
+/// Columns of the art that each part takes: ammunition, health, arms, face, armour, keys, stock. They end where nothing is
+/// drawn, as a percent sign may be one column wider than its field.
+const PARTS: [[usize; 2]; 7] = [[0, 48], [48, 108], [108, 143], [143, 179], [179, 238], [238, 249], [249, 320]];
+/// Column of the panel of arms.
+const ARMS: i32 = 104;
 /// Right ends of the big numbers, in art columns, and their row.
 const AMMO_END: i32 = 44;
 const HEALTH_END: i32 = 90;
@@ -134,7 +139,7 @@ impl StatusBar {
         let (width, rows) = (view.width(), view.bar_rows.len());
         let mut bar = StatusBar { background: vec![0; width * rows], shown: None };
         let mut background = std::mem::take(&mut bar.background);
-        for (picture, x) in [(&art.bar, 0), (&art.arms, PARTS[2][0] as i32)] {
+        for (picture, x) in [(&art.bar, 0), (&art.arms, ARMS)] {
             draw(&mut background, view, picture.as_ref(), x, 0);
         }
         bar.background = background;
@@ -148,7 +153,7 @@ impl StatusBar {
         let old = self.shown.replace(state);
         let changed = |part: fn(&BarState, &BarState) -> bool| old.is_none_or(|old| !part(&old, &state));
         let mut canvas = |part: usize| {
-            let [first, end] = PARTS[part].map(|art| usize::from(view.first_bar_column[art]));
+            let [first, end] = PARTS[part].map(|art| frame_column(view, base_column(view, art as i32)));
             for row in 0..view.bar_rows.len() {
                 let row = row * frame.width;
                 pixels[row + first..row + end].copy_from_slice(&self.background[row + first..row + end]);
@@ -221,19 +226,37 @@ fn number(pixels: &mut [u8], view: &View, digits: &[Option<MaskedPicture>; 10], 
     }
 }
 
-/// Draws a picture with its anchor at an art position, each pixel by the nearest texel.
+/// The base column in which an art column begins.
+fn base_column(view: &View, art: i32) -> i64 {
+    i64::from(art) * i64::from(view.base_width) / i64::from(BAR_ART_WIDTH)
+}
+
+/// The first frame column at or right of a base column.
+fn frame_column(view: &View, base: i64) -> usize {
+    usize::from(view.first_column[base.clamp(0, i64::from(view.base_width)) as usize])
+}
+
+/// Draws a picture with its anchor at an art position. Each picture is placed at whole pixels by itself, and takes the texels
+/// at the left and upper edges of pixels.
 fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedPicture>, x: i32, y: i32) {
     let Some(picture) = picture else { return };
     let (left, top) = (x - picture.offset_x, y - picture.offset_y);
-    let columns = [left, left + picture.width as i32].map(|art| art.clamp(0, 320) as usize);
-    let rows = [top, top + picture.height as i32].map(|art| art.clamp(0, 32) as usize);
-    let (columns, rows) = (columns.map(|art| view.first_bar_column[art]), rows.map(|art| view.first_bar_row[art]));
-    for column in usize::from(columns[0])..usize::from(columns[1]) {
-        let texels = picture.column((i32::from(view.bar_columns[column]) - left) as u32);
-        for row in usize::from(rows[0])..usize::from(rows[1]) {
-            let texel = texels[(i32::from(view.bar_rows[row]) - top) as usize];
-            if texel & MaskedPicture::OPAQUE != 0 {
-                pixels[row * view.width() + column] = texel as u8;
+    let [first, end] = [left, left + picture.width as i32].map(|art| base_column(view, art));
+    let u_step = (i64::from(BAR_ART_WIDTH) << 16) / i64::from(view.base_width);
+    let [rows, art] = bar_scale(view.base_width, view.base_rows()).map(i64::from);
+    let top = i64::from(view.base_rows()) - ((i64::from(BAR_ART_HEIGHT as i32 - top) * rows + art - 1) / art);
+    let scale = ((rows << 16) + art / 2) / art;
+    let v_step = (1i64 << 32) / scale;
+    for column in frame_column(view, first)..frame_column(view, end) {
+        let u = ((i64::from(view.columns[column]) - first) * u_step) >> 16;
+        let texels = picture.column((u as u32).min(picture.width - 1));
+        let first_row = view.bar_rows.partition_point(|&row| i64::from(row) < top);
+        for (row, &base) in view.bar_rows.iter().enumerate().skip(first_row) {
+            let v = ((i64::from(base) - top) * v_step) >> 16;
+            match texels.get(v as usize) {
+                Some(&texel) if texel & MaskedPicture::OPAQUE != 0 => pixels[row * view.width() + column] = texel as u8,
+                Some(_) => {}
+                None => break,
             }
         }
     }

@@ -50,14 +50,8 @@ pub struct View {
     pub(super) inverse_focal_y: i64,
     /// Direction of each frame column relative to the view direction, for the sky.
     pub(super) column_angles: Box<[Angle]>,
-    /// Column of the status bar's art in each frame column.
-    pub(super) bar_columns: Box<[u16]>,
-    /// Row of the status bar's art in each frame row of the bar.
-    pub(super) bar_rows: Box<[u16]>,
-    /// For each column of the art 0..=320, the first frame column that shows it or one to its right.
-    pub(super) first_bar_column: Box<[u16]>,
-    /// For each row of the art 0..=32, the first row of the bar that shows it or one below.
-    pub(super) first_bar_row: Box<[u16]>,
+    /// Base row of each frame row of the status bar.
+    pub(super) bar_rows: Box<[u32]>,
 }
 
 impl View {
@@ -87,17 +81,9 @@ impl View {
 
         let focal_y = i64::from(width) * 6 * 65536 / 10;
         let column_angles = columns.iter().map(|&column| column_angle(width, column)).collect();
-        let bar_height = height - base_view_rows;
-        let bar_columns: Box<[u16]> = columns.iter().map(|&c| ((2 * c + 1) * BAR_ART_WIDTH / (2 * width)) as u16).collect();
-        let bar_rows: Box<[u16]> = all_rows[view_rows..]
-            .iter()
-            .map(|&r| ((2 * (r - base_view_rows) + 1) * BAR_ART_HEIGHT / (2 * bar_height)) as u16)
-            .collect();
-        let first_at = |samples: &[u16], art: u32| samples.partition_point(|&at| u32::from(at) < art) as u16;
         View {
             size,
-            first_bar_column: (0..=BAR_ART_WIDTH).map(|art| first_at(&bar_columns, art)).collect(),
-            first_bar_row: (0..=BAR_ART_HEIGHT).map(|art| first_at(&bar_rows, art)).collect(),
+            bar_rows: all_rows[view_rows..].into(),
             base_width: width,
             base_view_rows,
             view_rows,
@@ -110,8 +96,6 @@ impl View {
             focal_y,
             inverse_focal_y: (1 << 48) / focal_y,
             column_angles,
-            bar_columns,
-            bar_rows,
         }
     }
 
@@ -174,10 +158,22 @@ impl RowScale {
     }
 }
 
-/// Rows of the status bar: its art is stretched with the screen, by 1.2 more vertically, but never over more than
-/// 32 of 200 parts of the height; 320 columns show it as it is.
+/// Rows of a frame for each row of the status bar's art, as a fraction: the art is stretched with the screen, by 1.2 more
+/// vertically, but never over more than 32 of 200 parts of the height; 320 columns show it as it is.
+pub(super) fn bar_scale(width: u32, height: u32) -> [u32; 2] {
+    if width == BAR_ART_WIDTH {
+        [1, 1]
+    } else if 3 * width < 4 * height {
+        [3 * width, 800]
+    } else {
+        [height, 200]
+    }
+}
+
+/// Rows of the status bar.
 fn bar_rows(width: u32, height: u32) -> u32 {
-    if width == BAR_ART_WIDTH { BAR_ART_HEIGHT } else { (width * 12).div_ceil(100).min((height * 16).div_ceil(100)) }
+    let [rows, art] = bar_scale(width, height);
+    (BAR_ART_HEIGHT * rows).div_ceil(art)
 }
 
 #[cfg(test)]

@@ -176,7 +176,7 @@ impl WallShader<'_> {
             let column = Column { texels, table, at, step: step as u32 };
             column.draw(simd, frame.columns.colour_of(x), &self.view.rows, top, bottom);
             if DEPTH {
-                let depth = frame.capped_depth(distance);
+                let depth = frame.depths.wall(distance);
                 frame.columns.depth_of(x)[top..bottom].fill(depth);
             }
             // The class of a wall is what the frame was cleared to.

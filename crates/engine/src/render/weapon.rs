@@ -27,7 +27,7 @@ pub(super) fn draw<const DEPTH: bool, const CLASS: bool>(
     for sprite in player.sprites.iter().flatten() {
         let table = match (sprite.bright, camera.fixed_table) {
             (true, None) => 0,
-            _ => Light::new(camera, level).table(0),
+            _ => Light::new(camera, level).nearest_table(),
         };
         let table = &scene.assets.light_tables[table];
         layer::<DEPTH, CLASS>(frame, scene, view, sprite, table, power_shows(player.blur_tics));
@@ -51,17 +51,25 @@ fn layer<const DEPTH: bool, const CLASS: bool>(
     let u_step = (SCREEN_WIDTH << TEXEL_BITS) / i64::from(view.base_width);
     // Rows are 1.2 times as high as columns are wide.
     let v_step = u_step * 10 / 12;
-    let u = u_step / 2 - left;
-    let v = v_step / 2 - v_step * i64::from(view.base_view_rows / 2) + (MIDDLE_ROW << TEXEL_BITS) - top;
+    // Columns from the left edge of the one in which the picture begins, rows by their lower edge.
+    let column = |texel: u32| {
+        let position = (left + (i64::from(texel) << TEXEL_BITS)) >> 16;
+        (position * i64::from(view.base_width) / SCREEN_WIDTH) >> (TEXEL_BITS - 16)
+    };
+    let u = -u_step * column(0);
+    let v = v_step * (1 - i64::from(view.base_view_rows / 2)) + (MIDDLE_ROW << TEXEL_BITS) - top;
     // Frame columns and rows that show the picture at all.
-    let first = |at: i64, step: i64, texel: u32| ((i64::from(texel) << TEXEL_BITS) - at + step - 1).div_euclid(step);
-    let column = |texel| first(u, u_step, texel).clamp(0, i64::from(view.base_width)) as usize;
-    let row = |texel| first(v, v_step, texel).clamp(0, i64::from(view.base_view_rows)) as usize;
-    let columns = usize::from(view.first_column[column(0)])..usize::from(view.first_column[column(picture.width)]);
-    let rows = view.first_row[row(0)] as usize..view.first_row[row(picture.height)] as usize;
+    let row = |texel: u32| {
+        let row = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
+        view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize] as usize
+    };
+    let [first, end] = [column(0), column(picture.width)].map(|column| column.clamp(0, i64::from(view.base_width)) as usize);
+    let columns = usize::from(view.first_column[first])..usize::from(view.first_column[end]);
+    let rows = row(0)..row(picture.height);
     // Column by column, as the picture lies.
     for x in columns {
-        let texels = picture.column(((u + u_step * i64::from(view.columns[x])) >> TEXEL_BITS) as u32);
+        let texel = ((u + u_step * i64::from(view.columns[x])) >> TEXEL_BITS) as u32;
+        let texels = picture.column(texel.min(picture.width - 1));
         for row in rows.clone() {
             let texel = texels[((v + v_step * i64::from(view.rows[row])) >> TEXEL_BITS) as usize];
             if texel & MaskedPicture::OPAQUE == 0 {

@@ -30,7 +30,7 @@ pub struct PlayerSprite {
     pub frame: u8,
     /// Full brightness.
     pub bright: bool,
-    /// Right, 1/65536 pixels; 1.0 at rest.
+    /// Right, 1/65536 pixels; 0 at rest.
     pub x: Fixed,
     /// Down, 1/65536 pixels; 32.375 at rest, 128 when put away.
     pub y: Fixed,
@@ -57,6 +57,8 @@ pub struct Player {
     pub armor: i32,
     /// Ammunition: clip, shells, rockets, cells.
     pub ammo: [i32; 4],
+    /// Ammunition that left in the last tic: the status bar, which is told before shots are fired, shows it still.
+    pub just_spent: [i32; 4],
     /// Most ammunition of each type.
     pub max_ammo: [i32; 4],
     /// Weapons owned, a bit each by `Weapon as u8`.
@@ -130,6 +132,7 @@ impl Player {
             speed: Fixed::ONE,
             armor: 0,
             ammo: [0; 4],
+            just_spent: [0; 4],
             max_ammo: ammo::MOST,
             weapons: 0,
             weapon: None,

@@ -37,6 +37,7 @@ impl World {
     pub(crate) fn think_player(&mut self, index: usize, command: &Command) {
         let slot = usize::from(self.players[index].actor.slot);
         let player = &mut self.players[index];
+        player.just_spent = [0; 4];
         player.old_buttons = std::mem::replace(&mut player.buttons, command.buttons);
         let turning = command.buttons.any(Buttons::TURN_LEFT | Buttons::TURN_RIGHT);
         player.turn_held_tics = if turning { player.turn_held_tics.saturating_add(1) } else { 0 };

@@ -300,6 +300,7 @@ impl World {
             return;
         }
         self.players[player].ammo[info.ammo] -= info.ammo_per_shot;
+        self.players[player].just_spent[info.ammo] += info.ammo_per_shot;
         self.events.push(Event::Fired { player });
         let accurate = self.players[player].weapon_state.repeats == 0;
         match weapon {
@@ -373,7 +374,7 @@ impl World {
         // A swing takes 64 tics.
         let turn = Angle::from_fine((tic.wrapping_mul(128) & 8191) as i32);
         let half_turn = Angle::from_fine((tic.wrapping_mul(128) & 4095) as i32);
-        let x = Fixed::ONE + state.swing * turn.cos();
+        let x = state.swing * turn.cos();
         let y = state.height + state.swing * half_turn.sin();
         let frame = if state.hands == Hands::Firing { info.fire[usize::from(state.step)].frame } else { 0 };
         let flash = state.flash.map(|(sequence, step)| PlayerSprite {

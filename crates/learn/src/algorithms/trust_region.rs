@@ -50,19 +50,29 @@ pub struct Solution {
     pub product: Vec<f32>,
 }
 
-/// Product of two vectors.
+/// Product of two vectors, summed in 64 bits: eight sums side by side, in an order that depends on nothing.
 #[must_use]
 pub fn dot(a: &[f32], b: &[f32]) -> f64 {
-    a.chunks(4096)
-        .zip(b.chunks(4096))
-        .map(|(a, b)| a.iter().zip(b).map(|(x, y)| f64::from(*x) * f64::from(*y)).sum::<f64>())
-        .sum()
+    let mut sums = [0.0f64; 8];
+    for (a, b) in a.chunks(8).zip(b.chunks(8)) {
+        for ((sum, x), y) in sums.iter_mut().zip(a).zip(b) {
+            *sum += f64::from(*x) * f64::from(*y);
+        }
+    }
+    sums.iter().sum()
+}
+
+/// Adds `scale * b` to a vector, in place: vectors are as long as the network, and a new one costs more than the sum.
+pub fn add(to: &mut [f32], scale: f64, b: &[f32]) {
+    to.iter_mut().zip(b).for_each(|(x, y)| *x += scale as f32 * y);
 }
 
 /// `a + scale * b`.
 #[must_use]
 pub fn plus(a: &[f32], scale: f64, b: &[f32]) -> Vec<f32> {
-    a.iter().zip(b).map(|(x, y)| (f64::from(*x) + scale * f64::from(*y)) as f32).collect()
+    let mut sum = a.to_vec();
+    add(&mut sum, scale, b);
+    sum
 }
 
 impl TrustRegion {
@@ -98,48 +108,52 @@ impl TrustRegion {
     /// Gradient, in the policy network's parameters, of a loss of the policy at the origin. It must come right after the
     /// origin itself or another forward pass there.
     pub fn gradient(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>, loss: &Loss) -> Vec<f32> {
-        learner.policy_backward(&mut minibatch.batch, &loss.rows())
+        let mut gradient = vec![0.0; learner.shape().parameter_range(0).len()];
+        learner.policy_backward(&mut minibatch.batch, &loss.rows(), &mut gradient);
+        gradient
     }
 
-    /// The damped Fisher matrix times a vector.
-    #[must_use]
-    pub fn fisher_times(&self, learner: &mut Learner, origin: &mut Origin<'_>, vector: &[f32]) -> Vec<f32> {
+    /// The damped Fisher matrix times a vector, written to `product`.
+    pub fn fisher_times(&self, learner: &mut Learner, origin: &mut Origin<'_>, vector: &[f32], product: &mut [f32]) {
         let norm = dot(vector, vector).sqrt();
         if norm == 0.0 {
-            return vec![0.0; vector.len()];
+            return product.fill(0.0);
         }
         let step = DIFFERENCE / norm;
-        let moved = learner.policy_outputs(&mut origin.sample, &plus(&origin.parameters, step, vector));
+        // What will hold the product holds the parameters a little way off first.
+        product.copy_from_slice(&origin.parameters);
+        add(product, step, vector);
+        let moved = learner.policy_outputs(&mut origin.sample, product);
         let change: Vec<f32> =
             moved.iter().zip(&origin.sample_outputs).map(|(there, here)| (f64::from(there - here) / step) as f32).collect();
         let mut rows = origin.sample_policy.fisher_times(&change);
         let count = origin.sample.sequences.rows() as f32;
         rows.iter_mut().for_each(|value| *value /= count);
-        let product = learner.policy_backward(&mut origin.sample, &rows);
-        plus(&product, self.damping, vector)
+        learner.policy_backward(&mut origin.sample, &rows, product);
+        add(product, self.damping, vector);
     }
 
     /// Solves F x = b by conjugate gradients.
     #[must_use]
     pub fn solve(&self, learner: &mut Learner, origin: &mut Origin<'_>, b: &[f32]) -> Solution {
-        let mut x = vec![0.0; b.len()];
-        let mut rest = b.to_vec();
-        let mut direction = rest.clone();
+        let (mut x, mut product) = (vec![0.0; b.len()], vec![0.0; b.len()]);
+        let (mut rest, mut direction) = (b.to_vec(), b.to_vec());
         let mut size = dot(&rest, &rest);
         for _ in 0..self.iterations {
             if size < 1e-10 {
                 break;
             }
-            let product = self.fisher_times(learner, origin, &direction);
+            self.fisher_times(learner, origin, &direction, &mut product);
             let curvature = dot(&direction, &product);
             if curvature <= 0.0 {
                 break;
             }
             let length = size / curvature;
-            x = plus(&x, length, &direction);
-            rest = plus(&rest, -length, &product);
+            add(&mut x, length, &direction);
+            add(&mut rest, -length, &product);
             let smaller = dot(&rest, &rest);
-            direction = plus(&rest, smaller / size, &direction);
+            let share = (smaller / size) as f32;
+            direction.iter_mut().zip(&rest).for_each(|(direction, rest)| *direction = rest + share * *direction);
             size = smaller;
         }
         Solution { direction: x, product: plus(b, -1.0, &rest) }
@@ -232,7 +246,9 @@ mod tests {
                 for (seed, value) in seeds[row * width..].iter_mut().zip(direction) {
                     *seed = *value as f32;
                 }
-                learner.policy_backward(&mut minibatch.batch, &seeds)
+                let mut gradient = vec![0.0; count];
+                learner.policy_backward(&mut minibatch.batch, &seeds, &mut gradient);
+                gradient
             };
             for (first, size) in [(0, 3), (3, 2)] {
                 let exp: Vec<f64> = outputs[first..first + size].iter().map(|&l| f64::from(l).exp()).collect();
@@ -256,7 +272,8 @@ mod tests {
         let mut stream = Stream::new(4, Purpose::Evaluation, 0, 0);
         for _ in 0..3 {
             let vector: Vec<f32> = (0..count).map(|_| stream.normal() as f32).collect();
-            let product = region.fisher_times(&mut learner, &mut origin, &vector);
+            let mut product = vec![0.0; count];
+            region.fisher_times(&mut learner, &mut origin, &vector, &mut product);
             let expected: Vec<f64> = (0..count)
                 .map(|i| {
                     let row = &fisher[i * count..(i + 1) * count];
@@ -274,7 +291,8 @@ mod tests {
         let b: Vec<f32> = (0..count).map(|_| stream.normal() as f32).collect();
         let region = TrustRegion { iterations: 60, ..region };
         let x = region.solve(&mut learner, &mut origin, &b);
-        let back = region.fisher_times(&mut learner, &mut origin, &x.direction);
+        let mut back = vec![0.0; count];
+        region.fisher_times(&mut learner, &mut origin, &x.direction, &mut back);
         let rest = plus(&back, -1.0, &b);
         assert!(dot(&rest, &rest) < 1e-3 * dot(&b, &b), "{} of {}", dot(&rest, &rest), dot(&b, &b));
         let told = plus(&back, -1.0, &x.product);

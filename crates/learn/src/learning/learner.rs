@@ -422,10 +422,8 @@ impl Learner {
     }
 
     /// The gradient in the policy network's parameters from that of its outputs of the last forward pass.
-    pub fn policy_backward(&mut self, batch: &mut ModelSequences<'_>, rows: &[f32]) -> Vec<f32> {
-        let mut gradient = vec![0.0; self.shape.parameter_range(0).len()];
-        self.networks.backward_network(0, batch, rows, &mut gradient);
-        gradient
+    pub fn policy_backward(&mut self, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+        self.networks.backward_network(0, batch, rows, gradient);
     }
 
     /// Replaces the policy network's parameters.

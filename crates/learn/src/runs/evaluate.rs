@@ -67,6 +67,17 @@ pub struct Action {
     pub deltas: Vec<f32>,
 }
 
+/// What an agent carries from step to step, lane by lane.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Memory {
+    /// State of each network, `[lanes, units]`.
+    pub state: Vec<Vec<f32>>,
+    /// What is left of each lane's budget, for agents that watch it.
+    pub safety: Vec<f64>,
+    /// Seed of each lane's episode, and its steps so far: what its draws come from.
+    pub episodes: Vec<(u64, u64)>,
+}
+
 /// The settings of the run in a directory, so that its worlds can be made.
 pub fn run_config(directory: &Path) -> Result<TrainConfig, LearnError> {
     read_config(directory)
@@ -120,6 +131,33 @@ impl Agent {
         })
     }
 
+    /// What the agent carries from step to step.
+    #[must_use]
+    pub fn memory(&self) -> Memory {
+        Memory { state: self.state.clone(), safety: self.safety.clone(), episodes: self.episodes.clone() }
+    }
+
+    /// What an agent carries at the beginning of episodes, a lane for each seed.
+    #[must_use]
+    pub fn blank(&self, seeds: &[u64]) -> Memory {
+        let episodes = seeds.iter().map(|&seed| (seed, 0)).collect();
+        Memory { state: self.shape.zero_state(seeds.len()), safety: vec![1.0; seeds.len()], episodes }
+    }
+
+    /// Goes on from what an agent carried, with as many lanes as that had.
+    ///
+    /// # Errors
+    /// When it is no memory of an agent like this one.
+    pub fn remember(&mut self, memory: Memory) -> Result<(), LearnError> {
+        let lanes = memory.episodes.len();
+        let sizes = |state: &[Vec<f32>]| state.iter().map(Vec::len).collect::<Vec<_>>();
+        if memory.safety.len() != lanes || sizes(&memory.state) != sizes(&self.shape.zero_state(lanes)) {
+            return Err(LearnError::Config("this state is of another agent, or of another number of lanes".into()));
+        }
+        (self.state, self.safety, self.episodes) = (memory.state, memory.safety, memory.episodes);
+        Ok(())
+    }
+
     /// Starts the episode of `seed` in a lane.
     pub fn reset(&mut self, lane: usize, seed: u64) {
         self.safety[lane] = 1.0;
@@ -130,17 +168,25 @@ impl Agent {
         }
     }
 
-    /// What to do in each lane, given the observations of all lanes one after the other.
-    pub fn act(&mut self, observations: &[u8]) -> Vec<Action> {
+    /// The network's output rows, given the observations of all lanes one after the other: logits and parameters of the actions, then the
+    /// critics' values. The agent has then seen these observations.
+    pub fn rows(&mut self, observations: &[u8]) -> &[f32] {
         let lanes = self.safety.len();
         let extra: Vec<f32> = match self.shape.extra_inputs() {
             0 => Vec::new(),
             _ => self.safety.iter().map(|&safety| Shaping::seen(safety)).collect(),
         };
-        let width = self.shape.outputs();
+        self.rows.resize(lanes * self.shape.outputs(), 0.0);
         self.actor.act(observations, &extra, &mut self.state, 0..lanes, &mut self.rows, None);
+        &self.rows
+    }
+
+    /// What to do in each lane, given the observations of all lanes one after the other.
+    pub fn act(&mut self, observations: &[u8]) -> Vec<Action> {
+        self.rows(observations);
+        let width = self.shape.outputs();
         let action = &self.shape.action;
-        let mut all = Vec::with_capacity(lanes);
+        let mut all = Vec::with_capacity(self.safety.len());
         for (row, (seed, step)) in self.rows.chunks_exact(width).zip(&mut self.episodes) {
             let mut one = Action { actions: vec![0; action.sizes.len()], deltas: vec![0.0; action.deltas] };
             match self.choice {

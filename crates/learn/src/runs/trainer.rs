@@ -28,6 +28,7 @@ pub struct Hooks<'a> {
 }
 
 /// How a run begins.
+#[derive(Clone)]
 pub enum Start<'a> {
     /// In a new directory.
     Fresh(TrainConfig),

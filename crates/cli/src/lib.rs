@@ -1,0 +1,96 @@
+//! The program `hasard` as a library: glue between the command line and the libraries. `main.rs` and the Python package run it.
+
+#[macro_use]
+mod failure;
+
+mod actor;
+mod args;
+mod automap;
+mod commands;
+mod contact_sheet;
+mod episode_lines;
+mod settings;
+mod sources;
+
+use args::{Cli, Command};
+use clap::{ArgMatches, CommandFactory, FromArgMatches};
+use failure::Failure;
+use hasard_envs::EnvOptions;
+use hasard_learn::runs::trainer::{Hooks, Summary};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+fn parse(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, ArgMatches), clap::Error> {
+    let matches = Cli::command().try_get_matches_from(words)?;
+    Ok((Cli::from_arg_matches(&matches)?, matches))
+}
+
+/// Runs the command that the words say, the program's name first, and gives the exit code.
+pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let (cli, matches) = match parse(words) {
+        Ok(parsed) => parsed,
+        Err(error) => return failure::report_usage(&error),
+    };
+    // Which of a command's flags were typed, and which have their default.
+    let typed = matches.subcommand().map_or(&matches, |(_, typed): (_, &ArgMatches)| typed);
+    let outcome = match cli.command {
+        Command::Envs(args) => commands::envs::run(&args),
+        Command::Play(args) => commands::play::run(&args),
+        Command::Rollout(args) => commands::rollout::run(&args),
+        Command::Trace(args) => commands::trace::run(&args),
+        Command::Bench(args) => commands::bench::run(&args),
+        Command::Render(args) => commands::render::run(&args),
+        Command::Train(args) => commands::train::run(&args, typed),
+        Command::Eval(args) => commands::eval::run(&args),
+        Command::Record(args) => commands::record::run(&args),
+        Command::Replay(args) => commands::record::replay(&args),
+        Command::Report(args) => commands::report::run(&args),
+        Command::Serve(args) => commands::serve::run(&args),
+        Command::Sweep(args) => commands::sweep::run(&args),
+        Command::ExportWad(args) => commands::export_wad::run(&args),
+        Command::ContactSheet(args) => commands::contact_sheet::run(&args),
+    };
+    match outcome {
+        Ok(()) => 0,
+        Err(Failure::Negative(message)) => {
+            eprintln!("hasard: {message}");
+            1
+        }
+        Err(Failure::BadInput(message)) => {
+            eprintln!("hasard: {message}");
+            2
+        }
+        // The reader of our output went away (`hasard ... | head`): nothing is wrong.
+        Err(Failure::OutputClosed) => 0,
+    }
+}
+
+/// Trains as `hasard train` with these words does, but tells the caller and not the terminal. Gives the run's directory and how it ended.
+///
+/// # Errors
+/// One line that names the input and the remedy.
+pub fn train(words: impl IntoIterator<Item = OsString>, hooks: &mut Hooks<'_>) -> Result<(PathBuf, Summary), String> {
+    let program = ["hasard", "train"].map(OsString::from);
+    let (cli, matches) = parse(program.into_iter().chain(words)).map_err(|error| failure::usage_line(&error))?;
+    let typed = matches.subcommand().map_or(&matches, |(_, typed)| typed);
+    match cli.command {
+        Command::Train(args) => commands::train::begin(&args, typed).and_then(|begun| begun.train(hooks)).map_err(line),
+        _ => Err("these words are another command's".to_string()),
+    }
+}
+
+/// The environment's id and options of the run in a directory, as its agent sees them.
+///
+/// # Errors
+/// One line that names the file and the remedy.
+pub fn environment_of_run(directory: &Path) -> Result<(String, EnvOptions), String> {
+    let config = hasard_learn::runs::evaluate::run_config(directory).map_err(Failure::bad).map_err(line)?;
+    Ok((config.env.id.clone(), settings::trained_options(&config.env).map_err(line)?))
+}
+
+fn line(failure: Failure) -> String {
+    match failure {
+        Failure::Negative(text) | Failure::BadInput(text) => text,
+        Failure::OutputClosed => "standard output was closed".to_string(),
+    }
+}

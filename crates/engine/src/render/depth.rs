@@ -1,0 +1,92 @@
+//! From a distance to a value of the depth buffer.
+
+/// How depth is told: evenly, or as the published engine tells it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Depths {
+    /// Rows of the base grid where depth is as published.
+    published: Option<i64>,
+}
+
+/// Height of the frames that the published depth is made for; the values of lower ones are smaller.
+const PUBLISHED_ROWS: i64 = 480;
+
+impl Depths {
+    /// As the published engine tells it in frames of `rows` rows.
+    pub fn published(rows: u32) -> Depths {
+        Depths { published: Some(i64::from(rows)) }
+    }
+
+    /// Depth of a wall at a distance in 16.16 map units. The published engine takes it from the step between the texels
+    /// of neighbouring rows.
+    #[inline]
+    pub fn wall(self, distance: i64) -> u8 {
+        let Some(rows) = self.published else { return even(distance) };
+        let step = (distance * 5 + rows / 2) / rows * 128;
+        scaled((step / 100 - 9500) * 255 / 1_590_500, rows)
+    }
+
+    /// Depth of a sprite, from the texels that one of its rows is high.
+    #[inline]
+    pub fn sprite(self, distance: i64, focal_y: i64) -> u8 {
+        let Some(rows) = self.published else { return even(distance) };
+        scaled(((distance << 16) / focal_y - 500) * 255 / 319_500, rows)
+    }
+
+    /// Depth of a floor or ceiling, in every size the same.
+    #[inline]
+    pub fn plane(self, distance: i64) -> u8 {
+        if self.published.is_none() {
+            return even(distance);
+        }
+        if distance > 120_000_000 { 255 } else { ((distance - 716_000) / 469_184).clamp(0, 255) as u8 }
+    }
+
+    /// Depth of the sky and of nothing.
+    pub fn farthest(self) -> u8 {
+        self.published.map_or(255, |rows| scaled(255, rows))
+    }
+}
+
+/// 7.3 map units a level.
+#[inline]
+fn even(distance: i64) -> u8 {
+    (distance * 10 / (73 << 16)).min(255) as u8
+}
+
+fn scaled(value: i64, rows: i64) -> u8 {
+    (value.clamp(0, 255) * rows / PUBLISHED_ROWS).min(255) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn units(distance: i64) -> i64 {
+        distance << 16
+    }
+
+    #[test]
+    fn even_depth_is_the_same_for_everything() {
+        let depths = Depths::default();
+        for distance in [0, 72, 73, 730, 1860, 30_000].map(units) {
+            let level = ((distance >> 16) * 10 / 73).min(255) as u8;
+            assert_eq!([depths.wall(distance), depths.plane(distance), depths.sprite(distance, 96 << 16)], [level; 3]);
+        }
+        assert_eq!(depths.farthest(), 255);
+    }
+
+    #[test]
+    fn published_depth_is_as_measured_in_tall_frames() {
+        // Measured at 480 rows: 56 units 6, 256 units 34, 756 units 104.
+        let depths = Depths::published(480);
+        assert_eq!([56, 256, 756].map(|distance| depths.wall(units(distance))), [6, 34, 104]);
+        assert_eq!([depths.wall(units(5000)), depths.farthest()], [255, 255]);
+    }
+
+    #[test]
+    fn published_depth_ends_early_in_low_frames_except_on_floors() {
+        let depths = Depths::published(120);
+        assert_eq!([depths.wall(units(2000)), depths.sprite(units(2000), 96 << 16), depths.farthest()], [63; 3]);
+        assert_eq!([depths.plane(units(1000)), depths.plane(units(1900)), depths.plane(units(5))], [138, 255, 0]);
+    }
+}

@@ -1,0 +1,154 @@
+//! A trained agent for Python: arrays in, arrays out, and what it carries from step to step in the caller's hands.
+
+use crate::errors::INVALID_OPTION;
+use crate::pool::array;
+use hasard_envs::Env;
+use hasard_learn::networks::distribution::ActionShape;
+use hasard_learn::runs::evaluate::{Agent as Trained, Choice, Memory, Which};
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard};
+
+/// What an agent carries from step to step. It is handed on, never changed.
+#[pyclass(frozen, module = "hasard_rs._core")]
+pub struct AgentState {
+    memory: Memory,
+}
+
+#[pymethods]
+impl AgentState {
+    /// Number of lanes.
+    fn __len__(&self) -> usize {
+        self.memory.episodes.len()
+    }
+}
+
+/// The agent of a run directory.
+#[pyclass(frozen, module = "hasard_rs._core")]
+pub struct TrainedAgent {
+    agent: Mutex<Trained>,
+    env_id: String,
+    observation: [usize; 3],
+    sizes: Vec<usize>,
+    deltas: usize,
+}
+
+impl TrainedAgent {
+    /// The bytes of observations, one a lane.
+    fn pixels(&self, observations: &Bound<'_, PyArrayDyn<u8>>, lanes: usize) -> PyResult<Vec<u8>> {
+        let [height, width, channels] = self.observation;
+        if observations.shape() != [lanes, height, width, channels] {
+            let (wanted, given) = ([lanes, height, width, channels], observations.shape());
+            return Err(PyValueError::new_err(format!("observations must have shape {wanted:?}, got {given:?}")));
+        }
+        let readable = observations.try_readonly().map_err(|error| PyTypeError::new_err(format!("observations: {error}")))?;
+        Ok(readable.as_array().iter().copied().collect())
+    }
+
+    fn agent(&self) -> MutexGuard<'_, Trained> {
+        self.agent.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}
+
+#[pymethods]
+impl TrainedAgent {
+    /// Loads the agent of a run directory: its newest checkpoint, or the best within budget; drawing its actions, or greedy.
+    #[new]
+    #[pyo3(signature = (run, *, best=false, greedy=false))]
+    fn new(py: Python<'_>, run: PathBuf, best: bool, greedy: bool) -> PyResult<TrainedAgent> {
+        let made = py.detach(|| {
+            let (env_id, options) = hasard_cli::environment_of_run(&run)?;
+            let env = Env::new(&env_id, &options).map_err(|error| error.to_string())?;
+            let (space, observation) = (env.action_space(), env.observation_shape());
+            let (sizes, deltas) = (space.sizes(), space.deltas.len());
+            let action = ActionShape { sizes: sizes.clone(), deltas };
+            let which = if best { Which::Best } else { Which::Latest };
+            let choice = if greedy { Choice::Greedy } else { Choice::Sampled };
+            let agent =
+                Trained::load(&run, which, choice, 1, observation, action, &mut |_| {}).map_err(|error| error.to_string())?;
+            Ok(TrainedAgent { agent: Mutex::new(agent), env_id, observation, sizes, deltas })
+        });
+        made.map_err(|line: String| INVALID_OPTION.error(py, line))
+    }
+
+    /// What an agent carries when episodes of these seeds begin, a lane each.
+    fn begin(&self, py: Python<'_>, seeds: Vec<u64>) -> AgentState {
+        py.detach(|| AgentState { memory: self.agent().blank(&seeds) })
+    }
+
+    /// act(observations, state, costs, over) -> (actions int64 [n, groups], deltas float32 [n, 2], state)
+    ///
+    /// observations: uint8 [n, height, width, channels]. costs: of the step before, which agents that watch their budget need. over: lanes
+    /// whose episode has ended; they begin a new one, whose seed follows the old one's.
+    fn act<'py>(
+        &self,
+        py: Python<'py>,
+        observations: &Bound<'py, PyArrayDyn<u8>>,
+        state: &AgentState,
+        costs: Option<Vec<f64>>,
+        over: Option<Vec<bool>>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, AgentState)> {
+        let lanes = state.memory.episodes.len();
+        let pixels = self.pixels(observations, lanes)?;
+        for (name, given) in [("costs", costs.as_ref().map(Vec::len)), ("over", over.as_ref().map(Vec::len))] {
+            if given.is_some_and(|given| given != lanes) {
+                return Err(PyValueError::new_err(format!("{name} must have one entry for each of {lanes} lanes")));
+            }
+        }
+        let acted = py.detach(|| {
+            let mut agent = self.agent();
+            agent.remember(state.memory.clone())?;
+            for lane in 0..lanes {
+                if over.as_ref().is_some_and(|over| over[lane]) {
+                    agent.reset(lane, state.memory.episodes[lane].0.wrapping_add(1));
+                } else if let Some(costs) = &costs {
+                    agent.observe_cost(lane, costs[lane]);
+                }
+            }
+            let actions = agent.act(&pixels);
+            Ok((actions, agent.memory()))
+        });
+        let (chosen, memory) =
+            acted.map_err(|error: hasard_learn::error::LearnError| INVALID_OPTION.error(py, error.to_string()))?;
+        let actions: Vec<i64> = chosen.iter().flat_map(|one| one.actions.iter().map(|&part| i64::from(part))).collect();
+        let deltas: Vec<f32> = chosen.into_iter().flat_map(|one| one.deltas).collect();
+        Ok((array(py, actions, &[lanes, self.sizes.len()])?, array(py, deltas, &[lanes, self.deltas])?, AgentState { memory }))
+    }
+
+    /// outputs(observations, state) -> (rows float32 [n, outputs], state)
+    ///
+    /// The network's output rows: logits and parameters of the actions, the value, and the cost critics' values.
+    fn outputs<'py>(
+        &self,
+        py: Python<'py>,
+        observations: &Bound<'py, PyArrayDyn<u8>>,
+        state: &AgentState,
+    ) -> PyResult<(Bound<'py, PyAny>, AgentState)> {
+        let lanes = state.memory.episodes.len();
+        let pixels = self.pixels(observations, lanes)?;
+        let seen = py.detach(|| {
+            let mut agent = self.agent();
+            agent.remember(state.memory.clone())?;
+            let rows = agent.rows(&pixels).to_vec();
+            Ok((rows, agent.memory()))
+        });
+        let (rows, memory) =
+            seen.map_err(|error: hasard_learn::error::LearnError| INVALID_OPTION.error(py, error.to_string()))?;
+        let width = rows.len().checked_div(lanes).unwrap_or(0);
+        Ok((array(py, rows, &[lanes, width])?, AgentState { memory }))
+    }
+
+    /// The environment that the agent was trained in, without `hasard/`.
+    #[getter]
+    fn env_id(&self) -> &str {
+        &self.env_id
+    }
+
+    /// Shape of an observation: height, width, channels.
+    #[getter]
+    fn observation_shape(&self) -> (usize, usize, usize) {
+        self.observation.into()
+    }
+}

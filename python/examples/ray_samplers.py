@@ -1,0 +1,23 @@
+"""Samplers on a Ray cluster: two nodes on this machine, one of them killed in the middle; rollouts go on coming."""
+
+import ray
+from ray.cluster_utils import Cluster
+
+cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
+far = cluster.add_node(num_cpus=1)
+ray.init(address=cluster.address, log_to_driver=False)
+
+from hasard_rs.ray import rollouts, samplers  # noqa: E402
+
+actors = samplers("hasard/RemedyRushLevel1-v0", 2, lanes=8, seed=1, num_cpus=0.5, resolution="64x48")
+seen = {0: 0, 1: 0}
+for index, rollout in rollouts(actors, 32):
+    seen[index] += 1
+    if sum(seen.values()) == 10:
+        cluster.remove_node(far)
+        print("a node is gone after", dict(seen))
+    if sum(seen.values()) >= 30:
+        break
+print("rollouts of each sampler", seen, "shape", rollout["observations"].shape)
+ray.shutdown()
+cluster.shutdown()

@@ -1,0 +1,21 @@
+"""Sample-Factory's APPO on a batched environment, with the published package's names and settings."""
+
+import sys
+
+from hasard_rs.sample_factory import main
+
+sys.argv += [
+    "--env=volcanic_venture",
+    "--level=1",
+    "--batched_sampling=True",
+    "--num_workers=1",
+    "--num_envs_per_worker=1",
+    "--env_agents=16",
+    "--worker_num_splits=1",
+    "--train_for_env_steps=4096",
+    "--device=cpu",
+    "--serial_mode=True",
+    "--normalize_input=True",
+    "--train_dir=sample_factory_runs",
+]
+sys.exit(main())

@@ -1,0 +1,88 @@
+"""Sweeps on clusters: each run is one process of the program with a directory of its own, started by Ray or by Slurm.
+
+Directories must be on a file system that all machines share. A run whose machine is lost is resumed elsewhere from its checkpoint, since each
+command line goes on where its directory stands.
+"""
+
+from __future__ import annotations
+
+import json
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from hasard_rs._extra import need
+
+
+def jobs(words: list[str]) -> list[dict[str, Any]]:
+    """The runs of a sweep that the program would start, by its own `--dry-run`: a directory and a command line each."""
+    asked = [sys.executable, "-m", "hasard_rs.cli", *words, "--dry-run"]
+    told = subprocess.run([*asked, *([] if "--json" in words else ["--json"])], capture_output=True, text=True, check=False)
+    if told.returncode:
+        raise ValueError(told.stderr.strip())
+    return [json.loads(line) for line in told.stdout.splitlines()]
+
+
+def run_job(job: dict[str, Any]) -> tuple[int, str]:
+    """Runs, or resumes, one run in this process's machine; gives its exit code and the end of what it said."""
+    directory = Path(job["directory"])
+    arguments = shlex.split(job["command"])[1:]
+    if (directory / "config.json").exists() and "--resume" not in arguments:
+        arguments.append("--resume")
+    done = subprocess.run([sys.executable, "-m", "hasard_rs.cli", *arguments], capture_output=True, text=True, check=False)
+    return done.returncode, (done.stderr or done.stdout)[-2000:]
+
+
+def sweep_on(place: str, words: list[str]) -> int:
+    """`hasard sweep ... --on ray[:ADDRESS]` or `--on slurm`: 0 when every run has ended well, 1 when some have not, 2 for bad input."""
+    where, _, address = place.partition(":")
+    try:
+        if where == "ray":
+            failed = _on_ray(jobs(words), address or None)
+        elif where in ("slurm", "local"):
+            failed = _on_slurm(jobs(words), where)
+        else:
+            raise ValueError(f"hasard: --on {place!r}: give ray, ray:ADDRESS or slurm")
+    except (ImportError, ValueError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    for directory, text in failed:
+        print(f"hasard: {directory}: {text.strip().splitlines()[-1] if text.strip() else 'failed'}", file=sys.stderr)
+    return 1 if failed else 0
+
+
+def _on_ray(todo: list[dict[str, Any]], address: str | None) -> list[tuple[str, str]]:
+    ray = need("ray", "ray", "clusters")
+    if not ray.is_initialized():
+        ray.init(address=address, log_to_driver=False)
+    # A lost machine is no failure of the run: it is started again elsewhere, and resumes.
+    task = ray.remote(run_job).options(num_cpus=1, max_retries=-1, scheduling_strategy="SPREAD", runtime_env={"env_vars": {"OMP_NUM_THREADS": "1"}})
+    waiting = {task.remote(job): job for job in todo}
+    failed, done = [], 0
+    while waiting:
+        ready, _ = ray.wait(list(waiting), num_returns=1)
+        job = waiting.pop(ready[0])
+        code, text = ray.get(ready[0])
+        done += 1
+        print(f"[{done}/{len(todo)}] {job['directory']}: {'finished' if code == 0 else 'failed'}", flush=True)
+        if code:
+            failed.append((job["directory"], text))
+    return failed
+
+
+def _on_slurm(todo: list[dict[str, Any]], cluster: str) -> list[tuple[str, str]]:
+    submitit = need("submitit", "slurm", "clusters")
+    executor = submitit.AutoExecutor(folder=str(Path(todo[0]["directory"]).parent / "slurm"), cluster=cluster)
+    executor.update_parameters(tasks_per_node=1, cpus_per_task=1, timeout_min=24 * 60)
+    if cluster == "slurm":
+        executor.update_parameters(slurm_array_parallelism=64)
+    handed = list(zip(todo, executor.map_array(run_job, todo), strict=True))
+    failed = []
+    for i, (job, running) in enumerate(handed):
+        code, text = running.result()
+        print(f"[{i + 1}/{len(todo)}] {job['directory']}: {'finished' if code == 0 else 'failed'}", flush=True)
+        if code:
+            failed.append((job["directory"], text))
+    return failed

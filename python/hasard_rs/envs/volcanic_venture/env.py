@@ -1,0 +1,14 @@
+"""VolcanicVenture under its published class name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hasard_rs.env import Env
+
+
+class VolcanicVenture(Env):
+    """`Env` with this scenario; the level is 1 unless given."""
+
+    def __init__(self, level: int = 1, **arguments: Any) -> None:
+        super().__init__(scenario="VolcanicVenture", level=level, **arguments)

@@ -1,0 +1,82 @@
+"""OmniSafe: the 18 environments as a `CMDP` of flat pixels and `Box` actions, which is all that it takes."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+from gymnasium import spaces
+
+from hasard_rs._extra import need
+
+torch = need("torch", "omnisafe", "omnisafe")
+need("omnisafe", "omnisafe", "omnisafe")
+
+from omnisafe.envs.core import CMDP, env_register  # noqa: E402
+
+import hasard_rs  # noqa: E402
+
+
+@env_register
+class HasardEnv(CMDP):
+    """A batch of worlds; observations are pixels / 255 in a row (64x48 grey unless asked otherwise)."""
+
+    _support_envs: ClassVar[list[str]] = [env_id.removeprefix("hasard/") for env_id in hasard_rs.ids()]
+    need_auto_reset_wrapper = False
+    need_time_limit_wrapper = False
+    need_evaluation = False
+
+    def __init__(self, env_id: str, num_envs: int = 1, device: Any = "cpu", **arguments: Any) -> None:
+        super().__init__(env_id)
+        self._device = torch.device(device)
+        given = {"resolution": "64x48", "observation": "grey", **arguments, "action_format": "box"}
+        self.envs = hasard_rs.make_vec(env_id, num_envs, autoreset_mode="SameStep", **given)
+        self._num_envs = num_envs
+        pixels = int(np.prod(self.envs.single_observation_space.shape))
+        self._observation_space = spaces.Box(0.0, 1.0, (pixels,), np.float32)
+        self._action_space = self.envs.single_action_space
+        self._metadata = dict(self.envs.metadata)
+        self._seed: int | None = None
+
+    @property
+    def max_episode_steps(self) -> int:
+        """Steps of an episode that only time ends."""
+        return self.envs.max_episode_steps
+
+    def _flat(self, observations: np.ndarray) -> Any:
+        flat = torch.from_numpy(observations).to(self._device).reshape(len(observations), -1).float() / 255.0
+        return flat if self._num_envs > 1 else flat[0]
+
+    def _row(self, values: np.ndarray) -> Any:
+        row = torch.as_tensor(values, dtype=torch.float32, device=self._device)
+        return row if self._num_envs > 1 else row[0]
+
+    def set_seed(self, seed: int) -> None:
+        self._seed = seed
+
+    def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        seed, self._seed = self._seed if seed is None else seed, None
+        observations, _ = self.envs.reset(seed=seed, options=options)
+        return self._flat(observations), {}
+
+    def step(self, action: Any) -> tuple[Any, Any, Any, Any, Any, dict[str, Any]]:
+        actions = action.detach().cpu().numpy().reshape(self._num_envs, -1)
+        observations, rewards, terminated, truncated, infos = self.envs.step(actions)
+        info: dict[str, Any] = {}
+        if "final_obs" in infos:
+            last = observations.copy()
+            for lane in np.flatnonzero(infos["_final_obs"]):
+                last[lane] = infos["final_obs"][lane]
+            info = {"final_observation": self._flat(last), "_final_observation": infos["_final_obs"]}
+        ends = (self._row(terminated), self._row(truncated))
+        return self._flat(observations), self._row(rewards), self._row(infos["cost"]), *ends, info
+
+    def sample_action(self) -> Any:
+        """A random action."""
+        return torch.as_tensor(self._action_space.sample(), dtype=torch.float32, device=self._device)
+
+    def render(self) -> Any:
+        return self.envs.render()
+
+    def close(self) -> None:
+        self.envs.close()

@@ -1,0 +1,86 @@
+"""The published package's own names, for its users: their scripts run after `import hasard_rs.published as hasard`.
+
+Bare ids such as `VolcanicVentureLevel1-v0`, `Tuple` actions, 320x240, the released rules, `info["env_stats"]`. Importing this module registers
+the bare ids with Gymnasium. What differs: no window by default and no `game`; a time-out is `truncated` alone; the last observation is the last
+frame; `reset` has infos.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+
+from hasard_rs.env import Env
+from hasard_rs.registry import LEVELS, Scenario, bare
+from hasard_rs.wrappers.cost import CostPenalty, CostWrapper
+from hasard_rs.wrappers.saute import Saute
+
+_RESOLUTIONS = ("800X600", "640X480", "320X240", "160X120")
+
+
+class DoomEnv(Env):
+    """An environment with the published package's defaults and methods."""
+
+    delta_actions_scaling_factor = 7.5
+
+    def __init__(self, **arguments: Any) -> None:
+        given = {"rules": "released", "action_format": "tuple", "resolution": "320x240", "env_stats": True, **arguments}
+        if given["resolution"] is None:
+            given["resolution"] = "320x240"
+        if given.get("render_mode") == "human":
+            # A window would need pygame; Gymnasium's make adds one to the frames if it is asked for a human mode.
+            given["render_mode"] = "rgb_array"
+        super().__init__(**given)
+        self.game_res = given["resolution"]
+        self._statistics: dict[str, float] = {}
+        self._cost = 0.0
+
+    def step(self, action: Any) -> Any:
+        told = super().step(action)
+        self._statistics, self._cost = told[4]["env_stats"], float(told[4]["cost"])
+        return told
+
+    def calculate_cost(self) -> float:
+        """The cost of the last step."""
+        return self._cost
+
+    def get_statistics(self, mode: str = "") -> dict[str, float]:
+        """The episode's statistics so far."""
+        return self._statistics
+
+    def reduced_action_space(self) -> Any:
+        """The simplified actions."""
+        return type(self)(**{**self._arguments, "full_actions": False}).action_space
+
+    def full_action_space(self) -> Any:
+        """All buttons, and two continuous axes."""
+        return type(self)(**{**self._arguments, "full_actions": True}).action_space
+
+    def full_actions(self) -> bool:
+        """Whether all buttons are in use."""
+        return bool(self._arguments.get("full_actions", False))
+
+    def video_schedule(self, episode_id: int) -> bool:
+        """No episode is filmed of itself; see `gymnasium.wrappers.RecordVideo`, or the program's `hasard record`."""
+        return False
+
+
+def register_environment(scenario: str | Scenario, level: int) -> None:
+    """Registers one bare id; nothing happens if it is registered."""
+    name = scenario.value if isinstance(scenario, Scenario) else scenario
+    env_id = f"{name}Level{level}-v0"
+    if env_id not in gymnasium.registry:
+        gymnasium.register(env_id, entry_point="hasard_rs.published:DoomEnv", kwargs={"scenario": name, "level": level})
+
+
+def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
+    """An environment by its bare id, in a `CostWrapper`."""
+    return CostWrapper(gymnasium.make(bare(env_id), **kwargs))
+
+
+for _scenario in Scenario:
+    for _level in LEVELS:
+        register_environment(_scenario, _level)
+
+__all__ = ["LEVELS", "CostPenalty", "CostWrapper", "DoomEnv", "Saute", "Scenario", "make", "register_environment"]

@@ -1,0 +1,55 @@
+"""PufferLib 3: a batch of worlds that writes into the buffers which PufferLib gives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from hasard_rs._extra import need
+
+pufferlib = need("pufferlib", "pufferlib", "pufferlib")
+
+import hasard_rs  # noqa: E402
+from hasard_rs import arguments as _arguments  # noqa: E402
+from hasard_rs.infos import summary  # noqa: E402
+from hasard_rs.spaces import action_format  # noqa: E402
+
+
+class HasardPuffer(pufferlib.PufferEnv):  # type: ignore[name-defined,misc]
+    """Worlds in SAME_STEP mode over PufferLib's own arrays; costs of the step are in `costs`, infos come at ends."""
+
+    def __init__(self, env_id: str, num_envs: int = 1, *, num_threads: int | None = None, buf: Any = None, seed: int = 0, **arguments: Any) -> None:
+        spec = hasard_rs.spec(env_id)
+        given = _arguments.read({"layout": "chw", **arguments, "scenario": spec.scenario, "level": spec.level}, vector=True)
+        self.worlds = hasard_rs.Worlds(given.env_id, num_envs, num_threads=num_threads, **given.world)
+        self._format = action_format("multi_discrete", self.worlds.nvec, self.worlds.num_deltas, given.delta_bins)
+        import gymnasium
+
+        self.single_observation_space = gymnasium.spaces.Box(0, 255, self.worlds.observation_shape, np.uint8)
+        self.single_action_space = self._format.space
+        self.num_agents = num_envs
+        super().__init__(buf)
+        self.costs = np.zeros(num_envs, np.float32)
+        self.worlds.bind(
+            observations=self.observations,
+            rewards=self.rewards,
+            costs=self.costs,
+            terminated=self.terminals,
+            truncated=self.truncations,
+        )
+        self._seed = seed
+
+    def reset(self, seed: int | None = None) -> tuple[np.ndarray, list[dict[str, Any]]]:
+        self.worlds.reset(self._seed if seed is None else seed)
+        return self.observations, []
+
+    def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+        batch = self.worlds.step(*self._format.many(actions, self.num_agents))
+        return self.observations, self.rewards, self.terminals, self.truncations, [summary(episode) for episode in batch.episodes]
+
+    def render(self) -> np.ndarray:
+        return self.worlds.render(0)
+
+    def close(self) -> None:
+        self.worlds.close()

@@ -1,0 +1,83 @@
+"""Ray: worlds on many machines. Samplers hold their worlds and give rollouts; a learner of yours asks for them.
+
+The lanes of all samplers together are the same whatever their number: sampler k's lanes follow those before it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from hasard_rs._extra import need
+
+ray = need("ray", "ray", "ray")
+
+import hasard_rs  # noqa: E402
+
+Rollout = dict[str, Any]
+"""observations [T + 1, n, ...] uint8, actions, rewards, costs, cost_terms, terminated, truncated [T, n], episodes, version."""
+
+
+class Sampler:
+    """Worlds and a policy on one machine; an actor by `samplers`. The policy is a function of observations that gives actions [n, parts]."""
+
+    def __init__(self, env_id: str, num_envs: int, *, first_lane: int = 0, seed: int = 0, num_threads: int = 0, **arguments: Any) -> None:
+        self.worlds = hasard_rs.Worlds(env_id, num_envs, num_threads=num_threads, **arguments)
+        self.observations = self.worlds.reset(seed + first_lane).observations
+        self.rng = np.random.default_rng([seed, first_lane])
+        self.policy: Any = None
+        self.version = -1
+
+    def set_policy(self, policy: Any, version: int) -> None:
+        """The policy of the samples to come; None draws at random."""
+        self.policy, self.version = policy, version
+
+    def sample(self, steps: int) -> Rollout:
+        """A rollout of all lanes, in fresh contiguous arrays that Ray's object store takes without a copy."""
+        worlds, n = self.worlds, self.worlds.num_envs
+        rollout: Rollout = {
+            "observations": np.empty((steps + 1, n, *worlds.observation_shape), np.uint8),
+            "actions": np.empty((steps, n, len(worlds.nvec)), np.int64),
+            "cost_terms": np.empty((steps, n, len(worlds.cost_terms)), np.float32),
+            "episodes": [],
+            "version": self.version,
+        }
+        for name, dtype in (("rewards", np.float32), ("costs", np.float32), ("terminated", np.bool_), ("truncated", np.bool_)):
+            rollout[name] = np.empty((steps, n), dtype)
+        for step in range(steps):
+            rollout["observations"][step] = self.observations
+            actions = self.rng.integers(0, worlds.nvec, (n, len(worlds.nvec))) if self.policy is None else self.policy(self.observations)
+            batch = worlds.step(actions)
+            rollout["actions"][step], self.observations = actions, batch.observations
+            for name in ("rewards", "costs", "cost_terms", "terminated", "truncated"):
+                rollout[name][step] = getattr(batch, name)
+            rollout["episodes"] += batch.episodes
+        rollout["observations"][steps] = self.observations
+        return rollout
+
+
+def samplers(env_id: str, count: int, lanes: int, *, seed: int = 0, num_cpus: float = 1, options: Any = None, **arguments: Any) -> list[Any]:
+    """Actors that share `lanes` lanes; one that dies is started anew, with its first episodes."""
+    actor = ray.remote(Sampler)
+    placed = {"num_cpus": num_cpus, "max_restarts": -1, "max_task_retries": 0, "scheduling_strategy": "SPREAD", **(options or {})}
+    shares = [lanes * (i + 1) // count - lanes * i // count for i in range(count)]
+    firsts = [lanes * i // count for i in range(count)]
+    make = actor.options(**placed).remote
+    return [make(env_id, share, first_lane=first, seed=seed, **arguments) for share, first in zip(shares, firsts, strict=True)]
+
+
+def rollouts(actors: list[Any], steps: int) -> Iterator[tuple[int, Rollout]]:
+    """Rollouts as they come, for ever: (number of the actor, rollout). An actor is asked again at once; a lost rollout is sampled anew."""
+    asked = {actor.sample.remote(steps): i for i, actor in enumerate(actors)}
+    while True:
+        ready, _ = ray.wait(list(asked), num_returns=1)
+        index = asked.pop(ready[0])
+        try:
+            rollout = ray.get(ready[0])
+        except ray.exceptions.RayActorError:
+            rollout = None
+        asked[actors[index].sample.remote(steps)] = index
+        if rollout is not None:
+            yield index, rollout

@@ -1,0 +1,102 @@
+"""Six-tuple environments, as Safety-Gymnasium, OmniSafe and SafePO step them: the cost is a value of its own, not in `info`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+import hasard_rs
+
+
+class SafetyEnv(gymnasium.Env[np.ndarray, Any]):
+    """A single environment whose `step` returns (observation, reward, cost, terminated, truncated, info)."""
+
+    def __init__(self, env: str | gymnasium.Env[Any, Any], **arguments: Any) -> None:
+        self.env = hasard_rs.make(env, **arguments) if isinstance(env, str) else env
+        self.action_space, self.observation_space = self.env.action_space, self.env.observation_space
+        self.metadata, self.render_mode, self.spec = self.env.metadata, self.env.render_mode, self.env.spec
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        observation, info = self.env.reset(seed=seed, options=options)
+        return observation, {name: value for name, value in info.items() if name != "cost"}
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, float, bool, bool, dict[str, Any]]:  # type: ignore[override]
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        cost = float(info.pop("cost"))
+        return observation, float(reward), cost, terminated, truncated, info
+
+    def render(self) -> Any:
+        return self.env.render()
+
+    def close(self) -> None:
+        self.env.close()
+
+
+class SafetyVectorEnv:
+    """A batch of worlds in SAME_STEP mode whose `step` returns (observations, rewards, costs, terminateds, truncateds, infos).
+
+    Last observations are in `infos` under Gymnasium 0.28's names: `final_observation`, `_final_observation`, `final_info`, `_final_info`.
+    """
+
+    def __init__(self, env_id: str, num_envs: int, **arguments: Any) -> None:
+        self.envs = hasard_rs.make_vec(env_id, num_envs, autoreset_mode="SameStep", **arguments)
+        self.num_envs = num_envs
+        self.single_action_space, self.single_observation_space = self.envs.single_action_space, self.envs.single_observation_space
+        self.action_space, self.observation_space = self.envs.action_space, self.envs.observation_space
+
+    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        observations, infos = self.envs.reset(seed=seed, options=options)
+        return observations, _without_cost(infos)
+
+    def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        observations, rewards, terminated, truncated, infos = self.envs.step(actions)
+        costs = infos["cost"]
+        infos = _without_cost(infos)
+        if "final_obs" in infos:
+            infos["final_observation"], infos["_final_observation"] = infos.pop("final_obs"), infos.pop("_final_obs")
+        return observations, rewards, costs, terminated, truncated, infos
+
+    def close(self) -> None:
+        self.envs.close()
+
+
+def _without_cost(infos: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in infos.items() if name not in ("cost", "_cost")}
+
+
+class _Five(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """A six-tuple environment with its cost put back into `info`."""
+
+    def __init__(self, env: Any) -> None:
+        super().__init__(env)
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        observation, reward, cost, terminated, truncated, info = self.env.step(action)  # type: ignore[misc]
+        return observation, reward, terminated, truncated, {**info, "cost": cost}
+
+
+def from_gymnasium(env: gymnasium.Env[Any, Any]) -> SafetyEnv:
+    """A six-tuple view of an environment that has `info["cost"]`."""
+    return SafetyEnv(env)
+
+
+def to_gymnasium(env: Any) -> gymnasium.Env[Any, Any]:
+    """A five-tuple view of a six-tuple environment."""
+    return _Five(env)
+
+
+def register() -> list[str]:
+    """Puts `SafetyHasard<Scenario><Level>-v0` and `SafetyHasard<Scenario><Level>Gymnasium-v0` into Safety-Gymnasium; gives their ids."""
+    from hasard_rs._extra import need
+
+    safety_gymnasium = need("safety_gymnasium", "omnisafe", "safety")
+    made = []
+    for env_id in hasard_rs.ids():
+        spec = hasard_rs.spec(env_id)
+        name = f"SafetyHasard{spec.scenario}{spec.level}"
+        safety_gymnasium.register(id=f"{name}-v0", entry_point="hasard_rs.safety:SafetyEnv", kwargs={"env": env_id})
+        gymnasium.register(f"{name}Gymnasium-v0", entry_point="hasard_rs:make", kwargs={"env_id": env_id})
+        made += [f"{name}-v0", f"{name}Gymnasium-v0"]
+    return made

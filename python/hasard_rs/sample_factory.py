@@ -1,0 +1,112 @@
+"""Sample-Factory 2: the published package's environment names and settings, as one batched multi-agent environment.
+
+    python -m hasard_rs.sample_factory --env=volcanic_venture --level=1 --batched_sampling=True --env_agents=16
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import numpy as np
+
+from hasard_rs._extra import need
+
+need("sample_factory", "sample-factory", "sample_factory")
+
+import gymnasium  # noqa: E402
+import torch  # noqa: E402
+
+import hasard_rs  # noqa: E402
+from hasard_rs.infos import summary  # noqa: E402
+from hasard_rs.spaces import action_format  # noqa: E402
+
+NAMES = {
+    "armament_burden": "ArmamentBurden",
+    "collateral_damage": "CollateralDamage",
+    "detonators_dilemma": "DetonatorsDilemma",
+    "precipice_plunge": "PrecipicePlunge",
+    "remedy_rush": "RemedyRush",
+    "volcanic_venture": "VolcanicVenture",
+}
+
+
+class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
+    """`num_agents` worlds as Sample-Factory's batched samplers step them: tensors in and out, SAME_STEP."""
+
+    is_multiagent = True
+
+    def __init__(self, env_id: str, num_agents: int, *, render_mode: str | None = None, **arguments: Any) -> None:
+        self.worlds = hasard_rs.Worlds(env_id, num_agents, layout="chw", **arguments)
+        self._format = action_format("tuple", self.worlds.nvec, self.worlds.num_deltas, 11)
+        self.num_agents, self.render_mode = num_agents, render_mode
+        self.observation_space = gymnasium.spaces.Dict({"obs": gymnasium.spaces.Box(0, 255, self.worlds.observation_shape, np.uint8)})
+        self.action_space = self._format.space
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+        batch = self.worlds.reset(seed)
+        return {"obs": torch.from_numpy(batch.observations)}, [{} for _ in range(self.num_agents)]
+
+    def step(self, actions: Any) -> Any:
+        rows = actions.cpu().numpy() if torch.is_tensor(actions) else np.asarray(actions)
+        groups = len(self.worlds.nvec)
+        deltas = rows[:, groups:].astype(np.float32) if self.worlds.num_deltas else None
+        batch = self.worlds.step(rows[:, :groups].astype(np.int64), deltas)
+        infos: list[dict[str, Any]] = [{"cost": cost, "num_frames": 4} for cost in batch.costs.tolist()]
+        for episode in batch.episodes:
+            told = summary(episode)
+            infos[episode["lane"]]["episode_extra_stats"] = {name: value for name, value in told.items() if name != "seed"}
+        ends = torch.from_numpy(batch.terminated), torch.from_numpy(batch.truncated)
+        return {"obs": torch.from_numpy(batch.observations)}, torch.from_numpy(batch.rewards), *ends, infos
+
+    def render(self) -> Any:
+        return self.worlds.render(0)
+
+    def close(self) -> None:
+        self.worlds.close()
+
+
+def make(full_env_name: str, cfg: Any = None, env_config: Any = None, render_mode: str | None = None) -> HasardBatch:
+    """An environment from Sample-Factory's settings."""
+    arguments = {
+        "hard_constraint": getattr(cfg, "constraint", "soft") == "hard",
+        "resolution": (getattr(cfg, "res_w", 128), getattr(cfg, "res_h", 72)),
+        "full_actions": bool(getattr(cfg, "all_actions", False)),
+        "frame_skip": getattr(cfg, "env_frameskip", 4) or 4,
+        "frame_stack": getattr(cfg, "env_framestack", 1) or 1,
+    }
+    env_id = f"{NAMES[full_env_name]}Level{getattr(cfg, 'level', 1)}-v0"
+    return HasardBatch(env_id, getattr(cfg, "env_agents", 16), render_mode=render_mode, **arguments)
+
+
+def register() -> None:
+    """Registers the six names with Sample-Factory."""
+    from sample_factory.envs.env_utils import register_env
+
+    for name in NAMES:
+        register_env(name, make)
+
+
+def add_arguments(parser: Any) -> None:
+    """The published package's settings of an environment."""
+    parser.add_argument("--level", type=int, default=1, choices=[1, 2, 3])
+    parser.add_argument("--constraint", default="soft", choices=["soft", "hard"])
+    parser.add_argument("--res_w", type=int, default=128)
+    parser.add_argument("--res_h", type=int, default=72)
+    parser.add_argument("--all_actions", action="store_true")
+    parser.add_argument("--env_agents", type=int, default=16, help="worlds of one batched environment")
+
+
+def main() -> int:
+    """Trains by Sample-Factory's own loop."""
+    from sample_factory.cfg.arguments import parse_full_cfg, parse_sf_args
+    from sample_factory.train import run_rl
+
+    register()
+    parser, _ = parse_sf_args()
+    add_arguments(parser)
+    return int(run_rl(parse_full_cfg(parser)))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

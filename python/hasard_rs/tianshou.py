@@ -1,0 +1,77 @@
+"""Tianshou: a batch of worlds in the manner of its `BaseVectorEnv`, which steps and resets any lanes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import hasard_rs
+from hasard_rs import arguments as _arguments
+from hasard_rs.infos import Infos, row, summary
+from hasard_rs.spaces import action_format
+
+
+class HasardVectorEnv:
+    """A batch of worlds for Tianshou's collectors, which reset lanes themselves; actions are `discrete` unless asked otherwise."""
+
+    is_async = False
+
+    def __init__(self, env_id: str, num_envs: int, *, num_threads: int | None = None, **arguments: Any) -> None:
+        spec = hasard_rs.spec(env_id)
+        arguments = {"layout": "chw", "action_format": "discrete", **arguments}
+        given = _arguments.read({**arguments, "scenario": spec.scenario, "level": spec.level}, vector=True)
+        self.worlds = hasard_rs.Worlds(given.env_id, num_envs, num_threads=num_threads, autoreset_mode="Disabled", **given.world)
+        self._format = action_format(given.action_format, self.worlds.nvec, self.worlds.num_deltas, given.delta_bins)
+        self._infos = Infos(self.worlds, spec.scenario, given.infos, False)
+        from gymnasium import spaces
+
+        space = spaces.Box(0, 255, self.worlds.observation_shape, np.uint8)
+        self.env_num = num_envs
+        self.action_space = [self._format.space] * num_envs
+        self.observation_space = [space] * num_envs
+        self._seeds: Any = given.seed
+
+    def __len__(self) -> int:
+        return self.env_num
+
+    def _lanes(self, chosen: Any) -> np.ndarray:
+        return np.arange(self.env_num) if chosen is None else np.atleast_1d(np.asarray(chosen, dtype=np.int64))
+
+    def reset(self, env_id: Any = None, **kwargs: Any) -> tuple[np.ndarray, np.ndarray]:
+        lanes = self._lanes(env_id)
+        mask = np.zeros(self.env_num, np.bool_)
+        mask[lanes] = True
+        seeds, self._seeds = kwargs.get("seed", self._seeds), None
+        if isinstance(seeds, (list, tuple, np.ndarray)) and len(seeds) != self.env_num:
+            each: list[Any] = [None] * self.env_num
+            for lane, seed in zip(lanes, seeds, strict=True):
+                each[lane] = seed
+            seeds = each
+        batch = self.worlds.reset(seeds, None if mask.all() else mask)
+        return batch.observations[lanes], self._told(batch, lanes, lanes)
+
+    def step(self, action: Any, id: Any = None) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # noqa: A002
+        lanes = self._lanes(id)
+        batch = self.worlds.step(*self._format.many(np.asarray(action), len(lanes)), lanes=lanes.tolist())
+        infos = self._told(batch, np.arange(len(lanes)), lanes)
+        for episode in batch.episodes:
+            infos[int(np.flatnonzero(lanes == episode["lane"])[0])]["episode_summary"] = summary(episode)
+        return batch.observations, batch.rewards.astype(np.float64), batch.terminated, batch.truncated, infos
+
+    def _told(self, batch: Any, rows: np.ndarray, lanes: np.ndarray) -> np.ndarray:
+        columns = self._infos.step(batch)
+        infos = np.empty(len(lanes), dtype=object)
+        for i, (index, lane) in enumerate(zip(rows, lanes, strict=True)):
+            infos[i] = {**row(columns, int(index)), "env_id": int(lane)}
+        return infos
+
+    def seed(self, seed: Any = None) -> list[Any]:
+        self._seeds = seed
+        return [seed] if seed is None or isinstance(seed, int) else list(seed)
+
+    def render(self, **kwargs: Any) -> list[np.ndarray]:
+        return [self.worlds.render(lane) for lane in range(self.env_num)]
+
+    def close(self) -> None:
+        self.worlds.close()

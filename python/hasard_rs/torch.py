@@ -1,0 +1,121 @@
+"""A trained agent's network as a `torch.nn.Module`, for those who go on from there.
+
+    network = hasard_rs.torch.load("runs/vv1")
+    outputs, state = network(observations, state=None)
+
+`outputs` [n, logits and deltas | value | cost values] are those of our own kernels to 1e-4.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hasard_rs._extra import need
+from hasard_rs.errors import InvalidOption
+
+torch = need("torch", "torch", "torch")
+
+_EPSILON = 1e-5
+
+
+def read_weights(path: Path) -> dict[str, np.ndarray]:
+    """The tensors of a safetensors file: a length, a JSON header, the bytes."""
+    data = path.read_bytes()
+    (length,) = struct.unpack("<Q", data[:8])
+    header = json.loads(data[8 : 8 + length])
+    body, kinds = data[8 + length :], {"F32": np.float32, "F64": np.float64, "U64": np.uint64, "U8": np.uint8}
+    tensors = {}
+    for name, told in header.items():
+        if name != "__metadata__":
+            start, end = told["data_offsets"]
+            tensors[name] = np.frombuffer(body[start:end], kinds[told["dtype"]]).reshape(told["shape"]).copy()
+    return tensors
+
+
+class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
+    """Convolutions, dense layers, a GRU if there is one, and linear heads, on one 8-bit image; as the run's settings say."""
+
+    def __init__(self, weights: dict[str, np.ndarray], settings: dict[str, Any]) -> None:
+        super().__init__()
+        layers = {name.rpartition(".")[0] for name in weights}
+
+        def tensor(name: str) -> Any:
+            return torch.from_numpy(np.ascontiguousarray(weights[name]))
+
+        self.convolutions = torch.nn.ModuleList()
+        for index, told in enumerate(settings["convolutions"]):
+            weight = tensor(f"convolution{index}.weight").permute(3, 2, 0, 1).contiguous()
+            layer = torch.nn.Conv2d(weight.shape[1], weight.shape[0], told["kernel"], told["stride"])
+            layer.weight.data, layer.bias.data = weight, tensor(f"convolution{index}.bias")
+            self.convolutions.append(layer)
+        self.dense = torch.nn.ModuleList(self._linear(tensor, f"dense{i}") for i in range(sum(name.startswith("dense") for name in layers)))
+        self.gru = None
+        if "gru.input_weight" in weights:
+            weight = tensor("gru.input_weight").T.contiguous()
+            self.gru = torch.nn.GRUCell(weight.shape[1], weight.shape[0] // 3)
+            self.gru.weight_ih.data, self.gru.bias_ih.data = weight, tensor("gru.input_bias")
+            self.gru.weight_hh.data, self.gru.bias_hh.data = tensor("gru.hidden_weight").T.contiguous(), tensor("gru.hidden_bias")
+        self.heads = torch.nn.ModuleList(self._linear(tensor, f"head{i}") for i in range(sum(name.startswith("head") for name in layers)))
+
+    @staticmethod
+    def _linear(tensor: Any, name: str) -> Any:
+        weight = tensor(f"{name}.weight").T.contiguous()
+        layer = torch.nn.Linear(weight.shape[1], weight.shape[0])
+        layer.weight.data, layer.bias.data = weight, tensor(f"{name}.bias")
+        return layer
+
+    def forward(self, images: Any, extra: Any = None, state: Any = None) -> tuple[Any, Any]:
+        """Outputs [n, ...] for normalised images [n, channels, height, width], and the GRU's state after."""
+        values = images
+        for layer in self.convolutions:
+            values = torch.nn.functional.elu(layer(values))
+        # Features are stored row by row, channels last.
+        values = values.permute(0, 2, 3, 1).reshape(len(values), -1)
+        for layer in self.dense:
+            values = torch.nn.functional.elu(layer(values))
+        if extra is not None:
+            values = torch.cat([values, extra], 1)
+        if self.gru is not None:
+            state = values = self.gru(values, state)
+        return torch.cat([head(values) for head in self.heads], 1), state
+
+
+class Model(torch.nn.Module):  # type: ignore[name-defined,misc]
+    """The whole model of a run: one network, or one for the policy and for each critic."""
+
+    def __init__(self, weights: dict[str, np.ndarray], settings: dict[str, Any]) -> None:
+        super().__init__()
+        factor = 1.0 / np.sqrt(weights["pixels.variance"] + _EPSILON)
+        self.register_buffer("scale", torch.from_numpy((factor / 255.0).astype(np.float32)))
+        self.register_buffer("shift", torch.from_numpy((-weights["pixels.mean"] * factor).astype(np.float32)))
+        count = 1 + max(int(name.split(".")[0].removeprefix("network")) for name in weights if name.startswith("network"))
+        own = [{name.partition(".")[2]: value for name, value in weights.items() if name.startswith(f"network{i}.")} for i in range(count)]
+        self.networks = torch.nn.ModuleList(Network(part, settings) for part in own)
+
+    def forward(self, observations: Any, state: Any = None, extra: Any = None) -> tuple[Any, list[Any]]:
+        """Outputs for observations uint8 [n, height, width, channels] and each network's state (None: episodes begin).
+
+        extra: what is left of the budget, [n, 1], for PPOSaute's agents.
+        """
+        count, shape = len(observations), observations.shape[1:]
+        pixels = (observations.reshape(count, -1).float() * self.scale + self.shift).clamp(-5.0, 5.0)
+        images = pixels.reshape(count, *shape).permute(0, 3, 1, 2)
+        states = [None] * len(self.networks) if state is None else state
+        told = [network(images, extra, own) for network, own in zip(self.networks, states, strict=True)]
+        return torch.cat([outputs for outputs, _ in told], 1), [after for _, after in told]
+
+
+def load(run: str | os.PathLike[str], *, best: bool = False) -> Model:
+    """The network of a run directory's newest checkpoint, or of the best within budget."""
+    checkpoints = Path(run) / "checkpoints"
+    found = [checkpoints / "best"] if best else sorted(checkpoints.glob("frames_*"))
+    if not found or not found[-1].is_dir():
+        raise InvalidOption(f"{run}: no checkpoint was written {'within budget' if best else 'yet'}")
+    settings = json.loads((Path(run) / "config.json").read_text())["network"]
+    return Model(read_weights(found[-1] / "weights.safetensors"), settings)

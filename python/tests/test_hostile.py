@@ -1,0 +1,207 @@
+"""Wrong and hostile calls end in the documented exceptions; what was refused has moved nothing."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+
+import hasard_rs
+from hasard_rs import Worlds
+
+ENV = "hasard/VolcanicVentureLevel1-v0"
+ALLOWED = (hasard_rs.HasardError, TypeError, ValueError, IndexError, BufferError, OverflowError)
+
+
+def worlds(n: int = 3, **arguments: Any) -> Worlds:
+    made = Worlds(ENV, n, **{"num_threads": 1, "resolution": "64x48", **arguments})
+    made.reset(1)
+    return made
+
+
+@pytest.mark.parametrize(
+    ("actions", "error"),
+    [
+        (np.zeros((3, 5), int), ValueError),
+        (np.zeros((2, 4), int), ValueError),
+        (np.zeros(12, int), ValueError),
+        (0, TypeError),
+        (None, TypeError),
+        ("jump", TypeError),
+        (np.zeros((3, 4)), TypeError),
+        (np.full((3, 4), np.nan), TypeError),
+        (np.full((3, 4), 1 << 62), hasard_rs.InvalidAction),
+        (np.full((3, 4), -1), hasard_rs.InvalidAction),
+        ([[0, 0, 0], [1, 1, 1, 1]], ValueError),
+        (np.zeros((3, 4), object), TypeError),
+        (np.zeros((3, 4), complex), TypeError),
+    ],
+)
+def test_wrong_actions_are_refused_and_move_nothing(actions: Any, error: type[Exception]) -> None:
+    for made in (worlds(), worlds(num_threads=0)):
+        before = [made.state_hash(lane) for lane in range(3)]
+        with pytest.raises(error):
+            made.step(actions)
+        assert [made.state_hash(lane) for lane in range(3)] == before
+        made.step(np.zeros((3, 4), np.int8))
+    vec = hasard_rs.make_vec(ENV, 3, resolution="64x48")
+    vec.reset(seed=1)
+    with pytest.raises(error):
+        vec.step(actions)
+
+
+def test_a_bad_action_is_named_with_lane_part_value_and_range() -> None:
+    actions = np.zeros((3, 4), int)
+    actions[2, 1] = 300
+    with pytest.raises(hasard_rs.InvalidAction, match=r"^action of lane 2: part 1 is 300; it must be 0\.\.=1$"):
+        worlds().step(actions)
+
+
+def test_every_dtype_order_and_stride_acts_alike() -> None:
+    plain = np.array([[1, 1, 0, 1], [2, 0, 1, 0], [0, 1, 1, 1]])
+    expected = worlds().step(plain).observations
+    spread = np.zeros((6, 8), np.int16)
+    spread[::2, ::2] = plain
+    for given in [plain.tolist(), np.asfortranarray(plain), spread[::2, ::2], plain[::-1][::-1], *map(plain.astype, "bBhHiIlL")]:
+        assert np.array_equal(worlds().step(given).observations, expected)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "text"),
+    [
+        ({"frame_skip": 0}, hasard_rs.InvalidOption, "frame_skip cannot be 0; it must be 1..=35"),
+        ({"resolution": "10x10"}, hasard_rs.InvalidOption, "resolution"),
+        ({"resolution": (64, -48)}, hasard_rs.InvalidOption, "resolution"),
+        ({"frame_stack": 17}, hasard_rs.InvalidOption, "frame_stack"),
+        ({"rules": "papyrus"}, hasard_rs.InvalidOption, "paper or released"),
+        ({"observation": b"rgb"}, hasard_rs.InvalidOption, "observation"),
+        ({"frameskip": 4}, TypeError, "did you mean 'frame_skip'"),
+        ({"delta_bins": 4}, hasard_rs.InvalidOption, "odd"),
+        ({"action_format": "text"}, hasard_rs.InvalidOption, "action_format"),
+        ({"render_mode": "ansi"}, hasard_rs.InvalidOption, "render_mode"),
+        ({"seed": -1}, ValueError, "negative"),
+        ({"max_episode_steps": 0}, hasard_rs.InvalidOption, "max_episode_steps"),
+        ({"iwad": "/nowhere.wad"}, hasard_rs.InvalidOption, "/nowhere.wad"),
+    ],
+)
+def test_wrong_arguments_are_named(arguments: dict[str, Any], error: type[Exception], text: str) -> None:
+    with pytest.raises(error, match=text):
+        hasard_rs.Env(scenario="VolcanicVenture", level=1, **arguments)
+    with pytest.raises(error, match=text):
+        hasard_rs.VectorEnv(scenario="VolcanicVenture", level=1, num_envs=2, **arguments)
+
+
+@pytest.mark.parametrize("arguments", [{"num_envs": 0}, {"num_envs": 70000}, {"batch_size": 3}, {"autoreset_mode": "Never"}, {"num_threads": 5000}])
+def test_wrong_batches_are_named(arguments: dict[str, Any]) -> None:
+    with pytest.raises(hasard_rs.InvalidOption):
+        hasard_rs.VectorEnv(scenario="VolcanicVenture", level=1, **{"num_envs": 4, "resolution": "64x48", **arguments})
+
+
+def test_unknown_ids_name_the_nearest() -> None:
+    for make in (hasard_rs.make, hasard_rs.make_vec, hasard_rs.spec):
+        with pytest.raises(hasard_rs.UnknownEnvironment, match="VolcanicVentureLevel1-v0"):
+            make("hasard/VulcanicVentureLevel1-v0")
+
+
+def test_use_after_close_and_out_of_turn() -> None:
+    made = worlds()
+    made.close()
+    made.close()
+    assert made.closed
+    for call in (made.reset, made.save, lambda: made.step(np.zeros((3, 4), int)), made.recv, lambda: made.positions):
+        with pytest.raises(hasard_rs.Closed):
+            call()
+    fresh = Worlds(ENV, 2, num_threads=0, groups=2, resolution="64x48")
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        fresh.step(np.zeros((2, 4), int))
+    fresh.reset(0)
+    with pytest.raises(hasard_rs.OutOfTurn, match="send it first"):
+        fresh.recv(1)
+    fresh.send(np.zeros((1, 4), int), group=1)
+    for call in (lambda: fresh.send(np.zeros((1, 4), int), group=1), fresh.reset, fresh.save, lambda: fresh.step(np.zeros((2, 4), int))):
+        with pytest.raises(hasard_rs.OutOfTurn):
+            call()
+    assert fresh.recv(1).lanes.tolist() == [1]
+    env = hasard_rs.make(ENV, resolution="64x48").unwrapped
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step([0, 0, 0, 0])
+    with pytest.raises(AttributeError, match="no ViZDoom"):
+        env.game  # noqa: B018
+
+
+def test_masks_are_refused_with_gymnasiums_texts() -> None:
+    vec = hasard_rs.make_vec(ENV, 3, resolution="64x48")
+    vec.reset(seed=0)
+    for mask, error, text in [
+        ([True] * 3, TypeError, "must be a numpy array, got"),
+        (np.ones(2, bool), ValueError, r"must have shape `\(3,\)`, got"),
+        (np.ones(3, int), TypeError, "must have `dtype=np.bool_`, got"),
+        (np.zeros(3, bool), ValueError, "must contain a boolean array with at least one True value"),
+    ]:
+        options = {"reset_mask": mask}
+        with pytest.raises(error, match=text):
+            vec.reset(options=options)
+        assert "reset_mask" in options, "the caller's dict is left alone"
+
+
+def test_ten_thousand_random_calls() -> None:
+    rng = np.random.default_rng(7)
+    made, other = worlds(4, groups=2), worlds(2, autoreset_mode="Disabled", full_actions=True, max_episode_steps=30)
+    state = other.save()
+    junk = [None, -1, 0, 3.5, 1 << 70, "x", b"x", [], {}, np.nan, np.zeros((4, 4)), np.full((4, 4), 2), np.ones(4, bool), object(), np.inf]
+
+    def any_of() -> Any:
+        return junk[rng.integers(len(junk))]
+
+    good = {"made": np.zeros((4, 4), int), "half": np.zeros((2, 4), int), "other": np.zeros((2, 9), int)}
+    calls = [
+        lambda: made.step(good["made"]),
+        lambda: made.step(any_of()),
+        lambda: made.send(good["half"], group=int(rng.integers(3))),
+        lambda: made.recv(int(rng.integers(3))),
+        lambda: made.step(good["half"], lanes=rng.integers(0, 5, 2).tolist()),
+        lambda: made.reset(any_of(), any_of()),
+        lambda: made.reset(mask=np.array([True, False, True, False])),
+        lambda: other.step(good["other"], any_of()),
+        lambda: other.step(good["other"], rng.normal(size=(2, 2))),
+        lambda: other.reset(mask=rng.integers(0, 2, 2).astype(bool)),
+        lambda: other.load(bytes(rng.integers(0, 256, 60, dtype=np.uint8))),
+        lambda: other.load(state[: rng.integers(len(state))]),
+        lambda: other.load(state),
+        lambda: other.render(int(rng.integers(4)), any_of(), any_of()),
+        lambda: made.bind(observations=any_of(), rewards=any_of(), costs=any_of(), terminated=any_of(), truncated=any_of()),
+        lambda: made.state_hash(int(rng.integers(6))),
+        lambda: hasard_rs.Worlds(any_of(), any_of(), frame_skip=any_of()),
+    ]
+    done = 0
+    for _ in range(10_000):
+        try:
+            calls[rng.integers(len(calls))]()
+            done += 1
+        except ALLOWED:
+            pass
+    assert done > 1000
+
+
+def test_two_threads_take_turns() -> None:
+    made, errors = worlds(4), []
+
+    def step() -> None:
+        try:
+            for _ in range(100):
+                made.step(np.zeros((4, 4), int))
+        except BaseException as error:  # noqa: BLE001
+            errors.append(error)
+
+    threads = [threading.Thread(target=step) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    expected = worlds(4)
+    for _ in range(200):
+        expected.step(np.zeros((4, 4), int))
+    assert not errors and made.state_hash(2) == expected.state_hash(2)

@@ -1,0 +1,101 @@
+"""Training from Python, trained agents, and the program in the wheel."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hasard_rs
+
+ENV = "hasard/RemedyRushLevel1-v0"
+SMALL = {"frames": 40_960, "envs": 4, "threads": 1, "size": "64x48", "preset": "quick", "seed": 3}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> hasard_rs.Run:
+    reports: list[dict] = []
+
+    def callback(report: dict) -> bool:
+        reports.append(report)
+        return len(reports) >= 2
+
+    run = hasard_rs.train(ENV, "PPOLag", out=tmp_path_factory.mktemp("runs") / "one", callback=callback, **SMALL)
+    assert run.stopped and len(reports) == 2 and reports[-1]["frames"] == run.last["frames"]
+    return run
+
+
+def test_a_run_directory_is_the_programs(run: hasard_rs.Run) -> None:
+    config = json.loads((run.directory / "config.json").read_text())
+    assert config["algorithm"] == "PPOLag" and config["env"]["size"] == [64, 48]
+    done = subprocess.run(
+        [sys.executable, "-m", "hasard_rs.cli", "eval", str(run.directory), "--episodes", "1", "--seed", "0", "--json"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    agent = hasard_rs.Agent.load(run.directory)
+    assert agent.evaluate(1) == [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def test_agents_are_functions_of_what_they_are_given(run: hasard_rs.Run) -> None:
+    agent = hasard_rs.Agent.load(run.directory)
+    vec = agent.make_vec(3)
+    observations, _ = vec.reset(seed=5)
+    start = agent.begin(3, seed=8)
+    actions, after = agent.act(observations, start)
+    assert actions.shape == (3, 4) and actions.dtype == np.int64
+    again, _ = hasard_rs.Agent.load(run.directory).act(observations, start)
+    assert np.array_equal(actions, again), "the same state gives the same actions, in any agent of the run"
+    one, _ = agent.act(observations[1], agent.begin(1, seed=9))
+    assert np.array_equal(one, actions[1]), "lanes do not depend on each other"
+    vec.step(actions)
+    agent.act(observations, agent.after(after, np.ones(3), np.array([True, False, False])))
+    with pytest.raises(ValueError, match="observations must have shape"):
+        agent.act(observations[:, :, ::2], start)
+    with pytest.raises(hasard_rs.HasardError, match="nowhere"):
+        hasard_rs.Agent.load("nowhere")
+
+
+def test_callbacks_that_raise_end_the_run(tmp_path: Path) -> None:
+    def callback(report: dict) -> None:
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        hasard_rs.train(ENV, out=tmp_path / "run", callback=callback, **SMALL)
+    assert list((tmp_path / "run").glob("checkpoints/*")), "the run ended with a checkpoint"
+    resumed = hasard_rs.train(ENV, out=tmp_path / "run", resume=True, callback=lambda report: True)
+    assert resumed.stopped
+
+
+def test_wrong_settings_write_nothing(tmp_path: Path) -> None:
+    for wrong in [{"algorithm": "PPOX"}, {"preset": "slow"}, {"set": {"nothing": 1}}, {"nonsense": 1}]:
+        with pytest.raises(hasard_rs.InvalidOption):
+            hasard_rs.train(ENV, out=tmp_path / "run", **wrong)
+    assert not (tmp_path / "run").exists()
+
+
+def test_the_program_comes_with_the_wheel() -> None:
+    words = [sys.executable, "-m", "hasard_rs.cli"]
+    done = subprocess.run([*words, "envs"], capture_output=True, text=True)
+    assert done.returncode == 0 and "VolcanicVentureLevel1-v0" in done.stdout
+    done = subprocess.run([*words, "rollout", "NoSuchLevel1-v0"], capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+
+
+def test_the_torch_module_gives_the_same_outputs(run: hasard_rs.Run) -> None:
+    torch = pytest.importorskip("torch")
+    import hasard_rs.torch
+
+    agent = hasard_rs.Agent.load(run.directory)
+    envs = agent.make_vec(5)
+    observations, _ = envs.reset(seed=2)
+    model, memory, state = hasard_rs.torch.load(run.directory), agent.begin(5).memory, None
+    for _ in range(10):
+        rows, memory = agent._trained.outputs(observations, memory)
+        with torch.no_grad():
+            outputs, state = model(torch.from_numpy(observations), state)
+        assert np.abs(outputs.numpy() - rows).max() < 1e-4
+        observations = envs.step(envs.action_space.sample())[0]
