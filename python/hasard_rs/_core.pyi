@@ -8,6 +8,8 @@ from typing_extensions import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "describe", "ids", "main", "train"]
+
 __version__: str
 
 @final
@@ -116,6 +118,7 @@ class TrainedAgent:
     def act(
         self, observations: NDArray[np.uint8], state: AgentState, costs: Sequence[float] | None, over: Sequence[bool] | None
     ) -> tuple[NDArray[np.int64], NDArray[np.float32], AgentState]: ...
+    def outputs(self, observations: NDArray[np.uint8], state: AgentState) -> tuple[NDArray[np.float32], AgentState]: ...
     @property
     def env_id(self) -> str: ...
     @property

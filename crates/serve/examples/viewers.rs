@@ -38,7 +38,7 @@ fn watch(address: &str, size: &str, seconds: f64, seed: usize) -> f64 {
 
 /// Milliseconds from a key to the first picture that shows it, some times over.
 fn delays(address: &str, size: &str) -> Option<Vec<f64>> {
-    let mut socket = connect(address, &format!("/api/play?env=PrecipicePlungeLevel1-v0&size={size}"))?;
+    let mut socket = connect(address, &format!("/api/play?env=ArmamentBurdenLevel1-v0&size={size}"))?;
     frame(&mut socket)?;
     socket.send(Message::text("{\"do\":\"go\"}")).ok()?;
     let mut all = Vec::new();

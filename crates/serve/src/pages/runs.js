@@ -98,7 +98,7 @@ export function runs(main, query) {
       if (news) {
         if (news.whole) known.clear();
         for (const run of news.runs) known.set(run.id, run);
-        const first = change === 0 && known.size > 0;
+        const first = change === 0;
         if (news.runs.length || news.whole) {
           list();
           if (news.whole || first || env.childElementCount === 0) choices();

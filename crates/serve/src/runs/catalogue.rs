@@ -45,7 +45,10 @@ pub(crate) struct Catalogue {
     runs: BTreeMap<String, Run>,
     kept: HashMap<String, (Columns, u64)>,
     uses: u64,
+    /// Number of the last change. It begins with the time in milliseconds, so that numbers of a server that ran before are
+    /// all smaller than any of this one.
     changes: u64,
+    begun: u64,
     looked: Option<Instant>,
     searched: Option<Instant>,
 }
@@ -54,7 +57,18 @@ impl Catalogue {
     pub fn new(folders: Vec<PathBuf>) -> Catalogue {
         // Links in the given names are the user's; links below them are not followed.
         let folders = folders.into_iter().map(|folder| folder.canonicalize().unwrap_or(folder)).collect();
-        Catalogue { folders, runs: BTreeMap::new(), kept: HashMap::new(), uses: 0, changes: 0, looked: None, searched: None }
+        let time = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        let begun = time.as_millis() as u64;
+        Catalogue {
+            begun,
+            folders,
+            runs: BTreeMap::new(),
+            kept: HashMap::new(),
+            uses: 0,
+            changes: begun,
+            looked: None,
+            searched: None,
+        }
     }
 
     /// Finds new runs and how far the known ones are, unless that was done just now.
@@ -118,11 +132,9 @@ impl Catalogue {
 
     /// The runs that changed after a number of changes, and that number now.
     pub fn changed_since(&self, since: u64) -> Value {
-        // A server that began anew counts from 0: whoever has seen more has seen another one.
-        let since = if since > self.changes { 0 } else { since };
         let runs: Vec<Value> = self.runs.iter().filter(|(_, run)| run.change > since).map(|(id, run)| run.told(id)).collect();
         let folders: Vec<String> = self.folders.iter().map(|folder| folder.display().to_string()).collect();
-        json!({ "change": self.changes, "whole": since == 0, "runs": runs, "count": self.runs.len(), "folders": folders })
+        json!({ "change": self.changes, "whole": since < self.begun, "runs": runs, "count": self.runs.len(), "folders": folders })
     }
 
     /// What each run ended with lately, for the table of the best.
