@@ -316,7 +316,7 @@ mod tests {
         assert_eq!(NetworkShape::default().features(), 2304);
     }
 
-    /// Issue 2, must-show 5: 59 MFLOP a training sample, 22 an inference.
+    /// The paper's network: 59 MFLOP a training sample, 22 an inference.
     #[test]
     fn arithmetic_is_what_the_bound_counts() {
         let shape = NetworkShape::default();
