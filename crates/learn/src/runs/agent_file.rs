@@ -1,8 +1,8 @@
 //! An agent as one small file, to be handed to others: its settings, what it is worth, and weights of four or eight bits.
 //!
-//! The file is safetensors. Weights are cut into blocks of [`BLOCK`] that share a scale; a block's codes are whole numbers from
+//! The file is safetensors. Weights are cut into blocks of `BLOCK` that share a scale; a block's codes are whole numbers from
 //! `-m` to `m`, and a weight is its code times `scale / m`. Small tensors take eight bits a code. So do large ones where the file
-//! stays within [`LIMIT`]; otherwise four, two codes a byte. Statistics of pixels take sixteen bits. What is lost is about
+//! stays within `LIMIT`; otherwise four, two codes a byte. Statistics of pixels take sixteen bits. What is lost is about
 //! what a step of training changes; what the agent is worth with it, `hasard eval FILE` tells.
 
 use std::collections::{BTreeMap, HashMap};

@@ -25,7 +25,7 @@ pub(crate) const TEXT_LIMIT: u64 = 512 << 20;
 
 /// Points that a run's reports are thinned to in the published tables, and how many of the last are averaged.
 const POINTS: usize = 500;
-/// See [`POINTS`].
+/// See `POINTS`.
 pub const LAST_POINTS: usize = 10;
 
 /// Something that was passed over while reading: the reader must be told, but the report goes on.
