@@ -132,7 +132,7 @@ class Agent:
     def evaluate(self, episodes: int = 20, seed: int = 0, *, best: bool = False, greedy: bool = False) -> list[dict[str, Any]]:
         """Plays episodes as `hasard eval --json` does: a dict each, and the summary as the last."""
         words = ["eval", os.fspath(self.run), "--episodes", str(episodes), "--seed", str(seed), "--json"]
-        return _lines([*words, *["--best"] * best, *["--greedy"] * greedy])
+        return _lines([*words, *["--latest"] * (not best), *["--greedy"] * greedy])
 
     def report(self, out: str | os.PathLike[str]) -> Path:
         """Writes the run's page of tables and curves, as `hasard report` does."""
