@@ -7,7 +7,7 @@ mod published_figures;
 use published_figures::{COLUMNS, allowed, ours, published, standard_error};
 
 /// Episodes of each row; agents that do nothing need fewer.
-const EPISODES: u64 = 80;
+const EPISODES: u64 = 320;
 const IDLE_EPISODES: u64 = 20;
 
 /// Figures that are known to differ, and why.
