@@ -25,6 +25,32 @@ pub enum Key {
 }
 
 impl Key {
+    /// Every key.
+    const ALL: [Key; 16] = [
+        Key::Forward,
+        Key::Backward,
+        Key::Right,
+        Key::Left,
+        Key::TurnLeft,
+        Key::TurnRight,
+        Key::LookUp,
+        Key::LookDown,
+        Key::Attack,
+        Key::Use,
+        Key::Jump,
+        Key::Crouch,
+        Key::Speed,
+        Key::NextWeapon,
+        Key::PreviousWeapon,
+        Key::TurnRound,
+    ];
+
+    /// The key that presses the button of a name.
+    #[must_use]
+    pub fn of_button(name: &str) -> Option<Key> {
+        Key::ALL.into_iter().find(|key| key.button() == name)
+    }
+
     /// Name of the button that it presses.
     #[must_use]
     pub const fn button(self) -> &'static str {

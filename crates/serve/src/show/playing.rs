@@ -91,8 +91,8 @@ impl Game {
         match ask {
             Ask::Pause => self.paused = true,
             Ask::Go => self.paused = false,
-            Ask::Press { key } => key_of(key).into_iter().for_each(|key| self.controls.press(key)),
-            Ask::Release { key } => key_of(key).into_iter().for_each(|key| self.controls.release(key)),
+            Ask::Press { key } => Key::of_button(key).into_iter().for_each(|key| self.controls.press(key)),
+            Ask::Release { key } => Key::of_button(key).into_iter().for_each(|key| self.controls.release(key)),
             Ask::Mouse { right, down } if right.is_finite() && down.is_finite() => {
                 self.controls.move_mouse(right.clamp(-2000.0, 2000.0), down.clamp(-2000.0, 2000.0));
             }
@@ -139,28 +139,4 @@ impl Game {
         self.fresh = false;
         line.frame(message(header, &[(ViewKind::Colour, picture)]))
     }
-}
-
-/// A key by the button that it presses.
-fn key_of(name: &str) -> Option<Key> {
-    use Key::*;
-    const KEYS: [Key; 16] = [
-        Forward,
-        Backward,
-        Right,
-        Left,
-        TurnLeft,
-        TurnRight,
-        LookUp,
-        LookDown,
-        Attack,
-        Use,
-        Jump,
-        Crouch,
-        Speed,
-        NextWeapon,
-        PreviousWeapon,
-        TurnRound,
-    ];
-    KEYS.into_iter().find(|key| key.button() == name)
 }

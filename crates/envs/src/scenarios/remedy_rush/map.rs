@@ -226,10 +226,8 @@ impl Town {
         self.builder.rectangle(style, corners.0, corners.1, corners.2, corners.3);
         self.builder.mark(Mark { offset: Some((0, 0)), ..wall(texture) }, &back);
         let threshold = match facing {
-            Facing::North => [(x - 32, y), (x + 32, y)],
-            Facing::South => [(x - 32, y), (x + 32, y)],
-            Facing::East => [(x, y - 32), (x, y + 32)],
-            Facing::West => [(x, y - 32), (x, y + 32)],
+            Facing::North | Facing::South => [(x - 32, y), (x + 32, y)],
+            Facing::East | Facing::West => [(x, y - 32), (x, y + 32)],
         };
         // A recess of 8 units holds on to who slides along the wall: closed for bodies.
         self.builder.mark(Mark { blocking: true, ..Mark::default() }, &threshold);
