@@ -141,7 +141,9 @@ fn quicken(config: &mut TrainConfig) {
     config.learning.minibatches = passes;
     // Damped, the multiplier no longer circles; and what it lags behind a policy that grows better at earning is taken off the
     // budget beforehand. docs/tried/multiplier_rate.md has the numbers.
-    config.algorithm_settings.multiplier_rate = 0.01;
+    // FOCOPS and CUP move theirs once a rollout, not once a minibatch of each pass.
+    let once = matches!(config.algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup);
+    config.algorithm_settings.multiplier_rate = if once { 0.04 } else { 0.01 };
     config.algorithm_settings.multiplier_damping = 1.5;
     config.algorithm_settings.pid_gains = (1.5, 0.01, 0.0);
     config.algorithm_settings.pid_decay = 0.0;
