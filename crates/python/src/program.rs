@@ -23,7 +23,7 @@ struct Carrier(Py<PyAny>);
 
 impl Exchange for Carrier {
     fn gather(&mut self, bytes: Vec<u8>) -> Result<Vec<Vec<u8>>, String> {
-        Python::attach(|py| {
+        Python::attach(|py| -> PyResult<Vec<Vec<u8>>> {
             let all = self.0.bind(py).call1((PyArray1::from_vec(py, bytes),))?;
             all.try_iter()?.map(|one| Ok(one?.extract::<PyReadonlyArray1<'_, u8>>()?.as_array().to_vec())).collect()
         })
