@@ -145,7 +145,7 @@ class Agent:
             chosen = {"buttons": actions[0], "deltas": deltas[0]} if single else {"buttons": actions, "deltas": deltas}
         elif single:
             chosen = actions[0]
-        return chosen, _State(after, None, None)
+        return chosen, _State(after, None, None, None)
 
     def after(self, state: Any, costs: Any, over: Any, cost_terms: Any = None) -> Any:
         """What the agent remembers once a step has cost so much (float [n]), and episodes are over in these lanes (bool [n]): those begin anew.
