@@ -16,8 +16,15 @@ use tiny::{config, directory, run, worlds};
 /// A table in the middle: everyone lays something down, and takes a copy of all of it when all have.
 #[derive(Default)]
 struct Table {
-    laid: Mutex<(u64, Vec<Option<Vec<u8>>>, Vec<Vec<u8>>)>,
+    round: Mutex<Round>,
     turned: Condvar,
+}
+
+#[derive(Default)]
+struct Round {
+    number: u64,
+    laid: Vec<Option<Vec<u8>>>,
+    complete: Vec<Vec<u8>>,
 }
 
 struct Seat {
@@ -30,29 +37,29 @@ struct Seat {
 impl Exchange for Seat {
     fn gather(&mut self, bytes: Vec<u8>) -> Result<Vec<Vec<u8>>, String> {
         self.left = self.left.checked_sub(1).ok_or("worker left the table")?;
-        let mut laid = self.table.laid.lock().unwrap();
-        let round = laid.0;
-        laid.1[self.rank] = Some(bytes);
-        if laid.1.iter().all(Option::is_some) {
-            laid.2 = laid.1.iter_mut().map(|part| part.take().unwrap()).collect();
-            laid.0 += 1;
+        let mut round = self.table.round.lock().unwrap();
+        let number = round.number;
+        round.laid[self.rank] = Some(bytes);
+        if round.laid.iter().all(Option::is_some) {
+            round.complete = round.laid.iter_mut().map(|part| part.take().unwrap()).collect();
+            round.number += 1;
             self.table.turned.notify_all();
         }
-        while laid.0 == round {
-            let (again, late) = self.table.turned.wait_timeout(laid, Duration::from_secs(20)).unwrap();
-            laid = again;
-            if late.timed_out() && laid.0 == round {
+        while round.number == number {
+            let (again, late) = self.table.turned.wait_timeout(round, Duration::from_secs(20)).unwrap();
+            round = again;
+            if late.timed_out() && round.number == number {
                 return Err("a worker is gone".into());
             }
         }
-        Ok(laid.2.clone())
+        Ok(round.complete.clone())
     }
 }
 
 /// Trains with `ranks` workers, of which the last leaves after some exchanges; gives the first one's reports.
 fn together(start: Start<'_>, at: &Path, ranks: usize, leaves_after: usize) -> (Result<(), String>, Vec<Report>) {
     let table = Arc::new(Table::default());
-    table.laid.lock().unwrap().1 = vec![None; ranks];
+    table.round.lock().unwrap().laid = vec![None; ranks];
     let team = |rank: usize| {
         let left = if rank == ranks - 1 { leaves_after } else { usize::MAX };
         Team::new(rank, ranks, Box::new(Seat { table: Arc::clone(&table), rank, left }))
