@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::frame::{Frame, class};
 use super::label::{Label, Labels};
 use super::light::{Light, ONE_TABLE_DISTANCE};
-use super::picture::MaskedPicture;
+use super::masked_column::MaskedColumn;
 use super::scene::Scene;
 use super::silhouette::{Silhouette, Silhouettes};
 use super::sprite::SeenSprite;
@@ -144,22 +144,19 @@ impl Masked<'_> {
             let texels = picture.column(u.rem_euclid(i64::from(picture.width)) as u32);
             let step = (distance * self.view.inverse_focal_y) >> 16;
             let at = ((hung_from - self.camera.z) << 16) - self.camera.to_horizon(step);
-            let depth = self.frame.depths.wall(distance);
-            for row in rows.start as usize..rows.end as usize {
-                let v = (at + step * i64::from(self.view.rows[row])) >> 32;
-                let texel = texels[v.clamp(0, i64::from(picture.height) - 1) as usize];
-                if texel & MaskedPicture::OPAQUE == 0 {
-                    continue;
-                }
-                let pixel = row * self.frame.width + x;
-                self.frame.colour[pixel] = table[usize::from(texel as u8)];
+            let shown = MaskedColumn { texels, table, at, step };
+            let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
+            let told = depths.wall(distance);
+            shown.draw(self.simd, &self.view.rows, rows.start as usize..rows.end as usize, |row, lit| {
+                let pixel = row * *width + x;
+                colour[pixel] = lit;
                 if DEPTH {
-                    self.frame.depth[pixel] = depth;
+                    depth[pixel] = told;
                 }
                 if CLASS {
-                    self.frame.class[pixel] = class::WALL;
+                    classes[pixel] = class::WALL;
                 }
-            }
+            });
         }
     }
 }

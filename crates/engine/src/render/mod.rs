@@ -21,6 +21,9 @@ mod label;
 mod light;
 mod look;
 mod masked;
+mod masked_column;
+#[cfg(target_arch = "x86_64")]
+mod masked_wide;
 mod narrow;
 #[cfg(target_arch = "x86_64")]
 mod narrow_wide;

@@ -38,17 +38,23 @@ pub(super) fn spans_avx2(plane: &Plane, spans: &mut Vec<Span>) -> usize {
     let (first_row, end_row) = rows(plane);
     let mut list = RowSpans { spans, count: 0, row_start: 0, row: 0 };
     for row in first_row..end_row {
-        let here = _mm256_set1_epi16(row);
         list.begin(row, plane);
         let mut from = plane.first;
         while from < plane.end {
             let (top, bottom) = block(plane, from);
-            let [low, high] = [half_avx2(top, bottom, 0, here), half_avx2(top, bottom, 32, here)];
-            list.add(from, u64::from(low) | u64::from(high) << 32);
+            list.add(from, columns_avx2(top, bottom, row));
             from += SPAN_BLOCK;
         }
     }
     list.count
+}
+
+/// Which of 64 columns, given by their first rows and by one past the last, have a row.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn columns_avx2(top: &[i16; SPAN_BLOCK], bottom: &[i16; SPAN_BLOCK], row: i16) -> u64 {
+    let here = _mm256_set1_epi16(row);
+    u64::from(half_avx2(top, bottom, 0, here)) | u64::from(half_avx2(top, bottom, 32, here)) << 32
 }
 
 /// Which of the 32 columns from `from` on have the row `here`.

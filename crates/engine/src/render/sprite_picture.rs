@@ -1,5 +1,7 @@
-//! Pictures of sprites and weapons, row by row: they are drawn by rows, in each of which the same row of texels shows.
+//! Pictures of sprites and weapons, column by column and row by row: with long vectors they are drawn by rows, in each of
+//! which the same row of texels shows.
 
+use super::picture::MaskedPicture;
 use crate::assets::Image;
 use std::sync::Arc;
 
@@ -17,9 +19,11 @@ pub(super) struct SpritePicture {
     pub offset_x: i32,
     /// Rows above the anchor.
     pub offset_y: i32,
+    /// The same by columns.
+    columns: MaskedPicture,
     /// From one row to the next.
     pub stride: usize,
-    /// Palette indices.
+    /// Palette indices by rows.
     texels: Arc<[u8]>,
     /// A bit for each texel without a hole.
     opaque: Arc<[u64]>,
@@ -28,20 +32,21 @@ pub(super) struct SpritePicture {
 impl SpritePicture {
     pub fn new(image: &Image) -> SpritePicture {
         let (width, height) = (usize::from(image.width), usize::from(image.height));
-        let stride = width.next_multiple_of(TEXEL_BLOCK);
+        let (stride, columns) = (width.next_multiple_of(TEXEL_BLOCK), MaskedPicture::new(image));
         let (mut texels, mut opaque) = (vec![0; stride * height], vec![0; stride * height / TEXEL_BLOCK]);
-        for (column, row) in (0..width).flat_map(|column| (0..height).map(move |row| (column, row))) {
-            let from = column * height + row;
-            let is_opaque = image.mask.as_ref().is_none_or(|mask| mask.get(from).is_some_and(|&m| m != 0));
-            let to = row * stride + column;
-            texels[to] = image.pixels.get(from).copied().unwrap_or(0);
-            opaque[to / TEXEL_BLOCK] |= u64::from(is_opaque) << (to % TEXEL_BLOCK);
+        for column in 0..width {
+            for (row, &texel) in columns.column(column as u32).iter().enumerate() {
+                let to = row * stride + column;
+                texels[to] = texel as u8;
+                opaque[to / TEXEL_BLOCK] |= u64::from(texel & MaskedPicture::OPAQUE != 0) << (to % TEXEL_BLOCK);
+            }
         }
         SpritePicture {
             width: width as u32,
             height: height as u32,
             offset_x: i32::from(image.offset_x),
             offset_y: i32::from(image.offset_y),
+            columns,
             stride,
             texels: texels.into(),
             opaque: opaque.into(),
@@ -55,9 +60,15 @@ impl SpritePicture {
         (&self.texels[start..end], &self.opaque[start / TEXEL_BLOCK..end / TEXEL_BLOCK])
     }
 
+    /// The texels of a column as [`MaskedPicture`] has them.
+    #[inline(always)]
+    pub fn column(&self, column: u16) -> &[u16] {
+        self.columns.column(u32::from(column))
+    }
+
     /// The palette indices of all texels without a hole.
     pub fn opaque_texels(&self) -> impl Iterator<Item = u8> + '_ {
-        let is_opaque = |at: usize| self.opaque[at / TEXEL_BLOCK] >> (at % TEXEL_BLOCK) & 1 != 0;
-        self.texels.iter().enumerate().filter(move |&(at, _)| is_opaque(at)).map(|(_, &texel)| texel)
+        let opaque = self.columns.texels.iter().filter(|&&texel| texel & MaskedPicture::OPAQUE != 0);
+        opaque.map(|&texel| texel as u8)
     }
 }

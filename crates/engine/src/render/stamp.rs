@@ -1,8 +1,9 @@
 //! A picture with holes put on the frame as it is: what sprites and weapons come down to.
 
 use super::frame::Frame;
+use super::picture::MaskedPicture;
 use super::scene::Scene;
-use super::sprite_picture::{SpritePicture, TEXEL_BLOCK};
+use super::sprite_picture::SpritePicture;
 #[cfg(target_arch = "x86_64")]
 use super::stamp_wide;
 #[cfg(target_arch = "x86_64")]
@@ -25,11 +26,11 @@ pub(super) struct Covered {
 impl Covered {
     pub const NOTHING: Covered = Covered { columns: [usize::MAX, 0], rows: [usize::MAX, 0] };
 
-    /// Adds pixels of a row, the first and the last of which are in the columns `first` and `end - 1`.
+    /// Adds a part with pixels in its outermost columns and rows.
     #[inline(always)]
-    pub fn add(&mut self, row: usize, first: usize, end: usize) {
-        self.columns = [self.columns[0].min(first), self.columns[1].max(end)];
-        self.rows = [self.rows[0].min(row), self.rows[1].max(row + 1)];
+    pub fn add(&mut self, columns: Range<usize>, rows: Range<usize>) {
+        self.columns = [self.columns[0].min(columns.start), self.columns[1].max(columns.end)];
+        self.rows = [self.rows[0].min(rows.start), self.rows[1].max(rows.end)];
     }
 }
 
@@ -96,48 +97,59 @@ impl Stamp<'_> {
         #[cfg(not(target_arch = "x86_64"))]
         let _ = simd;
         let mut covered = Covered::NOTHING;
-        for row in rows {
-            self.row_plainly::<DEPTH, CLASS>(self.texels(base_rows[row]), frame, row, &mut covered);
+        for i in 0..count {
+            let (top, bottom) = (self.columns.tops[i].max(0) as usize, self.columns.bottoms[i].max(0) as usize);
+            let open = rows.start.max(top)..rows.end.min(bottom);
+            if !open.is_empty() {
+                self.column_plainly::<DEPTH, CLASS>(frame, base_rows, i, open, &mut covered);
+            }
         }
         covered
     }
 
-    /// What a base row shows of the picture: palette indices, and a bit for each without a hole.
+    /// Texture row that a base row shows.
     #[inline(always)]
-    pub fn texels(&self, base_row: u32) -> (&[u8], &[u64]) {
-        self.picture.row(((self.v + self.v_step * i64::from(base_row)) >> TEXEL_BITS) as usize)
+    pub fn texel_row(&self, base_row: u32) -> usize {
+        ((self.v + self.v_step * i64::from(base_row)) >> TEXEL_BITS) as usize
     }
 
-    fn row_plainly<const DEPTH: bool, const CLASS: bool>(
+    fn column_plainly<const DEPTH: bool, const CLASS: bool>(
         &self,
-        (texels, opaque): (&[u8], &[u64]),
         frame: &mut Frame,
-        row: usize,
+        base_rows: &[u32],
+        i: usize,
+        open: Range<usize>,
         covered: &mut Covered,
     ) {
-        let StampColumns { tops, bottoms, texels: columns } = self.columns;
-        let (count, start) = (self.columns.count(), row * frame.width + self.first);
+        let (x, width) = (self.first + i, frame.width);
+        let texels = self.picture.column(self.columns.texels[i]);
+        let pixels = frame.colour[open.start * width + x..].iter_mut().step_by(width);
+        for (pixel, &base_row) in pixels.zip(&base_rows[open.clone()]) {
+            let texel = texels[self.texel_row(base_row)];
+            let lit = self.table[usize::from(texel as u8)];
+            let lit = self.blend.map_or(lit, |scene| scene.blend(lit, *pixel));
+            // Which texels are holes cannot be foretold.
+            *pixel = if texel & MaskedPicture::OPAQUE != 0 { lit } else { *pixel };
+        }
+        if !(DEPTH || CLASS) {
+            return;
+        }
         let (mut first, mut end) = (usize::MAX, 0);
-        let open = tops.iter().zip(bottoms).zip(columns);
-        for (i, (pixel, ((&top, &bottom), &u))) in frame.colour[start..start + count].iter_mut().zip(open).enumerate() {
-            let u = usize::from(u);
-            let is_open = row >= top as usize && row < bottom as usize;
-            if !is_open || opaque[u / TEXEL_BLOCK] >> (u % TEXEL_BLOCK) & 1 == 0 {
-                continue;
-            }
-            let lit = self.table[usize::from(texels[u])];
-            *pixel = self.blend.map_or(lit, |scene| scene.blend(lit, *pixel));
+        for row in open {
+            let (opaque, at) = (texels[self.texel_row(base_rows[row])] & MaskedPicture::OPAQUE != 0, row * width + x);
             if DEPTH {
-                frame.depth[start + i] = self.depth;
+                let pixel = &mut frame.depth[at];
+                *pixel = if opaque { self.depth } else { *pixel };
             }
             if CLASS {
-                frame.class[start + i] = self.class;
-                first = first.min(self.first + i);
-                end = self.first + i + 1;
+                let pixel = &mut frame.class[at];
+                *pixel = if opaque { self.class } else { *pixel };
+                first = if opaque { first.min(row) } else { first };
+                end = if opaque { row + 1 } else { end };
             }
         }
         if first < end {
-            covered.add(row, first, end);
+            covered.add(x..x + 1, first..end);
         }
     }
 }
@@ -178,14 +190,15 @@ mod tests {
             }
             let rows = rng.below(50) as usize..50 + rng.below(51) as usize;
             let base_rows: Vec<u32> = (0..frame_rows as u32).collect();
-            let v_step = (i64::from(height) << TEXEL_BITS) / frame_rows as i64;
+            // A little more than nothing at row 0, as much as the step loses in all rows by rounding.
+            let (v, v_step) = (frame_rows as i64, (i64::from(height) << TEXEL_BITS) / frame_rows as i64);
             let stamp = Stamp {
                 picture: &picture,
                 table: &table,
                 first,
                 columns: &columns,
                 rows,
-                v: 0,
+                v,
                 v_step,
                 blend: None,
                 depth: 9,

@@ -26,7 +26,7 @@ pub(super) fn draw<const DEPTH: bool, const CLASS: bool>(
         let [tops, bottoms] = [two_vectors(&stamp.columns.tops[from..]), two_vectors(&stamp.columns.bottoms[from..])];
         let inside = u64::MAX >> STAMP_BLOCK.saturating_sub(count - from);
         for row in rows.clone() {
-            let (texels, opaque) = stamp.texels(base_rows[row]);
+            let (texels, opaque) = stamp.picture.row(stamp.texel_row(base_rows[row]));
             let (texels, _) = texels.as_chunks::<TEXEL_BLOCK>();
             let here = _mm512_set1_epi16(row as i16);
             let low = _mm512_mask_cmpgt_epi16_mask(_mm512_cmple_epi16_mask(tops[0], here), bottoms[0], here);
@@ -58,7 +58,7 @@ pub(super) fn draw<const DEPTH: bool, const CLASS: bool>(
                     _mm512_mask_storeu_epi16(pixels, mask as u32, class);
                     _mm512_mask_storeu_epi16(pixels.wrapping_add(32), (mask >> 32) as u32, class);
                 }
-                covered.add(row, first + mask.trailing_zeros() as usize, first + (end - at));
+                covered.add(first + mask.trailing_zeros() as usize..first + (end - at), row..row + 1);
             }
         }
     }
