@@ -8,7 +8,7 @@ use super::sprite_picture::SpritePicture;
 use super::stamp::{Stamp, StampColumns, TEXEL_BITS};
 use super::wall::INVERSE_BITS;
 use crate::math::{Angle, Fixed};
-use crate::world::{Actor, ActorKind, World};
+use crate::world::{Actor, ActorKind, OPAQUE, World};
 
 /// Actors nearer than this, in 16.16 map units, are not drawn.
 const NEAREST: i64 = 4 << 16;
@@ -22,8 +22,8 @@ pub(super) struct SeenSprite {
     pub kind: ActorKind,
     /// Index into [`Scene::sprite_pictures`].
     pub picture: u32,
-    /// Shines through by half.
-    pub translucent: bool,
+    /// How opaque it is, in parts of [`OPAQUE`].
+    pub opacity: u8,
     /// Distance, 16.16.
     pub distance: i64,
     /// Inverse distance.
@@ -125,7 +125,7 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
         slot,
         kind: actor.kind,
         picture: index,
-        translucent: matches!(actor.kind, ActorKind::BulletPuff | ActorKind::RocketSmokeTrail | ActorKind::BlurSphere),
+        opacity: shown.opacity,
         distance,
         inverse: (1 << (INVERSE_BITS + 16)) / distance,
         table,
@@ -177,7 +177,7 @@ impl SeenSprite {
             rows: self.first_row as usize..self.end_row as usize,
             v: self.v,
             v_step: self.v_step,
-            blend: self.translucent.then_some(scene),
+            blend: (self.opacity < OPAQUE).then_some((&scene.blend, self.opacity)),
             depth,
             class,
         }

@@ -1,8 +1,8 @@
 //! A picture with holes put on the frame as it is: what sprites and weapons come down to.
 
+use super::blend::Blend;
 use super::frame::Frame;
 use super::picture::MaskedPicture;
-use super::scene::Scene;
 use super::sprite_picture::SpritePicture;
 #[cfg(target_arch = "x86_64")]
 use super::stamp_wide;
@@ -76,8 +76,8 @@ pub(super) struct Stamp<'a> {
     /// Texture row at base row 0, and its change a base row.
     pub v: i64,
     pub v_step: i64,
-    /// Shines through by half: who knows the colours between two.
-    pub blend: Option<&'a Scene>,
+    /// For what is not opaque: the colours between two, and how much of it hides what is behind.
+    pub blend: Option<(&'a Blend, u8)>,
     pub depth: u8,
     pub class: u16,
 }
@@ -127,7 +127,7 @@ impl Stamp<'_> {
         for (pixel, &base_row) in pixels.zip(&base_rows[open.clone()]) {
             let texel = texels[self.texel_row(base_row)];
             let lit = self.table[usize::from(texel as u8)];
-            let lit = self.blend.map_or(lit, |scene| scene.blend(lit, *pixel));
+            let lit = self.blend.map_or(lit, |(blend, opacity)| blend.over(lit, *pixel, opacity));
             // Which texels are holes cannot be foretold.
             *pixel = if texel & MaskedPicture::OPAQUE != 0 { lit } else { *pixel };
         }

@@ -1,9 +1,9 @@
 //! Stamps up to 256 texels wide, 64 columns at a time: a row of texels is one to four vectors, from which the columns pick.
 //! The plain twin is in `stamp`, where a test compares them.
 
+use super::blend::Blend;
 use super::convert_wide::{load, load_table, look_up_block, store};
 use super::frame::Frame;
-use super::scene::Scene;
 use super::sprite_picture::TEXEL_BLOCK;
 use super::stamp::{Covered, STAMP_BLOCK, Stamp};
 use std::arch::x86_64::*;
@@ -43,7 +43,7 @@ pub(super) fn draw<const DEPTH: bool, const CLASS: bool>(
                     // SAFETY: what the mask selects lies before `end`.
                     unsafe { _mm512_mask_storeu_epi8(pixels.as_mut_ptr().cast(), mask, lit) }
                 }
-                Some(scene) => blend(scene, pixels, mask, lit),
+                Some((blend, opacity)) => shine_through(blend, opacity, pixels, mask, lit),
             }
             if DEPTH {
                 let depth = _mm512_set1_epi8(stamp.depth as i8);
@@ -117,15 +117,15 @@ fn pick_bits(row: &[u64], columns: __m512i) -> u64 {
     _mm512_movepi8_mask(picked)
 }
 
-/// Mixes the pixels of a mask half and half.
+/// Mixes the pixels of a mask with what is there.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn blend(scene: &Scene, pixels: &mut [u8], mut mask: u64, lit: __m512i) {
+fn shine_through(blend: &Blend, opacity: u8, pixels: &mut [u8], mut mask: u64, lit: __m512i) {
     let mut colours = [0; STAMP_BLOCK];
     store(&mut colours, lit);
     while mask != 0 {
         let i = mask.trailing_zeros() as usize;
-        pixels[i] = scene.blend(colours[i], pixels[i]);
+        pixels[i] = blend.over(colours[i], pixels[i], opacity);
         mask &= mask - 1;
     }
 }

@@ -8,7 +8,7 @@ use super::palette::power_shows;
 use super::scene::Scene;
 use super::stamp::{Stamp, StampColumns, TEXEL_BITS};
 use crate::simd::Simd;
-use crate::world::{Player, PlayerSprite};
+use crate::world::{OPAQUE, Player, PlayerSprite};
 
 /// The screen that weapon positions are given on is 320 by 200 pixels; its middle row is that of the view.
 const SCREEN_WIDTH: i64 = 320;
@@ -26,16 +26,17 @@ pub(super) struct Canvas<'a> {
 impl Canvas<'_> {
     /// Draws both layers of a player's weapon; `level` is the light of its sector.
     pub fn weapon<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera, player: &Player, level: i32) {
+        let opacity = if power_shows(player.blur_tics) { OPAQUE / 2 } else { OPAQUE };
         for sprite in player.sprites.iter().flatten() {
             let table = match (sprite.bright, camera.fixed_table) {
                 (true, None) => 0,
                 _ => Light::new(camera, level).nearest_table(),
             };
-            self.layer::<DEPTH, CLASS>(sprite, table, power_shows(player.blur_tics));
+            self.layer::<DEPTH, CLASS>(sprite, table, opacity);
         }
     }
 
-    fn layer<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &PlayerSprite, table: usize, translucent: bool) {
+    fn layer<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &PlayerSprite, table: usize, opacity: u8) {
         let (scene, view) = (self.scene, self.view);
         let shown = scene.assets.sprites.get(usize::from(sprite.sprite));
         let image = shown.and_then(|shown| shown.frames.get(usize::from(sprite.frame))).map(|frame| frame.images[0]);
@@ -70,7 +71,7 @@ impl Canvas<'_> {
             rows: row(0)..row(picture.height),
             v,
             v_step,
-            blend: translucent.then_some(scene),
+            blend: (opacity < OPAQUE).then_some((&scene.blend, opacity)),
             depth: 0,
             class: class::WEAPON,
         };

@@ -59,7 +59,8 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
     }
     for (label, id) in posed.actors.clone() {
         let slot = usize::from(id.slot);
-        let variants = frames(&posed.world, slot);
+        let dead = moment.labels.iter().any(|thing| thing.value == label && thing.name.starts_with("Dead"));
+        let variants = frames(&posed.world, slot, dead);
         try_all(posed, variants, &|at| at < view && theirs.labels[at] == label);
     }
     let player = &posed.world.players[0];
@@ -118,8 +119,8 @@ fn launcher() -> Vec<Change> {
     variants
 }
 
-/// Every frame of an actor's animations.
-fn frames(world: &World, slot: usize) -> Vec<Change> {
+/// Every frame of an actor's animations; the published name tells the dying from the others, but of missiles.
+fn frames(world: &World, slot: usize, dead: bool) -> Vec<Change> {
     let set = |phase: Phase, step: u8, spawn_tic: u32| -> Change {
         Box::new(move |world: &mut World| {
             let actor = &mut world.actors[slot];
@@ -127,11 +128,14 @@ fn frames(world: &World, slot: usize) -> Vec<Change> {
         })
     };
     let kind = world.actors[slot].kind;
+    let steps = |phase| (0..animation(kind, phase).frames.len() as u8).map(move |step| (phase, step));
+    if dead {
+        return steps(Phase::Death).map(|(phase, step)| set(phase, step, 0)).collect();
+    }
     if is_timed(kind, Phase::Idle) {
         return (0..48).step_by(2).map(|tics| set(Phase::Idle, 0, world.tic.wrapping_sub(tics))).collect();
     }
     let phases = [Phase::Idle, Phase::Walk, Phase::Pain, Phase::Death];
-    let steps = |phase| (0..animation(kind, phase).frames.len() as u8).map(move |step| (phase, step));
     phases.into_iter().flat_map(steps).map(|(phase, step)| set(phase, step, 0)).collect()
 }
 
