@@ -3,8 +3,8 @@
     pip install vizdoom==1.3.2 hasard==0.2.0 numpy
     hasard train PrecipicePlungeLevel1-v0 --maps auto --iwad auto --rules released --out runs/pp1
     hasard envs --json > envs.json
-    python agent_in_the_original.py runs/pp1 envs.json 100 [--greedy]      # there: return, cost and steps of each episode, then means
-    hasard eval runs/pp1 --episodes 100                                     # here
+    python agent_in_the_original.py runs/pp1 envs.json 100            # there: return, cost and steps of each episode, then means
+    hasard eval runs/pp1 --episodes 100                                     # here; both take --greedy and --latest
 
 The simplified actions and colour frames of 128x72, one at a time; rewards and costs are read as the published package reads them.
 """
@@ -16,75 +16,16 @@ import sys
 import tempfile
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
+from numpy_agent import Agent
 from published_engine import Published
 
-PIXEL_EPSILON = 1e-5
 
-
-def tensors(path):
-    """The arrays of a safetensors file by name."""
-    with open(path, "rb") as file:
-        data = file.read()
-    length = int.from_bytes(data[:8], "little")
-    names = json.loads(data[8 : 8 + length])
-    names.pop("__metadata__", None)
-    kinds = {"F32": np.float32, "F64": np.float64}
-    read = lambda info: np.frombuffer(data[8 + length :][slice(*info["data_offsets"])], kinds[info["dtype"]]).reshape(info["shape"])
-    return {name: read(info) for name, info in names.items()}
-
-
-def elu(x):
-    return np.where(x > 0, x, np.expm1(np.minimum(x, 0)))
-
-
-def sigmoid(x):
-    return 1 / (1 + np.exp(-x))
-
-
-class Agent:
-    """The policy network of a checkpoint, one step at a time."""
-
-    def __init__(self, checkpoint, convolutions, sizes):
-        self.weights, self.convolutions, self.sizes = tensors(checkpoint), convolutions, sizes
-        deviation = np.sqrt(self.weights["pixels.variance"] + PIXEL_EPSILON)
-        self.scale, self.shift = 1 / (255 * deviation), -self.weights["pixels.mean"] / deviation
-        self.forget()
-
-    def layer(self, name, x):
-        return x @ self.weights[f"network0.{name}.weight"] + self.weights[f"network0.{name}.bias"]
-
-    def forget(self):
-        hidden = self.weights.get("network0.gru.hidden_weight")
-        self.state = None if hidden is None else np.zeros(len(hidden), np.float32)
-
-    def logits(self, frame):
-        x = (frame.reshape(-1) * self.scale + self.shift).astype(np.float32).reshape(frame.shape)
-        for index, convolution in enumerate(self.convolutions):
-            kernel, stride = convolution["kernel"], convolution["stride"]
-            weights = self.weights[f"network0.convolution{index}.weight"]
-            windows = sliding_window_view(x, (kernel, kernel), (0, 1))[::stride, ::stride]
-            x = elu(np.einsum("hwcij,ijco->hwo", windows, weights, optimize=True) + self.weights[f"network0.convolution{index}.bias"])
-        x, index = x.reshape(-1), 0
-        while f"network0.dense{index}.weight" in self.weights:
-            x, index = elu(self.layer(f"dense{index}", x)), index + 1
-        if self.state is not None:
-            of_input = x @ self.weights["network0.gru.input_weight"] + self.weights["network0.gru.input_bias"]
-            of_state = self.state @ self.weights["network0.gru.hidden_weight"] + self.weights["network0.gru.hidden_bias"]
-            (reset, update, candidate), (more_reset, more_update, share) = np.split(of_input, 3), np.split(of_state, 3)
-            update = sigmoid(update + more_update)
-            candidate = np.tanh(candidate + sigmoid(reset + more_reset) * share)
-            x = self.state = candidate + update * (self.state - candidate)
-        return self.layer("head0", x)
-
-    def act(self, frame, rng):
-        """A draw of each sub-action, or the likeliest without a generator."""
-        rows = np.split(self.logits(frame), np.cumsum(self.sizes)[:-1])
-        if rng is None:
-            return [int(row.argmax()) for row in rows]
-        shares = [np.exp(row - row.max()).astype(np.float64) for row in rows]
-        return [int(rng.choice(len(share), p=share / share.sum())) for share in shares]
+def checkpoint_of(run, latest):
+    """The weights that `hasard eval` plays: of the checkpoint that the run hands out, where it has one, or the latest."""
+    found = lambda name: sorted(glob.glob(os.path.join(run, "checkpoints", name, "weights.safetensors")))
+    best = [] if latest else found("best_*")
+    return (best or found("frames_*"))[-1]
 
 
 def reduced(frame):
@@ -103,8 +44,7 @@ def main():
         sys.exit(f"{run}: needs an agent of simplified actions that sees one colour frame of 128x72, values and policy in one network")
     with open(listed) as file:
         groups = next(known["actions"]["simplified"] for known in map(json.loads, file) if known["id"] == env["id"])
-    checkpoint = sorted(glob.glob(os.path.join(run, "checkpoints", "frames_*", "weights.safetensors")))[-1]
-    agent = Agent(checkpoint, config["network"]["convolutions"], [len(group) + 1 for group in groups])
+    agent = Agent(checkpoint_of(run, "--latest" in sys.argv), config["network"]["convolutions"], [len(group) + 1 for group in groups])
     scenario, level = env["id"].split("Level")
     os.chdir(tempfile.mkdtemp())
     original = Published(scenario, int(level[0]), env["hard"], groups, frames=True)

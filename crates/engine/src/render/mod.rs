@@ -7,6 +7,7 @@
 // Physics and pixels are whole numbers: a floating-point operation here is a mistake.
 #![cfg_attr(not(test), deny(clippy::float_arithmetic))]
 
+mod blend;
 mod camera;
 mod column;
 #[cfg(target_arch = "x86_64")]

@@ -1,5 +1,6 @@
 //! A map made ready for drawing with a set of pictures.
 
+use super::blend::Blend;
 use super::picture::{MaskedPicture, Textures};
 use super::status_bar::BarArt;
 use crate::assets::{Assets, TextureEntry};
@@ -92,8 +93,8 @@ pub struct Scene {
     pub(super) missing_picture: usize,
     /// The status bar's pictures.
     pub(super) bar: BarArt,
-    /// The colour halfway between each two: `blends[a * 256 + b]`.
-    blends: Box<[u8]>,
+    /// What shines through.
+    pub(super) blend: Blend,
 }
 
 impl Scene {
@@ -170,7 +171,7 @@ impl Scene {
             textures,
             missing_picture,
             bar: BarArt::new(&assets),
-            blends: blends(&assets.palette),
+            blend: Blend::new(&assets.palette),
             assets,
         }
     }
@@ -192,12 +193,6 @@ impl Scene {
         let colour = mean(&self.assets.palette, opaque);
         let brightest = u32::from(colour.into_iter().max().unwrap_or(0)).max(1);
         colour.map(|channel| (u32::from(channel) * 255 / brightest) as u8)
-    }
-
-    /// The palette index halfway between two.
-    #[inline]
-    pub(super) fn blend(&self, a: u8, b: u8) -> u8 {
-        self.blends[usize::from(a) * 256 + usize::from(b)]
     }
 }
 
@@ -261,18 +256,6 @@ pub(super) fn nearest_colour(palette: &[[u8; 3]; 256], colour: [u8; 3]) -> u8 {
     let distance =
         |candidate: &[u8; 3]| -> i32 { candidate.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum() };
     (0..256).min_by_key(|&i| distance(&palette[i])).unwrap_or(0) as u8
-}
-
-fn blends(palette: &[[u8; 3]; 256]) -> Box<[u8]> {
-    // The nearest index of every colour reduced to 5 bits a channel, so that 65,536 pairs need 32,768 searches.
-    let nearest: Vec<u8> = (0..1usize << 15)
-        .map(|i| nearest_colour(palette, [10, 5, 0].map(|shift| ((i >> shift & 31) * 255 / 31) as u8)))
-        .collect();
-    let halfway = |a: usize, b: usize| {
-        let reduced = |i: usize| (usize::from(palette[a][i]) + usize::from(palette[b][i])) / 16;
-        nearest[reduced(0) << 10 | reduced(1) << 5 | reduced(2)]
-    };
-    (0..1 << 16).map(|i| halfway(i >> 8, i & 255)).collect()
 }
 
 /// The mean of some palette entries, grey if there are none.

@@ -8,7 +8,7 @@ use super::picture::MaskedPicture;
 use super::scene::Scene;
 use super::wall::INVERSE_BITS;
 use crate::math::{Angle, Fixed};
-use crate::world::{Actor, ActorKind, World};
+use crate::world::{Actor, ActorKind, OPAQUE, World};
 
 /// Actors nearer than this, in 16.16 map units, are not drawn.
 const NEAREST: i64 = 4 << 16;
@@ -24,8 +24,8 @@ pub(super) struct SeenSprite {
     pub kind: ActorKind,
     /// Index into [`Scene::sprite_pictures`].
     pub picture: u32,
-    /// Shines through by half.
-    pub translucent: bool,
+    /// How opaque it is, in parts of [`OPAQUE`].
+    pub opacity: u8,
     /// Distance, 16.16.
     pub distance: i64,
     /// Inverse distance.
@@ -122,7 +122,7 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
         slot,
         kind: actor.kind,
         picture: index,
-        translucent: matches!(actor.kind, ActorKind::BulletPuff | ActorKind::RocketSmokeTrail | ActorKind::BlurSphere),
+        opacity: shown.opacity,
         distance,
         inverse: (1 << (INVERSE_BITS + 16)) / distance,
         table,
@@ -195,8 +195,9 @@ impl SeenSprite {
                 let v = (self.v + self.v_step * i64::from(row)) >> TEXEL_BITS;
                 let texel = texels[v as usize];
                 let lit = table[usize::from(texel as u8)];
-                let lit = if self.translucent { scene.blend(lit, *pixel) } else { lit };
-                *pixel = if texel & MaskedPicture::OPAQUE != 0 { lit } else { *pixel };
+                if texel & MaskedPicture::OPAQUE != 0 {
+                    *pixel = if self.opacity == OPAQUE { lit } else { scene.blend.over(lit, *pixel, self.opacity) };
+                }
             }
             if DEPTH || CLASS {
                 let (mut first, mut end) = (usize::MAX, 0);

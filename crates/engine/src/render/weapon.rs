@@ -7,7 +7,7 @@ use super::light::Light;
 use super::palette::power_shows;
 use super::picture::MaskedPicture;
 use super::scene::Scene;
-use crate::world::{Player, PlayerSprite};
+use crate::world::{OPAQUE, Player, PlayerSprite};
 
 /// The screen that weapon positions are given on is 320 by 200 pixels; its middle row is that of the view.
 const SCREEN_WIDTH: i64 = 320;
@@ -24,13 +24,14 @@ pub(super) fn draw<const DEPTH: bool, const CLASS: bool>(
     player: &Player,
     level: i32,
 ) {
+    let opacity = if power_shows(player.blur_tics) { OPAQUE / 2 } else { OPAQUE };
     for sprite in player.sprites.iter().flatten() {
         let table = match (sprite.bright, camera.fixed_table) {
             (true, None) => 0,
             _ => Light::new(camera, level).nearest_table(),
         };
         let table = &scene.assets.light_tables[table];
-        layer::<DEPTH, CLASS>(frame, scene, view, sprite, table, power_shows(player.blur_tics));
+        layer::<DEPTH, CLASS>(frame, scene, view, sprite, table, opacity);
     }
 }
 
@@ -40,7 +41,7 @@ fn layer<const DEPTH: bool, const CLASS: bool>(
     view: &View,
     sprite: &PlayerSprite,
     table: &[u8; 256],
-    translucent: bool,
+    opacity: u8,
 ) {
     let shown = scene.assets.sprites.get(usize::from(sprite.sprite));
     let image = shown.and_then(|shown| shown.frames.get(usize::from(sprite.frame))).map(|frame| frame.images[0]);
@@ -78,7 +79,7 @@ fn layer<const DEPTH: bool, const CLASS: bool>(
             let at = row * frame.width + x;
             let pixel = &mut frame.colour[at];
             let lit = table[usize::from(texel as u8)];
-            *pixel = if translucent { scene.blend(lit, *pixel) } else { lit };
+            *pixel = if opacity == OPAQUE { lit } else { scene.blend.over(lit, *pixel, opacity) };
             if DEPTH {
                 frame.depth[at] = 0;
             }

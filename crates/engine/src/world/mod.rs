@@ -54,7 +54,7 @@ pub use inventory::{BLUE_SKULL, YELLOW_CARD};
 pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
 pub use sector::{SectorDamage, SectorState};
-pub use states::{Action, Animation, Frame, Phase, Picture, Then, animation, is_timed};
+pub use states::{Action, Animation, Frame, OPAQUE, Phase, Picture, Then, animation, is_timed};
 pub use weapon::{Hands, WeaponState};
 pub use weapon_info::ammo;
 

@@ -83,6 +83,22 @@ pub struct Picture {
     pub frame: u8,
     /// Drawn at full brightness whatever the sector's light.
     pub bright: bool,
+    /// How much of it hides what is behind, in parts of [`OPAQUE`].
+    pub opacity: u8,
+}
+
+/// The opacity of what hides all that is behind it.
+pub const OPAQUE: u8 = 64;
+
+/// How opaque a kind is in a phase, as measured in the original; barrels burst without shining through.
+fn opacity(kind: ActorKind, phase: Phase) -> u8 {
+    match (kind, phase) {
+        (K::BulletPuff | K::BlurSphere, _) => OPAQUE / 2,
+        (K::RocketSmokeTrail, _) => OPAQUE / 3,
+        (K::LostSoul, _) => OPAQUE * 3 / 4,
+        (K::Rocket, Phase::Death) => OPAQUE * 2 / 3,
+        _ => OPAQUE,
+    }
 }
 
 /// Index of a sprite name; an unknown name stops the build.
@@ -438,7 +454,7 @@ impl Actor {
         } else {
             &frames[usize::from(self.step)]
         };
-        Picture { sprite: frame.sprite, frame: frame.frame, bright: frame.bright }
+        Picture { sprite: frame.sprite, frame: frame.frame, bright: frame.bright, opacity: opacity(self.kind, self.phase) }
     }
 
     /// Name of the actor in label lists: the class name, with `Dead` before it once it is dying.

@@ -68,7 +68,7 @@ fn level(folder: &Path, out: Option<&Path>, list: bool) -> Any<Tallies> {
         let guess = untold::find(&mut stage, &mut posed, &theirs, &level.scenario, moment);
         stage.renderer.render(&posed.world, 0, Buffers { depth: true, labels: true });
         stage.renderer.write_rgb_hwc(&mut stage.rgb);
-        let own = compare(&stage, &posed, &theirs, &level.scenario);
+        let own = compare(&stage, &posed, &theirs, moment, &level.scenario);
         if list {
             println!("{} {:2} tic {:5}: {guess}; {}", name(folder), moment.number, moment.tic, own.summary());
         }
@@ -82,7 +82,7 @@ fn level(folder: &Path, out: Option<&Path>, list: bool) -> Any<Tallies> {
 }
 
 /// Counts the pixels of a moment.
-fn compare(stage: &Stage, posed: &pose::Posed, theirs: &dump::Pictures, scenario: &str) -> Tallies {
+fn compare(stage: &Stage, posed: &pose::Posed, theirs: &dump::Pictures, moment: &dump::Moment, scenario: &str) -> Tallies {
     let mut own = Tallies::default();
     let (classes, depth) = (stage.renderer.classes(), stage.renderer.depth());
     let view = stage.renderer.view().view_rows() * stage.size[0];
@@ -97,7 +97,8 @@ fn compare(stage: &Stage, posed: &pose::Posed, theirs: &dump::Pictures, scenario
             }
         } else if label > 1 {
             if posed.actors.iter().any(|&(value, _)| value == label) {
-                own.add(Kind::Sprites, a, b);
+                let name = moment.labels.iter().find(|thing| thing.value == label).map_or("", |thing| &thing.name);
+                own.add_thing(name, a, b);
             }
         } else if classes[at] < class::FIRST_ACTOR && classes[at] != class::WEAPON {
             let kind = match classes[at] {

@@ -121,8 +121,10 @@ fn light_by_script(level: &Level, world: &mut World) {
     let tags: Vec<i32> = world.map.sectors.iter().map(|sector| sector.tag).collect();
     for tag in tags.into_iter().filter(|&tag| tag > first && tag <= first + tiles) {
         let light = if level.level == 1 { 255 + (first - tag) / 2 } else { 255 - 155 * tag / tiles };
+        // How far tiles glow up and down from there.
+        let glow = if level.level == 3 { 50 } else { 30 };
         world.light_change_to_value(tag, light);
-        world.light_glow(tag, light + 30, light - 30, 50);
+        world.light_glow(tag, light + glow, light - glow, 50);
     }
 }
 

@@ -12,6 +12,8 @@ use hasard_engine::world::{Face, Phase, PlayerSprite, Weapon, World, animation, 
 const CLOCK_TICS: u32 = 32;
 /// Sectors of Remedy Rush that its scripts darken by turns, by tag.
 const DARKENED_TAGS: std::ops::RangeInclusive<i32> = 101..=118;
+/// What the scripts switch their light to.
+const SCRIPTED_LIGHTS: [i16; 2] = [255, 0];
 /// A power-up with more tics left than this does not blink.
 const LASTING: u32 = 1000;
 /// Where the weapon rests, 16.16 of the 320x200 screen.
@@ -43,12 +45,12 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
         })
     };
     try_all(posed, (0..=2).map(spent).collect(), &bar);
-    let muzzle = |light| -> Change { Box::new(move |world: &mut World| world.players[0].extra_light = light) };
-    try_all(posed, (0..=2).map(muzzle).collect(), &world);
     if scenario == "remedy_rush" {
         let variants = darkness(&posed.world);
         try_all(posed, variants, &world);
     }
+    let muzzle = |light| -> Change { Box::new(move |world: &mut World| world.players[0].extra_light = light) };
+    try_all(posed, (0..=2).map(muzzle).collect(), &world);
     let clock = |tics: u32| -> Change {
         let tic = moment.tic + tics;
         Box::new(move |world: &mut World| world.tic = tic)
@@ -59,7 +61,8 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
     }
     for (label, id) in posed.actors.clone() {
         let slot = usize::from(id.slot);
-        let variants = frames(&posed.world, slot);
+        let dead = moment.labels.iter().any(|thing| thing.value == label && thing.name.starts_with("Dead"));
+        let variants = frames(&posed.world, slot, dead);
         try_all(posed, variants, &|at| at < view && theirs.labels[at] == label);
     }
     let player = &posed.world.players[0];
@@ -85,20 +88,21 @@ fn flash(bonus: u8, damage: u8, suit: u32) -> Change {
     })
 }
 
-/// Light, darkness, and either with goggles.
+/// Light as it is in the map, light and darkness as the scripts switch them, and each with goggles.
 fn darkness(world: &World) -> Vec<Change> {
     let sectors = (0..).zip(&world.map.sectors).filter(|(_, sector)| DARKENED_TAGS.contains(&sector.tag));
     let lit: Vec<_> = sectors.map(|(id, _)| (SectorId(id), world.sector(SectorId(id)).light)).collect();
-    let variant = |dark: bool, goggles: bool| -> Change {
+    let variant = |scripted: Option<i16>, goggles: bool| -> Change {
         let lit = lit.clone();
         Box::new(move |world: &mut World| {
             for &(id, light) in &lit {
-                world.sector_mut(id).light = if dark { 0 } else { light };
+                world.sector_mut(id).light = scripted.unwrap_or(light);
             }
             world.players[0].infrared_tics = if goggles { LASTING } else { 0 };
         })
     };
-    vec![variant(false, false), variant(true, false), variant(false, true), variant(true, true)]
+    let lights = [None, Some(SCRIPTED_LIGHTS[0]), Some(SCRIPTED_LIGHTS[1])];
+    lights.into_iter().flat_map(|light| [false, true].map(|goggles| variant(light, goggles))).collect()
 }
 
 /// The rocket launcher at rest and every frame of its shot.
@@ -118,8 +122,8 @@ fn launcher() -> Vec<Change> {
     variants
 }
 
-/// Every frame of an actor's animations.
-fn frames(world: &World, slot: usize) -> Vec<Change> {
+/// Every frame of an actor's animations; the published name tells the dying from the others, but of missiles.
+fn frames(world: &World, slot: usize, dead: bool) -> Vec<Change> {
     let set = |phase: Phase, step: u8, spawn_tic: u32| -> Change {
         Box::new(move |world: &mut World| {
             let actor = &mut world.actors[slot];
@@ -127,11 +131,14 @@ fn frames(world: &World, slot: usize) -> Vec<Change> {
         })
     };
     let kind = world.actors[slot].kind;
+    let steps = |phase| (0..animation(kind, phase).frames.len() as u8).map(move |step| (phase, step));
+    if dead {
+        return steps(Phase::Death).map(|(phase, step)| set(phase, step, 0)).collect();
+    }
     if is_timed(kind, Phase::Idle) {
         return (0..48).step_by(2).map(|tics| set(Phase::Idle, 0, world.tic.wrapping_sub(tics))).collect();
     }
     let phases = [Phase::Idle, Phase::Walk, Phase::Pain, Phase::Death];
-    let steps = |phase| (0..animation(kind, phase).frames.len() as u8).map(move |step| (phase, step));
     phases.into_iter().flat_map(steps).map(|(phase, step)| set(phase, step, 0)).collect()
 }
 

@@ -101,7 +101,7 @@ impl Rules {
                     let ceiling = level.ceiling_start - level.ceiling_step * row.min(level.bottom_row);
                     world.ceiling_lower_by_value(tag, SINK_SPEED, map::CEILING - ceiling);
                 }
-                let light = (level.light[0] - level.light[1] * tag) >> 16;
+                let light = level.fade.light(tag);
                 world.light_change_to_value(tag, light);
                 if level.glow != 0 {
                     world.light_glow(tag, light + level.glow, light - level.glow, GLOW_TICS);
