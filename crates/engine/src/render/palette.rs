@@ -29,9 +29,9 @@ const DAMAGE_ALPHA: [u8; 101] = [
     173, 175, 176, 178, 179, 181, 182, 183, 185, 186, 187, 189, 190, 191, 192, 194, 195, 196, 197, 198, 200, 201, 202, 203, 204,
     205, 206, 207, 209, 210, 211, 212, 213, 214, 215, 216, 217, 218, 219, 220, 221, 221, 222, 223, 224, 225, 226,
 ];
-/// Green of the radiation suit, an eighth of the whole; one less than full, as measured.
-const SUIT: [u8; 3] = [0, 254, 0];
-const SUIT_ALPHA: i64 = 32;
+/// Green of the radiation suit, an eighth of the whole and cut to 31 parts of 255, as measured.
+const SUIT: [u8; 3] = [0, 255, 0];
+const SUIT_ALPHA: i64 = 31;
 /// Power-ups blink in their last tics, by this bit of what is left.
 const BLINK_TICS: u32 = 128;
 const BLINK_BIT: u32 = 8;
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_suit_tints_greys_as_measured() {
-        for (grey, [red, green]) in [(55, [48, 79]), (47, [41, 72])] {
+        for (grey, [red, green]) in [(0, [0, 30]), (19, [16, 47]), (47, [41, 72]), (55, [48, 79]), (107, [94, 124])] {
             let tinted = Tint { suit: true, ..Tint::default() }.apply(&[[grey; 3]; 256])[0];
             assert_eq!(tinted, [red, green, red]);
         }

@@ -170,6 +170,23 @@ fn buffers_do_not_change_the_colours() {
     }
 }
 
+/// The published engine draws the sky under goggles as without; everything else is then of one light.
+#[test]
+fn goggles_leave_the_sky_as_it_is() {
+    let (mut world, mut renderer) = (yard_world(), renderer(160, 120));
+    look(&mut world, Fixed::from_int(-550), Fixed::from_int(-250), Angle::EAST, 0);
+    renderer.render(&world, 0, ALL);
+    let (bare, classes) = (renderer.indices().to_vec(), renderer.classes().to_vec());
+    world.players[0].infrared_tics = 1000;
+    renderer.render(&world, 0, ALL);
+    let changed = |sky: bool| {
+        (0..bare.len()).filter(|&at| (classes[at] == class::SKY) == sky && bare[at] != renderer.indices()[at]).count()
+    };
+    assert!(classes.contains(&class::SKY));
+    assert_eq!(changed(true), 0);
+    assert!(changed(false) > 1000);
+}
+
 #[test]
 fn a_used_renderer_draws_as_a_new_one() {
     let (mut world, mut rng) = (yard_world(), Rng::new(23));

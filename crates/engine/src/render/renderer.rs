@@ -227,7 +227,8 @@ impl Renderer {
                 let shader = SkyShader {
                     camera,
                     view: &self.view,
-                    table: &tables[camera.fixed_table.unwrap_or(0)],
+                    // Whatever light there is, and by goggles too.
+                    table: &tables[0],
                     picture: &self.scene.textures.walls[self.scene.sky],
                 };
                 shader.columns(&mut self.sky_columns, plane.first, plane.end);

@@ -12,6 +12,8 @@ use hasard_engine::world::{Face, Phase, PlayerSprite, Weapon, World, animation, 
 const CLOCK_TICS: u32 = 32;
 /// Sectors of Remedy Rush that its scripts darken by turns, by tag.
 const DARKENED_TAGS: std::ops::RangeInclusive<i32> = 101..=118;
+/// What the scripts switch their light to.
+const SCRIPTED_LIGHTS: [i16; 2] = [255, 0];
 /// A power-up with more tics left than this does not blink.
 const LASTING: u32 = 1000;
 /// Where the weapon rests, 16.16 of the 320x200 screen.
@@ -43,12 +45,12 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
         })
     };
     try_all(posed, (0..=2).map(spent).collect(), &bar);
-    let muzzle = |light| -> Change { Box::new(move |world: &mut World| world.players[0].extra_light = light) };
-    try_all(posed, (0..=2).map(muzzle).collect(), &world);
     if scenario == "remedy_rush" {
         let variants = darkness(&posed.world);
         try_all(posed, variants, &world);
     }
+    let muzzle = |light| -> Change { Box::new(move |world: &mut World| world.players[0].extra_light = light) };
+    try_all(posed, (0..=2).map(muzzle).collect(), &world);
     let clock = |tics: u32| -> Change {
         let tic = moment.tic + tics;
         Box::new(move |world: &mut World| world.tic = tic)
@@ -86,20 +88,21 @@ fn flash(bonus: u8, damage: u8, suit: u32) -> Change {
     })
 }
 
-/// Light, darkness, and either with goggles.
+/// Light as it is in the map, light and darkness as the scripts switch them, and each with goggles.
 fn darkness(world: &World) -> Vec<Change> {
     let sectors = (0..).zip(&world.map.sectors).filter(|(_, sector)| DARKENED_TAGS.contains(&sector.tag));
     let lit: Vec<_> = sectors.map(|(id, _)| (SectorId(id), world.sector(SectorId(id)).light)).collect();
-    let variant = |dark: bool, goggles: bool| -> Change {
+    let variant = |scripted: Option<i16>, goggles: bool| -> Change {
         let lit = lit.clone();
         Box::new(move |world: &mut World| {
             for &(id, light) in &lit {
-                world.sector_mut(id).light = if dark { 0 } else { light };
+                world.sector_mut(id).light = scripted.unwrap_or(light);
             }
             world.players[0].infrared_tics = if goggles { LASTING } else { 0 };
         })
     };
-    vec![variant(false, false), variant(true, false), variant(false, true), variant(true, true)]
+    let lights = [None, Some(SCRIPTED_LIGHTS[0]), Some(SCRIPTED_LIGHTS[1])];
+    lights.into_iter().flat_map(|light| [false, true].map(|goggles| variant(light, goggles))).collect()
 }
 
 /// The rocket launcher at rest and every frame of its shot.

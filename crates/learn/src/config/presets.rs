@@ -80,6 +80,7 @@ impl TrainConfig {
                 exploration_coefficient: 0.001,
                 final_exploration_coefficient: None,
                 bootstrap_time_outs: !released,
+                reuse_forward: false,
                 threads: cores,
                 portable: false,
             },
@@ -140,9 +141,11 @@ fn quicken(config: &mut TrainConfig) {
     config.learning.minibatches = passes;
     // Damped, the multiplier no longer circles; and what it lags behind a policy that grows better at earning is taken off the
     // budget beforehand. docs/tried/multiplier_rate.md has the numbers.
-    config.algorithm_settings.multiplier_rate = 0.02;
-    config.algorithm_settings.multiplier_damping = 2.0;
-    config.algorithm_settings.pid_gains = (2.0, 0.02, 0.0);
+    // FOCOPS and CUP move theirs once a rollout, not once a minibatch of each pass.
+    let once = matches!(config.algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup);
+    config.algorithm_settings.multiplier_rate = if once { 0.04 } else { 0.01 };
+    config.algorithm_settings.multiplier_damping = 1.5;
+    config.algorithm_settings.pid_gains = (1.5, 0.01, 0.0);
     config.algorithm_settings.pid_decay = 0.0;
     config.budget_share = 0.9;
     config.reporting.report_seconds = 5.0;

@@ -179,8 +179,8 @@ impl Learner {
         self.networks.publish(self.version)
     }
 
-    /// Takes over the statistics of a rollout's pixels. This comes after it was learned from, so that the networks see what
-    /// they saw when they acted: probability ratios begin at one, and the first forward pass need not be repeated.
+    /// Takes over the statistics of a rollout's pixels: before it is learned from, as in the original, or after, where the
+    /// first forward pass is to be the actors' own ([`LearningConfig::reuse_forward`](crate::config::LearningConfig)).
     pub fn absorb(&mut self, rollout: &Rollout) {
         self.pixels.update(self.kernels, &rollout.frames(), self.config.learning.threads);
         self.stale_pixels = true;

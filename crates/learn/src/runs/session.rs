@@ -141,7 +141,7 @@ impl Session {
             let actor = Actor::new(&shape, device);
             let shaping = Shaping::new(&config);
             let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, share.start, config.seed)?;
-            if sampling.synchronous {
+            if sampling.synchronous && config.learning.reuse_forward {
                 sampler.record();
             }
             match state {
@@ -198,6 +198,9 @@ impl Session {
         let last = learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
         self.learner.exploration_coefficient =
             learning.exploration_coefficient + (last - learning.exploration_coefficient) * done;
+        if !learning.reuse_forward {
+            self.learner.absorb(rollout);
+        }
         let prepared = self.learner.prepare(rollout);
         for (name, share) in prepared.explained_variances(&self.config) {
             self.means.add(name, share);
@@ -205,7 +208,9 @@ impl Session {
         let passes = Passes::new(&self.config, self.rollouts, rollout.lanes());
         let signals = |costs: &[f64]| self.watch.signals(&self.config, costs);
         self.algorithm.learn(&mut self.learner, &prepared, &passes, &signals, &mut self.means)?;
-        self.learner.absorb(rollout);
+        if learning.reuse_forward {
+            self.learner.absorb(rollout);
+        }
         Ok(())
     }
 }
