@@ -556,8 +556,8 @@ pub struct ReportArgs {
 /// `hasard serve`.
 #[derive(Args, Debug)]
 pub struct ServeArgs {
-    /// Folders below which runs are looked for, while they run too
-    #[arg(value_name = "RUNS", default_value = "runs")]
+    /// Folders below which runs are looked for, while they run too; `runs` if absent
+    #[arg(value_name = "RUNS")]
     pub runs: Vec<PathBuf>,
     /// Address to listen at; beyond this machine only with the token that is printed
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8350")]

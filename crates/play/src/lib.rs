@@ -43,7 +43,7 @@ pub use error::PlayError;
 pub use film::Film;
 pub use panel::{Panel, with_panel};
 pub use recording::{Recorder, Replay, keep_episode, option_names, options_from_names};
-pub use stage::Stage;
+pub use stage::{Moment, Stage};
 pub use views::{ViewKind, Views};
 #[cfg(feature = "window")]
 pub use window::{KEYS, PlaySettings, play};

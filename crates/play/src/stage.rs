@@ -2,7 +2,7 @@
 
 use crate::PlayError;
 use hasard_engine::world::{Command, World};
-use hasard_envs::{Env, EnvOptions, Step};
+use hasard_envs::{Env, EnvOptions, Snapshot, Step};
 
 /// An environment whose agent acts every `frame_skip` tics while an audience sees every tic.
 ///
@@ -15,6 +15,16 @@ pub struct Stage {
     /// Tics of the step in progress that were shown; 0 between steps.
     tics: u32,
     /// What is pressed during the step in progress.
+    command: Command,
+    last: Step,
+}
+
+/// A moment of a stage, to come back to.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    env: Snapshot,
+    shown: Snapshot,
+    tics: u32,
     command: Command,
     last: Step,
 }
@@ -44,6 +54,13 @@ impl Stage {
         };
         let (env, shown) = (Env::new(id, options)?, Env::new(id, &shown)?);
         Ok(Stage { env, shown, tics: 0, command: Command::default(), last: Step::default() })
+    }
+
+    /// Another stage of the same kind, at the start of the episode of seed 0; map, pictures and tables are shared.
+    #[must_use]
+    pub fn sibling(&self) -> Stage {
+        let (env, shown) = (self.env.sibling(), self.shown.sibling());
+        Stage { env, shown, tics: 0, command: Command::default(), last: Step::default() }
     }
 
     /// Starts the episode of a seed.
@@ -95,6 +112,24 @@ impl Stage {
         self.tics = 0;
         self.last = self.env.step_buttons(self.command);
         Some(self.last)
+    }
+
+    /// The present moment: the tic within the step, too.
+    #[must_use]
+    pub fn moment(&self) -> Moment {
+        let (env, shown) = (self.env.snapshot(), self.shown.snapshot());
+        Moment { env, shown, tics: self.tics, command: self.command, last: self.last }
+    }
+
+    /// Comes back to a moment of this stage.
+    ///
+    /// # Errors
+    /// When it is of a stage that was made otherwise; nothing changes then.
+    pub fn come_back(&mut self, moment: &Moment) -> Result<(), PlayError> {
+        self.env.restore(&moment.env)?;
+        self.shown.restore(&moment.shown)?;
+        (self.tics, self.command, self.last) = (moment.tics, moment.command, moment.last);
+        Ok(())
     }
 
     /// Writes what the agent sees: the observation of the environment that counts.

@@ -55,6 +55,34 @@ fn what_is_shown_tic_by_tic_is_what_counts() {
     }
 }
 
+#[test]
+fn a_moment_come_back_to_goes_on_as_it_did() {
+    let mut stage = Stage::new("DetonatorsDilemmaLevel3-v0", &EnvOptions::default()).unwrap();
+    stage.reset(5);
+    let mut state = 3;
+    let go_on = |stage: &mut Stage, script: &[(Vec<u8>, Vec<f32>)]| {
+        for (actions, deltas) in script {
+            while !stage.wants_action() {
+                stage.tic();
+            }
+            stage.act(actions, deltas).unwrap();
+            stage.tic();
+        }
+        (fingerprint(stage.world()), stage.env().episode().length)
+    };
+    let script: Vec<_> = (0..60).map(|_| random_action(stage.env().action_space(), &mut state)).collect();
+    go_on(&mut stage, &script[..30]);
+    // In the middle of a step.
+    let (moment, here) = (stage.moment(), fingerprint(stage.world()));
+    let straight = go_on(&mut stage, &script[30..]);
+    stage.come_back(&moment).unwrap();
+    assert_eq!(fingerprint(stage.world()), here);
+    assert_eq!(go_on(&mut stage, &script[30..]), straight);
+    assert_ne!(here, straight.0);
+    let mut other = Stage::new("DetonatorsDilemmaLevel1-v0", &EnvOptions::default()).unwrap();
+    assert!(other.come_back(&moment).is_err());
+}
+
 fn record(id: &str, options: &EnvOptions, steps: usize) -> EpisodeFile {
     let mut env = Env::new(id, options).unwrap();
     let mut recorder = Recorder::begin(&mut env, 5, "random").unwrap();

@@ -1,7 +1,7 @@
 //! Viewers that measure a running `hasard serve`: `cargo run --release -p hasard-serve --example viewers -- ADDRESS VIEWERS SIZE SECONDS`.
 //!
 //! Prints frames a second of each viewer and, playing, the time from a key to the first changed picture. With `soak` as a
-//! fifth word, viewers come and go instead: some read, some never do, some send rubbish.
+//! fifth word, so many at a time come and go instead: some read, some never do, some send rubbish.
 
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
@@ -60,7 +60,8 @@ fn delays(address: &str, size: &str) -> Option<Vec<f64>> {
     Some(all)
 }
 
-fn soak(address: &str, seconds: f64) {
+/// Visitors, one after the other, until the time is over; how many.
+fn soak(address: &str, seconds: f64, first: usize) -> usize {
     let begun = Instant::now();
     let mut mute = Vec::new();
     let mut visitors = 0;
@@ -74,13 +75,13 @@ fn soak(address: &str, seconds: f64) {
                     let _ = socket.send(Message::binary(vec![7; 1000]));
                 }
             }
-            _ => drop(watch(address, "320x240", 0.3, visitors)),
+            _ => drop(watch(address, "320x240", 0.3, first + visitors)),
         }
-        if mute.len() > 5 {
+        if mute.len() > 2 {
             mute.remove(0);
         }
     }
-    println!("{visitors} visitors in {:.0} s", begun.elapsed().as_secs_f64());
+    visitors
 }
 
 fn main() {
@@ -91,7 +92,11 @@ fn main() {
     };
     let (viewers, seconds): (usize, f64) = (viewers.parse().unwrap_or(1), seconds.parse().unwrap_or(5.0));
     if !rest.is_empty() {
-        return soak(address, seconds);
+        let visitors: usize = std::thread::scope(|scope| {
+            let all: Vec<_> = (0..viewers).map(|first| scope.spawn(move || soak(address, seconds, first))).collect();
+            all.into_iter().map(|one| one.join().unwrap_or(0)).sum()
+        });
+        return println!("{visitors} visitors in {seconds:.0} s, {viewers} at a time");
     }
     let rates: Vec<f64> = std::thread::scope(|scope| {
         let all: Vec<_> = (0..viewers).map(|seed| scope.spawn(move || watch(address, size, seconds, seed))).collect();

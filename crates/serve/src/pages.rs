@@ -3,7 +3,7 @@
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 
-const FILES: [(&str, &str, &str); 11] = [
+const FILES: [(&str, &str, &str); 14] = [
     ("/", "text/html; charset=utf-8", include_str!("pages/index.html")),
     ("/style.css", "text/css; charset=utf-8", include_str!("pages/style.css")),
     ("/app.js", "text/javascript", include_str!("pages/app.js")),
@@ -11,6 +11,9 @@ const FILES: [(&str, &str, &str); 11] = [
     ("/chart.js", "text/javascript", include_str!("pages/chart.js")),
     ("/runs.js", "text/javascript", include_str!("pages/runs.js")),
     ("/run.js", "text/javascript", include_str!("pages/run.js")),
+    ("/rows.js", "text/javascript", include_str!("pages/rows.js")),
+    ("/settings.js", "text/javascript", include_str!("pages/settings.js")),
+    ("/timeline.js", "text/javascript", include_str!("pages/timeline.js")),
     ("/screen.js", "text/javascript", include_str!("pages/screen.js")),
     ("/watch.js", "text/javascript", include_str!("pages/watch.js")),
     ("/play.js", "text/javascript", include_str!("pages/play.js")),

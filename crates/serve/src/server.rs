@@ -20,6 +20,8 @@ use tokio::sync::Semaphore;
 
 /// Viewers and players at a time.
 const SHOWS: usize = 64;
+/// Fixed policies that the page offers; a link may name any other.
+const POLICIES: [&str; 6] = ["random", "sticky:4", "sticky:10", "noop", "hold:MOVE_FORWARD", "hold:MOVE_FORWARD+SPEED"];
 /// Films and reports in the making at a time: each keeps a core busy.
 const LONG_JOBS: usize = 2;
 
@@ -64,6 +66,7 @@ pub(crate) struct Shared {
     pub episodes: PathBuf,
     pub agents: Arc<dyn Agents>,
     pub catalogue: Mutex<Catalogue>,
+    pub stages: show::Stages,
     pub shows: Arc<Semaphore>,
     pub long_jobs: Arc<Semaphore>,
 }
@@ -91,6 +94,7 @@ impl Server {
             episodes: settings.episodes,
             agents: settings.agents,
             catalogue: Mutex::new(Catalogue::new(settings.folders)),
+            stages: show::Stages::default(),
             shows: Arc::new(Semaphore::new(SHOWS)),
             long_jobs: Arc::new(Semaphore::new(LONG_JOBS)),
         };
@@ -113,6 +117,7 @@ impl Server {
             .route("/api/envs", get(envs))
             .route("/api/runs", get(runs::list))
             .route("/api/run", get(runs::detail))
+            .route("/api/settings", get(runs::settings))
             .route("/api/curves", get(runs::curves))
             .route("/api/heatmap", get(runs::heatmap))
             .route("/api/automap", get(runs::automap))
@@ -143,7 +148,5 @@ async fn envs(State(shared): State<Arc<Shared>>) -> Result<Response, Response> {
         })
     })
     .await?;
-    Ok(json_of(
-        &json!({ "envs": envs, "policies": ["random", "sticky:10", "noop", "hold:MOVE_FORWARD"], "zoo": shared.agents.zoo() }),
-    ))
+    Ok(json_of(&json!({ "envs": envs, "policies": POLICIES, "zoo": shared.agents.zoo() })))
 }

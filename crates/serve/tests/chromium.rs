@@ -5,8 +5,18 @@ mod browser;
 mod common;
 
 use browser::Browser;
-use common::{folder, serve, serve_at, write_run};
+use common::{folder, serve, serve_at, write_heatmaps, write_run};
 use serde_json::json;
+
+/// A key by its name in the browser, as WebDriver wants it.
+fn key(name: &str) -> &str {
+    match name {
+        "Tab" => "\u{e004}",
+        "Enter" => "\u{e007}",
+        "ArrowLeft" => "\u{e012}",
+        other => other,
+    }
+}
 
 #[test]
 fn runs_appear_move_and_are_compared() {
@@ -18,21 +28,43 @@ fn runs_appear_move_and_are_compared() {
     browser.photograph("serve_empty");
     write_run(&folder, "first<img src=x onerror=document.title='bad'>", 20);
     write_run(&folder, "second", 900);
+    write_heatmaps(&folder, "second", &[10_000, 90_000]);
     browser.wait("document.querySelectorAll('tbody input').length == 2");
     browser.wait("document.body.innerText.includes('<img src=x')");
     assert_ne!(browser.script("return document.title"), json!("bad"));
     browser.script("document.querySelectorAll('tbody input').forEach((box) => box.click())");
-    browser.wait("location.hash.includes('chosen=') && !document.querySelector('.charts').closest('section').hidden");
+    browser.wait("location.hash.includes('chosen=') && !document.getElementById('curves').hidden");
+    browser.wait("document.querySelectorAll('tbody input:checked').length == 2");
+    // Both are alike but for their names.
+    browser.wait("document.body.innerText.includes('All settings are equal')");
+    browser.wait("document.querySelector('.told').innerText.includes('the end, 90K frames')");
     browser.wait("[...document.querySelectorAll('progress')].some((bar) => bar.value == 90000)");
     // The training goes on: the row moves without reloading.
     write_run(&folder, "second", 990);
     browser.wait("[...document.querySelectorAll('progress')].some((bar) => bar.value == 99000)");
     browser.photograph("serve_runs");
-    browser.script("document.querySelector('tbody a').click()");
+    // By the keyboard alone: a curve is zoomed into and back.
+    browser.script("document.querySelector('canvas.chart').focus()");
+    let span = "document.querySelector('.told').innerText";
+    let whole = browser.script(&format!("return {span}"));
+    browser.keys(&["+", "ArrowLeft"].map(key), true);
+    browser.keys(&["+", "ArrowLeft"].map(key), false);
+    browser.keys(&["0"], true);
+    browser.keys(&["0"], false);
+    browser.wait(&format!("{span} == {whole}"));
+    browser.script("[...document.querySelectorAll('tbody a')].find((link) => link.innerText == 'second').click()");
     browser.wait("document.body.innerText.includes('Settings') && document.body.innerText.includes('PPOLag in Remedy')");
     browser.wait("[...document.querySelectorAll('tbody th')].some((cell) => cell.innerText == 'algorithm')");
+    // The newest heatmap, over the map; a click on a curve goes to another moment.
+    browser.wait("document.querySelector('.run figcaption:last-child')?.innerText.includes('At 90,000 frames') || [...document.querySelectorAll('figcaption')].some((text) => text.innerText.includes('At 90,000 frames'))");
+    browser.script(
+        "const c = document.querySelector('canvas.chart'); c.setPointerCapture = () => {}; const at = c.getBoundingClientRect(); for (const type of ['pointerdown', 'pointerup']) c.dispatchEvent(new PointerEvent(type, { clientX: at.left + 60, clientY: at.top + 50, pointerId: 1 }))",
+    );
+    browser.wait("[...document.querySelectorAll('figcaption')].some((text) => text.innerText.includes('At 10,000 frames'))");
     browser.photograph("serve_run");
-    // Everything that the page asks for is answered, except the map that these runs lack.
+    // Beside another run only what differs is told.
+    browser.script("const one = [...document.querySelectorAll('select')].at(-1); one.value = one.options[1].value; one.dispatchEvent(new Event('change'))");
+    browser.wait("document.body.innerText.includes('All settings are equal')");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
@@ -47,8 +79,20 @@ fn an_agent_is_watched_paused_and_its_harm_jumped_to() {
     browser.script("document.getElementById('go').click()");
     browser.wait("document.getElementById('go').innerText == 'Go on'");
     browser.script("document.querySelector('[data-kind=harm]').click()");
-    browser.wait(&format!("{step} == parseInt(document.querySelector('[data-kind=harm]').innerText) - 1"));
+    browser.wait(&format!("{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"));
     let at = browser.script(&format!("return {step}"));
+    // A step on and back, by keys: the same picture.
+    let picture = "return document.querySelector('canvas.view').toDataURL()";
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let before = browser.script(picture);
+    browser.script("document.activeElement.blur()");
+    for (name, to) in [("\u{e014}", 1), ("ArrowLeft", 0)] {
+        browser.keys(&[key(name)], true);
+        browser.keys(&[key(name)], false);
+        browser.wait(&format!("{step} == {at} + {to}"));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    assert_eq!(browser.script(picture), before);
     // The view is no plain black.
     browser.wait("(() => { const c = document.querySelector('canvas.view'); const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; return new Set(d).size > 20; })()");
     browser.photograph("serve_watch");
@@ -98,7 +142,7 @@ fn pages_are_photographed_light_dark_and_narrow() {
         ("play", "play?env=ArmamentBurdenLevel1-v0&full=true"),
     ];
     for (kind, width, height, dark) in
-        [("light", 1400, 1000, false), ("dark", 1400, 1000, true), ("narrow", 380, 1600, false), ("wide", 2560, 1200, false)]
+        [("light", 1280, 900, false), ("dark", 1280, 900, true), ("narrow", 380, 1600, false), ("wide", 2560, 1200, false)]
     {
         let Some(browser) = Browser::open(width, height, dark) else { return };
         for (name, page) in pages {
@@ -112,6 +156,8 @@ fn pages_are_photographed_light_dark_and_narrow() {
                 browser.script("[...document.querySelectorAll('tbody input')].slice(0, 3).forEach((box) => box.click())");
             }
             std::thread::sleep(std::time::Duration::from_millis(1500));
+            let lacking = browser.script(include_str!("common/accessible.js"));
+            assert_eq!(lacking, json!([]), "{name} {kind}");
             // Nothing is wider than the window.
             let wide = browser.script("return document.documentElement.scrollWidth");
             assert!(wide.as_u64().unwrap() <= u64::from(width), "{name} {kind}: {wide}");
@@ -119,6 +165,48 @@ fn pages_are_photographed_light_dark_and_narrow() {
         }
         assert_eq!(browser.errors(), Vec::<String>::new(), "{kind}");
     }
+}
+
+/// Without a mouse: every control is reached by Tab, and what it shows follows.
+#[test]
+fn everything_is_reached_by_the_keyboard() {
+    let Some(browser) = Browser::open(1280, 900, false) else { return };
+    let folder = folder("chromium-keyboard");
+    write_run(&folder, "only", 20);
+    let address = serve(&folder, None);
+    browser.go(&format!("http://{address}/"));
+    browser.wait("document.querySelectorAll('tbody input').length == 1");
+    let tab_to = |wanted: &str| {
+        for _ in 0..60 {
+            browser.keys(&[key("Tab")], true);
+            browser.keys(&[key("Tab")], false);
+            if browser.script(&format!("return document.activeElement.matches({wanted:?})")) == json!(true) {
+                return;
+            }
+        }
+        panic!("Tab does not reach {wanted}");
+    };
+    tab_to("a.skip");
+    tab_to("tbody input");
+    browser.keys(&[" "], true);
+    browser.keys(&[" "], false);
+    browser.wait("!document.getElementById('curves').hidden");
+    tab_to("canvas.chart");
+    browser.go(&format!("http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3"));
+    browser.wait("document.querySelector('[data-kind=harm]')");
+    for control in ["select", "#go", "#tic", "#copy", "input[type=range]", "[data-kind=harm]"] {
+        browser.script("document.activeElement.blur()");
+        tab_to(control);
+    }
+    browser.keys(&[key("Enter")], true);
+    browser.keys(&[key("Enter")], false);
+    let step = "Number(document.querySelector('#numbers b').innerText)";
+    browser.wait(&format!("{step} >= Number(document.activeElement.dataset.step) - 1"));
+    browser.script("document.activeElement.blur()");
+    browser.keys(&[" "], true);
+    browser.keys(&[" "], false);
+    browser.wait("document.getElementById('go').innerText == 'Go on'");
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 /// A page whose server dies says so, and goes on when it is back.

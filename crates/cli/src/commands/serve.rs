@@ -6,6 +6,12 @@ use crate::failure::{Failure, Outcome};
 /// Runs the command.
 #[cfg(feature = "serve")]
 pub fn run(args: &ServeArgs) -> Outcome {
+    // Without folders `runs` is waited for: the first training makes it. A folder that was named is meant.
+    if let Some(folder) = args.runs.iter().find(|folder| !folder.is_dir()) {
+        let remedy = "name a folder that holds runs, or none to wait for those below runs";
+        return Err(Failure::bad(format!("{}: there is no such folder; {remedy}", folder.display())));
+    }
+    let folders = if args.runs.is_empty() { vec!["runs".into()] } else { args.runs.clone() };
     let beyond = !args.listen.ip().is_loopback();
     let token = match &args.token {
         Some(token) if token.len() < 8 || !token.bytes().all(|byte| byte.is_ascii_alphanumeric()) => {
@@ -18,7 +24,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
     let settings = hasard_serve::Settings {
         address: args.listen,
         token: token.clone(),
-        folders: args.runs.clone(),
+        folders,
         episodes: args.out.clone(),
         agents: std::sync::Arc::new(trained::Trained),
     };
@@ -36,10 +42,10 @@ pub fn run(args: &ServeArgs) -> Outcome {
 /// Sixteen bytes of the system's randomness.
 #[cfg(feature = "serve")]
 fn drawn_token() -> Result<String, Failure> {
-    use std::hash::{BuildHasher, Hasher};
-    // The standard library seeds each of these from the system.
-    let draw = || std::collections::hash_map::RandomState::new().build_hasher().finish();
-    Ok(format!("{:016x}{:016x}", draw(), draw()))
+    let mut bytes = [0; 16];
+    let failed = |error| Failure::bad(format!("no token could be drawn: {error}; give one with --token"));
+    getrandom::fill(&mut bytes).map_err(failed)?;
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 /// Asks the desktop to show an address; without a desktop the printed one is there.

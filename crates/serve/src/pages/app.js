@@ -23,7 +23,10 @@ function show() {
   const begin = pages[page];
   if (begin) leave = begin(main, query);
   else main.append(make('p', {}, 'There is no such page.'));
-  if (shown !== null) main.focus();
+  if (shown !== null) {
+    scrollTo(0, 0);
+    main.focus({ preventScroll: true });
+  }
   shown = page;
 }
 

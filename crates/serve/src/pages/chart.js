@@ -1,4 +1,7 @@
-// Curves on a canvas: a line a run, or mean and 95 % confidence over seeds; the budget dashed; zoom by dragging, back by a double click.
+// Curves on a canvas: a line a run, or mean and 95 % confidence over seeds; the budget dashed; zoom by dragging or + and -, back by a
+// double click or 0. What the curves are at the pointer is told in words.
+import { make } from '/dom.js';
+
 const COLOURS = ['#2f6dbd', '#d1651b', '#2e8b57', '#9a4fb5', '#b8860b', '#c2326e', '#3f8f9b', '#7a6a53'];
 // Student's t at 97.5 %, for 1 to 10 degrees of freedom.
 const T = [12.71, 4.3, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23];
@@ -43,9 +46,27 @@ function grouped(curves) {
   });
 }
 
+const frames_text = (frames) => Intl.NumberFormat('en', { notation: 'compact' }).format(frames);
+const value_text = (value) => Number(value.toPrecision(3)).toLocaleString('en');
+
+// Round values from below `low` to above `high`, four to nine of them.
+function ticks(low, high) {
+  const rough = (high - low) / 5;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * [1, 2, 2.5, 5, 10].find((one) => one * power >= rough);
+  return Array.from({ length: Math.ceil(high / step) - Math.floor(low / step) + 1 }, (_, k) => (Math.floor(low / step) + k) * step);
+}
+
+// A chart with its caption, which tells what the curves are at the pointer.
+export function chart(name, title, onmoment) {
+  const canvas = make('canvas', { class: 'chart', role: 'img', tabindex: 0, 'aria-label': `${title} over frames` });
+  const told = make('span', { class: 'told' });
+  return { name, chart: new Chart(canvas, told, onmoment), figure: make('figure', {}, make('figcaption', {}, make('b', {}, title), told), canvas) };
+}
+
 export class Chart {
-  constructor(canvas, onmoment) {
-    this.canvas = canvas;
+  constructor(canvas, told, onmoment) {
+    Object.assign(this, { canvas, told, moment: null, pointer: null });
     this.curves = [];
     this.range = null;
     this.smooth = 0;
@@ -57,11 +78,45 @@ export class Chart {
       const [a, b] = [this.framesAt(Math.min(from, event.offsetX)), this.framesAt(Math.max(from, event.offsetX))];
       if (Math.abs(event.offsetX - from) > 8) this.range = [a, b];
       else onmoment?.(a);
-      from = null;
+      from = this.drag = null;
       this.draw();
     });
     canvas.addEventListener('dblclick', () => { this.range = null; this.draw(); });
+    canvas.addEventListener('pointermove', (event) => { this.pointer = event.offsetX; this.drag = from; this.draw(); });
+    canvas.addEventListener('pointerleave', () => { this.pointer = null; this.draw(); });
+    canvas.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  // + and - zoom about the middle, arrows move what is seen, 0 shows all.
+  key(event) {
+    if (!this.span || event.ctrlKey || event.metaKey || event.altKey) return;
+    const [low, high] = this.span;
+    const [middle, half] = [(low + high) / 2, (high - low) / 2];
+    const wanted = { '+': [0, 0.5], '=': [0, 0.5], '-': [0, 2], ArrowLeft: [-0.5, 1], ArrowRight: [0.5, 1], 0: null }[event.key];
+    if (wanted === undefined) return;
+    this.range = wanted && [middle + (wanted[0] - wanted[1]) * half, middle + (wanted[0] + wanted[1]) * half].map((frames) => Math.max(0, frames));
+    if (this.range && this.range[1] <= this.range[0]) this.range = null;
+    event.preventDefault();
+    this.draw();
+  }
+
+  // The line at a moment, and what the curves are there.
+  tell(pen, drawn, x, height) {
+    const [, , ink] = this.inks;
+    const line = (frames, width) => {
+      pen.fillStyle = ink;
+      pen.fillRect(x(frames) - width / 2, 8, width, height - 30);
+    };
+    if (this.moment != null) line(this.moment, 2);
+    const at_pointer = this.pointer != null && this.pointer > 46;
+    const frames = at_pointer ? this.framesAt(this.pointer) : Math.max(0, ...drawn.map((curve) => curve.x.at(-1) ?? 0));
+    if (at_pointer) line(frames, 1);
+    // Without a pointer, where each curve ends.
+    const value = (curve) => (at_pointer ? at(curve, frames) : curve.y.findLast((one) => one != null));
+    const values = drawn.slice(0, 4).map(value).map((one) => (one == null ? '–' : value_text(one)));
+    this.told.textContent = drawn.length ? ` ${values.join(' · ')}${drawn.length > 4 ? ' …' : ''} at ${at_pointer ? '' : 'the end, '}${frames_text(frames)} frames` : '';
+    this.canvas.setAttribute('aria-description', this.told.textContent);
   }
 
   framesAt(pixel) {
@@ -78,6 +133,7 @@ export class Chart {
     pen.scale(scale, scale);
     const style = getComputedStyle(canvas);
     const [ink, line, bad] = ['--pale', '--line', '--bad'].map((name) => style.getPropertyValue(name));
+    this.inks = [line, bad, ink];
     pen.font = '12px system-ui';
     const curves = this.curves.map((curve) => ({ ...curve, y: smoothed(curve.y, this.smooth), half: null }));
     const drawn = this.bySeeds ? grouped(curves) : curves;
@@ -87,29 +143,29 @@ export class Chart {
     if (this.budget != null) seen.push(this.budget);
     let [low, high] = [Math.min(0, ...seen), Math.max(...seen, 1e-9) * 1.05];
     if (!seen.length) [low, high] = [0, 1];
+    const rows = ticks(low, high);
+    [low, high] = [Math.min(low, rows[0]), Math.max(high, rows.at(-1))];
     const x = (frames) => 48 + ((frames - span[0]) / (span[1] - span[0])) * (width - 58);
     const y = (value) => height - 22 - ((value - low) / (high - low)) * (height - 32);
     pen.lineWidth = 1;
     pen.fillStyle = ink;
-    for (let k = 0; k <= 4; k += 1) {
-      const value = low + ((high - low) * k) / 4;
+    for (const value of rows) {
       pen.strokeStyle = line;
       pen.beginPath();
       pen.moveTo(48, y(value));
       pen.lineTo(width - 10, y(value));
       pen.stroke();
       pen.textAlign = 'right';
-      pen.fillText(value.toPrecision(3).replace(/\.?0+$/, ''), 44, y(value) + 4);
-      pen.textAlign = 'center';
-      const frames = span[0] + ((span[1] - span[0]) * k) / 4;
-      pen.fillText(Intl.NumberFormat('en', { notation: 'compact' }).format(frames), Math.min(x(frames), width - 22), height - 5);
+      pen.fillText(Math.abs(value) >= 10000 ? frames_text(value) : value_text(value), 44, y(value) + 4);
     }
+    pen.textAlign = 'center';
+    for (const frames of ticks(...span).filter((one) => one >= span[0] && one <= span[1])) pen.fillText(frames_text(frames), Math.min(x(frames), width - 18), height - 5);
     pen.save();
     pen.beginPath();
     pen.rect(48, 0, width - 58, height - 20);
     pen.clip();
     drawn.forEach((curve, index) => {
-      pen.strokeStyle = pen.fillStyle = colour(index);
+      pen.strokeStyle = pen.fillStyle = colour(curve.place ?? index);
       const points = curve.x.map((frames, k) => [frames, curve.y[k], curve.half?.[k] ?? 0]).filter(([, value]) => value != null);
       if (this.bySeeds) {
         pen.globalAlpha = 0.2;
@@ -132,6 +188,13 @@ export class Chart {
       pen.lineTo(width, y(this.budget));
       pen.stroke();
     }
+    if (this.drag != null && this.pointer != null) {
+      pen.fillStyle = ink;
+      pen.globalAlpha = 0.2;
+      pen.fillRect(Math.min(this.drag, this.pointer), 0, Math.abs(this.pointer - this.drag), height);
+      pen.globalAlpha = 1;
+    }
+    this.tell(pen, drawn, x, height);
     pen.restore();
   }
 }

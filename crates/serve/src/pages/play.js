@@ -14,15 +14,17 @@ export function play(main, query) {
   const numbers = make('div', { class: 'numbers', id: 'numbers' });
   const meter = make('meter', { min: 0, max: 1, value: 0, 'aria-label': 'Cost against the budget', style: 'width:100%' });
   const words = make('p', { role: 'status', id: 'words' }, 'Click the picture or press Enter to begin.');
+  const task = make('p', { class: 'pale', id: 'task' });
   const table = make('tbody');
   const hold = (name) => ({ onpointerdown: (event) => { event.preventDefault(); begin(); press(name, true); }, onpointerup: () => press(name, false), onpointercancel: () => press(name, false), onpointerleave: () => press(name, false) });
   const touch = make('div', { class: 'touch' }, ...TOUCH.map(([name, text]) => make('button', { ...hold(name), 'aria-label': name }, text)));
   main.append(make('section', { class: 'card' }, make('h1', {}, 'Play'), form, link),
     make('section', { class: 'stage' },
-      make('div', { class: 'card' }, canvas, touch, numbers, meter, words,
-        make('div', { class: 'row' }, make('button', { class: 'main', id: 'begin', onclick: () => { begin(); canvas.focus(); } }, 'Begin'), make('button', { onclick: () => { screen.ask({ do: 'again' }); begin(); canvas.focus(); } }, 'Again'), make('button', { onclick: () => { screen.ask({ do: 'next' }); begin(); canvas.focus(); } }, 'Next seed')),
+      make('div', { class: 'card' }, canvas, numbers, meter, words, touch,
+        make('div', { class: 'row' }, make('button', { class: 'main', id: 'begin', onclick: () => { begin(); canvas.focus(); } }, 'Begin'), make('button', { onclick: () => { screen?.ask({ do: 'again' }); begin(); canvas.focus(); } }, 'Again'), make('button', { onclick: () => { screen?.ask({ do: 'next' }); begin(); canvas.focus(); } }, 'Next seed')),
+        task,
         make('p', { class: 'pale' }, 'W A S D move, arrows turn and look, the mouse turns once the picture is clicked (Esc frees it), Space jumps, E uses, C crouches, Shift runs, Ctrl or the left button fires, Q and the wheel change weapons, T turns round, P pauses, R begins again, N is the next seed.')),
-      make('div', { class: 'card' }, make('h2', {}, 'Best within the budget'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Best within the budget' }, make('table', { id: 'best' }, make('thead', {}, make('tr', {}, ...['who', 'return', 'cost', 'again', 'download'].map((head) => make('th', { scope: 'col' }, head)))), table)))));
+      make('div', { class: 'card side' }, make('h2', {}, 'Best within the budget'), make('p', { class: 'pale' }, 'People and agents in this environment: those within the budget first, by return.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Best within the budget' }, make('table', { id: 'best' }, make('thead', {}, make('tr', {}, ...['who', 'return', 'cost', 'replay', 'download'].map((head) => make('th', { scope: 'col' }, head)))), table)))));
 
   const press = (key, down) => screen?.ask({ do: down ? 'press' : 'release', key });
   function begin() {
@@ -40,6 +42,7 @@ export function play(main, query) {
   }
 
   function onwords(said) {
+    if (said.kind === 'scene') task.textContent = `In this task: ${said.buttons.map((name) => name.replaceAll('_', ' ').toLowerCase()).join(', ')}${said.deltas ? ', and the mouse turns freely' : ''}. Other keys do nothing.`;
     if (said.kind === 'scene') looks = said.deltas > 0 || said.buttons.includes('LOOK_UP');
     else if (said.kind === 'kept') { words.textContent = `The episode is kept as ${said.name}. Enter: next, R: again.`; best(); }
   }
@@ -58,7 +61,7 @@ export function play(main, query) {
     if (!rows) return;
     const here = rows.filter((row) => row.env === now.env).slice(0, 50);
     table.replaceChildren(...here.map((row) => make('tr', {}, make('td', {}, row.who), make('td', { class: 'number' }, number(row.return)), make('td', { class: `number ${row.within ? 'good' : 'bad'}` }, `${number(row.cost)} ${row.within ? 'within' : 'over'}`),
-      make('td', {}, make('a', { href: `#watch?agent=${encodeURIComponent(row.agent)}` }, 'watch')),
+      make('td', {}, make('a', { href: `#watch?agent=${encodeURIComponent(row.agent)}`, 'aria-label': `Watch ${row.who}, return ${number(row.return)}` }, 'watch')),
       make('td', {}, ...(row.episode ? ['episode', 'mp4', 'gif'].flatMap((kind) => [make('a', { href: `/api/episode?name=${encodeURIComponent(row.episode)}&kind=${kind}`, download: true }, `.${kind}`), ' ']) : [])))));
     if (!here.length) table.append(make('tr', {}, make('td', { colspan: 5, class: 'pale' }, 'Nobody yet: finish an episode and you are here.')));
   }
@@ -69,9 +72,9 @@ export function play(main, query) {
     if (event.type === 'keyup') { if (key) press(key, false); return; }
     if (key) { press(key, true); event.preventDefault(); }
     else if (event.code === 'Enter') begin();
-    else if (event.code === 'KeyP') screen.ask({ do: paused ? 'go' : 'pause' });
-    else if (event.code === 'KeyR') { screen.ask({ do: 'again' }); begin(); }
-    else if (event.code === 'KeyN') { screen.ask({ do: 'next' }); begin(); }
+    else if (event.code === 'KeyP') screen?.ask({ do: paused ? 'go' : 'pause' });
+    else if (event.code === 'KeyR') { screen?.ask({ do: 'again' }); begin(); }
+    else if (event.code === 'KeyN') { screen?.ask({ do: 'next' }); begin(); }
   };
   const caught = () => document.pointerLockElement === canvas;
   const blur = () => screen?.ask({ do: 'loose' });

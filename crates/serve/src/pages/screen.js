@@ -11,35 +11,44 @@ export class Screen {
     this.socket = socket;
     let failed = false;
     socket.onopen = () => this.onlink('');
-    socket.onmessage = async ({ data }) => {
-      if (typeof data === 'string') {
-        const words = JSON.parse(data);
-        if (words.kind === 'error') { failed = true; this.onlink(words.why); } else this.onwords(words);
-        return;
-      }
-      const length = new DataView(data).getUint32(0, true);
-      const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
-      let at = 4 + length;
-      const pictures = await Promise.all(header.pictures.map(async ({ view, bytes }) => {
-        const blob = new Blob([new Uint8Array(data, at, bytes)], { type: 'image/jpeg' });
-        at += bytes;
-        return [view, await createImageBitmap(blob)];
-      }));
-      for (const [view, picture] of pictures) {
-        const canvas = this.canvases[view];
-        if (!canvas) continue;
-        if (canvas.width !== picture.width || canvas.height !== picture.height) [canvas.width, canvas.height] = [picture.width, picture.height];
-        canvas.getContext('2d').drawImage(picture, 0, 0);
-        picture.close();
-      }
-      this.onframe(header);
-      this.ask({ do: 'ack' });
+    // In the order in which they were sent: decoding a picture takes its time, and words said after it must not come before.
+    let turn = Promise.resolve();
+    const take = (data) => (socket === this.socket ? this.take(data) : null);
+    socket.onmessage = ({ data }) => {
+      if (typeof data === 'string') failed ||= JSON.parse(data).kind === 'error';
+      turn = turn.catch(() => {}).then(() => take(data));
     };
     socket.onclose = () => {
       if (this.ended || failed || socket !== this.socket) return;
       this.onlink('The server does not answer; trying again.');
       setTimeout(() => !this.ended && socket === this.socket && this.open(), 1500);
     };
+  }
+
+  async take(data) {
+    if (typeof data === 'string') {
+      const words = JSON.parse(data);
+      if (words.kind === 'error') this.onlink(words.why);
+      else this.onwords(words);
+      return;
+    }
+    const length = new DataView(data).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
+    let at = 4 + length;
+    const pictures = await Promise.all(header.pictures.map(async ({ view, bytes }) => {
+      const blob = new Blob([new Uint8Array(data, at, bytes)], { type: 'image/jpeg' });
+      at += bytes;
+      return [view, await createImageBitmap(blob)];
+    }));
+    for (const [view, picture] of pictures) {
+      const canvas = this.canvases[view];
+      if (!canvas) continue;
+      if (canvas.width !== picture.width || canvas.height !== picture.height) [canvas.width, canvas.height] = [picture.width, picture.height];
+      canvas.getContext('2d').drawImage(picture, 0, 0);
+      picture.close();
+    }
+    this.onframe(header);
+    this.ask({ do: 'ack' });
   }
 
   ask(message) {

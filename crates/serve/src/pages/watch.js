@@ -1,129 +1,129 @@
 import { ask, choose, field, keepState, make, number } from '/dom.js';
 import { Screen } from '/screen.js';
+import { Timeline } from '/timeline.js';
 
 const VIEWS = ['depth', 'segmented', 'automap'];
+const SPEEDS = [['0.25', '¼ speed'], ['0.5', '½ speed'], ['1', 'normal speed'], ['2', '2 × speed'], ['4', '4 × speed'], ['8', '8 × speed']];
+const FIRST = 'VolcanicVentureLevel1-v0';
+// What a link holds, and what it is where the link does not say.
+const STATE = { env: '', agent: 'random', seed: '1', step: '0', size: '320x240', beside: VIEWS.join(','), best: '', greedy: '', hard: '', full: '', released: '', paused: '' };
+const has_task = (agent) => /^(run|zoo|episode):/.test(agent);
 
 export function watch(main, query) {
-  const now = { env: query.get('env') ?? '', agent: query.get('agent') ?? 'random', seed: query.get('seed') ?? '1', step: query.get('step') ?? '0',
-    size: query.get('size') ?? '320x240', beside: query.get('beside') ?? 'depth,segmented,automap', best: query.get('best') ?? '', greedy: query.get('greedy') ?? '', paused: query.get('paused') ?? '' };
-  let screen = null, scene = null, known = { returns: [], costs: [], events: [] }, paused = false, step = 0, ended = false;
+  const now = Object.fromEntries(Object.entries(STATE).map(([name, usual]) => [name, query.get(name) ?? usual]));
+  let screen = null, scene = null, paused = false, step = 0, ended = false, gone = false;
   const form = make('div', { class: 'row' });
   const link = make('p', { class: 'bad', role: 'alert' });
   const canvases = Object.fromEntries(['colour', ...VIEWS].map((view) => [view, make('canvas', { class: 'view', role: 'img', 'aria-label': `${view} view`, width: 320, height: 240 })]));
-  const figure = (view) => make('figure', { 'data-view': view }, canvases[view], make('figcaption', {}, view));
-  const go = make('button', { class: 'main', id: 'go', onclick: () => screen?.ask({ do: paused || ended ? 'go' : 'pause' }) }, 'Pause');
-  const speed = choose([['0.25', '¼ speed'], ['0.5', '½ speed'], ['1', 'normal speed'], ['2', '2 × speed'], ['4', '4 × speed'], ['8', '8 × speed']], '1', (value) => screen?.ask({ do: 'speed', value: Number(value) }));
-  const slide = make('input', { type: 'range', min: 0, max: 525, value: 0, 'aria-label': 'Step', style: 'width:100%', oninput: () => jump(Number(slide.value)) });
-  const line = make('canvas', { style: 'width:100%;height:70px;cursor:pointer', role: 'img', 'aria-label': 'Time line: return, cost, rewards and harms; click to jump', onclick: (event) => jump(Math.round((event.offsetX / line.clientWidth) * slide.max)) });
+  const figures = Object.fromEntries(VIEWS.map((view) => [view, make('figure', { 'data-view': view }, canvases[view], make('figcaption', {}, view === 'automap' ? 'map' : view))]));
+  const button = (text, title, onclick, more = {}) => make('button', { title, onclick, ...more }, text);
+  const go = button('Pause', 'Space', () => screen?.ask({ do: paused || ended ? 'go' : 'pause' }), { class: 'main', id: 'go' });
+  const speed = choose(SPEEDS, '1', (value) => screen?.ask({ do: 'speed', value: Number(value) }));
+  speed.setAttribute('aria-label', 'Speed');
+  const on = make('input', { type: 'checkbox', id: 'on' });
+  const time = new Timeline(jump);
   const numbers = make('div', { class: 'numbers', id: 'numbers' });
-  const thoughts = make('div');
-  const events = make('div', { class: 'events', id: 'events' });
+  const thoughts = make('div', { id: 'thoughts' });
   const copied = make('span', { role: 'status', class: 'pale' });
-  const copy = make('button', { id: 'copy', onclick: async () => { remember(); try { await navigator.clipboard.writeText(location.href); copied.textContent = 'Copied.'; } catch { copied.textContent = 'The address above is the link.'; } } }, 'Copy link to this moment');
+  const copy = button('Copy link to this moment', 'The link holds environment, agent, seed and step', async () => {
+    keepState('watch', { ...now, step: String(step), paused: paused ? 'true' : '' });
+    try { await navigator.clipboard.writeText(location.href); copied.textContent = 'Copied.'; } catch { copied.textContent = 'The address above is the link.'; }
+  }, { id: 'copy' });
+  const next = button('Next seed', 'Another episode; of a running training, with its newest checkpoint', () => screen?.ask({ do: 'next' }), { id: 'next' });
   main.append(make('section', { class: 'card' }, make('h1', {}, 'Watch'), form, link),
     make('section', { class: 'stage' },
-      make('div', { class: 'card' }, figure('colour'), numbers, slide, line,
-        make('div', { class: 'row' }, go, make('button', { id: 'tic', onclick: () => screen?.ask({ do: 'tic' }) }, 'One tic'), make('button', { onclick: () => jump(Math.max(0, step - 1)) }, 'Step back'), make('button', { onclick: () => jump(step + 1) }, 'Step on'), field('speed', speed), copy, copied)),
-      make('div', { class: 'beside card' }, ...VIEWS.map(figure))),
-    make('section', { class: 'card' }, make('h2', {}, 'What it thinks'), thoughts, make('h2', {}, 'Events'), events));
+      make('div', { class: 'card' }, canvases.colour, numbers, time.slide, time.line, time.key,
+        make('div', { class: 'row' }, go, button('One tic', '.', () => screen?.ask({ do: 'tic' }), { id: 'tic' }), button('Step back', 'Left arrow', () => jump(step - 1)), button('Step on', 'Right arrow', () => jump(step + 1)), speed, next,
+          make('label', { class: 'check' }, on, 'go on with the next seed'), copy, copied),
+        make('p', { class: 'pale' }, 'Keys: Space pauses, the full stop shows one tic, arrows go a step back and on.')),
+      make('div', { class: 'card side' }, make('div', { class: 'beside' }, ...VIEWS.map((view) => figures[view])),
+        make('h2', {}, 'What it thinks'), thoughts, make('h2', {}, 'Events'), make('p', { class: 'pale' }, 'Click one to jump to the moment before it.'), time.events)));
 
-  function remember() { keepState('watch', { ...now, step: String(step), paused: paused ? 'true' : '' }); }
-  function jump(to) { screen?.ask({ do: 'jump', step: Math.max(0, Math.min(to, Number(slide.max))) }); }
+  function jump(to) { screen?.ask({ do: 'jump', step: Math.max(0, Math.min(to, Number(time.slide.max))) }); }
 
   function begin() {
     keepState('watch', now);
-    known = { returns: [], costs: [], events: [] };
-    events.replaceChildren();
     link.textContent = '';
-    for (const view of VIEWS) document.querySelector(`[data-view=${view}]`).hidden = !now.beside.includes(view);
-    const path = () => {
-      const asked = { env: now.env, agent: now.agent, seed: now.seed, step: String(now.step || 0), size: now.size, beside: now.beside, best: now.best || 'false', greedy: now.greedy || 'false', paused: now.paused || 'false' };
-      return `/api/watch?${new URLSearchParams(asked)}`;
-    };
-    if (screen) screen.end();
+    for (const view of VIEWS) figures[view].hidden = !now.beside.split(',').includes(view);
+    const flag = (name) => [name, now[name] || 'false'];
+    // After a server was away the show goes on where it was.
+    const path = () => `/api/watch?${new URLSearchParams({ ...now, step: String(now.step || 0), ...Object.fromEntries(['best', 'greedy', 'hard', 'full', 'released', 'paused'].map(flag)) })}`;
+    screen?.end();
     screen = new Screen(path, canvases, { onframe, onwords, onlink: (text) => { link.textContent = text; } });
+    if (speed.value !== '1') speed.value = '1';
   }
 
   function onwords(words) {
     if (words.kind === 'scene') {
       scene = words;
-      slide.max = words.length;
-      known = { returns: [], costs: [], events: [] };
-      events.replaceChildren();
-    } else if (words.kind === 'steps') {
-      known.returns.length = known.costs.length = words.from;
-      known.returns.push(...words.returns);
-      known.costs.push(...words.costs);
-      known.events.push(...words.events);
-      events.append(...words.events.slice(0, 300).map((event) => make('button', { class: event.kind === 'harm' ? 'bad' : 'good', 'data-kind': event.kind, onclick: () => jump(event.step - 1) }, `${event.step}: ${event.what} ${number(event.size)}`)));
-      if (words.over) slide.max = known.returns.length;
-      drawLine();
-    }
-  }
-
-  function drawLine() {
-    const [width, height] = [(line.width = line.clientWidth * devicePixelRatio), (line.height = line.clientHeight * devicePixelRatio)];
-    const pen = line.getContext('2d');
-    const style = getComputedStyle(line);
-    const x = (at) => (at / slide.max) * width;
-    const curve = (values, top, colour) => {
-      pen.strokeStyle = colour;
-      pen.lineWidth = 2;
-      pen.beginPath();
-      values.forEach((value, k) => pen.lineTo(x(k + 1), height - 14 - (value / top) * (height - 22)));
-      pen.stroke();
-    };
-    const bad = style.getPropertyValue('--bad'), good = style.getPropertyValue('--good');
-    curve(known.returns, Math.max(1, ...known.returns), good);
-    curve(known.costs, Math.max(scene?.budget ?? 1, 1, ...known.costs), bad);
-    for (const event of known.events) {
-      pen.fillStyle = event.kind === 'harm' ? bad : good;
-      pen.fillRect(x(event.step) - 1, event.kind === 'harm' ? height - 12 : height - 6, 3, 6);
-    }
-    pen.fillStyle = style.getPropertyValue('--ink');
-    pen.fillRect(x(step) - 1, 0, 2, height);
+      now.seed = String(words.seed);
+      const seed = form.querySelector('input[type=number]');
+      if (seed) seed.value = now.seed;
+      if (speed.value !== '1') screen.ask({ do: 'speed', value: Number(speed.value) });
+      time.begin(words);
+    } else if (words.kind === 'steps') time.steps(words);
   }
 
   function onframe(frame) {
+    if (frame.ended && !ended && on.checked) screen.ask({ do: 'next' });
     ({ paused, ended, step } = frame);
+    Object.assign(now, { step: String(step), paused: paused ? 'true' : '' });
     go.textContent = ended ? 'Again' : paused ? 'Go on' : 'Pause';
-    if (document.activeElement !== slide) slide.value = step;
     const over = scene && frame.cost > scene.budget;
-    const told = (name, value, kind = '') => make('span', {}, name, make('b', { class: kind }, value));
+    const told = (name, value, kind = '') => make('span', {}, name.replaceAll('_', ' '), make('b', { class: kind }, value));
+    const terms = (scene?.terms ?? []).length > 1 || (scene?.terms ?? [])[0] !== 'cost' ? scene?.terms ?? [] : [];
     numbers.replaceChildren(told('step', String(step)), told('time', `${(frame.tic / 35).toFixed(1)} s`), told('return', number(frame.return)), told('cost of budget', `${number(frame.cost)} of ${number(scene?.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'),
-      ...(scene?.terms ?? []).map((name, k) => told(name, number(frame.terms[k]))), ...(frame.value == null ? [] : [told('value', number(frame.value))]), ...(frame.cost_values ?? []).map((value, k) => told(`cost value ${k + 1}`, number(value))));
-    const rows = [];
-    (scene?.groups ?? []).forEach((names, group) => ['nothing', ...names].forEach((name, choice) => {
+      ...terms.map((name, k) => told(name, number(frame.terms[k]))), ...(frame.value == null ? [] : [told('value', number(frame.value))]), ...(frame.cost_values ?? []).map((value, k, all) => told(all.length > 1 ? `cost value ${k + 1}` : 'cost value', number(value))));
+    think(frame);
+    time.at(step);
+  }
+
+  function think(frame) {
+    const rows = (scene?.groups ?? []).map((names, group) => make('div', { class: 'group' }, ...['nothing', ...names].map((name, choice) => {
       const share = frame.probabilities?.[group]?.[choice];
       const taken = frame.actions?.[group] === choice;
-      if (share == null && !taken) return;
-      rows.push(make('div', { class: 'bar' }, make('span', { class: taken ? '' : 'pale' }, `${taken ? '▸ ' : ''}${name}`), share == null ? make('span') : make('meter', { min: 0, max: 1, value: share, 'aria-label': `Probability of ${name}` }), make('span', {}, share == null ? '' : `${Math.round(share * 100)} %`)));
-    }));
-    thoughts.replaceChildren(...rows);
-    drawLine();
+      if (share == null && !taken) return null;
+      return make('div', { class: 'bar' }, make('span', { class: taken ? '' : 'pale' }, `${taken ? '▸ ' : ''}${name.replaceAll('_', ' ').toLowerCase()}`), share == null ? make('span') : make('meter', { min: 0, max: 1, value: share, 'aria-label': `Probability of ${name}` }), make('span', {}, share == null ? '' : `${Math.round(share * 100)} %`));
+    })));
+    const hint = frame.probabilities ? null : make('p', { class: 'pale' }, 'This one follows a fixed rule: marked is what it does. A trained agent shows its probabilities and values here.');
+    thoughts.replaceChildren(...rows, ...(hint ? [hint] : []));
   }
 
   async function controls() {
     const [what, runs, table] = await Promise.all([ask('/api/envs'), ask('/api/runs'), ask('/api/best')]);
+    if (gone) return;
     if (!what || !runs || !table) { setTimeout(controls, 1500); return; }
-    const agents = [...what.policies.map((name) => [name, name]), ...what.zoo.map((name) => [`zoo:${name}`, `zoo: ${name}`]), ...runs.runs.slice(0, 500).map((run) => [`run:${run.id}`, `run: ${run.name}`]), ...table.filter((row) => row.episode).slice(0, 200).map((row) => [row.agent, `episode: ${row.episode}`])];
-    if (!agents.some(([name]) => name === now.agent)) agents.push([now.agent, now.agent]);
-    const own = now.agent.includes(':') && !/^(sticky|hold)/.test(now.agent);
-    if (!now.env && !own) now.env = 'VolcanicVentureLevel1-v0';
-    const restart = (name) => (value) => { now[name] = value; now.step = '0'; now.paused = ''; if (name === 'agent' && /^(run|zoo|episode):/.test(value)) now.env = ''; if (name === 'agent' && !now.env && !/^(run|zoo|episode):/.test(value)) now.env = 'VolcanicVentureLevel1-v0'; controls(); };
+    const groups = { 'fixed policies': what.policies.map((name) => [name, name]), 'the zoo': what.zoo.map((name) => [`zoo:${name}`, name]), runs: runs.runs.slice(0, 500).map((run) => [`run:${run.id}`, run.name]), 'recorded episodes': table.filter((row) => row.episode).slice(0, 200).map((row) => [row.agent, row.episode]) };
+    if (!Object.values(groups).flat().some(([name]) => name === now.agent)) groups['from the link'] = [[now.agent, now.agent]];
+    if (!now.env && !has_task(now.agent)) now.env = FIRST;
+    const restart = (name) => (value) => {
+      Object.assign(now, { [name]: value, step: '0', paused: '' });
+      if (name === 'agent') now.env = has_task(value) ? '' : now.env || FIRST;
+      controls();
+    };
+    const redraw = (name) => (value) => { now[name] = value; begin(); };
     const seed = make('input', { type: 'number', min: 0, value: now.seed, style: 'width:7rem', onchange: () => restart('seed')(seed.value || '1') });
     const tick = (name, text) => { const box = make('input', { type: 'checkbox', onchange: () => restart(name)(box.checked ? 'true' : '') }); box.checked = now[name] === 'true'; return make('label', { class: 'check' }, box, text); };
-    const besides = VIEWS.map((view) => { const box = make('input', { type: 'checkbox', onchange: () => { const on = new Set(now.beside.split(',').filter(Boolean)); if (box.checked) on.add(view); else on.delete(view); now.beside = VIEWS.filter((one) => on.has(one)).join(','); now.step = String(step); begin(); } }); box.checked = now.beside.includes(view); return make('label', { class: 'check' }, box, view); });
-    form.replaceChildren(field('environment', choose([['', 'the agent’s own'], ...what.envs.map((env) => env.id)], now.env, restart('env'))), field('agent', choose(agents, now.agent, restart('agent'))), field('seed', seed), field('size', choose(['160x120', '320x240', '640x480'], now.size, (value) => { now.size = value; now.step = String(step); begin(); })), ...besides, tick('greedy', 'likeliest actions'), tick('best', 'best checkpoint'));
+    const besides = VIEWS.map((view) => {
+      const box = make('input', { type: 'checkbox', onchange: () => { const set = new Set(now.beside.split(',')); if (box.checked) set.add(view); else set.delete(view); redraw('beside')(VIEWS.filter((one) => set.has(one)).join(',')); } });
+      box.checked = now.beside.split(',').includes(view);
+      return make('label', { class: 'check' }, box, view === 'automap' ? 'map' : view);
+    });
+    const of_agent = /^(run|zoo):/.test(now.agent) ? [tick('greedy', 'likeliest actions'), ...(now.agent.startsWith('run:') ? [tick('best', 'best checkpoint')] : [])] : [];
+    const of_task = has_task(now.agent) ? [] : [tick('hard', 'hard constraint'), tick('full', 'full actions'), tick('released', 'released rules')];
+    const agent = choose([], '', restart('agent'));
+    for (const [name, list] of Object.entries(groups)) if (list.length) agent.append(make('optgroup', { label: name }, ...list.map(([key, text]) => make('option', { value: key, selected: key === now.agent }, text))));
+    const own = has_task(now.agent) ? [['', 'the agent’s own']] : [];
+    form.replaceChildren(field('environment', choose([...own, ...what.envs.map((env) => env.id)], now.env, restart('env'))), field('agent', agent), field('seed', seed), field('size', choose(['160x120', '320x240', '640x480', '1280x960'], now.size, redraw('size'))), ...besides, ...of_agent, ...of_task);
     begin();
   }
   const keys = (event) => {
-    if (event.target.matches('input,select,button')) return;
+    if (event.target.matches('input,select,button,a') || event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === ' ') { go.click(); event.preventDefault(); } else if (event.key === '.') screen?.ask({ do: 'tic' });
     else if (event.key === 'ArrowRight') jump(step + 1);
-    else if (event.key === 'ArrowLeft') jump(Math.max(0, step - 1));
+    else if (event.key === 'ArrowLeft') jump(step - 1);
   };
   addEventListener('keydown', keys);
   controls();
-  return () => { screen?.end(); removeEventListener('keydown', keys); };
+  return () => { gone = true; screen?.end(); removeEventListener('keydown', keys); };
 }

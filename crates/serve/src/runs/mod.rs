@@ -133,6 +133,21 @@ pub(crate) async fn curves(State(shared): State<Arc<Shared>>, Query(query): Quer
     Ok(json_of(&Value::Object(body.await?)))
 }
 
+/// The settings of some runs, so that their differences show.
+pub(crate) async fn settings(State(shared): State<Arc<Shared>>, Query(query): Query<Chosen>) -> Result<Response, Response> {
+    let ids = query.ids()?;
+    let paths = on_catalogue(shared, move |catalogue| {
+        ids.into_iter().filter_map(|id| Some((catalogue.path(&id)?, id))).collect::<Vec<_>>()
+    });
+    let paths = paths.await?;
+    let body = aside(move || {
+        let config = |path: &Path| read(&path.join("config.json")).and_then(|text| serde_json::from_str(&text).ok());
+        let all = paths.into_iter().map(|(path, id)| (id, config(&path).unwrap_or(Value::Null)));
+        Value::Object(all.collect())
+    });
+    Ok(json_of(&body.await?))
+}
+
 /// The report of some runs, as `hasard report` writes it.
 pub(crate) async fn report(State(shared): State<Arc<Shared>>, Query(query): Query<Chosen>) -> Result<Response, Response> {
     let Ok(_place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {

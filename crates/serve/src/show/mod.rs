@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `query` | what an address asks for, bounded |
 //! | `rehearsal` | an episode acted out once, with what every step brought and what the agent thought |
+//! | `stages` | stages built lately, shared by their viewers |
 //! | `watching` | an episode shown: pause, tic, speed, jumps |
 //! | `playing` | an episode played by a person |
 //! | `frame` | a moment as one message: numbers and compressed pictures |
@@ -14,7 +15,10 @@ mod line;
 mod playing;
 mod query;
 mod rehearsal;
+mod stages;
 mod watching;
+
+pub(crate) use stages::Stages;
 
 use crate::answer::refusal;
 use crate::server::Shared;
@@ -23,8 +27,11 @@ use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::response::Response;
 use query::{PlayQuery, WatchQuery};
+use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+const NO_RUN: &str = "there is no such run; choose one from the list of runs";
 
 /// Who acts on the stage.
 enum Performer {
@@ -42,21 +49,31 @@ pub(crate) async fn watch(
     Query(query): Query<WatchQuery>,
     upgrade: WebSocketUpgrade,
 ) -> Result<Response, Response> {
-    let bad = |why: String| refusal(StatusCode::BAD_REQUEST, &why);
-    query.check().map_err(bad)?;
-    let performer = match query.agent.split_once(':') {
+    query.check().map_err(|why| refusal(StatusCode::BAD_REQUEST, &why))?;
+    let performer = performer(&shared, &query).await;
+    line::open(Arc::clone(&shared), upgrade, move |mut line| match performer {
+        Ok(performer) => watching::show(&shared, &query, performer, line),
+        // A page sees nothing of a refused handshake; what is said on the line it shows.
+        Err(why) => {
+            let _ = line.say(&json!({ "kind": "error", "why": why }));
+        }
+    })
+}
+
+/// Who an address asks for.
+async fn performer(shared: &Arc<Shared>, query: &WatchQuery) -> Result<Performer, String> {
+    match query.agent.split_once(':') {
         Some(("run", id)) => {
-            let run = crate::runs::directory(&shared, id.to_owned()).await?;
-            Performer::Agent { run, best: query.best, greedy: query.greedy }
+            let run = crate::runs::directory(shared, id.to_owned()).await.map_err(|_| NO_RUN)?;
+            Ok(Performer::Agent { run, best: query.best, greedy: query.greedy })
         }
         Some(("zoo", name)) => {
-            let run = shared.agents.zoo_run(name).map_err(bad)?;
-            Performer::Agent { run, best: false, greedy: query.greedy }
+            let run = shared.agents.zoo_run(name)?;
+            Ok(Performer::Agent { run, best: false, greedy: query.greedy })
         }
-        Some(("episode", name)) => Performer::Recorded(crate::episodes::path(&shared, name).map_err(bad)?),
-        _ => Performer::Fixed(query.agent.parse().map_err(|error: hasard_envs::EnvError| bad(error.to_string()))?),
-    };
-    line::open(Arc::clone(&shared), upgrade, move |line| watching::show(&shared, &query, performer, line))
+        Some(("episode", name)) => crate::episodes::path(shared, name).map(Performer::Recorded),
+        _ => query.agent.parse().map(Performer::Fixed).map_err(|error: hasard_envs::EnvError| error.to_string()),
+    }
 }
 
 /// Lets a person play.

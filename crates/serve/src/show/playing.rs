@@ -14,7 +14,7 @@ const TIC: Duration = Duration::from_nanos(1_000_000_000 / 35);
 
 /// Lets a person play until the page is closed.
 pub(super) fn play(shared: &Shared, query: &PlayQuery, mut line: Line) {
-    let begun = Game::begin(shared.episodes.clone(), query);
+    let begun = Game::begin(shared, query);
     let why = match begun {
         Ok(mut game) => game.run(&mut line).err().flatten(),
         Err(why) => Some(why),
@@ -36,8 +36,9 @@ struct Game {
 }
 
 impl Game {
-    fn begin(folder: PathBuf, query: &PlayQuery) -> Result<Game, String> {
-        let stage = Stage::new(&query.env, &query.options()).map_err(|error| error.to_string())?;
+    fn begin(shared: &Shared, query: &PlayQuery) -> Result<Game, String> {
+        let stage = shared.stages.stage(&query.env, &query.options())?;
+        let folder = shared.episodes.clone();
         let views = Views::new(&stage, query.size(), &[ViewKind::Colour]).map_err(|error| error.to_string())?;
         let controls = Controls::default();
         let mut game = Game { folder, seed: query.seed, stage, views, controls, recorder: None, paused: true, fresh: true };

@@ -47,8 +47,8 @@ pub(super) struct Rehearsal {
 
 impl Rehearsal {
     /// Sets the scene.
-    pub fn new(shared: &Shared, query: &WatchQuery, performer: Performer) -> Result<Rehearsal, String> {
-        let (id, options, seed) = match &performer {
+    pub fn new(shared: &Shared, query: &WatchQuery, performer: &Performer) -> Result<Rehearsal, String> {
+        let (id, options, seed) = match performer {
             Performer::Fixed(_) => (query.env.clone(), query.options(), query.seed),
             Performer::Agent { run, .. } => {
                 let (trained, options) = shared.agents.options(run)?;
@@ -63,25 +63,25 @@ impl Rehearsal {
                 (header.env.clone(), options, header.seed)
             }
         };
-        let mut env = Env::new(&id, &options).map_err(|error| error.to_string())?;
+        let mut env = shared.stages.stage(&id, &options)?.env().sibling();
         env.reset(seed);
         let actor = match performer {
-            Performer::Fixed(policy) => Actor::Fixed(Box::new(PolicyRun::new(policy, env.action_space(), seed))),
+            Performer::Fixed(policy) => Actor::Fixed(Box::new(PolicyRun::new(policy.clone(), env.action_space(), seed))),
             Performer::Agent { run, best, greedy } => {
-                let choice = if greedy { Choice::Greedy } else { Choice::Sampled };
-                let mut agent = shared.agents.load(&run, best, choice, &env)?;
+                let choice = if *greedy { Choice::Greedy } else { Choice::Sampled };
+                let mut agent = shared.agents.load(run, *best, choice, &env)?;
                 agent.reset(0, seed);
                 let observation = vec![0; env.observation_shape().iter().product()];
                 Actor::Agent(Box::new(agent), observation)
             }
-            Performer::Recorded(path) => Actor::Recorded(Box::new(recorded(&path, env.action_space())?)),
+            Performer::Recorded(path) => Actor::Recorded(Box::new(recorded(path, env.action_space())?)),
         };
         Ok(Rehearsal { env, actor, facts: Vec::new(), over: false, options, id, seed })
     }
 
     /// A stage to show it on.
-    pub fn stage(&self) -> Result<Stage, String> {
-        let mut stage = Stage::new(&self.id, &self.options).map_err(|error| error.to_string())?;
+    pub fn stage(&self, shared: &Shared) -> Result<Stage, String> {
+        let mut stage = shared.stages.stage(&self.id, &self.options)?;
         stage.reset(self.seed);
         Ok(stage)
     }

@@ -6,7 +6,7 @@ use super::line::{Ask, Line};
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
 use crate::server::Shared;
-use hasard_play::{Stage, ViewKind, Views};
+use hasard_play::{Moment, Stage, ViewKind, Views};
 use serde_json::json;
 use std::time::{Duration, Instant};
 
@@ -16,6 +16,10 @@ const TICS: f64 = 35.0;
 const AHEAD: Duration = Duration::from_millis(10);
 /// Steps between two tellings of what is known ahead.
 const TELL_EVERY: usize = 25;
+/// Steps between two moments that are kept to come back to: an episode of 525 has 21, and a jump acts out 25 steps at most.
+const KEEP_EVERY: usize = 25;
+/// Moments that are kept at most, whatever an episode's length.
+const MOST_KEPT: usize = 64;
 
 /// Shows an episode until the viewer is gone.
 pub(super) fn show(shared: &Shared, query: &WatchQuery, performer: Performer, mut line: Line) {
@@ -29,13 +33,18 @@ pub(super) fn show(shared: &Shared, query: &WatchQuery, performer: Performer, mu
     }
 }
 
-struct Show {
+struct Show<'a> {
+    shared: &'a Shared,
+    query: WatchQuery,
+    performer: Performer,
     rehearsal: Rehearsal,
     stage: Stage,
     views: Views,
     kinds: Vec<ViewKind>,
     paused: bool,
     speed: f64,
+    /// Moments of the episode that were passed, by their steps, in order.
+    kept: Vec<(usize, Moment)>,
     /// Steps that the viewer was told of.
     told: usize,
     told_over: bool,
@@ -43,16 +52,53 @@ struct Show {
     fresh: bool,
 }
 
-impl Show {
-    fn begin(shared: &Shared, query: &WatchQuery, performer: Performer) -> Result<Show, String> {
-        let rehearsal = Rehearsal::new(shared, query, performer)?;
-        let stage = rehearsal.stage()?;
+impl<'a> Show<'a> {
+    fn begin(shared: &'a Shared, query: &WatchQuery, performer: Performer) -> Result<Show<'a>, String> {
+        let query = query.clone();
+        let rehearsal = Rehearsal::new(shared, &query, &performer)?;
+        let stage = rehearsal.stage(shared)?;
         let kinds = query.views()?;
         let views = Views::new(&stage, query.size(), &kinds).map_err(|error| error.to_string())?;
-        let mut show =
-            Show { rehearsal, stage, views, kinds, paused: query.paused, speed: 1.0, told: 0, told_over: false, fresh: true };
-        show.jump(query.step as usize);
+        let (paused, step) = (query.paused, query.step as usize);
+        let mut show = Show {
+            shared,
+            query,
+            performer,
+            rehearsal,
+            stage,
+            views,
+            kinds,
+            paused,
+            speed: 1.0,
+            kept: Vec::new(),
+            told: 0,
+            told_over: false,
+            fresh: true,
+        };
+        show.jump(step);
         Ok(show)
+    }
+
+    /// The episode of the next seed. The agent of a run is loaded anew: its newest checkpoint may be a newer one.
+    fn next_episode(&mut self, line: &mut Line) -> Result<(), ()> {
+        if let Performer::Recorded(_) = self.performer {
+            self.jump(0);
+            self.paused = false;
+            return Ok(());
+        }
+        self.query.seed = self.query.seed.wrapping_add(1);
+        let begun = Rehearsal::new(self.shared, &self.query, &self.performer);
+        let begun = begun.and_then(|rehearsal| Ok((rehearsal.stage(self.shared)?, rehearsal)));
+        match begun {
+            Ok((stage, rehearsal)) => (self.stage, self.rehearsal) = (stage, rehearsal),
+            Err(why) => {
+                line.say(&json!({ "kind": "error", "why": why }))?;
+                return Err(());
+            }
+        }
+        self.kept.clear();
+        (self.told, self.told_over, self.paused, self.fresh) = (0, false, false, true);
+        line.say(&self.rehearsal.scene())
     }
 
     fn run(&mut self, line: &mut Line) -> Result<(), ()> {
@@ -68,7 +114,11 @@ impl Show {
             let time = if self.fresh && line.free() { Duration::ZERO } else { time };
             let mut ask = line.ask_within(time)?;
             while let Some(asked) = ask {
-                self.answer(&asked);
+                if let Ask::Next = asked {
+                    self.next_episode(line)?;
+                } else {
+                    self.answer(&asked);
+                }
                 ask = line.ask_within(Duration::ZERO)?;
             }
             self.rehearsal.go_on(AHEAD, usize::MAX);
@@ -124,6 +174,12 @@ impl Show {
         }
         if self.stage.wants_action() {
             let step = self.step();
+            if step.is_multiple_of(KEEP_EVERY)
+                && self.kept.len() < MOST_KEPT
+                && self.kept.last().is_none_or(|(last, _)| *last < step)
+            {
+                self.kept.push((step, self.stage.moment()));
+            }
             self.rehearsal.go_on(Duration::from_secs(1), step + 1);
             match self.rehearsal.command(step) {
                 Some(command) => self.stage.press(command),
@@ -134,9 +190,14 @@ impl Show {
         self.fresh = true;
     }
 
-    /// Goes to a step by acting the same again: an episode's worlds without their pictures take some 30 ms.
+    /// Goes to a step: back to the last moment kept before it, and from there by acting the same again.
     fn jump(&mut self, to: usize) {
-        self.stage.reset(self.rehearsal.seed);
+        let from = self.kept.iter().rev().find(|(step, _)| *step <= to);
+        // From here on, if this is nearer.
+        let near = self.stage.wants_action() && self.step() <= to && from.is_none_or(|(step, _)| *step <= self.step());
+        if !near && from.is_none_or(|(_, moment)| self.stage.come_back(moment).is_err()) {
+            self.stage.reset(self.rehearsal.seed);
+        }
         while self.step() < to && !self.ended() {
             let before = (self.step(), self.stage.wants_action());
             self.tic();

@@ -98,13 +98,22 @@ impl Browser {
         self.here("POST", "/execute/sync", &json!({ "script": text, "args": [] }))
     }
 
-    /// Waits until a script returns true.
+    /// Waits until a script returns true: a minute.
     pub fn wait(&self, text: &str) {
+        self.wait_for(text, Duration::from_secs(60));
+    }
+
+    /// The same for what takes a training or the making of a film.
+    #[allow(dead_code, reason = "each test file uses some of it")]
+    pub fn wait_long(&self, text: &str) {
+        self.wait_for(text, Duration::from_secs(600));
+    }
+
+    fn wait_for(&self, text: &str, time: Duration) {
         let begun = Instant::now();
         while self.script(&format!("return Boolean({text})")) != json!(true) {
-            if begun.elapsed() > Duration::from_secs(60) {
-                panic!("not in a minute: {text}; the page says {}", self.script("return document.body.innerText"));
-            }
+            let told = "return document.body.innerText";
+            assert!(begun.elapsed() < time, "not in {time:?}: {text}; the page says {}", self.script(told));
             std::thread::sleep(Duration::from_millis(100));
         }
     }

@@ -75,6 +75,17 @@ pub fn write_run(folder: &Path, name: &str, rows: u32) {
     std::fs::write(run.join("metrics.jsonl"), (1..=rows).map(row).collect::<String>()).unwrap();
 }
 
+/// Writes heatmaps of a run at some moments, without a map beneath.
+pub fn write_heatmaps(folder: &Path, name: &str, moments: &[u32]) {
+    let row = |frames: &u32| {
+        let steps: Vec<u32> = (0..144).map(|cell| (cell * frames / 1000) % 60).collect();
+        format!(
+            "{{\"frames\":{frames},\"columns\":12,\"rows\":12,\"extent\":[0,0,768,768],\"episodes\":60,\"steps\":{steps:?}}}\n"
+        )
+    };
+    std::fs::write(folder.join("runs").join(name).join("heatmaps.jsonl"), moments.iter().map(row).collect::<String>()).unwrap();
+}
+
 /// The answer to a request as it is, status line and all.
 pub fn raw(address: SocketAddr, request: &str) -> String {
     let mut stream = TcpStream::connect(address).unwrap();

@@ -1,0 +1,151 @@
+//! `hasard serve` from the first training to the link of a moment of harm, in a real browser.
+
+#![cfg(feature = "serve")]
+
+#[path = "../../serve/tests/common/browser.rs"]
+mod browser;
+
+use browser::Browser;
+use serde_json::json;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+fn hasard() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hasard"));
+    command.stdin(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("hasard-cli-serve-{}-{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(folder.join("runs")).unwrap();
+    std::fs::create_dir_all(folder.join("zoo")).unwrap();
+    folder
+}
+
+/// A process that ends with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A server of the folder's runs, and the address that it printed.
+fn serve(folder: &Path, listen: &str) -> (Running, String) {
+    let mut command = hasard();
+    command.args(["serve", "runs", "--listen", listen]).current_dir(folder).env("HASARD_ZOO", folder.join("zoo"));
+    let mut server = Running(command.stdout(Stdio::piped()).spawn().unwrap());
+    let mut line = String::new();
+    BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    (server, line.trim().to_owned())
+}
+
+#[test]
+fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
+    let Some(browser) = Browser::open(1280, 1000, false) else { return };
+    let folder = folder("agent");
+    let (server, address) = serve(&folder, "127.0.0.1:0");
+    browser.go(&address);
+    browser.wait("document.body.innerText.includes('No runs yet')");
+    // A training begins; its row appears and moves.
+    let mut training = hasard();
+    let words = [
+        "train",
+        "VolcanicVentureLevel1-v0",
+        "--preset",
+        "quick",
+        "--frames",
+        "60000",
+        "--threads",
+        "1",
+        "--eval-every",
+        "60000",
+        "--out",
+        "runs/tiny",
+    ];
+    let mut training = Running(training.args(words).stdout(Stdio::null()).current_dir(&folder).spawn().unwrap());
+    let progress = "document.querySelector('tbody progress')?.value ?? 0";
+    browser.wait_long(&format!("({progress}) > 0"));
+    browser.wait_long("document.querySelector('tbody').innerText.includes('done')");
+    assert!(training.0.wait().unwrap().success());
+    assert_eq!(browser.script(&format!("return ({progress}) >= 60000")), json!(true));
+    browser.script("document.querySelector('tbody a').click()");
+    browser.wait("document.querySelector('h1').innerText.includes('tiny: PPOLag in VolcanicVentureLevel1-v0')");
+    browser.wait("document.querySelector('.told').innerText.includes('frames')");
+    browser.photograph("serve_run_trained");
+
+    // Its agent goes into the zoo.
+    let exported = hasard().args(["export-agent", "runs/tiny", "-o", "zoo/Tiny.agent"]).current_dir(&folder).output().unwrap();
+    assert!(exported.status.success());
+    browser.go(&format!("{address}/#watch?agent=zoo:Tiny&seed=3"));
+    let step = "Number(document.querySelector('#numbers b')?.innerText)";
+    browser.wait_long(&format!("{step} > 5"));
+    browser.wait("document.querySelector('optgroup[label=\"the zoo\"] option').selected");
+    // What it thinks: probabilities that add up to one in every group, and both values.
+    browser.script("document.getElementById('go').click()");
+    browser.wait("document.getElementById('go').innerText == 'Go on'");
+    let sums = "[...document.querySelectorAll('#thoughts .group')].map((group) => [...group.querySelectorAll('meter')].reduce((sum, one) => sum + one.value, 0))";
+    browser.wait(&format!("{sums}.length >= 3 && {sums}.every((sum) => Math.abs(sum - 1) < 0.001)"));
+    browser.wait("['value', 'cost value'].every((name) => [...document.querySelectorAll('#numbers > span')].some((one) => one.firstChild.textContent == name && /^-?[0-9.]+$/.test(one.lastChild.innerText)))");
+    browser.wait_long("document.querySelector('[data-kind=harm]')");
+    browser.script("document.querySelector('[data-kind=harm]').click()");
+    browser.wait(&format!("{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"));
+    std::thread::sleep(std::time::Duration::from_millis(1000));
+    browser.photograph("serve_watch_agent");
+    let picture = "document.querySelector('canvas.view').toDataURL()";
+    let (at, before) = (browser.script(&format!("return {step}")), browser.script(&format!("return {picture}")));
+    browser.script("document.getElementById('copy').click()");
+    browser.wait("location.hash.includes('paused=true') && location.hash.includes('step=')");
+    let link = browser.script("return location.href");
+    browser.go(link.as_str().unwrap());
+    // The same agent, step and picture.
+    browser.wait_long(&format!("{step} == {at} && document.getElementById('go').innerText == 'Go on' && {picture} == {before}"));
+
+    // The server dies and comes back: the show stands where it stood.
+    drop(server);
+    browser.wait("document.querySelector('[role=alert]').innerText.includes('does not answer')");
+    let (_server, again) = serve(&folder, address.trim_start_matches("http://"));
+    assert_eq!(again, address);
+    browser
+        .wait_long(&format!("document.querySelector('[role=alert]').innerText == '' && {step} == {at} && {picture} == {before}"));
+    // Of its own run the newest checkpoint acts.
+    browser.script("const agent = document.querySelector('optgroup[label=runs]').parentElement; agent.value = document.querySelector('optgroup[label=runs] option').value; agent.dispatchEvent(new Event('change'))");
+    browser.wait_long(&format!(
+        "location.hash.includes('agent=run') && {step} > 3 && document.querySelectorAll('#thoughts meter').length > 3"
+    ));
+    let seed = "document.querySelector('input[type=number]').value";
+    let first = browser.script(&format!("return {seed}"));
+    browser.script("document.getElementById('next').click()");
+    browser.wait_long(&format!("{seed} == Number({first}) + 1 && {step} > 0"));
+    let unreachable = |line: &String| line.contains("ERR_CONNECTION_REFUSED") || line.contains("WebSocket connection");
+    assert_eq!(browser.errors().into_iter().filter(|line| !unreachable(line)).collect::<Vec<_>>(), Vec::<String>::new());
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_folder_that_is_not_there_is_refused() {
+    let folder = folder("none");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hasard"));
+    let output = command.args(["serve", "no-such", "--listen", "127.0.0.1:0"]).current_dir(&folder).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.lines().count() == 1 && said.contains("no-such: there is no such folder"), "{said}");
+    // Without a name the folder `runs` is waited for, and beyond this machine a token is drawn, another each time.
+    std::fs::remove_dir(folder.join("runs")).unwrap();
+    let address = || {
+        let mut server = Running(
+            hasard().args(["serve", "--listen", "0.0.0.0:0"]).current_dir(&folder).stdout(Stdio::piped()).spawn().unwrap(),
+        );
+        let mut line = String::new();
+        BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        line.trim().split_once("?token=").unwrap().1.to_owned()
+    };
+    let (one, other) = (address(), address());
+    assert!(one.len() == 32 && one.bytes().all(|byte| byte.is_ascii_hexdigit()) && one != other, "{one} {other}");
+    std::fs::remove_dir_all(folder).unwrap();
+}
