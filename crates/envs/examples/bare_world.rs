@@ -43,6 +43,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         (sector.floor, sector.ceiling) = (fixed(floor[2]), fixed(floor[3]));
         sector.damage = Default::default();
     }
+    // The original's things have been taken away as well.
+    let own = world.players[0].actor;
+    let things: Vec<_> = (0..world.actors.len()).map(|slot| world.id_of(slot)).filter(|&id| id != own).collect();
+    things.into_iter().for_each(|id| world.remove(id));
     let angle = |degrees: f64| (degrees * TURN).round() as i64;
     world.place_player(
         0,
