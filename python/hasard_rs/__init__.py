@@ -12,7 +12,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from hasard_rs._core import Batch, Worlds, __version__
 from hasard_rs.agent import Agent, Run, report, train
@@ -54,7 +54,8 @@ def make_vec(env_id: str, num_envs: int = 1, **kwargs: Any) -> VectorEnv:
     """A native vector environment, as `gymnasium.make_vec` makes it."""
     if not hasattr(_gymnasium, "make_vec") or not hasattr(_gymnasium.vector, "AutoresetMode"):
         raise ImportError("make_vec needs Gymnasium 1.1 or newer: pip install -U gymnasium; make and Worlds work with older ones")
-    return _gymnasium.make_vec(f"hasard/{_known(env_id)}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
+    made = _gymnasium.make_vec(f"hasard/{_known(env_id)}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
+    return cast("VectorEnv", made)
 
 
 def _known(env_id: str) -> str:

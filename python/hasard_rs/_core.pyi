@@ -8,7 +8,7 @@ from typing_extensions import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "describe", "ids", "main", "train"]
+__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "describe", "follow", "ids", "main", "train"]
 
 __version__: str
 
@@ -116,7 +116,12 @@ class TrainedAgent:
     def __new__(cls, run: str | os.PathLike[str], *, best: bool = False, greedy: bool = False) -> Self: ...
     def begin(self, seeds: Sequence[int]) -> AgentState: ...
     def act(
-        self, observations: NDArray[np.uint8], state: AgentState, costs: Sequence[float] | None, over: Sequence[bool] | None
+        self,
+        observations: NDArray[np.uint8],
+        state: AgentState,
+        costs: Sequence[float] | None,
+        over: Sequence[bool] | None,
+        cost_terms: Sequence[Sequence[float]] | None = None,
     ) -> tuple[NDArray[np.int64], NDArray[np.float32], AgentState]: ...
     def outputs(self, observations: NDArray[np.uint8], state: AgentState) -> tuple[NDArray[np.float32], AgentState]: ...
     @property
@@ -127,4 +132,11 @@ class TrainedAgent:
 def ids() -> list[str]: ...
 def describe(env_id: str) -> dict[str, Any]: ...
 def main(words: Sequence[str]) -> int: ...
-def train(words: Sequence[str], callback: Callable[[dict[str, Any]], Any] | None, warn: Callable[[str], Any]) -> tuple[os.PathLike[str], bool, dict[str, Any]]: ...
+def train(
+    words: Sequence[str],
+    callback: Callable[[dict[str, Any]], Any] | None,
+    warn: Callable[[str], Any],
+    exchange: Callable[[NDArray[np.uint8]], list[NDArray[np.uint8]]] | None = None,
+    ranks: int = 1,
+) -> tuple[os.PathLike[str], bool, dict[str, Any]]: ...
+def follow(exchange: Callable[[NDArray[np.uint8]], list[NDArray[np.uint8]]], rank: int, ranks: int, warn: Callable[[str], Any]) -> None: ...

@@ -16,6 +16,7 @@ import numpy as np
 
 from hasard_rs import _core
 from hasard_rs.errors import HasardError
+from hasard_rs.progress import Bar
 
 Report = dict[str, Any]
 """A row of metrics.jsonl: frames, return, cost, multipliers and so on, by name."""
@@ -44,8 +45,30 @@ def train(
 
     flags are the program's, with underscores: `frames=2_000_000, seed=1, envs=32, threads=2, resume=True`; `set` holds what the program takes as
     `--set name=value`. callback is called with every report, a dict; where it returns True the run ends, with a checkpoint. What it raises,
-    and Ctrl-C, end the run the same way and are raised again. Wrong settings: `InvalidOption`, before anything is written.
+    and Ctrl-C, end the run the same way and are raised again. Wrong settings: `InvalidOption`, before anything is written. On a terminal a line
+    tells how far it is.
     """
+    words = training_words(env_id, algorithm, preset=preset, out=out, set=set, **flags)
+    with Bar(flags.get("frames")) as bar:
+
+        def hear(report: Report) -> Any:
+            bar.show(report)
+            return callback is not None and callback(report)
+
+        directory, stopped, last = _core.train(words, hear if bar.seen else callback, lambda text: warnings.warn(text, stacklevel=2))
+    return Run(Path(directory), stopped, last)
+
+
+def training_words(
+    env_id: str,
+    algorithm: str,
+    *,
+    preset: str | None = None,
+    out: str | os.PathLike[str] | None = None,
+    set: Mapping[str, Any] | None = None,  # noqa: A002
+    **flags: Any,
+) -> list[str]:
+    """What `train` is given, as words of the program."""
     words = [env_id.removeprefix("hasard/"), "--algo", algorithm, "--quiet"]
     for name, value in {"preset": preset, "out": None if out is None else os.fspath(out), **flags}.items():
         flag = "--" + name.replace("_", "-")
@@ -57,8 +80,7 @@ def train(
             words += [flag, str(value)]
     for name, value in (set or {}).items():
         words += ["--set", f"{name}={json.dumps(value) if not isinstance(value, str) else value}"]
-    directory, stopped, last = _core.train(words, callback, lambda text: warnings.warn(text, stacklevel=2))
-    return Run(Path(directory), stopped, last)
+    return words
 
 
 class Agent:
@@ -110,24 +132,29 @@ class Agent:
 
     def begin(self, lanes: int, seed: int = 0) -> Any:
         """What the agent remembers when episodes begin; its draws follow from `seed` and the lane."""
-        return _State(self._trained.begin([(seed + lane) % 2**64 for lane in range(lanes)]), None, None)
+        return _State(self._trained.begin([(seed + lane) % 2**64 for lane in range(lanes)]), None, None, None)
 
     def act(self, observations: np.ndarray, state: Any = None) -> tuple[Any, Any]:
         """Actions for observations uint8 [n, ...] (or one, [...]), and what the agent remembers then. state=None: episodes begin."""
         single = observations.ndim == 3
         observations = observations[None] if single else observations
         state = self.begin(len(observations)) if state is None else state
-        actions, deltas, after = self._trained.act(observations, state.memory, state.costs, state.over)
+        actions, deltas, after = self._trained.act(observations, state.memory, state.costs, state.over, state.terms)
         chosen: Any = actions
         if deltas.shape[1]:
             chosen = {"buttons": actions[0], "deltas": deltas[0]} if single else {"buttons": actions, "deltas": deltas}
         elif single:
             chosen = actions[0]
-        return chosen, _State(after, None, None)
+        return chosen, _State(after, None, None, None)
 
-    def after(self, state: Any, costs: Any, over: Any) -> Any:
-        """What the agent remembers once a step has cost so much, and episodes are over in these lanes: those begin anew."""
-        return _State(state.memory, np.atleast_1d(costs).astype(float).tolist(), np.atleast_1d(over).astype(bool).tolist())
+    def after(self, state: Any, costs: Any, over: Any, cost_terms: Any = None) -> Any:
+        """What the agent remembers once a step has cost so much (float [n]), and episodes are over in these lanes (bool [n]): those begin anew.
+
+        Agents that watch one of the cost terms (PPOSaute under a budget of a named term) need `infos["cost_terms"]` ([n, k]) too, which environments
+        made with `infos="full"` have; `act` raises ValueError without.
+        """
+        terms = None if cost_terms is None else np.atleast_2d(cost_terms).astype(float).tolist()
+        return _State(state.memory, np.atleast_1d(costs).astype(float).tolist(), np.atleast_1d(over).astype(bool).tolist(), terms)
 
     def evaluate(self, episodes: int = 20, seed: int = 0, *, best: bool = False, greedy: bool = False) -> list[dict[str, Any]]:
         """Plays episodes as `hasard eval --json` does: a dict each, and the summary as the last."""
@@ -146,11 +173,12 @@ class _State:
     memory: Any
     costs: list[float] | None
     over: list[bool] | None
+    terms: list[list[float]] | None
 
 
 def report(runs: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> Path:
     """Writes one page of tables and curves from run directories, as `hasard report` does."""
-    _run(["report", *map(os.fspath, runs), "-o", os.fspath(out)])
+    _run(["report", *[os.fspath(run) for run in runs], "-o", os.fspath(out)])
     return Path(out)
 
 

@@ -32,7 +32,7 @@ class HasardEnv(CMDP):
         given = {"resolution": "64x48", "observation": "grey", **arguments, "action_format": "box"}
         self.envs = hasard_rs.make_vec(env_id, num_envs, autoreset_mode="SameStep", **given)
         self._num_envs = num_envs
-        pixels = int(np.prod(self.envs.single_observation_space.shape))
+        pixels = int(np.prod(self.envs.worlds.observation_shape))
         self._observation_space = spaces.Box(0.0, 1.0, (pixels,), np.float32)
         self._action_space = self.envs.single_action_space
         self._metadata = dict(self.envs.metadata)

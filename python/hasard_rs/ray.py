@@ -15,6 +15,7 @@ from hasard_rs._extra import need
 ray = need("ray", "ray", "ray")
 
 import hasard_rs  # noqa: E402
+from hasard_rs.ray_training import train  # noqa: E402, F401
 
 Rollout = dict[str, Any]
 """observations [T + 1, n, ...] uint8, actions, rewards, costs, cost_terms, terminated, truncated [T, n], episodes, version."""

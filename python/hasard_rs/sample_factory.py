@@ -43,7 +43,7 @@ class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
         self.observation_space = gymnasium.spaces.Dict({"obs": gymnasium.spaces.Box(0, 255, self.worlds.observation_shape, np.uint8)})
         self.action_space = self._format.space
 
-    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
         batch = self.worlds.reset(seed)
         return {"obs": torch.from_numpy(batch.observations)}, [{} for _ in range(self.num_agents)]
 

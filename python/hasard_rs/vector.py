@@ -75,7 +75,8 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         self._same_step = self.autoreset_mode == AutoresetMode.SAME_STEP
         # The lanes that a NEXT_STEP step will reset.
         self._over = np.zeros(num_envs, dtype=np.bool_)
-        self._groups, self._given_out, self._fresh = groups, 0, None
+        self._groups, self._given_out = groups, 0
+        self._fresh: dict[int, tuple[Batch, dict[str, Any]]] | None = None
         self.num_envs = num_envs
         self.batch_size = batch_size or num_envs
         self.single_observation_space = spaces.Box(0, 255, self._worlds.observation_shape, np.uint8)

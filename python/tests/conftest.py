@@ -10,6 +10,16 @@ import pytest
 SMALL = {"resolution": "64x48"}
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--full", action="store_true", help="counts that take an hour: every id for 1,000 steps, 5 million steps, 1,000 constructions")
+
+
+@pytest.fixture
+def full(request: pytest.FixtureRequest) -> bool:
+    """Whether the counts are to be those that take long."""
+    return bool(request.config.getoption("--full"))
+
+
 def assert_same(a: Any, b: Any, where: str = "") -> None:
     """Equal to the bit, types and dtypes too; tells the first place that differs."""
     assert type(a) is type(b), f"{where}: {type(a)} and {type(b)}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import threading
 from typing import Any
 
@@ -147,8 +149,9 @@ def test_masks_are_refused_with_gymnasiums_texts() -> None:
         assert "reset_mask" in options, "the caller's dict is left alone"
 
 
-def test_ten_thousand_random_calls() -> None:
-    rng = np.random.default_rng(7)
+@pytest.mark.parametrize("seed", range(7, 10))
+def test_ten_thousand_random_calls(seed: int, full: bool) -> None:
+    rng = np.random.default_rng(seed)
     made, other = worlds(4, groups=2), worlds(2, autoreset_mode="Disabled", full_actions=True, max_episode_steps=30)
     state = other.save()
     junk = [None, -1, 0, 3.5, 1 << 70, "x", b"x", [], {}, np.nan, np.zeros((4, 4)), np.full((4, 4), 2), np.ones(4, bool), object(), np.inf]
@@ -177,13 +180,94 @@ def test_ten_thousand_random_calls() -> None:
         lambda: hasard_rs.Worlds(any_of(), any_of(), frame_skip=any_of()),
     ]
     done = 0
-    for _ in range(10_000):
+    for _ in range(10_000 if full or seed == 7 else 1_000):
         try:
             calls[rng.integers(len(calls))]()
             done += 1
         except ALLOWED:
             pass
-    assert done > 1000
+    assert done > 100
+
+
+def test_threads_that_call_at_random_while_one_closes() -> None:
+    for seed in range(20):
+        made, wrong = worlds(4, groups=2), []
+
+        def hammer(seed: int, made: Worlds = made, wrong: list[BaseException] = wrong) -> None:
+            rng = np.random.default_rng(seed)
+            calls = [
+                lambda: made.step(np.zeros((4, 4), int)),
+                lambda: made.send(np.zeros((2, 4), int), group=int(rng.integers(2))),
+                lambda: made.recv(int(rng.integers(2))),
+                lambda: made.reset(mask=np.array([True, False, True, False])),
+                lambda: made.load(made.save()),
+                lambda: made.render(1),
+            ]
+            for _ in range(40):
+                try:
+                    calls[rng.integers(len(calls))]()
+                except ALLOWED:
+                    pass
+                except BaseException as error:  # noqa: BLE001
+                    wrong.append(error)
+
+        threads = [threading.Thread(target=hammer, args=(seed * 10 + i,)) for i in range(3)]
+        for thread in threads:
+            thread.start()
+        if seed % 2:
+            made.close()
+        for thread in threads:
+            thread.join(timeout=60)
+            assert not thread.is_alive(), "nobody waits for ever"
+        assert not wrong
+        made.close()
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no timers here")
+def test_interrupted_calls_leave_the_worlds_whole(full: bool) -> None:
+    made, interrupts = worlds(4), 0
+
+    def interrupt(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        for _ in range(20_000 if full else 1_000):
+            try:
+                signal.setitimer(signal.ITIMER_REAL, 0.0007)
+                made.step(np.zeros((4, 4), int))
+                made.render(0)
+                signal.setitimer(signal.ITIMER_REAL, 0)
+            except KeyboardInterrupt:
+                interrupts += 1
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    state = made.save()
+    copy = worlds(4)
+    copy.load(state)
+    assert np.array_equal(made.step(np.ones((4, 4), int)).observations, copy.step(np.ones((4, 4), int)).observations)
+    assert interrupts, "the timer was quick enough to disturb"
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_every_call_in_a_forked_child_is_refused() -> None:
+    made = worlds(2)
+    calls = [made.reset, made.save, lambda: made.step(np.zeros((2, 4), int)), lambda: made.recv(0), lambda: made.render(0), lambda: made.positions]
+    child = os.fork()
+    if child == 0:
+        outcome = 0
+        for call in calls * 50:
+            try:
+                call()
+                outcome = 1
+            except hasard_rs.OutOfTurn:
+                pass
+        made.close()
+        os._exit(outcome)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    made.step(np.zeros((2, 4), int))
 
 
 def test_two_threads_take_turns() -> None:

@@ -60,6 +60,26 @@ def test_bit_for_bit(env_id: str, mode: AutoresetMode, infos: str) -> None:
     assert_same(native.reset(options={"reset_mask": mask}), sync.reset(options={"reset_mask": mask}), "some lanes")
 
 
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP, AutoresetMode.DISABLED])
+@pytest.mark.parametrize("env_id", hasard_rs.ids())
+def test_every_id_in_every_mode(env_id: str, mode: AutoresetMode, full: bool) -> None:
+    arguments = {"resolution": "64x48", "max_episode_steps": 90, "infos": "full", "env_stats": True}
+    native, sync = pair(env_id, mode, 2, **arguments)
+    assert_same(native.reset(seed=11), sync.reset(seed=11), "reset")
+    native.action_space.seed(8)
+    ends = 0
+    for step in range(1000 if full else 100):
+        actions = native.action_space.sample()
+        found, expected = native.step(actions), sync.step(actions)
+        settle(found[4], expected[4])
+        assert_same(found, expected, f"step {step}")
+        over = found[2] | found[3]
+        ends += int(over.sum())
+        if mode == AutoresetMode.DISABLED and over.any():
+            assert_same(native.reset(options={"reset_mask": over}), sync.reset(options={"reset_mask": over.copy()}), f"reset after step {step}")
+    assert ends >= 2
+
+
 def test_disabled_rests_until_reset() -> None:
     native, sync = pair("hasard/RemedyRushLevel1-v0", AutoresetMode.DISABLED, 3, resolution="64x48", frame_skip=35, max_episode_steps=9)
     assert_same(native.reset(seed=5), sync.reset(seed=5))

@@ -60,6 +60,23 @@ def test_agents_are_functions_of_what_they_are_given(run: hasard_rs.Run) -> None
         hasard_rs.Agent.load("nowhere")
 
 
+def test_agents_that_watch_a_named_term_are_told_of_it(tmp_path: Path) -> None:
+    settings = {**SMALL, "safety_budget": "harmful_items=5"}
+    run = hasard_rs.train(ENV, "PPOSaute", out=tmp_path / "run", callback=lambda report: True, **settings)
+    agent = hasard_rs.Agent.load(run.directory)
+    vec = agent.make_vec(2, infos="full")
+    observations, _ = vec.reset(seed=1)
+    actions, state = agent.act(observations)
+    observations, _, terminations, truncations, infos = vec.step(actions)
+    over = terminations | truncations
+    with pytest.raises(ValueError, match="give cost_terms too"):
+        agent.act(observations, agent.after(state, infos["cost"], over))
+    terms = infos["cost_terms"]
+    rows = [agent.act(observations, agent.after(state, infos["cost"], over, told))[1].memory for told in (terms, terms + 4.0)]
+    spent, more = (agent._trained.outputs(observations, memory)[0] for memory in rows)
+    assert not np.array_equal(spent, more), "what the term costs is seen"
+
+
 def test_callbacks_that_raise_end_the_run(tmp_path: Path) -> None:
     def callback(report: dict) -> None:
         raise KeyError("mine")
@@ -84,6 +101,10 @@ def test_the_program_comes_with_the_wheel() -> None:
     assert done.returncode == 0 and "VolcanicVentureLevel1-v0" in done.stdout
     done = subprocess.run([*words, "rollout", "NoSuchLevel1-v0"], capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
+    done = subprocess.run([*words, "eval", "--nonsense"], capture_output=True, text=True)
+    assert done.returncode == 2 and "(see `hasard eval --help`)" in done.stderr
+    done = subprocess.run([*words, "train", "RemedyRushLevel1-v0", "--on", "mars", "--workers", "2"], capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr == "hasard: --on 'mars': give ray or ray:ADDRESS, with --workers N\n"
 
 
 def test_the_torch_module_gives_the_same_outputs(run: hasard_rs.Run) -> None:

@@ -1,5 +1,6 @@
 //! How a command fails, and the one line that says so.
 
+use std::ffi::OsString;
 use std::io;
 
 /// Why a command did not end well; decides the exit code.
@@ -37,13 +38,14 @@ impl From<io::Error> for Failure {
     }
 }
 
-/// Prints `--help` and `--version` as they are, and a usage error as one line; gives the exit code.
-pub fn report_usage(error: &clap::Error) -> u8 {
+/// Prints `--help` and `--version` as they are, and a usage error as one line, whose hint names the command if the first word after
+/// the program's name is one; gives the exit code.
+pub fn report_usage(error: &clap::Error, first: Option<&OsString>) -> u8 {
     if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         let _ = error.print();
         return if error.use_stderr() { 2 } else { 0 };
     }
-    eprintln!("hasard: {} (see `{} --help`)", usage_line(error), command());
+    eprintln!("hasard: {} (see `{} --help`)", usage_line(error), command(first));
     2
 }
 
@@ -59,11 +61,10 @@ pub fn usage_line(error: &clap::Error) -> String {
     line.strip_prefix("error: ").unwrap_or(&line).to_string()
 }
 
-/// The program and, if the first argument names one, its command: whose help says more.
-fn command() -> String {
+/// The program and, if the first word names one, its command: whose help says more.
+fn command(first: Option<&OsString>) -> String {
     use clap::CommandFactory;
-    let first = std::env::args().nth(1).unwrap_or_default();
-    match crate::args::Cli::command().find_subcommand(&first) {
+    match first.and_then(|first| crate::args::Cli::command().find_subcommand(first).cloned()) {
         Some(known) => format!("hasard {}", known.get_name()),
         None => "hasard".into(),
     }

@@ -16,8 +16,10 @@ mod zoo;
 use args::{Cli, Command};
 use clap::{ArgMatches, CommandFactory, FromArgMatches};
 use failure::Failure;
-use hasard_envs::EnvOptions;
+use hasard_envs::{EnvOptions, VecEnv};
+use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Summary};
+use hasard_learn::team::Team;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -28,9 +30,10 @@ fn parse(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, ArgMatches),
 
 /// Runs the command that the words say, the program's name first, and gives the exit code.
 pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let (cli, matches) = match parse(words) {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let (cli, matches) = match parse(words.iter().cloned()) {
         Ok(parsed) => parsed,
-        Err(error) => return failure::report_usage(&error),
+        Err(error) => return failure::report_usage(&error, words.get(1)),
     };
     // Which of a command's flags were typed, and which have their default.
     let typed = matches.subcommand().map_or(&matches, |(_, typed): (_, &ArgMatches)| typed);
@@ -67,18 +70,33 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Trains as `hasard train` with these words does, but tells the caller and not the terminal. Gives the run's directory and how it ended.
+/// Trains as `hasard train` with these words does, but tells the caller and not the terminal; as the first of a team whose others
+/// [`follow`]. Gives the run's directory and how it ended.
 ///
 /// # Errors
 /// One line that names the input and the remedy.
-pub fn train(words: impl IntoIterator<Item = OsString>, hooks: &mut Hooks<'_>) -> Result<(PathBuf, Summary), String> {
+pub fn train(
+    team: &Team,
+    words: impl IntoIterator<Item = OsString>,
+    hooks: &mut Hooks<'_>,
+) -> Result<(PathBuf, Summary), String> {
     let program = ["hasard", "train"].map(OsString::from);
     let (cli, matches) = parse(program.into_iter().chain(words)).map_err(|error| failure::usage_line(&error))?;
     let typed = matches.subcommand().map_or(&matches, |(_, typed)| typed);
     match cli.command {
-        Command::Train(args) => commands::train::begin(&args, typed).and_then(|begun| begun.train(hooks)).map_err(line),
+        Command::Train(args) => commands::train::begin(&args, typed).and_then(|begun| begun.train(team, hooks)).map_err(line),
         _ => Err("these words are another command's".to_string()),
     }
+}
+
+/// Trains with the first worker of a team until that ends the run.
+///
+/// # Errors
+/// One line that names the input and the remedy.
+pub fn follow(team: Team, warn: &mut dyn FnMut(String)) -> Result<(), String> {
+    let invitation = Invitation::hear(team).map_err(|error| error.to_string())?;
+    let options = settings::trained_options(&invitation.config.env).map_err(line)?;
+    invitation.follow(&|env, worlds| VecEnv::new(&env.id, &options, worlds), warn).map_err(|error| error.to_string())
 }
 
 /// The environment's id and options of the run in a directory, as its agent sees them.

@@ -1,14 +1,19 @@
 //! A body alone in the map of an environment, without rules and things: `beside_published.py` drives it.
 //!
+//! Argument: a folder of maps, or none for the built-in ones; floors are then given in the order of that map's sectors.
 //! Standard input: a line with the id; a line with the start (x, y, z, angle, pitch: map units and degrees); a line with the
 //! number of floors, and for each a line with a point of its sector (x, y), floor and ceiling; then a line of buttons for every
 //! tic. Standard output: position, angle, pitch and velocity after each.
 
+use hasard_engine::map::SectorId;
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::World;
-use hasard_envs::{Env, EnvOptions, parse_command};
+use hasard_envs::maps::Maps;
+use hasard_envs::{Env, EnvOptions, RuleSet, parse_command};
 use std::error::Error;
 use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::sync::Arc;
 
 const TURN: f64 = 4_294_967_296.0 / 360.0;
 
@@ -20,7 +25,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let text = std::io::read_to_string(std::io::stdin())?;
     let mut lines = text.lines();
     let mut line = || lines.next().ok_or("the input ends too early");
-    let env = Env::new(line()?, &EnvOptions::default())?;
+    let maps = std::env::args().nth(1).map(|folder| Arc::new(Maps::new(Path::new(&folder), None)));
+    let in_order = maps.is_some();
+    let env = Env::new(line()?, &EnvOptions { maps, rules: RuleSet::Released, ..EnvOptions::default() })?;
     let mut world = World::new(env.world().map.clone(), 1);
     // Past the spawn freeze.
     for _ in 0..20 {
@@ -29,9 +36,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let fixed = |value: f64| Fixed((value * 65536.0).round() as i32);
     let start = numbers(line()?)?;
-    for _ in 0..line()?.parse()? {
+    for index in 0..line()?.parse()? {
         let floor = numbers(line()?)?;
-        let sector = world.map.sector_at(fixed(floor[0]), fixed(floor[1]));
+        let sector = if in_order { SectorId(index) } else { world.map.sector_at(fixed(floor[0]), fixed(floor[1])) };
         let sector = world.sector_mut(sector);
         (sector.floor, sector.ceiling) = (fixed(floor[2]), fixed(floor[3]));
         sector.damage = Default::default();

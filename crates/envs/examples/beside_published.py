@@ -4,6 +4,7 @@
     cargo build --release -p hasard && cargo build --release -p hasard-envs --example bare_world
     python beside_published.py TARGET/release whole 100        # Precipice Plunge 1, which draws nothing at random: whole episodes
     python beside_published.py TARGET/release bodies VolcanicVenture 60   # bodies among the floors that the original drew
+    python beside_published.py TARGET/release bodies RemedyRush 60        # the same in the published map, which has no tiles
     python beside_published.py TARGET/release returns RemedyRush 1 300    # returns and costs in the published map, both engines
     python beside_published.py TARGET/release returns all 300             # all 24 maps (examples: action_episodes)
 
@@ -24,6 +25,8 @@ import vizdoom
 from published_engine import FOLDERS, MAPS, Published
 
 VARIABLES = "POSITION_X POSITION_Y POSITION_Z ANGLE PITCH VELOCITY_X VELOCITY_Y VELOCITY_Z".split()
+# Our maps of these are of our own design.
+PUBLISHED_MAPS = ("RemedyRush", "DetonatorsDilemma")
 SIMPLE = "TURN_LEFT TURN_RIGHT MOVE_FORWARD MOVE_BACKWARD LOOK_UP LOOK_DOWN JUMP".split()
 FULL = SIMPLE + "MOVE_LEFT MOVE_RIGHT SPEED CROUCH TURN180 LOOK_UP_DOWN_DELTA TURN_LEFT_RIGHT_DELTA".split()
 
@@ -119,7 +122,8 @@ def bodies(programs, scenario, episodes):
         for kind in {thing.name for thing in state.objects} - {"DoomPlayer"}:
             original.send_game_command(f"remove {kind}")
         original.send_game_command("god")
-        original.send_game_command(f"warp {rng.uniform(west, east):.0f} {rng.uniform(south, north):.0f}")
+        if scenario not in PUBLISHED_MAPS:  # there the rules have put the agent somewhere
+            original.send_game_command(f"warp {rng.uniform(west, east):.0f} {rng.uniform(south, north):.0f}")
         original.make_action([0] * len(FULL), 40)
         state = original.get_state()
         start = " ".join(repr(float(value)) for value in state.game_variables[:5])
@@ -131,8 +135,8 @@ def bodies(programs, scenario, episodes):
             floors.append(f"{x} {y} {sector.floor_height} {sector.ceiling_height}")
         theirs = played(original, tics)
         text = [f"{scenario}Level1-v0", start, str(len(floors)), *floors, *(words(FULL, values) for values in tics[: len(theirs)])]
-        program = f"{programs}/examples/bare_world"
-        out = subprocess.run([program], input="\n".join(text) + "\n", capture_output=True, text=True, check=True)
+        program = [f"{programs}/examples/bare_world"] + ([MAPS] if scenario in PUBLISHED_MAPS else [])
+        out = subprocess.run(program, input="\n".join(text) + "\n", capture_output=True, text=True, check=True)
         ours = [[float(value) for value in line.split(",")] for line in out.stdout.splitlines()]
         yield seed, len(theirs), first_difference(theirs, ours)
 

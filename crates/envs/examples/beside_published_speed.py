@@ -7,7 +7,8 @@
 
 The published worlds run raw, without any wrapper: 160x120 RGB24 as the engine gives it, reduced to 128x72 by indexing,
 4 tics a step, random buttons, new episodes included; the maps are those of the installed package `hasard`, the pictures
-those of the package `vizdoom`. Ours: 32 worlds in turn, 128x72 RGB, 4 tics a step, random actions, new episodes included.
+those of the package `vizdoom`. Ours: 32 worlds in turn, 128x72 RGB, 4 tics a step, random actions, new episodes included;
+built-in maps and pictures, with `--maps` the published ones.
 Each gets a second of wall time, in turn, for five rounds; printed is the median of the rounds' ratios.
 """
 
@@ -71,8 +72,8 @@ class Published:
         return steps / (time.perf_counter() - start)
 
 
-def ours(program, environment, seconds):
-    command = [program, environment, f"{seconds}s", LANES, "observe", "320"]
+def ours(program, environment, seconds, maps):
+    command = [program, environment, f"{seconds}s", LANES, "observe", "320"] + (["--maps"] if maps else [])
     done = subprocess.run(command, capture_output=True, text=True, env=os.environ)
     if done.returncode != 0:
         raise SystemExit(f"{program}: {done.stderr.strip()}")
@@ -85,6 +86,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--seconds", type=float, default=1.0)
     parser.add_argument("--simd", choices=["plain", "avx2", "avx512"], help="what ours may use (HASARD_SIMD)")
+    parser.add_argument("--maps", action="store_true", help="ours in the published maps, with the published pictures, too")
     parser.add_argument("--program", default="target/release/examples/step_cost", help="the built example")
     given = parser.parse_args()
     program = str(pathlib.Path(given.program).resolve())
@@ -101,7 +103,7 @@ def main():
         environment = f"{scenario}Level{level}-v0"
         published = Published(scenario, level)
         published.steps_per_second(0.2)
-        pairs = [(published.steps_per_second(given.seconds), ours(program, environment, given.seconds)) for _ in range(given.rounds)]
+        pairs = [(published.steps_per_second(given.seconds), ours(program, environment, given.seconds, given.maps)) for _ in range(given.rounds)]
         published.game.close()
         ratios = [mine / theirs for theirs, mine in pairs]
         medians.append(statistics.median(ratios))

@@ -1,12 +1,15 @@
-//! What a policy step costs: `step_cost ENVIRONMENT STEPS LANES [observe|step|hash] [WARM-UP STEPS]` (Linux).
+//! What a policy step costs: `step_cost ENVIRONMENT STEPS LANES [observe|step|hash] [WARM-UP STEPS] [--maps]` (Linux).
 //!
 //! Steps worlds in turn (frame skip 4, random actions, resets included) and prints the nanoseconds of a step, first of
 //! processor time, then of wall time; `1s` for STEPS takes as many as fit a second. `observe` (the default) draws 128x72 RGB after every step, `step` draws nothing, `hash` prints a fingerprint
 //! of all frames and of the state after every step: two builds that print the same did the same work. `ab.py` beside it
-//! runs two builds in turn, and valgrind counts the instructions of one (`--tool=callgrind`).
+//! runs two builds in turn, and valgrind counts the instructions of one (`--tool=callgrind`). With `--maps` the worlds are the
+//! published ones, from the Python packages `hasard` and `vizdoom`.
 
 use hasard_engine::math::Rng;
+use hasard_envs::maps::{Maps, find_iwad, find_maps};
 use hasard_envs::{Env, EnvOptions, FrameSize};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What is done after a step.
@@ -45,8 +48,10 @@ struct Worlds {
 }
 
 impl Worlds {
-    fn new(id: &str, lanes: usize) -> Result<Worlds, String> {
-        let options = EnvOptions { size: FrameSize::LEARNER, ..EnvOptions::default() };
+    fn new(id: &str, lanes: usize, published: bool) -> Result<Worlds, String> {
+        let maps = || Ok(Arc::new(Maps::new(&find_maps()?, Some(&find_iwad(true)?))));
+        let maps = published.then(maps).transpose().map_err(|error: hasard_envs::EnvError| error.to_string())?;
+        let options = EnvOptions { size: FrameSize::LEARNER, maps, ..EnvOptions::default() };
         let first = Env::new(id, &options).map_err(|error| error.to_string())?;
         let mut envs: Vec<Env> = (0..lanes).map(|_| first.sibling()).collect();
         (0..).zip(&mut envs).for_each(|(seed, env)| env.reset(seed));
@@ -89,19 +94,21 @@ fn processor_time() -> f64 {
 }
 
 fn run(arguments: &[String]) -> Result<(), String> {
-    let [id, steps, lanes, rest @ ..] = arguments else {
+    let published = arguments.iter().any(|argument| argument == "--maps");
+    let arguments: Vec<&String> = arguments.iter().filter(|argument| *argument != "--maps").collect();
+    let [id, steps, lanes, rest @ ..] = &arguments[..] else {
         return Err("which environment, how many steps, how many lanes? e.g. VolcanicVentureLevel3-v0 3000 8".into());
     };
-    let number = |text: &String| text.parse::<usize>().map_err(|_| format!("{text} is no number of steps or lanes"));
+    let number = |text: &&String| text.parse::<usize>().map_err(|_| format!("{text} is no number of steps or lanes"));
     let amount = Amount::of(steps).ok_or_else(|| format!("{steps} is no number of steps, and no time such as 1s"))?;
     let lanes = number(lanes)?.max(1);
-    let mode = match rest.first().map(String::as_str) {
+    let mode = match rest.first().map(|mode| mode.as_str()) {
         None | Some("observe") => Mode::Observe,
         Some("step") => Mode::Step,
         Some("hash") => Mode::Hash,
         Some(other) => return Err(format!("{other} is no way to run: observe, step or hash")),
     };
-    let mut worlds = Worlds::new(id, lanes)?;
+    let mut worlds = Worlds::new(id, lanes, published)?;
     worlds.run(rest.get(1).map_or(Ok(0), number)?, Mode::Step);
     let (start, wall, mut done, mut hash) = (processor_time(), Instant::now(), 0, 0);
     match amount {

@@ -30,6 +30,8 @@ pub enum LearnError {
     Panic(String),
     /// The loss or a gradient is no longer a number.
     Diverged(String),
+    /// The workers of the run cannot go on together.
+    Team(String),
 }
 
 impl LearnError {
@@ -64,7 +66,11 @@ impl std::fmt::Display for OneLine<'_> {
 impl std::fmt::Display for LearnError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            LearnError::Config(text) | LearnError::Worlds(text) | LearnError::Panic(text) | LearnError::Diverged(text) => {
+            LearnError::Config(text)
+            | LearnError::Worlds(text)
+            | LearnError::Panic(text)
+            | LearnError::Diverged(text)
+            | LearnError::Team(text) => {
                 write!(f, "{}", OneLine(text))
             }
             LearnError::File { path, doing, source } => {

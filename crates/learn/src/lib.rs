@@ -8,6 +8,8 @@
 //! 4. [`learning`]: advantages, normalisers, optimiser, the learner.
 //! 5. [`algorithms`]: an algorithm a file, on top of the learner.
 //! 6. [`runs`]: the trainer, checkpoints, evaluation, reports, measurements.
+//!
+//! A run of several workers is the same run with a [`team::Team`]: what they exchange is there.
 
 pub mod algorithms;
 pub mod config;
@@ -17,3 +19,4 @@ pub mod networks;
 pub mod random;
 pub mod runs;
 pub mod sampling;
+pub mod team;

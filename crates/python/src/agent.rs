@@ -78,10 +78,12 @@ impl TrainedAgent {
         py.detach(|| AgentState { memory: self.agent().blank(&seeds) })
     }
 
-    /// act(observations, state, costs, over) -> (actions int64 [n, groups], deltas float32 [n, 2], state)
+    /// act(observations, state, costs, over, cost_terms=None) -> (actions int64 [n, groups], deltas float32 [n, 2], state)
     ///
-    /// observations: uint8 [n, height, width, channels]. costs: of the step before, which agents that watch their budget need. over: lanes
-    /// whose episode has ended; they begin a new one, whose seed follows the old one's.
+    /// observations: uint8 [n, height, width, channels]. costs: of the step before, which agents that watch their budget need, and
+    /// cost_terms, a row a lane, those that watch one of the terms. over: lanes whose episode has ended; they begin a new one, whose seed
+    /// follows the old one's.
+    #[pyo3(signature = (observations, state, costs, over, cost_terms=None))]
     fn act<'py>(
         &self,
         py: Python<'py>,
@@ -89,13 +91,25 @@ impl TrainedAgent {
         state: &AgentState,
         costs: Option<Vec<f64>>,
         over: Option<Vec<bool>>,
+        cost_terms: Option<Vec<Vec<f64>>>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, AgentState)> {
         let lanes = state.memory.episodes.len();
         let pixels = self.pixels(observations, lanes)?;
-        for (name, given) in [("costs", costs.as_ref().map(Vec::len)), ("over", over.as_ref().map(Vec::len))] {
+        let lengths = [
+            ("costs", costs.as_ref().map(Vec::len)),
+            ("over", over.as_ref().map(Vec::len)),
+            ("cost_terms", cost_terms.as_ref().map(Vec::len)),
+        ];
+        for (name, given) in lengths {
             if given.is_some_and(|given| given != lanes) {
                 return Err(PyValueError::new_err(format!("{name} must have one entry for each of {lanes} lanes")));
             }
+        }
+        if let Some(term) = self.agent().watched().filter(|_| costs.is_some())
+            && cost_terms.iter().flatten().next().is_none_or(|terms| terms.len() <= term)
+        {
+            let why = "this agent watches one of the cost terms: give cost_terms too (infos=\"full\" has them)";
+            return Err(PyValueError::new_err(why));
         }
         let acted = py.detach(|| {
             let mut agent = self.agent();
@@ -104,7 +118,8 @@ impl TrainedAgent {
                 if over.as_ref().is_some_and(|over| over[lane]) {
                     agent.reset(lane, state.memory.episodes[lane].0.wrapping_add(1));
                 } else if let Some(costs) = &costs {
-                    agent.observe_cost(lane, costs[lane], &[]);
+                    let terms = cost_terms.as_ref().map_or(&[][..], |terms| &terms[lane]);
+                    agent.observe_cost(lane, costs[lane], terms);
                 }
             }
             let actions = agent.act(&pixels);

@@ -3,6 +3,8 @@
 use crate::errors::INVALID_OPTION;
 use hasard_learn::runs::report::Report;
 use hasard_learn::runs::trainer::Hooks;
+use hasard_learn::team::{Exchange, Team};
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,17 +17,53 @@ pub fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| hasard_cli::main(words))
 }
 
-/// train(words, callback, warn) -> (directory, stopped, last report)
+/// What carries bytes between the workers of a run: a Python function that takes an array of bytes and gives everyone's, in the order of
+/// ranks.
+struct Carrier(Py<PyAny>);
+
+impl Exchange for Carrier {
+    fn gather(&mut self, bytes: Vec<u8>) -> Result<Vec<Vec<u8>>, String> {
+        Python::attach(|py| -> PyResult<Vec<Vec<u8>>> {
+            let all = self.0.bind(py).call1((PyArray1::from_vec(py, bytes),))?;
+            all.try_iter()?.map(|one| Ok(one?.extract::<PyReadonlyArray1<'_, u8>>()?.as_array().to_vec())).collect()
+        })
+        .map_err(|error: PyErr| error.to_string())
+    }
+}
+
+fn team(exchange: Option<Py<PyAny>>, rank: usize, ranks: usize) -> Team {
+    exchange.map_or_else(Team::default, |exchange| Team::new(rank, ranks, Box::new(Carrier(exchange))))
+}
+
+/// follow(exchange, rank, ranks, warn)
+///
+/// Trains with the first worker of a team until that ends the run.
+#[pyfunction]
+pub fn follow(py: Python<'_>, exchange: Py<PyAny>, rank: usize, ranks: usize, warn: Py<PyAny>) -> PyResult<()> {
+    let team = team(Some(exchange), rank, ranks);
+    let mut say = |text: String| {
+        // What cannot be said is not worth ending the run for.
+        let _ = Python::attach(|py| warn.call1(py, (text,)));
+    };
+    py.detach(|| hasard_cli::follow(team, &mut say)).map_err(|line| INVALID_OPTION.error(py, line))
+}
+
+/// train(words, callback, warn, exchange=None, ranks=1) -> (directory, stopped, last report)
 ///
 /// Trains as `hasard train` with these words does. callback is called with every report as a dict; where it gives True the run ends
-/// with a checkpoint, as it does when it raises, or at Ctrl-C: what was raised is raised again when the run has ended.
+/// with a checkpoint, as it does when it raises, or at Ctrl-C: what was raised is raised again when the run has ended. With an exchange
+/// it is the first of so many workers, and the others follow.
 #[pyfunction]
+#[pyo3(signature = (words, callback, warn, exchange=None, ranks=1))]
 pub fn train(
     py: Python<'_>,
     words: Vec<OsString>,
     callback: Option<Py<PyAny>>,
     warn: Py<PyAny>,
+    exchange: Option<Py<PyAny>>,
+    ranks: usize,
 ) -> PyResult<(std::path::PathBuf, bool, Py<PyAny>)> {
+    let team = team(exchange, 0, ranks);
     let stop = AtomicBool::new(false);
     let mut raised: Option<PyErr> = None;
     let outcome = py.detach(|| {
@@ -50,7 +88,7 @@ pub fn train(
             // What cannot be said is not worth ending the run for.
             let _ = Python::attach(|py| warn.call1(py, (text,)));
         };
-        hasard_cli::train(words, &mut Hooks { stop: &stop, report: &mut report, warn: &mut say })
+        hasard_cli::train(&team, words, &mut Hooks { stop: &stop, report: &mut report, warn: &mut say })
     });
     if let Some(error) = raised {
         return Err(error);

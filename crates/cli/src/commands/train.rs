@@ -13,7 +13,8 @@ use hasard_learn::runs::interrupt::stop_on_interrupt;
 use hasard_learn::runs::progress_bar::{Bar, line};
 use hasard_learn::runs::report::Report;
 use hasard_learn::runs::run_directory::read_config;
-use hasard_learn::runs::trainer::{Hooks, Start, Summary, train};
+use hasard_learn::runs::trainer::{Hooks, Start, Summary, train_together};
+use hasard_learn::team::Team;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -56,12 +57,12 @@ pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, F
 
 impl Begun<'_> {
     /// Trains, and keeps the pictures of the map beside what is learned. Gives the run's directory and how it ended.
-    pub fn train(self, hooks: &mut Hooks<'_>) -> Result<(PathBuf, Summary), Failure> {
-        self.train_told(hooks, |_| {})
+    pub fn train(self, team: &Team, hooks: &mut Hooks<'_>) -> Result<(PathBuf, Summary), Failure> {
+        self.train_told(team, hooks, |_| {})
     }
 
     /// The same, telling once when the directory is the run's own: when the first worlds are made.
-    fn train_told(self, hooks: &mut Hooks<'_>, begins: impl Fn(&Begun<'_>)) -> Result<(PathBuf, Summary), Failure> {
+    fn train_told(self, team: &Team, hooks: &mut Hooks<'_>, begins: impl Fn(&Begun<'_>)) -> Result<(PathBuf, Summary), Failure> {
         let (mut drawn, mut failed_drawing) = (false, None);
         let told = std::cell::Cell::new(false);
         let report = &mut *hooks.report;
@@ -81,7 +82,7 @@ impl Begun<'_> {
             VecEnv::new(&env.id, &self.options, worlds)
         };
         let mut hooks = Hooks { stop: hooks.stop, report: &mut hear, warn: &mut *hooks.warn };
-        let summary = train(self.start.clone(), &self.directory, &make, &mut hooks).map_err(Failure::bad)?;
+        let summary = train_together(team, self.start.clone(), &self.directory, &make, &mut hooks).map_err(Failure::bad)?;
         match failed_drawing {
             Some(error) => Err(error),
             None => Ok((self.directory.clone(), summary)),
@@ -112,7 +113,7 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         None => eprintln!("hasard: {text}"),
     };
     let mut hooks = Hooks { stop: &stop, report: &mut hear, warn: &mut warn };
-    let (directory, summary) = begun.train_told(&mut hooks, |begun| {
+    let (directory, summary) = begun.train_told(&Team::default(), &mut hooks, |begun| {
         if bar.is_some() {
             describe(&begun.config, &begun.directory);
         }

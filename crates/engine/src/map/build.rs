@@ -1,8 +1,8 @@
 //! From the editable source to the built map: checks, fixed point, cross references.
 
 use super::{
-    Blockmap, Line, LineFlags, Map, MapError, MapSource, MapThing, Sector, SectorId, Side, SideId, TextureId, TextureName,
-    Vertex, bsp,
+    Blockmap, Line, LineFlags, Locator, Map, MapError, MapSource, MapThing, Sector, SectorId, Side, SideId, TextureId,
+    TextureName, Vertex, bsp,
 };
 use crate::math::{Angle, Fixed};
 use std::collections::BTreeMap;
@@ -50,6 +50,7 @@ impl Map {
         tags.sort_unstable();
         let blockmap = Blockmap::build(&lines)?;
         let tree = bsp::build(&lines, &sides)?;
+        let locator = Locator::build(&vertices, &tree.nodes);
         Ok(Map {
             name: name.to_owned(),
             textures,
@@ -62,6 +63,7 @@ impl Map {
             subsectors: tree.subsectors,
             nodes: tree.nodes,
             blockmap,
+            locator,
             tags,
         })
     }

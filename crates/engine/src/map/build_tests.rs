@@ -274,3 +274,21 @@ fn faults_are_named() {
     let crowd = fault(&|m| m.things = vec![m.things[0]; 70_000]);
     assert!(matches!(crowd, MapError::TooMany { what: "things", .. }));
 }
+
+#[test]
+fn searches_that_begin_at_a_cell_end_as_from_the_root() {
+    for seed in 0..20 {
+        let map = Map::build(&random_source(seed, 30), "random", &[]).unwrap();
+        let root = map.nodes.len() as u32 - 1;
+        let mut rng = Rng::new(seed);
+        for round in 0..4000 {
+            let (mut x, mut y) = (Fixed(rng.between(-1100 << 16, 1100 << 16)), Fixed(rng.between(-900 << 16, 1000 << 16)));
+            if round % 3 == 0 {
+                // On a corner or a hair beside it.
+                let vertex = &map.vertices[rng.below(map.vertices.len() as u32) as usize];
+                (x, y) = (vertex.x + Fixed(rng.between(-1, 1)), vertex.y + Fixed(rng.between(-1, 1)));
+            }
+            assert!(std::ptr::eq(map.subsector_at(x, y), map.subsector_below(root, x, y)), "map {seed} at {x:?}, {y:?}");
+        }
+    }
+}

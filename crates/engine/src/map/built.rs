@@ -1,6 +1,6 @@
 //! The built map: cross-referenced lists in fixed point, the BSP tree and the blockmap. Immutable once built.
 
-use super::TextureName;
+use super::{Locator, TextureName};
 use crate::math::{Angle, Fixed};
 
 /// Index into [`Map::textures`].
@@ -219,6 +219,8 @@ pub struct Map {
     pub nodes: Vec<Node>,
     /// Lines by block.
     pub blockmap: Blockmap,
+    /// Where searches of the tree begin.
+    pub locator: Locator,
     /// (tag, sector) sorted by tag then sector.
     pub tags: Vec<(i32, SectorId)>,
 }
@@ -241,7 +243,12 @@ impl Map {
     #[must_use]
     pub fn subsector_at(&self, x: Fixed, y: Fixed) -> &Subsector {
         let Some(root) = self.nodes.len().checked_sub(1) else { return &self.subsectors[0] };
-        let mut child = root as u32;
+        let child = self.locator.start(x, y, root as u32);
+        self.subsector_below(child, x, y)
+    }
+
+    /// The subsector below a child of the tree that contains a point.
+    pub(super) fn subsector_below(&self, mut child: u32, x: Fixed, y: Fixed) -> &Subsector {
         while child & Node::SUBSECTOR == 0 {
             let node = &self.nodes[child as usize];
             child = node.children[usize::from(node.is_left(x, y))];

@@ -12,6 +12,7 @@ mod error;
 #[cfg(test)]
 mod hostile_tests;
 mod left_out;
+mod locator;
 mod source;
 mod tile_grid;
 pub mod udmf;
@@ -21,5 +22,6 @@ pub use built::{
     Blockmap, Line, LineFlags, Map, MapThing, Node, Sector, SectorId, Seg, Side, SideId, Subsector, TextureId, Vertex,
 };
 pub use error::MapError;
+pub use locator::Locator;
 pub use source::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
 pub use tile_grid::TileGrid;

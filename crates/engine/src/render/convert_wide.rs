@@ -46,8 +46,9 @@ pub(super) fn load(bytes: &[u8; LANES]) -> __m512i {
     unsafe { _mm512_loadu_si512(bytes.as_ptr().cast()) }
 }
 
+#[inline]
 #[target_feature(enable = "avx512f")]
-fn store(bytes: &mut [u8; LANES], vector: __m512i) {
+pub(super) fn store(bytes: &mut [u8; LANES], vector: __m512i) {
     // SAFETY: 64 bytes are writable behind a reference to 64 bytes; the store needs no alignment.
     unsafe { _mm512_storeu_si512(bytes.as_mut_ptr().cast(), vector) }
 }

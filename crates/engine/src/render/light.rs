@@ -11,9 +11,9 @@ pub(super) const ONE_TABLE_DISTANCE: i64 = 1280;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Light {
     /// Table at infinite distance, 16.16; negative is brighter than full.
-    base: i64,
+    pub base: i64,
     /// Tables by which nearness brightens at most, 16.16: 0 where the table is the same at every distance.
-    most: i64,
+    pub most: i64,
 }
 
 impl Light {

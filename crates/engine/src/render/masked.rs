@@ -5,13 +5,15 @@ use super::camera::Camera;
 use super::frame::{Frame, class};
 use super::label::{Label, Labels};
 use super::light::{Light, ONE_TABLE_DISTANCE};
-use super::picture::MaskedPicture;
+use super::masked_column::MaskedColumn;
 use super::scene::Scene;
 use super::silhouette::{Silhouette, Silhouettes};
-use super::sprite::{Covered, SeenSprite};
+use super::sprite::SeenSprite;
+use super::stamp::{Covered, StampColumns};
 use super::wall::{INVERSE_BITS, TextureLine};
 use crate::map::SectorId;
 use crate::math::Fixed;
+use crate::simd::Simd;
 use crate::world::World;
 
 /// Everything that the drawing of masked things reads and writes.
@@ -24,9 +26,9 @@ pub(super) struct Masked<'a> {
     pub frame: &'a mut Frame,
     pub silhouettes: &'a mut Silhouettes,
     pub labels: &'a mut Labels,
-    /// Scratch: the open rows of the sprite at hand.
-    pub tops: &'a mut Vec<i16>,
-    pub bottoms: &'a mut Vec<i16>,
+    /// Scratch: the columns of the sprite at hand.
+    pub columns: &'a mut StampColumns,
+    pub simd: Simd,
 }
 
 impl Masked<'_> {
@@ -56,11 +58,7 @@ impl Masked<'_> {
 
     fn sprite<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &SeenSprite) {
         let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else { return };
-        let columns = sprite.end - sprite.first;
-        self.tops.clear();
-        self.tops.resize(columns, 0);
-        self.bottoms.clear();
-        self.bottoms.resize(columns, self.view.view_rows as i16);
+        sprite.open(self.columns, self.view);
         for index in (0..self.silhouettes.list.len()).rev() {
             let silhouette = &self.silhouettes.list[index];
             let (first, end) = (silhouette.first.max(sprite.first), silhouette.end.min(sprite.end));
@@ -76,24 +74,25 @@ impl Masked<'_> {
             }
             let own = first - sprite.first..end - sprite.first;
             if silhouette.solid {
-                self.bottoms[own].fill(0);
+                self.columns.bottoms[own].fill(0);
                 continue;
             }
             let open = silhouette.rows + first - silhouette.first..silhouette.rows + end - silhouette.first;
             if silhouette.floor.is_some_and(|height| sprite.bottom < height) {
-                for (row, &limit) in self.bottoms[own.clone()].iter_mut().zip(&self.silhouettes.bottoms[open.clone()]) {
+                for (row, &limit) in self.columns.bottoms[own.clone()].iter_mut().zip(&self.silhouettes.bottoms[open.clone()]) {
                     *row = (*row).min(limit);
                 }
             }
             if silhouette.ceiling.is_some_and(|height| sprite.top > height) {
-                for (row, &limit) in self.tops[own].iter_mut().zip(&self.silhouettes.tops[open]) {
+                for (row, &limit) in self.columns.tops[own].iter_mut().zip(&self.silhouettes.tops[open]) {
                     *row = (*row).max(limit);
                 }
             }
         }
         let label = self.labels.next_class();
-        let open = (&self.tops[..], &self.bottoms[..]);
-        let covered = sprite.draw::<DEPTH, CLASS>(self.frame, self.view, self.scene, picture, open, label);
+        let depth = self.frame.depths.sprite(sprite.distance, self.view.focal_y);
+        let stamp = sprite.stamp(self.scene, picture, self.columns, depth, label);
+        let covered = stamp.draw::<DEPTH, CLASS>(self.simd, self.frame, &self.view.rows);
         if CLASS && covered != Covered::NOTHING {
             let [[left, right], [top, bottom]] = [covered.columns, covered.rows];
             self.labels.list.push(Label {
@@ -145,22 +144,19 @@ impl Masked<'_> {
             let texels = picture.column(u.rem_euclid(i64::from(picture.width)) as u32);
             let step = (distance * self.view.inverse_focal_y) >> 16;
             let at = ((hung_from - self.camera.z) << 16) - self.camera.to_horizon(step);
-            let depth = self.frame.depths.wall(distance);
-            for row in rows.start as usize..rows.end as usize {
-                let v = (at + step * i64::from(self.view.rows[row])) >> 32;
-                let texel = texels[v.clamp(0, i64::from(picture.height) - 1) as usize];
-                if texel & MaskedPicture::OPAQUE == 0 {
-                    continue;
-                }
-                let pixel = row * self.frame.width + x;
-                self.frame.colour[pixel] = table[usize::from(texel as u8)];
+            let shown = MaskedColumn { texels, table, at, step };
+            let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
+            let told = depths.wall(distance);
+            shown.draw(self.simd, &self.view.rows, rows.start as usize..rows.end as usize, |row, lit| {
+                let pixel = row * *width + x;
+                colour[pixel] = lit;
                 if DEPTH {
-                    self.frame.depth[pixel] = depth;
+                    depth[pixel] = told;
                 }
                 if CLASS {
-                    self.frame.class[pixel] = class::WALL;
+                    classes[pixel] = class::WALL;
                 }
-            }
+            });
         }
     }
 }

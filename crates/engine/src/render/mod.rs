@@ -22,6 +22,9 @@ mod label;
 mod light;
 mod look;
 mod masked;
+mod masked_column;
+#[cfg(target_arch = "x86_64")]
+mod masked_wide;
 mod narrow;
 #[cfg(target_arch = "x86_64")]
 mod narrow_wide;
@@ -39,13 +42,21 @@ mod segmentation;
 mod silhouette;
 mod size;
 mod sky;
+#[cfg(target_arch = "x86_64")]
+mod span_wide;
 mod sprite;
+mod sprite_picture;
+mod stamp;
+#[cfg(target_arch = "x86_64")]
+mod stamp_wide;
 mod status_bar;
 mod top_down;
 mod turn;
 mod view;
 mod walk;
 mod wall;
+#[cfg(target_arch = "x86_64")]
+mod wall_wide;
 mod weapon;
 
 pub use frame::class;

@@ -19,7 +19,7 @@ pub(super) struct WallPicture {
 }
 
 impl WallPicture {
-    fn new(image: &Image) -> WallPicture {
+    pub fn new(image: &Image) -> WallPicture {
         let (width, height) = (u32::from(image.width).max(1), u32::from(image.height).max(1));
         let mut pixels = image.pixels.to_vec();
         pixels.resize((width * height) as usize, 0);

@@ -5,11 +5,15 @@ use super::camera::Camera;
 use super::frame::{Frame, class};
 use super::horizon::RowSlopes;
 use super::light::{Light, ONE_TABLE_DISTANCE};
-use super::narrow::padded;
 use super::picture::FlatPicture;
 use super::row_walk::RowWalk;
+#[cfg(target_arch = "x86_64")]
+use super::span_wide;
 use crate::map::TextureId;
 use crate::math::Fixed;
+#[cfg(target_arch = "x86_64")]
+use crate::simd::Level;
+use crate::simd::Simd;
 
 /// What is the same all over a plane.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -33,6 +37,8 @@ impl PlaneKey {
 
 /// Buckets of the table of planes.
 const BUCKETS: usize = 64;
+/// Columns that are looked at at once at most; a plane's lists are that much longer than a frame is wide.
+pub(super) const SPAN_BLOCK: usize = 64;
 /// No plane.
 const NONE: u16 = u16::MAX;
 
@@ -100,8 +106,8 @@ impl Planes {
         plane.next = std::mem::replace(&mut self.buckets[key.bucket()], index as u16);
         (plane.first, plane.end) = (self.width, 0);
         // What is more than there are columns ends the last span.
-        plane.top.resize(padded(self.width), 0);
-        plane.bottom.resize(padded(self.width), 0);
+        plane.top.resize(self.width + SPAN_BLOCK, 0);
+        plane.bottom.resize(self.width + SPAN_BLOCK, 0);
         plane.bottom.fill(i16::MIN);
         index as u16
     }
@@ -138,12 +144,25 @@ impl Plane {
         self.first >= self.end
     }
 
-    /// Lists every run of pixels of the plane in `spans` and returns how many there are. `starts` is scratch of one
-    /// entry more than the frame has rows.
-    ///
+    /// Lists every run of pixels of the plane in `spans`, in any order, and returns how many there are. `starts` is
+    /// scratch of one entry more than the frame has rows.
+    pub fn spans(&self, simd: Simd, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
+        #[cfg(target_arch = "x86_64")]
+        match simd.level() {
+            // SAFETY: whoever has this `Simd` has the instructions.
+            Level::Avx512 => return unsafe { span_wide::spans_avx512(self, spans) },
+            // SAFETY: as above.
+            Level::Avx2 => return unsafe { span_wide::spans_avx2(self, spans) },
+            Level::Plain => {}
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = simd;
+        self.spans_plainly(starts, spans)
+    }
+
     /// From column to column an end of the run of rows stays or moves by one, and which cannot be foretold: the first
     /// row that comes or goes is handled without a branch, by writing it in any case, and more of them by loops.
-    pub fn spans(&self, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
+    fn spans_plainly(&self, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
         let nowhere = starts.len() - 1;
         let mut count = 0;
         // The column behind the last one has no rows, which ends the last spans.
@@ -298,17 +317,20 @@ mod tests {
 
     const KEY: PlaneKey = PlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
 
-    fn covered(columns: &[(i16, i16)]) -> Vec<u8> {
+    fn covered(simd: Simd, columns: &[(i16, i16)]) -> Vec<u8> {
         let mut planes = Planes::default();
         planes.reset(columns.len());
         let index = planes.find(KEY);
-        let [tops, bottoms] = planes.columns(index, 0, columns.len());
-        for (x, &(top, bottom)) in columns.iter().enumerate().filter(|(_, (top, bottom))| top <= bottom) {
-            (tops[x], bottoms[x]) = (top, bottom);
+        let of_plane = |&(top, bottom): &(i16, i16)| top <= bottom;
+        let first = columns.iter().position(of_plane).unwrap_or(0);
+        let end = columns.iter().rposition(of_plane).map_or(0, |last| last + 1);
+        let [tops, bottoms] = planes.columns(index, first, end);
+        for (x, &column) in columns.iter().enumerate().filter(|(_, column)| of_plane(column)) {
+            (tops[x - first], bottoms[x - first]) = column;
         }
         let mut pixels = vec![0; 8 * columns.len()];
         let mut spans = Vec::new();
-        let count = planes.used()[0].spans(&mut [0; 9], &mut spans);
+        let count = if first < end { planes.used()[0].spans(simd, &mut [0; 9], &mut spans) } else { 0 };
         for span in &spans[..count] {
             assert!(span.first < span.end);
             let row = usize::from(span.row) * columns.len();
@@ -320,12 +342,18 @@ mod tests {
     #[test]
     fn spans_cover_each_pixel_once() {
         let mut rng = crate::math::Rng::new(5);
-        for _ in 0..3000 {
-            let columns: Vec<(i16, i16)> = (0..6).map(|_| (rng.between(0, 8) as i16, rng.between(0, 8) as i16)).collect();
-            let pixels = covered(&columns);
-            for (i, &count) in pixels.iter().enumerate() {
-                let (row, (top, bottom)) = ((i / 6) as i16, columns[i % 6]);
-                assert_eq!(count, u8::from(row >= top && row < bottom), "{columns:?} row {row} column {}", i % 6);
+        for round in 0..3000 {
+            let width = [6, 6, 6, 64, 128, 200][round % 6];
+            let mut any = |most: i32| rng.between(0, most) as i16;
+            let flat = round % 4 == 0;
+            let columns: Vec<(i16, i16)> = (0..width).map(|_| (any(if flat { 2 } else { 8 }), any(8))).collect();
+            for simd in Simd::available() {
+                let pixels = covered(simd, &columns);
+                for (i, &count) in pixels.iter().enumerate() {
+                    let (row, (top, bottom)) = ((i / width) as i16, columns[i % width]);
+                    let expected = u8::from(row >= top && row < bottom);
+                    assert_eq!(count, expected, "{simd:?}: {columns:?} row {row} column {}", i % width);
+                }
             }
         }
     }

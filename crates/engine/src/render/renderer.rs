@@ -15,6 +15,7 @@ use super::scene::Scene;
 use super::silhouette::Silhouettes;
 use super::sky::SkyShader;
 use super::sprite::{self, SeenSprite};
+use super::stamp::StampColumns;
 use super::status_bar::{BarState, StatusBar};
 use super::walk::{Walk, WalkScratch};
 use super::{Buffers, SegmentationColours, View, convert, weapon};
@@ -46,8 +47,8 @@ pub struct Renderer {
     /// Start of each column's texels in the sky's picture.
     sky_columns: Vec<u32>,
     sprites: Vec<SeenSprite>,
-    /// Rows that are open for the sprite at hand.
-    sprite_rows: [Vec<i16>; 2],
+    /// Columns of the sprite or weapon at hand.
+    stamp_columns: StampColumns,
     labels: Labels,
     status_bar: StatusBar,
     colours: Colours,
@@ -99,7 +100,7 @@ impl Renderer {
             slopes: RowSlopes::default(),
             sky_columns: vec![0; width],
             sprites: Vec::new(),
-            sprite_rows: [Vec::new(), Vec::new()],
+            stamp_columns: StampColumns::default(),
             labels: Labels::default(),
             status_bar: StatusBar::new(&scene.bar, &view),
             colours: Colours::new(scene.assets.palette),
@@ -173,7 +174,6 @@ impl Renderer {
     fn draw_masked<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera, world: &World, player: usize) {
         self.labels.list.clear();
         sprite::collect(&mut self.sprites, &self.scene, &self.view, camera, world, player, &self.entered);
-        let [tops, bottoms] = &mut self.sprite_rows;
         let mut masked = Masked {
             scene: &self.scene,
             view: &self.view,
@@ -183,8 +183,8 @@ impl Renderer {
             frame: &mut self.frame,
             silhouettes: &mut self.silhouettes,
             labels: &mut self.labels,
-            tops,
-            bottoms,
+            columns: &mut self.stamp_columns,
+            simd: self.simd,
         };
         masked.draw::<DEPTH, CLASS>(&self.sprites);
     }
@@ -195,7 +195,9 @@ impl Renderer {
         let state = BarState::of_player(world, player);
         let player = &world.players[player];
         let level = world.get(player.actor).map_or(0, |body| world.sector(body.sector).light);
-        weapon::draw::<DEPTH, CLASS>(&mut self.frame, scene, view, camera, player, i32::from(level));
+        let mut canvas =
+            weapon::Canvas { frame: &mut self.frame, columns: &mut self.stamp_columns, simd: self.simd, scene, view };
+        canvas.weapon::<DEPTH, CLASS>(camera, player, i32::from(level));
         self.status_bar.update(&mut self.frame, &scene.bar, view, state);
         let tint = Tint::of_player(player, self.options.green_goggles);
         if tint != self.tint {
@@ -219,7 +221,7 @@ impl Renderer {
             if plane.is_empty() {
                 continue;
             }
-            let count = plane.spans(&mut self.span_starts, &mut self.spans);
+            let count = plane.spans(self.simd, &mut self.span_starts, &mut self.spans);
             let spans = &self.spans[..count];
             if plane.key.sky {
                 let shader = SkyShader {

@@ -1,7 +1,8 @@
 //! A map made ready for drawing with a set of pictures.
 
 use super::blend::Blend;
-use super::picture::{MaskedPicture, Textures};
+use super::picture::Textures;
+use super::sprite_picture::SpritePicture;
 use super::status_bar::BarArt;
 use crate::assets::{Assets, TextureEntry};
 use crate::map::{Map, Node, Seg, Side, TextureId, TextureName};
@@ -88,7 +89,7 @@ pub struct Scene {
     /// Index of the sky's picture in `textures.walls`.
     pub(super) sky: usize,
     /// The images that sprites use, by index into `Assets::images`.
-    pub(super) sprite_pictures: Vec<Option<MaskedPicture>>,
+    pub(super) sprite_pictures: Vec<Option<SpritePicture>>,
     /// Index of the solid picture that fills what has no texture, in `textures.walls`.
     pub(super) missing_picture: usize,
     /// The status bar's pictures.
@@ -188,9 +189,7 @@ impl Scene {
         let frames = self.assets.sprites.get(usize::from(sprite)).map(|sprite| &sprite.frames);
         let image = frames.and_then(|frames| frames.get(usize::from(frame))).map(|frame| frame.images[0]);
         let picture = image.and_then(|image| self.sprite_pictures.get(image as usize)?.as_ref());
-        let opaque = picture.iter().flat_map(|picture| picture.texels.iter());
-        let opaque = opaque.filter(|&&texel| texel & MaskedPicture::OPAQUE != 0).map(|&texel| texel as u8);
-        let colour = mean(&self.assets.palette, opaque);
+        let colour = mean(&self.assets.palette, picture.iter().flat_map(|picture| picture.opaque_texels()));
         let brightest = u32::from(colour.into_iter().max().unwrap_or(0)).max(1);
         colour.map(|channel| (u32::from(channel) * 255 / brightest) as u8)
     }
@@ -241,11 +240,11 @@ fn texels_along(dx: i64, dy: i64) -> (i64, [i64; 2]) {
     (texels, [dx, dy].map(|d| (i128::from(d) * stretched / square as i128) as i64))
 }
 
-fn sprite_pictures(assets: &Assets) -> Vec<Option<MaskedPicture>> {
+fn sprite_pictures(assets: &Assets) -> Vec<Option<SpritePicture>> {
     let mut pictures = vec![None; assets.images.len()];
     for index in assets.sprites.iter().flat_map(|sprite| &sprite.frames).flat_map(|frame| frame.images) {
         if let Some(image) = assets.images.get(index as usize) {
-            pictures[index as usize] = Some(MaskedPicture::new(image));
+            pictures[index as usize] = Some(SpritePicture::new(image));
         }
     }
     pictures

@@ -2,18 +2,16 @@
 
 use super::View;
 use super::camera::Camera;
-use super::frame::Frame;
 use super::light::{Light, ONE_TABLE_DISTANCE};
-use super::picture::MaskedPicture;
 use super::scene::Scene;
+use super::sprite_picture::SpritePicture;
+use super::stamp::{Stamp, StampColumns, TEXEL_BITS};
 use super::wall::INVERSE_BITS;
 use crate::math::{Angle, Fixed};
 use crate::world::{Actor, ActorKind, OPAQUE, World};
 
 /// Actors nearer than this, in 16.16 map units, are not drawn.
 const NEAREST: i64 = 4 << 16;
-/// Fractional bits of texture positions.
-const TEXEL_BITS: u32 = 32;
 
 /// An actor in view.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +92,12 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
     let offset = i64::from(picture.offset_x);
     let across = (left - right) / 2 - (if mirrored { texels - 1 - offset } else { offset } << 16);
     // The outermost rays are as far to the side as forward.
-    let ends = [across, across + (texels << 16)].map(|across| (width + (across * width).div_euclid(distance)) >> 1);
+    let across = [across, across + (texels << 16)];
+    // Wholly beside the view: the divisions would only tell so.
+    if across[0] >= distance || across[1] <= -distance {
+        return None;
+    }
+    let ends = across.map(|across| (width + (across * width).div_euclid(distance)) >> 1);
     let [first, end] = ends.map(|column| usize::from(view.first_column[column.clamp(0, width) as usize]));
     if first >= end {
         return None;
@@ -150,77 +153,33 @@ fn rotation(camera: &Camera, actor: &Actor, x: i64, y: i64) -> usize {
     ((towards - actor.angle + Angle(0x9000_0000)).0 >> 29) as usize
 }
 
-/// The part of a frame that a sprite covered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Covered {
-    pub columns: [usize; 2],
-    pub rows: [usize; 2],
-}
-
-impl Covered {
-    pub const NOTHING: Covered = Covered { columns: [usize::MAX, 0], rows: [usize::MAX, 0] };
-
-    /// Adds pixels of a column, the first and the last of which are in the rows `first` and `end - 1`.
-    pub fn add(&mut self, x: usize, first: usize, end: usize) {
-        self.columns = [self.columns[0].min(x), self.columns[1].max(x + 1)];
-        self.rows = [self.rows[0].min(first), self.rows[1].max(end)];
-    }
-}
-
 impl SeenSprite {
-    /// Draws the rows `tops[i]..bottoms[i]` of its columns.
-    pub fn draw<const DEPTH: bool, const CLASS: bool>(
+    /// Opens its columns in rows down to `view_rows`; what stands before it narrows them.
+    pub fn open(&self, columns: &mut StampColumns, view: &View) {
+        let texel = |&column: &u32| ((self.u + self.u_step * i64::from(column)) >> 16) as u16;
+        columns.open(0..view.view_rows as i16, view.columns[self.first..self.end].iter().map(texel));
+    }
+
+    /// The picture on its way to the frame; `depth` and `class` are what its pixels get.
+    pub fn stamp<'a>(
         &self,
-        frame: &mut Frame,
-        view: &View,
-        scene: &Scene,
-        picture: &MaskedPicture,
-        open: (&[i16], &[i16]),
+        scene: &'a Scene,
+        picture: &'a SpritePicture,
+        columns: &'a StampColumns,
+        depth: u8,
         class: u16,
-    ) -> Covered {
-        let table = &scene.assets.light_tables[self.table];
-        let depth = frame.depths.sprite(self.distance, view.focal_y);
-        let mut covered = Covered::NOTHING;
-        for (x, (&top, &bottom)) in (self.first..self.end).zip(open.0.iter().zip(open.1)) {
-            let (top, bottom) = (top.max(self.first_row), bottom.min(self.end_row));
-            if top >= bottom {
-                continue;
-            }
-            let u = (self.u + self.u_step * i64::from(view.columns[x])) >> 16;
-            let texels = picture.column(u as u32);
-            let rows = top as usize..bottom as usize;
-            let start = rows.start * frame.width + x;
-            let pixels = frame.colour[start..].iter_mut().step_by(frame.width);
-            for (pixel, &row) in pixels.zip(&view.rows[rows.clone()]) {
-                let v = (self.v + self.v_step * i64::from(row)) >> TEXEL_BITS;
-                let texel = texels[v as usize];
-                let lit = table[usize::from(texel as u8)];
-                if texel & MaskedPicture::OPAQUE != 0 {
-                    *pixel = if self.opacity == OPAQUE { lit } else { scene.blend.over(lit, *pixel, self.opacity) };
-                }
-            }
-            if DEPTH || CLASS {
-                let (mut first, mut end) = (usize::MAX, 0);
-                for row in rows {
-                    let v = (self.v + self.v_step * i64::from(view.rows[row])) >> TEXEL_BITS;
-                    let opaque = texels[v as usize] & MaskedPicture::OPAQUE != 0;
-                    let at = row * frame.width + x;
-                    if DEPTH {
-                        let pixel = &mut frame.depth[at];
-                        *pixel = if opaque { depth } else { *pixel };
-                    }
-                    if CLASS {
-                        let pixel = &mut frame.class[at];
-                        *pixel = if opaque { class } else { *pixel };
-                        first = if opaque { first.min(row) } else { first };
-                        end = if opaque { row + 1 } else { end };
-                    }
-                }
-                if first < end {
-                    covered.add(x, first, end);
-                }
-            }
+    ) -> Stamp<'a> {
+        Stamp {
+            picture,
+            table: &scene.assets.light_tables[self.table],
+            first: self.first,
+            columns,
+            rows: self.first_row as usize..self.end_row as usize,
+            v: self.v,
+            v_step: self.v_step,
+            blend: (self.opacity < OPAQUE).then_some((&scene.blend, self.opacity)),
+            depth,
+            class,
         }
-        covered
     }
 }

@@ -7,6 +7,10 @@ use super::frame::Frame;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::WallPicture;
 use super::scene::{Face, SceneSeg};
+#[cfg(target_arch = "x86_64")]
+use super::wall_wide;
+#[cfg(target_arch = "x86_64")]
+use crate::simd::Level;
 use crate::simd::Simd;
 
 /// Fractional bits of screen rows.
@@ -16,7 +20,7 @@ pub(super) const INVERSE_BITS: u32 = 44;
 /// Fractional bits of the exact columns of a seg's ends.
 pub(super) const END_BITS: u32 = 18;
 /// The inverse of a distance beyond all maps, which keeps divisions in range.
-const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
+pub(super) const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
 
 /// The plane of a line as the camera sees it: all that depends on the line is linear in the base column, so that the
 /// pieces into which the BSP cut a line fit together exactly.
@@ -32,15 +36,15 @@ pub(super) struct SeenLine {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TextureLine {
     /// Position along the line of the point nearest to the eye, 16.16.
-    along: i64,
+    pub along: i64,
     /// Position along the line that a ray gains a unit of distance at base column 0, 60 fractional bits.
-    gain: i64,
+    pub gain: i64,
     /// Its change a column.
-    gain_step: i64,
+    pub gain_step: i64,
     /// Last position of the line.
-    last: i64,
+    pub last: i64,
     /// Texture position of the line's start.
-    offset: i64,
+    pub offset: i64,
 }
 
 impl TextureLine {
@@ -152,34 +156,165 @@ pub(super) struct WallShader<'a> {
     pub hung_from: i64,
 }
 
+/// Columns of a wall that are worked out side by side at most.
+pub(super) const WALL_BLOCK: usize = 8;
+
+/// Where the texture lies in the rows, the same in all columns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WallSlope {
+    /// Texture position at the height of the eye, as a fraction of the texture's height with 32 bits.
+    pub start: i64,
+    /// From the horizon to the lower edge of base row 0: whole base rows, and 65536ths of one to take away.
+    pub rows: i64,
+    pub fraction: i64,
+}
+
+/// What one column of a wall shows.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+struct WallColumn {
+    distance: i64,
+    /// Horizontal texture position, 16.16.
+    u: i64,
+    /// Light table.
+    table: usize,
+    /// Position in the texture at base row 0 and its change a base row, as fractions of its height with 32 bits: what
+    /// overflows is whole heights.
+    at: u32,
+    step: u32,
+}
+
 impl WallShader<'_> {
     /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on, into the frame's columns.
     pub fn draw<const DEPTH: bool>(&self, simd: Simd, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
-        let picture = self.picture;
-        let start = (self.hung_from * picture.inverse_height) >> 16;
+        let slope = self.slope();
+        for from in (0..tops.len()).step_by(WALL_BLOCK) {
+            #[cfg(target_arch = "x86_64")]
+            let block = (simd.level() == Level::Avx512).then(|| {
+                let columns = self.view.columns[first + from..].first_chunk().expect("the list is padded");
+                // SAFETY: whoever has this `Simd` has the instructions.
+                unsafe { wall_wide::columns(self, &slope, columns) }
+            });
+            for i in from..(from + WALL_BLOCK).min(tops.len()) {
+                let (x, top, bottom) = (first + i, tops[i], bottoms[i]);
+                if top >= bottom {
+                    continue;
+                }
+                #[cfg(target_arch = "x86_64")]
+                let column = match &block {
+                    Some(block) => WallColumn::of_block(block, i - from),
+                    None => self.column(&slope, i64::from(self.view.columns[x])),
+                };
+                #[cfg(not(target_arch = "x86_64"))]
+                let column = self.column(&slope, i64::from(self.view.columns[x]));
+                self.draw_column::<DEPTH>(simd, frame, x, [top as usize, bottom as usize], column);
+            }
+        }
+    }
+
+    fn slope(&self) -> WallSlope {
         // Texels are those of the rows' lower edges.
-        let (centre, fraction) = (self.camera.horizon >> 16, self.camera.horizon & 0xFFFF);
-        for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate() {
-            if top >= bottom {
-                continue;
+        let start = (self.hung_from * self.picture.inverse_height) >> 16;
+        WallSlope { start, rows: 1 - (self.camera.horizon >> 16), fraction: self.camera.horizon & 0xFFFF }
+    }
+
+    /// What a base column shows.
+    #[inline]
+    fn column(&self, slope: &WallSlope, column: i64) -> WallColumn {
+        let distance = self.line.distance_at(column);
+        let nearness = (self.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+        let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(self.picture.inverse_height)) >> 24;
+        let at = slope.start.wrapping_add(step.wrapping_mul(slope.rows)).wrapping_sub((step * slope.fraction) >> 16);
+        WallColumn {
+            distance,
+            u: self.texture.at(column, distance),
+            table: self.light.table(nearness),
+            at: at as u32,
+            step: step as u32,
+        }
+    }
+
+    #[inline(always)]
+    fn draw_column<const DEPTH: bool>(
+        &self,
+        simd: Simd,
+        frame: &mut Frame,
+        x: usize,
+        [top, bottom]: [usize; 2],
+        WallColumn { distance, u, table, at, step }: WallColumn,
+    ) {
+        let column = Column { texels: self.picture.column(u), table: &self.tables[table], at, step };
+        column.draw(simd, frame.columns.colour_of(x), &self.view.rows, top, bottom);
+        if DEPTH {
+            let depth = frame.depths.wall(distance);
+            frame.columns.depth_of(x)[top..bottom].fill(depth);
+        }
+        // The class of a wall is what the frame was cleared to.
+    }
+}
+
+impl WallColumn {
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn of_block(block: &wall_wide::WallColumns, i: usize) -> WallColumn {
+        WallColumn {
+            distance: block.distance[i],
+            u: block.u[i],
+            table: block.table[i] as usize,
+            at: block.at[i] as u32,
+            step: block.step[i] as u32,
+        }
+    }
+}
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+    use crate::render::FrameSize;
+
+    #[test]
+    fn columns_side_by_side_are_those_one_by_one() {
+        if !Simd::available().iter().any(|simd| simd.level() == Level::Avx512) {
+            return;
+        }
+        let mut rng = Rng::new(12);
+        let image =
+            crate::assets::Image { width: 64, height: 96, offset_x: 0, offset_y: 0, pixels: Box::new([0; 64 * 96]), mask: None };
+        let picture = WallPicture::new(&image);
+        let view = View::new(FrameSize::LEARNER).unwrap();
+        for _ in 0..20_000 {
+            let mut signed = |bits: u32| rng.next_u64() as i64 >> (63 - bits);
+            // Inverses from those beyond all maps to those of a wall at the eye.
+            let mut line = || {
+                let bits = 24 + signed(5).unsigned_abs() as u32 % 29;
+                SeenLine { inverse: signed(bits), inverse_step: signed(bits - 8) }
+            };
+            let (line, ends) = (line(), line());
+            let camera = Camera { horizon: signed(24), extra_light: (signed(1) & 1) as i32, ..Camera::default() };
+            let shader = WallShader {
+                camera: &camera,
+                view: &view,
+                tables: &[[0; 256]; 32],
+                line: &line,
+                ends: &ends,
+                texture: TextureLine {
+                    along: signed(30),
+                    gain: signed(58),
+                    gain_step: signed(50),
+                    last: signed(24).abs(),
+                    offset: signed(24),
+                },
+                picture: &picture,
+                light: Light::new(&camera, signed(8) as i32),
+                hung_from: signed(28),
+            };
+            let slope = shader.slope();
+            let columns: [u32; WALL_BLOCK] = *view.columns[rng.below(128) as usize..].first_chunk().unwrap();
+            // SAFETY: the processor has the instructions, see above.
+            let block = unsafe { wall_wide::columns(&shader, &slope, &columns) };
+            for (i, &column) in columns.iter().enumerate() {
+                assert_eq!(WallColumn::of_block(&block, i), shader.column(&slope, i64::from(column)), "{line:?} at {column}");
             }
-            let (top, bottom) = (top as usize, bottom as usize);
-            let x = first + i;
-            let column = i64::from(self.view.columns[x]);
-            let distance = self.line.distance_at(column);
-            let texels = picture.column(self.texture.at(column, distance));
-            let nearness = (self.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
-            let table = &self.tables[self.light.table(nearness)];
-            // Rows of texture a base row, as a fraction of its height with 32 bits: what overflows is whole heights.
-            let step = (((distance * self.view.inverse_focal_y) >> 24).wrapping_mul(picture.inverse_height)) >> 24;
-            let at = start.wrapping_add(step.wrapping_mul(1 - centre)).wrapping_sub((step * fraction) >> 16) as u32;
-            let column = Column { texels, table, at, step: step as u32 };
-            column.draw(simd, frame.columns.colour_of(x), &self.view.rows, top, bottom);
-            if DEPTH {
-                let depth = frame.depths.wall(distance);
-                frame.columns.depth_of(x)[top..bottom].fill(depth);
-            }
-            // The class of a wall is what the frame was cleared to.
         }
     }
 }

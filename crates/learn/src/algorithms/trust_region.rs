@@ -222,7 +222,7 @@ mod tests {
         let config = small::config(AlgorithmKind::Trpo);
         let (mut learner, rollout) = small::learner(&config);
         // As in the middle of a run, where pixels have been seen.
-        learner.absorb(&rollout);
+        learner.absorb(&rollout).unwrap();
         let prepared = learner.prepare(&rollout);
         let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
         let region = TrustRegion::new(&config);

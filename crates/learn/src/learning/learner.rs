@@ -7,13 +7,14 @@ use crate::error::LearnError;
 use crate::learning::advantage::{Lane, generalised_advantages};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use crate::learning::normaliser::{Moments, PixelNormaliser};
+use crate::learning::normaliser::{Moments, PixelNormaliser, PixelSums};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::{Policy, Taken};
 use crate::networks::cpu::simd::Kernels;
 use crate::networks::device::ComputeDevice;
 use crate::networks::{ModelSequences, ModelShape, Published, RecordedLane, Sequences, Stack};
 use crate::sampling::rollout::Rollout;
+use crate::team::Team;
 
 /// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of the costs; values of
 /// lane `l` at step `t` are at `l * steps + t`.
@@ -128,6 +129,8 @@ pub struct Learner {
     stale: bool,
     /// Nor the present statistics of pixels.
     stale_pixels: bool,
+    /// The workers that learn together.
+    team: Team,
 }
 
 impl Learner {
@@ -158,6 +161,15 @@ impl Learner {
             shape: shape.clone(),
             stale: true,
             stale_pixels: true,
+            team: Team::default(),
+        }
+    }
+
+    /// From now on it learns with the other workers of its run, from rollouts of which each has the pixels of its own lanes.
+    pub fn join(&mut self, team: &Team) {
+        if !team.is_alone() {
+            self.networks.share(team);
+            self.team = team.clone();
         }
     }
 
@@ -181,9 +193,12 @@ impl Learner {
 
     /// Takes over the statistics of a rollout's pixels: before it is learned from, as in the original, or after, where the
     /// first forward pass is to be the actors' own ([`LearningConfig::reuse_forward`](crate::config::LearningConfig)).
-    pub fn absorb(&mut self, rollout: &Rollout) {
-        self.pixels.update(self.kernels, &rollout.frames(), self.config.learning.threads);
+    pub fn absorb(&mut self, rollout: &Rollout) -> Result<(), LearnError> {
+        let mut sums = PixelSums::of(self.kernels, &rollout.frames(), self.shape.pixels(), self.config.learning.threads);
+        self.team.sum_whole(&mut sums.0)?;
+        self.pixels.merge(&sums);
         self.stale_pixels = true;
+        Ok(())
     }
 
     /// Computes a rollout's advantages and targets, and takes over the statistics of its returns.

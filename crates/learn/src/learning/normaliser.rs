@@ -87,47 +87,23 @@ impl PixelNormaliser {
     /// Merges a batch of frames, working on `threads` threads. Sums are whole numbers, so neither the order of frames
     /// nor the number of threads changes a bit.
     pub fn update(&mut self, kernels: Kernels, frames: &[&[u8]], threads: usize) {
-        if frames.is_empty() {
-            return;
+        self.merge(&PixelSums::of(kernels, frames, self.mean.len(), threads));
+    }
+
+    /// Merges frames of which the sums are known.
+    pub fn merge(&mut self, sums: &PixelSums) {
+        let Some((&frames, numbers)) = sums.0.split_last().filter(|(frames, _)| **frames > 0) else { return };
+        let (count, old_count) = (frames as f64, self.count);
+        let (sums, squares) = numbers.split_at(numbers.len() / 2);
+        for (((&sum, &square), own_mean), own_variance) in sums.iter().zip(squares).zip(&mut self.mean).zip(&mut self.variance) {
+            let mean = sum as f64 / count;
+            let deviations = square as f64 - mean * sum as f64;
+            let variance = (deviations / (count - 1.0).max(1.0)).max(0.0) / (255.0 * 255.0);
+            let mut moments = Moments { count: old_count, mean: *own_mean, variance: *own_variance };
+            moments.merge(count, mean / 255.0, variance);
+            (*own_mean, *own_variance) = (moments.mean, moments.variance);
         }
-        const BLOCK: usize = 2048;
-        let count = frames.len() as f64;
-        let total = self.count + count;
-        let (old_count, pixels) = (self.count, self.mean.len());
-        let share = pixels.div_ceil(threads.max(1)).next_multiple_of(BLOCK);
-        let parts = self.mean.chunks_mut(share).zip(self.variance.chunks_mut(share));
-        let mut work = Vec::new();
-        for (part, (means, variances)) in parts.enumerate() {
-            work.push(move || {
-                let (mut sums, mut squares) = ([0u32; BLOCK], [0u32; BLOCK]);
-                for (block, (means, variances)) in means.chunks_mut(BLOCK).zip(variances.chunks_mut(BLOCK)).enumerate() {
-                    let first = part * share + block * BLOCK;
-                    let (mut sum, mut square) = ([0u64; BLOCK], [0u64; BLOCK]);
-                    // 32 bits hold the squares of 66,000 pixels.
-                    for some in frames.chunks(65_536) {
-                        sums.fill(0);
-                        squares.fill(0);
-                        for frame in some {
-                            add_pixels(kernels, &frame[first..first + means.len()], &mut sums, &mut squares);
-                        }
-                        for lane in 0..means.len() {
-                            sum[lane] += u64::from(sums[lane]);
-                            square[lane] += u64::from(squares[lane]);
-                        }
-                    }
-                    for lane in 0..means.len() {
-                        let mean = sum[lane] as f64 / count;
-                        let deviations = square[lane] as f64 - mean * sum[lane] as f64;
-                        let variance = (deviations / (count - 1.0).max(1.0)).max(0.0) / (255.0 * 255.0);
-                        let mut moments = Moments { count: old_count, mean: means[lane], variance: variances[lane] };
-                        moments.merge(count, mean / 255.0, variance);
-                        (means[lane], variances[lane]) = (moments.mean, moments.variance);
-                    }
-                }
-            });
-        }
-        in_parallel(work);
-        self.count = total;
+        self.count += count;
     }
 
     /// How pixels enter the network under these statistics.
@@ -138,6 +114,43 @@ impl PixelNormaliser {
             scale: self.variance.iter().map(|&variance| (factor(variance) / 255.0) as f32).collect(),
             shift: self.variance.iter().zip(&self.mean).map(|(&variance, mean)| (-mean * factor(variance)) as f32).collect(),
         }
+    }
+}
+
+/// Sums of frames: of every pixel, of every pixel's square, and their number, one after the other.
+#[derive(Clone, PartialEq, Debug)]
+pub struct PixelSums(pub Vec<u64>);
+
+impl PixelSums {
+    /// The sums of some frames of so many pixels, worked out on `threads` threads.
+    #[must_use]
+    pub fn of(kernels: Kernels, frames: &[&[u8]], pixels: usize, threads: usize) -> PixelSums {
+        const BLOCK: usize = 2048;
+        let mut all = vec![0; 2 * pixels + 1];
+        all[2 * pixels] = frames.len() as u64;
+        let (sums, squares) = all[..2 * pixels].split_at_mut(pixels);
+        let share = pixels.div_ceil(threads.max(1)).next_multiple_of(BLOCK);
+        let parts = sums.chunks_mut(share).zip(squares.chunks_mut(share)).enumerate();
+        in_parallel(parts.map(|(part, (sums, squares))| {
+            move || {
+                let (mut some_sums, mut some_squares) = ([0u32; BLOCK], [0u32; BLOCK]);
+                for (block, (sums, squares)) in sums.chunks_mut(BLOCK).zip(squares.chunks_mut(BLOCK)).enumerate() {
+                    let first = part * share + block * BLOCK;
+                    // 32 bits hold the squares of 66,000 pixels.
+                    for some in frames.chunks(65_536) {
+                        some_sums.fill(0);
+                        some_squares.fill(0);
+                        for frame in some {
+                            add_pixels(kernels, &frame[first..first + sums.len()], &mut some_sums, &mut some_squares);
+                        }
+                        let wide = |narrow: &u32| u64::from(*narrow);
+                        sums.iter_mut().zip(some_sums.iter().map(wide)).for_each(|(sum, some)| *sum += some);
+                        squares.iter_mut().zip(some_squares.iter().map(wide)).for_each(|(sum, some)| *sum += some);
+                    }
+                }
+            }
+        }));
+        PixelSums(all)
     }
 }
 

@@ -8,6 +8,7 @@ pub mod distribution;
 mod initialise;
 mod network;
 mod shape;
+mod shared_network;
 mod stack;
 
 pub use network::{

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::network::{ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences};
 use super::shape::{ImageShape, NetworkShape};
+use super::shared_network::SharedNetwork;
 use crate::config::NetworkConfig;
 use crate::error::LearnError;
 #[cfg(feature = "graphics")]
@@ -11,6 +12,7 @@ use crate::networks::burn_network::BurnNetwork;
 use crate::networks::cpu::network::{CpuActor, CpuLearner};
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
+use crate::team::Team;
 
 /// Shape of a policy with its critics. An output row holds the policy's numbers, the value, and the value of each cost,
 /// whether one network makes them all or each has its own.
@@ -244,6 +246,12 @@ impl Stack {
             }
         };
         Stack { networks: shape.networks.iter().map(network).collect(), shape: shape.clone() }
+    }
+
+    /// From now on each worker of the team computes the lanes whose pixels it has.
+    pub fn share(&mut self, team: &Team) {
+        let shared = |own| -> Box<dyn LearningNetwork> { Box::new(SharedNetwork::new(own, team.clone())) };
+        self.networks = std::mem::take(&mut self.networks).into_iter().map(shared).collect();
     }
 
     /// Takes over weights.

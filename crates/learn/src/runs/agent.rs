@@ -288,6 +288,12 @@ impl Agent {
         Thought { probabilities, value: values.next(), cost_values: values.collect() }
     }
 
+    /// The cost term that it watches while it acts; `None` for the cost of all, or for agents that watch none.
+    #[must_use]
+    pub fn watched(&self) -> Option<usize> {
+        self.watched
+    }
+
     /// Tells what a step cost in a lane, in all and by cost terms; agents that watch their budget need it, and watch what
     /// they watched while they learned.
     pub fn observe_cost(&mut self, lane: usize, cost: f64, terms: &[f64]) {

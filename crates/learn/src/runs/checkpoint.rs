@@ -218,11 +218,29 @@ fn write_through(path: &Path, bytes: &[u8]) -> Result<(), LearnError> {
 }
 
 /// A checkpoint read back and found whole.
+#[derive(Serialize, Deserialize)]
 pub struct Loaded {
     weights: Vec<u8>,
     training: Vec<u8>,
     /// Counters and small state.
+    #[serde(with = "as_text")]
     pub progress: Progress,
+}
+
+/// Multipliers are of many shapes, which only a format that describes itself can hold.
+mod as_text {
+    use super::Progress;
+    use serde::de::Error as _;
+    use serde::ser::Error as _;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(progress: &Progress, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(&serde_json::to_string(progress).map_err(S::Error::custom)?)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Progress, D::Error> {
+        serde_json::from_str(&String::deserialize(from)?).map_err(D::Error::custom)
+    }
 }
 
 impl Loaded {

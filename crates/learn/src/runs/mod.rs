@@ -14,6 +14,7 @@ pub mod report;
 pub mod run_directory;
 pub mod session;
 pub mod tensorboard;
+pub mod together;
 pub mod trainer;
 pub mod watch;
 pub mod writer;

@@ -1,5 +1,6 @@
 //! A run in memory: worlds, samplers, learner and algorithm put together, without its directory.
 
+use std::ops::Range;
 use std::time::Instant;
 
 use hasard_envs::{CostTerm, EnvError, FinalObservations, VecEnv, VecOptions};
@@ -10,7 +11,6 @@ use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::learning::metrics::Means;
 use crate::learning::passes::Passes;
-use crate::networks::cpu::threads::deal;
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{Actor, ImageShape, ModelShape};
@@ -21,6 +21,8 @@ use crate::sampling::gather::Gatherer;
 use crate::sampling::rollout::Rollout;
 use crate::sampling::sampler::{Sampler, SamplerState, dealt_anew};
 use crate::sampling::shaping::Shaping;
+use crate::sampling::shared_rollout::{all_states, complete};
+use crate::team::Team;
 
 /// Makes batches of the worlds of an environment: one for each sampler, continuing each other's lanes.
 pub type MakeWorlds<'a> = dyn Fn(&EnvConfig, VecOptions) -> Result<VecEnv, EnvError> + 'a;
@@ -69,6 +71,12 @@ pub struct Session {
     pub cost_terms: &'static [CostTerm],
     /// The map's extent, if the worlds have places: x from, y from, x to, y to in map units.
     pub extent: Option<[i32; 4]>,
+    /// The workers of the run.
+    pub team: Team,
+    /// Which of the parts of a rollout are this worker's samplers'.
+    own_parts: Range<usize>,
+    /// Names of cost terms and statistics.
+    names: Vec<&'static str>,
 }
 
 /// The model that an algorithm wants for some worlds.
@@ -84,8 +92,18 @@ pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, 
 impl Session {
     /// Makes everything, and lets the samplers begin.
     pub fn new(config: TrainConfig, beginning: &Beginning<'_>, make_worlds: &MakeWorlds<'_>) -> Result<Session, LearnError> {
+        Session::of(Team::default(), config, beginning, make_worlds)
+    }
+
+    /// As [`Session::new`], one worker's share of the run of a team.
+    pub fn of(
+        team: Team,
+        config: TrainConfig,
+        beginning: &Beginning<'_>,
+        make_worlds: &MakeWorlds<'_>,
+    ) -> Result<Session, LearnError> {
         let device = ComputeDevice::of(&config)?;
-        Session::on(&device, config, beginning, make_worlds)
+        Session::made(team, &device, config, beginning, make_worlds)
     }
 
     /// As [`Session::new`], on a device that the settings do not name.
@@ -95,10 +113,26 @@ impl Session {
         beginning: &Beginning<'_>,
         make_worlds: &MakeWorlds<'_>,
     ) -> Result<Session, LearnError> {
+        Session::made(Team::default(), device, config, beginning, make_worlds)
+    }
+
+    fn made(
+        team: Team,
+        device: &ComputeDevice,
+        config: TrainConfig,
+        beginning: &Beginning<'_>,
+        make_worlds: &MakeWorlds<'_>,
+    ) -> Result<Session, LearnError> {
         let sampling = &config.sampling;
-        let shares: Vec<_> = deal(sampling.lanes, sampling.samplers).collect();
+        if team.ranks() > sampling.lanes {
+            let (ranks, lanes) = (team.ranks(), sampling.lanes);
+            return Err(LearnError::Config(format!(
+                "{ranks} workers cannot share {lanes} worlds; start fewer, or give more worlds"
+            )));
+        }
+        let (shares, own_parts) = team.shares(sampling.lanes, sampling.samplers);
         let mut worlds = Vec::new();
-        for share in &shares {
+        for share in &shares[own_parts.clone()] {
             let options = VecOptions {
                 lanes: share.len(),
                 threads: sampling.world_threads,
@@ -111,8 +145,10 @@ impl Session {
             worlds.push(make_worlds(&config.env, options).map_err(|error| LearnError::Worlds(error.to_string()))?);
         }
         let (extent, cost_terms) = (worlds[0].extent(), worlds[0].cost_terms());
+        let names = cost_terms.iter().map(|term| term.name).chain(worlds[0].statistics().iter().copied()).collect();
         let shape = model_shape(&config, &worlds[0])?;
         let mut learner = Learner::new(&config, &shape, device);
+        learner.join(&team);
         let mut algorithm = algorithms::make(&config);
         let mut watch = Watch::new(&config);
         let (mut frames, mut rollouts) = (0, 0);
@@ -137,7 +173,7 @@ impl Session {
             }
         }
         let mut samplers = Vec::new();
-        for ((worlds, state), share) in worlds.into_iter().zip(states).zip(shares) {
+        for ((worlds, state), share) in worlds.into_iter().zip(states.drain(own_parts.clone())).zip(&shares[own_parts.clone()]) {
             let actor = Actor::new(&shape, device);
             let shaping = Shaping::new(&config);
             let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, share.start, config.seed)?;
@@ -158,16 +194,35 @@ impl Session {
         }
         let ahead = if sampling.synchronous { 1 } else { sampling.accumulated + 1 };
         let gatherer = Gatherer::new(samplers, sampling.rollout, ahead, learner.publish());
-        Ok(Session { learner, algorithm, gatherer, watch, means: Means::default(), frames, rollouts, cost_terms, extent, config })
+        let means = Means::default();
+        Ok(Session {
+            learner,
+            algorithm,
+            gatherer,
+            watch,
+            means,
+            frames,
+            rollouts,
+            cost_terms,
+            extent,
+            team,
+            own_parts,
+            names,
+            config,
+        })
     }
 
     /// Waits for the next rollout and learns from it.
     pub fn turn(&mut self, warn: &mut dyn FnMut(String)) -> Result<Rollout, LearnError> {
         let waiting = Instant::now();
-        let rollout = self.gatherer.next_rollout()?;
+        let own = self.gatherer.next_rollout()?;
+        let rollout = complete(&self.team, self.learner.shape(), &self.names, own)?;
         self.means.add("seconds_waiting", waiting.elapsed().as_secs_f64());
         let learning = Instant::now();
-        self.learn(&rollout, warn)?;
+        let learned = self.learn(&rollout, warn);
+        // What was computed without the others' part is no outcome.
+        self.team.check()?;
+        learned?;
         self.means.add("seconds_learning", learning.elapsed().as_secs_f64());
         self.frames += rollout.rows() as u64 * u64::from(self.config.env.frame_skip);
         self.rollouts += 1;
@@ -175,9 +230,15 @@ impl Session {
     }
 
     /// Gives the samplers the present weights and lets them gather another rollout in the memory of one that is done with.
-    pub fn go_on(&mut self, rollout: Rollout) {
+    pub fn go_on(&mut self, mut rollout: Rollout) {
         let published = self.learner.publish();
-        self.gatherer.go_on(rollout, published);
+        let parts = rollout.parts.drain(self.own_parts.clone()).collect();
+        self.gatherer.go_on(Rollout { parts }, published);
+    }
+
+    /// Where the samplers of all workers are.
+    pub fn save_samplers(&mut self) -> Result<Vec<SamplerState>, LearnError> {
+        all_states(&self.team, self.gatherer.save()?)
     }
 
     /// Everything that is learned from a rollout.
@@ -199,7 +260,7 @@ impl Session {
         self.learner.exploration_coefficient =
             learning.exploration_coefficient + (last - learning.exploration_coefficient) * done;
         if !learning.reuse_forward {
-            self.learner.absorb(rollout);
+            self.learner.absorb(rollout)?;
         }
         let prepared = self.learner.prepare(rollout);
         for (name, share) in prepared.explained_variances(&self.config) {
@@ -209,7 +270,7 @@ impl Session {
         let signals = |costs: &[f64]| self.watch.signals(&self.config, costs);
         self.algorithm.learn(&mut self.learner, &prepared, &passes, &signals, &mut self.means)?;
         if learning.reuse_forward {
-            self.learner.absorb(rollout);
+            self.learner.absorb(rollout)?;
         }
         Ok(())
     }

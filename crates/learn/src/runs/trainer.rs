@@ -15,8 +15,10 @@ use crate::runs::heatmap::Heatmap;
 use crate::runs::report::Report;
 use crate::runs::run_directory::{RunDirectory, read_hand_out};
 use crate::runs::session::{Beginning, MakeWorlds, Session};
+use crate::runs::together::{Word, invite};
 use crate::runs::writer::Writer;
 use crate::sampling::gather::panic_text;
+use crate::team::Team;
 
 /// What the caller of a run hears of it, and how it ends it.
 pub struct Hooks<'a> {
@@ -69,12 +71,25 @@ pub fn train(
     make_worlds: &MakeWorlds<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Summary, LearnError> {
+    train_together(&Team::default(), start, directory, make_worlds, hooks)
+}
+
+/// As [`train`], with a team of workers of which this is the first: it alone has the directory, evaluates and reports. The others
+/// [`follow`](crate::runs::together::Invitation::follow).
+pub fn train_together(
+    team: &Team,
+    start: Start<'_>,
+    directory: &Path,
+    make_worlds: &MakeWorlds<'_>,
+    hooks: &mut Hooks<'_>,
+) -> Result<Summary, LearnError> {
     let fresh = !matches!(start, Start::Resume { .. });
     let (run, config, beginning, best) = begin(start, directory, hooks)?;
+    invite(team, &config, &beginning)?;
     // A panic of the learner's own thread ends as an error too; checkpoints already written stay.
     let whole = || {
         let lesson = beginning.progress().map_or(0, |progress| progress.lesson);
-        match Session::new(config.lesson(lesson), &beginning, make_worlds) {
+        match Session::of(team.clone(), config.lesson(lesson), &beginning, make_worlds) {
             Ok(session) => {
                 let seconds = beginning.progress().map_or(0.0, |progress| progress.wall_seconds);
                 Trainer::new(run, config, seconds, best, lesson, session, make_worlds).run(hooks)
@@ -162,7 +177,7 @@ impl<'a> Trainer<'a> {
     fn begin_lesson(&mut self) -> Result<(), LearnError> {
         self.lesson = self.config.lesson_at(self.session.frames);
         let config = self.config.lesson(self.lesson);
-        self.session = Session::new(config, &Beginning::Lesson(&self.session), self.make_worlds)?;
+        self.session = Session::of(self.session.team.clone(), config, &Beginning::Lesson(&self.session), self.make_worlds)?;
         self.heatmap = heatmap(&self.config, self.lesson, &self.session);
         Ok(())
     }
@@ -210,7 +225,9 @@ impl<'a> Trainer<'a> {
             }
             writer.check()?;
             let due = last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds;
-            if over || (due && writer.keeps_up()) {
+            let save = over || (due && writer.keeps_up());
+            Word { over, save }.tell(&self.session.team)?;
+            if save {
                 writer.checkpoint(self.checkpoint()?);
                 last_checkpoint = Instant::now();
             }
@@ -235,6 +252,7 @@ impl<'a> Trainer<'a> {
         // Of a curriculum, the last level's alone.
         let counts = self.lesson + 1 == self.config.lessons();
         let (evaluation, best) = self.examiner.examine(&mut self.session, counts)?;
+        Word { over: false, save: best }.tell(&self.session.team)?;
         if best {
             writer.best(self.checkpoint()?);
         }
@@ -273,7 +291,7 @@ impl<'a> Trainer<'a> {
 
     /// Takes a checkpoint.
     fn checkpoint(&mut self) -> Result<Checkpoint, LearnError> {
-        let samplers = self.session.gatherer.save()?;
+        let samplers = self.session.save_samplers()?;
         let progress = Progress {
             frames: self.session.frames,
             rollouts: self.session.rollouts,

@@ -4,3 +4,4 @@ pub mod gather;
 pub mod rollout;
 pub mod sampler;
 pub mod shaping;
+pub mod shared_rollout;

@@ -1,11 +1,13 @@
 //! What samplers hand to the learner: some steps of some lanes.
 
 use hasard_envs::Episode;
+use serde::{Deserialize, Serialize};
 
 use crate::networks::{ModelShape, Recording};
 
-/// Steps of a sampler's lanes. Step `t` of lane `l` is row `t * lanes + l`; all buffers are reused.
-#[derive(Clone, Debug, Default)]
+/// Steps of a sampler's lanes. Step `t` of lane `l` is row `t * lanes + l`; all buffers are reused. Another worker's part comes without
+/// what is skipped here.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Part {
     /// Steps.
     pub steps: usize,
@@ -14,10 +16,12 @@ pub struct Part {
     /// Lanes of each group; frames are kept by group.
     pub group_lanes: usize,
     /// Observations of a group at a step, `frames[t * groups + g]`, and after the last step.
+    #[serde(skip)]
     pub frames: Vec<Vec<u8>>,
     /// Extra inputs of each row, and after the last step.
     pub extra: Vec<f32>,
     /// State of each network before the first step.
+    #[serde(skip)]
     pub initial_state: Vec<Vec<f32>>,
     /// Categorical sub-actions.
     pub actions: Vec<u8>,
@@ -40,8 +44,10 @@ pub struct Part {
     /// Version of the weights of each step.
     pub versions: Vec<u64>,
     /// Episodes that ended, and with which step.
+    #[serde(skip)]
     pub episodes: Vec<(usize, Episode)>,
     /// What each network computed of the steps, if the learner may find a use for it.
+    #[serde(skip)]
     pub recordings: Vec<Recording>,
 }
 
@@ -69,9 +75,12 @@ impl Part {
         self.recordings.iter_mut().for_each(Recording::clear);
     }
 
-    /// The observation of a lane at a step; step `steps` is the one after the last.
+    /// The observation of a lane at a step; step `steps` is the one after the last. Empty where another worker has the pixels.
     #[must_use]
     pub fn frame(&self, step: usize, lane: usize) -> &[u8] {
+        if self.frames.is_empty() {
+            return &[];
+        }
         let groups = self.lanes / self.group_lanes;
         let frames = &self.frames[step * groups + lane / self.group_lanes];
         let size = frames.len() / self.group_lanes;
@@ -119,7 +128,7 @@ impl Rollout {
         panic!("lane {lane} of {}", self.lanes());
     }
 
-    /// All frames, those after the last step too.
+    /// All frames that are here, those after the last step too.
     #[must_use]
     pub fn frames(&self) -> Vec<&[u8]> {
         (0..=self.steps())
@@ -128,6 +137,7 @@ impl Rollout {
                 let (part, lane) = self.find(lane);
                 part.frame(step, lane)
             })
+            .filter(|frame| !frame.is_empty())
             .collect()
     }
 

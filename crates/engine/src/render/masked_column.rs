@@ -1,0 +1,85 @@
+//! One column of a texture with holes in an opening.
+
+#[cfg(target_arch = "x86_64")]
+use super::masked_wide;
+use super::picture::MaskedPicture;
+#[cfg(target_arch = "x86_64")]
+use crate::simd::Level;
+use crate::simd::Simd;
+use std::ops::Range;
+
+/// Rows that are worked out at once at most.
+pub(super) const MASKED_BLOCK: usize = 64;
+
+/// A column on its way to the frame.
+pub(super) struct MaskedColumn<'a> {
+    /// Palette indices, with [`MaskedPicture::OPAQUE`] where there is no hole.
+    pub texels: &'a [u16],
+    pub table: &'a [u8; 256],
+    /// Texture row at base row 0 and its change a base row, 32 fractional bits.
+    pub at: i64,
+    pub step: i64,
+}
+
+impl MaskedColumn<'_> {
+    /// Gives the frame rows of `rows` without a hole and their colours to `put`; `base_rows` are the base rows, padded.
+    #[inline(always)]
+    pub fn draw(&self, simd: Simd, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {
+        #[cfg(target_arch = "x86_64")]
+        if simd.level() == Level::Avx512 && self.texels.len() <= masked_wide::MOST_TEXELS {
+            for first in (rows.start / MASKED_BLOCK * MASKED_BLOCK..rows.end).step_by(MASKED_BLOCK) {
+                let base_rows = base_rows[first..].first_chunk().expect("lists by row are padded");
+                // SAFETY: whoever has this `Simd` has the instructions.
+                let (colours, opaque) = unsafe { masked_wide::block(self, base_rows) };
+                let above = rows.start.saturating_sub(first);
+                let below = (first + MASKED_BLOCK).saturating_sub(rows.end);
+                let mut shown = opaque & (u64::MAX << above) & (u64::MAX >> below);
+                while shown != 0 {
+                    let i = shown.trailing_zeros() as usize;
+                    put(first + i, colours[i]);
+                    shown &= shown - 1;
+                }
+            }
+            return;
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = simd;
+        let last = self.texels.len() as i64 - 1;
+        for row in rows {
+            let v = (self.at + self.step * i64::from(base_rows[row])) >> 32;
+            let texel = self.texels[v.clamp(0, last) as usize];
+            if texel & MaskedPicture::OPAQUE != 0 {
+                put(row, self.table[usize::from(texel as u8)]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    #[test]
+    fn all_ways_show_the_same_rows() {
+        let mut rng = Rng::new(14);
+        let table: [u8; 256] = std::array::from_fn(|_| rng.byte() as u8);
+        for round in 0..3000 {
+            let height = [128, 72, 64, 33, 1, 200][round % 6];
+            let length = [60u32, 100, 403][round / 6 % 3];
+            let texels: Vec<u16> = (0..height).map(|_| rng.below(512) as u16).collect();
+            let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + 8).map(|row| row * 5 / 3).collect();
+            let step = i64::from(rng.between(1, 1 << 30)) << rng.below(4);
+            let at = i64::from(rng.between(-100, 100)) << 32;
+            let column = MaskedColumn { texels: &texels, table: &table, at, step };
+            let (a, b) = (rng.below(length + 1) as usize, rng.below(length + 1) as usize);
+            let shown = |simd: Simd| {
+                let mut list = Vec::new();
+                column.draw(simd, &base_rows, a.min(b)..a.max(b), |row, colour| list.push((row, colour)));
+                list
+            };
+            let plain = shown(Simd::PLAIN);
+            Simd::available().into_iter().for_each(|simd| assert_eq!(shown(simd), plain, "{simd:?}"));
+        }
+    }
+}

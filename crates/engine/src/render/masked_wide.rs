@@ -1,0 +1,66 @@
+//! 64 rows of a column of a texture with holes, up to 128 texels high: the texels are two or four vectors of words. The
+//! plain twin is in `masked_column`, where a test compares them.
+
+use super::convert_wide::{load_table, look_up_block, store};
+use super::masked_column::{MASKED_BLOCK, MaskedColumn};
+use super::picture::MaskedPicture;
+use std::arch::x86_64::*;
+
+/// Most texels of a column.
+pub(super) const MOST_TEXELS: usize = 128;
+
+/// The colours of 64 base rows, and a bit for each that is no hole.
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+pub(super) fn block(column: &MaskedColumn, base_rows: &[u32; MASKED_BLOCK]) -> ([u8; MASKED_BLOCK], u64) {
+    let (halves, _) = base_rows.as_chunks::<32>();
+    let (low, high) = (texels(column, texel_rows(column, &halves[0])), texels(column, texel_rows(column, &halves[1])));
+    let is_opaque = _mm512_set1_epi16(MaskedPicture::OPAQUE as i16);
+    let opaque = [low, high].map(|half| u64::from(_mm512_test_epi16_mask(half, is_opaque)));
+    let indices = _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi16_epi8(low)), _mm512_cvtepi16_epi8(high), 1);
+    let mut colours = [0; MASKED_BLOCK];
+    store(&mut colours, look_up_block(load_table(column.table), indices));
+    (colours, opaque[0] | opaque[1] << 32)
+}
+
+/// The texture rows of 32 base rows, as words.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn texel_rows(column: &MaskedColumn, base_rows: &[u32; 32]) -> __m512i {
+    let (eights, _) = base_rows.as_chunks::<8>();
+    let low = _mm256_inserti128_si256(_mm256_castsi128_si256(eight(column, &eights[0])), eight(column, &eights[1]), 1);
+    let high = _mm256_inserti128_si256(_mm256_castsi128_si256(eight(column, &eights[2])), eight(column, &eights[3]), 1);
+    _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1)
+}
+
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn eight(column: &MaskedColumn, base_rows: &[u32; 8]) -> __m128i {
+    // SAFETY: 32 bytes are readable behind the reference.
+    let row = _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(base_rows.as_ptr().cast()) });
+    let change = _mm512_mullo_epi64(_mm512_set1_epi64(column.step), row);
+    let v = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(column.at), change), 32);
+    let last = _mm512_set1_epi64(column.texels.len() as i64 - 1);
+    _mm512_cvtepi64_epi16(_mm512_max_epi64(_mm512_min_epi64(v, last), _mm512_setzero_si512()))
+}
+
+/// The texels of 32 rows.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw")]
+fn texels(column: &MaskedColumn, rows: __m512i) -> __m512i {
+    let low = _mm512_permutex2var_epi16(part(column.texels, 0), rows, part(column.texels, 32));
+    if column.texels.len() <= 64 {
+        return low;
+    }
+    let high = _mm512_permutex2var_epi16(part(column.texels, 64), rows, part(column.texels, 96));
+    _mm512_mask_blend_epi16(_mm512_test_epi16_mask(rows, _mm512_set1_epi16(64)), low, high)
+}
+
+/// The texels from `from` on, as many as there are.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw")]
+fn part(texels: &[u16], from: usize) -> __m512i {
+    let texels = &texels[from.min(texels.len())..];
+    let there = if texels.len() >= 32 { u32::MAX } else { (1 << texels.len()) - 1 };
+    // SAFETY: only the texels that are there are read.
+    unsafe { _mm512_maskz_loadu_epi16(there, texels.as_ptr().cast()) }
+}
