@@ -4,7 +4,7 @@ import sys
 
 from hasard_rs.sample_factory import main
 
-sys.argv += [
+SETTINGS = [
     "--env=volcanic_venture",
     "--level=1",
     "--batched_sampling=True",
@@ -18,4 +18,7 @@ sys.argv += [
     "--normalize_input=True",
     "--train_dir=sample_factory_runs",
 ]
-sys.exit(main())
+# Sample-Factory starts processes that import this file.
+if __name__ == "__main__":
+    sys.argv += SETTINGS
+    sys.exit(main())

@@ -42,7 +42,7 @@ fn serve(folder: &Path, listen: &str) -> (Running, String) {
     let mut server = Running(command.stdout(Stdio::piped()).spawn().unwrap());
     let mut line = String::new();
     BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
-    (server, line.trim().to_owned())
+    (server, line.trim().trim_end_matches('/').to_owned())
 }
 
 #[test]

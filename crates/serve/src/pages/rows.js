@@ -1,5 +1,6 @@
 import { make, number } from '/dom.js';
 
+const NUMBERS = ['seed', 'fps', 'return', 'cost', 'budget', 'multiplier'];
 const last = (name) => (run) => run.last[name] ?? -Infinity;
 // Heads of the columns, and what they are sorted by; a name with a minus before it is the other way round.
 const HEADS = [['run', (run) => run.name], ['environment', (run) => run.env], ['algorithm', (run) => run.algo], ['seed', (run) => run.seed], ['progress', (run) => (run.last.frames ?? 0) / (run.total ?? 1)], ['fps', last('fps')],
@@ -11,7 +12,7 @@ export class Rows {
     this.onpick = onpick;
     this.rows = new Map();
     this.body = make('tbody');
-    this.heads = HEADS.map(([name]) => make('th', { scope: 'col' }, make('button', { class: 'sort', onclick: () => onsort(this.sort === name ? `-${name}` : name) }, name)));
+    this.heads = HEADS.map(([name]) => make('th', { scope: 'col', class: NUMBERS.includes(name) ? 'number' : '' }, make('button', { class: 'sort', onclick: () => onsort(this.sort === name ? `-${name}` : name) }, name)));
     const table = make('table', {}, make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, make('span', { class: 'unseen' }, 'compare')), ...this.heads)), this.body);
     this.element = make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Runs' }, table);
   }
@@ -41,7 +42,7 @@ export class Rows {
     let row = this.rows.get(run.id);
     if (!row) {
       const box = make('input', { type: 'checkbox', 'aria-label': `Compare ${run.name}`, 'data-run': run.id, onchange: () => this.onpick(run.id, box.checked) });
-      const cells = HEADS.map(([name]) => make('td', { class: ['seed', 'fps', 'return', 'cost', 'budget', 'multiplier'].includes(name) ? 'number' : '' }));
+      const cells = HEADS.map(([name]) => make('td', { class: NUMBERS.includes(name) ? 'number' : '' }));
       row = { box, cells, element: make('tr', {}, make('td', {}, box), ...cells) };
       cells[0].append(make('a', { href: `#run?id=${run.id}` }, run.name));
       [cells[1].textContent, cells[2].textContent, cells[3].textContent] = [run.env, run.algo, run.seed];

@@ -76,7 +76,10 @@ export function runs(main, query) {
     if (!some.length) return;
     const ids = some.map((run) => run.id).join(',');
     report.href = `/api/report?runs=${ids}`;
-    data = (await ask(`/api/curves?runs=${ids}&columns=${CURVES.map(([name]) => name).join(',')}`)) ?? data;
+    const answer = await ask(`/api/curves?runs=${ids}&columns=${CURVES.map(([name]) => name).join(',')}`);
+    // Answers may overtake each other: only the one to what is chosen now counts.
+    if (gone || !answer || ids !== picked().map((run) => run.id).join(',')) return;
+    data = answer;
     redraw();
     if (compared === ids) return;
     compared = ids;

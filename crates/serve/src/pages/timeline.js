@@ -5,7 +5,7 @@ function folded(events) {
   const open = new Map(), all = [];
   for (const event of events) {
     const last = open.get(event.what);
-    if (last && event.kind === 'harm' && event.step === last.until + 1) { last.until = event.step; last.size += event.size; continue; }
+    if (last && event.kind !== 'reward' && event.step === last.until + 1) { last.until = event.step; last.size += event.size; continue; }
     const one = { ...event, until: event.step };
     open.set(event.what, one);
     all.push(one);
@@ -36,9 +36,10 @@ export class Timeline {
     this.costs.splice(from, Infinity, ...costs);
     this.known = [...this.known.filter((event) => event.step <= from), ...events];
     if (over) this.slide.max = this.returns.length;
-    const button = (event) => make('button', { class: event.kind === 'harm' ? 'bad' : 'good', 'data-kind': event.kind, 'data-step': event.step, onclick: () => this.jump(event.step - 1) },
+    const button = (event) => make('button', { class: { harm: 'bad', reward: 'good' }[event.kind] ?? 'pale', 'data-kind': event.kind, 'data-step': event.step, onclick: () => this.jump(event.step - 1) },
       `${event.until > event.step ? `${event.step}–${event.until}` : event.step}: ${event.what.replaceAll('_', ' ')} ${number(event.size)}`);
-    const buttons = folded(this.known).slice(0, 500).map(button);
+    const order = (event) => (event.kind === 'noted' ? 1 : 0);
+    const buttons = folded(this.known).sort((a, b) => order(a) - order(b) || a.step - b.step).slice(0, 500).map(button);
     if (buttons.length) this.events.replaceChildren(...buttons);
     else if (over) this.events.replaceChildren(make('span', { class: 'pale' }, 'Nothing gained, nothing harmed.'));
     this.draw();
@@ -71,7 +72,7 @@ export class Timeline {
     pen.setLineDash([6, 4]);
     curve([this.scene.budget, ...Array(Number(this.slide.max)).fill(this.scene.budget)], most, bad);
     pen.setLineDash([]);
-    for (const event of this.known) {
+    for (const event of this.known.filter((one) => one.kind !== 'noted')) {
       pen.fillStyle = event.kind === 'harm' ? bad : good;
       pen.fillRect(x(event.step) - 1, event.kind === 'harm' ? height - 12 : height - 6, 3, 6);
     }

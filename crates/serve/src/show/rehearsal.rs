@@ -150,15 +150,16 @@ impl Rehearsal {
     /// What is known of the episode from a step on, for the time line.
     pub fn told_from(&self, first: usize) -> Value {
         let facts = &self.facts[first.min(self.facts.len())..];
-        let names: Vec<&str> = self.env.cost_terms().iter().map(|term| term.name).collect();
+        // A term that is measured beside the cost is no harm.
+        let kind = |counted: bool| if counted { "harm" } else { "noted" };
         let mut events = Vec::new();
         for (at, fact) in facts.iter().enumerate() {
             let step = first + at + 1;
             if fact.reward > 0.0 {
                 events.push(json!({ "step": step, "kind": "reward", "what": "reward", "size": fact.reward }));
             }
-            for (name, size) in names.iter().zip(&fact.terms).filter(|(_, size)| **size > 0.0) {
-                events.push(json!({ "step": step, "kind": "harm", "what": name, "size": size }));
+            for (term, size) in self.env.cost_terms().iter().zip(&fact.terms).filter(|(_, size)| **size > 0.0) {
+                events.push(json!({ "step": step, "kind": kind(term.counted), "what": term.name, "size": size }));
             }
         }
         let round = |value: f64| (value * 1000.0).round() / 1000.0;
