@@ -66,7 +66,7 @@ impl Rehearsal {
         let mut env = shared.stages.stage(&id, &options)?.env().sibling();
         env.reset(seed);
         let actor = match performer {
-            Performer::Fixed(policy) => Actor::Fixed(Box::new(PolicyRun::new(policy.clone(), env.action_space(), seed))),
+            Performer::Fixed(policy) => Actor::Fixed(Box::new(PolicyRun::new(*policy, env.action_space(), seed))),
             Performer::Agent { run, best, greedy } => {
                 let choice = if *greedy { Choice::Greedy } else { Choice::Sampled };
                 let mut agent = shared.agents.load(run, *best, choice, &env)?;

@@ -119,6 +119,7 @@ impl Browser {
     }
 
     /// Presses keys one after the other (`down`) or lets them go.
+    #[allow(dead_code, reason = "each test file uses some of it")]
     pub fn keys(&self, keys: &[&str], down: bool) {
         let kind = if down { "keyDown" } else { "keyUp" };
         let actions: Vec<Value> = keys.iter().map(|key| json!({ "type": kind, "value": key })).collect();
