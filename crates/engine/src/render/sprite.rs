@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::scene::Scene;
 use super::sprite_picture::SpritePicture;
-use super::stamp::{Stamp, StampColumns, TEXEL_BITS};
+use super::stamp::{Stamp, StampColumns, TEXEL_BITS, first_row};
 use super::wall::INVERSE_BITS;
 use crate::math::{Angle, Fixed};
 use crate::world::{Actor, ActorKind, OPAQUE, World};
@@ -108,11 +108,7 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
     let v_step = (distance * view.inverse_focal_y) >> (48 - TEXEL_BITS);
     let above = i64::from(top.0) - camera.z;
     let v = (above << (TEXEL_BITS - 16)) - camera.to_horizon(v_step);
-    let row = |texel: u32| {
-        let base = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
-        view.first_row[base.clamp(0, i64::from(view.base_view_rows)) as usize]
-    };
-    let (first_row, end_row) = (row(0), row(picture.height));
+    let (first_row, end_row) = (first_row(view, 0, v, v_step), first_row(view, picture.height, v, v_step));
     if first_row >= end_row {
         return None;
     }

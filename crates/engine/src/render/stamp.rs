@@ -1,5 +1,6 @@
 //! A picture with holes put on the frame as it is: what sprites and weapons come down to.
 
+use super::View;
 use super::blend::Blend;
 use super::frame::Frame;
 use super::picture::MaskedPicture;
@@ -15,6 +16,13 @@ use std::ops::Range;
 pub(super) const STAMP_BLOCK: usize = 64;
 /// Fractional bits of texture rows.
 pub(super) const TEXEL_BITS: u32 = 32;
+
+/// The first frame row whose lower edge is at a texture row or below it; `v` and `v_step` as in [`Stamp`].
+#[inline]
+pub(super) fn first_row(view: &View, texel: u32, v: i64, v_step: i64) -> i16 {
+    let base = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
+    view.first_row[base.clamp(0, i64::from(view.base_view_rows)) as usize]
+}
 
 /// The part of a frame that was covered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

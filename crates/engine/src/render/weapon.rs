@@ -6,7 +6,7 @@ use super::frame::{Frame, class};
 use super::light::Light;
 use super::palette::power_shows;
 use super::scene::Scene;
-use super::stamp::{Stamp, StampColumns, TEXEL_BITS};
+use super::stamp::{Stamp, StampColumns, TEXEL_BITS, first_row};
 use crate::simd::Simd;
 use crate::world::{OPAQUE, Player, PlayerSprite};
 
@@ -55,10 +55,7 @@ impl Canvas<'_> {
         let u = -u_step * column(0);
         let v = v_step * (1 - i64::from(view.base_view_rows / 2)) + (MIDDLE_ROW << TEXEL_BITS) - top;
         // Frame columns and rows that show the picture at all.
-        let row = |texel: u32| {
-            let row = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
-            view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize] as usize
-        };
+        let row = |texel: u32| first_row(view, texel, v, v_step) as usize;
         let [first, end] = [column(0), column(picture.width)].map(|column| column.clamp(0, i64::from(view.base_width)) as usize);
         let [first, end] = [first, end].map(|column| usize::from(view.first_column[column]));
         let texel = |&column: &u32| (((u + u_step * i64::from(column)) >> TEXEL_BITS) as u32).min(picture.width - 1) as u16;
