@@ -58,6 +58,19 @@ impl ActionShape {
         log_probability as f32
     }
 
+    /// Probability of each choice of each categorical.
+    #[must_use]
+    pub fn probabilities(&self, row: &[f32]) -> Vec<Vec<f32>> {
+        let mut rest = row;
+        let of = |&size: &usize| {
+            let (logits, after) = rest.split_at(size);
+            rest = after;
+            let (largest, sum) = softmax_parts(logits);
+            logits.iter().map(|logit| (libm::exp(f64::from(logit - largest)) / sum) as f32).collect()
+        };
+        self.sizes.iter().map(of).collect()
+    }
+
     /// The most probable action.
     pub fn greedy(&self, row: &[f32], actions: &mut [u8], deltas: &mut [f32]) {
         let mut first = 0;

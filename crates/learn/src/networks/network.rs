@@ -43,12 +43,35 @@ pub struct Sequences<'a> {
     pub recorded: Vec<RecordedLane<'a>>,
 }
 
-impl Sequences<'_> {
+impl<'a> Sequences<'a> {
     /// Number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.steps * self.lanes
     }
+
+    /// The rows of some lanes, as a batch of those lanes has them.
+    pub(crate) fn rows_of(&self, lanes: &[usize]) -> impl Iterator<Item = usize> {
+        (0..self.steps).flat_map(move |step| lanes.iter().map(move |lane| step * self.lanes + lane))
+    }
+
+    /// The trajectories of some lanes, each with `extra` extra inputs a row; states and what was recorded are left out.
+    pub(crate) fn of_lanes(&self, extra: usize, lanes: &[usize]) -> Sequences<'a> {
+        Sequences {
+            steps: self.steps,
+            lanes: lanes.len(),
+            observations: self.rows_of(lanes).map(|row| self.observations[row]).collect(),
+            extra: self.rows_of(lanes).flat_map(|row| &self.extra[row * extra..(row + 1) * extra]).copied().collect(),
+            initial_state: Vec::new(),
+            reset: self.rows_of(lanes).map(|row| self.reset[row]).collect(),
+            recorded: Vec::new(),
+        }
+    }
+}
+
+/// The states of some lanes, each of `units` numbers.
+pub(crate) fn states_of(states: &[f32], units: usize, lanes: &[usize]) -> Vec<f32> {
+    lanes.iter().flat_map(|lane| &states[lane * units..(lane + 1) * units]).copied().collect()
 }
 
 /// Weights of one network for acting: immutable and shared.

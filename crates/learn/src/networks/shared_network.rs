@@ -1,6 +1,6 @@
 //! A network that several workers compute together, each on its own lanes.
 
-use super::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
+use super::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences, states_of};
 use super::shape::NetworkShape;
 use crate::team::Team;
 
@@ -47,17 +47,11 @@ fn lanes_here(batch: &Sequences<'_>) -> Vec<usize> {
 
 /// The trajectories of some lanes.
 fn part_of<'a>(batch: &Sequences<'a>, shape: &NetworkShape, lanes: &[usize]) -> Sequences<'a> {
-    let rows = || (0..batch.steps).flat_map(|step| lanes.iter().map(move |lane| step * batch.lanes + lane));
-    let (extra, units) = (shape.extra_inputs, shape.state_size());
     let whole = batch.recorded.len() == batch.lanes;
     Sequences {
-        steps: batch.steps,
-        lanes: lanes.len(),
-        observations: rows().map(|row| batch.observations[row]).collect(),
-        extra: rows().flat_map(|row| &batch.extra[row * extra..(row + 1) * extra]).copied().collect(),
-        initial_state: lanes.iter().flat_map(|lane| &batch.initial_state[lane * units..(lane + 1) * units]).copied().collect(),
-        reset: rows().map(|row| batch.reset[row]).collect(),
+        initial_state: states_of(&batch.initial_state, shape.state_size(), lanes),
         recorded: if whole { lanes.iter().map(|&lane| batch.recorded[lane]).collect() } else { Vec::new() },
+        ..batch.of_lanes(shape.extra_inputs, lanes)
     }
 }
 
@@ -99,8 +93,11 @@ impl LearningNetwork for SharedNetwork {
             gradient.fill(0.0);
         } else {
             let width = self.own.shape().outputs();
-            let rows = (0..batch.steps).flat_map(|step| lanes.iter().map(move |lane| step * batch.lanes + lane));
-            let own = rows.flat_map(|row| &output_gradient[row * width..(row + 1) * width]).copied().collect::<Vec<f32>>();
+            let own = batch
+                .rows_of(&lanes)
+                .flat_map(|row| &output_gradient[row * width..(row + 1) * width])
+                .copied()
+                .collect::<Vec<f32>>();
             self.own.backward(&part_of(batch, self.own.shape(), &lanes), &own, gradient);
         }
         self.team.sum(gradient);

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use super::network::{ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences};
+use super::network::{
+    ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences, states_of,
+};
 use super::shape::{ImageShape, NetworkShape};
 use super::shared_network::SharedNetwork;
 use crate::config::NetworkConfig;
@@ -205,24 +207,10 @@ impl<'a> ModelSequences<'a> {
     /// The trajectories of some lanes, told which lanes these are of the batch.
     #[must_use]
     pub fn of_lanes(&self, shape: &ModelShape, lanes: &[usize]) -> ModelSequences<'a> {
-        let all = &self.sequences;
-        let rows = || (0..all.steps).flat_map(|step| lanes.iter().map(move |lane| step * all.lanes + lane));
-        let extra = shape.extra_inputs();
-        let state = |(network, state): (&NetworkShape, &Vec<f32>)| -> Vec<f32> {
-            let units = network.state_size();
-            lanes.iter().flat_map(|lane| &state[lane * units..(lane + 1) * units]).copied().collect()
-        };
+        let states = |(network, states): (&NetworkShape, &Vec<f32>)| states_of(states, network.state_size(), lanes);
         ModelSequences {
-            sequences: Sequences {
-                steps: all.steps,
-                lanes: lanes.len(),
-                observations: rows().map(|row| all.observations[row]).collect(),
-                extra: rows().flat_map(|row| &all.extra[row * extra..(row + 1) * extra]).copied().collect(),
-                initial_state: Vec::new(),
-                reset: rows().map(|row| all.reset[row]).collect(),
-                recorded: Vec::new(),
-            },
-            initial_state: shape.networks.iter().zip(&self.initial_state).map(state).collect(),
+            sequences: self.sequences.of_lanes(shape.extra_inputs(), lanes),
+            initial_state: shape.networks.iter().zip(&self.initial_state).map(states).collect(),
             recorded: self.recorded.iter().map(|all| lanes.iter().filter_map(|&lane| all.get(lane).copied()).collect()).collect(),
         }
     }

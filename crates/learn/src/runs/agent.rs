@@ -274,18 +274,8 @@ impl Agent {
     pub fn thought(&self, lane: usize) -> Thought {
         let width = self.shape.outputs();
         let row = &self.rows[lane * width..(lane + 1) * width];
-        let mut logits = row;
-        let probabilities = self.shape.action.sizes.iter().map(|&size| {
-            let (group, rest) = logits.split_at(size);
-            logits = rest;
-            let largest = group.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-            let exponentials: Vec<f32> = group.iter().map(|logit| (logit - largest).exp()).collect();
-            let sum: f32 = exponentials.iter().sum();
-            exponentials.iter().map(|one| one / sum).collect()
-        });
-        let probabilities = probabilities.collect();
         let mut values = row[self.shape.action.parameters()..].iter().copied();
-        Thought { probabilities, value: values.next(), cost_values: values.collect() }
+        Thought { probabilities: self.shape.action.probabilities(row), value: values.next(), cost_values: values.collect() }
     }
 
     /// The cost term that it watches while it acts; `None` for the cost of all, or for agents that watch none.
