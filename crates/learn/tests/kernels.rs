@@ -1,102 +1,54 @@
 //! The network on the processor against itself, bit by bit: families of kernels, numbers of threads, recorded and repeated
 //! forward passes. (`twins.rs` holds it against others.)
 
+mod trajectories;
+
 use hasard_learn::config::Convolution;
 use hasard_learn::networks::cpu::network::{CpuActor, CpuLearner};
 use hasard_learn::networks::cpu::simd::Kernels;
 use hasard_learn::networks::{
-    ActingNetwork, ImageShape, LearningNetwork, NetworkShape, PixelScale, Place, RecordedLane, Recording, Sequences,
+    ActingNetwork, LearningNetwork, NetworkShape, PixelScale, Place, RecordedLane, Recording, Sequences,
 };
-use hasard_learn::random::{Purpose, Stream};
+use trajectories::{normals, small_shapes};
 
 fn shapes() -> Vec<(&'static str, NetworkShape)> {
-    let small = NetworkShape {
-        image: ImageShape { height: 11, width: 14, channels: 2 },
+    let mut shapes = small_shapes();
+    let one_row = NetworkShape {
         convolutions: vec![
             Convolution { channels: 32, kernel: 4, stride: 2 },
-            Convolution { channels: 32, kernel: 3, stride: 2 },
+            Convolution { channels: 32, kernel: 4, stride: 2 },
         ],
-        dense: vec![64, 32],
-        extra_inputs: 1,
-        recurrent: Some(32),
-        heads: vec![3, 2],
+        dense: vec![32],
+        ..shapes[0].1.clone()
     };
-    vec![
-        ("overlapping kernels, extra input, two dense layers", small.clone()),
-        ("feed-forward", NetworkShape { recurrent: None, ..small.clone() }),
-        ("no convolution", NetworkShape { convolutions: vec![], ..small.clone() }),
-        (
-            "block kernels in a row",
-            NetworkShape {
-                convolutions: vec![
-                    Convolution { channels: 32, kernel: 3, stride: 1 },
-                    Convolution { channels: 32, kernel: 2, stride: 2 },
-                    Convolution { channels: 64, kernel: 2, stride: 1 },
-                ],
-                heads: vec![40],
-                ..small.clone()
-            },
-        ),
-        (
-            "one row of blocks",
-            NetworkShape {
-                convolutions: vec![
-                    Convolution { channels: 32, kernel: 4, stride: 2 },
-                    Convolution { channels: 32, kernel: 4, stride: 2 },
-                ],
-                dense: vec![32],
-                ..small
-            },
-        ),
-    ]
+    shapes.push(("one row of blocks", one_row));
+    shapes
 }
 
-/// Weights, and a batch with resets in the middle.
+/// A network's weights, and trajectories for it.
 struct Case {
     shape: NetworkShape,
     parameters: Vec<f32>,
-    pixels: PixelScale,
-    observations: Vec<Vec<u8>>,
-    extra: Vec<f32>,
-    state: Vec<f32>,
-    reset: Vec<bool>,
-    steps: usize,
-    lanes: usize,
+    batch: trajectories::Case,
     /// What the outputs are weighed with in the number whose gradient is taken.
     weights: Vec<f32>,
 }
 
 impl Case {
     fn new(shape: &NetworkShape, steps: usize, lanes: usize) -> Case {
-        let mut stream = Stream::new(11, Purpose::Evaluation, 0, 0);
-        let mut normals = |count: usize, scale: f32| -> Vec<f32> { (0..count).map(|_| scale * stream.normal() as f32).collect() };
-        let (rows, pixels) = (steps * lanes, shape.image.size());
-        let parameters = normals(shape.parameter_count(), 0.1);
-        let (extra, state) = (normals(rows * shape.extra_inputs, 0.3), normals(lanes * shape.state_size(), 0.3));
-        let (shift, weights) = (normals(pixels, 0.3), normals(rows * shape.outputs(), 1.0));
-        let scale = (0..pixels).map(|_| (2.0 + stream.uniform() as f32) / 255.0).collect();
-        let observations = (0..rows).map(|_| (0..pixels).map(|_| (stream.bits() >> 56) as u8).collect()).collect();
-        let reset = (0..rows).map(|_| stream.uniform() < 0.2).collect();
-        let pixels = PixelScale { scale, shift };
-        Case { shape: shape.clone(), parameters, pixels, observations, extra, state, reset, steps, lanes, weights }
+        let parameters = normals(shape.parameter_count(), 1).iter().map(|value| 0.1 * value).collect();
+        let weights = normals(steps * lanes * shape.outputs(), 2);
+        Case { shape: shape.clone(), parameters, batch: trajectories::Case::new(shape, steps, lanes), weights }
     }
 
     fn sequences(&self) -> Sequences<'_> {
-        Sequences {
-            steps: self.steps,
-            lanes: self.lanes,
-            observations: self.observations.iter().map(Vec::as_slice).collect(),
-            extra: self.extra.clone(),
-            initial_state: self.state.clone(),
-            reset: self.reset.clone(),
-            recorded: Vec::new(),
-        }
+        self.batch.sequences()
     }
 
     fn learner(&self, kernels: Kernels, threads: usize) -> CpuLearner {
         let mut learner = CpuLearner::new(kernels, &self.shape, threads);
         learner.load(&self.parameters);
-        learner.load_pixels(&self.pixels);
+        learner.load_pixels(&self.batch.pixels);
         learner
     }
 
@@ -146,7 +98,7 @@ fn recordings_replace_the_forward_pass_bit_by_bit() {
             let (recording, acted) = case.act(&learner, kernels);
             assert!(acted == plain.0, "{name}, {kernels}: acting gives other outputs");
             let mut batch = case.sequences();
-            batch.recorded = (0..case.lanes).map(|lane| RecordedLane { recording: &recording, lane }).collect();
+            batch.recorded = (0..case.batch.lanes).map(|lane| RecordedLane { recording: &recording, lane }).collect();
             // Observations that would give other outputs show that the pass is not repeated.
             let blank = vec![0; shape.image.size()];
             let mut blind = batch.clone();
@@ -171,18 +123,23 @@ impl Case {
         let (mut actor, mut recording) = (CpuActor::new(kernels, &self.shape), Recording::default());
         actor.load(&learner.publish());
         let (units, width, extra) = (self.shape.state_size(), self.shape.outputs(), self.shape.extra_inputs);
-        let (mut state, mut rows) = (self.state.clone(), vec![0.0; self.steps * self.lanes * width]);
-        for step in 0..self.steps {
-            for lanes in [0..self.lanes / 3, self.lanes / 3..self.lanes] {
-                let own = step * self.lanes + lanes.start..step * self.lanes + lanes.end;
-                for lane in lanes.clone().filter(|lane| self.reset[step * self.lanes + lane]) {
+        let (mut state, mut rows) = (self.batch.state.clone(), vec![0.0; self.batch.steps * self.batch.lanes * width]);
+        for step in 0..self.batch.steps {
+            for lanes in [0..self.batch.lanes / 3, self.batch.lanes / 3..self.batch.lanes] {
+                let own = step * self.batch.lanes + lanes.start..step * self.batch.lanes + lanes.end;
+                for lane in lanes.clone().filter(|lane| self.batch.reset[step * self.batch.lanes + lane]) {
                     state[lane * units..(lane + 1) * units].fill(0.0);
                 }
-                let place =
-                    Place { recording: &mut recording, steps: self.steps, all_lanes: self.lanes, step, lanes: lanes.clone() };
+                let place = Place {
+                    recording: &mut recording,
+                    steps: self.batch.steps,
+                    all_lanes: self.batch.lanes,
+                    step,
+                    lanes: lanes.clone(),
+                };
                 actor.act(
-                    &self.observations[own.clone()].concat(),
-                    &self.extra[own.start * extra..own.end * extra],
+                    &self.batch.observations[own.clone()].concat(),
+                    &self.batch.extra[own.start * extra..own.end * extra],
                     &mut state[lanes.start * units..lanes.end * units],
                     &mut rows[own.start * width..own.end * width],
                     Some(place),

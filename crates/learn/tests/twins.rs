@@ -2,82 +2,18 @@
 //! card's feature is built in, the one in burn.
 
 mod plain;
+mod trajectories;
 
-use hasard_learn::config::{Convolution, Initialisation};
+use hasard_learn::config::Initialisation;
 use hasard_learn::networks::cpu::network::{CpuActor, CpuLearner};
 use hasard_learn::networks::cpu::simd::Kernels;
-use hasard_learn::networks::{ActingNetwork, ImageShape, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Sequences};
-use hasard_learn::random::{Purpose, Stream};
+use hasard_learn::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights};
 use std::sync::Arc;
+use trajectories::{Case, normals, small_shapes};
 
 fn shapes() -> Vec<(&'static str, NetworkShape)> {
     let original = NetworkShape { heads: vec![9, 1, 1], ..NetworkShape::default() };
-    let small = NetworkShape {
-        image: ImageShape { height: 11, width: 14, channels: 2 },
-        convolutions: vec![
-            Convolution { channels: 32, kernel: 4, stride: 2 },
-            Convolution { channels: 32, kernel: 3, stride: 2 },
-        ],
-        dense: vec![64, 32],
-        extra_inputs: 1,
-        recurrent: Some(32),
-        heads: vec![3, 2],
-    };
-    vec![
-        ("original", original),
-        ("overlapping kernels, extra input, two dense layers", small.clone()),
-        ("feed-forward", NetworkShape { recurrent: None, ..small.clone() }),
-        ("no convolution", NetworkShape { convolutions: vec![], ..small.clone() }),
-        (
-            "block kernels in a row",
-            NetworkShape {
-                convolutions: vec![
-                    Convolution { channels: 32, kernel: 3, stride: 1 },
-                    Convolution { channels: 32, kernel: 2, stride: 2 },
-                    Convolution { channels: 64, kernel: 2, stride: 1 },
-                ],
-                heads: vec![40],
-                ..small
-            },
-        ),
-    ]
-}
-
-struct Case {
-    pixels: PixelScale,
-    observations: Vec<Vec<u8>>,
-    extra: Vec<f32>,
-    state: Vec<f32>,
-    reset: Vec<bool>,
-    steps: usize,
-    lanes: usize,
-}
-
-impl Case {
-    fn new(shape: &NetworkShape, steps: usize, lanes: usize) -> Case {
-        let mut stream = Stream::new(11, Purpose::Evaluation, 0, 0);
-        let mut normals = |count: usize| -> Vec<f32> { (0..count).map(|_| 0.3 * stream.normal() as f32).collect() };
-        let (rows, pixels) = (steps * lanes, shape.image.size());
-        let extra = normals(rows * shape.extra_inputs);
-        let state = normals(lanes * shape.state_size());
-        let shift = normals(pixels);
-        let scale = (0..pixels).map(|_| (2.0 + stream.uniform() as f32) / 255.0).collect();
-        let observations = (0..rows).map(|_| (0..pixels).map(|_| (stream.bits() >> 56) as u8).collect()).collect();
-        let reset = (0..rows).map(|_| stream.uniform() < 0.2).collect();
-        Case { pixels: PixelScale { scale, shift }, observations, extra, state, reset, steps, lanes }
-    }
-
-    fn sequences(&self) -> Sequences<'_> {
-        Sequences {
-            steps: self.steps,
-            lanes: self.lanes,
-            observations: self.observations.iter().map(Vec::as_slice).collect(),
-            extra: self.extra.clone(),
-            initial_state: self.state.clone(),
-            reset: self.reset.clone(),
-            recorded: Vec::new(),
-        }
-    }
+    std::iter::once(("original", original)).chain(small_shapes()).collect()
 }
 
 fn close(what: &str, a: &[f32], b: &[f32]) {
@@ -86,11 +22,6 @@ fn close(what: &str, a: &[f32], b: &[f32]) {
     for (index, (x, y)) in a.iter().zip(b).enumerate() {
         assert!((x - y).abs() <= 2e-4 * scale, "{what} {index}: {x} against {y} (largest {scale})");
     }
-}
-
-fn normals(count: usize, seed: u64) -> Vec<f32> {
-    let mut stream = Stream::new(12, Purpose::Evaluation, seed, 0);
-    (0..count).map(|_| stream.normal() as f32).collect()
 }
 
 /// Outputs, and for every block of parameters the change of a weighted sum of them in a random direction, by differences.
