@@ -11,7 +11,7 @@ from hasard_rs.errors import InvalidOption
 
 _WORLD = (
     "rules hard_constraint hard full_actions frame_skip resolution size observation layout frame_stack max_episode_steps "
-    "safety_budget iwad map published_depth published_colours"
+    "safety_budget iwad maps map published_depth published_colours"
 ).split()
 _UPSTREAM = "record_every render_boxes render_segmented".split()
 _VECTOR = "num_envs num_threads autoreset_mode batch_size copy".split()
@@ -36,11 +36,23 @@ class Arguments:
 
     @property
     def frame_skip(self) -> int:
+        """Tics that an action is held."""
         return int(self.world.get("frame_skip", 4))
 
 
 def read(given: dict[str, Any], *, vector: bool) -> Arguments:
-    """Sorts keyword arguments. An unknown one is a `TypeError` that names the nearest."""
+    """Sorts keyword arguments.
+
+    Args:
+        given: by name, scenario and level among them.
+        vector: whether those of batches are known too.
+
+    Returns:
+        The arguments, checked but for those of the worlds, which check theirs.
+
+    Raises:
+        TypeError for a name that is no argument, which names the nearest; InvalidOption for a value that it cannot have.
+    """
     given = dict(given)
     try:
         scenario, level = given.pop("scenario"), given.pop("level")
@@ -82,7 +94,7 @@ def _check(arguments: Arguments) -> None:
 
 
 def check_seed(seed: Any) -> int:
-    """A seed as an int modulo 2^64; a negative one is a `ValueError`, anything but an integer a `TypeError`."""
+    """Returns a seed as an int modulo 2^64. Raises ValueError for a negative one, TypeError for anything but an integer."""
     if not hasattr(seed, "__index__"):
         raise TypeError(f"a seed must be an integer, got {seed!r:.60}")
     seed = seed.__index__()
