@@ -18,7 +18,13 @@ Rows = tuple[Any, Any]
 
 
 class ActionFormat:
-    """One of the five formats for one action space. `one` reads the action of a single environment, `many` those of a batch."""
+    """One of the five formats for one action space.
+
+    Args:
+        nvec: choices of each categorical part.
+        deltas: number of continuous parts.
+        bins: of each delta where the format has no numbers.
+    """
 
     space: spaces.Space[Any]
 
@@ -29,9 +35,11 @@ class ActionFormat:
         self.bins = bins
 
     def one(self, action: Any) -> Rows:
+        """Reads the action of a single environment. Returns rows; raises InvalidAction, TypeError or ValueError."""
         raise NotImplementedError
 
     def many(self, actions: Any, lanes: int) -> Rows:
+        """Reads the actions of so many lanes. Returns rows; raises InvalidAction, TypeError or ValueError."""
         raise NotImplementedError
 
     def _integers(self, given: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
@@ -199,5 +207,5 @@ _FORMATS: dict[str, type[ActionFormat]] = {
 
 
 def action_format(name: str, nvec: tuple[int, ...], deltas: int, bins: int) -> ActionFormat:
-    """The format of a name, for an action space of so many choices a part and so many deltas."""
+    """Returns the format of a name, for an action space of so many choices a part (nvec) and so many deltas, cut into bins where need be."""
     return _FORMATS[name](nvec, deltas, bins)
