@@ -17,6 +17,7 @@ import numpy as np
 from hasard_rs import _core
 from hasard_rs.errors import HasardError
 from hasard_rs.progress import Bar
+from hasard_rs.registry import bare
 
 Report = dict[str, Any]
 """A row of metrics.jsonl: frames, return, cost, multipliers and so on, by name."""
@@ -82,7 +83,7 @@ def training_words(
     **flags: Any,
 ) -> list[str]:
     """Returns what `train` is given (env_id, algorithm, preset, out, set and flags) as words of the program."""
-    words = [env_id.removeprefix("hasard/"), "--algo", algorithm, "--quiet"]
+    words = [bare(env_id), "--algo", algorithm, "--quiet"]
     for name, value in {"preset": preset, "out": None if out is None else os.fspath(out), **flags}.items():
         flag = "--" + name.replace("_", "-")
         if value is True:

@@ -7,6 +7,7 @@ import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
+from hasard_rs import _core
 from hasard_rs.errors import InvalidOption
 
 _WORLD = (
@@ -89,6 +90,8 @@ def _check(arguments: Arguments) -> None:
     bins = arguments.delta_bins
     if isinstance(bins, bool) or not isinstance(bins, int) or not 3 <= bins <= 255 or bins % 2 == 0:
         raise InvalidOption(f"delta_bins cannot be {bins!r}; it must be an odd number, 3..255")
+    if arguments.render_resolution is not None:
+        arguments.render_resolution = _core.frame_size("render_resolution", arguments.render_resolution)
     if arguments.seed is not None:
         arguments.seed = check_seed(arguments.seed)
 

@@ -59,7 +59,9 @@ def ids() -> list[str]:
 
 
 def bare(env_id: str) -> str:
-    """Returns `env_id` without its namespace; `module:id` imports the module first, as Gymnasium does."""
+    """Returns `env_id` without its namespace; `module:id` imports the module first, as Gymnasium does. Raises TypeError for anything but a str."""
+    if not isinstance(env_id, str):
+        raise TypeError(f"an environment's id must be a str such as 'hasard/VolcanicVentureLevel1-v0', got {env_id!r:.60}")
     module, colon, rest = env_id.rpartition(":")
     if colon:
         importlib.import_module(module)
@@ -99,11 +101,15 @@ def register_environment(scenario: str | Scenario, level: int) -> None:
     Args:
         scenario: a `Scenario` or its value.
         level: 1 to 3.
+
+    Raises:
+        UnknownEnvironment, which names the nearest id.
     """
     import gymnasium
 
     name = scenario.value if isinstance(scenario, Scenario) else scenario
     env_id = f"hasard/{name}Level{level}-v0"
+    _core.describe(env_id)
     if env_id not in gymnasium.registry:
         # No max_episode_steps: it would wrap a limit of the wrong length for another frame_skip; the worlds truncate themselves.
         gymnasium.register(

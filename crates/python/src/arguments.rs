@@ -125,7 +125,8 @@ fn typed<'py, T: FromPyObjectOwned<'py>>(name: &str, given: &Bound<'py, PyAny>, 
     given.extract().map_err(|_| refused(given, name, allowed))
 }
 
-fn number(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyResult<u64> {
+/// A whole number from `least` to `most`.
+pub fn number(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyResult<u64> {
     let value: Result<u64, _> = given.call_method0("__index__").and_then(|index| index.extract());
     value.ok().filter(|value| (least..=most).contains(value)).ok_or_else(|| refused(given, name, &format!("{least}..={most}")))
 }
@@ -153,6 +154,15 @@ pub fn size(name: &str, given: &Bound<'_, PyAny>) -> PyResult<FrameSize> {
     let size = FrameSize { width, height };
     size.check().map_err(|_| wrong())?;
     Ok(size)
+}
+
+/// frame_size(name, resolution) -> (width, height)
+///
+/// Returns the size that `resolution` says, for the argument of this `name`. Raises InvalidOption.
+#[pyfunction]
+pub fn frame_size(name: &str, resolution: &Bound<'_, PyAny>) -> PyResult<(u16, u16)> {
+    let size = size(name, resolution)?;
+    Ok((size.width, size.height))
 }
 
 /// The `TypeError` of a name that is not known.

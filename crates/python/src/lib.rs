@@ -49,6 +49,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(program::main, module)?)?;
     module.add_function(wrap_pyfunction!(program::train, module)?)?;
     module.add_function(wrap_pyfunction!(program::follow, module)?)?;
+    module.add_function(wrap_pyfunction!(arguments::frame_size, module)?)?;
     module.add_function(wrap_pyfunction!(registry::ids, module)?)?;
     module.add_function(wrap_pyfunction!(registry::describe, module)?)?;
     Ok(())

@@ -39,7 +39,7 @@ enum CameBack {
     Bound(hasard_envs::Batch),
 }
 
-/// Worlds(env_id, num_envs, *, num_threads=None, groups=1, autoreset_mode="SameStep", final_observations="every",
+/// Worlds(env_id, num_envs, *, num_threads=None, groups=None, autoreset_mode="SameStep", final_observations="every",
 /// statistics=False, **arguments)
 ///
 /// A batch of worlds, raw: categorical actions in, arrays out. `hasard_rs.VectorEnv` is Gymnasium's view of one.
@@ -50,7 +50,7 @@ enum CameBack {
 ///     env_id: with or without `hasard/`.
 ///     num_envs: lanes, 1 to 65536.
 ///     num_threads: worker threads beside the caller's; None: one for every four lanes, as far as there are processors. No result depends on it.
-///     groups: of lanes that `send` and `recv` step on their own; it divides num_envs.
+///     groups: of lanes that `send` and `recv` step on their own, 1 (None) to num_envs.
 ///     autoreset_mode: "SameStep" (None means it), "NextStep" or "Disabled", or Gymnasium's enum.
 ///     final_observations: whose last observation a batch holds under "SameStep": "every" episode's, or only those "truncated".
 ///     statistics: whether batches hold the statistics of every step.
@@ -229,14 +229,14 @@ impl Worlds {
 #[pymethods]
 impl Worlds {
     #[new]
-    #[pyo3(signature = (env_id, num_envs, *, num_threads=None, groups=1, autoreset_mode=None, final_observations="every", statistics=false, **arguments))]
+    #[pyo3(signature = (env_id, num_envs, *, num_threads=None, groups=None, autoreset_mode=None, final_observations="every", statistics=false, **arguments))]
     #[allow(clippy::too_many_arguments, reason = "Python's keyword arguments")]
     fn new(
         py: Python<'_>,
         env_id: &str,
-        num_envs: usize,
-        num_threads: Option<usize>,
-        groups: usize,
+        num_envs: &Bound<'_, PyAny>,
+        num_threads: Option<&Bound<'_, PyAny>>,
+        groups: Option<&Bound<'_, PyAny>>,
         autoreset_mode: Option<&Bound<'_, PyAny>>,
         final_observations: &str,
         statistics: bool,
@@ -244,6 +244,9 @@ impl Worlds {
     ) -> PyResult<Worlds> {
         let id: EnvId = env_id.strip_prefix("hasard/").unwrap_or(env_id).parse().map_err(|error| raise(py, &error))?;
         let given = arguments::read(py, arguments)?;
+        let num_envs = arguments::number("num_envs", num_envs, 1, 65_536)? as usize;
+        let num_threads = num_threads.map(|given| arguments::number("num_threads", given, 0, 1024)).transpose()?;
+        let groups = groups.map_or(Ok(1), |given| arguments::number("groups", given, 1, num_envs as u64))? as usize;
         let autoreset = autoreset_mode.map_or(Ok(Autoreset::SameStep), arguments::autoreset)?;
         let final_observations = match final_observations {
             "every" => FinalObservations::Every,
@@ -254,7 +257,7 @@ impl Worlds {
             }
         };
         let spare_cpus = std::thread::available_parallelism().map_or(0, |cpus| cpus.get() - 1);
-        let threads = num_threads.unwrap_or_else(|| spare_cpus.min(num_envs / 4));
+        let threads = num_threads.map_or_else(|| spare_cpus.min(num_envs / 4), |threads| threads as usize);
         let options =
             VecOptions { lanes: num_envs, threads, groups, autoreset, final_observations, statistics, ..VecOptions::default() };
         let made = py.detach(|| Inner::new(&id.to_string(), &given.options, options));
