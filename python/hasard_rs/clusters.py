@@ -6,8 +6,10 @@ command line goes on where its directory stands.
 
 from __future__ import annotations
 
+import ctypes
 import json
 import shlex
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -41,8 +43,16 @@ def run_job(job: dict[str, Any]) -> tuple[int, str]:
     arguments = shlex.split(job["command"])[1:]
     if (directory / "config.json").exists() and "--resume" not in arguments:
         arguments.append("--resume")
-    done = subprocess.run([sys.executable, "-m", "hasard_rs.cli", *arguments], capture_output=True, text=True, check=False)
+    words = [sys.executable, "-m", "hasard_rs.cli", *arguments]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, preexec_fn=_ends_with_its_parent)
     return done.returncode, (done.stderr or done.stdout)[-2000:]
+
+
+def _ends_with_its_parent() -> None:
+    """Where a worker is killed, its run must not go on: it would hold the directory that another worker is to resume."""
+    if sys.platform == "linux":
+        set_parent_death_signal = 1
+        ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
 
 def sweep_on(place: str, words: list[str]) -> int:
