@@ -61,7 +61,7 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
         }
         "depth" => vec![observed(grid(&["PrecipicePlunge"], &[2], &["PPOPID"], 200_000_000), "rgb+depth")],
         "segmentation" => vec![observed(grid(&["ArmamentBurden"], &[2], &["PPOPID"], 500_000_000), "segmented")],
-        "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOLag"], 4_000_000))],
+        "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOLag"], 10_000_000))],
         "quick-all" => vec![Grid { seeds: vec![1], ..quick(grid(&SCENARIOS, &[1], &["PPOLag"], 16_000_000)) }],
         _ => {
             let known: Vec<&str> = EXPERIMENTS.iter().map(|(known, _)| *known).collect();
