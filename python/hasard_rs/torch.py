@@ -39,7 +39,7 @@ def read_weights(path: Path) -> dict[str, np.ndarray]:
 
 
 class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
-    """Convolutions, dense layers, a GRU if there is one, and linear heads, on one 8-bit image; as the run's settings say."""
+    """Convolutions, dense layers, a GRU or LSTM if there is one, and linear heads, on one 8-bit image; as the run's settings say."""
 
     def __init__(self, weights: dict[str, np.ndarray], settings: dict[str, Any]) -> None:
         super().__init__()
@@ -55,12 +55,13 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
             layer.weight.data, layer.bias.data = weight, tensor(f"convolution{index}.bias")
             self.convolutions.append(layer)
         self.dense = torch.nn.ModuleList(self._linear(tensor, f"dense{i}") for i in range(sum(name.startswith("dense") for name in layers)))
-        self.gru = None
-        if "gru.input_weight" in weights:
-            weight = tensor("gru.input_weight").T.contiguous()
-            self.gru = torch.nn.GRUCell(weight.shape[1], weight.shape[0] // 3)
-            self.gru.weight_ih.data, self.gru.bias_ih.data = weight, tensor("gru.input_bias")
-            self.gru.weight_hh.data, self.gru.bias_hh.data = tensor("gru.hidden_weight").T.contiguous(), tensor("gru.hidden_bias")
+        self.cell = None
+        for kind, module in {"gru": torch.nn.GRUCell, "lstm": torch.nn.LSTMCell}.items():
+            if f"{kind}.input_weight" in weights:
+                weight, hidden = tensor(f"{kind}.input_weight").T.contiguous(), tensor(f"{kind}.hidden_weight").T.contiguous()
+                self.cell = module(weight.shape[1], hidden.shape[1])
+                self.cell.weight_ih.data, self.cell.bias_ih.data = weight, tensor(f"{kind}.input_bias")
+                self.cell.weight_hh.data, self.cell.bias_hh.data = hidden, tensor(f"{kind}.hidden_bias")
         self.heads = torch.nn.ModuleList(self._linear(tensor, f"head{i}") for i in range(sum(name.startswith("head") for name in layers)))
 
     @staticmethod
@@ -71,7 +72,7 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
         return layer
 
     def forward(self, images: Any, extra: Any = None, state: Any = None) -> tuple[Any, Any]:
-        """Outputs [n, ...] for normalised images [n, channels, height, width], and the GRU's state after."""
+        """Outputs [n, ...] for normalised images [n, channels, height, width], and the state after: of an LSTM output and cell."""
         values = images
         for layer in self.convolutions:
             values = torch.nn.functional.elu(layer(values))
@@ -81,8 +82,9 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
             values = torch.nn.functional.elu(layer(values))
         if extra is not None:
             values = torch.cat([values, extra], 1)
-        if self.gru is not None:
-            state = values = self.gru(values, state)
+        if self.cell is not None:
+            state = self.cell(values, state)
+            values = state[0] if isinstance(state, tuple) else state
         return torch.cat([head(values) for head in self.heads], 1), state
 
 

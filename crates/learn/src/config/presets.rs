@@ -5,7 +5,7 @@ use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig, Exploration, LearningConfig,
     NetworkConfig, Preset, ReportingConfig, SamplingConfig, TrainConfig,
 };
-use crate::config::{Convolution, Initialisation};
+use crate::config::{Convolution, Initialisation, RecurrentCell};
 use hasard_envs::Scenario;
 
 /// Tics of the longest episode.
@@ -41,6 +41,7 @@ impl TrainConfig {
                 ],
                 dense: if released { vec![512] } else { vec![512, 512] },
                 recurrent: Some(512),
+                cell: RecurrentCell::Gru,
                 separate,
                 initialisation: match (released, separate) {
                     (false, _) => Initialisation::Orthogonal,
