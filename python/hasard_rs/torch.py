@@ -25,7 +25,7 @@ _EPSILON = 1e-5
 
 
 def read_weights(path: Path) -> dict[str, np.ndarray]:
-    """The tensors of a safetensors file: a length, a JSON header, the bytes."""
+    """Returns the tensors, by name, of the safetensors file at `path`: a length, a JSON header, the bytes."""
     data = path.read_bytes()
     (length,) = struct.unpack("<Q", data[:8])
     header = json.loads(data[8 : 8 + length])
@@ -39,7 +39,12 @@ def read_weights(path: Path) -> dict[str, np.ndarray]:
 
 
 class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
-    """Convolutions, dense layers, a GRU or LSTM if there is one, and linear heads, on one 8-bit image; as the run's settings say."""
+    """Convolutions, dense layers, a GRU or LSTM if there is one, and linear heads, on one 8-bit image.
+
+    Args:
+        weights: arrays by name, of this network.
+        settings: the part "network" of the run's config.json.
+    """
 
     def __init__(self, weights: dict[str, np.ndarray], settings: dict[str, Any]) -> None:
         super().__init__()
@@ -72,7 +77,16 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
         return layer
 
     def forward(self, images: Any, extra: Any = None, state: Any = None) -> tuple[Any, Any]:
-        """Outputs [n, ...] for normalised images [n, channels, height, width], and the state after: of an LSTM output and cell."""
+        """Runs the network.
+
+        Args:
+            images: normalised, float32 [n, channels, height, width].
+            extra: further features, float32 [n, m], or None.
+            state: of the GRU, float32 [n, hidden], or of the LSTM, a pair of them (output, cell); None: episodes begin.
+
+        Returns:
+            Outputs float32 [n, ...], and the state after.
+        """
         values = images
         for layer in self.convolutions:
             values = torch.nn.functional.elu(layer(values))
@@ -89,7 +103,12 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
 
 
 class Model(torch.nn.Module):  # type: ignore[name-defined,misc]
-    """The whole model of a run: one network, or one for the policy and for each critic."""
+    """The whole model of a run: one network, or one for the policy and for each critic. Made by `load`.
+
+    Args:
+        weights: arrays by name, of a checkpoint.
+        settings: the part "network" of the run's config.json.
+    """
 
     def __init__(self, weights: dict[str, np.ndarray], settings: dict[str, Any]) -> None:
         super().__init__()
@@ -101,9 +120,15 @@ class Model(torch.nn.Module):  # type: ignore[name-defined,misc]
         self.networks = torch.nn.ModuleList(Network(part, settings) for part in own)
 
     def forward(self, observations: Any, state: Any = None, extra: Any = None) -> tuple[Any, list[Any]]:
-        """Outputs for observations uint8 [n, height, width, channels] and each network's state (None: episodes begin).
+        """Runs the model.
 
-        extra: what is left of the budget, [n, 1], for PPOSaute's agents.
+        Args:
+            observations: uint8 [n, height, width, channels].
+            state: each network's; None: episodes begin.
+            extra: what is left of the budget, float32 [n, 1], for PPOSaute's agents.
+
+        Returns:
+            Outputs float32 [n, logits and deltas | value | cost values], and each network's state after.
         """
         count, shape = len(observations), observations.shape[1:]
         pixels = (observations.reshape(count, -1).float() * self.scale + self.shift).clamp(-5.0, 5.0)
@@ -114,7 +139,18 @@ class Model(torch.nn.Module):  # type: ignore[name-defined,misc]
 
 
 def load(run: str | os.PathLike[str], *, best: bool = False) -> Model:
-    """The network of a run directory's newest checkpoint, or of the best within budget."""
+    """The network of a trained agent.
+
+    Args:
+        run: the directory that `hasard_rs.train`, or the program, wrote.
+        best: the best checkpoint within budget instead of the newest.
+
+    Returns:
+        A `Model`, on the CPU.
+
+    Raises:
+        InvalidOption where no such checkpoint was written.
+    """
     checkpoints = Path(run) / "checkpoints"
     found = [checkpoints / "best"] if best else sorted(checkpoints.glob("frames_*"))
     if not found or not found[-1].is_dir():
