@@ -39,7 +39,7 @@ def read_weights(path: Path) -> dict[str, np.ndarray]:
 
 
 class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
-    """Convolutions, dense layers, a GRU if there is one, and linear heads, on one 8-bit image.
+    """Convolutions, dense layers, a GRU or LSTM if there is one, and linear heads, on one 8-bit image.
 
     Args:
         weights: arrays by name, of this network.
@@ -60,12 +60,13 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
             layer.weight.data, layer.bias.data = weight, tensor(f"convolution{index}.bias")
             self.convolutions.append(layer)
         self.dense = torch.nn.ModuleList(self._linear(tensor, f"dense{i}") for i in range(sum(name.startswith("dense") for name in layers)))
-        self.gru = None
-        if "gru.input_weight" in weights:
-            weight = tensor("gru.input_weight").T.contiguous()
-            self.gru = torch.nn.GRUCell(weight.shape[1], weight.shape[0] // 3)
-            self.gru.weight_ih.data, self.gru.bias_ih.data = weight, tensor("gru.input_bias")
-            self.gru.weight_hh.data, self.gru.bias_hh.data = tensor("gru.hidden_weight").T.contiguous(), tensor("gru.hidden_bias")
+        self.cell = None
+        for kind, module in {"gru": torch.nn.GRUCell, "lstm": torch.nn.LSTMCell}.items():
+            if f"{kind}.input_weight" in weights:
+                weight, hidden = tensor(f"{kind}.input_weight").T.contiguous(), tensor(f"{kind}.hidden_weight").T.contiguous()
+                self.cell = module(weight.shape[1], hidden.shape[1])
+                self.cell.weight_ih.data, self.cell.bias_ih.data = weight, tensor(f"{kind}.input_bias")
+                self.cell.weight_hh.data, self.cell.bias_hh.data = hidden, tensor(f"{kind}.hidden_bias")
         self.heads = torch.nn.ModuleList(self._linear(tensor, f"head{i}") for i in range(sum(name.startswith("head") for name in layers)))
 
     @staticmethod
@@ -81,10 +82,10 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
         Args:
             images: normalised, float32 [n, channels, height, width].
             extra: further features, float32 [n, m], or None.
-            state: of the GRU, float32 [n, hidden]; None: episodes begin.
+            state: of the GRU, float32 [n, hidden], or of the LSTM, a pair of them (output, cell); None: episodes begin.
 
         Returns:
-            Outputs float32 [n, ...], and the GRU's state after.
+            Outputs float32 [n, ...], and the state after.
         """
         values = images
         for layer in self.convolutions:
@@ -95,8 +96,9 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
             values = torch.nn.functional.elu(layer(values))
         if extra is not None:
             values = torch.cat([values, extra], 1)
-        if self.gru is not None:
-            state = values = self.gru(values, state)
+        if self.cell is not None:
+            state = self.cell(values, state)
+            values = state[0] if isinstance(state, tuple) else state
         return torch.cat([head(values) for head in self.heads], 1), state
 
 
