@@ -61,7 +61,7 @@ pub struct LearningConfig {
     /// Time-outs count as cut-off rather than as ends: the value of what would have come is added.
     pub bootstrap_time_outs: bool,
     /// The first forward pass over a rollout is not computed but taken from the actors, in synchronous runs, which is faster.
-    /// Statistics of pixels then follow one rollout later, and agents learned less with it (docs/tried/reused_forward_pass.md).
+    /// Statistics of pixels then follow one rollout later; docs/tried/reused_forward_pass.md has what agents learned with it.
     #[serde(default)]
     pub reuse_forward: bool,
     /// Threads.
