@@ -12,7 +12,7 @@ use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
 use crate::map::Node;
 use crate::math::Fixed;
-use crate::simd::Simd;
+use crate::simd::{Simd, prefetch};
 use crate::world::World;
 
 /// Everything that the walk reads and writes.
@@ -197,6 +197,8 @@ impl Walk<'_> {
             let back = self.looks.of(self.world, if one_sided { sector } else { seg.back });
             let differs = own.difference(&back) | u64::from(one_sided | seg.masked);
             self.scratch.facing[kept] = (index, away);
+            // Of a map's many faces few are in the nearest cache, and they are needed late.
+            prefetch(&scene.faces[seg.face as usize]);
             kept += usize::from(differs != 0);
         }
         for i in 0..kept {

@@ -124,8 +124,13 @@ impl World {
     pub(crate) fn list_riders(&mut self) {
         self.riders.clear(self.sectors.len());
         self.footings.resize(self.actors.len(), Footing::UNKNOWN);
-        let World { riders, footings, sectors, actors, map, .. } = self;
-        let busy = |sector: usize| sectors[sector].floor_busy || sectors[sector].ceiling_busy;
+        let World { riders, footings, sectors, actors, map, movers, .. } = self;
+        // The short list of swings first: the sectors of a whole world would come into the cache for a bit each.
+        let planes = movers.move_planes();
+        let busy = |sector: usize| {
+            movers.swing_of(SectorId(sector as u32)).is_some()
+                || (planes && (sectors[sector].floor_busy || sectors[sector].ceiling_busy))
+        };
         for (slot, footing) in footings.iter_mut().enumerate() {
             // Only what is in a block has a known footing: most actors need not be looked at.
             if footing.count == 0 {
