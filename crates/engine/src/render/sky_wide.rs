@@ -2,7 +2,7 @@
 //! compares them.
 
 use super::column::ROW_BLOCK;
-use super::convert_wide::{load_table, look_up_block};
+use super::convert_wide::{load, load_table, look_up_block};
 use super::frame::Columns;
 use super::plane::Plane;
 use super::sky::SkyShader;
@@ -18,16 +18,17 @@ pub(super) fn draw(shader: &SkyShader, columns: &mut Columns, plane: &Plane, sta
     for (block, texel_rows) in texel_rows.chunks(ROW_BLOCK).enumerate() {
         let mut bytes = [0; ROW_BLOCK];
         bytes.iter_mut().zip(texel_rows).for_each(|(byte, &row)| *byte = row as u8);
-        let rows = super::convert_wide::load(&bytes);
+        let rows = load(&bytes);
         let from = block * ROW_BLOCK;
-        for x in plane.first..plane.end {
+        let range = plane.first..plane.end;
+        for (x, &start) in range.clone().zip(&starts[range]) {
             let bounded = |row: i16| (i32::from(row) - from as i32).clamp(0, ROW_BLOCK as i32) as u32;
             let (top, bottom) = (bounded(plane.top[x]), bounded(plane.bottom[x]));
             if top >= bottom {
                 continue;
             }
-            let texels = &shader.picture.pixels[starts[x] as usize..][..shader.picture.height as usize];
-            let lit = look_up_block(table, look_up_block(part_of_256(texels), rows));
+            let texels = &shader.picture.pixels[start as usize..][..shader.picture.height as usize];
+            let lit = look_up_block(table, look_up_block(texel_table(texels), rows));
             let mask = (u64::MAX << top) & (u64::MAX >> (ROW_BLOCK as u32 - bottom));
             let pixels: &mut [u8; ROW_BLOCK] = columns.colour_of(x)[from..].first_chunk_mut().expect("columns are whole blocks");
             // SAFETY: 64 bytes are writable behind the reference.
@@ -36,10 +37,10 @@ pub(super) fn draw(shader: &SkyShader, columns: &mut Columns, plane: &Plane, sta
     }
 }
 
-/// Up to 256 texels.
+/// Up to 256 texels, as a table.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw")]
-fn part_of_256(texels: &[u8]) -> [__m512i; 4] {
+fn texel_table(texels: &[u8]) -> [__m512i; 4] {
     let block = |i: usize| {
         let texels = &texels[(i * 64).min(texels.len())..];
         let there = if texels.len() >= 64 { u64::MAX } else { (1 << texels.len()) - 1 };
