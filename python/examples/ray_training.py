@@ -14,6 +14,8 @@ from ray.cluster_utils import Cluster
 
 import hasard_rs
 
+# What is printed is seen at once, whoever reads it.
+sys.stdout.reconfigure(line_buffering=True)
 updates = int(sys.argv[1]) if len(sys.argv) > 1 else 20
 cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 2, "include_dashboard": False})
 far = cluster.add_node(num_cpus=2)
@@ -23,7 +25,7 @@ from hasard_rs.ray import train  # noqa: E402
 
 ENV = "hasard/RemedyRushLevel1-v0"
 FOLDER = Path(tempfile.mkdtemp(prefix="hasard-ray-"))
-LANES, STEPS, SKIP = 8, 32, 4
+LANES, STEPS, SKIP = 32, 32, 4
 PER_ROLLOUT = LANES * STEPS * SKIP
 # Every rollout is reported and kept, so that runs can be compared, and killed anywhere.
 EVERY = {"reporting.report_seconds": 0.0, "reporting.checkpoint_seconds": 0.0, "sampling.rollout": STEPS, "learning.epochs": 1, "learning.minibatches": 1}

@@ -44,14 +44,38 @@ if TYPE_CHECKING:
 
 
 def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
-    """An environment in a `CostWrapper`, as `gymnasium.make` makes it. Ids with and without `hasard/`, and `module:id`."""
+    """An environment in a `CostWrapper`, as `gymnasium.make` makes it.
+
+    Args:
+        env_id: one of `ids()`, with or without `hasard/`; `module:id` imports the module first.
+        kwargs: keyword arguments, listed in `help(hasard_rs.Env)`, and those of `gymnasium.make`.
+
+    Returns:
+        A Gymnasium environment; `.unwrapped` is the `hasard_rs.Env`.
+
+    Raises:
+        UnknownEnvironment, which names the nearest id; InvalidOption for a value that an argument cannot have; InvalidMap for maps that cannot be
+        played; TypeError for a name that is no argument.
+    """
     from hasard_rs.wrappers.cost import CostWrapper
 
     return CostWrapper(_gymnasium.make(f"hasard/{_known(env_id)}", **kwargs))
 
 
 def make_vec(env_id: str, num_envs: int = 1, **kwargs: Any) -> VectorEnv:
-    """A native vector environment, as `gymnasium.make_vec` makes it."""
+    """A native vector environment, as `gymnasium.make_vec` makes it.
+
+    Args:
+        env_id: one of `ids()`, with or without `hasard/`; `module:id` imports the module first.
+        num_envs: lanes, 1 to 65536.
+        kwargs: keyword arguments, listed in `help(hasard_rs.Env)` and, of batches only, in `help(hasard_rs.VectorEnv)`.
+
+    Returns:
+        A `hasard_rs.VectorEnv`.
+
+    Raises:
+        What `make` raises; ImportError with a Gymnasium older than 1.1.
+    """
     if not hasattr(_gymnasium, "make_vec") or not hasattr(_gymnasium.vector, "AutoresetMode"):
         raise ImportError("make_vec needs Gymnasium 1.1 or newer: pip install -U gymnasium; make and Worlds work with older ones")
     made = _gymnasium.make_vec(f"hasard/{_known(env_id)}", num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)

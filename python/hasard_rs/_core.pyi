@@ -8,7 +8,7 @@ from typing_extensions import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "describe", "follow", "ids", "main", "train"]
+__all__ = ["AgentState", "Batch", "TrainedAgent", "Worlds", "__version__", "describe", "follow", "frame_size", "ids", "main", "train"]
 
 __version__: str
 
@@ -47,7 +47,7 @@ class Worlds:
         num_envs: int,
         *,
         num_threads: int | None = None,
-        groups: int = 1,
+        groups: int | None = None,
         autoreset_mode: Any = None,
         final_observations: Literal["truncated", "every"] = "every",
         statistics: bool = False,
@@ -129,6 +129,7 @@ class TrainedAgent:
     @property
     def observation_shape(self) -> tuple[int, int, int]: ...
 
+def frame_size(name: str, resolution: str | tuple[int, int]) -> tuple[int, int]: ...
 def ids() -> list[str]: ...
 def describe(env_id: str) -> dict[str, Any]: ...
 def main(words: Sequence[str]) -> int: ...

@@ -17,6 +17,7 @@ import numpy as np
 from hasard_rs import _core
 from hasard_rs.errors import HasardError
 from hasard_rs.progress import Bar
+from hasard_rs.registry import bare
 
 Report = dict[str, Any]
 """A row of metrics.jsonl: frames, return, cost, multipliers and so on, by name."""
@@ -24,7 +25,7 @@ Report = dict[str, Any]
 
 @dataclass(frozen=True)
 class Run:
-    """A run that has ended: its directory, whether the caller stopped it, and its last report."""
+    """A run that has ended: its `directory`, whether the caller `stopped` it, and its `last` report."""
 
     directory: Path
     stopped: bool
@@ -43,10 +44,23 @@ def train(
 ) -> Run:
     """Trains an agent, as `hasard train` does; other threads of Python run meanwhile.
 
-    flags are the program's, with underscores: `frames=2_000_000, seed=1, envs=32, threads=2, resume=True`; `set` holds what the program takes as
-    `--set name=value`. callback is called with every report, a dict; where it returns True the run ends, with a checkpoint. What it raises,
-    and Ctrl-C, end the run the same way and are raised again. Wrong settings: `InvalidOption`, before anything is written. On a terminal a line
-    tells how far it is.
+    On a terminal a line tells how far it is.
+
+    Args:
+        env_id: one of `ids()`, with or without `hasard/`.
+        algorithm: PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP or IPO.
+        preset: "paper", "released" or "quick"; None: the program's.
+        out: the run's directory; None: one under runs/.
+        callback: is called with every report, a dict by name (frames, fps, return_mean, cost_mean, ...); where it returns True the run ends, with
+            a checkpoint. What it raises, and Ctrl-C, end the run the same way and are raised again.
+        set: what the program takes as `--set name=value`.
+        flags: the program's, with underscores: `frames=2_000_000, seed=1, envs=32, threads=2, size="64x48", maps="auto", resume=True`.
+
+    Returns:
+        A `Run`.
+
+    Raises:
+        InvalidOption for wrong settings, before anything is written.
     """
     words = training_words(env_id, algorithm, preset=preset, out=out, set=set, **flags)
     with Bar(flags.get("frames")) as bar:
@@ -68,8 +82,8 @@ def training_words(
     set: Mapping[str, Any] | None = None,  # noqa: A002
     **flags: Any,
 ) -> list[str]:
-    """What `train` is given, as words of the program."""
-    words = [env_id.removeprefix("hasard/"), "--algo", algorithm, "--quiet"]
+    """Returns what `train` is given (env_id, algorithm, preset, out, set and flags) as words of the program."""
+    words = [bare(env_id), "--algo", algorithm, "--quiet"]
     for name, value in {"preset": preset, "out": None if out is None else os.fspath(out), **flags}.items():
         flag = "--" + name.replace("_", "-")
         if value is True:
@@ -94,6 +108,8 @@ class Agent:
             actions, state = agent.act(observations, state)
             observations, rewards, terminations, truncations, infos = env.step(actions)
             state = agent.after(state, infos["cost"], terminations | truncations)
+
+    Made by `Agent.load`. Attributes: run, its directory; env_id; config, the run's settings.
     """
 
     def __init__(self, trained: Any, run: Path) -> None:
@@ -104,24 +120,44 @@ class Agent:
 
     @classmethod
     def load(cls, run: str | os.PathLike[str], *, best: bool = False, greedy: bool = False) -> Agent:
-        """The agent of a run directory: its newest checkpoint or the best within budget; drawing its actions, or taking the likeliest."""
+        """The agent of a run directory.
+
+        Args:
+            run: the directory that `train`, or the program, wrote.
+            best: the best checkpoint within budget instead of the newest.
+            greedy: takes the likeliest actions instead of drawing them.
+
+        Returns:
+            An agent.
+
+        Raises:
+            InvalidOption where there is no run, no checkpoint or a spoiled one.
+        """
         return cls(_core.TrainedAgent(Path(run), best=best, greedy=greedy), Path(run))
 
     def arguments(self) -> dict[str, Any]:
-        """Keyword arguments of environments like the one that the agent was trained in."""
+        """Returns keyword arguments of environments like the one that the agent was trained in, its maps and pictures among them."""
         env = self.config["env"]
         told = {name: env[name] for name in ("rules", "full_actions", "frame_skip", "observation", "frame_stack")}
         told |= {"hard_constraint": env["hard"], "resolution": tuple(env["size"])}
-        return told | {name: env[name] for name in ("published_depth", "published_colours", "iwad") if name in env}
+        return told | {name: env[name] for name in ("published_depth", "published_colours", "maps", "iwad") if name in env}
 
     def make(self, **arguments: Any) -> Any:
-        """A single environment like the one that the agent was trained in."""
+        """Returns a single environment like the one that the agent was trained in; `arguments` (see `help(hasard_rs.Env)`) come before its own."""
         import hasard_rs
 
         return hasard_rs.make(self.env_id, **{**self.arguments(), **self._format(), **arguments})
 
     def make_vec(self, num_envs: int = 1, **arguments: Any) -> Any:
-        """A vector environment like the one that the agent was trained in, in SAME_STEP mode."""
+        """A vector environment like the one that the agent was trained in, in SAME_STEP mode.
+
+        Args:
+            num_envs: lanes.
+            arguments: see `help(hasard_rs.VectorEnv)`; they come before the agent's own.
+
+        Returns:
+            A `hasard_rs.VectorEnv`.
+        """
         import hasard_rs
 
         given = {"autoreset_mode": "SameStep", **self.arguments(), **self._format(), **arguments}
@@ -131,11 +167,23 @@ class Agent:
         return {"action_format": "dict"} if self.config["env"]["full_actions"] else {}
 
     def begin(self, lanes: int, seed: int = 0) -> Any:
-        """What the agent remembers when episodes begin; its draws follow from `seed` and the lane."""
+        """Returns what the agent remembers when episodes begin in so many `lanes`; its draws follow from `seed` and the lane."""
         return _State(self._trained.begin([(seed + lane) % 2**64 for lane in range(lanes)]), None, None, None)
 
     def act(self, observations: np.ndarray, state: Any = None) -> tuple[Any, Any]:
-        """Actions for observations uint8 [n, ...] (or one, [...]), and what the agent remembers then. state=None: episodes begin."""
+        """Chooses actions.
+
+        Args:
+            observations: uint8 [n, height, width, channels], or one, [height, width, channels].
+            state: what the agent remembers, from `begin` or `after`; None: episodes begin.
+
+        Returns:
+            Actions, and what the agent remembers then. Actions are int64 [n, parts], or [parts] for one; of agents with full actions a dict of
+            "buttons" and "deltas" (float32 [n, 2] in [-1, 1]).
+
+        Raises:
+            ValueError for observations of another shape, or cost terms that `after` was not told.
+        """
         single = observations.ndim == 3
         observations = observations[None] if single else observations
         state = self.begin(len(observations)) if state is None else state
@@ -148,21 +196,41 @@ class Agent:
         return chosen, _State(after, None, None, None)
 
     def after(self, state: Any, costs: Any, over: Any, cost_terms: Any = None) -> Any:
-        """What the agent remembers once a step has cost so much (float [n]), and episodes are over in these lanes (bool [n]): those begin anew.
+        """What the agent remembers once a step is made.
 
-        Agents that watch one of the cost terms (PPOSaute under a budget of a named term) need `infos["cost_terms"]` ([n, k]) too, which environments
-        made with `infos="full"` have; `act` raises ValueError without.
+        Args:
+            state: what `act` gave.
+            costs: of the step, float [n].
+            over: lanes whose episodes are over, bool [n]: those begin anew.
+            cost_terms: `infos["cost_terms"]`, float [n, k], of environments made with `infos="full"`: agents need it that watch one of the terms
+                (PPOSaute under a budget of a named term). `act` raises ValueError without.
+
+        Returns:
+            The state for the next `act`.
         """
         terms = None if cost_terms is None else np.atleast_2d(cost_terms).astype(float).tolist()
         return _State(state.memory, np.atleast_1d(costs).astype(float).tolist(), np.atleast_1d(over).astype(bool).tolist(), terms)
 
     def evaluate(self, episodes: int = 20, seed: int = 0, *, best: bool = False, greedy: bool = False) -> list[dict[str, Any]]:
-        """Plays episodes as `hasard eval --json` does: a dict each, and the summary as the last."""
+        """Plays episodes in worlds like those that the agent was trained in, as `hasard eval --json` does.
+
+        Args:
+            episodes: how many.
+            seed: of the first.
+            best: the best checkpoint within budget instead of the newest.
+            greedy: the likeliest actions instead of drawn ones.
+
+        Returns:
+            A dict an episode, and the summary as the last.
+
+        Raises:
+            HasardError, with the program's line of what went wrong.
+        """
         words = ["eval", os.fspath(self.run), "--episodes", str(episodes), "--seed", str(seed), "--json"]
         return _lines([*words, *["--latest"] * (not best), *["--greedy"] * greedy])
 
     def report(self, out: str | os.PathLike[str]) -> Path:
-        """Writes the run's page of tables and curves, as `hasard report` does."""
+        """Writes the run's page of tables and curves into the folder `out`, as `hasard report` does. Returns the folder; raises HasardError."""
         return report([self.run], out)
 
 
@@ -177,7 +245,18 @@ class _State:
 
 
 def report(runs: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> Path:
-    """Writes one page of tables and curves from run directories, as `hasard report` does."""
+    """Writes one page of tables and curves from run directories, as `hasard report` does.
+
+    Args:
+        runs: directories, or folders of them.
+        out: the folder of the page.
+
+    Returns:
+        The folder.
+
+    Raises:
+        HasardError, with the program's line of what went wrong.
+    """
     _run(["report", *[os.fspath(run) for run in runs], "-o", os.fspath(out)])
     return Path(out)
 

@@ -7,11 +7,12 @@ import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
+from hasard_rs import _core
 from hasard_rs.errors import InvalidOption
 
 _WORLD = (
     "rules hard_constraint hard full_actions frame_skip resolution size observation layout frame_stack max_episode_steps "
-    "safety_budget iwad map published_depth published_colours"
+    "safety_budget iwad maps map published_depth published_colours"
 ).split()
 _UPSTREAM = "record_every render_boxes render_segmented".split()
 _VECTOR = "num_envs num_threads autoreset_mode batch_size copy".split()
@@ -36,11 +37,23 @@ class Arguments:
 
     @property
     def frame_skip(self) -> int:
+        """Tics that an action is held."""
         return int(self.world.get("frame_skip", 4))
 
 
 def read(given: dict[str, Any], *, vector: bool) -> Arguments:
-    """Sorts keyword arguments. An unknown one is a `TypeError` that names the nearest."""
+    """Sorts keyword arguments.
+
+    Args:
+        given: by name, scenario and level among them.
+        vector: whether those of batches are known too.
+
+    Returns:
+        The arguments, checked but for those of the worlds, which check theirs.
+
+    Raises:
+        TypeError for a name that is no argument, which names the nearest; InvalidOption for a value that it cannot have.
+    """
     given = dict(given)
     try:
         scenario, level = given.pop("scenario"), given.pop("level")
@@ -77,12 +90,14 @@ def _check(arguments: Arguments) -> None:
     bins = arguments.delta_bins
     if isinstance(bins, bool) or not isinstance(bins, int) or not 3 <= bins <= 255 or bins % 2 == 0:
         raise InvalidOption(f"delta_bins cannot be {bins!r}; it must be an odd number, 3..255")
+    if arguments.render_resolution is not None:
+        arguments.render_resolution = _core.frame_size("render_resolution", arguments.render_resolution)
     if arguments.seed is not None:
         arguments.seed = check_seed(arguments.seed)
 
 
 def check_seed(seed: Any) -> int:
-    """A seed as an int modulo 2^64; a negative one is a `ValueError`, anything but an integer a `TypeError`."""
+    """Returns a seed as an int modulo 2^64. Raises ValueError for a negative one, TypeError for anything but an integer."""
     if not hasattr(seed, "__index__"):
         raise TypeError(f"a seed must be an integer, got {seed!r:.60}")
     seed = seed.__index__()

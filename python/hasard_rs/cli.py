@@ -14,7 +14,7 @@ from hasard_rs import _core
 
 
 def main(words: list[str] | None = None) -> int:
-    """Runs the program with these words (the command line's, if None) and gives its exit code."""
+    """Runs the program with these words (the command line's, if None). Returns its exit code: 0 fine, 1 a negative result, 2 bad input."""
     words = sys.argv[1:] if words is None else words
     if words[:1] == ["sweep"] and "--on" in words:
         from hasard_rs.clusters import sweep_on
@@ -33,7 +33,10 @@ def main(words: list[str] | None = None) -> int:
 
 
 def train_on(words: list[str]) -> int:
-    """`hasard train ... --workers N --on ray[:ADDRESS]`: 0 when the run has ended, 1 when workers were lost for good, 2 for bad input."""
+    """Does `hasard train ... --workers N --on ray[:ADDRESS]`, whose `words` come after `train`.
+
+    Returns 0 when the run has ended, 1 when workers were lost for good, 2 for bad input, 130 after Ctrl-C; it raises nothing.
+    """
     from hasard_rs.errors import HasardError, InvalidOption
     from hasard_rs.progress import Bar
 

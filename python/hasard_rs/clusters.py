@@ -6,8 +6,10 @@ command line goes on where its directory stands.
 
 from __future__ import annotations
 
+import ctypes
 import json
 import shlex
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -17,7 +19,17 @@ from hasard_rs._extra import need
 
 
 def jobs(words: list[str]) -> list[dict[str, Any]]:
-    """The runs of a sweep that the program would start, by its own `--dry-run`: a directory and a command line each."""
+    """The runs of a sweep that the program would start, by its own `--dry-run`.
+
+    Args:
+        words: the command line, from `sweep` on.
+
+    Returns:
+        A dict a run, with "directory" and "command".
+
+    Raises:
+        ValueError, with the program's line of what went wrong.
+    """
     asked = [sys.executable, "-m", "hasard_rs.cli", *words, "--dry-run"]
     told = subprocess.run([*asked, *([] if "--json" in words else ["--json"])], capture_output=True, text=True, check=False)
     if told.returncode:
@@ -26,17 +38,33 @@ def jobs(words: list[str]) -> list[dict[str, Any]]:
 
 
 def run_job(job: dict[str, Any]) -> tuple[int, str]:
-    """Runs, or resumes, one run in this process's machine; gives its exit code and the end of what it said."""
+    """Runs, or resumes, one `job` of `jobs` on this process's machine. Returns its exit code and the end of what it said."""
     directory = Path(job["directory"])
     arguments = shlex.split(job["command"])[1:]
     if (directory / "config.json").exists() and "--resume" not in arguments:
         arguments.append("--resume")
-    done = subprocess.run([sys.executable, "-m", "hasard_rs.cli", *arguments], capture_output=True, text=True, check=False)
+    words = [sys.executable, "-m", "hasard_rs.cli", *arguments]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, preexec_fn=_ends_with_its_parent)
     return done.returncode, (done.stderr or done.stdout)[-2000:]
 
 
+def _ends_with_its_parent() -> None:
+    """Where a worker is killed, its run must not go on: it would hold the directory that another worker is to resume."""
+    if sys.platform == "linux":
+        set_parent_death_signal = 1
+        ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
+
+
 def sweep_on(place: str, words: list[str]) -> int:
-    """`hasard sweep ... --on ray[:ADDRESS]` or `--on slurm`: 0 when every run has ended well, 1 when some have not, 2 for bad input."""
+    """Does `hasard sweep ... --on PLACE`.
+
+    Args:
+        place: "ray", "ray:ADDRESS" or "slurm".
+        words: the command line, from `sweep` on, without `--on`.
+
+    Returns:
+        0 when every run has ended well, 1 when some have not, 2 for bad input; it raises nothing.
+    """
     where, _, address = place.partition(":")
     try:
         if where == "ray":

@@ -20,10 +20,36 @@ from hasard_rs.spaces import action_format
 class Env(gymnasium.Env[np.ndarray, Any]):
     """One world with its task, as Gymnasium's single environment.
 
-    Made by `hasard_rs.make(id, **arguments)` or `gymnasium.make(id, **arguments)`; arguments are keyword-only and listed in docs/python.md.
+    Made by `hasard_rs.make(id, **arguments)` or `gymnasium.make(id, **arguments)`.
 
-    observation_space: `Box(0, 255, shape, uint8)`, (height, width, channels * frame_stack), or channels first with `layout="chw"`.
-    `step` returns (observation, reward: float, terminated, truncated, info); `info["cost"]` is the cost of the step, 0.0 at reset.
+    Args:
+        arguments: all keyword-only, the same for `VectorEnv` and (but for those of actions, rendering and infos) `Worlds`.
+            scenario, level: bound by the id.
+            rules ("paper"): or "released", those of the published package.
+            hard_constraint, or hard (False): harm ends the episode.
+            full_actions (False): all buttons, and two continuous axes.
+            frame_skip (4): tics of 1/35 s that an action is held, 1 to 35.
+            resolution, or size ("160x120"): "WxH" or (width, height), pixels, 64x48 to 1920x1080.
+            observation ("rgb"): "rgb+depth", "segmented" or "grey"; 3, 4, 3 or 1 channels.
+            layout ("hwc"): or "chw". frame_stack (1): frames along the channels, oldest first, 1 to 16.
+            action_format ("multi_discrete"): "tuple", "dict", "discrete" or "box".
+            delta_bins (11): of each continuous axis where the format has none, odd, 3 to 255.
+            max_episode_steps (None): cuts episodes off earlier.
+            render_mode (None): "rgb_array" or "depth_array". render_resolution (None): of `render`, if other than resolution.
+            seed (None): of the first reset without one; 64 bits of the operating system's if None.
+            infos ("cost"): "full" adds "cost_terms" (float64 [k]), "position" (int32 [2], map units) and "episode_seed" (uint64).
+            env_stats (False): adds "env_stats", a dict of floats by name.
+            safety_budget (None): an attribute, without effect on the world.
+            maps, or map (None): a folder, a WAD, or "auto" for the published package's. iwad (None): a file, or "auto".
+            published_depth, published_colours (False): depth and segments look as the published engine's.
+
+    Raises:
+        UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no argument.
+
+    Attributes:
+        observation_space: `Box(0, 255, (height, width, channels * frame_stack), uint8)`, or channels first with `layout="chw"`.
+        action_space: as action_format says. extent: x from, y from, x to, y to of the map, map units.
+        safety_budget: cost that an episode may have. cost_terms: a `CostTerm` each. max_episode_steps: steps of an episode that only time ends.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 8.75}  # type: ignore[misc]
@@ -49,7 +75,18 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         self.frame_skip = given.frame_skip
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
-        """Starts an episode. A seed starts the stream of episodes anew; without one the next episode of the stream begins."""
+        """Starts an episode.
+
+        Args:
+            seed: starts the stream of episodes anew, not negative, taken modulo 2^64. None: the next episode of the stream.
+            options: none are known.
+
+        Returns:
+            The first observation (uint8, of observation_space's shape) and its info: "cost" (float64) is 0.0.
+
+        Raises:
+            TypeError or ValueError for a seed that is none; Closed after `close`.
+        """
         if seed is not None:
             seed = _arguments.check_seed(seed)
         elif not self._started:
@@ -61,7 +98,20 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         return batch.observations[0], row(self._infos.step(batch), 0)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Holds an action for `frame_skip` tics. `InvalidAction`, `TypeError` or `ValueError` for a bad one: nothing has moved then."""
+        """Holds an action for `frame_skip` tics.
+
+        Args:
+            action: one of action_space; any integer dtype, lists too.
+
+        Returns:
+            (observation, reward: float, terminated: bool, truncated: bool, info). `info["cost"]` (float64) is the cost of this step; the step that
+            ends an episode has `info["episode_summary"]`, floats: return, cost, length (steps), seed, terminated, truncated, cost_<term>,
+            and the scenario's statistics.
+
+        Raises:
+            InvalidAction, which names part, value and range; TypeError or ValueError for the wrong dtype or shape; ResetNeeded before the first
+            reset and after an end; Closed after `close`. Nothing has moved then.
+        """
         batch = self._worlds.step(*self._format.one(action))
         info = row(self._infos.step(batch), 0)
         terminated, truncated = bool(batch.terminated[0]), bool(batch.truncated[0])
@@ -70,14 +120,32 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         return batch.observations[0], float(batch.rewards[0]), terminated, truncated, info
 
     def render(self, mode: str | None = None) -> np.ndarray | None:  # type: ignore[override]
-        """The present as `render_mode` says; `mode` is ignored. Without a render mode: None, after a warning."""
+        """Draws the present as `render_mode` says.
+
+        Args:
+            mode: ignored; the published package has it.
+
+        Returns:
+            uint8 [height, width, 3] for "rgb_array", uint8 [height, width] for "depth_array"; None, after a warning, without a render mode.
+        """
         if self.render_mode is None:
             logger.warn("render() needs render_mode='rgb_array' or 'depth_array' when the environment is made; nothing is drawn")
             return None
         return self.picture("rgb" if self.render_mode == "rgb_array" else "depth", self._given.render_resolution)
 
     def picture(self, kind: str = "rgb", resolution: str | tuple[int, int] | None = None) -> np.ndarray:
-        """The present: rgb, segmented, automap as uint8 [height, width, 3]; depth, labels, grey as uint8 [height, width]."""
+        """Draws the present, whatever `render_mode` is; the episode goes on unchanged.
+
+        Args:
+            kind: "rgb", "segmented", "automap", "depth" (0 near to 255 far, 7.3 map units a level), "labels" or "grey".
+            resolution: "WxH" or (width, height), 64x48 to 1920x1080; None: that of observations.
+
+        Returns:
+            uint8 [height, width, 3] for rgb, segmented and automap, uint8 [height, width] for depth, labels and grey.
+
+        Raises:
+            InvalidOption for another kind or size.
+        """
         return self._worlds.render(0, kind, resolution or self._size())
 
     def _size(self) -> tuple[int, int]:
@@ -86,7 +154,7 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         return width, height
 
     def state_hash(self) -> int:
-        """A fingerprint of everything that the future depends on; the same on every platform."""
+        """Returns a fingerprint (64 bits) of everything that the future depends on; the same on every platform."""
         return self._worlds.state_hash(0)
 
     @property
@@ -95,18 +163,28 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         return self._worlds.positions[0]
 
     def save(self) -> bytes:
-        """Where the environment is, to come back to by `load`."""
+        """Returns where the environment is, to come back to by `load`; bytes of this version of the package."""
         return self._worlds.save()
 
     def load(self, state: bytes) -> np.ndarray:
-        """Comes back to a saved moment of an environment made alike, by repeating its episode, and shows it."""
+        """Comes back to a saved moment, by repeating its episode.
+
+        Args:
+            state: what `save` gave, of an environment made alike.
+
+        Returns:
+            The observation of that moment.
+
+        Raises:
+            InvalidOption for bytes that are spoiled, or of another environment; nothing has changed then.
+        """
         batch = self._worlds.load(state)
         self._started = True
         return batch.observations[0]
 
     @property
     def game(self) -> Any:
-        """The published package's engine, which is not here."""
+        """The published package's engine, which is not here: raises AttributeError, which tells what there is instead."""
         raise AttributeError("there is no ViZDoom here; see env.save, env.picture, info['env_stats']")
 
     def close(self) -> None:

@@ -18,7 +18,14 @@ _PUBLISHED: dict[str, dict[str, str | None]] = {
 
 
 class Infos:
-    """Writes the infos of one environment or a batch of them."""
+    """Writes the infos of one environment or a batch of them.
+
+    Args:
+        worlds: whose.
+        scenario: its name.
+        infos: "cost" or "full".
+        env_stats: whether the statistics of every step are told.
+    """
 
     def __init__(self, worlds: Any, scenario: str, infos: str, env_stats: bool) -> None:
         self.worlds = worlds
@@ -30,7 +37,7 @@ class Infos:
         self.cost = np.zeros(worlds.num_envs)
 
     def step(self, batch: Any) -> dict[str, Any]:
-        """Columns of a step or reset: a value a row for each key."""
+        """Returns columns of a step's or reset's `batch`: a value a row for each key."""
         columns: dict[str, Any] = {"cost": batch.costs.astype(np.float64)}
         if self.full:
             columns["cost_terms"] = batch.cost_terms.astype(np.float64)
@@ -52,7 +59,7 @@ class Infos:
         return columns
 
     def now(self, lane: int) -> dict[str, Any]:
-        """The info of a lane whose episode has just begun, where the batch tells the one that ended."""
+        """Returns the info of a lane whose episode has just begun, where the batch tells the one that ended."""
         info: dict[str, Any] = {}
         if self.full:
             info = {"position": self.worlds.positions[lane], "episode_seed": self.worlds.episode_seeds[lane]}
@@ -63,7 +70,7 @@ class Infos:
 
 
 def row(columns: dict[str, Any], index: int) -> dict[str, Any]:
-    """One lane's values of all columns, as a single environment's info."""
+    """Returns one lane's values of all columns, those at `index`, as a single environment's info."""
     return {
         key: {name: float(column[index]) for name, column in value.items()} if isinstance(value, dict) else value[index]
         for key, value in columns.items()
@@ -71,7 +78,7 @@ def row(columns: dict[str, Any], index: int) -> dict[str, Any]:
 
 
 def summary(episode: dict[str, Any]) -> dict[str, float]:
-    """What is known of an episode that ended, all floats."""
+    """Returns what is known of an episode that ended, all floats."""
     told = {name: float(episode[name]) for name in ("return", "cost", "length", "seed", "terminated", "truncated")}
     told |= {f"cost_{name}": float(value) for name, value in episode["costs"].items()}
     return told | {name: float(value) for name, value in episode["statistics"].items()}

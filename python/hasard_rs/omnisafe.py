@@ -19,7 +19,19 @@ import hasard_rs  # noqa: E402
 
 @env_register
 class HasardEnv(CMDP):
-    """A batch of worlds; observations are pixels / 255 in a row (64x48 grey unless asked otherwise)."""
+    """A batch of worlds as OmniSafe steps them: tensors float32 of `device`, SAME_STEP; with one environment without the first axis.
+
+    Observations are pixels / 255 in a row, in [0, 1] (64x48 grey unless asked otherwise); actions are `box`.
+
+    Args:
+        env_id: a bare id, such as `VolcanicVentureLevel1-v0`.
+        num_envs: lanes.
+        device: of the tensors.
+        arguments: see `help(hasard_rs.VectorEnv)`; OmniSafe hands on `env_cfgs`.
+
+    Raises:
+        What `hasard_rs.make_vec` raises.
+    """
 
     _support_envs: ClassVar[list[str]] = [env_id.removeprefix("hasard/") for env_id in hasard_rs.ids()]
     need_auto_reset_wrapper = False
@@ -52,14 +64,28 @@ class HasardEnv(CMDP):
         return row if self._num_envs > 1 else row[0]
 
     def set_seed(self, seed: int) -> None:
+        """Keeps the `seed` of the next reset."""
         self._seed = seed
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Starts episodes; seed and options as for `VectorEnv.reset`. Returns observations float32 [num_envs, pixels] and an empty info."""
         seed, self._seed = self._seed if seed is None else seed, None
         observations, _ = self.envs.reset(seed=seed, options=options)
         return self._flat(observations), {}
 
     def step(self, action: Any) -> tuple[Any, Any, Any, Any, Any, dict[str, Any]]:
+        """Steps every lane.
+
+        Args:
+            action: float32 [num_envs, parts] in [-1, 1].
+
+        Returns:
+            (observations, rewards, costs, terminated, truncated, info), float32; where episodes ended, `info` has "final_observation" and
+            "_final_observation".
+
+        Raises:
+            InvalidAction for NaN, ValueError for another shape.
+        """
         actions = action.detach().cpu().numpy().reshape(self._num_envs, -1)
         observations, rewards, terminated, truncated, infos = self.envs.step(actions)
         info: dict[str, Any] = {}
@@ -72,11 +98,13 @@ class HasardEnv(CMDP):
         return self._flat(observations), self._row(rewards), self._row(infos["cost"]), *ends, info
 
     def sample_action(self) -> Any:
-        """A random action."""
+        """Returns a random action."""
         return torch.as_tensor(self._action_space.sample(), dtype=torch.float32, device=self._device)
 
     def render(self) -> Any:
+        """Returns what `VectorEnv.render` does."""
         return self.envs.render()
 
     def close(self) -> None:
+        """Lets the worlds go."""
         self.envs.close()

@@ -8,7 +8,12 @@ from typing import Any, TextIO
 
 
 class Bar:
-    """Shows reports on one line of a terminal, each over the one before; says nothing where nobody looks."""
+    """Shows reports on one line of a terminal, each over the one before; says nothing where nobody looks.
+
+    Args:
+        frames: of the whole run, where they are known.
+        to: the terminal; None: standard error.
+    """
 
     def __init__(self, frames: int | None = None, to: TextIO | None = None) -> None:
         self.frames = frames
@@ -17,7 +22,7 @@ class Bar:
         self.shown = False
 
     def show(self, report: dict[str, Any]) -> bool:
-        """Shows a report, a dict as callbacks of `train` get it. Never ends the run."""
+        """Shows a report, a dict as callbacks of `train` get it. Returns False: it never ends the run."""
         if self.seen:
             self.to.write(f"\r\x1b[K{self.line(report)}")
             self.to.flush()
@@ -25,7 +30,7 @@ class Bar:
         return False
 
     def line(self, report: dict[str, Any]) -> str:
-        """A report in a line: the share that is done where it is known, frames, means of return and cost, frames a second."""
+        """Returns a report in a line: the share that is done where it is known, frames, means of return and cost, frames a second."""
         done = report["frames"]
         parts = [f"{done:,} frames"]
         if self.frames:

@@ -20,7 +20,12 @@ _RESOLUTIONS = ("800X600", "640X480", "320X240", "160X120")
 
 
 class DoomEnv(Env):
-    """An environment with the published package's defaults and methods."""
+    """An environment with the published package's defaults and methods.
+
+    Args:
+        arguments: those of `help(hasard_rs.Env)`; rules are "released", action_format "tuple", resolution "320x240" and env_stats True unless given.
+            render_mode "human" is taken for "rgb_array".
+    """
 
     delta_actions_scaling_factor = 7.5
 
@@ -37,37 +42,38 @@ class DoomEnv(Env):
         self._cost = 0.0
 
     def step(self, action: Any) -> Any:
+        """Holds an action, a tuple of parts. Returns and raises what `Env.step` does; `info["env_stats"]` has the published names, floats."""
         told = super().step(action)
         self._statistics, self._cost = told[4]["env_stats"], float(told[4]["cost"])
         return told
 
     def calculate_cost(self) -> float:
-        """The cost of the last step."""
+        """Returns the cost of the last step."""
         return self._cost
 
     def get_statistics(self, mode: str = "") -> dict[str, float]:
-        """The episode's statistics so far."""
+        """Returns the episode's statistics so far; `mode` is ignored."""
         return self._statistics
 
     def reduced_action_space(self) -> Any:
-        """The simplified actions."""
+        """Returns the space of the simplified actions."""
         return type(self)(**{**self._arguments, "full_actions": False}).action_space
 
     def full_action_space(self) -> Any:
-        """All buttons, and two continuous axes."""
+        """Returns the space of all buttons, and two continuous axes."""
         return type(self)(**{**self._arguments, "full_actions": True}).action_space
 
     def full_actions(self) -> bool:
-        """Whether all buttons are in use."""
+        """Returns whether all buttons are in use."""
         return bool(self._arguments.get("full_actions", False))
 
     def video_schedule(self, episode_id: int) -> bool:
-        """No episode is filmed of itself; see `gymnasium.wrappers.RecordVideo`, or the program's `hasard record`."""
+        """Returns False, whatever episode_id is: none is filmed of itself; see `gymnasium.wrappers.RecordVideo`, or `hasard record`."""
         return False
 
 
 def register_environment(scenario: str | Scenario, level: int) -> None:
-    """Registers one bare id; nothing happens if it is registered."""
+    """Registers one bare id, of a scenario (a `Scenario` or its value) and a level (1 to 3); nothing happens if it is registered."""
     name = scenario.value if isinstance(scenario, Scenario) else scenario
     env_id = f"{name}Level{level}-v0"
     if env_id not in gymnasium.registry:
@@ -75,7 +81,7 @@ def register_environment(scenario: str | Scenario, level: int) -> None:
 
 
 def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
-    """An environment by its bare id, in a `CostWrapper`."""
+    """Returns an environment by its bare env_id, in a `CostWrapper`; kwargs as of `DoomEnv`. Raises what `hasard_rs.make` does."""
     return CostWrapper(gymnasium.make(bare(env_id), **kwargs))
 
 

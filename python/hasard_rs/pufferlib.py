@@ -17,7 +17,16 @@ from hasard_rs.spaces import action_format  # noqa: E402
 
 
 class HasardPuffer(pufferlib.PufferEnv):  # type: ignore[name-defined,misc]
-    """Worlds in SAME_STEP mode over PufferLib's own arrays; costs of the step are in `costs`, infos come at ends."""
+    """Worlds in SAME_STEP mode over PufferLib's own arrays; costs of the step are in `costs` (float32 [n]), infos come at ends.
+
+    Args:
+        env_id: one of `hasard_rs.ids()`.
+        num_envs: lanes.
+        num_threads: worker threads beside the caller's.
+        buf: PufferLib's arrays; None: its own.
+        seed: of the first reset without one.
+        arguments: see `help(hasard_rs.Env)`; layout is "chw" unless given.
+    """
 
     def __init__(self, env_id: str, num_envs: int = 1, *, num_threads: int | None = None, buf: Any = None, seed: int = 0, **arguments: Any) -> None:
         spec = hasard_rs.spec(env_id)
@@ -41,15 +50,29 @@ class HasardPuffer(pufferlib.PufferEnv):  # type: ignore[name-defined,misc]
         self._seed = seed
 
     def reset(self, seed: int | None = None) -> tuple[np.ndarray, list[dict[str, Any]]]:
+        """Starts episodes; an int seed s seeds lane i with s + i. Returns observations uint8 [n, ...], PufferLib's array, and no infos."""
         self.worlds.reset(self._seed if seed is None else seed)
         return self.observations, []
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+        """Steps every lane.
+
+        Args:
+            actions: integers [n, parts].
+
+        Returns:
+            Observations, rewards, terminals and truncations, PufferLib's arrays, and a dict for each episode that ended.
+
+        Raises:
+            InvalidAction; TypeError or ValueError for the wrong dtype or shape. Nothing has moved then.
+        """
         batch = self.worlds.step(*self._format.many(actions, self.num_agents))
         return self.observations, self.rewards, self.terminals, self.truncations, [summary(episode) for episode in batch.episodes]
 
     def render(self) -> np.ndarray:
+        """Returns the first lane's picture, uint8 [120, 160, 3]."""
         return self.worlds.render(0)
 
     def close(self) -> None:
+        """Lets the worlds go."""
         self.worlds.close()

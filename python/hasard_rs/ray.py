@@ -22,7 +22,16 @@ Rollout = dict[str, Any]
 
 
 class Sampler:
-    """Worlds and a policy on one machine; an actor by `samplers`. The policy is a function of observations that gives actions [n, parts]."""
+    """Worlds and a policy on one machine; an actor by `samplers`.
+
+    Args:
+        env_id: one of `hasard_rs.ids()`.
+        num_envs: lanes.
+        first_lane: number of the first of them among all samplers' lanes.
+        seed: of lane 0 of all.
+        num_threads: worker threads beside the actor's.
+        arguments: those of `hasard_rs.Worlds`.
+    """
 
     def __init__(self, env_id: str, num_envs: int, *, first_lane: int = 0, seed: int = 0, num_threads: int = 0, **arguments: Any) -> None:
         self.worlds = hasard_rs.Worlds(env_id, num_envs, num_threads=num_threads, **arguments)
@@ -32,11 +41,25 @@ class Sampler:
         self.version = -1
 
     def set_policy(self, policy: Any, version: int) -> None:
-        """The policy of the samples to come; None draws at random."""
+        """Sets the policy of the samples to come.
+
+        Args:
+            policy: a function of observations (uint8 [n, ...]) that gives actions, integers [n, parts]; None draws at random.
+            version: a number that the rollouts will carry.
+        """
         self.policy, self.version = policy, version
 
     def sample(self, steps: int) -> Rollout:
-        """A rollout of all lanes, in fresh contiguous arrays that Ray's object store takes without a copy."""
+        """Samples all lanes.
+
+        Args:
+            steps: T, how many.
+
+        Returns:
+            A rollout: "observations" uint8 [T + 1, n, ...], "actions" int64 [T, n, parts], "rewards" and "costs" float32 [T, n], "cost_terms" float32
+            [T, n, k], "terminated" and "truncated" bool [T, n], "episodes" (a dict each), "version". Fresh contiguous arrays, which Ray's object
+            store takes without a copy.
+        """
         worlds, n = self.worlds, self.worlds.num_envs
         rollout: Rollout = {
             "observations": np.empty((steps + 1, n, *worlds.observation_shape), np.uint8),
@@ -60,7 +83,20 @@ class Sampler:
 
 
 def samplers(env_id: str, count: int, lanes: int, *, seed: int = 0, num_cpus: float = 1, options: Any = None, **arguments: Any) -> list[Any]:
-    """Actors that share `lanes` lanes; one that dies is started anew, with its first episodes."""
+    """Starts samplers; one that dies is started anew, with its first episodes.
+
+    Args:
+        env_id: one of `hasard_rs.ids()`.
+        count: how many.
+        lanes: of all together.
+        seed: lane i's is seed + i, whatever the count.
+        num_cpus: what each asks Ray for.
+        options: further options of the actors.
+        arguments: those of `Sampler`.
+
+    Returns:
+        Handles of the actors.
+    """
     actor = ray.remote(Sampler)
     placed = {"num_cpus": num_cpus, "max_restarts": -1, "max_task_retries": 0, "scheduling_strategy": "SPREAD", **(options or {})}
     shares = [lanes * (i + 1) // count - lanes * i // count for i in range(count)]
@@ -70,7 +106,15 @@ def samplers(env_id: str, count: int, lanes: int, *, seed: int = 0, num_cpus: fl
 
 
 def rollouts(actors: list[Any], steps: int) -> Iterator[tuple[int, Rollout]]:
-    """Rollouts as they come, for ever: (number of the actor, rollout). An actor is asked again at once; a lost rollout is sampled anew."""
+    """Samples for ever. An actor is asked again at once; a lost rollout is sampled anew.
+
+    Args:
+        actors: from `samplers`.
+        steps: of each rollout.
+
+    Returns:
+        An iterator over (number of the actor, rollout), as they come. Its arrays are read-only views of Ray's memory.
+    """
     asked = {actor.sample.remote(steps): i for i, actor in enumerate(actors)}
     while True:
         ready, _ = ray.wait(list(asked), num_returns=1)

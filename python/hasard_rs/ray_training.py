@@ -33,7 +33,7 @@ _FAILURES = 5
 
 
 class Meeting:
-    """Where workers meet: an actor that gives everyone's part to everyone, and hears the first worker's reports."""
+    """Where workers meet: an actor that gives everyone's part to everyone of `ranks` workers, and hears the first worker's reports."""
 
     def __init__(self, ranks: int) -> None:
         self.ranks = ranks
@@ -43,7 +43,16 @@ class Meeting:
         self.stopping = False
 
     async def gather(self, rank: int, number: int, part: list[Any]) -> list[Any]:
-        """The parts of this round in the order of ranks, once all have come."""
+        """Waits until everyone's part of a round has come.
+
+        Args:
+            rank: of the worker.
+            number: of the round.
+            part: bytes, or where in Ray's memory they are, in a list, so that Ray does not fetch them.
+
+        Returns:
+            The parts in the order of ranks.
+        """
         parts, complete = self.rounds.setdefault(number, ({}, asyncio.Event()))
         parts[rank] = part[0]
         if len(parts) == self.ranks:
@@ -55,19 +64,25 @@ class Meeting:
         return [parts[one] for one in range(self.ranks)]
 
     async def hear(self, report: Report) -> bool:
-        """Keeps a report, and tells whether the run is to end."""
+        """Keeps a report. Returns whether the run is to end."""
         self.reports.append(report)
         return self.stopping
 
     async def news(self, stop: bool) -> list[Report]:
-        """The reports since the last time."""
+        """Takes down whether the run is to `stop`. Returns the reports since the last time."""
         self.stopping |= stop
         reports, self.reports = self.reports, []
         return reports
 
 
 class Worker:
-    """A worker: an actor."""
+    """A worker: an actor.
+
+    Args:
+        meeting: the actor where all meet.
+        rank: its own, 0 to ranks - 1.
+        ranks: number of workers.
+    """
 
     def __init__(self, meeting: Any, rank: int, ranks: int) -> None:
         self.meeting, self.rank, self.ranks = meeting, rank, ranks
@@ -75,11 +90,11 @@ class Worker:
         self.lost = False
 
     def ready(self) -> bool:
-        """Whether the actor is there."""
+        """Returns True, once the actor is there."""
         return True
 
     def gather(self, part: np.ndarray) -> list[np.ndarray]:
-        """Everyone's bytes."""
+        """Returns everyone's bytes, by this one's part; raises RayError where another is lost."""
         self.number += 1
         try:
             sent = ray.put(part) if part.nbytes >= _LARGE else part
@@ -90,7 +105,11 @@ class Worker:
             raise
 
     def run(self, words: list[str]) -> tuple[str, bool, Report] | None:
-        """Trains until the run ends. None for all but the first worker, and if another machine is lost."""
+        """Trains until the run ends, by `words` of `hasard train`.
+
+        Returns the directory, whether it was stopped and the last report; None for all but the first worker, and if another machine is lost. Raises
+        InvalidOption for wrong settings.
+        """
         try:
             if self.rank == 0:
                 directory, stopped, last = _core.train(words, self.hear, warnings.warn, self.gather, self.ranks)
@@ -102,7 +121,7 @@ class Worker:
         return None
 
     def hear(self, report: Report) -> bool:
-        """Hands a report on, and tells whether the run is to end."""
+        """Hands a report on. Returns whether the run is to end."""
         return bool(ray.get(self.meeting.hear.remote(report)))
 
 
@@ -122,9 +141,22 @@ def train(
 ) -> Run:
     """Trains as `hasard_rs.train` does, over `workers` Ray actors that share the run's worlds.
 
-    address: of the cluster; None starts one on this machine unless Ray is running. num_cpus: what each worker asks Ray for; the flag `threads` says
-    what it uses. options: further options of the actors. If a worker or its machine is lost, all begin anew from the run's last checkpoint, as many as
-    the cluster still has room for. A run that exists is gone on with by `resume=True`, with any number of workers.
+    If a worker or its machine is lost, all begin anew from the run's last checkpoint, as many as the cluster still has room for. A run that exists is
+    gone on with by `resume=True`, with any number of workers.
+
+    Args:
+        env_id, algorithm, callback, preset, out, set, flags: as of `hasard_rs.train`.
+        workers: how many; each has its share of the run's worlds (`envs`).
+        address: of the cluster; None starts one on this machine unless Ray is running.
+        num_cpus: what each worker asks Ray for; the flag `threads` says what it uses.
+        options: further options of the actors.
+
+    Returns:
+        A `Run`.
+
+    Raises:
+        InvalidOption for wrong settings, or more workers than the cluster has room for; HasardError when workers were lost five times in a row without
+        a report between.
     """
     words = training_words(env_id, algorithm, preset=preset, out=out, set=set, **flags)
     return train_words(words, workers, address=address, num_cpus=num_cpus, options=options, callback=callback)
@@ -139,7 +171,10 @@ def train_words(
     options: Mapping[str, Any] | None = None,
     callback: Callable[[Report], Any] | None = None,
 ) -> Run:
-    """The same from the words of the program's command line."""
+    """Trains as `train` does, from the `words` of the program's command line.
+
+    workers, address, num_cpus, options and callback are as there; so is what it returns and raises.
+    """
     if not ray.is_initialized():
         ray.init(address=address, log_to_driver=False)
     if not 1 <= workers <= _room(num_cpus):

@@ -27,7 +27,7 @@ class Scenario(enum.Enum):
 
 @dataclass(frozen=True)
 class CostTerm:
-    """A named part of the cost; one that is not counted is measured beside the cost."""
+    """A named part of the cost; one that is not `counted` is measured beside the cost."""
 
     name: str
     counted: bool
@@ -35,7 +35,11 @@ class CostTerm:
 
 @dataclass(frozen=True)
 class Spec:
-    """What is known of an environment without making it."""
+    """What is known of an environment without making it.
+
+    nvec: choices of each part of the simplified actions; buttons: the names of the buttons that each part chooses from. max_episode_steps: at
+    frame_skip 4. safety_budget: cost that an episode may have, under the rules "paper"; published_safety_budget: under "released".
+    """
 
     id: str
     scenario: str
@@ -50,12 +54,14 @@ class Spec:
 
 
 def ids() -> list[str]:
-    """Every id, such as `hasard/VolcanicVentureLevel1-v0`, by scenario and level."""
+    """Returns every id, such as `hasard/VolcanicVentureLevel1-v0`, by scenario and level."""
     return [f"hasard/{env_id}" for env_id in _core.ids()]
 
 
 def bare(env_id: str) -> str:
-    """An id without its namespace; `module:id` imports the module first, as Gymnasium does."""
+    """Returns `env_id` without its namespace; `module:id` imports the module first, as Gymnasium does. Raises TypeError for anything but a str."""
+    if not isinstance(env_id, str):
+        raise TypeError(f"an environment's id must be a str such as 'hasard/VolcanicVentureLevel1-v0', got {env_id!r:.60}")
     module, colon, rest = env_id.rpartition(":")
     if colon:
         importlib.import_module(module)
@@ -63,7 +69,17 @@ def bare(env_id: str) -> str:
 
 
 def spec(env_id: str) -> Spec:
-    """What is known of an environment; `UnknownEnvironment` names the nearest id."""
+    """What is known of an environment without making it.
+
+    Args:
+        env_id: one of `ids()`, with or without `hasard/`.
+
+    Returns:
+        A `Spec`.
+
+    Raises:
+        UnknownEnvironment, which names the nearest id.
+    """
     told = _core.describe(bare(env_id))
     return Spec(
         id=f"hasard/{bare(env_id)}",
@@ -80,11 +96,20 @@ def spec(env_id: str) -> Spec:
 
 
 def register_environment(scenario: str | Scenario, level: int) -> None:
-    """Registers one environment with Gymnasium; nothing happens if it is registered."""
+    """Registers one environment with Gymnasium; nothing happens if it is registered.
+
+    Args:
+        scenario: a `Scenario` or its value.
+        level: 1 to 3.
+
+    Raises:
+        UnknownEnvironment, which names the nearest id.
+    """
     import gymnasium
 
     name = scenario.value if isinstance(scenario, Scenario) else scenario
     env_id = f"hasard/{name}Level{level}-v0"
+    _core.describe(env_id)
     if env_id not in gymnasium.registry:
         # No max_episode_steps: it would wrap a limit of the wrong length for another frame_skip; the worlds truncate themselves.
         gymnasium.register(

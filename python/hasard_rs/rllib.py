@@ -12,7 +12,17 @@ import hasard_rs  # noqa: E402
 
 
 def creator(context: Any) -> Any:
-    """An environment from RLlib's `EnvContext`: `env_id` and arguments; with `num_envs` a vector environment in NEXT_STEP mode."""
+    """An environment for RLlib.
+
+    Args:
+        context: RLlib's `EnvContext`, a dict of `env_id` and arguments of `help(hasard_rs.Env)`.
+
+    Returns:
+        A single environment; where `num_envs` is among them, a vector environment in NEXT_STEP mode, the only one that RLlib steps.
+
+    Raises:
+        What `hasard_rs.make` raises.
+    """
     given = dict(context)
     env_id = given.pop("env_id")
     num_envs = given.pop("num_envs", None)
@@ -22,7 +32,7 @@ def creator(context: Any) -> Any:
 
 
 def register(name: str = "hasard") -> None:
-    """Registers the creator with Tune, so that `config.environment(name, env_config={"env_id": ...})` finds it."""
+    """Registers the creator with Tune under `name`, so that `config.environment(name, env_config={"env_id": ...})` finds it."""
     from ray.tune import register_env
 
     register_env(name, creator)

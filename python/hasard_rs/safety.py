@@ -11,7 +11,12 @@ import hasard_rs
 
 
 class SafetyEnv(gymnasium.Env[np.ndarray, Any]):
-    """A single environment whose `step` returns (observation, reward, cost, terminated, truncated, info)."""
+    """A single environment whose `step` returns (observation, reward, cost, terminated, truncated, info).
+
+    Args:
+        env: an id, or an environment that has `info["cost"]`.
+        arguments: with an id, those of `help(hasard_rs.Env)`.
+    """
 
     def __init__(self, env: str | gymnasium.Env[Any, Any], **arguments: Any) -> None:
         self.env = hasard_rs.make(env, **arguments) if isinstance(env, str) else env
@@ -19,18 +24,22 @@ class SafetyEnv(gymnasium.Env[np.ndarray, Any]):
         self.metadata, self.render_mode, self.spec = self.env.metadata, self.env.render_mode, self.env.spec
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        """Starts an episode; seed and options as for `Env.reset`. Returns the observation and its info, without "cost"."""
         observation, info = self.env.reset(seed=seed, options=options)
         return observation, {name: value for name, value in info.items() if name != "cost"}
 
     def step(self, action: Any) -> tuple[np.ndarray, float, float, bool, bool, dict[str, Any]]:  # type: ignore[override]
+        """Holds an action. Returns (observation, reward, cost, terminated, truncated, info), floats and bools; raises what `Env.step` does."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         cost = float(info.pop("cost"))
         return observation, float(reward), cost, terminated, truncated, info
 
     def render(self) -> Any:
+        """Returns what `Env.render` does."""
         return self.env.render()
 
     def close(self) -> None:
+        """Lets the world go."""
         self.env.close()
 
 
@@ -38,6 +47,11 @@ class SafetyVectorEnv:
     """A batch of worlds in SAME_STEP mode whose `step` returns (observations, rewards, costs, terminateds, truncateds, infos).
 
     Last observations are in `infos` under Gymnasium 0.28's names: `final_observation`, `_final_observation`, `final_info`, `_final_info`.
+
+    Args:
+        env_id: one of `hasard_rs.ids()`.
+        num_envs: lanes.
+        arguments: those of `help(hasard_rs.VectorEnv)`.
     """
 
     def __init__(self, env_id: str, num_envs: int, **arguments: Any) -> None:
@@ -47,10 +61,16 @@ class SafetyVectorEnv:
         self.action_space, self.observation_space = self.envs.action_space, self.envs.observation_space
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+        """Starts episodes; seed and options as for `VectorEnv.reset`. Returns observations uint8 [n, ...] and infos, without "cost"."""
         observations, infos = self.envs.reset(seed=seed, options=options)
         return observations, _without_cost(infos)
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Steps every lane by actions of action_space.
+
+        Returns (observations uint8 [n, ...], rewards float64 [n], costs float64 [n], terminateds, truncateds bool [n], infos); raises what
+        `VectorEnv.step` does.
+        """
         observations, rewards, terminated, truncated, infos = self.envs.step(actions)
         costs = infos["cost"]
         infos = _without_cost(infos)
@@ -59,6 +79,7 @@ class SafetyVectorEnv:
         return observations, rewards, costs, terminated, truncated, infos
 
     def close(self) -> None:
+        """Lets the worlds go."""
         self.envs.close()
 
 
@@ -78,17 +99,17 @@ class _Five(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 
 def from_gymnasium(env: gymnasium.Env[Any, Any]) -> SafetyEnv:
-    """A six-tuple view of an environment that has `info["cost"]`."""
+    """Returns a six-tuple view of an environment `env` that has `info["cost"]`."""
     return SafetyEnv(env)
 
 
 def to_gymnasium(env: Any) -> gymnasium.Env[Any, Any]:
-    """A five-tuple view of a six-tuple environment."""
+    """Returns a five-tuple view of a six-tuple environment `env`."""
     return _Five(env)
 
 
 def register() -> list[str]:
-    """Puts `SafetyHasard<Scenario><Level>-v0` and `SafetyHasard<Scenario><Level>Gymnasium-v0` into Safety-Gymnasium; gives their ids."""
+    """Puts `SafetyHasard<Scenario><Level>-v0` and `SafetyHasard<Scenario><Level>Gymnasium-v0` into Safety-Gymnasium. Returns their ids."""
     from hasard_rs._extra import need
 
     safety_gymnasium = need("safety_gymnasium", "omnisafe", "safety")

@@ -32,7 +32,14 @@ NAMES = {
 
 
 class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
-    """`num_agents` worlds as Sample-Factory's batched samplers step them: tensors in and out, SAME_STEP."""
+    """`num_agents` worlds as Sample-Factory's batched samplers step them: tensors in and out, SAME_STEP.
+
+    Args:
+        env_id: one of `hasard_rs.ids()`.
+        num_agents: lanes.
+        render_mode: kept for Sample-Factory; `render` gives an RGB picture.
+        arguments: those of `hasard_rs.Worlds`; observations are channels first.
+    """
 
     is_multiagent = True
 
@@ -44,10 +51,23 @@ class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
         self.action_space = self._format.space
 
     def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        """Starts episodes; an int seed s seeds lane i with s + i, options are none. Returns {"obs": uint8 [n, c, h, w]} and a dict a lane."""
         batch = self.worlds.reset(seed)
         return {"obs": torch.from_numpy(batch.observations)}, [{} for _ in range(self.num_agents)]
 
     def step(self, actions: Any) -> Any:
+        """Steps every lane.
+
+        Args:
+            actions: a tensor [n, parts]: choices, then deltas where there are any.
+
+        Returns:
+            ({"obs": uint8 [n, c, h, w]}, rewards float32 [n], terminated, truncated bool [n], infos), tensors; infos is a dict a lane with "cost",
+            "num_frames" and, where an episode ended, "episode_extra_stats".
+
+        Raises:
+            InvalidAction; ValueError for another shape. Nothing has moved then.
+        """
         rows = actions.cpu().numpy() if torch.is_tensor(actions) else np.asarray(actions)
         groups = len(self.worlds.nvec)
         deltas = rows[:, groups:].astype(np.float32) if self.worlds.num_deltas else None
@@ -60,14 +80,26 @@ class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
         return {"obs": torch.from_numpy(batch.observations)}, torch.from_numpy(batch.rewards), *ends, infos
 
     def render(self) -> Any:
+        """Returns the first lane's picture, uint8 [120, 160, 3]."""
         return self.worlds.render(0)
 
     def close(self) -> None:
+        """Lets the worlds go."""
         self.worlds.close()
 
 
 def make(full_env_name: str, cfg: Any = None, env_config: Any = None, render_mode: str | None = None) -> HasardBatch:
-    """An environment from Sample-Factory's settings."""
+    """An environment from Sample-Factory's settings, as its registry calls for one.
+
+    Args:
+        full_env_name: one of `NAMES`.
+        cfg: the settings; of `add_arguments` and Sample-Factory's `env_frameskip`, `env_framestack`.
+        env_config: ignored.
+        render_mode: kept.
+
+    Returns:
+        A `HasardBatch`.
+    """
     arguments = {
         "hard_constraint": getattr(cfg, "constraint", "soft") == "hard",
         "resolution": (getattr(cfg, "res_w", 128), getattr(cfg, "res_h", 72)),
@@ -88,7 +120,7 @@ def register() -> None:
 
 
 def add_arguments(parser: Any) -> None:
-    """The published package's settings of an environment."""
+    """Adds the published package's settings of an environment to an argparse `parser`."""
     parser.add_argument("--level", type=int, default=1, choices=[1, 2, 3])
     parser.add_argument("--constraint", default="soft", choices=["soft", "hard"])
     parser.add_argument("--res_w", type=int, default=128)
@@ -98,7 +130,7 @@ def add_arguments(parser: Any) -> None:
 
 
 def main() -> int:
-    """Trains by Sample-Factory's own loop."""
+    """Trains by Sample-Factory's own loop, from the command line. Returns its exit code."""
     from sample_factory.cfg.arguments import parse_full_cfg, parse_sf_args
     from sample_factory.train import run_rl
 

@@ -18,7 +18,13 @@ Rows = tuple[Any, Any]
 
 
 class ActionFormat:
-    """One of the five formats for one action space. `one` reads the action of a single environment, `many` those of a batch."""
+    """One of the five formats for one action space.
+
+    Args:
+        nvec: choices of each categorical part.
+        deltas: number of continuous parts.
+        bins: of each delta where the format has no numbers.
+    """
 
     space: spaces.Space[Any]
 
@@ -29,9 +35,11 @@ class ActionFormat:
         self.bins = bins
 
     def one(self, action: Any) -> Rows:
+        """Reads the action of a single environment. Returns rows; raises InvalidAction, TypeError or ValueError."""
         raise NotImplementedError
 
     def many(self, actions: Any, lanes: int) -> Rows:
+        """Reads the actions of so many lanes. Returns rows; raises InvalidAction, TypeError or ValueError."""
         raise NotImplementedError
 
     def _integers(self, given: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
@@ -51,6 +59,13 @@ class ActionFormat:
             value, part = bins[lane, part], part + self.groups
             raise InvalidAction(f"action of lane {lane}: part {part} is {value}; it must be 0..={self.bins - 1}")
         return rows[:, : self.groups], (2.0 * bins / (self.bins - 1) - 1.0).astype(np.float32)
+
+
+def _numbers(given: Any, what: str, dtype: type[np.floating[Any]]) -> np.ndarray:
+    array = np.asarray(given)
+    if array.dtype.kind not in "iubf":
+        raise TypeError(f"{what} must be numbers, got dtype {array.dtype}")
+    return array.astype(dtype, copy=False)
 
 
 def _shaped(array: np.ndarray, shape: tuple[int, ...], what: str) -> np.ndarray:
@@ -100,7 +115,7 @@ class Discrete(ActionFormat):
         if wrong.any():
             lane = int(wrong.argmax())
             raise InvalidAction(f"action of lane {lane}: part 0 is {flat[lane]}; it must be 0..={self.count - 1}")
-        return self._binned(np.stack(np.unravel_index(flat, self.sizes), axis=1))
+        return self._binned(np.stack(np.unravel_index(flat.astype(np.int64), self.sizes), axis=1))
 
 
 class Tuple(ActionFormat):
@@ -113,7 +128,7 @@ class Tuple(ActionFormat):
     def one(self, action: Any) -> Rows:
         self._count(action)
         categorical = [np.asarray(part).reshape(1) if np.size(part) == 1 else part for part in action[: self.groups]]
-        continuous = [np.asarray(part, dtype=np.float32).reshape(1, 1) for part in action[self.groups :]]
+        continuous = [_numbers(part, "each delta", np.float32).reshape(1, 1) for part in action[self.groups :]]
         return self.many((*categorical, *continuous), 1)
 
     def many(self, actions: Any, lanes: int) -> Rows:
@@ -121,12 +136,12 @@ class Tuple(ActionFormat):
         parts = [self._integers(part, (lanes,), "each part of the actions") for part in actions[: self.groups]]
         if not self.deltas:
             return np.stack(parts, axis=1), None
-        continuous = [np.asarray(part, dtype=np.float32).reshape(lanes, 1) for part in actions[self.groups :]]
+        continuous = [_numbers(part, "each delta", np.float32).reshape(lanes, 1) for part in actions[self.groups :]]
         return np.stack(parts, axis=1), np.concatenate(continuous, axis=1)
 
     def _count(self, actions: Any) -> None:
-        if not hasattr(actions, "__len__"):
-            raise TypeError(f"the action must be a tuple of {self.groups + self.deltas} parts, got a scalar")
+        if not hasattr(actions, "__len__") or hasattr(actions, "keys"):
+            raise TypeError(f"the action must be a tuple of {self.groups + self.deltas} parts, got {type(actions).__name__}")
         if len(actions) != self.groups + self.deltas:
             raise ValueError(f"the action must have {self.groups + self.deltas} parts, got {len(actions)}")
 
@@ -144,13 +159,13 @@ class Dict(ActionFormat):
     def one(self, action: Any) -> Rows:
         self._check(action)
         buttons = self._integers(action["buttons"], (self.groups,), "buttons")[None]
-        deltas = _shaped(np.asarray(action["deltas"], dtype=np.float32), (self.deltas,), "deltas")[None] if self.deltas else None
+        deltas = _shaped(_numbers(action["deltas"], "deltas", np.float32), (self.deltas,), "deltas")[None] if self.deltas else None
         return buttons, deltas
 
     def many(self, actions: Any, lanes: int) -> Rows:
         self._check(actions)
         buttons = self._integers(actions["buttons"], (lanes, self.groups), "buttons")
-        deltas = _shaped(np.asarray(actions["deltas"], dtype=np.float32), (lanes, self.deltas), "deltas") if self.deltas else None
+        deltas = _shaped(_numbers(actions["deltas"], "deltas", np.float32), (lanes, self.deltas), "deltas") if self.deltas else None
         return buttons, deltas
 
     def _check(self, action: Any) -> None:
@@ -173,10 +188,10 @@ class Box(ActionFormat):
         self.space = _box(self.parts)
 
     def one(self, action: Any) -> Rows:
-        return self._cut(_shaped(np.asarray(action, dtype=np.float64), (self.parts,), "the action")[None])
+        return self._cut(_shaped(_numbers(action, "the action", np.float64), (self.parts,), "the action")[None])
 
     def many(self, actions: Any, lanes: int) -> Rows:
-        return self._cut(_shaped(np.asarray(actions, dtype=np.float64), (lanes, self.parts), "actions"))
+        return self._cut(_shaped(_numbers(actions, "actions", np.float64), (lanes, self.parts), "actions"))
 
     def _cut(self, rows: np.ndarray) -> Rows:
         wrong = np.isnan(rows)
@@ -199,5 +214,5 @@ _FORMATS: dict[str, type[ActionFormat]] = {
 
 
 def action_format(name: str, nvec: tuple[int, ...], deltas: int, bins: int) -> ActionFormat:
-    """The format of a name, for an action space of so many choices a part and so many deltas."""
+    """Returns the format of a name, for an action space of so many choices a part (nvec) and so many deltas, cut into bins where need be."""
     return _FORMATS[name](nvec, deltas, bins)

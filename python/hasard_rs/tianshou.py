@@ -13,7 +13,14 @@ from hasard_rs.spaces import action_format
 
 
 class HasardVectorEnv:
-    """A batch of worlds for Tianshou's collectors, which reset lanes themselves; actions are `discrete` unless asked otherwise."""
+    """A batch of worlds for Tianshou's collectors, which reset lanes themselves; actions are `discrete` unless asked otherwise.
+
+    Args:
+        env_id: one of `hasard_rs.ids()`.
+        num_envs: lanes.
+        num_threads: worker threads beside the caller's.
+        arguments: those of `help(hasard_rs.Env)`; layout is "chw" unless given.
+    """
 
     is_async = False
 
@@ -39,6 +46,15 @@ class HasardVectorEnv:
         return np.arange(self.env_num) if chosen is None else np.atleast_1d(np.asarray(chosen, dtype=np.int64))
 
     def reset(self, env_id: Any = None, **kwargs: Any) -> tuple[np.ndarray, np.ndarray]:
+        """Starts episodes.
+
+        Args:
+            env_id: lanes, an int or a list; None: all.
+            kwargs: `seed`, an int (lane i's is seed + i) or a list of one a lane.
+
+        Returns:
+            Observations uint8 [m, ...] of these lanes, and infos: an object array [m] of dicts.
+        """
         lanes = self._lanes(env_id)
         mask = np.zeros(self.env_num, np.bool_)
         mask[lanes] = True
@@ -52,6 +68,18 @@ class HasardVectorEnv:
         return batch.observations[lanes], self._told(batch, lanes, lanes)
 
     def step(self, action: Any, id: Any = None) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # noqa: A002
+        """Steps lanes.
+
+        Args:
+            action: integers [m], or as the format says.
+            id: the m lanes; None: all.
+
+        Returns:
+            (observations uint8 [m, ...], rewards float64 [m], terminated, truncated bool [m], infos: an object array [m] of dicts with "cost").
+
+        Raises:
+            InvalidAction; TypeError or ValueError for the wrong dtype or shape; ResetNeeded where a lane's episode is over. Nothing has moved then.
+        """
         lanes = self._lanes(id)
         batch = self.worlds.step(*self._format.many(np.asarray(action), len(lanes)), lanes=lanes.tolist())
         infos = self._told(batch, np.arange(len(lanes)), lanes)
@@ -67,11 +95,14 @@ class HasardVectorEnv:
         return infos
 
     def seed(self, seed: Any = None) -> list[Any]:
+        """Keeps the seed, an int or a list of one a lane, of the next reset. Returns it as a list."""
         self._seeds = seed
         return [seed] if seed is None or isinstance(seed, int) else list(seed)
 
     def render(self, **kwargs: Any) -> list[np.ndarray]:
+        """Returns a picture a lane, uint8 [120, 160, 3]; kwargs are ignored."""
         return [self.worlds.render(lane) for lane in range(self.env_num)]
 
     def close(self) -> None:
+        """Lets the worlds go."""
         self.worlds.close()

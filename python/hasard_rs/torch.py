@@ -25,7 +25,7 @@ _EPSILON = 1e-5
 
 
 def read_weights(path: Path) -> dict[str, np.ndarray]:
-    """The tensors of a safetensors file: a length, a JSON header, the bytes."""
+    """Returns the tensors, by name, of the safetensors file at `path`: a length, a JSON header, the bytes."""
     data = path.read_bytes()
     (length,) = struct.unpack("<Q", data[:8])
     header = json.loads(data[8 : 8 + length])
@@ -39,7 +39,12 @@ def read_weights(path: Path) -> dict[str, np.ndarray]:
 
 
 class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
-    """Convolutions, dense layers, a GRU if there is one, and linear heads, on one 8-bit image; as the run's settings say."""
+    """Convolutions, dense layers, a GRU or LSTM if there is one, and linear heads, on one 8-bit image.
+
+    Args:
+        weights: arrays by name, of this network.
+        settings: the part "network" of the run's config.json.
+    """
 
     def __init__(self, weights: dict[str, np.ndarray], settings: dict[str, Any]) -> None:
         super().__init__()
@@ -55,12 +60,13 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
             layer.weight.data, layer.bias.data = weight, tensor(f"convolution{index}.bias")
             self.convolutions.append(layer)
         self.dense = torch.nn.ModuleList(self._linear(tensor, f"dense{i}") for i in range(sum(name.startswith("dense") for name in layers)))
-        self.gru = None
-        if "gru.input_weight" in weights:
-            weight = tensor("gru.input_weight").T.contiguous()
-            self.gru = torch.nn.GRUCell(weight.shape[1], weight.shape[0] // 3)
-            self.gru.weight_ih.data, self.gru.bias_ih.data = weight, tensor("gru.input_bias")
-            self.gru.weight_hh.data, self.gru.bias_hh.data = tensor("gru.hidden_weight").T.contiguous(), tensor("gru.hidden_bias")
+        self.cell = None
+        for kind, module in {"gru": torch.nn.GRUCell, "lstm": torch.nn.LSTMCell}.items():
+            if f"{kind}.input_weight" in weights:
+                weight, hidden = tensor(f"{kind}.input_weight").T.contiguous(), tensor(f"{kind}.hidden_weight").T.contiguous()
+                self.cell = module(weight.shape[1], hidden.shape[1])
+                self.cell.weight_ih.data, self.cell.bias_ih.data = weight, tensor(f"{kind}.input_bias")
+                self.cell.weight_hh.data, self.cell.bias_hh.data = hidden, tensor(f"{kind}.hidden_bias")
         self.heads = torch.nn.ModuleList(self._linear(tensor, f"head{i}") for i in range(sum(name.startswith("head") for name in layers)))
 
     @staticmethod
@@ -71,7 +77,16 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
         return layer
 
     def forward(self, images: Any, extra: Any = None, state: Any = None) -> tuple[Any, Any]:
-        """Outputs [n, ...] for normalised images [n, channels, height, width], and the GRU's state after."""
+        """Runs the network.
+
+        Args:
+            images: normalised, float32 [n, channels, height, width].
+            extra: further features, float32 [n, m], or None.
+            state: of the GRU, float32 [n, hidden], or of the LSTM, a pair of them (output, cell); None: episodes begin.
+
+        Returns:
+            Outputs float32 [n, ...], and the state after.
+        """
         values = images
         for layer in self.convolutions:
             values = torch.nn.functional.elu(layer(values))
@@ -81,13 +96,19 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
             values = torch.nn.functional.elu(layer(values))
         if extra is not None:
             values = torch.cat([values, extra], 1)
-        if self.gru is not None:
-            state = values = self.gru(values, state)
+        if self.cell is not None:
+            state = self.cell(values, state)
+            values = state[0] if isinstance(state, tuple) else state
         return torch.cat([head(values) for head in self.heads], 1), state
 
 
 class Model(torch.nn.Module):  # type: ignore[name-defined,misc]
-    """The whole model of a run: one network, or one for the policy and for each critic."""
+    """The whole model of a run: one network, or one for the policy and for each critic. Made by `load`.
+
+    Args:
+        weights: arrays by name, of a checkpoint.
+        settings: the part "network" of the run's config.json.
+    """
 
     def __init__(self, weights: dict[str, np.ndarray], settings: dict[str, Any]) -> None:
         super().__init__()
@@ -99,9 +120,15 @@ class Model(torch.nn.Module):  # type: ignore[name-defined,misc]
         self.networks = torch.nn.ModuleList(Network(part, settings) for part in own)
 
     def forward(self, observations: Any, state: Any = None, extra: Any = None) -> tuple[Any, list[Any]]:
-        """Outputs for observations uint8 [n, height, width, channels] and each network's state (None: episodes begin).
+        """Runs the model.
 
-        extra: what is left of the budget, [n, 1], for PPOSaute's agents.
+        Args:
+            observations: uint8 [n, height, width, channels].
+            state: each network's; None: episodes begin.
+            extra: what is left of the budget, float32 [n, 1], for PPOSaute's agents.
+
+        Returns:
+            Outputs float32 [n, logits and deltas | value | cost values], and each network's state after.
         """
         count, shape = len(observations), observations.shape[1:]
         pixels = (observations.reshape(count, -1).float() * self.scale + self.shift).clamp(-5.0, 5.0)
@@ -112,7 +139,18 @@ class Model(torch.nn.Module):  # type: ignore[name-defined,misc]
 
 
 def load(run: str | os.PathLike[str], *, best: bool = False) -> Model:
-    """The network of a run directory's newest checkpoint, or of the best within budget."""
+    """The network of a trained agent.
+
+    Args:
+        run: the directory that `hasard_rs.train`, or the program, wrote.
+        best: the best checkpoint within budget instead of the newest.
+
+    Returns:
+        A `Model`, on the CPU.
+
+    Raises:
+        InvalidOption where no such checkpoint was written.
+    """
     checkpoints = Path(run) / "checkpoints"
     found = [checkpoints / "best"] if best else sorted(checkpoints.glob("frames_*"))
     if not found or not found[-1].is_dir():

@@ -20,7 +20,18 @@ from hasard_rs import arguments as _arguments  # noqa: E402
 
 
 class HasardEnv(EnvBase):
-    """A batch of worlds: `pixels` uint8 [n, ...], `action` int64 [n, parts], `reward`, `cost` float32 [n, 1], `cost_terms` [n, k], done keys."""
+    """A batch of worlds: `pixels` uint8 [n, ...], `action` int64 [n, parts], `reward`, `cost` float32 [n, 1], `cost_terms` [n, k], done keys.
+
+    Args:
+        env_id: one of `hasard_rs.ids()`.
+        num_envs: lanes, the batch size.
+        num_threads: worker threads beside the caller's.
+        device: of the tensors.
+        arguments: those of `help(hasard_rs.Env)`; layout is "chw" unless given.
+
+    Raises:
+        InvalidOption for full_actions, which have continuous parts: use GymWrapper for them.
+    """
 
     def __init__(self, env_id: str, num_envs: int = 1, *, num_threads: int | None = None, device: Any = "cpu", **arguments: Any) -> None:
         super().__init__(device=torch.device(device), batch_size=torch.Size([num_envs]))
@@ -71,5 +82,6 @@ class HasardEnv(EnvBase):
         self._seed = seed
 
     def close(self, **kwargs: Any) -> None:
+        """Lets the worlds go; kwargs are TorchRL's."""
         self.worlds.close()
         super().close(**kwargs)

@@ -30,10 +30,23 @@ _CALLS = ("render", "position", "episode_seed", "state_hash")
 class VectorEnv(_Base):  # type: ignore[misc,valid-type]
     """A batch of worlds, as Gymnasium's vector environment; stepped by Rust threads while the interpreter is free.
 
-    Made by `hasard_rs.make_vec(id, num_envs, **arguments)` or `gymnasium.make_vec`; arguments are keyword-only, listed in docs/python.md.
+    Made by `hasard_rs.make_vec(id, num_envs, **arguments)` or `gymnasium.make_vec`. Gymnasium 1.1 or newer.
 
-    `step(actions)` returns (observations uint8 [n, ...], rewards float64 [n], terminations bool [n], truncations bool [n], infos).
-    `infos["cost"]` (float64 [n]) is always the cost of the step just made, under every autoreset mode.
+    Args:
+        num_envs: lanes, 1 to 65536.
+        num_threads: worker threads beside the caller's; 0: none. None: one for every four lanes, as far as there are processors. No result
+            depends on it.
+        autoreset_mode: "NextStep", "SameStep" or "Disabled", or Gymnasium's enum.
+        batch_size: 0: every step is of all lanes. Otherwise it divides num_envs, and lanes are stepped in groups of so many, in turn.
+        copy: False: every call writes over the last one's arrays. Unsafe but for measurements.
+        arguments: those of `help(hasard_rs.Env)`.
+
+    Raises:
+        UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no argument; ImportError with an older Gymnasium.
+
+    Attributes:
+        single_observation_space, single_action_space: as of an `Env`. observation_space, action_space: batches of them.
+        autoreset_mode: Gymnasium's enum, in `metadata` too. cost_terms, safety_budget, max_episode_steps: as of an `Env`.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 8.75}  # type: ignore[misc]
@@ -110,9 +123,18 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
     def reset(  # type: ignore[override]
         self, *, seed: Any = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Starts episodes: int s seeds lane i with s + i, a sequence has one entry a lane (None goes on with the lane's stream).
+        """Starts episodes.
 
-        `options["reset_mask"]` (bool [num_envs]) resets those lanes only; the others are returned as they are.
+        Args:
+            seed: an int s seeds lane i with s + i, a sequence has one entry a lane; None goes on with the lane's stream. Not negative.
+            options: `options["reset_mask"]` (bool [num_envs]) resets those lanes only; the others are returned as they are.
+
+        Returns:
+            Observations, uint8 [num_envs, ...], and infos: arrays float64, int32, uint64 with first axis num_envs, and for each key a mask
+            bool [num_envs] under "_key". With `batch_size`: of the first group.
+
+        Raises:
+            TypeError or ValueError for seeds or a mask of the wrong kind; Closed after `close`.
         """
         seeds = self._seeds(seed)
         mask = self._mask(options)
@@ -165,18 +187,38 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         return mask
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Steps every lane; with `batch_size`, the lanes last handed out, and returns the next group's."""
+        """Steps every lane; with `batch_size`, the lanes last handed out.
+
+        Args:
+            actions: of action_space: for "multi_discrete" integers [n, parts].
+
+        Returns:
+            (observations uint8 [n, ...], rewards float64 [n], terminations bool [n], truncations bool [n], infos); with `batch_size`, of the next
+            group. `infos["cost"]` (float64 [n]) is the cost of the step just made under every autoreset mode. Where episodes end,
+            "episode_summary" holds arrays by name; under SAME_STEP "final_obs" (object [n], arrays or None) and "final_info" too.
+
+        Raises:
+            InvalidAction, which names lane, part, value and range; TypeError or ValueError for the wrong dtype or shape; ResetNeeded before the
+            first reset, or where a lane's episode is over under DISABLED; Closed after `close`. Nothing has moved then.
+        """
         if self._groups > 1:
             self.send(actions)
             return self.recv()
         return self._tell(self._worlds.step(*self._format.many(actions, self.num_envs)))
 
     def send(self, actions: Any) -> None:
-        """Hands actions of the lanes last handed out over and comes back at once."""
+        """Hands actions of the lanes last handed out over and comes back at once.
+
+        Args:
+            actions: for batch_size lanes, as for `step`.
+
+        Raises:
+            What `step` raises; OutOfTurn if these lanes are under way.
+        """
         self._worlds.send(*self._format.many(actions, self.batch_size), group=self._given_out)
 
     def recv(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Waits for the next group's step, round robin. The first time after a reset it tells that group's reset."""
+        """Waits for the next group's step, round robin. Returns what `step` returns; the first time after a reset, that group's reset."""
         group = (self._given_out + 1) % self._groups
         if self._fresh and group in self._fresh:
             batch, infos = self._fresh.pop(group)
@@ -266,7 +308,11 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         infos[f"_{key}"] = mask.copy()
 
     def render(self) -> tuple[np.ndarray, ...] | None:
-        """The present of every lane as `render_mode` says; None without one, after a warning."""
+        """Draws the present of every lane as `render_mode` says.
+
+        Returns:
+            For each lane uint8 [height, width, 3], or [height, width] for "depth_array"; None, after a warning, without a render mode.
+        """
         if self.render_mode is None:
             logger.warn("render() needs render_mode='rgb_array' or 'depth_array' when the environments are made; nothing is drawn")
             return None
@@ -281,7 +327,19 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         return width, height
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """What each lane answers: render, position, episode_seed, state_hash, or an attribute of this object."""
+        """Asks each lane.
+
+        Args:
+            name: "render", "position" (int32 [2], map units), "episode_seed", "state_hash", or an attribute of this object.
+            args: for an attribute that is called.
+            kwargs: the same.
+
+        Returns:
+            An answer a lane.
+
+        Raises:
+            AttributeError for another name.
+        """
         if name == "render":
             return self.render() or (None,) * self.num_envs
         if name == "position":
@@ -296,11 +354,19 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         return tuple(value(*args, **kwargs) if callable(value) else value for _ in range(self.num_envs))
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """An attribute, of each lane."""
+        """Returns the attribute `name`, once a lane; as `call`."""
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Sets an attribute, which all lanes share: values of several lanes must be equal."""
+        """Sets an attribute, which all lanes share.
+
+        Args:
+            name: of the attribute.
+            values: one value, or a list of one a lane, all equal.
+
+        Raises:
+            ValueError for values that differ, or of another number.
+        """
         if isinstance(values, (list, tuple)):
             if len(values) != self.num_envs:
                 raise ValueError(
@@ -313,20 +379,34 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         setattr(self, name, values)
 
     def save(self) -> bytes:
-        """Where every lane is, to come back to by `load`."""
+        """Returns where every lane is, to come back to by `load`: bytes of this version. Raises OutOfTurn with `batch_size`."""
         if self._groups > 1:
             raise OutOfTurn("worlds in groups cannot be saved while some are under way; make them without batch_size")
         return self._worlds.save()
 
     def load(self, state: bytes) -> np.ndarray:
-        """Comes back to a saved moment of worlds made alike, by repeating their episodes, and shows it."""
+        """Comes back to a saved moment, by repeating the episodes.
+
+        Args:
+            state: what `save` gave, of worlds made alike.
+
+        Returns:
+            Observations of that moment.
+
+        Raises:
+            InvalidOption for bytes that are spoiled, or of other worlds; nothing has changed then.
+        """
         batch = self._worlds.load(state)
         self._started = True
         self._over[:] = batch.terminated | batch.truncated
         return batch.observations
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Ends the threads and lets the worlds go."""
+        """Ends the threads and lets the worlds go; `close` calls it.
+
+        Args:
+            kwargs: ignored.
+        """
         if hasattr(self, "_worlds"):
             self._worlds.close()
 

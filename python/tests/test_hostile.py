@@ -87,6 +87,8 @@ def test_every_dtype_order_and_stride_acts_alike() -> None:
         ({"seed": -1}, ValueError, "negative"),
         ({"max_episode_steps": 0}, hasard_rs.InvalidOption, "max_episode_steps"),
         ({"iwad": "/nowhere.wad"}, hasard_rs.InvalidOption, "/nowhere.wad"),
+        ({"maps": 3}, hasard_rs.InvalidOption, "maps cannot be 3; it must be a path or 'auto'"),
+        ({"render_resolution": "large"}, hasard_rs.InvalidOption, "render_resolution cannot be 'large'"),
     ],
 )
 def test_wrong_arguments_are_named(arguments: dict[str, Any], error: type[Exception], text: str) -> None:
@@ -96,7 +98,7 @@ def test_wrong_arguments_are_named(arguments: dict[str, Any], error: type[Except
         hasard_rs.VectorEnv(scenario="VolcanicVenture", level=1, num_envs=2, **arguments)
 
 
-@pytest.mark.parametrize("arguments", [{"num_envs": 0}, {"num_envs": 70000}, {"batch_size": 3}, {"autoreset_mode": "Never"}, {"num_threads": 5000}])
+@pytest.mark.parametrize("arguments", [{"num_envs": 0}, {"num_envs": -1}, {"num_envs": 70000}, {"num_envs": 2.0}, {"batch_size": 3}, {"autoreset_mode": "Never"}, {"num_threads": 5000}, {"num_threads": -1}])
 def test_wrong_batches_are_named(arguments: dict[str, Any]) -> None:
     with pytest.raises(hasard_rs.InvalidOption):
         hasard_rs.VectorEnv(scenario="VolcanicVenture", level=1, **{"num_envs": 4, "resolution": "64x48", **arguments})
@@ -106,6 +108,56 @@ def test_unknown_ids_name_the_nearest() -> None:
     for make in (hasard_rs.make, hasard_rs.make_vec, hasard_rs.spec):
         with pytest.raises(hasard_rs.UnknownEnvironment, match="VolcanicVentureLevel1-v0"):
             make("hasard/VulcanicVentureLevel1-v0")
+
+
+def test_what_is_no_id_is_told() -> None:
+    for make in (hasard_rs.make, hasard_rs.make_vec, hasard_rs.spec, hasard_rs.train):
+        for wrong in (None, 5, b"VolcanicVentureLevel1-v0"):
+            with pytest.raises(TypeError, match="id must be a str"):
+                make(wrong)  # type: ignore[operator]
+    for scenario, level in (("VolcanicVentura", 1), ("VolcanicVenture", 7)):
+        with pytest.raises(hasard_rs.UnknownEnvironment):
+            hasard_rs.register_environment(scenario, level)
+
+
+@pytest.mark.parametrize("action_format", ["multi_discrete", "tuple", "dict", "discrete", "box"])
+def test_every_format_refuses_what_is_no_action(action_format: str, full: bool) -> None:
+    made: dict[bool, Any] = {}
+    for vector in (False, True):
+        how = {"action_format": action_format, "full_actions": True, "resolution": "64x48", "max_episode_steps": 20}
+        made[vector] = hasard_rs.make_vec(ENV, 2, **how) if vector else hasard_rs.make(ENV, **how).unwrapped
+        made[vector].reset(seed=3)
+    rng = np.random.default_rng(5)
+    parts = [0, 1, -1, 300, 1 << 63, 0.5, np.nan, np.inf, 1j, None, "x", b"x", [], {}, object(), np.uint64(1), np.True_, np.zeros(2), [0, 0], [[0], [0]]]
+
+    def junk() -> Any:
+        shape = rng.integers(7)
+        part = parts[rng.integers(len(parts))]
+        if shape == 0:
+            return part
+        if shape == 1:
+            return [part] * int(rng.integers(13))
+        if shape == 2:
+            return tuple(parts[rng.integers(len(parts))] for _ in range(11))
+        if shape == 3:
+            return {name: parts[rng.integers(len(parts))] for name in ("buttons", "deltas", "more")[: rng.integers(1, 4)]}
+        kinds = [np.int8, np.uint8, np.int64, np.uint64, np.bool_, np.float16, np.float32, np.float64, np.complex64, "U3", object]
+        array = np.zeros(tuple(rng.integers(0, 13, rng.integers(4))), kinds[rng.integers(len(kinds))])
+        return {"buttons": array, "deltas": part} if shape == 4 else array[::-1] if array.ndim else array
+
+    refused = 0
+    for _ in range(10_000 if full else 600):
+        env = made[bool(rng.integers(2))]
+        before = env.save()
+        try:
+            _, _, terminated, truncated, _ = env.step(junk() if rng.integers(4) else env.action_space.sample())
+        except (TypeError, ValueError):
+            refused += 1
+            assert env.save() == before, "what was refused has moved nothing"
+        else:
+            if env is made[False] and (terminated or truncated):
+                env.reset()
+    assert refused > 100
 
 
 def test_use_after_close_and_out_of_turn() -> None:

@@ -577,7 +577,7 @@ pub struct ServeArgs {
 #[derive(Args, Debug)]
 pub struct SweepArgs {
     /// TOML file, or an experiment of the paper: main, safety-bounds, cost-scale, curriculum, hard, full-actions, depth,
-    /// segmentation, trpo; or quick, quick-all: the quick preset
+    /// segmentation, trpo; or quick, quick-all, quick-algorithms: the quick preset
     pub what: String,
     /// Folder of the runs
     #[arg(short, long, value_name = "DIR")]

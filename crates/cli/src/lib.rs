@@ -108,6 +108,14 @@ pub fn environment_of_run(directory: &Path) -> Result<(String, EnvOptions), Stri
     Ok((config.env.id.clone(), settings::trained_options(&config.env).map_err(line)?))
 }
 
+/// Otherwise usual options with maps and pictures as `--maps` and `--iwad` name them; `tell` hears what of a map is left out.
+///
+/// # Errors
+/// One line that names the input and the remedy.
+pub fn looks(maps: Option<&Path>, iwad: Option<&Path>, tell: fn(&str)) -> Result<EnvOptions, String> {
+    sources::looks_telling(maps, iwad, tell).map_err(line)
+}
+
 fn line(failure: Failure) -> String {
     match failure {
         Failure::Negative(text) | Failure::BadInput(text) => text,

@@ -10,8 +10,14 @@ use std::sync::Arc;
 /// Largest IWAD that is read, bytes.
 const LARGEST_IWAD: u64 = 256 << 20;
 
-/// Otherwise usual options with the maps of `--maps` and the pictures of `--iwad`; without them the built-in ones.
+/// Otherwise usual options with the maps of `--maps` and the pictures of `--iwad`; without them the built-in ones. What of a map is
+/// left out is told on the terminal.
 pub fn looks(maps: Option<&Path>, iwad: Option<&Path>) -> Result<EnvOptions, Failure> {
+    looks_telling(maps, iwad, |left_out| eprintln!("hasard: {left_out}"))
+}
+
+/// The same, telling the caller what of a map is left out.
+pub fn looks_telling(maps: Option<&Path>, iwad: Option<&Path>, tell: fn(&str)) -> Result<EnvOptions, Failure> {
     let auto = |given: &Path| given == Path::new("auto");
     let iwad = match iwad {
         Some(given) if auto(given) => Some(find_iwad(maps.is_some()).map_err(Failure::bad)?),
@@ -22,7 +28,7 @@ pub fn looks(maps: Option<&Path>, iwad: Option<&Path>) -> Result<EnvOptions, Fai
     };
     let place = if auto(maps) { find_maps().map_err(Failure::bad)? } else { maps.to_owned() };
     // The maps are read, and laid over the IWAD, when it is known which is played.
-    let maps = Maps::new(&place, iwad.as_deref()).telling(|left_out| eprintln!("hasard: {left_out}"));
+    let maps = Maps::new(&place, iwad.as_deref()).telling(tell);
     Ok(EnvOptions { maps: Some(Arc::new(maps)), ..EnvOptions::default() })
 }
 

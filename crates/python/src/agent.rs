@@ -25,7 +25,17 @@ impl AgentState {
     }
 }
 
-/// The agent of a run directory.
+/// TrainedAgent(run, *, best=False, greedy=False)
+///
+/// The agent of a run directory, raw; `hasard_rs.Agent` is what to use.
+///
+/// Args:
+///     run: the directory.
+///     best: the best checkpoint within budget instead of the newest.
+///     greedy: the likeliest actions instead of drawn ones.
+///
+/// Raises:
+///     InvalidOption where there is no run, no checkpoint or a spoiled one.
 #[pyclass(frozen, module = "hasard_rs._core")]
 pub struct TrainedAgent {
     agent: Mutex<Trained>,
@@ -73,16 +83,27 @@ impl TrainedAgent {
         made.map_err(|line: String| INVALID_OPTION.error(py, line))
     }
 
-    /// What an agent carries when episodes of these seeds begin, a lane each.
+    /// begin(seeds) -> AgentState
+    ///
+    /// Returns what an agent carries when episodes of these `seeds` begin, a lane each.
     fn begin(&self, py: Python<'_>, seeds: Vec<u64>) -> AgentState {
         py.detach(|| AgentState { memory: self.agent().blank(&seeds) })
     }
 
     /// act(observations, state, costs, over, cost_terms=None) -> (actions int64 [n, groups], deltas float32 [n, 2], state)
     ///
-    /// observations: uint8 [n, height, width, channels]. costs: of the step before, which agents that watch their budget need, and
-    /// cost_terms, a row a lane, those that watch one of the terms. over: lanes whose episode has ended; they begin a new one, whose seed
-    /// follows the old one's.
+    /// Args:
+    ///     observations: uint8 [n, height, width, channels].
+    ///     state: what the agent carries, from `begin` or the last call.
+    ///     costs: of the step before, a number a lane, which agents that watch their budget need; None in the first step.
+    ///     over: bool a lane, those whose episode has ended; they begin a new one, whose seed follows the old one's.
+    ///     cost_terms: a row of k numbers a lane, which agents that watch one of the terms need.
+    ///
+    /// Returns:
+    ///     Choices, continuous parts, and what the agent carries then.
+    ///
+    /// Raises:
+    ///     ValueError for the wrong number of lanes or shape of observations, or cost_terms that are missing.
     #[pyo3(signature = (observations, state, costs, over, cost_terms=None))]
     fn act<'py>(
         &self,
@@ -134,7 +155,17 @@ impl TrainedAgent {
 
     /// outputs(observations, state) -> (rows float32 [n, outputs], state)
     ///
-    /// The network's output rows: logits and parameters of the actions, the value, and the cost critics' values.
+    /// What the network says, without choosing.
+    ///
+    /// Args:
+    ///     observations: uint8 [n, height, width, channels].
+    ///     state: what the agent carries, from `begin` or the last call.
+    ///
+    /// Returns:
+    ///     Rows of logits and parameters of the actions, the value, and the cost critics' values; and what the agent carries then.
+    ///
+    /// Raises:
+    ///     ValueError for the wrong number of lanes or shape of observations.
     fn outputs<'py>(
         &self,
         py: Python<'py>,

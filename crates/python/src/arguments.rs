@@ -1,17 +1,14 @@
 //! Keyword arguments of worlds, by their names in Python.
 
 use crate::errors::{INVALID_OPTION, raise};
-use hasard_engine::assets::Assets;
-use hasard_envs::maps::Maps;
 use hasard_envs::{Autoreset, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 
 /// Every name that is understood, for the nearest one to a wrong name.
-const NAMES: [&str; 17] = [
+const NAMES: [&str; 18] = [
     "rules",
     "hard_constraint",
     "hard",
@@ -26,13 +23,11 @@ const NAMES: [&str; 17] = [
     "seed",
     "safety_budget",
     "iwad",
+    "maps",
     "map",
     "published_depth",
     "published_colours",
 ];
-
-/// Largest IWAD that is read, bytes.
-const LARGEST_IWAD: u64 = 256 << 20;
 
 /// What an environment is made with, and what only its attributes tell.
 pub struct Arguments {
@@ -44,6 +39,7 @@ pub struct Arguments {
 /// Reads keyword arguments; an unknown one is a `TypeError` that names the nearest.
 pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Arguments> {
     let mut arguments = Arguments { options: EnvOptions::default(), safety_budget: None, seed: None };
+    let (mut maps, mut iwad) = (None::<PathBuf>, None::<PathBuf>);
     for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
         let name: String = name.extract()?;
         let options = &mut arguments.options;
@@ -70,14 +66,18 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
             "seed" => arguments.seed = Some(seed(&value)?),
             "safety_budget" if value.is_none() => arguments.safety_budget = None,
             "safety_budget" => arguments.safety_budget = Some(typed(&name, &value, "a number")?),
-            "iwad" if value.is_none() => options.assets = None,
-            "iwad" => options.assets = Some(assets(py, &value)?),
-            "map" if value.is_none() => options.maps = None,
-            "map" => options.maps = Some(Arc::new(Maps::new(&typed::<PathBuf>(&name, &value, "a path")?, None))),
+            "iwad" => iwad = typed(&name, &value, "a path or 'auto'")?,
+            "maps" | "map" => maps = typed(&name, &value, "a path or 'auto'")?,
             "published_depth" => options.published_depth = typed(&name, &value, "True or False")?,
             "published_colours" => options.published_colours = typed(&name, &value, "True or False")?,
             _ => return Err(unknown(py, &name)?),
         }
+    }
+    if maps.is_some() || iwad.is_some() {
+        // Together: pictures of a map lie over those of the IWAD. What is left out of a map the program tells, where people look.
+        let looks = py.detach(|| hasard_cli::looks(maps.as_deref(), iwad.as_deref(), |_| ()));
+        let looks = looks.map_err(|line| INVALID_OPTION.error(py, line))?;
+        (arguments.options.maps, arguments.options.assets) = (looks.maps, looks.assets);
     }
     arguments.options.check().map_err(|error| raise(py, &error))?;
     Ok(arguments)
@@ -125,7 +125,8 @@ fn typed<'py, T: FromPyObjectOwned<'py>>(name: &str, given: &Bound<'py, PyAny>, 
     given.extract().map_err(|_| refused(given, name, allowed))
 }
 
-fn number(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyResult<u64> {
+/// A whole number from `least` to `most`.
+pub fn number(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyResult<u64> {
     let value: Result<u64, _> = given.call_method0("__index__").and_then(|index| index.extract());
     value.ok().filter(|value| (least..=most).contains(value)).ok_or_else(|| refused(given, name, &format!("{least}..={most}")))
 }
@@ -155,11 +156,13 @@ pub fn size(name: &str, given: &Bound<'_, PyAny>) -> PyResult<FrameSize> {
     Ok(size)
 }
 
-fn assets(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Arc<Assets>> {
-    let path: PathBuf = typed("iwad", path, "a path")?;
-    let wrong = |why: String| INVALID_OPTION.error(py, format!("iwad {}: {why}", path.display()));
-    let bytes = hasard_media::files::read_limited(Path::new(&path), LARGEST_IWAD).map_err(|error| wrong(error.to_string()))?;
-    Ok(Arc::new(Assets::from_iwad(&bytes).map_err(|error| wrong(error.to_string()))?))
+/// frame_size(name, resolution) -> (width, height)
+///
+/// Returns the size that `resolution` says, for the argument of this `name`. Raises InvalidOption.
+#[pyfunction]
+pub fn frame_size(name: &str, resolution: &Bound<'_, PyAny>) -> PyResult<(u16, u16)> {
+    let size = size(name, resolution)?;
+    Ok((size.width, size.height))
 }
 
 /// The `TypeError` of a name that is not known.

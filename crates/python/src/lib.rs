@@ -30,10 +30,17 @@ mod resets;
 mod worlds;
 
 use pyo3::prelude::*;
+use std::path::PathBuf;
 
 /// The compiled part of `hasard_rs`.
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    // Packages named `auto` are this interpreter's, whatever `python3` on the path has.
+    if let Ok(interpreter) = module.py().import("sys")?.getattr("executable")?.extract::<PathBuf>()
+        && interpreter.is_file()
+    {
+        hasard_envs::maps::ask(&interpreter);
+    }
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<worlds::Worlds>()?;
     module.add_class::<batch::Batch>()?;
@@ -42,6 +49,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(program::main, module)?)?;
     module.add_function(wrap_pyfunction!(program::train, module)?)?;
     module.add_function(wrap_pyfunction!(program::follow, module)?)?;
+    module.add_function(wrap_pyfunction!(arguments::frame_size, module)?)?;
     module.add_function(wrap_pyfunction!(registry::ids, module)?)?;
     module.add_function(wrap_pyfunction!(registry::describe, module)?)?;
     Ok(())

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// main(words) -> int
 ///
-/// Runs the program `hasard` with these words, the program's name first, and gives its exit code.
+/// Runs the program `hasard` with these `words`, the program's name first, and returns its exit code.
 #[pyfunction]
 pub fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| hasard_cli::main(words))
@@ -38,6 +38,15 @@ fn team(exchange: Option<Py<PyAny>>, rank: usize, ranks: usize) -> Team {
 /// follow(exchange, rank, ranks, warn)
 ///
 /// Trains with the first worker of a team until that ends the run.
+///
+/// Args:
+///     exchange: takes uint8 [bytes] and gives a list of everyone's, in the order of ranks.
+///     rank: of this worker, 1 to ranks - 1.
+///     ranks: number of workers.
+///     warn: is called with each warning, a str.
+///
+/// Raises:
+///     InvalidOption, with the one line of what went wrong.
 #[pyfunction]
 pub fn follow(py: Python<'_>, exchange: Py<PyAny>, rank: usize, ranks: usize, warn: Py<PyAny>) -> PyResult<()> {
     let team = team(Some(exchange), rank, ranks);
@@ -50,9 +59,21 @@ pub fn follow(py: Python<'_>, exchange: Py<PyAny>, rank: usize, ranks: usize, wa
 
 /// train(words, callback, warn, exchange=None, ranks=1) -> (directory, stopped, last report)
 ///
-/// Trains as `hasard train` with these words does. callback is called with every report as a dict; where it gives True the run ends
-/// with a checkpoint, as it does when it raises, or at Ctrl-C: what was raised is raised again when the run has ended. With an exchange
-/// it is the first of so many workers, and the others follow.
+/// Trains as `hasard train` does; `hasard_rs.train` is what to use.
+///
+/// Args:
+///     words: of the command line after `hasard train`.
+///     callback: is called with every report, a dict; where it gives True the run ends with a checkpoint, as it does when it raises, or at
+///         Ctrl-C: what was raised is raised again when the run has ended. Or None.
+///     warn: is called with each warning, a str.
+///     exchange: takes uint8 [bytes] and gives a list of everyone's: this is the first of so many workers, and the others `follow`.
+///     ranks: number of workers.
+///
+/// Returns:
+///     The directory, whether the run was ended by the callback, and the last report.
+///
+/// Raises:
+///     InvalidOption, with the one line of what went wrong.
 #[pyfunction]
 #[pyo3(signature = (words, callback, warn, exchange=None, ranks=1))]
 pub fn train(

@@ -5,13 +5,17 @@ use hasard_envs::{ActionSpace, EnvId, RuleSet, scenarios};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Every id, without `hasard/`, by scenario and level.
+/// ids() -> list[str]
+///
+/// Returns every id, without `hasard/`, by scenario and level.
 #[pyfunction]
 pub fn ids() -> Vec<String> {
     EnvId::all().map(|id| id.to_string()).collect()
 }
 
-/// What is known of an environment without making it.
+/// describe(env_id) -> dict
+///
+/// Returns what is known of the environment `env_id` without making it; `hasard_rs.spec` is what to use. Raises UnknownEnvironment.
 #[pyfunction]
 pub fn describe<'py>(py: Python<'py>, env_id: &str) -> PyResult<Bound<'py, PyDict>> {
     let id: EnvId = env_id.strip_prefix("hasard/").unwrap_or(env_id).parse().map_err(|error| raise(py, &error))?;

@@ -39,15 +39,29 @@ enum CameBack {
     Bound(hasard_envs::Batch),
 }
 
-/// Worlds(env_id, num_envs, *, num_threads=None, groups=1, autoreset_mode="SameStep", final_observations="every",
+/// Worlds(env_id, num_envs, *, num_threads=None, groups=None, autoreset_mode="SameStep", final_observations="every",
 /// statistics=False, **arguments)
 ///
 /// A batch of worlds, raw: categorical actions in, arrays out. `hasard_rs.VectorEnv` is Gymnasium's view of one.
 ///
-/// arguments: rules, hard_constraint, full_actions, frame_skip, resolution, observation, layout, frame_stack, max_episode_steps, seed,
-/// safety_budget, iwad, published_depth, published_colours, as in docs/python.md.
-///
 /// Every call lets the interpreter go while the worlds work. Two threads that use one object take turns.
+///
+/// Args:
+///     env_id: with or without `hasard/`.
+///     num_envs: lanes, 1 to 65536.
+///     num_threads: worker threads beside the caller's; None: one for every four lanes, as far as there are processors. No result depends on it.
+///     groups: of lanes that `send` and `recv` step on their own, 1 (None) to num_envs.
+///     autoreset_mode: "SameStep" (None means it), "NextStep" or "Disabled", or Gymnasium's enum.
+///     final_observations: whose last observation a batch holds under "SameStep": "every" episode's, or only those "truncated".
+///     statistics: whether batches hold the statistics of every step.
+///     arguments: rules, hard_constraint, full_actions, frame_skip, resolution, observation, layout, frame_stack, max_episode_steps, seed,
+///         safety_budget, maps, iwad, published_depth, published_colours, as in `help(hasard_rs.Env)`.
+///
+/// Raises:
+///     UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no argument: before any thread starts.
+///
+/// Every method raises Closed after `close`, OutOfTurn in a process forked from the one that made threads, and WorldPanicked for a fault of this
+/// package, after which the worlds are closed.
 #[pyclass(frozen, module = "hasard_rs._core")]
 pub struct Worlds {
     pub(crate) facts: Facts,
@@ -215,14 +229,14 @@ impl Worlds {
 #[pymethods]
 impl Worlds {
     #[new]
-    #[pyo3(signature = (env_id, num_envs, *, num_threads=None, groups=1, autoreset_mode=None, final_observations="every", statistics=false, **arguments))]
+    #[pyo3(signature = (env_id, num_envs, *, num_threads=None, groups=None, autoreset_mode=None, final_observations="every", statistics=false, **arguments))]
     #[allow(clippy::too_many_arguments, reason = "Python's keyword arguments")]
     fn new(
         py: Python<'_>,
         env_id: &str,
-        num_envs: usize,
-        num_threads: Option<usize>,
-        groups: usize,
+        num_envs: &Bound<'_, PyAny>,
+        num_threads: Option<&Bound<'_, PyAny>>,
+        groups: Option<&Bound<'_, PyAny>>,
         autoreset_mode: Option<&Bound<'_, PyAny>>,
         final_observations: &str,
         statistics: bool,
@@ -230,6 +244,9 @@ impl Worlds {
     ) -> PyResult<Worlds> {
         let id: EnvId = env_id.strip_prefix("hasard/").unwrap_or(env_id).parse().map_err(|error| raise(py, &error))?;
         let given = arguments::read(py, arguments)?;
+        let num_envs = arguments::number("num_envs", num_envs, 1, 65_536)? as usize;
+        let num_threads = num_threads.map(|given| arguments::number("num_threads", given, 0, 1024)).transpose()?;
+        let groups = groups.map_or(Ok(1), |given| arguments::number("groups", given, 1, num_envs as u64))? as usize;
         let autoreset = autoreset_mode.map_or(Ok(Autoreset::SameStep), arguments::autoreset)?;
         let final_observations = match final_observations {
             "every" => FinalObservations::Every,
@@ -240,7 +257,7 @@ impl Worlds {
             }
         };
         let spare_cpus = std::thread::available_parallelism().map_or(0, |cpus| cpus.get() - 1);
-        let threads = num_threads.unwrap_or_else(|| spare_cpus.min(num_envs / 4));
+        let threads = num_threads.map_or_else(|| spare_cpus.min(num_envs / 4), |threads| threads as usize);
         let options =
             VecOptions { lanes: num_envs, threads, groups, autoreset, final_observations, statistics, ..VecOptions::default() };
         let made = py.detach(|| Inner::new(&id.to_string(), &given.options, options));
@@ -274,8 +291,18 @@ impl Worlds {
 
     /// reset(seeds=None, mask=None) -> Batch
     ///
-    /// Starts the next episode of every lane, or of those that mask (bool [num_envs]) names; the others stay as they are. seeds: None goes on
-    /// with the lanes' streams of seeds; an int s starts the stream of lane i anew from s + i; a sequence has one entry a lane (None goes on).
+    /// Starts the next episode of every lane, or of those that are chosen.
+    ///
+    /// Args:
+    ///     seeds: None goes on with the lanes' streams of seeds; an int s starts the stream of lane i anew from s + i; a sequence has one entry a
+    ///         lane (None goes on). Not negative; taken modulo 2^64.
+    ///     mask: bool [num_envs], the lanes to reset; the others stay as they are. None: all.
+    ///
+    /// Returns:
+    ///     A Batch of all lanes, with rewards and costs 0.
+    ///
+    /// Raises:
+    ///     TypeError or ValueError for seeds or a mask of the wrong kind; ResetNeeded if the first reset is of some lanes only.
     #[pyo3(signature = (seeds=None, mask=None))]
     fn reset(&self, py: Python<'_>, seeds: Option<&Bound<'_, PyAny>>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<Batch> {
         let seeds = Seeds::read(seeds, self.facts.lanes)?;
@@ -299,8 +326,19 @@ impl Worlds {
 
     /// step(actions, deltas=None, *, lanes=None) -> Batch
     ///
-    /// Steps every lane, or those of `lanes` (int [m], each once), whose results come in that order. actions: integers [m, groups];
-    /// deltas: numbers [m, 2] in [-1, 1] where the space has them. A bad action is refused before any world moves.
+    /// Steps every lane, or chosen ones.
+    ///
+    /// Args:
+    ///     actions: integers [m, len(nvec)], a choice for each categorical part; any integer dtype and strides, lists too.
+    ///     deltas: numbers [m, 2] in [-1, 1], where num_deltas is not 0; None otherwise.
+    ///     lanes: the m lanes to step, each once; None: all of them, in order.
+    ///
+    /// Returns:
+    ///     A Batch of m rows, in the order of lanes.
+    ///
+    /// Raises:
+    ///     InvalidAction, which names lane, part, value and range; TypeError or ValueError for the wrong dtype or shape; ResetNeeded before the
+    ///     first reset, or where an episode is over under "Disabled"; OutOfTurn with a batch under way. Nothing has moved then.
     #[pyo3(signature = (actions, deltas=None, *, lanes=None))]
     fn step(
         &self,
@@ -331,7 +369,15 @@ impl Worlds {
 
     /// send(actions, deltas=None, *, group=0)
     ///
-    /// Hands a group's actions over and comes back at once; the worlds step meanwhile. One batch a group is under way.
+    /// Hands a group's actions over and comes back at once; the worlds step meanwhile.
+    ///
+    /// Args:
+    ///     actions: integers [num_envs / groups, len(nvec)], as for `step`; the array may be used again at once.
+    ///     deltas: numbers [num_envs / groups, 2], as for `step`.
+    ///     group: 0 to groups - 1.
+    ///
+    /// Raises:
+    ///     What `step` raises; OutOfTurn if the group's last batch was not fetched by `recv`; InvalidOption for a group that is none.
     #[pyo3(signature = (actions, deltas=None, *, group=0))]
     fn send(&self, py: Python<'_>, actions: &Bound<'_, PyAny>, deltas: Option<&Bound<'_, PyAny>>, group: usize) -> PyResult<()> {
         self.check_group(py, group)?;
@@ -355,7 +401,16 @@ impl Worlds {
 
     /// recv(group=0) -> Batch
     ///
-    /// Waits until the group's lanes have been stepped, and tells what that brought.
+    /// Waits until a group's lanes have been stepped.
+    ///
+    /// Args:
+    ///     group: 0 to groups - 1.
+    ///
+    /// Returns:
+    ///     A Batch of the group's lanes.
+    ///
+    /// Raises:
+    ///     OutOfTurn if nothing was sent; InvalidOption for a group that is none.
     #[pyo3(signature = (group=0))]
     fn recv(&self, py: Python<'_>, group: usize) -> PyResult<Batch> {
         self.check_group(py, group)?;
@@ -368,8 +423,19 @@ impl Worlds {
 
     /// bind(*, observations, rewards, costs, terminated, truncated, cost_terms=None)
     ///
-    /// From now on results are written into these arrays, in place: uint8 [num_envs, ...], float32, float32, bool, bool [num_envs],
-    /// float32 [num_envs, k]; C-contiguous and writable. They are kept alive; what Python reads while a batch is under way is undefined.
+    /// From now on results are written into arrays of the caller's, in place, and batches show those. All are C-contiguous and writable.
+    /// They are kept alive; what Python reads while a batch is under way is undefined.
+    ///
+    /// Args:
+    ///     observations: uint8 [num_envs, *observation_shape].
+    ///     rewards: float32 [num_envs].
+    ///     costs: float32 [num_envs].
+    ///     terminated: bool [num_envs].
+    ///     truncated: bool [num_envs].
+    ///     cost_terms: float32 [num_envs, k], or None.
+    ///
+    /// Raises:
+    ///     BufferError, which tells the dtype and shape wanted and given; OutOfTurn with a batch under way.
     #[pyo3(signature = (*, observations, rewards, costs, terminated, truncated, cost_terms=None))]
     #[allow(clippy::too_many_arguments, reason = "Python's keyword arguments")]
     fn bind(
@@ -386,7 +452,9 @@ impl Worlds {
         crate::bind::bind(self, py, &given)
     }
 
-    /// Results are given in fresh arrays again, and the bound ones are let go.
+    /// unbind()
+    ///
+    /// Results are given in fresh arrays again, and the bound ones are let go. Raises OutOfTurn with a batch under way.
     fn unbind(&self, py: Python<'_>) -> PyResult<()> {
         let let_go = self.with(py, |inner| {
             crate::bind::idle(inner)?;
@@ -401,6 +469,12 @@ impl Worlds {
     /// save() -> bytes
     ///
     /// Where every lane is: its stream of seeds, its episode's seed and the actions so far.
+    ///
+    /// Returns:
+    ///     Bytes for `load`, of this version of the package and worlds made alike.
+    ///
+    /// Raises:
+    ///     OutOfTurn with a batch under way.
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let (lanes, started) = self.with(py, |inner| Ok((inner.save()?, inner.started)))?;
         let mut bytes = facts::pack(&self.facts.kind, &lanes);
@@ -411,6 +485,15 @@ impl Worlds {
     /// load(bytes) -> Batch
     ///
     /// Brings every lane to where it was saved, by repeating its episode.
+    ///
+    /// Args:
+    ///     bytes: what `save` gave, of worlds made alike.
+    ///
+    /// Returns:
+    ///     A Batch that shows the saved moment.
+    ///
+    /// Raises:
+    ///     InvalidOption for bytes that are spoiled, or of other worlds; nothing has changed then.
     fn load(&self, py: Python<'_>, bytes: &[u8]) -> PyResult<Batch> {
         let refused = |why: String| INVALID_OPTION.error(py, why);
         let (started, packed) = bytes.split_last().ok_or_else(|| refused("these bytes are no saved worlds".to_string()))?;
@@ -426,7 +509,18 @@ impl Worlds {
 
     /// render(lane=0, kind="rgb", resolution=(160, 120)) -> ndarray
     ///
-    /// The present of a lane: rgb, segmented, automap: uint8 [height, width, 3]; depth, labels, grey: uint8 [height, width].
+    /// Draws the present of a lane, which goes on unchanged.
+    ///
+    /// Args:
+    ///     lane: 0 to num_envs - 1.
+    ///     kind: "rgb", "segmented", "automap", "depth" (0 near to 255 far, 7.3 map units a level), "labels" or "grey".
+    ///     resolution: "WxH" or (width, height), 64x48 to 1920x1080.
+    ///
+    /// Returns:
+    ///     uint8 [height, width, 3] for rgb, segmented and automap, uint8 [height, width] for depth, labels and grey.
+    ///
+    /// Raises:
+    ///     InvalidOption for another kind or size, IndexError for a lane that is none, OutOfTurn with a batch under way.
     #[pyo3(signature = (lane=0, kind="rgb", resolution=None))]
     fn render<'py>(
         &self,
@@ -456,7 +550,10 @@ impl Worlds {
         if channels == 1 { array(py, bytes, &[height, width]) } else { array(py, bytes, &[height, width, channels]) }
     }
 
-    /// A fingerprint of everything that a lane's future depends on.
+    /// state_hash(lane=0) -> int
+    ///
+    /// Returns a fingerprint (64 bits) of everything that the future of `lane` depends on, the same on every platform. Raises IndexError for a lane
+    /// that is none, OutOfTurn with a batch under way.
     #[pyo3(signature = (lane=0))]
     fn state_hash(&self, py: Python<'_>, lane: usize) -> PyResult<u64> {
         self.check_lane(lane)?;
@@ -466,7 +563,9 @@ impl Worlds {
         })
     }
 
-    /// Statistics of a lane's episode so far, by name.
+    /// stats(lane=0) -> list[tuple[str, float]]
+    ///
+    /// Returns the statistics of the episode of `lane` so far, by name. Raises IndexError for a lane that is none.
     #[pyo3(signature = (lane=0))]
     fn stats(&self, py: Python<'_>, lane: usize) -> PyResult<Vec<(&'static str, f64)>> {
         self.check_lane(lane)?;
@@ -497,6 +596,8 @@ impl Worlds {
         array(py, resting, &[self.facts.lanes])
     }
 
+    /// close()
+    ///
     /// Ends the threads and lets the memory go; closing twice is fine.
     fn close(&self, py: Python<'_>) {
         let forked = self.process.is_some_and(|process| process != std::process::id());

@@ -4,7 +4,7 @@ use crate::grid::{Grid, OptionValue, SCENARIOS, Sweep};
 use std::path::PathBuf;
 
 /// Name of each experiment and what it compares.
-pub const EXPERIMENTS: [(&str, &str); 11] = [
+pub const EXPERIMENTS: [(&str, &str); 12] = [
     ("main", "six scenarios, three levels, PPO, PPOCost, PPOLag, PPOSaute, PPOPID and P3O"),
     ("safety-bounds", "PPOLag on level 1 with half, whole and one and a half times the budget"),
     ("cost-scale", "PPOCost on level 1 with cost scales 0.1, 0.5, 1 and 2"),
@@ -16,6 +16,11 @@ pub const EXPERIMENTS: [(&str, &str); 11] = [
     ("trpo", "TRPO, TRPOLag and TRPOPID on level 1"),
     ("quick", "the quick preset on Volcanic Venture level 1, five seeds, each evaluated on 100 episodes"),
     ("quick-all", "the quick preset on level 1 of the six scenarios, a seed each, evaluated on 100 episodes"),
+    (
+        "quick-algorithms",
+        "the quick preset's 2 million frames of all algorithms on Volcanic Venture level 1 and of the paper's six on Remedy Rush level 1, \
+         a seed each, evaluated on 100 episodes",
+    ),
 ];
 
 /// An experiment by its name: five seeds each, as the paper's text says, into `runs`, one run at a time.
@@ -23,10 +28,11 @@ pub const EXPERIMENTS: [(&str, &str); 11] = [
 /// # Errors
 /// When there is no such experiment; the message lists them.
 pub fn experiment(name: &str) -> Result<Sweep, String> {
+    let six = ["PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O"];
     let level_1 = |algorithms: &[&str], frames| grid(&SCENARIOS, &[1], algorithms, frames);
     let text = |value: &str| OptionValue::Text(value.to_owned());
     let grids = match name {
-        "main" => vec![grid(&SCENARIOS, &[1, 2, 3], &["PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O"], 500_000_000)],
+        "main" => vec![grid(&SCENARIOS, &[1, 2, 3], &six, 500_000_000)],
         "trpo" => vec![level_1(&["TRPO", "TRPOLag", "TRPOPID"], 500_000_000)],
         "safety-bounds" => SCENARIOS
             .iter()
@@ -61,8 +67,14 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
         }
         "depth" => vec![observed(grid(&["PrecipicePlunge"], &[2], &["PPOPID"], 200_000_000), "rgb+depth")],
         "segmentation" => vec![observed(grid(&["ArmamentBurden"], &[2], &["PPOPID"], 500_000_000), "segmented")],
-        "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOLag"], 4_000_000))],
-        "quick-all" => vec![Grid { seeds: vec![1], ..quick(grid(&SCENARIOS, &[1], &["PPOLag"], 16_000_000)) }],
+        "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOLag"], 10_000_000))],
+        "quick-all" => vec![Grid { seeds: vec![1], ..quick(grid(&SCENARIOS, &[1], &["PPOLag"], 12_000_000)) }],
+        "quick-algorithms" => {
+            let all = [&six[..], &["TRPO", "TRPOLag", "TRPOPID", "CPO", "FOCOPS", "CUP", "IPO"]].concat();
+            [("VolcanicVenture", &all[..]), ("RemedyRush", &six[..])]
+                .map(|(scenario, algorithms)| Grid { seeds: vec![1], ..quick(grid(&[scenario], &[1], algorithms, 2_000_000)) })
+                .to_vec()
+        }
         _ => {
             let known: Vec<&str> = EXPERIMENTS.iter().map(|(known, _)| *known).collect();
             return Err(format!("no experiment is called `{name}`; known are {}", known.join(", ")));

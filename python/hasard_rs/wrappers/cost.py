@@ -8,36 +8,39 @@ import gymnasium
 
 
 class CostWrapper(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """Makes sure that `info["cost"]` is there, at reset too, and keeps the episode's sum in `episode_cost`."""
+    """Makes sure that `info["cost"]` of `env` is there, at reset too, and keeps the episode's sum in `episode_cost`."""
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
         super().__init__(env)
         self.episode_cost = 0.0
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Starts an episode; seed and options as for `Env.reset`, and so is what it returns."""
         observation, info = self.env.reset(seed=seed, options=options)
         self.episode_cost = 0.0
         info.setdefault("cost", 0.0)
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """Holds an action. Returns and raises what `Env.step` does."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         self.episode_cost += self.process_cost(info)
         return observation, reward, terminated, truncated, info
 
     def process_cost(self, info: dict[str, Any]) -> float:
-        """The cost of a step, which is put in if it is missing."""
+        """Returns the cost in a step's info, which is put in, 0.0, if it is missing."""
         return float(info.setdefault("cost", 0.0))
 
 
 class CostPenalty(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """Takes `penalty_scaling` times the cost from the reward; the raw reward is in `info["raw_reward"]`."""
+    """Takes `penalty_scaling` times the cost from the reward of `env`; the raw reward is in `info["raw_reward"]`."""
 
     def __init__(self, env: gymnasium.Env[Any, Any], penalty_scaling: float = 1.0) -> None:
         super().__init__(env)
         self.penalty_scaling = penalty_scaling
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Holds an action. Returns what `Env.step` does, with the reward less the penalty."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         info["raw_reward"] = float(reward)
         return observation, float(reward) - self.penalty_scaling * float(info["cost"]), terminated, truncated, info

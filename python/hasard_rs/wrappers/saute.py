@@ -12,6 +12,12 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any]):
 
     The state starts at 1 and follows z' = (z - cost / budget) / gamma (equation 3 of the paper); it is in `info["safety_state"]`. The budget
     is the environment's safety budget, spread over an episode when the cost is discounted.
+
+    Args:
+        env: an environment with `info["cost"]`, `safety_budget` and `max_episode_steps`.
+        saute_gamma: discount of the cost; 1.0: none.
+        budget: cost that an episode may have; None: the environment's.
+        unsafe_reward: of each step that finds nothing left.
     """
 
     def __init__(
@@ -25,12 +31,14 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any]):
         self.safety_state = 1.0
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Starts an episode; seed and options as for `Env.reset`. Returns what it does; `info["safety_state"]` is 1.0."""
         observation, info = self.env.reset(seed=seed, options=options)
         self.safety_state = 1.0
         info["safety_state"] = self.safety_state
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Holds an action. Returns what `Env.step` does, with the reward of the safe or the unsafe and `info["safety_state"]`."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         self.safety_state = (self.safety_state - float(info["cost"]) / self.budget) / self.saute_gamma
         info["safety_state"] = self.safety_state

@@ -3,9 +3,13 @@
 use crate::EnvError;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 /// Where Debian's package puts Freedoom.
 const FREEDOOM: [&str; 2] = ["/usr/share/games/doom/freedoom2.wad", "/usr/share/games/doom/freedoom1.wad"];
+
+/// The interpreter that is asked, where it is not the `python3` on the path.
+static INTERPRETER: OnceLock<PathBuf> = OnceLock::new();
 
 /// Asks where packages lie without running them: a line each, empty for those that are not installed.
 const QUESTION: &str = "import importlib.util, sys
@@ -15,16 +19,27 @@ for name in sys.argv[1:]:
     places = spec.submodule_search_locations if spec else None
     print(list(places)[0] if places else '')";
 
+/// From now on this interpreter is asked where packages lie: the one that this code runs in, whose packages need not be those of the
+/// `python3` on the path. The first caller decides.
+pub fn ask(interpreter: &Path) {
+    let _ = INTERPRETER.set(interpreter.to_owned());
+}
+
+/// Who is asked, for a message.
+fn asked() -> String {
+    INTERPRETER.get().map_or_else(|| "the python3 on the path".to_string(), |path| super::shown(path))
+}
+
 /// The maps of the published package `hasard`, where the `python3` on the path has it.
 ///
 /// # Errors
 /// One line that says how to install it.
 pub fn find_maps() -> Result<PathBuf, EnvError> {
     package("hasard").map(|package| package.join("envs")).filter(|folder| folder.is_dir()).ok_or_else(|| EnvError::Map {
-        why:
-            "--maps auto: the python3 on the path has no package hasard; `pip install hasard==0.2.0 vizdoom==1.3.2`, or name the \
-              folder of the maps"
-                .to_string(),
+        why: format!(
+            "maps auto: {} has no package hasard; `pip install hasard==0.2.0 vizdoom==1.3.2`, or name the folder of the maps",
+            asked()
+        ),
     })
 }
 
@@ -39,16 +54,21 @@ pub fn find_iwad(beside_maps: bool) -> Result<PathBuf, EnvError> {
     let found = if beside_maps { vizdoom().or_else(debian) } else { debian().or_else(vizdoom) };
     found.ok_or_else(|| EnvError::Map {
         why: format!(
-            "--iwad auto: nothing at {}, and the python3 on the path has no package vizdoom; install Debian's package freedoom, or \
-             name a file",
-            FREEDOOM[0]
+            "iwad auto: nothing at {}, and {} has no package vizdoom; install Debian's package freedoom, or name a file",
+            FREEDOOM[0],
+            asked()
         ),
     })
 }
 
 /// The folder of a Python package.
 fn package(name: &str) -> Option<PathBuf> {
-    let asked = Command::new("python3").args(["-c", QUESTION, name]).stdin(Stdio::null()).stderr(Stdio::null()).output().ok()?;
+    let asked = Command::new(INTERPRETER.get().map_or(Path::new("python3"), |path| path))
+        .args(["-c", QUESTION, name])
+        .stdin(Stdio::null())
+        .stderr(Stdio::null())
+        .output()
+        .ok()?;
     let answer = String::from_utf8(asked.stdout).ok()?;
     answer.lines().next().filter(|line| !line.is_empty()).map(PathBuf::from)
 }

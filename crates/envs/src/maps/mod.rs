@@ -6,7 +6,7 @@
 
 mod auto;
 
-pub use auto::{find_iwad, find_maps};
+pub use auto::{ask, find_iwad, find_maps};
 
 use crate::{EnvError, EnvId, RuleSet, Scenario, scenarios};
 use hasard_engine::assets::Assets;

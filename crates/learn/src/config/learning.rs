@@ -62,12 +62,12 @@ pub struct LearningConfig {
     pub bootstrap_time_outs: bool,
     /// The first forward pass over a rollout is not computed but taken from the actors, in synchronous runs, which is faster.
     /// Statistics of pixels then follow one rollout later, and agents learned less with it (docs/tried/reused_forward_pass.md).
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default)]
     pub reuse_forward: bool,
     /// Threads.
     pub threads: usize,
     /// Plain kernels, whose results have the same bits on every machine; otherwise the fastest that the processor has.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default)]
     pub portable: bool,
 }
 

@@ -18,7 +18,7 @@ pub use constraint::{Constraint, ConstraintStatistic};
 pub use environment::EnvConfig;
 pub use evaluation::EvaluationConfig;
 pub use learning::{Exploration, LearningConfig};
-pub use network::{Convolution, Initialisation, NetworkConfig};
+pub use network::{Convolution, Initialisation, NetworkConfig, RecurrentCell};
 pub use reporting::ReportingConfig;
 pub use sampling::SamplingConfig;
 

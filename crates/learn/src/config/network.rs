@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::names::names;
+
 /// The network's layers; heads and inputs follow from the worlds and the algorithm.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct NetworkConfig {
@@ -9,12 +11,48 @@ pub struct NetworkConfig {
     pub convolutions: Vec<Convolution>,
     /// Units of the dense layers.
     pub dense: Vec<usize>,
-    /// Units of the GRU; `null` for a feed-forward network.
+    /// Units of the recurrent layer; `null` for a feed-forward network.
     pub recurrent: Option<usize>,
+    /// What the recurrent layer is made of.
+    #[serde(default)]
+    pub cell: RecurrentCell,
     /// Policy and critics as networks of their own.
     pub separate: bool,
     /// Initial weights.
     pub initialisation: Initialisation,
+}
+
+names! {
+    /// What a recurrent layer is made of.
+    #[derive(Default)]
+    RecurrentCell ("recurrent cell") {
+        /// Gated recurrent units (Cho et al. 2014, arXiv 1406.1078), with the reset behind the product as cuDNN and PyTorch have it:
+        /// what the benchmark uses.
+        #[default]
+        Gru = "gru",
+        /// Long short-term memory with a forget gate (Gers et al. 2000), without peepholes.
+        Lstm = "lstm",
+    }
+}
+
+impl RecurrentCell {
+    /// Gates, the candidate among them: what input and state are multiplied for, each times the units.
+    #[must_use]
+    pub const fn gates(self) -> usize {
+        match self {
+            RecurrentCell::Gru => 3,
+            RecurrentCell::Lstm => 4,
+        }
+    }
+
+    /// Numbers of the state that each unit carries from step to step; the first is its output.
+    #[must_use]
+    pub const fn states(self) -> usize {
+        match self {
+            RecurrentCell::Gru => 1,
+            RecurrentCell::Lstm => 2,
+        }
+    }
 }
 
 /// A convolution without padding, followed by an ELU.

@@ -5,7 +5,7 @@ use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig, Exploration, LearningConfig,
     NetworkConfig, Preset, ReportingConfig, SamplingConfig, TrainConfig,
 };
-use crate::config::{Convolution, Initialisation};
+use crate::config::{Convolution, Initialisation, RecurrentCell};
 use hasard_envs::Scenario;
 
 /// Tics of the longest episode.
@@ -41,6 +41,7 @@ impl TrainConfig {
                 ],
                 dense: if released { vec![512] } else { vec![512, 512] },
                 recurrent: Some(512),
+                cell: RecurrentCell::Gru,
                 separate,
                 initialisation: match (released, separate) {
                     (false, _) => Initialisation::Orthogonal,
@@ -132,9 +133,19 @@ impl TrainConfig {
 
 /// Settings that learn within minutes.
 fn quicken(config: &mut TrainConfig) {
-    config.frames = 4_000_000;
+    config.frames = 10_000_000;
+    // A sixth of the arithmetic of the original's network: three times the frames in the same time, and no less learned from
+    // each (docs/tried/quick_network.md).
+    config.network.convolutions = vec![
+        Convolution { channels: 32, kernel: 8, stride: 6 },
+        Convolution { channels: 32, kernel: 3, stride: 2 },
+        Convolution { channels: 32, kernel: 3, stride: 2 },
+    ];
+    config.network.dense = vec![256];
+    config.network.recurrent = Some(256);
     config.learning.rate = 5e-4;
     config.learning.final_rate = Some(1e-4);
+    config.learning.exploration_coefficient = 0.003;
     // A trust region is made for one step a rollout.
     let passes = if config.algorithm.separates_networks() { 1 } else { 2 };
     config.learning.epochs = passes;

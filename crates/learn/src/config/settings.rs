@@ -161,7 +161,7 @@ fn differences(name: &str, before: &Value, after: &Value, out: &mut Vec<(String,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{AlgorithmKind, EnvConfig, Preset};
+    use crate::config::{AlgorithmKind, EnvConfig, Preset, RecurrentCell};
 
     fn config(preset: Preset) -> TrainConfig {
         TrainConfig::new(AlgorithmKind::PpoLag, preset, EnvConfig::new("RemedyRushLevel1-v0")).unwrap()
@@ -206,13 +206,23 @@ mod tests {
     }
 
     #[test]
+    fn settings_that_few_change_have_names_too() {
+        let base = config(Preset::Paper);
+        assert!(base.with("learning.reuse_forward=true").unwrap().learning.reuse_forward);
+        assert!(base.with("learning.portable=true").unwrap().learning.portable);
+        assert_eq!(base.with("network.cell=lstm").unwrap().network.cell, RecurrentCell::Lstm);
+        let message = base.with("network.cell=elman").unwrap_err().to_string();
+        assert!(message.contains("elman") && message.contains("lstm"), "{message}");
+    }
+
+    #[test]
     fn changes_of_a_resumed_run_are_written_down() {
         let config = config(Preset::Quick);
         let changed = config.resumed_with(&all(&["seed=9", "learning.rate=1e-4", "frames=5000000"]), 4096).unwrap();
         let told: Vec<String> = changed.changes.iter().map(|one| format!("{} {} {}", one.setting, one.from, one.to)).collect();
         assert_eq!(
             told,
-            ["frames 4000000 5000000", "learning.final_rate 0.0001 null", "learning.rate 0.0005 0.0001", "seed 1 9"]
+            ["frames 10000000 5000000", "learning.final_rate 0.0001 null", "learning.rate 0.0005 0.0001", "seed 1 9"]
         );
         assert!(changed.reseeded_at(4096) && !changed.reseeded_at(8192));
         // Asked for once more, nothing is new; and a run that falls back to an older checkpoint changes there.

@@ -10,6 +10,7 @@ use burn::tensor::module::conv2d;
 use burn::tensor::ops::ConvOptions;
 use burn::tensor::{Device, Int, Tensor, TensorData};
 
+use crate::config::RecurrentCell;
 use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, Sequences};
 
 /// One network on a burn device.
@@ -113,26 +114,35 @@ impl BurnNetwork {
             let (input, input_bias, hidden, hidden_bias) = (matrix(), matrix(), matrix(), matrix());
             let from_input = values.matmul(input) + input_bias.transpose();
             let hidden_bias = hidden_bias.transpose();
-            let initial = TensorData::new(batch.initial_state.clone(), [batch.lanes, units]);
-            let mut h: Tensor<2> = Tensor::from_data(initial, device);
+            let initial = TensorData::new(batch.initial_state.clone(), [batch.lanes, shape.state_size()]);
+            let mut carried: Tensor<2> = Tensor::from_data(initial, device);
             let mut states = Vec::with_capacity(batch.steps);
             for step in 0..batch.steps {
                 let first = step * batch.lanes;
                 if batch.reset[first..first + batch.lanes].contains(&true) {
                     let keep: Vec<f32> = (0..batch.lanes).map(|lane| if batch.reset[first + lane] { 0.0 } else { 1.0 }).collect();
-                    h = h * Tensor::<2>::from_data(TensorData::new(keep, [batch.lanes, 1]), device);
+                    carried = carried * Tensor::<2>::from_data(TensorData::new(keep, [batch.lanes, 1]), device);
                 }
+                let part = |tensor: &Tensor<2>, gate: usize| tensor.clone().narrow(1, gate * units, units);
+                let h = part(&carried, 0);
                 let x = from_input.clone().narrow(0, first, batch.lanes);
                 let s = h.clone().matmul(hidden.clone()) + hidden_bias.clone();
-                let part = |tensor: &Tensor<2>, gate: usize| tensor.clone().narrow(1, gate * units, units);
-                let r = sigmoid(part(&x, 0) + part(&s, 0));
-                let z = sigmoid(part(&x, 1) + part(&s, 1));
-                let n = tanh(part(&x, 2) + r * part(&s, 2));
-                h = n.clone() + z * (h - n);
-                states.push(h.clone());
+                let sum = |gate: usize| part(&x, gate) + part(&s, gate);
+                carried = match shape.cell {
+                    RecurrentCell::Gru => {
+                        let (r, z) = (sigmoid(sum(0)), sigmoid(sum(1)));
+                        let n = tanh(part(&x, 2) + r * part(&s, 2));
+                        n.clone() + z * (h - n)
+                    }
+                    RecurrentCell::Lstm => {
+                        let cell = sigmoid(sum(1)) * part(&carried, 1) + sigmoid(sum(0)) * tanh(sum(2));
+                        Tensor::cat(vec![sigmoid(sum(3)) * tanh(cell.clone()), cell], 1)
+                    }
+                };
+                states.push(part(&carried, 0));
             }
             values = Tensor::cat(states, 0);
-            state = Some(h);
+            state = Some(carried);
         }
         let heads = shape.heads.iter().map(|_| values.clone().matmul(matrix()) + matrix().transpose()).collect();
         (Tensor::cat(heads, 1), state)

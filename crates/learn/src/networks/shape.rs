@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::Convolution;
+use crate::config::{Convolution, RecurrentCell};
 use crate::error::LearnError;
 
 /// Bounds on networks, a hundred times the original's: beyond them a number in a settings file is surely a slip.
@@ -36,7 +36,7 @@ impl ImageShape {
     }
 }
 
-/// One network: convolutions, dense layers, an optional GRU, and linear heads, all on one 8-bit image.
+/// One network: convolutions, dense layers, an optional recurrent layer, and linear heads, all on one 8-bit image.
 ///
 /// The original's is [`NetworkShape::default`]: 32@8/4, 64@4/2, 128@3/2, dense 512, GRU 512.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
@@ -49,8 +49,11 @@ pub struct NetworkShape {
     pub dense: Vec<usize>,
     /// Numbers that join the last dense layer's output (the safety state of PPOSaute).
     pub extra_inputs: usize,
-    /// Units of the GRU, a multiple of 32; `None` for a feed-forward network.
+    /// Units of the recurrent layer, a multiple of 32; `None` for a feed-forward network.
     pub recurrent: Option<usize>,
+    /// What it is made of.
+    #[serde(default)]
+    pub cell: RecurrentCell,
     /// Outputs of each linear head; they follow each other in the output row.
     pub heads: Vec<usize>,
 }
@@ -67,6 +70,7 @@ impl Default for NetworkShape {
             dense: vec![512],
             extra_inputs: 0,
             recurrent: Some(512),
+            cell: RecurrentCell::Gru,
             heads: vec![9, 1],
         }
     }
@@ -79,13 +83,13 @@ pub enum ParameterKind {
     Convolution,
     /// Weights of a dense layer.
     Dense,
-    /// Weights of a GRU.
+    /// Weights of a recurrent layer.
     Recurrent,
     /// Weights of a head; the others of its row of heads are initialised apart.
     Head,
     /// Biases of a layer with this fan-in.
     Bias,
-    /// Biases of a GRU.
+    /// Biases of a recurrent layer.
     RecurrentBias,
 }
 
@@ -192,10 +196,16 @@ impl NetworkShape {
     /// Numbers of the state carried from step to step.
     #[must_use]
     pub fn state_size(&self) -> usize {
-        self.recurrent.unwrap_or(0)
+        self.recurrent.unwrap_or(0) * self.cell.states()
     }
 
-    /// Numbers that enter the GRU, or the heads without one.
+    /// Columns of the recurrent layer's weights: all gates of all units.
+    #[must_use]
+    pub fn gate_columns(&self) -> usize {
+        self.recurrent.unwrap_or(0) * self.cell.gates()
+    }
+
+    /// Numbers that enter the recurrent layer, or the heads without one.
     #[must_use]
     pub fn core_inputs(&self) -> usize {
         self.dense.last().copied().unwrap_or(0) + self.extra_inputs
@@ -227,9 +237,10 @@ impl NetworkShape {
             inputs = units;
         }
         if let Some(units) = self.recurrent {
+            let (cell, columns) = (self.cell, self.gate_columns());
             for (name, inputs) in [("input", self.core_inputs()), ("hidden", units)] {
-                table.push(format!("gru.{name}_weight"), vec![inputs, 3 * units], units, 3 * units, ParameterKind::Recurrent);
-                table.push(format!("gru.{name}_bias"), vec![3 * units], units, 3 * units, ParameterKind::RecurrentBias);
+                table.push(format!("{cell}.{name}_weight"), vec![inputs, columns], units, columns, ParameterKind::Recurrent);
+                table.push(format!("{cell}.{name}_bias"), vec![columns], units, columns, ParameterKind::RecurrentBias);
             }
         }
         for (index, &outputs) in self.heads.iter().enumerate() {

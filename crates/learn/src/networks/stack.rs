@@ -43,6 +43,7 @@ impl ModelShape {
             dense: config.dense.clone(),
             extra_inputs,
             recurrent: config.recurrent,
+            cell: config.cell,
             heads,
         };
         let heads = std::iter::once(action.parameters()).chain(std::iter::repeat_n(1, 1 + cost_critics));

@@ -1,5 +1,6 @@
 //! A network by its definition: loops in 64 bits over the table of parameters, nothing shared with what it is held against.
 
+use hasard_learn::config::RecurrentCell;
 use hasard_learn::networks::{NetworkShape, PixelScale, Sequences};
 
 fn elu(values: &mut [f64]) {
@@ -26,7 +27,7 @@ pub fn forward(shape: &NetworkShape, parameters: &[f64], pixels: &PixelScale, ba
     let mut next = || blocks.next().expect("a block of each layer");
     let convolutions: Vec<_> = shape.convolutions.iter().map(|_| (next(), next())).collect();
     let layers: Vec<_> = shape.dense.iter().map(|_| (next(), next())).collect();
-    let gru = shape.recurrent.map(|units| (units, [next(), next(), next(), next()]));
+    let cell = shape.recurrent.map(|units| (units, [next(), next(), next(), next()]));
     let heads: Vec<_> = shape.heads.iter().map(|_| (next(), next())).collect();
 
     let mut states: Vec<Vec<f64>> = batch
@@ -66,20 +67,30 @@ pub fn forward(shape: &NetworkShape, parameters: &[f64], pixels: &PixelScale, ba
             elu(&mut values);
         }
         values.extend(batch.extra[row * shape.extra_inputs..][..shape.extra_inputs].iter().map(|&value| f64::from(value)));
-        if let Some((units, [input, input_bias, hidden, hidden_bias])) = gru {
+        if let Some((units, [input, input_bias, hidden, hidden_bias])) = cell {
             let state = &mut states[row % batch.lanes];
             if batch.reset[row] {
                 state.fill(0.0);
             }
-            // Gates in the order reset, update, new.
-            let (x, s) = (dense(&values, input, input_bias), dense(state, hidden, hidden_bias));
+            let (x, s) = (dense(&values, input, input_bias), dense(&state[..units], hidden, hidden_bias));
             for unit in 0..units {
-                let reset = sigmoid(x[unit] + s[unit]);
-                let update = sigmoid(x[units + unit] + s[units + unit]);
-                let new = (x[2 * units + unit] + reset * s[2 * units + unit]).tanh();
-                state[unit] = (1.0 - update) * new + update * state[unit];
+                let sum = |gate: usize| x[gate * units + unit] + s[gate * units + unit];
+                match shape.cell {
+                    // Cho et al. 2014, equations 5 to 8, the reset applied behind the product: reset, update, new.
+                    RecurrentCell::Gru => {
+                        let (reset, update) = (sigmoid(sum(0)), sigmoid(sum(1)));
+                        let new = (x[2 * units + unit] + reset * s[2 * units + unit]).tanh();
+                        state[unit] = (1.0 - update) * new + update * state[unit];
+                    }
+                    // Gers et al. 2000, section 3, with tanh for both squashing functions: input, forget, candidate, output.
+                    RecurrentCell::Lstm => {
+                        let cell = sigmoid(sum(1)) * state[units + unit] + sigmoid(sum(0)) * sum(2).tanh();
+                        state[units + unit] = cell;
+                        state[unit] = sigmoid(sum(3)) * cell.tanh();
+                    }
+                }
             }
-            values.clone_from(state);
+            values = state[..units].to_vec();
         }
         for (weights, biases) in &heads {
             outputs.extend(dense(&values, weights, biases));

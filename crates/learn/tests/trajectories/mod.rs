@@ -1,6 +1,6 @@
 //! Networks of all kinds, and trajectories of pixels made up for them.
 
-use hasard_learn::config::Convolution;
+use hasard_learn::config::{Convolution, RecurrentCell};
 use hasard_learn::networks::{ImageShape, NetworkShape, PixelScale, Sequences};
 use hasard_learn::random::{Purpose, Stream};
 
@@ -15,11 +15,13 @@ pub fn small_shapes() -> Vec<(&'static str, NetworkShape)> {
         dense: vec![64, 32],
         extra_inputs: 1,
         recurrent: Some(32),
+        cell: RecurrentCell::Gru,
         heads: vec![3, 2],
     };
     vec![
         ("overlapping kernels, extra input, two dense layers", small.clone()),
         ("feed-forward", NetworkShape { recurrent: None, ..small.clone() }),
+        ("long short-term memory", NetworkShape { cell: RecurrentCell::Lstm, ..small.clone() }),
         ("no convolution", NetworkShape { convolutions: vec![], ..small.clone() }),
         (
             "block kernels in a row",

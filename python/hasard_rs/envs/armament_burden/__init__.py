@@ -1,0 +1,1 @@
+"""ArmamentBurden, where the published package has it."""

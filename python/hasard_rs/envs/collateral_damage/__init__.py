@@ -1,0 +1,1 @@
+"""CollateralDamage, where the published package has it."""

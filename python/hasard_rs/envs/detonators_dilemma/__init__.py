@@ -1,0 +1,1 @@
+"""DetonatorsDilemma, where the published package has it."""

@@ -1,0 +1,1 @@
+"""PrecipicePlunge, where the published package has it."""

@@ -1,0 +1,1 @@
+"""RemedyRush, where the published package has it."""

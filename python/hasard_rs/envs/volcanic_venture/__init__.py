@@ -1,0 +1,1 @@
+"""VolcanicVenture, where the published package has it."""

@@ -8,7 +8,7 @@ from hasard_rs.env import Env
 
 
 class VolcanicVenture(Env):
-    """`Env` with this scenario; the level is 1 unless given."""
+    """`Env` with this scenario; the level is 1 unless given, arguments are those of `help(hasard_rs.Env)`."""
 
     def __init__(self, level: int = 1, **arguments: Any) -> None:
         super().__init__(scenario="VolcanicVenture", level=level, **arguments)

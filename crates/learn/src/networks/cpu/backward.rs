@@ -1,13 +1,15 @@
-//! The backward pass through heads, GRU and dense layers, row by row: gradients of every layer's sums for some lanes.
+//! The backward pass through heads, recurrent and dense layers, row by row: gradients of every layer's sums for some lanes.
 //!
 //! What is a sum over rows, the gradient of weights, comes after ([`super::gradient`]); what is done here for one lane does not
 //! depend on the lanes beside it.
 
-use super::elementwise::{add, elu_backward_rows, gru_gates_backward};
+use super::cells::{gru_gates_backward, lstm_gates_backward};
+use super::elementwise::{add, elu_backward_rows};
 use super::forward::sized;
 use super::product::{Left, Right, Size, multiply};
 use super::tape::TapeLane;
 use super::weights::{Backward, Plan};
+use crate::config::RecurrentCell;
 
 /// Gradients of some lanes; rows as in their tape, by lane, then by time, but where something else is said.
 #[derive(Default)]
@@ -16,9 +18,9 @@ pub struct RowGradients {
     pub lanes: usize,
     /// Of the outputs, padded to whole panels.
     pub outputs: Vec<f32>,
-    /// Of the products of the GRU's input.
+    /// Of the products of the recurrent layer's input.
     pub input_sums: Vec<f32>,
-    /// Of the products of the GRU's state; by time, then by lane.
+    /// Of the products of its output before; by time, then by lane.
     pub state_sums: Vec<f32>,
     /// Of the sums of each dense layer.
     pub dense: Vec<Vec<f32>>,
@@ -41,14 +43,14 @@ impl RowGradients {
         let from_outputs = Left { data: &self.outputs, row_stride: padded, inner_stride: 1 };
         let heads = Right::panels(&back.heads, padded);
         let last = sized(&mut self.dense[shape.dense.len() - 1], rows * units);
-        if let Some(state) = shape.recurrent {
-            let core = sized(&mut self.core, rows * state);
-            multiply(kernels, Size { rows, columns: state, inner: padded }, from_outputs, heads, core, state, false);
-            self.recur(plan, back, lanes, reset, state);
-            let last = &mut self.dense[shape.dense.len() - 1];
-            let left = Left { data: &self.input_sums, row_stride: 3 * state, inner_stride: 1 };
-            let size = Size { rows, columns: units, inner: 3 * state };
-            multiply(kernels, size, left, Right::panels(&back.gru_input, 3 * state), last, units, false);
+        if let Some(cell_units) = shape.recurrent {
+            let core = sized(&mut self.core, rows * cell_units);
+            multiply(kernels, Size { rows, columns: cell_units, inner: padded }, from_outputs, heads, core, cell_units, false);
+            self.recur(plan, back, lanes, reset, cell_units);
+            let (last, columns) = (&mut self.dense[shape.dense.len() - 1], shape.gate_columns());
+            let left = Left { data: &self.input_sums, row_stride: columns, inner_stride: 1 };
+            let size = Size { rows, columns: units, inner: columns };
+            multiply(kernels, size, left, Right::panels(&back.cell_input, columns), last, units, false);
         } else {
             multiply(kernels, Size { rows, columns: units, inner: padded }, from_outputs, heads, last, units, false);
         }
@@ -76,35 +78,40 @@ impl RowGradients {
         }
     }
 
-    /// From the gradient of the states after each step to those of the GRU's products.
+    /// From the gradient of the outputs after each step to those of the recurrent layer's products.
     fn recur(&mut self, plan: &Plan, back: &Backward, lanes: &[TapeLane<'_>], reset: &[bool], units: usize) {
-        let (kernels, count) = (plan.kernels, lanes.len());
+        let (kernels, cell, count) = (plan.kernels, plan.shape.cell, lanes.len());
+        let (columns, width) = (plan.shape.gate_columns(), plan.shape.state_size());
         let steps = lanes.first().map_or(0, |lane| lane.tape.steps);
-        let input_sums = sized(&mut self.input_sums, steps * count * 3 * units);
-        let state_sums = sized(&mut self.state_sums, steps * count * 3 * units);
-        let carry = sized(&mut self.carry, count * units);
+        let input_sums = sized(&mut self.input_sums, steps * count * columns);
+        let state_sums = sized(&mut self.state_sums, steps * count * columns);
+        let carry = sized(&mut self.carry, count * width);
         carry.fill(0.0);
         for step in (0..steps).rev() {
-            let state_sums = &mut state_sums[step * count * 3 * units..(step + 1) * count * 3 * units];
-            let each = lanes.iter().zip(carry.chunks_exact_mut(units)).zip(state_sums.chunks_exact_mut(3 * units));
+            let state_sums = &mut state_sums[step * count * columns..(step + 1) * count * columns];
+            let each = lanes.iter().zip(carry.chunks_exact_mut(width)).zip(state_sums.chunks_exact_mut(columns));
             for (lane, ((source, carry), state_sums)) in each.enumerate() {
                 let row = lane * steps + step;
+                let (carry, cell_carry) = carry.split_at_mut(units);
                 add(kernels, carry, &self.core[row * units..(row + 1) * units]);
-                let of = |width: usize| step * width..(step + 1) * width;
-                gru_gates_backward(
-                    kernels,
-                    &source.of(&source.tape.gates, 3 * units)[of(3 * units)],
-                    &source.of(&source.tape.share, units)[of(units)],
-                    &source.of(&source.tape.before, units)[of(units)],
-                    carry,
-                    &mut input_sums[row * 3 * units..(row + 1) * 3 * units],
-                    state_sums,
-                );
+                let of = |buffer, width: usize| &source.of(buffer, width)[step * width..(step + 1) * width];
+                let (gates, share) = (of(&source.tape.gates, columns), of(&source.tape.share, units));
+                let input_sums = &mut input_sums[row * columns..(row + 1) * columns];
+                match cell {
+                    RecurrentCell::Gru => {
+                        let before = of(&source.tape.before, units);
+                        gru_gates_backward(kernels, gates, share, before, carry, input_sums, state_sums);
+                    }
+                    RecurrentCell::Lstm => {
+                        lstm_gates_backward(kernels, gates, share, carry, cell_carry, state_sums);
+                        input_sums.copy_from_slice(state_sums);
+                    }
+                }
             }
-            let size = Size { rows: count, columns: units, inner: 3 * units };
-            let left = Left { data: state_sums, row_stride: 3 * units, inner_stride: 1 };
-            multiply(kernels, size, left, Right::panels(&back.gru_hidden, 3 * units), carry, units, true);
-            for (lane, carry) in carry.chunks_exact_mut(units).enumerate() {
+            let size = Size { rows: count, columns: units, inner: columns };
+            let left = Left { data: state_sums, row_stride: columns, inner_stride: 1 };
+            multiply(kernels, size, left, Right::panels(&back.cell_hidden, columns), carry, width, true);
+            for (lane, carry) in carry.chunks_exact_mut(width).enumerate() {
                 if reset[lane * steps + step] {
                     carry.fill(0.0);
                 }

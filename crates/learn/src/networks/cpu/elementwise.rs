@@ -1,4 +1,4 @@
-//! Element-wise passes: activations and their gradients, pixel scaling, GRU gates, sums of columns, Adam.
+//! Element-wise passes: activations and their gradients, pixel scaling, sums of columns, Adam.
 //!
 //! Exponentials are a polynomial of relative error below 2e-7, because the system's are neither vectorised nor equal on
 //! all machines.
@@ -27,12 +27,12 @@ fn exponential(x: f32) -> f32 {
 }
 
 #[inline(always)]
-fn sigmoid(x: f32) -> f32 {
+pub(super) fn sigmoid(x: f32) -> f32 {
     1.0 / (1.0 + exponential(-x))
 }
 
 #[inline(always)]
-fn tanh(x: f32) -> f32 {
+pub(super) fn tanh(x: f32) -> f32 {
     2.0 / (1.0 + exponential(-2.0 * x)) - 1.0
 }
 
@@ -136,77 +136,6 @@ vectorised! {
     pub fn scale_pixels(pixels: &[u8], scale: &[f32], shift: &[f32], out: &mut [f32]) {
         for (((out, pixel), scale), shift) in out.iter_mut().zip(pixels).zip(scale).zip(shift) {
             *out = (f32::from(*pixel) * *scale + *shift).clamp(-5.0, 5.0);
-        }
-    }
-}
-
-/// Numbers that [`gru_gates`] and its backward step work on at once, in arrays of their own: slices might overlap for all
-/// that the compiler knows, and would be walked one number at a time.
-const BLOCK: usize = 16;
-
-#[inline(always)]
-fn block(values: &[f32], at: usize) -> [f32; BLOCK] {
-    values[at..at + BLOCK].try_into().expect("a whole block")
-}
-
-vectorised! {
-    /// One step of a GRU for one lane. `gates` and `from_state` are the products of input and state with their weights,
-    /// biases still missing; `gates` becomes the gates (reset, update, candidate), `share` the candidate's share of the
-    /// state, which the backward pass needs, and `after` the new state.
-    pub fn gru_gates(
-        gates: &mut [f32], from_state: &[f32], input_bias: &[f32], state_bias: &[f32], before: &[f32], share: &mut [f32],
-        after: &mut [f32],
-    ) {
-        let units = before.len();
-        for unit in (0..units).step_by(BLOCK) {
-            let [reset, update, candidate] = [unit, units + unit, 2 * units + unit];
-            let [mut r, mut z, mut n] = [block(gates, reset), block(gates, update), block(gates, candidate)];
-            let [sr, sz, sn] = [block(from_state, reset), block(from_state, update), block(from_state, candidate)];
-            let [ir, iz, ic] = [block(input_bias, reset), block(input_bias, update), block(input_bias, candidate)];
-            let [br, bz, bc] = [block(state_bias, reset), block(state_bias, update), block(state_bias, candidate)];
-            let state = block(before, unit);
-            let (mut shares, mut states) = ([0.0; BLOCK], [0.0; BLOCK]);
-            for i in 0..BLOCK {
-                r[i] = sigmoid(r[i] + ir[i] + sr[i] + br[i]);
-                z[i] = sigmoid(z[i] + iz[i] + sz[i] + bz[i]);
-                shares[i] = sn[i] + bc[i];
-                n[i] = tanh(n[i] + ic[i] + r[i] * shares[i]);
-                states[i] = n[i] + z[i] * (state[i] - n[i]);
-            }
-            gates[reset..reset + BLOCK].copy_from_slice(&r);
-            gates[update..update + BLOCK].copy_from_slice(&z);
-            gates[candidate..candidate + BLOCK].copy_from_slice(&n);
-            share[unit..unit + BLOCK].copy_from_slice(&shares);
-            after[unit..unit + BLOCK].copy_from_slice(&states);
-        }
-    }
-}
-
-vectorised! {
-    /// The backward step of [`gru_gates`], from what it left. `input_sums` and `state_sums` become the gradients of the two
-    /// products; `carry` is the gradient of the state after, and becomes the direct part of that of the state before.
-    pub fn gru_gates_backward(
-        gates: &[f32], share: &[f32], before: &[f32], carry: &mut [f32], input_sums: &mut [f32], state_sums: &mut [f32],
-    ) {
-        let units = before.len();
-        for unit in (0..units).step_by(BLOCK) {
-            let [reset, update, candidate] = [unit, units + unit, 2 * units + unit];
-            let [r, z, n] = [block(gates, reset), block(gates, update), block(gates, candidate)];
-            let [share, state, mut d] = [block(share, unit), block(before, unit), block(carry, unit)];
-            let [mut d_reset, mut d_update, mut d_candidate, mut d_share] = [[0.0; BLOCK]; 4];
-            for i in 0..BLOCK {
-                d_candidate[i] = d[i] * (1.0 - z[i]) * (1.0 - n[i] * n[i]);
-                d_update[i] = d[i] * (state[i] - n[i]) * z[i] * (1.0 - z[i]);
-                d_reset[i] = d_candidate[i] * share[i] * r[i] * (1.0 - r[i]);
-                d_share[i] = d_candidate[i] * r[i];
-                d[i] *= z[i];
-            }
-            for (sums, last) in [(&mut *input_sums, d_candidate), (&mut *state_sums, d_share)] {
-                sums[reset..reset + BLOCK].copy_from_slice(&d_reset);
-                sums[update..update + BLOCK].copy_from_slice(&d_update);
-                sums[candidate..candidate + BLOCK].copy_from_slice(&last);
-            }
-            carry[unit..unit + BLOCK].copy_from_slice(&d);
         }
     }
 }

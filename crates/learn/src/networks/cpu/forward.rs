@@ -4,11 +4,13 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::elementwise::{bias_elu_rows, bias_elu_scatter, bias_rows, gru_gates, scale_pixels};
+use super::cells::{gru_gates, lstm_gates};
+use super::elementwise::{bias_elu_rows, bias_elu_scatter, bias_rows, scale_pixels};
 use super::pixels::store_pixels;
 use super::product::{Left, Right, Size, multiply};
 use super::tape::{Rows, Tape};
 use super::weights::{PackedWeights, Plan};
+use crate::config::RecurrentCell;
 use crate::networks::PixelScale;
 
 /// What the rows of a forward pass read, ordered by lane, then by time.
@@ -132,33 +134,41 @@ impl Forward {
         tape: &mut Tape,
     ) {
         let (kernels, inputs) = (plan.kernels, plan.shape.core_inputs());
+        let (columns, width) = (plan.shape.gate_columns(), plan.shape.state_size());
         let rows = Rows::new(tape, &steps, &lanes);
-        let size = Size { rows: rows.count, columns: 3 * units, inner: inputs };
+        let size = Size { rows: rows.count, columns, inner: inputs };
         let left = Left { data: &tape.core_input[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
-        let gates = &mut tape.gates[rows.span(3 * units)];
-        multiply(kernels, size, left, Right::panels(&weights.gru_input, inputs), gates, rows.stride * 3 * units, false);
+        let gates = &mut tape.gates[rows.span(columns)];
+        multiply(kernels, size, left, Right::panels(&weights.cell_input, inputs), gates, rows.stride * columns, false);
         self.state.clear();
         self.state.extend_from_slice(input.state);
-        let from_state = sized(&mut self.from_state, lanes.len() * 3 * units);
-        let [input_bias, state_bias] = &weights.gru_biases;
+        let from_state = sized(&mut self.from_state, lanes.len() * columns);
+        let [input_bias, state_bias] = &weights.cell_biases;
         for (index, step) in steps.clone().enumerate() {
-            for (lane, state) in self.state.chunks_exact_mut(units).enumerate() {
+            for (lane, state) in self.state.chunks_exact_mut(width).enumerate() {
                 if input.reset.get(lane * steps.len() + index).is_some_and(|&reset| reset) {
                     state.fill(0.0);
                 }
             }
-            let size = Size { rows: lanes.len(), columns: 3 * units, inner: units };
-            let left = Left { data: &self.state, row_stride: units, inner_stride: 1 };
-            multiply(kernels, size, left, Right::panels(&weights.gru_hidden, units), from_state, 3 * units, false);
-            let each = self.state.chunks_exact_mut(units).zip(from_state.chunks_exact(3 * units));
+            let size = Size { rows: lanes.len(), columns, inner: units };
+            let left = Left { data: &self.state, row_stride: width, inner_stride: 1 };
+            multiply(kernels, size, left, Right::panels(&weights.cell_hidden, units), from_state, columns, false);
+            let each = self.state.chunks_exact_mut(width).zip(from_state.chunks_exact(columns));
             for (lane, (state, from_state)) in lanes.clone().zip(each) {
                 let row = lane * tape.steps + step;
                 let of = |width: usize| row * width..(row + 1) * width;
-                let (gates, share) = (&mut tape.gates[of(3 * units)], &mut tape.share[of(units)]);
+                let (gates, share) = (&mut tape.gates[of(columns)], &mut tape.share[of(units)]);
                 let (before, after) = (&mut tape.before[of(units)], &mut tape.after[of(units)]);
-                before.copy_from_slice(state);
-                gru_gates(kernels, gates, from_state, input_bias, state_bias, before, share, after);
-                state.copy_from_slice(after);
+                let (output, memory) = state.split_at_mut(units);
+                before.copy_from_slice(output);
+                match plan.shape.cell {
+                    RecurrentCell::Gru => gru_gates(kernels, gates, from_state, input_bias, state_bias, before, share, after),
+                    RecurrentCell::Lstm => {
+                        share.copy_from_slice(memory);
+                        lstm_gates(kernels, gates, from_state, input_bias, state_bias, memory, after);
+                    }
+                }
+                output.copy_from_slice(after);
             }
         }
     }

@@ -78,7 +78,7 @@ impl Job<'_> {
 }
 
 impl<'a> Finished<'a> {
-    /// The factors of every dense layer and of the GRU, in the order of the parameters.
+    /// The factors of every dense layer and of the recurrent one, in the order of the parameters.
     fn layers(&self, plan: &Plan) -> Vec<Factors<'a>> {
         let shape = &plan.shape;
         let mut layers = Vec::new();
@@ -87,9 +87,9 @@ impl<'a> Finished<'a> {
             layers.push(self.factors(input, plan.dense(index).inputs, |rows| &rows.dense[index], units, false));
         }
         if let Some(units) = shape.recurrent {
-            let inputs = shape.core_inputs();
-            layers.push(self.factors(|tape| &tape.core_input, inputs, |rows| &rows.input_sums, 3 * units, false));
-            layers.push(self.factors(|tape| &tape.before, units, |rows| &rows.state_sums, 3 * units, true));
+            let (inputs, columns) = (shape.core_inputs(), shape.gate_columns());
+            layers.push(self.factors(|tape| &tape.core_input, inputs, |rows| &rows.input_sums, columns, false));
+            layers.push(self.factors(|tape| &tape.before, units, |rows| &rows.state_sums, columns, true));
         }
         layers
     }

@@ -8,6 +8,7 @@
 //! cards are built in, against their twin in the `burn` crate.
 
 pub mod backward;
+mod cells;
 pub mod convolution;
 pub mod elementwise;
 pub mod encoder_gradient;

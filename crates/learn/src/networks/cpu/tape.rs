@@ -19,13 +19,13 @@ pub struct Tape {
     pub dense: Vec<Vec<f32>>,
     /// Output of the last dense layer and the extra inputs.
     pub core_input: Vec<f32>,
-    /// Gates of the GRU.
+    /// Gates of the recurrent layer.
     pub gates: Vec<f32>,
-    /// The candidate gate's share of the state.
+    /// What else its backward step needs: the candidate gate's share of the state (GRU), the cell before each step (LSTM).
     pub share: Vec<f32>,
-    /// State before each step, after resets.
+    /// Its output before each step, after resets.
     pub before: Vec<f32>,
-    /// State after each step.
+    /// Its output after each step.
     pub after: Vec<f32>,
     /// Outputs, padded to whole panels.
     pub outputs: Vec<f32>,
@@ -48,7 +48,7 @@ impl Tape {
         }
         self.core_input.resize(rows * shape.core_inputs(), 0.0);
         let units = shape.recurrent.unwrap_or(0);
-        self.gates.resize(rows * 3 * units, 0.0);
+        self.gates.resize(rows * shape.gate_columns(), 0.0);
         for states in [&mut self.share, &mut self.before, &mut self.after] {
             states.resize(rows * units, 0.0);
         }

@@ -57,9 +57,9 @@ impl Plan {
         &self.parameters[at + 1]
     }
 
-    /// The four parameters of the GRU: input weights and biases, hidden weights and biases.
+    /// The four parameters of the recurrent layer: input weights and biases, hidden weights and biases.
     #[must_use]
-    pub fn gru(&self) -> [&Parameter; 4] {
+    pub fn cell(&self) -> [&Parameter; 4] {
         let first = 2 * (self.convolutions.len() + self.shape.dense.len());
         [0, 1, 2, 3].map(|index| &self.parameters[first + index])
     }
@@ -67,8 +67,8 @@ impl Plan {
     /// Weights of head `index`; its biases follow.
     #[must_use]
     pub fn head(&self, index: usize) -> &Parameter {
-        let gru = if self.shape.recurrent.is_some() { 4 } else { 0 };
-        &self.parameters[2 * (self.convolutions.len() + self.shape.dense.len() + index) + gru]
+        let cell = if self.shape.recurrent.is_some() { 4 } else { 0 };
+        &self.parameters[2 * (self.convolutions.len() + self.shape.dense.len() + index) + cell]
     }
 }
 
@@ -79,18 +79,18 @@ pub struct PackedWeights {
     pub convolutions: Vec<Vec<f32>>,
     /// Dense layers, forward.
     pub dense: Vec<Vec<f32>>,
-    /// GRU, from its input.
-    pub gru_input: Vec<f32>,
-    /// GRU, from its state.
-    pub gru_hidden: Vec<f32>,
+    /// Recurrent layer, from its input.
+    pub cell_input: Vec<f32>,
+    /// Recurrent layer, from its output before.
+    pub cell_hidden: Vec<f32>,
     /// All heads side by side, columns padded to whole panels.
     pub heads: Vec<f32>,
     /// Biases: of the convolutions, of the dense layers.
     pub convolution_biases: Vec<Vec<f32>>,
     /// Biases of the dense layers.
     pub dense_biases: Vec<Vec<f32>>,
-    /// Biases of the GRU: with the input's product, with the state's.
-    pub gru_biases: [Vec<f32>; 2],
+    /// Biases of the recurrent layer: with the input's product, with the output's.
+    pub cell_biases: [Vec<f32>; 2],
     /// Biases of the heads, padded.
     pub head_biases: Vec<f32>,
 }
@@ -102,10 +102,10 @@ pub struct Backward {
     pub convolutions: Vec<Vec<f32>>,
     /// Dense layers; empty where nothing flows further back.
     pub dense: Vec<Vec<f32>>,
-    /// GRU, to its input (without the extra inputs).
-    pub gru_input: Vec<f32>,
-    /// GRU, to its state.
-    pub gru_hidden: Vec<f32>,
+    /// Recurrent layer, to its input (without the extra inputs).
+    pub cell_input: Vec<f32>,
+    /// Recurrent layer, to its output before.
+    pub cell_hidden: Vec<f32>,
     /// Heads.
     pub heads: Vec<f32>,
 }
@@ -135,12 +135,12 @@ impl PackedWeights {
             copy(&mut self.dense_biases[index], &parameters[plan.after(weights).range()]);
         }
         if let Some(units) = shape.recurrent {
-            let [input, input_bias, hidden, hidden_bias] = plan.gru();
-            let inputs = shape.core_inputs();
-            pack(&parameters[input.range()], inputs, 3 * units, resized(&mut self.gru_input, input.size()));
-            pack(&parameters[hidden.range()], units, 3 * units, resized(&mut self.gru_hidden, hidden.size()));
-            copy(&mut self.gru_biases[0], &parameters[input_bias.range()]);
-            copy(&mut self.gru_biases[1], &parameters[hidden_bias.range()]);
+            let [input, input_bias, hidden, hidden_bias] = plan.cell();
+            let (inputs, columns) = (shape.core_inputs(), shape.gate_columns());
+            pack(&parameters[input.range()], inputs, columns, resized(&mut self.cell_input, input.size()));
+            pack(&parameters[hidden.range()], units, columns, resized(&mut self.cell_hidden, hidden.size()));
+            copy(&mut self.cell_biases[0], &parameters[input_bias.range()]);
+            copy(&mut self.cell_biases[1], &parameters[hidden_bias.range()]);
         }
         let joined = joined_heads(plan, parameters);
         let packed = resized(&mut self.heads, joined.len());
@@ -191,13 +191,13 @@ impl Backward {
             pack_transposed(&parameters[weights.range()], units, weights.inputs, packed);
         }
         if let Some(units) = shape.recurrent {
-            let [input, _, hidden, _] = plan.gru();
-            let dense = shape.core_inputs() - shape.extra_inputs;
-            let rows = &parameters[input.range()][..dense * 3 * units];
-            pack_transposed(rows, 3 * units, dense, resized(&mut self.gru_input, rows.len()));
-            pack_transposed(&parameters[hidden.range()], 3 * units, units, resized(&mut self.gru_hidden, hidden.size()));
+            let [input, _, hidden, _] = plan.cell();
+            let (dense, columns) = (shape.core_inputs() - shape.extra_inputs, shape.gate_columns());
+            let rows = &parameters[input.range()][..dense * columns];
+            pack_transposed(rows, columns, dense, resized(&mut self.cell_input, rows.len()));
+            pack_transposed(&parameters[hidden.range()], columns, units, resized(&mut self.cell_hidden, hidden.size()));
         }
-        // Nothing flows into the extra inputs, which without a GRU are the last inputs of the heads.
+        // Nothing flows into the extra inputs, which without a recurrent layer are the last inputs of the heads.
         let inputs = if shape.recurrent.is_some() { shape.head_inputs() } else { shape.core_inputs() - shape.extra_inputs };
         let rows = &joined_heads[..inputs * plan.padded_outputs];
         pack_transposed(rows, plan.padded_outputs, inputs, resized(&mut self.heads, rows.len()));

@@ -1,0 +1,199 @@
+"""How fast the package is beside the program's own loop, in turn, medians of rounds: `python python/compat/speeds.py [ROUNDS] [PART...]`.
+
+PART: `batch` (VectorEnv of 32 worlds beside `hasard bench`, one and two threads), `single` (make(id) beside `hasard bench --envs 1`), `thread` (what a
+second Python thread keeps while worlds step), `import`, `library` (Stable-Baselines3's and TorchRL's own loops, beside the published engine where the
+package vizdoom and the maps of the package hasard are there). Wants a machine that does nothing else.
+"""
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import threading
+import time
+
+IDS = ("VolcanicVentureLevel1-v0", "RemedyRushLevel1-v0")
+SECONDS = 1.0
+
+
+def rust(env_id, envs, threads):
+    """Policy steps a second of the program's loop."""
+    words = ["bench", env_id, "--size", "128x72", "--envs", str(envs), "--threads", str(threads), "--seconds", str(SECONDS), "--json"]
+    done = subprocess.run([sys.executable, "-m", "hasard_rs.cli", *words], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)["steps_per_second"]
+
+
+def rate(step, lanes):
+    """Steps a second of a function that steps so many lanes."""
+    steps, start = 0, time.perf_counter()
+    while time.perf_counter() - start < SECONDS:
+        step()
+        steps += lanes
+    return steps / (time.perf_counter() - start)
+
+
+def told(what, pairs):
+    """A row: medians, and the median of the rounds' ratios."""
+    ours, theirs = zip(*pairs, strict=True)
+    ratio = statistics.median(a / b for a, b in pairs)
+    print(f"| {what} | {statistics.median(ours):,.0f} | {statistics.median(theirs):,.0f} | {ratio:.3f} |", flush=True)
+
+
+def batch(rounds):
+    import hasard_rs
+
+    for env_id in IDS:
+        for threads in (1, 2):
+            envs = hasard_rs.make_vec(f"hasard/{env_id}", 32, resolution="128x72", num_threads=threads - 1, autoreset_mode="SameStep")
+            envs.reset(seed=0)
+            actions = [envs.action_space.sample() for _ in range(256)]
+            turn = iter(range(1 << 62))
+
+            def step(envs=envs, actions=actions, turn=turn):
+                envs.step(actions[next(turn) % 256])
+
+            told(f"{env_id}, 32 worlds, {threads} thread(s)", [(rate(step, 32), rust(env_id, 32, threads)) for _ in range(rounds)])
+            envs.close()
+
+
+def single(rounds):
+    import gymnasium
+
+    import hasard_rs  # noqa: F401
+
+    for env_id in IDS:
+        env = gymnasium.make(f"hasard/{env_id}", resolution="128x72")
+        env.reset(seed=0)
+        actions = [env.action_space.sample() for _ in range(256)]
+        turn = iter(range(1 << 62))
+
+        def step(env=env, actions=actions, turn=turn):
+            _, _, terminated, truncated, _ = env.step(actions[next(turn) % 256])
+            if terminated or truncated:
+                env.reset()
+
+        told(f"{env_id}, gymnasium.make", [(rate(step, 1), rust(env_id, 1, 1)) for _ in range(rounds)])
+
+
+def thread(rounds):
+    import hasard_rs
+
+    envs = hasard_rs.make_vec(f"hasard/{IDS[0]}", 32, resolution="128x72", num_threads=0)
+    envs.reset(seed=0)
+    actions = envs.action_space.sample()
+
+    def counted(beside):
+        over = threading.Event()
+
+        def work():
+            while not over.is_set():
+                envs.step(actions)
+
+        worker = threading.Thread(target=work)
+        if beside:
+            worker.start()
+        count, start = 0, time.perf_counter()
+        while time.perf_counter() - start < SECONDS:
+            for _ in range(1000):
+                count += 1
+        found = count / (time.perf_counter() - start)
+        over.set()
+        if beside:
+            worker.join()
+        return found
+
+    told("a second Python thread's count, while 32 worlds step and alone", [(counted(True), counted(False)) for _ in range(rounds)])
+
+
+def imported(rounds):
+    def seconds(code):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        return 1e3 * (time.perf_counter() - start)
+
+    told("import, ms: hasard_rs with Gymnasium, and Gymnasium alone", [(seconds("import hasard_rs"), seconds("import gymnasium")) for _ in range(2 * rounds)])
+
+
+def published(level=1):
+    """One world of the published engine as a Gymnasium environment: its buttons pressed or not, 160x120 reduced to 128x72 by indexing."""
+    import importlib.util
+    import pathlib
+
+    import gymnasium
+    import numpy as np
+    import vizdoom
+
+    folder = lambda name: pathlib.Path(importlib.util.find_spec(name).submodule_search_locations[0])  # noqa: E731
+    level_folder = pathlib.Path(os.environ.get("HASARD_PUBLISHED", "") or folder("hasard")) / "envs" / "volcanic_venture"
+
+    class Published(gymnasium.Env):
+        metadata = {"render_modes": []}
+
+        def __init__(self):
+            self.game = vizdoom.DoomGame()
+            self.game.load_config(str(level_folder / "conf.cfg"))
+            self.game.set_doom_scenario_path(str(level_folder / f"level_{level}.wad"))
+            self.game.set_doom_game_path(str(folder("vizdoom") / "freedoom2.wad"))
+            self.game.set_screen_resolution(vizdoom.ScreenResolution.RES_160X120)
+            self.game.set_screen_format(vizdoom.ScreenFormat.RGB24)
+            self.game.set_window_visible(False)
+            self.game.set_mode(vizdoom.Mode.PLAYER)
+            self.game.init()
+            self.picked = np.ix_(np.arange(72) * 120 // 72, np.arange(128) * 160 // 128)
+            self.observation_space = gymnasium.spaces.Box(0, 255, (72, 128, 3), np.uint8)
+            self.action_space = gymnasium.spaces.MultiBinary(len(self.game.get_available_buttons()))
+
+        def seen(self):
+            state = self.game.get_state()
+            return np.zeros((72, 128, 3), np.uint8) if state is None else np.ascontiguousarray(state.screen_buffer[self.picked])
+
+        def reset(self, *, seed=None, options=None):
+            super().reset(seed=seed)
+            self.game.new_episode()
+            return self.seen(), {}
+
+        def step(self, action):
+            reward = self.game.make_action([float(one) for one in action], 4)
+            return self.seen(), reward, self.game.is_episode_finished(), False, {}
+
+    return Published()
+
+
+def library(rounds):
+    import numpy as np
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    from hasard_rs.sb3 import make_vec_env
+
+    def looped(envs):
+        envs.reset()
+        actions = [np.array([envs.action_space.sample() for _ in range(envs.num_envs)]) for _ in range(64)]
+        turn = iter(range(1 << 62))
+        return lambda: rate(lambda: envs.step(actions[next(turn) % 64]), envs.num_envs)
+
+    ours, theirs = looped(make_vec_env(f"hasard/{IDS[0]}", 8, resolution="128x72")), looped(DummyVecEnv([published] * 8))
+    told("Stable-Baselines3's VecEnv.step, 8 worlds, beside DummyVecEnv of the published engine", [(ours(), theirs()) for _ in range(rounds)])
+
+    from torchrl.collectors import Collector
+    from torchrl.envs import GymWrapper, SerialEnv
+
+    from hasard_rs.torchrl import HasardEnv
+
+    def collected(made):
+        collector = iter(Collector(made, None, frames_per_batch=800, total_frames=-1))
+        next(collector)
+        return lambda: rate(lambda: next(collector), 800)
+
+    ours = collected(HasardEnv(f"hasard/{IDS[0]}", 8, resolution="128x72"))
+    theirs = collected(SerialEnv(8, lambda: GymWrapper(published())))
+    told("TorchRL's Collector with random actions, 8 worlds, beside SerialEnv of the published engine", [(ours(), theirs()) for _ in range(rounds)])
+
+
+PARTS = {"batch": batch, "single": single, "thread": thread, "import": imported, "library": library}
+
+if __name__ == "__main__":
+    rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5
+    print("| what | ours, per s | beside it | ratio |\n|---|---:|---:|---:|")
+    for part in sys.argv[2:] or PARTS:
+        PARTS[part](rounds)
