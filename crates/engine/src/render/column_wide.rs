@@ -19,6 +19,7 @@ static HIGHEST_BYTES: [u8; 64] = {
 };
 
 /// Draws rows `top..bottom` of a column of a texture `2^BITS` texels high.
+#[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
 pub(super) fn avx512<const BITS: u32>(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
     let (pixels, _) = pixels.as_chunks_mut::<ROW_BLOCK>();
@@ -60,6 +61,7 @@ fn texels_avx512<const BITS: u32>(column: &Column, rows: &[u32; ROW_BLOCK]) -> _
 }
 
 /// The same with vectors of 32 bytes: whole groups of eight rows are written, and what lies behind is put back.
+#[inline]
 #[target_feature(enable = "avx2")]
 pub(super) fn avx2<const BITS: u32>(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
     let texels = column.texels.first_chunk::<64>().expect("64 texels at least");

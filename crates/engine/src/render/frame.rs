@@ -2,6 +2,7 @@
 
 use super::column::{ROW_BLOCK, ROW_GROUP};
 use super::depth::Depths;
+use super::plane::Span;
 use super::turn;
 use crate::simd::Simd;
 
@@ -40,8 +41,6 @@ pub(super) struct Frame {
     pub class: Vec<u16>,
     /// How depth is told.
     pub depths: Depths,
-    /// What is drawn by columns.
-    pub columns: Columns,
 }
 
 /// Colour and depth column by column, while walls are drawn.
@@ -59,10 +58,19 @@ pub(super) fn column_stride(rows: usize) -> usize {
 }
 
 impl Columns {
-    /// Room for `width` columns of `rows` rows.
-    pub fn new(width: usize, rows: usize) -> Columns {
-        let stride = column_stride(rows);
-        Columns { stride, colour: vec![0; width * stride + ROW_GROUP], depth: vec![0; width * stride] }
+    /// Has room for `width` columns of `rows` rows.
+    pub fn fit(&mut self, width: usize, rows: usize) {
+        self.stride = column_stride(rows);
+        self.colour.resize(width * self.stride + ROW_GROUP, 0);
+        self.depth.resize(width * self.stride, 0);
+    }
+
+    /// Empties them.
+    pub fn clear<const DEPTH: bool>(&mut self, depths: Depths) {
+        self.colour.fill(0);
+        if DEPTH {
+            self.depth.fill(depths.farthest());
+        }
     }
 
     /// The palette indices of a column, and a group of the next one's.
@@ -79,20 +87,20 @@ impl Columns {
 }
 
 impl Frame {
-    /// Empties the first `rows` rows: walls come next, by columns.
-    pub fn clear<const DEPTH: bool, const CLASS: bool>(&mut self, rows: usize) {
-        self.columns.colour.fill(0);
-        if DEPTH {
-            self.columns.depth.fill(self.depths.farthest());
-        }
-        if CLASS {
-            self.class[..rows * self.width].fill(class::WALL);
+    /// Has runs of pixels show a class.
+    pub fn classify(&mut self, spans: &[Span], class: u16) {
+        for span in spans {
+            let row = usize::from(span.row) * self.width;
+            self.class[row + usize::from(span.first)..row + usize::from(span.end)].fill(class);
         }
     }
 
-    /// All walls are drawn: whatever comes next is drawn by rows.
-    pub fn end_walls<const DEPTH: bool>(&mut self, simd: Simd, rows: usize) {
-        let Columns { stride, colour, depth } = &self.columns;
+    /// Takes over the walls, which were drawn by columns, into the first `rows` rows; whatever comes next is drawn by rows.
+    pub fn take_walls<const DEPTH: bool, const CLASS: bool>(&mut self, simd: Simd, columns: &Columns, rows: usize) {
+        let Columns { stride, colour, depth } = columns;
+        if CLASS {
+            self.class[..rows * self.width].fill(class::WALL);
+        }
         turn::to_rows(simd, colour, *stride, &mut self.colour, self.width, rows);
         if DEPTH {
             turn::to_rows(simd, depth, *stride, &mut self.depth, self.width, rows);

@@ -63,9 +63,19 @@ pub(super) struct RowSlopes {
     pub distances: Vec<i64>,
     /// By frame row: rows from the horizon, 16.16, for the light.
     pub rows: Vec<i64>,
+    /// By frame row: texel row of the sky, once somebody has asked.
+    sky: Vec<u16>,
 }
 
 impl RowSlopes {
+    /// The texel row of the sky in each frame row, which `compute` gives for a horizon when they are first asked for.
+    pub fn sky_rows<Rows: Iterator<Item = u16>>(&mut self, compute: impl FnOnce(i64) -> Rows) -> &[u16] {
+        if self.sky.is_empty() {
+            self.sky.extend(compute(self.horizon.unwrap_or_default()));
+        }
+        &self.sky
+    }
+
     /// Brings them up to date; most worlds never move the horizon.
     pub fn update(&mut self, view: &View, horizon: i64) {
         if self.horizon.replace(horizon) == Some(horizon) {
@@ -75,6 +85,7 @@ impl RowSlopes {
         self.rows.clear();
         self.rows.extend(rows.iter().map(|&row| below(row).abs()));
         self.distances.clear();
+        self.sky.clear();
         // The middle of the row decides how far the floor is in it.
         let middle = |row: u32| (below(row) + (1 << 15)).abs().max(NEAREST);
         self.distances.extend(rows.iter().map(|&row| (view.focal_y << 16) / middle(row)));

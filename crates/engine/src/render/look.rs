@@ -42,7 +42,7 @@ impl Look {
 }
 
 /// The looks of a frame's sectors.
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Looks {
     list: Vec<Look>,
     /// The frame at hand, from 1.
@@ -50,13 +50,9 @@ pub(super) struct Looks {
 }
 
 impl Looks {
-    /// Room for some number of sectors.
-    pub fn new(sectors: usize) -> Looks {
-        Looks { list: vec![Look::NONE; sectors], frame: 0 }
-    }
-
-    /// Forgets the last frame.
-    pub fn reset(&mut self) {
+    /// Forgets the last frame; the next one has this many sectors.
+    pub fn reset(&mut self, sectors: usize) {
+        self.list.resize(sectors, Look::NONE);
         if self.frame == u16::MAX {
             self.list.fill(Look::NONE);
             self.frame = 0;

@@ -1,7 +1,7 @@
 //! Pictures of a world: first-person colour, depth and labels with the status bar, and the top-down map.
 //!
 //! A [`Scene`] is a map made ready for drawing with a set of pictures, a [`View`] is the tables of a frame size; both
-//! are immutable and shared. A [`Renderer`] owns the memory of one drawing thread. All arithmetic is on integers, so
+//! are immutable and shared. A [`Renderer`] holds the frames of one world. All arithmetic is on integers, so
 //! that the same world gives the same pixels everywhere.
 
 // Physics and pixels are whole numbers: a floating-point operation here is a mistake.
@@ -36,12 +36,16 @@ mod plane;
 mod render_tests;
 mod renderer;
 mod row_walk;
+#[cfg(target_arch = "x86_64")]
+mod row_wide;
 mod scene;
 mod seg;
 mod segmentation;
 mod silhouette;
 mod size;
 mod sky;
+#[cfg(target_arch = "x86_64")]
+mod sky_wide;
 #[cfg(target_arch = "x86_64")]
 mod span_wide;
 mod sprite;
@@ -58,6 +62,7 @@ mod wall;
 #[cfg(target_arch = "x86_64")]
 mod wall_wide;
 mod weapon;
+mod workspace;
 
 pub use frame::class;
 pub use label::Label;

@@ -8,12 +8,15 @@ use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::FlatPicture;
 use super::row_walk::RowWalk;
 #[cfg(target_arch = "x86_64")]
+use super::row_wide::{self, ROW_GROUP};
+#[cfg(target_arch = "x86_64")]
 use super::span_wide;
 use crate::map::TextureId;
 use crate::math::Fixed;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
+use std::ops::Range;
 
 /// What is the same all over a plane.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -41,6 +44,8 @@ const BUCKETS: usize = 64;
 pub(super) const SPAN_BLOCK: usize = 64;
 /// No plane.
 const NONE: u16 = u16::MAX;
+/// One past the last row of a column without rows: of equal bytes, so that filling a list with it is quick.
+const NO_ROW: i16 = -1;
 
 /// An area of one plane: at most one run of rows in each column.
 #[derive(Clone, Debug)]
@@ -59,7 +64,7 @@ pub(super) struct Plane {
 }
 
 /// The planes of a frame.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Planes {
     list: Vec<Plane>,
     used: usize,
@@ -108,7 +113,7 @@ impl Planes {
         // What is more than there are columns ends the last span.
         plane.top.resize(self.width + SPAN_BLOCK, 0);
         plane.bottom.resize(self.width + SPAN_BLOCK, 0);
-        plane.bottom.fill(i16::MIN);
+        plane.bottom.fill(NO_ROW);
         index as u16
     }
 
@@ -166,7 +171,7 @@ impl Plane {
         let nowhere = starts.len() - 1;
         let mut count = 0;
         // The column behind the last one has no rows, which ends the last spans.
-        let (mut top1, mut bottom1) = (0, i32::from(i16::MIN));
+        let (mut top1, mut bottom1) = (0, i32::from(NO_ROW));
         let columns = self.top[self.first..=self.end].iter().zip(&self.bottom[self.first..=self.end]);
         for (x, (&top2, &bottom2)) in (self.first as u16..).zip(columns) {
             let (top2, bottom2) = (i32::from(top2), i32::from(bottom2));
@@ -180,7 +185,8 @@ impl Plane {
             let upper_end = bottom1.min(top2);
             let mut row = top1;
             loop {
-                spans[count] = Span { row: row as u16, first: starts[row as usize], end: x };
+                // The first row of a column without rows may be left from a higher frame.
+                spans[count] = Span { row: row as u16, first: starts[(row as usize).min(nowhere)], end: x };
                 count += usize::from(row < upper_end);
                 row += 1;
                 if row >= upper_end {
@@ -266,36 +272,80 @@ impl<'a> PlaneShader<'a> {
         }
     }
 
-    /// Draws the frame columns `first..end` of a frame row.
-    #[inline]
-    pub fn span<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, flat: &FlatPicture, span: Span) {
-        let (row, first, end) = (usize::from(span.row), usize::from(span.first), usize::from(span.end));
+    /// Draws runs of pixels.
+    pub fn draw<const DEPTH: bool, const CLASS: bool>(&self, simd: Simd, frame: &mut Frame, flat: &FlatPicture, spans: &[Span]) {
+        match flat {
+            FlatPicture::Small(texels) => self.draw_from::<DEPTH, CLASS, 6, { 64 * 64 }>(simd, frame, texels, spans),
+            FlatPicture::Large(texels) => self.draw_from::<DEPTH, CLASS, 7, { 128 * 128 }>(simd, frame, texels, spans),
+        }
+    }
+
+    fn draw_from<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS: usize>(
+        &self,
+        simd: Simd,
+        frame: &mut Frame,
+        texels: &[u8; TEXELS],
+        spans: &[Span],
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        if simd.level() >= Level::Avx2 {
+            // SAFETY: whoever has this `Simd` has the instructions.
+            return unsafe { self.draw_wide::<DEPTH, CLASS, BITS, TEXELS>(frame, texels, spans) };
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = simd;
+        for span in spans {
+            let (first, end) = (usize::from(span.first), usize::from(span.end));
+            let (distance, table, start) = self.row(frame.width, span.row);
+            let pixels = &mut frame.colour[start + first..start + end];
+            let fetch = |index: usize| table[usize::from(texels[index & (TEXELS - 1)])];
+            self.walk::<BITS>(distance).draw::<BITS>(pixels, &self.view.columns[first..end], self.view.chunk_stride, fetch);
+            self.tell::<DEPTH, CLASS>(frame, distance, start + first..start + end);
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn draw_wide<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS: usize>(
+        &self,
+        frame: &mut Frame,
+        texels: &[u8; TEXELS],
+        spans: &[Span],
+    ) {
+        for span in spans {
+            let (first, end) = (usize::from(span.first), usize::from(span.end));
+            let (distance, table, start) = self.row(frame.width, span.row);
+            // The status bar follows the last row.
+            let pixels = &mut frame.colour[start + first..start + end + ROW_GROUP];
+            let columns = self.view.columns[first..].first_chunk().expect("the list is padded");
+            let walk = self.walk::<BITS>(distance);
+            row_wide::draw::<BITS, TEXELS>(&walk, pixels, end - first, columns, self.view.chunk_stride, (texels, table));
+            self.tell::<DEPTH, CLASS>(frame, distance, start + first..start + end);
+        }
+    }
+
+    /// How far the plane is in a row, its light there, and the row's first pixel.
+    #[inline(always)]
+    fn row(&self, width: usize, row: u16) -> (i64, &[u8; 256], usize) {
+        let row = usize::from(row);
         let distance = (self.height * self.slopes.distances[row]) >> 16;
         let table = &self.tables[self.light.table((self.nearness * self.slopes.rows[row]) >> 32)];
-        let start = row * frame.width;
-        let pixels = &mut frame.colour[start + first..start + end];
-        let columns = &self.view.columns[first..end];
-        match flat {
-            FlatPicture::Small(texels) => {
-                let fetch = |index: usize| table[usize::from(texels[index & (64 * 64 - 1)])];
-                self.walk::<6>(distance).draw::<6>(pixels, columns, self.view.chunk_stride, fetch);
-            }
-            FlatPicture::Large(texels) => {
-                let fetch = |index: usize| table[usize::from(texels[index & (128 * 128 - 1)])];
-                self.walk::<7>(distance).draw::<7>(pixels, columns, self.view.chunk_stride, fetch);
-            }
-        }
+        (distance, table, row * width)
+    }
+
+    #[inline(always)]
+    fn tell<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, distance: i64, pixels: Range<usize>) {
         if DEPTH {
             let depth = frame.depths.plane(distance);
-            frame.depth[start + first..start + end].fill(depth);
+            frame.depth[pixels.clone()].fill(depth);
         }
         if CLASS {
-            frame.class[start + first..start + end].fill(self.class);
+            frame.class[pixels].fill(self.class);
         }
     }
 
     /// The walk of a row over textures of side `2^BITS`.
-    #[inline]
+    #[inline(always)]
     fn walk<const BITS: u32>(&self, distance: i64) -> RowWalk {
         let camera = self.camera;
         // 48 fractional bits, of which the fraction of the side's 32 are kept; whole sides wrap away.

@@ -3,52 +3,31 @@
 use super::camera::Camera;
 use super::convert::Colours;
 use super::depth::Depths;
-use super::frame::{Columns, Frame, class};
+use super::frame::{Frame, class};
 use super::horizon::RowSlopes;
 use super::label::{Label, Labels};
-use super::look::Looks;
 use super::masked::Masked;
-use super::openings::Openings;
 use super::palette::Tint;
-use super::plane::{PlaneShader, Planes, Span};
+use super::plane::PlaneShader;
 use super::scene::Scene;
-use super::silhouette::Silhouettes;
-use super::sky::SkyShader;
-use super::sprite::{self, SeenSprite};
-use super::stamp::StampColumns;
+use super::sky::{self, SkyShader};
+use super::sprite;
 use super::status_bar::{BarState, StatusBar};
-use super::walk::{Walk, WalkScratch};
+use super::walk::Walk;
+use super::workspace::Workspace;
 use super::{Buffers, SegmentationColours, View, convert, weapon};
 use crate::simd::Simd;
 use crate::world::World;
 use std::sync::Arc;
 
-/// Draws frames of one size of the worlds of one map; owns all memory that takes, so that drawing allocates nothing
-/// once every buffer has grown.
+/// Draws frames of one size of the worlds of one map. It owns what stays of a frame; what a frame is drawn in belongs to
+/// the thread ([`Workspace`]), and drawing allocates nothing once every buffer has grown.
 #[derive(Clone, Debug)]
 pub struct Renderer {
     scene: Arc<Scene>,
     view: Arc<View>,
     frame: Frame,
-    openings: Openings,
-    planes: Planes,
-    silhouettes: Silhouettes,
-    walk: WalkScratch,
-    looks: Looks,
-    /// Sectors that the frame entered.
-    entered: Vec<bool>,
-    /// Index of the picture that each texture shows.
-    pictures: Vec<u32>,
-    /// First column of each row's span, and one entry that nobody reads.
-    span_starts: Vec<u16>,
-    /// Spans of the plane at hand.
-    spans: Vec<Span>,
     slopes: RowSlopes,
-    /// Start of each column's texels in the sky's picture.
-    sky_columns: Vec<u32>,
-    sprites: Vec<SeenSprite>,
-    /// Columns of the sprite or weapon at hand.
-    stamp_columns: StampColumns,
     labels: Labels,
     status_bar: StatusBar,
     colours: Colours,
@@ -84,23 +63,10 @@ impl Renderer {
             depth: vec![0; pixels],
             class: vec![class::STATUS_BAR; pixels],
             depths: Depths::default(),
-            columns: Columns::new(width, view.view_rows),
         };
         Renderer {
             frame,
-            openings: Openings::default(),
-            planes: Planes::default(),
-            silhouettes: Silhouettes::default(),
-            walk: WalkScratch::new(&scene, width),
-            looks: Looks::new(scene.sector_count),
-            entered: vec![false; scene.sector_count],
-            pictures: Vec::new(),
-            span_starts: vec![0; view.view_rows + 1],
-            spans: Vec::new(),
             slopes: RowSlopes::default(),
-            sky_columns: vec![0; width],
-            sprites: Vec::new(),
-            stamp_columns: StampColumns::default(),
             labels: Labels::default(),
             status_bar: StatusBar::new(&scene.bar, &view),
             colours: Colours::new(scene.assets.palette),
@@ -131,72 +97,81 @@ impl Renderer {
     /// If the world is of another map than the scene, or has no such player.
     pub fn render(&mut self, world: &World, player: usize, buffers: Buffers) {
         assert_eq!(world.sector_count(), self.scene.sector_count, "the world is of another map than the scene");
-        match (buffers.depth, buffers.labels) {
-            (false, false) => self.draw::<false, false>(world, player),
-            (true, false) => self.draw::<true, false>(world, player),
-            (false, true) => self.draw::<false, true>(world, player),
-            (true, true) => self.draw::<true, true>(world, player),
-        }
+        Workspace::with(|space| match (buffers.depth, buffers.labels) {
+            (false, false) => self.draw::<false, false>(space, world, player),
+            (true, false) => self.draw::<true, false>(space, world, player),
+            (false, true) => self.draw::<false, true>(space, world, player),
+            (true, true) => self.draw::<true, true>(space, world, player),
+        });
     }
 
-    fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, world: &World, player: usize) {
+    fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut Workspace, world: &World, player: usize) {
+        space.begin(&self.scene, &self.view, world.tic);
         let camera = Camera::of_player(world, player, &self.view);
         self.slopes.update(&self.view, camera.horizon);
-        self.animate(world.tic);
-        self.frame.clear::<DEPTH, CLASS>(self.view.view_rows);
-        self.openings.reset(self.view.width(), self.view.view_rows);
-        self.planes.reset(self.view.width());
-        self.silhouettes.reset();
-        self.entered.fill(false);
-        self.looks.reset();
+        space.columns.clear::<DEPTH>(self.frame.depths);
         let mut walk = Walk {
             scene: &self.scene,
             view: &self.view,
             camera: &camera,
             world,
-            looks: &mut self.looks,
-            pictures: &self.pictures,
-            frame: &mut self.frame,
-            openings: &mut self.openings,
-            planes: &mut self.planes,
-            silhouettes: &mut self.silhouettes,
-            entered: &mut self.entered,
-            scratch: &mut self.walk,
+            depths: self.frame.depths,
+            looks: &mut space.looks,
+            pictures: &space.pictures,
+            columns: &mut space.columns,
+            openings: &mut space.openings,
+            planes: &mut space.planes,
+            silhouettes: &mut space.silhouettes,
+            entered: &mut space.entered,
+            scratch: &mut space.walk,
             simd: self.simd,
         };
         walk.run::<DEPTH>();
-        self.frame.end_walls::<DEPTH>(self.simd, self.view.view_rows);
-        self.draw_planes::<DEPTH, CLASS>(&camera);
-        self.draw_masked::<DEPTH, CLASS>(&camera, world, player);
-        self.draw_overlay::<DEPTH, CLASS>(&camera, world, player);
+        self.draw_sky(space, &camera);
+        self.frame.take_walls::<DEPTH, CLASS>(self.simd, &space.columns, self.view.view_rows);
+        self.draw_planes::<DEPTH, CLASS>(space, &camera);
+        self.draw_masked::<DEPTH, CLASS>(space, &camera, world, player);
+        self.draw_overlay::<DEPTH, CLASS>(space, &camera, world, player);
     }
 
-    fn draw_masked<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera, world: &World, player: usize) {
+    fn draw_masked<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        space: &mut Workspace,
+        camera: &Camera,
+        world: &World,
+        player: usize,
+    ) {
         self.labels.list.clear();
-        sprite::collect(&mut self.sprites, &self.scene, &self.view, camera, world, player, &self.entered);
+        sprite::collect(&mut space.sprites, &self.scene, &self.view, camera, world, player, &space.entered);
         let mut masked = Masked {
             scene: &self.scene,
             view: &self.view,
             camera,
             world,
-            pictures: &self.pictures,
+            pictures: &space.pictures,
             frame: &mut self.frame,
-            silhouettes: &mut self.silhouettes,
+            silhouettes: &mut space.silhouettes,
             labels: &mut self.labels,
-            columns: &mut self.stamp_columns,
+            columns: &mut space.stamp_columns,
             simd: self.simd,
         };
-        masked.draw::<DEPTH, CLASS>(&self.sprites);
+        masked.draw::<DEPTH, CLASS>(&space.sprites);
     }
 
     /// What is drawn over the world: weapon, status bar, flashes.
-    fn draw_overlay<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera, world: &World, player: usize) {
+    fn draw_overlay<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        space: &mut Workspace,
+        camera: &Camera,
+        world: &World,
+        player: usize,
+    ) {
         let (scene, view) = (&self.scene, &self.view);
         let state = BarState::of_player(world, player);
         let player = &world.players[player];
         let level = world.get(player.actor).map_or(0, |body| world.sector(body.sector).light);
         let mut canvas =
-            weapon::Canvas { frame: &mut self.frame, columns: &mut self.stamp_columns, simd: self.simd, scene, view };
+            weapon::Canvas { frame: &mut self.frame, columns: &mut space.stamp_columns, simd: self.simd, scene, view };
         canvas.weapon::<DEPTH, CLASS>(camera, player, i32::from(level));
         self.status_bar.update(&mut self.frame, &scene.bar, view, state);
         let tint = Tint::of_player(player, self.options.green_goggles);
@@ -206,42 +181,32 @@ impl Renderer {
         }
     }
 
-    /// Chooses the frame of each animated texture.
-    fn animate(&mut self, tic: u32) {
-        let textures = &self.scene.textures.list;
-        self.pictures.clear();
-        self.pictures.extend(textures.iter().map(|texture| {
-            if texture.frames == 1 { texture.first } else { texture.first + tic / texture.tics % texture.frames }
-        }));
+    /// Draws the sky, as far as its colours go, into the workspace's columns: its depth is what they were emptied to.
+    fn draw_sky(&mut self, space: &mut Workspace, camera: &Camera) {
+        let picture = &self.scene.textures.walls[self.scene.sky];
+        // Whatever light there is, and by goggles too.
+        let shader = SkyShader { camera, view: &self.view, table: &self.scene.assets.light_tables[0], picture };
+        for plane in space.planes.used().iter().filter(|plane| plane.key.sky && !plane.is_empty()) {
+            let rows = self.slopes.sky_rows(|horizon| sky::texel_rows(&self.view, horizon, picture.height));
+            shader.draw(self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
+        }
     }
 
-    fn draw_planes<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera) {
+    fn draw_planes<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut Workspace, camera: &Camera) {
         let tables = &self.scene.assets.light_tables;
-        for plane in self.planes.used() {
-            if plane.is_empty() {
+        for plane in space.planes.used() {
+            if plane.is_empty() || (plane.key.sky && !CLASS) {
                 continue;
             }
-            let count = plane.spans(self.simd, &mut self.span_starts, &mut self.spans);
-            let spans = &self.spans[..count];
+            let count = plane.spans(self.simd, &mut space.span_starts, &mut space.spans);
+            let spans = &space.spans[..count];
             if plane.key.sky {
-                let shader = SkyShader {
-                    camera,
-                    view: &self.view,
-                    // Whatever light there is, and by goggles too.
-                    table: &tables[0],
-                    picture: &self.scene.textures.walls[self.scene.sky],
-                };
-                shader.columns(&mut self.sky_columns, plane.first, plane.end);
-                for &span in spans {
-                    shader.span::<DEPTH, CLASS>(&mut self.frame, &self.sky_columns, span);
-                }
+                self.frame.classify(spans, class::SKY);
             } else {
-                let picture = self.pictures[usize::from(plane.key.texture.0)] as usize;
+                let picture = space.pictures[usize::from(plane.key.texture.0)] as usize;
                 let (flat, square) = (&self.scene.textures.flats[picture], self.scene.textures.squares[picture]);
                 let shader = PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key, square);
-                for &span in spans {
-                    shader.span::<DEPTH, CLASS>(&mut self.frame, flat, span);
-                }
+                shader.draw::<DEPTH, CLASS>(self.simd, &mut self.frame, flat, spans);
             }
         }
     }

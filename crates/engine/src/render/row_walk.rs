@@ -167,4 +167,39 @@ mod tests {
             assert_eq!(vector, scalar);
         }
     }
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn groups_of_pixels_are_those_one_by_one() {
+        use crate::render::row_wide::{ROW_GROUP, draw};
+        use crate::simd::{Level, Simd};
+        if !Simd::available().iter().any(|simd| simd.level() >= Level::Avx2) {
+            return;
+        }
+        let mut rng = Rng::new(78);
+        let table: [u8; 256] = std::array::from_fn(|_| rng.byte() as u8);
+        let small: [u8; 64 * 64] = std::array::from_fn(|_| rng.byte() as u8);
+        let large: Vec<u8> = (0..128 * 128).map(|_| rng.byte() as u8).collect();
+        let large: &[u8; 128 * 128] = large[..].try_into().unwrap();
+        let columns: Vec<u32> = (0..200).map(|x| x * 5 / 4).collect();
+        for round in 0..2000 {
+            let mut any = || rng.next_u64() as u32;
+            let walk = RowWalk { u: any(), v: any(), u_step: any(), v_step: any() };
+            let (first, count) = ((any() % 100) as usize, (any() % 90) as usize);
+            let before: Vec<u8> = (0..count + ROW_GROUP).map(|_| any() as u8).collect();
+            let (mut plain, mut wide) = (before.clone(), before);
+            let (own, chunk) = (&columns[first..first + count], columns[first..].first_chunk().unwrap());
+            // SAFETY: the processor has the instructions, see above.
+            unsafe {
+                if round % 2 == 0 {
+                    walk.draw::<6>(&mut plain[..count], own, 10, |index| table[usize::from(small[index])]);
+                    draw::<6, { 64 * 64 }>(&walk, &mut wide, count, chunk, 10, (&small, &table));
+                } else {
+                    walk.draw::<7>(&mut plain[..count], own, 10, |index| table[usize::from(large[index])]);
+                    draw::<7, { 128 * 128 }>(&walk, &mut wide, count, chunk, 10, (large, &table));
+                }
+            }
+            assert_eq!(wide, plain, "{count} pixels from column {first}");
+        }
+    }
 }

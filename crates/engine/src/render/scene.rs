@@ -82,6 +82,8 @@ pub struct Scene {
     pub(super) nodes: Vec<Node>,
     /// First seg, one past the last, sector.
     pub(super) subsectors: Vec<[u32; 3]>,
+    /// Most segs of a subsector.
+    pub(super) most_segs: usize,
     pub(super) sector_count: usize,
     pub(super) textures: Textures,
     /// The ceiling texture that shows the sky.
@@ -165,6 +167,7 @@ impl Scene {
             faces: faces.into_iter().map(|face| face.unwrap_or_else(|| bare.clone())).collect(),
             nodes: map.nodes.clone(),
             subsectors: map.subsectors.iter().map(|s| [s.first_seg, s.first_seg + s.seg_count, s.sector.0]).collect(),
+            most_segs: map.subsectors.iter().map(|subsector| subsector.seg_count as usize).max().unwrap_or(0),
             sector_count: map.sectors.len(),
             sky_flat: map.textures.iter().position(|&name| name == SKY_FLAT).map(|i| TextureId(i as u16)),
             sky,

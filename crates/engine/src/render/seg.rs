@@ -246,6 +246,7 @@ impl Walk<'_> {
         let shader = WallShader {
             camera: self.camera,
             view: self.view,
+            depths: self.depths,
             tables: &self.scene.assets.light_tables,
             line: &seen.line,
             ends: &seen.ends,
@@ -255,11 +256,10 @@ impl Walk<'_> {
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };
         let (tops, bottoms) = (&self.scratch.upper[range.clone()], &self.scratch.lower[range]);
-        shader.draw::<DEPTH>(self.simd, self.frame, seen.first, tops, bottoms);
+        shader.draw::<DEPTH>(self.simd, self.columns, seen.first, tops, bottoms);
     }
 
     fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {
-        let range = seen.first..seen.end;
         let silhouette = Silhouette {
             first: seen.first,
             end: seen.end,
@@ -273,7 +273,7 @@ impl Walk<'_> {
             masked: !solid && seen.seg.masked,
             rows: 0,
         };
-        self.silhouettes.add(silhouette, &self.openings.top[range.clone()], &self.openings.bottom[range]);
+        self.silhouettes.add(silhouette, &self.openings.top[seen.first..], &self.openings.bottom[seen.first..]);
     }
 
     fn is_sky(&self, texture: TextureId) -> bool {

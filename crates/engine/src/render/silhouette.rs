@@ -1,5 +1,6 @@
 //! What the walls leave for the sprites: which segs hide things behind them, and in which rows.
 
+use super::narrow::{BLOCK, padded};
 use super::wall::SeenLine;
 use crate::math::Fixed;
 
@@ -31,14 +32,16 @@ pub(super) struct Silhouette {
 }
 
 /// The silhouettes of a frame, near to far as the walk found them.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Silhouettes {
     pub list: Vec<Silhouette>,
-    /// First open rows, all silhouettes one after another.
+    /// First open rows, all silhouettes one after another; there is room for more than are used.
     pub tops: Vec<i16>,
     /// One past the last open rows.
     pub bottoms: Vec<i16>,
-    /// Columns whose masked texture has been drawn.
+    /// How many rows are used.
+    used: usize,
+    /// Columns whose masked texture has been drawn, as far as the last masked silhouette.
     pub drawn: Vec<bool>,
 }
 
@@ -46,17 +49,33 @@ impl Silhouettes {
     /// Forgets the last frame.
     pub fn reset(&mut self) {
         self.list.clear();
-        self.tops.clear();
-        self.bottoms.clear();
+        self.used = 0;
         self.drawn.clear();
     }
 
-    /// Adds a silhouette with the rows that are open in its columns.
+    /// Adds a silhouette with the rows that are open in its columns: `tops` and `bottoms` begin there and are padded, so
+    /// that few columns are copied without a call.
     pub fn add(&mut self, mut silhouette: Silhouette, tops: &[i16], bottoms: &[i16]) {
-        silhouette.rows = self.tops.len();
-        self.tops.extend_from_slice(tops);
-        self.bottoms.extend_from_slice(bottoms);
-        self.drawn.resize(self.tops.len(), false);
+        let (rows, count) = (self.used, silhouette.end - silhouette.first);
+        silhouette.rows = rows;
+        self.used += count;
+        if self.tops.len() < padded(self.used) {
+            self.tops.resize(2 * padded(self.used), 0);
+            self.bottoms.resize(2 * padded(self.used), 0);
+        }
+        for from in (0..count).step_by(BLOCK) {
+            copy_block(&mut self.tops[rows + from..], &tops[from..]);
+            copy_block(&mut self.bottoms[rows + from..], &bottoms[from..]);
+        }
+        if silhouette.masked {
+            self.drawn.resize(self.used, false);
+        }
         self.list.push(silhouette);
     }
+}
+
+#[inline(always)]
+fn copy_block(to: &mut [i16], from: &[i16]) {
+    let to: &mut [i16; BLOCK] = to.first_chunk_mut().expect("lists are padded");
+    *to = *from.first_chunk().expect("lists are padded");
 }

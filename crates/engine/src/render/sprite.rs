@@ -65,14 +65,23 @@ pub(super) fn collect(
     for (slot, actor) in world.actors.iter().enumerate() {
         let in_sight = entered.get(actor.sector.0 as usize).is_some_and(|&entered| entered);
         if in_sight && !actor.removed && slot != own {
-            let level = i32::from(world.sector(actor.sector).light);
+            // Light may have to be computed: only for what is in view.
+            let level = || i32::from(world.sector(actor.sector).light);
             seen.extend(see(scene, view, camera, actor, slot as u16, world.tic, level));
         }
     }
     seen.sort_unstable_by_key(|sprite| (-sprite.distance, sprite.slot));
 }
 
-fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, tic: u32, level: i32) -> Option<SeenSprite> {
+fn see(
+    scene: &Scene,
+    view: &View,
+    camera: &Camera,
+    actor: &Actor,
+    slot: u16,
+    tic: u32,
+    level: impl FnOnce() -> i32,
+) -> Option<SeenSprite> {
     let (x, y) = (i64::from(actor.x.0), i64::from(actor.y.0));
     let [left, right] = camera.edges(x, y);
     let distance = (left + right) / 2;
@@ -115,7 +124,7 @@ fn see(scene: &Scene, view: &View, camera: &Camera, actor: &Actor, slot: u16, ti
     let nearness = (ONE_TABLE_DISTANCE << 32) / distance;
     let table = match (shown.bright, camera.fixed_table) {
         (true, None) => 0,
-        _ => Light::new(camera, level).table(nearness),
+        _ => Light::new(camera, level()).table(nearness),
     };
     Some(SeenSprite {
         slot,

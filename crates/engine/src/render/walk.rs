@@ -2,7 +2,8 @@
 
 use super::View;
 use super::camera::Camera;
-use super::frame::Frame;
+use super::depth::Depths;
+use super::frame::Columns;
 use super::look::Looks;
 use super::narrow::padded;
 use super::openings::Openings;
@@ -11,7 +12,7 @@ use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
 use crate::map::Node;
 use crate::math::Fixed;
-use crate::simd::Simd;
+use crate::simd::{Simd, prefetch};
 use crate::world::World;
 
 /// Everything that the walk reads and writes.
@@ -23,7 +24,8 @@ pub(super) struct Walk<'a> {
     pub looks: &'a mut Looks,
     /// Index of the picture that each texture shows now.
     pub pictures: &'a [u32],
-    pub frame: &'a mut Frame,
+    pub depths: Depths,
+    pub columns: &'a mut Columns,
     pub openings: &'a mut Openings,
     pub planes: &'a mut Planes,
     pub silhouettes: &'a mut Silhouettes,
@@ -34,7 +36,7 @@ pub(super) struct Walk<'a> {
 }
 
 /// Memory that the walk reuses.
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 pub(super) struct WalkScratch {
     /// Children to visit later: node index times two, plus the side.
     stack: Vec<u32>,
@@ -47,15 +49,12 @@ pub(super) struct WalkScratch {
 }
 
 impl WalkScratch {
-    /// Room for frames of `width` columns of a scene.
-    pub fn new(scene: &Scene, width: usize) -> WalkScratch {
-        let most_segs = scene.subsectors.iter().map(|[first, end, _]| end - first).max().unwrap_or(0);
-        WalkScratch {
-            stack: vec![0; scene.nodes.len() + 2],
-            facing: vec![(0, 0); most_segs as usize + 1],
-            upper: vec![0; padded(width)],
-            lower: vec![0; padded(width)],
-        }
+    /// Has room for frames of `width` columns of a scene.
+    pub fn fit(&mut self, scene: &Scene, width: usize) {
+        self.stack.resize(scene.nodes.len() + 2, 0);
+        self.facing.resize(scene.most_segs + 1, (0, 0));
+        self.upper.resize(padded(width), 0);
+        self.lower.resize(padded(width), 0);
     }
 }
 
@@ -182,18 +181,27 @@ impl Walk<'_> {
         let [first, end, sector] = scene.subsectors[index];
         self.entered[sector as usize] = true;
         let own = self.looks.of(self.world, sector);
-        // First those to draw, again without branches, then their drawing.
+        // First those that face the eye, then those of them that matter, again without branches, then their drawing.
         let mut found = 0;
         for (index, seg) in (first..end).zip(&scene.segs[first as usize..end as usize]) {
+            let away = seg.away(self.camera.x, self.camera.y);
+            self.scratch.facing[found] = (index, away);
+            found += usize::from(away > 0);
+        }
+        let mut kept = 0;
+        for i in 0..found {
+            let (index, away) = self.scratch.facing[i];
+            let seg = &scene.segs[index as usize];
             // A one-sided line differs from whatever its sector is compared with.
             let one_sided = seg.back == NO_SECTOR;
             let back = self.looks.of(self.world, if one_sided { sector } else { seg.back });
             let differs = own.difference(&back) | u64::from(one_sided | seg.masked);
-            let away = seg.away(self.camera.x, self.camera.y);
-            self.scratch.facing[found] = (index, away);
-            found += usize::from((differs != 0) & (away > 0));
+            self.scratch.facing[kept] = (index, away);
+            // Of a map's many faces few are in the nearest cache, and they are needed late.
+            prefetch(&scene.faces[seg.face as usize]);
+            kept += usize::from(differs != 0);
         }
-        for i in 0..found {
+        for i in 0..kept {
             let (index, away) = self.scratch.facing[i];
             self.seg::<DEPTH>(index, away);
         }

@@ -3,7 +3,8 @@
 use super::View;
 use super::camera::Camera;
 use super::column::Column;
-use super::frame::Frame;
+use super::depth::Depths;
+use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::WallPicture;
 use super::scene::{Face, SceneSeg};
@@ -144,6 +145,7 @@ impl Edge {
 pub(super) struct WallShader<'a> {
     pub camera: &'a Camera,
     pub view: &'a View,
+    pub depths: Depths,
     pub tables: &'a [[u8; 256]; 32],
     /// For texture positions.
     pub line: &'a SeenLine,
@@ -185,7 +187,33 @@ struct WallColumn {
 
 impl WallShader<'_> {
     /// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on, into the frame's columns.
-    pub fn draw<const DEPTH: bool>(&self, simd: Simd, frame: &mut Frame, first: usize, tops: &[i16], bottoms: &[i16]) {
+    pub fn draw<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
+        // What is done for a column is short: calls into functions for other instructions would be much of it.
+        #[cfg(target_arch = "x86_64")]
+        match simd.level() {
+            // SAFETY: whoever has this `Simd` has the instructions.
+            Level::Avx512 => return unsafe { self.draw_avx512::<DEPTH>(simd, frame, first, tops, bottoms) },
+            // SAFETY: as above.
+            Level::Avx2 => return unsafe { self.draw_avx2::<DEPTH>(simd, frame, first, tops, bottoms) },
+            Level::Plain => {}
+        }
+        self.draw_columns::<DEPTH>(simd, frame, first, tops, bottoms);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+    fn draw_avx512<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
+        self.draw_columns::<DEPTH>(simd, frame, first, tops, bottoms);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn draw_avx2<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
+        self.draw_columns::<DEPTH>(simd, frame, first, tops, bottoms);
+    }
+
+    #[inline(always)]
+    fn draw_columns<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
         let slope = self.slope();
         for from in (0..tops.len()).step_by(WALL_BLOCK) {
             #[cfg(target_arch = "x86_64")]
@@ -218,7 +246,7 @@ impl WallShader<'_> {
     }
 
     /// What a base column shows.
-    #[inline]
+    #[inline(always)]
     fn column(&self, slope: &WallSlope, column: i64) -> WallColumn {
         let distance = self.line.distance_at(column);
         let nearness = (self.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
@@ -237,16 +265,16 @@ impl WallShader<'_> {
     fn draw_column<const DEPTH: bool>(
         &self,
         simd: Simd,
-        frame: &mut Frame,
+        frame: &mut Columns,
         x: usize,
         [top, bottom]: [usize; 2],
         WallColumn { distance, u, table, at, step }: WallColumn,
     ) {
         let column = Column { texels: self.picture.column(u), table: &self.tables[table], at, step };
-        column.draw(simd, frame.columns.colour_of(x), &self.view.rows, top, bottom);
+        column.draw(simd, frame.colour_of(x), &self.view.rows, top, bottom);
         if DEPTH {
-            let depth = frame.depths.wall(distance);
-            frame.columns.depth_of(x)[top..bottom].fill(depth);
+            let depth = self.depths.wall(distance);
+            frame.depth_of(x)[top..bottom].fill(depth);
         }
         // The class of a wall is what the frame was cleared to.
     }
@@ -294,6 +322,7 @@ mod tests {
             let shader = WallShader {
                 camera: &camera,
                 view: &view,
+                depths: Depths::default(),
                 tables: &[[0; 256]; 32],
                 line: &line,
                 ends: &ends,

@@ -15,6 +15,7 @@ pub(super) struct WallColumns {
 }
 
 /// The eight base columns `columns`.
+#[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
 pub(super) fn columns(shader: &WallShader, slope: &WallSlope, columns: &[u32; WALL_BLOCK]) -> WallColumns {
     // SAFETY: 32 bytes are readable behind the reference.

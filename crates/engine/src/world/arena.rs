@@ -1,7 +1,6 @@
 //! The arena: actors by slot, their generations, who runs when, and the grid by which things find each other.
 
 use super::actor::{NO_BLOCK, NONE};
-use super::riders::Footing;
 use super::{Actor, ActorFlags, ActorId, ActorKind, Heading, Phase, World};
 use crate::math::{Angle, Fixed};
 
@@ -69,9 +68,7 @@ impl World {
             block_previous: NONE,
         };
         self.link(slot);
-        if let Some(footing) = self.footings.get_mut(slot) {
-            *footing = Footing::UNKNOWN;
-        }
+        self.forget_footing(slot);
         let id = ActorId { slot: slot as u16, generation };
         self.fresh.push(id);
         self.start_animation(slot);
@@ -180,13 +177,12 @@ impl World {
             self.actors[usize::from(next)].block_previous = previous;
         }
         self.actors[slot].block = NO_BLOCK;
+        self.forget_footing(slot);
     }
 
     /// Moves an actor in the plane, keeping the grid and its sector true; heights are the caller's.
     pub(crate) fn relocate(&mut self, slot: usize, x: Fixed, y: Fixed, sector: crate::map::SectorId) {
-        if let Some(footing) = self.footings.get_mut(slot) {
-            *footing = Footing::UNKNOWN;
-        }
+        self.forget_footing(slot);
         let same_block = self.block_of(x, y) == self.actors[slot].block;
         if !same_block {
             self.unlink(slot);

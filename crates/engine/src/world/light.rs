@@ -51,10 +51,15 @@ impl Effect {
             }
             Effect::Strobe { bright, dark, bright_tics, dark_tics, mut left } => {
                 let (mut count, mut level) = (i64::from(count), level);
+                let round = i64::from(bright_tics) + i64::from(dark_tics);
                 while count >= i64::from(left) {
                     count -= i64::from(left);
                     let is_dark = i32::from(level) == dark;
                     (level, left) = if is_dark { (clamp_light(bright), bright_tics) } else { (clamp_light(dark), dark_tics) };
+                    // From a turn on whole rounds change nothing; one of two equal sides never leaves the bright one.
+                    if bright != dark && count >= round {
+                        count %= round;
+                    }
                 }
                 (Effect::Strobe { bright, dark, bright_tics, dark_tics, left: left - count as i32 }, level)
             }

@@ -83,6 +83,11 @@ impl Movers {
         }
     }
 
+    /// Whether planes are on their way anywhere; if not, the sectors with movers are those whose floors swing.
+    pub(crate) fn move_planes(&self) -> bool {
+        self.planes
+    }
+
     /// The mover of a sector whose floor swings.
     #[inline]
     pub(crate) fn swing_of(&self, sector: SectorId) -> Option<usize> {

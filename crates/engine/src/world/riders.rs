@@ -113,26 +113,41 @@ impl Riders {
 }
 
 impl World {
+    /// An actor has moved, or is in no block any more.
+    pub(crate) fn forget_footing(&mut self, slot: usize) {
+        if let Some(footing) = self.footings.get_mut(slot) {
+            *footing = Footing::UNKNOWN;
+        }
+    }
+
     /// Lists the actors that touch a busy sector. Actors keep their places while movers run, so that the lists stay true.
     pub(crate) fn list_riders(&mut self) {
         self.riders.clear(self.sectors.len());
         self.footings.resize(self.actors.len(), Footing::UNKNOWN);
-        let World { riders, footings, sectors, actors, map, .. } = self;
-        let busy = |sector: usize| sectors[sector].floor_busy || sectors[sector].ceiling_busy;
-        for (slot, actor) in actors.iter().enumerate() {
-            if actor.removed || actor.block == NO_BLOCK {
-                continue;
+        let World { riders, footings, sectors, actors, map, movers, .. } = self;
+        // The short list of swings first: the sectors of a whole world would come into the cache for a bit each.
+        let planes = movers.move_planes();
+        let busy = |sector: usize| {
+            movers.swing_of(SectorId(sector as u32)).is_some()
+                || (planes && (sectors[sector].floor_busy || sectors[sector].ceiling_busy))
+        };
+        for (slot, footing) in footings.iter_mut().enumerate() {
+            // Only what is in a block has a known footing: most actors need not be looked at.
+            if footing.count == 0 {
+                let actor = &actors[slot];
+                if actor.removed || actor.block == NO_BLOCK {
+                    continue;
+                }
+                *footing = Footing::of(map, actor);
             }
-            if footings[slot].count == 0 {
-                footings[slot] = Footing::of(map, actor);
-            }
-            let Footing { count, sectors: under } = footings[slot];
+            let Footing { count, sectors: under } = *footing;
             for &sector in &under[..usize::from(count)] {
                 if busy(usize::from(sector)) {
                     riders.add(usize::from(sector), slot);
                 }
             }
             if count == 0 {
+                let actor = &actors[slot];
                 for_each_sector_under(map, actor, |sector| {
                     if busy(sector.0 as usize) {
                         riders.add(sector.0 as usize, slot);
