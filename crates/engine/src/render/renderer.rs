@@ -21,7 +21,7 @@ use crate::world::World;
 use std::sync::Arc;
 
 /// Draws frames of one size of the worlds of one map. It owns what stays of a frame; what a frame is drawn in belongs to
-/// the thread ([`Workspace`]), and drawing allocates nothing once every buffer has grown.
+/// its thread, and drawing allocates nothing once every buffer has grown.
 #[derive(Clone, Debug)]
 pub struct Renderer {
     scene: Arc<Scene>,
