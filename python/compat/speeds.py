@@ -2,11 +2,12 @@
 
 PART: `batch` (VectorEnv of 32 worlds beside `hasard bench`, one and two threads), `single` (make(id) beside `hasard bench --envs 1`), `thread` (what a
 second Python thread keeps while worlds step), `import`, `library` (Stable-Baselines3's and TorchRL's own loops, beside the published engine where the
-package vizdoom and the maps of the package hasard are there). Wants a machine that does nothing else.
+package vizdoom is there, with the maps of the package hasard, wherever HASARD_PUBLISHED says that it lies). Wants a machine that does nothing else.
 """
 
 import json
 import os
+import pathlib
 import statistics
 import subprocess
 import sys
@@ -117,30 +118,19 @@ def imported(rounds):
 
 def published(level=1):
     """One world of the published engine as a Gymnasium environment: its buttons pressed or not, 160x120 reduced to 128x72 by indexing."""
-    import importlib.util
-    import pathlib
-
     import gymnasium
     import numpy as np
-    import vizdoom
 
-    folder = lambda name: pathlib.Path(importlib.util.find_spec(name).submodule_search_locations[0])  # noqa: E731
-    level_folder = pathlib.Path(os.environ.get("HASARD_PUBLISHED", "") or folder("hasard")) / "envs" / "volcanic_venture"
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "crates" / "envs" / "examples"))
+    from beside_published_speed import open_game, package
+
+    maps = pathlib.Path(os.environ.get("HASARD_PUBLISHED") or package("hasard")) / "envs"
 
     class Published(gymnasium.Env):
         metadata = {"render_modes": []}
 
         def __init__(self):
-            self.game = vizdoom.DoomGame()
-            self.game.load_config(str(level_folder / "conf.cfg"))
-            self.game.set_doom_scenario_path(str(level_folder / f"level_{level}.wad"))
-            self.game.set_doom_game_path(str(folder("vizdoom") / "freedoom2.wad"))
-            self.game.set_screen_resolution(vizdoom.ScreenResolution.RES_160X120)
-            self.game.set_screen_format(vizdoom.ScreenFormat.RGB24)
-            self.game.set_window_visible(False)
-            self.game.set_mode(vizdoom.Mode.PLAYER)
-            self.game.init()
-            self.picked = np.ix_(np.arange(72) * 120 // 72, np.arange(128) * 160 // 128)
+            self.game, self.picked = open_game(maps, "VolcanicVenture", level)
             self.observation_space = gymnasium.spaces.Box(0, 255, (72, 128, 3), np.uint8)
             self.action_space = gymnasium.spaces.MultiBinary(len(self.game.get_available_buttons()))
 

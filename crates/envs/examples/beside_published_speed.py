@@ -35,6 +35,25 @@ def package(name):
     return pathlib.Path(found.submodule_search_locations[0])
 
 
+def open_game(maps, scenario, level):
+    """A level of the published engine, raw, from the folder of the published maps; and the index of the pixels that a learner gets."""
+    import numpy
+    import vizdoom
+
+    folder = maps / re.sub(r"(?<!^)(?=[A-Z])", "_", scenario).lower()
+    game = vizdoom.DoomGame()
+    game.load_config(str(folder / "conf.cfg"))
+    game.set_doom_scenario_path(str(folder / f"level_{level}.wad"))
+    game.set_doom_game_path(str(package("vizdoom") / "freedoom2.wad"))
+    game.set_screen_resolution(vizdoom.ScreenResolution.RES_160X120)
+    game.set_screen_format(vizdoom.ScreenFormat.RGB24)
+    game.set_window_visible(False)
+    game.set_mode(vizdoom.Mode.PLAYER)
+    game.init()
+    rows, columns = numpy.arange(HEIGHT) * 120 // HEIGHT, numpy.arange(WIDTH) * 160 // WIDTH
+    return game, numpy.ix_(rows, columns)
+
+
 class Published:
     """One world of the published engine."""
 
@@ -42,18 +61,7 @@ class Published:
         import numpy
         import vizdoom
 
-        folder = package("hasard") / "envs" / re.sub(r"(?<!^)(?=[A-Z])", "_", scenario).lower()
-        self.game = vizdoom.DoomGame()
-        self.game.load_config(str(folder / "conf.cfg"))
-        self.game.set_doom_scenario_path(str(folder / f"level_{level}.wad"))
-        self.game.set_doom_game_path(str(package("vizdoom") / "freedoom2.wad"))
-        self.game.set_screen_resolution(vizdoom.ScreenResolution.RES_160X120)
-        self.game.set_screen_format(vizdoom.ScreenFormat.RGB24)
-        self.game.set_window_visible(False)
-        self.game.set_mode(vizdoom.Mode.PLAYER)
-        self.game.init()
-        rows, columns = numpy.arange(HEIGHT) * 120 // HEIGHT, numpy.arange(WIDTH) * 160 // WIDTH
-        self.picked = numpy.ix_(rows, columns)
+        self.game, self.picked = open_game(package("hasard") / "envs", scenario, level)
         self.copy = numpy.ascontiguousarray
         # Only buttons that are held or not; those with an amount stay at 0.
         binary = [not vizdoom.is_delta_button(button) for button in self.game.get_available_buttons()]

@@ -134,7 +134,7 @@ impl TrainConfig {
 /// Settings that learn within minutes.
 fn quicken(config: &mut TrainConfig) {
     config.frames = 10_000_000;
-    // A sixth of the arithmetic of the original's network: three times the frames in the same time, and no less learned from
+    // A fifth of the arithmetic of the original's network: three times the frames in the same time, and no less learned from
     // each (docs/tried/quick_network.md).
     config.network.convolutions = vec![
         Convolution { channels: 32, kernel: 8, stride: 6 },
