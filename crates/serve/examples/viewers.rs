@@ -3,6 +3,7 @@
 //! Prints frames a second of each viewer and, playing, the time from a key to the first changed picture. With `soak` as a
 //! fifth word, so many at a time come and go instead: some read, some never do, some send rubbish.
 
+use serde_json::Value;
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 use tungstenite::{Message, WebSocket};
@@ -13,12 +14,16 @@ fn connect(address: &str, path: &str) -> Option<WebSocket<TcpStream>> {
     tungstenite::client(format!("ws://{address}{path}"), stream).ok().map(|(socket, _)| socket)
 }
 
-/// Reads until a frame and says that it was seen; its pictures.
+/// Reads until a frame and says that it was seen, and asks for the next episode when this one has ended; its pictures.
 fn frame(socket: &mut WebSocket<TcpStream>) -> Option<Vec<u8>> {
     loop {
         if let Message::Binary(bytes) = socket.read().ok()? {
             socket.send(Message::text("{\"do\":\"ack\"}")).ok()?;
             let header = u32::from_le_bytes(bytes[..4].try_into().ok()?) as usize;
+            let told: Value = serde_json::from_slice(&bytes[4..4 + header]).ok()?;
+            if told["ended"] == true {
+                socket.send(Message::text("{\"do\":\"next\"}")).ok()?;
+            }
             return Some(bytes[4 + header..].to_vec());
         }
     }

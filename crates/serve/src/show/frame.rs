@@ -5,16 +5,17 @@ use hasard_play::ViewKind;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use serde_json::{Value, json};
 
-/// Quality of the pictures, 1 to 100: textures stay crisp, 640x480 are some 60 kB.
-const QUALITY: u8 = 82;
+/// Quality of pictures, 1 to 100, in motion, where coding is most of what a show costs, and at rest, where the eye has time for textures.
+const MOVING: u8 = 70;
+const STILL: u8 = 90;
 
-/// Puts a moment together. `header` is an object, to which the list of pictures is added.
-pub(super) fn message(mut header: Value, pictures: &[(ViewKind, Picture)]) -> Vec<u8> {
+/// Puts a moment together. `header` is an object, to which the list of pictures is added; `still` if no other moment is to follow by itself.
+pub(super) fn message(mut header: Value, pictures: &[(ViewKind, Picture)], still: bool) -> Vec<u8> {
     let mut coded = Vec::new();
     let mut list = Vec::new();
     for (kind, picture) in pictures {
         let before = coded.len();
-        let mut encoder = Encoder::new(&mut coded, QUALITY);
+        let mut encoder = Encoder::new(&mut coded, if still { STILL } else { MOVING });
         // Classes and maps are thin lines of pure colours: their colour is kept in full.
         let whole = matches!(kind, ViewKind::Segmented | ViewKind::Automap);
         encoder.set_sampling_factor(if whole { SamplingFactor::R_4_4_4 } else { SamplingFactor::R_4_2_0 });

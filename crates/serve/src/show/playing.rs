@@ -138,6 +138,6 @@ impl Game {
         });
         let picture = self.views.draw(&self.stage);
         self.fresh = false;
-        line.frame(message(header, &[(ViewKind::Colour, picture)]))
+        line.frame(message(header, &[(ViewKind::Colour, picture)], self.paused || self.stage.ended()))
     }
 }

@@ -226,6 +226,6 @@ impl<'a> Show<'a> {
         let pictures = self.views.pictures(self.stage.world());
         let pictures: Vec<_> = self.kinds.iter().copied().zip(pictures).collect();
         self.fresh = false;
-        line.frame(message(header, &pictures))
+        line.frame(message(header, &pictures, self.paused || self.ended()))
     }
 }
