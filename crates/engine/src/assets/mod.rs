@@ -89,7 +89,7 @@ pub struct TextureEntry {
 }
 
 /// Four-letter sprite names; an actor's `sprite` is an index into this list.
-pub const SPRITE_NAMES: [&str; 72] = [
+pub const SPRITE_NAMES: [&str; 73] = [
     "BON1", "STIM", "MEDI", "BON2", "ROCK", "SHEL", "CELL", "CLIP", "PVIS", "PINS", "PMAP", "BPAK", "SUIT", "YKEY",
     "BSKU", // items
     "PIST", "SHOT", "SGN2", "MGUN", "LAUN", "PLAS", "BFUG", // weapons to pick up
@@ -98,6 +98,7 @@ pub const SPRITE_NAMES: [&str; 72] = [
     "TLMP", "TLP2", "COL4", "COL2", "COL5", "ELEC", "TRE1", "SMIT", "TRE2", "POL5", "PLAY", "BRS1", "COL1", // decor, player
     "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", "SHT2", "PLSF", "BFGF", // view weapons
     "CAND", "SMBT", "SMGT", "SMRT", "POB1", "FTOP", "FDEB", // decor of the published maps
+    "RSMK", // smoke of rockets
 ];
 
 /// The index of a sprite name; `const`, so that the state tables resolve their names while compiling.

@@ -8,7 +8,9 @@ use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::render::{FrameSize, RenderOptions, Renderer, Scene, View};
 use hasard_engine::wad::Wad;
 use hasard_engine::world::{ActorId, ActorKind, Weapon, World};
+use hasard_envs::maps::pictures_beside;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 /// What scripts paint floors with.
@@ -46,7 +48,9 @@ impl Stage {
         source.things.retain(|thing| thing.kind == 1);
         source.things.truncate(1);
         let map = Arc::new(Map::build(&source, &level.scenario, &SCRIPTED_TEXTURES)?);
-        let assets = Arc::new(Assets::from_wads(&iwad, &[&pwad], &|name| map.textures.contains(&name))?);
+        let engine = pictures_beside(Path::new(&level.iwad))?;
+        let additions: Vec<&[u8]> = engine.as_deref().into_iter().chain([&pwad[..]]).collect();
+        let assets = Arc::new(Assets::from_wads(&iwad, &additions, &|name| map.textures.contains(&name))?);
         let scene = Arc::new(Scene::new(&map, assets));
         let size = FrameSize { width: level.width, height: level.height };
         let mut renderer = Renderer::new(scene, Arc::new(View::new(size)?));
