@@ -37,6 +37,7 @@ fn assets(path: &Path) -> Result<Arc<Assets>, Failure> {
     let bytes = hasard_media::files::read_limited(path, LARGEST_IWAD).map_err(Failure::bad)?;
     let engine = pictures_beside(path).map_err(Failure::bad)?;
     let additions: Vec<&[u8]> = engine.as_deref().into_iter().collect();
-    let assets = Assets::from_wads(&bytes, &additions, &|_| true).map_err(|error| Failure::bad(format!("{}: {error}", path.display())))?;
+    let assets =
+        Assets::from_wads(&bytes, &additions, &|_| true).map_err(|error| Failure::bad(format!("{}: {error}", path.display())))?;
     Ok(Arc::new(assets))
 }

@@ -81,6 +81,7 @@ def open_game(args, folder, level, groups):
     game.set_screen_format(vizdoom.ScreenFormat.RGB24)
     game.set_window_visible(False)
     game.set_sectors_info_enabled(True)
+    game.set_objects_info_enabled(True)
     game.set_labels_buffer_enabled(True)
     game.set_depth_buffer_enabled(True)
     game.set_seed(args.seed)
@@ -88,7 +89,14 @@ def open_game(args, folder, level, groups):
     return game
 
 
-def told(number, state):
+def note_bursts(bursts, state):
+    """Remembers where rockets have burst: they stand still then."""
+    for thing in state.objects:
+        if thing.name == "Rocket" and thing.velocity_x == thing.velocity_y == 0:
+            bursts[thing.id] = [thing.position_x, thing.position_y, thing.position_z]
+
+
+def told(number, state, bursts):
     """What the engine tells of a moment."""
     return {
         "number": number,
@@ -96,6 +104,7 @@ def told(number, state):
         "variables": dict(zip(VARIABLES, map(float, state.game_variables))),
         "floors": [float(sector.floor_height) for sector in state.sectors],
         "ceilings": [float(sector.ceiling_height) for sector in state.sectors],
+        "bursts": list(bursts.values()),
         "labels": [
             {
                 "name": label.object_name, "value": int(label.value), "angle": label.object_angle,
@@ -111,14 +120,17 @@ def dump(args, scenario, level, out, trained=None):
     folder = os.path.join(packages, "hasard", "envs", scenario)
     game = open_game(args, folder, level, trained and trained.groups)
     buttons = [str(button).split(".")[-1] for button in game.get_available_buttons()]
-    player, scenes, step = trained or Random(args.seed, buttons), [], 0
+    player, scenes, bursts, step = trained or Random(args.seed, buttons), [], {}, 0
     os.makedirs(out, exist_ok=True)
     player.begin()
     while len(scenes) < args.moments:
         game.make_action(player.act(game.get_state().screen_buffer), FRAME_SKIP)
         step += 1
+        if not game.is_episode_finished():
+            note_bursts(bursts, game.get_state())
         if game.is_episode_finished() or step % EPISODE == 0:
             game.new_episode()
+            bursts.clear()
             player.begin()
             game.make_action([0.0] * len(buttons), FRAME_SKIP)
         elif step % STRIDE == 0:
@@ -126,7 +138,7 @@ def dump(args, scenario, level, out, trained=None):
             pictures = {"rgb": state.screen_buffer[:, :, ::-1], "depth": state.depth_buffer, "labels": state.labels_buffer}
             for name, picture in pictures.items():
                 cv2.imwrite(os.path.join(out, f"{len(scenes):02}_{name}.png"), picture)
-            scenes.append(told(len(scenes), state))
+            scenes.append(told(len(scenes), state, bursts))
     game.close()
     width, height = map(int, args.size.split("X"))
     head = {

@@ -1,7 +1,7 @@
 //! Missiles: how players throw them, what stops them, and how they burst.
 
 use super::collision::Move;
-use super::{ActorFlags, ActorKind, DamageKind, Phase, World};
+use super::{Actor, ActorFlags, ActorKind, DamageKind, Phase, World};
 use crate::math::{Angle, Fixed};
 
 /// Height of the muzzle for missiles above half the body's height: 4 lower than for bullets.
@@ -56,7 +56,14 @@ impl World {
                 self.remove(self.id_of(slot));
                 return;
             }
-            None => {}
+            None => {
+                if let Some(line) = attempt.position.blocking_line {
+                    let Actor { kind, x, y, z, .. } = self.actors[slot];
+                    if kind == ActorKind::Rocket {
+                        self.leave_soot(line, x, y, z);
+                    }
+                }
+            }
         }
         self.burst(slot);
     }

@@ -3,7 +3,7 @@
 use crate::Any;
 use crate::dump::{Level, Moment};
 use hasard_engine::assets::Assets;
-use hasard_engine::map::{Map, SectorId, udmf};
+use hasard_engine::map::{Line, Map, SectorId, udmf};
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::render::{FrameSize, RenderOptions, Renderer, Scene, View};
 use hasard_engine::wad::Wad;
@@ -73,6 +73,7 @@ impl Stage {
         let mut world = self.world.clone();
         self.set_sectors(&mut world, level, moment);
         set_player(&mut world, moment);
+        moment.bursts.iter().for_each(|&burst| leave_soot(&mut world, burst.map(fixed)));
         let actors = moment.labels.iter().filter_map(|thing| {
             let name = thing.name.strip_prefix("Dead").unwrap_or(&thing.name);
             let &kind = self.kinds.get(name).filter(|&&kind| kind != ActorKind::Player)?;
@@ -113,6 +114,22 @@ impl Stage {
             };
             sector.floor_texture = painted.unwrap_or(sector.floor_texture);
         }
+    }
+}
+
+/// A rocket no farther than this from a wall burst at it, map units.
+const AT_WALL: f64 = 32.0;
+
+/// Leaves soot on the wall next to a place, if one is near.
+fn leave_soot(world: &mut World, [x, y, z]: [Fixed; 3]) {
+    let away = |line: &Line| {
+        let [x, y, x1, y1, dx, dy] = [x, y, line.v1.x, line.v1.y, line.dx, line.dy].map(Fixed::to_f64);
+        let part = (((x - x1) * dx + (y - y1) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+        (x - x1 - part * dx).hypot(y - y1 - part * dy)
+    };
+    let near = (0..).zip(&world.map.lines).map(|(index, line)| (away(line), index)).filter(|&(away, _)| away < AT_WALL);
+    if let Some((_, line)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        world.leave_soot(line, x, y, z);
     }
 }
 

@@ -10,11 +10,11 @@ use std::path::Path;
 /// Its name; in the Python package `vizdoom` it lies beside the IWADs.
 const FILE: &str = "vizdoom.pk3";
 
-/// The folders of it that pictures lie in, with the markers that stand around such lumps in a WAD.
-const SPRITES: (&str, [&str; 2]) = ("sprites/", ["S_START", "S_END"]);
-
 /// What is taken from it: the smoke of rockets and the pistol to pick up, by the beginnings of their names.
-const WANTED: [&str; 2] = ["RSMK", "PIST"];
+const SPRITES: [&str; 2] = ["sprites/rsmk", "sprites/pist"];
+
+/// And the soot that rockets leave on walls.
+const SOOT: &str = "graphics/scorch1.";
 
 /// Most files that it may hold, and most bytes of one that is taken.
 const FILE_LIMIT: usize = 1 << 16;
@@ -29,7 +29,9 @@ pub fn pictures_beside(iwad: &Path) -> Result<Option<Vec<u8>>, EnvError> {
     if !path.is_file() {
         return Ok(None);
     }
-    pictures(&read(&path)?).map(Some).map_err(|why| EnvError::Map { why: format!("{}: {why}; install vizdoom again", shown(&path)) })
+    pictures(&read(&path)?)
+        .map(Some)
+        .map_err(|why| EnvError::Map { why: format!("{}: {why}; install vizdoom again", shown(&path)) })
 }
 
 /// A WAD of the wanted pictures.
@@ -41,25 +43,37 @@ fn pictures(bytes: &[u8]) -> Result<Vec<u8>, String> {
     }
     let mut found = Vec::new();
     for index in 0..archive.len() {
-        let Some(name) = archive.name_for_index(index).and_then(|path| wanted(&path.ok()?)) else { continue };
+        let Some((name, soot)) = archive.name_for_index(index).and_then(|path| wanted(&path.ok()?)) else { continue };
         let file = archive.by_index(index).map_err(|error| broken(&error))?;
-        let mut picture = Vec::new();
-        file.take(PICTURE_LIMIT + 1).read_to_end(&mut picture).map_err(|error| broken(&error))?;
-        if picture.len() as u64 > PICTURE_LIMIT {
+        let mut bytes = Vec::new();
+        file.take(PICTURE_LIMIT + 1).read_to_end(&mut bytes).map_err(|error| broken(&error))?;
+        if bytes.len() as u64 > PICTURE_LIMIT {
             return Err(format!("{name:?} is too large for a picture"));
         }
-        found.push((name, picture));
+        found.push(Picture { name, soot, bytes });
     }
-    let [start, end] = SPRITES.1.map(|name| Lump { name: TextureName::new(name), bytes: &[] });
-    let lumps = found.iter().map(|(name, bytes)| Lump { name: *name, bytes });
-    Ok(write(WadKind::Pwad, &std::iter::once(start).chain(lumps).chain([end]).collect::<Vec<_>>()))
+    let marker = |name| [Lump { name: TextureName::new(name), bytes: &[] }];
+    let lumps =
+        |soot: bool| found.iter().filter(move |file| file.soot == soot).map(|file| Lump { name: file.name, bytes: &file.bytes });
+    let all = marker("S_START").into_iter().chain(lumps(false)).chain(marker("S_END")).chain(lumps(true));
+    Ok(write(WadKind::Pwad, &all.collect::<Vec<_>>()))
 }
 
-/// The lump's name of a file in the archive that is wanted.
-fn wanted(path: &str) -> Option<TextureName> {
-    let (stem, _) = path.strip_prefix(SPRITES.0)?.split_once('.')?;
-    let stem = stem.to_ascii_uppercase();
-    (stem.len() <= 8 && WANTED.iter().any(|name| stem.starts_with(name))).then(|| TextureName::new(&stem))
+/// A file that is taken.
+struct Picture {
+    name: TextureName,
+    /// Soot, not a sprite.
+    soot: bool,
+    bytes: Vec<u8>,
+}
+
+/// The lump's name of a file in the archive that is wanted, and whether it is soot.
+fn wanted(path: &str) -> Option<(TextureName, bool)> {
+    let path = path.to_ascii_lowercase();
+    let soot = path.starts_with(SOOT);
+    let (stem, _) = path.rsplit('/').next()?.split_once('.')?;
+    let taken = soot || SPRITES.iter().any(|sprite| path.starts_with(sprite));
+    (taken && stem.len() <= 8).then(|| (TextureName::new(&stem.to_ascii_uppercase()), soot))
 }
 
 #[cfg(test)]
@@ -79,10 +93,11 @@ mod tests {
 
     #[test]
     fn wanted_pictures_become_sprites_of_a_wad() {
-        let bytes = archive(&[("sprites/rsmka0.png", b"smoke"), ("sprites/dogs/dogsa1.png", b"dog"), ("graphics/rsmk.png", b"other")]);
+        let files = [("graphics/scorch1.png", b"soot1"), ("sprites/rsmka0.png", b"smoke"), ("graphics/rsmk.png", b"other")];
+        let bytes = archive(&files.map(|(name, bytes)| (name, &bytes[..])));
         let wad = pictures(&bytes).unwrap();
         let names: Vec<String> = Wad::read(&wad).unwrap().lumps.iter().map(|lump| lump.name.as_str().to_owned()).collect();
-        assert_eq!(names, ["S_START", "RSMKA0", "S_END"]);
+        assert_eq!(names, ["S_START", "RSMKA0", "S_END", "SCORCH1"]);
         assert_eq!(Wad::read(&wad).unwrap().find("RSMKA0"), Some(&b"smoke"[..]));
     }
 
