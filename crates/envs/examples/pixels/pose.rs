@@ -122,12 +122,14 @@ const AT_WALL: f64 = 32.0;
 
 /// Leaves soot on the wall next to a place, if one is near.
 fn leave_soot(world: &mut World, [x, y, z]: [Fixed; 3]) {
-    let away = |line: &Line| {
+    let square_away = |line: &Line| {
         let [x, y, x1, y1, dx, dy] = [x, y, line.v1.x, line.v1.y, line.dx, line.dy].map(Fixed::to_f64);
         let part = (((x - x1) * dx + (y - y1) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
-        (x - x1 - part * dx).hypot(y - y1 - part * dy)
+        let [east, north] = [x - x1 - part * dx, y - y1 - part * dy];
+        east * east + north * north
     };
-    let near = (0..).zip(&world.map.lines).map(|(index, line)| (away(line), index)).filter(|&(away, _)| away < AT_WALL);
+    let near =
+        (0..).zip(&world.map.lines).map(|(index, line)| (square_away(line), index)).filter(|&(away, _)| away < AT_WALL * AT_WALL);
     if let Some((_, line)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) {
         world.leave_soot(line, x, y, z);
     }
