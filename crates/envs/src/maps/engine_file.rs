@@ -10,8 +10,8 @@ use std::path::Path;
 /// Its name; in the Python package `vizdoom` it lies beside the IWADs.
 const FILE: &str = "vizdoom.pk3";
 
-/// What is taken from it: the smoke of rockets and the pistol to pick up, by the beginnings of their names.
-const SPRITES: [&str; 2] = ["sprites/rsmk", "sprites/pist"];
+/// What is taken from it: the smoke of rockets. It has other sprites too, before which those of an IWAD count.
+const SPRITE: &str = "sprites/rsmk";
 
 /// And the soot that rockets leave on walls.
 const SOOT: &str = "graphics/scorch1.";
@@ -72,7 +72,7 @@ fn wanted(path: &str) -> Option<(TextureName, bool)> {
     let path = path.to_ascii_lowercase();
     let soot = path.starts_with(SOOT);
     let (stem, _) = path.rsplit('/').next()?.split_once('.')?;
-    let taken = soot || SPRITES.iter().any(|sprite| path.starts_with(sprite));
+    let taken = soot || path.starts_with(SPRITE);
     (taken && stem.len() <= 8).then(|| (TextureName::new(&stem.to_ascii_uppercase()), soot))
 }
 
