@@ -1,8 +1,8 @@
 """How fast the package is beside the program's own loop, in turn, medians of rounds: `python python/compat/speeds.py [ROUNDS] [PART...]`.
 
 PART: `batch` (VectorEnv of 32 worlds beside `hasard bench`, one and two threads), `single` (make(id) beside `hasard bench --envs 1`), `thread` (what a
-second Python thread keeps while worlds step), `import`, `library` (Stable-Baselines3's and TorchRL's own loops, beside the published engine where the
-package vizdoom is there, with the maps of the package hasard, wherever HASARD_PUBLISHED says that it lies). Wants a machine that does nothing else.
+second Python thread keeps while worlds step), `import`, and `sb3`, `torchrl`, `rllib`: those libraries' own loops with random actions, beside the same
+loop of the published engine (packages vizdoom and hasard, the latter wherever HASARD_PUBLISHED says that it lies). Wants a machine that does nothing else.
 """
 
 import json
@@ -15,7 +15,7 @@ import threading
 import time
 
 IDS = ("VolcanicVentureLevel1-v0", "RemedyRushLevel1-v0")
-SECONDS = 1.0
+SECONDS = 0.5
 
 
 def rust(env_id, envs, threads):
@@ -132,7 +132,7 @@ def published(level=1):
         def __init__(self):
             self.game, self.picked = open_game(maps, "VolcanicVenture", level)
             self.observation_space = gymnasium.spaces.Box(0, 255, (72, 128, 3), np.uint8)
-            self.action_space = gymnasium.spaces.MultiBinary(len(self.game.get_available_buttons()))
+            self.action_space = gymnasium.spaces.MultiDiscrete([2] * len(self.game.get_available_buttons()))
 
         def seen(self):
             state = self.game.get_state()
@@ -150,7 +150,7 @@ def published(level=1):
     return Published()
 
 
-def library(rounds):
+def sb3(rounds):
     import numpy as np
     from stable_baselines3.common.vec_env import DummyVecEnv
 
@@ -165,6 +165,8 @@ def library(rounds):
     ours, theirs = looped(make_vec_env(f"hasard/{IDS[0]}", 8, resolution="128x72")), looped(DummyVecEnv([published] * 8))
     told("Stable-Baselines3's VecEnv.step, 8 worlds, beside DummyVecEnv of the published engine", [(ours(), theirs()) for _ in range(rounds)])
 
+
+def torchrl(rounds):
     from torchrl.collectors import Collector
     from torchrl.envs import GymWrapper, SerialEnv
 
@@ -180,7 +182,28 @@ def library(rounds):
     told("TorchRL's Collector with random actions, 8 worlds, beside SerialEnv of the published engine", [(ours(), theirs()) for _ in range(rounds)])
 
 
-PARTS = {"batch": batch, "single": single, "thread": thread, "import": imported, "library": library}
+def rllib(rounds):
+    from ray.rllib.algorithms.ppo import PPOConfig
+    from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
+    from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner
+    from ray.tune.registry import register_env
+
+    register_env("published", lambda _: published())
+
+    def sampled(env, how, **arguments):
+        # It is built and not asked: actions are random.
+        network = DefaultModelConfig(conv_filters=[[16, 8, 4], [32, 4, 2]])
+        config = PPOConfig().environment(env, env_config=arguments).rl_module(model_config=network)
+        runner = SingleAgentEnvRunner(config=config.env_runners(num_envs_per_env_runner=8, gym_env_vectorize_mode=how))
+        sample = lambda: runner.sample(num_timesteps=800, random_actions=True)  # noqa: E731
+        sample()
+        return lambda: rate(sample, 800)
+
+    ours, theirs = sampled(f"hasard_rs:hasard/{IDS[0]}", "vector_entry_point", resolution="128x72"), sampled("published", "sync")
+    told("RLlib's SingleAgentEnvRunner with random actions, 8 worlds, beside the published engine's in SyncVectorEnv", [(ours(), theirs()) for _ in range(rounds)])
+
+
+PARTS = {"batch": batch, "single": single, "thread": thread, "import": imported, "sb3": sb3, "torchrl": torchrl, "rllib": rllib}
 
 if __name__ == "__main__":
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5

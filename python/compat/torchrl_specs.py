@@ -13,10 +13,10 @@ for mode in ("Disabled", "SameStep"):
     for how in ("both", True, False):
         check_env_specs(GymWrapper(hasard_rs.make_vec(ENV, 4, autoreset_mode=mode, **SMALL)), break_when_any_done=how)
     print(f"check_env_specs of GymWrapper, {mode}, break_when_any_done both, True and False")
-for arguments in ({}, {"full_actions": True}, {"observation": "grey", "frame_stack": 4, "layout": "chw"}):
+for arguments in ({}, {"observation": "grey", "frame_stack": 4, "layout": "chw"}):
     for how in ("both", True, False):
         check_env_specs(HasardEnv(ENV, 4, **SMALL, **arguments), break_when_any_done=how)
-print("check_env_specs of HasardEnv: simplified and full actions, stacked grey frames")
+print("check_env_specs of HasardEnv: rgb, and stacked grey frames, channels first")
 frames = sum(batch.numel() for batch in Collector(GymWrapper(hasard_rs.make_vec(ENV, 4, autoreset_mode="Disabled", **SMALL)), None, frames_per_batch=200, total_frames=1000))
 assert frames == 1000
 print("Collector over GymWrapper:", frames, "frames")
