@@ -77,7 +77,10 @@ fn learn(args: &BenchArgs) -> Outcome {
     if !args.json {
         let (algorithm, epochs, worlds) = (config.algorithm, config.learning.epochs, config.sampling.lanes);
         let set: String = args.set.iter().map(|setting| format!(", {setting}")).collect();
-        say!("{algorithm} on {}, preset {preset}{set}, {epochs} epoch(s), {worlds} worlds: worlds, inference and learning", args.env);
+        say!(
+            "{algorithm} on {}, preset {preset}{set}, {epochs} epoch(s), {worlds} worlds: worlds, inference and learning",
+            args.env
+        );
     }
     for (threads, kernels) in threads.iter().flat_map(|threads| families.iter().map(move |kernels| (*threads, *kernels))) {
         (config.learning.threads, config.sampling.samplers) = (threads, threads);
