@@ -72,6 +72,8 @@ class Agent:
         return x @ self.weights[f"network0.{name}.weight"] + self.weights[f"network0.{name}.bias"]
 
     def forget(self):
+        if "network0.stage0.convolution.weight" in self.weights:
+            raise SystemExit("this example computes plain convolutions, and the run has a residual encoder: train with network.residual=[]")
         if "network0.lstm.hidden_weight" in self.weights:
             raise SystemExit("this example computes GRUs, and the run has an LSTM: train with network.cell=\"gru\"")
         hidden = self.weights.get("network0.gru.hidden_weight")
