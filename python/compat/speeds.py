@@ -1,10 +1,12 @@
 """How fast the package is beside the program's own loop, in turn, medians of rounds: `python python/compat/speeds.py [ROUNDS] [PART...]`.
 
-PART: `batch` (VectorEnv of 32 worlds beside `hasard bench`, one and two threads), `single` (make(id) beside `hasard bench --envs 1`), `thread` (what a
-second Python thread keeps while worlds step), `import`, `library` (Stable-Baselines3's and TorchRL's own loops, beside the published engine where the
-package vizdoom is there, with the maps of the package hasard, wherever HASARD_PUBLISHED says that it lies). Wants a machine that does nothing else.
+PART: `batch` (VectorEnv of 32 worlds beside `hasard bench`, one and two threads), `work` (the same by processor time on one thread, which programs beside
+disturb less), `single` (make(id) beside `hasard bench --envs 1`), `thread` (what a
+second Python thread keeps while worlds step), `import`, and `sb3`, `torchrl`, `rllib`: those libraries' own loops with random actions, beside the same
+loop of the published engine (packages vizdoom and hasard, the latter wherever HASARD_PUBLISHED says that it lies). Wants a machine that does nothing else.
 """
 
+import itertools
 import json
 import os
 import pathlib
@@ -15,12 +17,12 @@ import threading
 import time
 
 IDS = ("VolcanicVentureLevel1-v0", "RemedyRushLevel1-v0")
-SECONDS = 1.0
+SECONDS = 0.5
 
 
-def rust(env_id, envs, threads):
+def rust(env_id, envs, threads, seconds=SECONDS):
     """Policy steps a second of the program's loop."""
-    words = ["bench", env_id, "--size", "128x72", "--envs", str(envs), "--threads", str(threads), "--seconds", str(SECONDS), "--json"]
+    words = ["bench", env_id, "--size", "128x72", "--envs", str(envs), "--threads", str(threads), "--seconds", str(seconds), "--json"]
     done = subprocess.run([sys.executable, "-m", "hasard_rs.cli", *words], capture_output=True, text=True, check=True)
     return json.loads(done.stdout)["steps_per_second"]
 
@@ -32,6 +34,16 @@ def rate(step, lanes):
         step()
         steps += lanes
     return steps / (time.perf_counter() - start)
+
+
+def drawn(env_id, lanes):
+    """An endless row of random actions, drawn beforehand: the program's loop draws each anew, and a short row over and over walks somewhere else."""
+    import numpy as np
+
+    import hasard_rs
+
+    nvec = hasard_rs.spec(env_id).nvec
+    return itertools.cycle(np.random.default_rng(0).integers(0, nvec, (4096, *lanes, len(nvec))))
 
 
 def told(what, pairs):
@@ -47,15 +59,47 @@ def batch(rounds):
     for env_id in IDS:
         for threads in (1, 2):
             envs = hasard_rs.make_vec(f"hasard/{env_id}", 32, resolution="128x72", num_threads=threads - 1, autoreset_mode="SameStep")
-            envs.reset(seed=0)
-            actions = [envs.action_space.sample() for _ in range(256)]
-            turn = iter(range(1 << 62))
+            actions = drawn(env_id, (32,))
 
-            def step(envs=envs, actions=actions, turn=turn):
-                envs.step(actions[next(turn) % 256])
+            def step(envs=envs, actions=actions):
+                envs.step(next(actions))
 
-            told(f"{env_id}, 32 worlds, {threads} thread(s)", [(rate(step, 32), rust(env_id, 32, threads)) for _ in range(rounds)])
+            def ours(envs=envs, step=step):
+                # As the program's loop: the beginning of an episode does not cost what its end does.
+                envs.reset(seed=0)
+                return rate(step, 32)
+
+            told(f"{env_id}, 32 worlds, {threads} thread(s)", [(ours(), rust(env_id, 32, threads)) for _ in range(rounds)])
             envs.close()
+
+
+def work(rounds):
+    import hasard_rs
+
+    def program(env_id, seconds):
+        """Steps of a run, and seconds of the processor for them and its start."""
+        before = os.times()
+        steps = rust(env_id, 32, 1, seconds) * seconds
+        after = os.times()
+        return steps, after.children_user + after.children_system - before.children_user - before.children_system
+
+    def theirs(env_id):
+        # A long run less a short one is without their starts.
+        (many, long), (few, short) = program(env_id, 4 * SECONDS), program(env_id, SECONDS)
+        return (many - few) / (long - short)
+
+    for env_id in IDS:
+        envs = hasard_rs.make_vec(f"hasard/{env_id}", 32, resolution="128x72", num_threads=0, autoreset_mode="SameStep")
+        actions = drawn(env_id, (32,))
+
+        def ours(envs=envs, actions=actions):
+            envs.reset(seed=0)
+            start = time.process_time()
+            for _ in range(2048):
+                envs.step(next(actions))
+            return 2048 * 32 / (time.process_time() - start)
+
+        told(f"{env_id}, 32 worlds, steps per second of the processor", [(ours(), theirs(env_id)) for _ in range(rounds)])
 
 
 def single(rounds):
@@ -66,11 +110,10 @@ def single(rounds):
     for env_id in IDS:
         env = gymnasium.make(f"hasard/{env_id}", resolution="128x72")
         env.reset(seed=0)
-        actions = [env.action_space.sample() for _ in range(256)]
-        turn = iter(range(1 << 62))
+        actions = drawn(env_id, ())
 
-        def step(env=env, actions=actions, turn=turn):
-            _, _, terminated, truncated, _ = env.step(actions[next(turn) % 256])
+        def step(env=env, actions=actions):
+            _, _, terminated, truncated, _ = env.step(next(actions))
             if terminated or truncated:
                 env.reset()
 
@@ -84,7 +127,14 @@ def thread(rounds):
     envs.reset(seed=0)
     actions = envs.action_space.sample()
 
-    def counted(beside):
+    def counted():
+        count, start = 0, time.perf_counter()
+        while time.perf_counter() - start < SECONDS:
+            for _ in range(1000):
+                count += 1
+        return count / (time.perf_counter() - start)
+
+    def beside_worlds():
         over = threading.Event()
 
         def work():
@@ -92,19 +142,22 @@ def thread(rounds):
                 envs.step(actions)
 
         worker = threading.Thread(target=work)
-        if beside:
-            worker.start()
-        count, start = 0, time.perf_counter()
-        while time.perf_counter() - start < SECONDS:
-            for _ in range(1000):
-                count += 1
-        found = count / (time.perf_counter() - start)
+        worker.start()
+        found = counted()
         over.set()
-        if beside:
-            worker.join()
+        worker.join()
         return found
 
-    told("a second Python thread's count, while 32 worlds step and alone", [(counted(True), counted(False)) for _ in range(rounds)])
+    def beside_a_process():
+        looping = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+        found = counted()
+        looping.kill()
+        looping.wait()
+        return found
+
+    told("a second Python thread's count, while 32 worlds step and alone", [(beside_worlds(), counted()) for _ in range(rounds)])
+    # What a second core is worth at all on this machine just now.
+    told("the same beside a process that only loops, and alone", [(beside_a_process(), counted()) for _ in range(rounds)])
 
 
 def imported(rounds):
@@ -132,7 +185,7 @@ def published(level=1):
         def __init__(self):
             self.game, self.picked = open_game(maps, "VolcanicVenture", level)
             self.observation_space = gymnasium.spaces.Box(0, 255, (72, 128, 3), np.uint8)
-            self.action_space = gymnasium.spaces.MultiBinary(len(self.game.get_available_buttons()))
+            self.action_space = gymnasium.spaces.MultiDiscrete([2] * len(self.game.get_available_buttons()))
 
         def seen(self):
             state = self.game.get_state()
@@ -150,7 +203,7 @@ def published(level=1):
     return Published()
 
 
-def library(rounds):
+def sb3(rounds):
     import numpy as np
     from stable_baselines3.common.vec_env import DummyVecEnv
 
@@ -165,6 +218,8 @@ def library(rounds):
     ours, theirs = looped(make_vec_env(f"hasard/{IDS[0]}", 8, resolution="128x72")), looped(DummyVecEnv([published] * 8))
     told("Stable-Baselines3's VecEnv.step, 8 worlds, beside DummyVecEnv of the published engine", [(ours(), theirs()) for _ in range(rounds)])
 
+
+def torchrl(rounds):
     from torchrl.collectors import Collector
     from torchrl.envs import GymWrapper, SerialEnv
 
@@ -180,7 +235,28 @@ def library(rounds):
     told("TorchRL's Collector with random actions, 8 worlds, beside SerialEnv of the published engine", [(ours(), theirs()) for _ in range(rounds)])
 
 
-PARTS = {"batch": batch, "single": single, "thread": thread, "import": imported, "library": library}
+def rllib(rounds):
+    from ray.rllib.algorithms.ppo import PPOConfig
+    from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
+    from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner
+    from ray.tune.registry import register_env
+
+    register_env("published", lambda _: published())
+
+    def sampled(env, how, **arguments):
+        # It is built and not asked: actions are random.
+        network = DefaultModelConfig(conv_filters=[[16, 8, 4], [32, 4, 2]])
+        config = PPOConfig().environment(env, env_config=arguments).rl_module(model_config=network)
+        runner = SingleAgentEnvRunner(config=config.env_runners(num_envs_per_env_runner=8, gym_env_vectorize_mode=how))
+        sample = lambda: runner.sample(num_timesteps=800, random_actions=True)  # noqa: E731
+        sample()
+        return lambda: rate(sample, 800)
+
+    ours, theirs = sampled(f"hasard_rs:hasard/{IDS[0]}", "vector_entry_point", resolution="128x72"), sampled("published", "sync")
+    told("RLlib's SingleAgentEnvRunner with random actions, 8 worlds, beside the published engine's in SyncVectorEnv", [(ours(), theirs()) for _ in range(rounds)])
+
+
+PARTS = {"batch": batch, "work": work, "single": single, "thread": thread, "import": imported, "sb3": sb3, "torchrl": torchrl, "rllib": rllib}
 
 if __name__ == "__main__":
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5

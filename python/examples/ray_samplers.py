@@ -1,4 +1,4 @@
-"""Samplers on a Ray cluster: two nodes on this machine, one of them killed in the middle; rollouts go on coming."""
+"""Samplers on a Ray cluster: two nodes on this machine, one of them killed in the middle; rollouts of both go on coming."""
 
 import ray
 from ray.cluster_utils import Cluster
@@ -11,12 +11,15 @@ from hasard_rs.ray import rollouts, samplers  # noqa: E402
 
 actors = samplers("hasard/RemedyRushLevel1-v0", 2, lanes=8, seed=1, num_cpus=0.5, resolution="64x48")
 seen = {0: 0, 1: 0}
+before = None
 for index, rollout in rollouts(actors, 32):
     seen[index] += 1
-    if sum(seen.values()) == 10:
+    if before is None and min(seen.values()) >= 3:
         cluster.remove_node(far)
-        print("a node is gone after", dict(seen))
-    if sum(seen.values()) >= 30:
+        before = dict(seen)
+        print("a node is gone after", before, flush=True)
+    # The sampler that was there begins anew on the other.
+    if before is not None and all(seen[one] >= before[one] + 3 for one in seen):
         break
 print("rollouts of each sampler", seen, "shape", rollout["observations"].shape)
 ray.shutdown()

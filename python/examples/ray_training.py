@@ -33,11 +33,12 @@ SETTINGS = {"frames": updates * PER_ROLLOUT, "envs": LANES, "threads": 1, "size"
 
 
 def run(name, workers=None, at_report=None):
-    """A run's reports, its last weights, and how long it took."""
-    reports = []
+    """A run's reports, its last weights, and frames a second: with its start, and from the first report to the last."""
+    reports, times = [], []
 
     def hear(report):
         reports.append(report)
+        times.append(time.perf_counter())
         if at_report is not None:
             at_report(len(reports))
 
@@ -45,7 +46,8 @@ def run(name, workers=None, at_report=None):
     how = {} if workers is None else {"workers": workers}
     ended = (hasard_rs.train if workers is None else train)(ENV, "PPOLag", out=FOLDER / name, callback=hear, **how, **SETTINGS)
     newest = max((ended.directory / "checkpoints").glob("frames_*"))
-    return reports, (newest / "weights.safetensors").read_bytes(), time.perf_counter() - began
+    rates = len(reports) * PER_ROLLOUT / (time.perf_counter() - began), (len(reports) - 1) * PER_ROLLOUT / (times[-1] - times[0])
+    return reports, (newest / "weights.safetensors").read_bytes(), rates
 
 
 def workers_here():
@@ -70,12 +72,13 @@ def kill_node(heard):
         cluster.remove_node(far)
 
 
-alone, _, seconds = run("alone")
-print(f"| 1 process | {updates * PER_ROLLOUT / seconds:,.0f} frames/s |")
+print("| | frames/s with its start | after it |")
+alone, _, rates = run("alone")
+print(f"| one process | {rates[0]:,.0f} | {rates[1]:,.0f} |")
 all_weights = {}
 for workers in (1, 2, 4):
-    reports, all_weights[workers], seconds = run(f"{workers}", workers)
-    print(f"| {workers} Ray workers | {updates * PER_ROLLOUT / seconds:,.0f} frames/s with their start |")
+    reports, all_weights[workers], rates = run(f"{workers}", workers)
+    print(f"| {workers} Ray workers | {rates[0]:,.0f} | {rates[1]:,.0f} |")
     assert len(reports) == len(alone) == updates
     names = [name for name in alone[0] if "loss" in name or name in ("return_mean", "cost_mean", "multiplier", "entropy", "gradient_norm")]
     apart = max(abs(a[name] - b[name]) for (a, b), name in itertools.product(zip(alone, reports), names) if None not in (a[name], b[name]))

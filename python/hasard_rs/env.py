@@ -61,7 +61,6 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         self._worlds = Worlds(given.env_id, 1, num_threads=0, autoreset_mode="Disabled", statistics=given.env_stats, **given.world)
         self._format = action_format(given.action_format, self._worlds.nvec, self._worlds.num_deltas, given.delta_bins)
         self._infos = Infos(self._worlds, given.env_id.split("Level")[0], given.infos, given.env_stats)
-        self._started = False
         self.action_space = self._format.space
         self.observation_space = spaces.Box(0, 255, self._worlds.observation_shape, np.uint8)
         self.render_mode = given.render_mode
@@ -89,11 +88,10 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         """
         if seed is not None:
             seed = _arguments.check_seed(seed)
-        elif not self._started:
+        elif not self._worlds.started:
             seed = self._given.seed if self._given.seed is not None else secrets.randbits(64)
         super().reset(seed=seed)
         batch = self._worlds.reset(seed)
-        self._started = True
         self._infos.begin(0)
         return batch.observations[0], row(self._infos.step(batch), 0)
 
@@ -105,8 +103,8 @@ class Env(gymnasium.Env[np.ndarray, Any]):
 
         Returns:
             (observation, reward: float, terminated: bool, truncated: bool, info). `info["cost"]` (float64) is the cost of this step; the step that
-            ends an episode has `info["episode_summary"]`, floats: return, cost, length (steps), seed, terminated, truncated, cost_<term>,
-            and the scenario's statistics.
+            ends an episode has `info["episode_summary"]`: floats return, cost, length (steps), terminated, truncated, cost_<term> and the
+            scenario's statistics, and the uint64 seed.
 
         Raises:
             InvalidAction, which names part, value and range; TypeError or ValueError for the wrong dtype or shape; ResetNeeded before the first
@@ -164,7 +162,7 @@ class Env(gymnasium.Env[np.ndarray, Any]):
 
     def save(self) -> bytes:
         """Returns where the environment is, to come back to by `load`; bytes of this version of the package."""
-        return self._worlds.save()
+        return self._infos.save()
 
     def load(self, state: bytes) -> np.ndarray:
         """Comes back to a saved moment, by repeating its episode.
@@ -178,9 +176,7 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         Raises:
             InvalidOption for bytes that are spoiled, or of another environment; nothing has changed then.
         """
-        batch = self._worlds.load(state)
-        self._started = True
-        return batch.observations[0]
+        return self._infos.load(state).observations[0]
 
     @property
     def game(self) -> Any:
@@ -192,13 +188,12 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         self._worlds.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        kept = {name: self.__dict__[name] for name in ("_np_random", "_np_random_seed", "_started", "render_mode", "spec") if name in self.__dict__}
+        kept = {name: self.__dict__[name] for name in ("_np_random", "_np_random_seed", "render_mode", "spec") if name in self.__dict__}
         spaces = copy.deepcopy((self.action_space, self.observation_space))
-        return {"arguments": self._arguments, "worlds": self._worlds.save(), "kept": kept, "cost": self._infos.cost, "spaces": spaces}
+        return {"arguments": self._arguments, "saved": self.save(), "kept": kept, "spaces": spaces}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["arguments"])  # type: ignore[misc]
-        self._worlds.load(state["worlds"])
+        self.load(state["saved"])
         self.__dict__.update(state["kept"])
-        self._infos.cost[:] = state["cost"]
         self.action_space, self.observation_space = state["spaces"]

@@ -48,6 +48,19 @@ class Infos:
             columns["env_stats"] = self._stats(self.cost[batch.lanes], batch.statistics)
         return columns
 
+    def save(self) -> bytes:
+        """Returns where the worlds are, and what their running episodes have cost so far."""
+        return self.worlds.save() + self.cost.astype("<f8").tobytes()
+
+    def load(self, state: Any) -> Any:
+        """Brings the worlds and their costs to where `state` was saved. Returns the batch; raises InvalidOption, TypeError for what is no bytes."""
+        if not isinstance(state, bytes):
+            raise TypeError(f"a saved moment must be bytes, got {type(state).__name__}")
+        end = max(0, len(state) - self.cost.nbytes)
+        batch = self.worlds.load(state[:end])
+        self.cost[:] = np.frombuffer(state, "<f8", offset=end)
+        return batch
+
     def begin(self, lanes: Any) -> None:
         """Episodes begin in these lanes."""
         self.cost[lanes] = 0.0
@@ -77,8 +90,10 @@ def row(columns: dict[str, Any], index: int) -> dict[str, Any]:
     }
 
 
-def summary(episode: dict[str, Any]) -> dict[str, float]:
-    """Returns what is known of an episode that ended, all floats."""
-    told = {name: float(episode[name]) for name in ("return", "cost", "length", "seed", "terminated", "truncated")}
+def summary(episode: dict[str, Any]) -> dict[str, Any]:
+    """Returns what is known of an episode that ended: its seed as uint64, like `episode_seed`, since no float holds every seed; the rest floats."""
+    told: dict[str, Any] = {name: float(episode[name]) for name in ("return", "cost", "length")}
+    told["seed"] = np.uint64(episode["seed"])
+    told |= {name: float(episode[name]) for name in ("terminated", "truncated")}
     told |= {f"cost_{name}": float(value) for name, value in episode["costs"].items()}
     return told | {name: float(value) for name, value in episode["statistics"].items()}

@@ -39,7 +39,7 @@ def read_weights(path: Path) -> dict[str, np.ndarray]:
 
 
 class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
-    """Convolutions, dense layers, a GRU or LSTM if there is one, and linear heads, on one 8-bit image.
+    """Convolutions or a residual encoder, dense layers, a GRU or LSTM if there is one, and linear heads, on one 8-bit image.
 
     Args:
         weights: arrays by name, of this network.
@@ -53,12 +53,19 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
         def tensor(name: str) -> Any:
             return torch.from_numpy(np.ascontiguousarray(weights[name]))
 
-        self.convolutions = torch.nn.ModuleList()
-        for index, told in enumerate(settings["convolutions"]):
-            weight = tensor(f"convolution{index}.weight").permute(3, 2, 0, 1).contiguous()
-            layer = torch.nn.Conv2d(weight.shape[1], weight.shape[0], told["kernel"], told["stride"])
-            layer.weight.data, layer.bias.data = weight, tensor(f"convolution{index}.bias")
-            self.convolutions.append(layer)
+        def convolution(name: str, stride: int, padding: int) -> Any:
+            weight = tensor(f"{name}.weight").permute(3, 2, 0, 1).contiguous()
+            layer = torch.nn.Conv2d(weight.shape[1], weight.shape[0], weight.shape[2], stride, padding)
+            layer.weight.data, layer.bias.data = weight, tensor(f"{name}.bias")
+            return layer
+
+        self.convolutions, self.stages = torch.nn.ModuleList(), torch.nn.ModuleList()
+        stages = settings.get("residual", [])
+        for index, told in enumerate([] if stages else settings["convolutions"]):
+            self.convolutions.append(convolution(f"convolution{index}", told["stride"], 0))
+        for stage in range(len(stages)):
+            names = ["convolution", *(f"block{block}.convolution{index}" for block in range(2) for index in range(2))]
+            self.stages.append(torch.nn.ModuleList(convolution(f"stage{stage}.{name}", 1, 1) for name in names))
         self.dense = torch.nn.ModuleList(self._linear(tensor, f"dense{i}") for i in range(sum(name.startswith("dense") for name in layers)))
         self.cell = None
         for kind, module in {"gru": torch.nn.GRUCell, "lstm": torch.nn.LSTMCell}.items():
@@ -90,6 +97,11 @@ class Network(torch.nn.Module):  # type: ignore[name-defined,misc]
         values = images
         for layer in self.convolutions:
             values = torch.nn.functional.elu(layer(values))
+        for first, *blocks in self.stages:
+            values = torch.nn.functional.max_pool2d(first(values), 3, 2, 1)
+            for one, two in zip(blocks[::2], blocks[1::2], strict=True):
+                values = values + two(torch.relu(one(torch.relu(values))))
+        values = torch.relu(values) if self.stages else values
         # Features are stored row by row, channels last.
         values = values.permute(0, 2, 3, 1).reshape(len(values), -1)
         for layer in self.dense:

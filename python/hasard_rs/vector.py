@@ -84,7 +84,6 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         self._arguments["autoreset_mode"] = self.autoreset_mode.value
         self._format = action_format(given.action_format, self._worlds.nvec, self._worlds.num_deltas, given.delta_bins)
         self._infos = Infos(self._worlds, given.env_id.split("Level")[0], given.infos, given.env_stats)
-        self._started = False
         self._same_step = self.autoreset_mode == AutoresetMode.SAME_STEP
         # The lanes that a NEXT_STEP step will reset.
         self._over = np.zeros(num_envs, dtype=np.bool_)
@@ -141,7 +140,6 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         if isinstance(seeds, int):
             super().reset(seed=seeds)
         batch = self._worlds.reset(seeds, mask)
-        self._started = True
         chosen = np.ones(self.num_envs, np.bool_) if mask is None else mask
         self._over[chosen] = False
         self._infos.begin(chosen)
@@ -157,7 +155,7 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
 
     def _seeds(self, seed: Any) -> Any:
         if seed is None:
-            if self._started:
+            if self._worlds.started:
                 return None
             return self._given.seed if self._given.seed is not None else secrets.randbits(64)
         if hasattr(seed, "__index__") and not hasattr(seed, "__len__"):
@@ -382,7 +380,7 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         """Returns where every lane is, to come back to by `load`: bytes of this version. Raises OutOfTurn with `batch_size`."""
         if self._groups > 1:
             raise OutOfTurn("worlds in groups cannot be saved while some are under way; make them without batch_size")
-        return self._worlds.save()
+        return self._infos.save()
 
     def load(self, state: bytes) -> np.ndarray:
         """Comes back to a saved moment, by repeating the episodes.
@@ -396,8 +394,7 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         Raises:
             InvalidOption for bytes that are spoiled, or of other worlds; nothing has changed then.
         """
-        batch = self._worlds.load(state)
-        self._started = True
+        batch = self._infos.load(state)
         self._over[:] = batch.terminated | batch.truncated
         return batch.observations
 
@@ -411,12 +408,10 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
             self._worlds.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        kept = {name: self.__dict__[name] for name in ("_np_random", "_np_random_seed", "_started", "render_mode", "spec") if name in self.__dict__}
-        return {"arguments": self._arguments, "worlds": self.save(), "kept": kept, "cost": self._infos.cost, "over": self._over}
+        kept = {name: self.__dict__[name] for name in ("_np_random", "_np_random_seed", "render_mode", "spec") if name in self.__dict__}
+        return {"arguments": self._arguments, "saved": self.save(), "kept": kept}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["arguments"])  # type: ignore[misc]
-        self._worlds.load(state["worlds"])
+        self.load(state["saved"])
         self.__dict__.update(copy.deepcopy(state["kept"]))
-        self._infos.cost[:] = state["cost"]
-        self._over[:] = state["over"]

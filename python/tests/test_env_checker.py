@@ -13,12 +13,13 @@ OBSERVATIONS = ("rgb", "rgb+depth", "segmented", "grey")
 
 
 @pytest.mark.parametrize("env_id", hasard_rs.ids())
-def test_every_id_in_every_format(env_id: str) -> None:
+def test_every_id_in_every_format(env_id: str, full: bool) -> None:
     for i, action_format in enumerate(FORMATS):
-        arguments = {"action_format": action_format, "full_actions": i % 2 == 0, "observation": OBSERVATIONS[i % 4]}
-        env = gymnasium.make(env_id, render_mode="rgb_array", resolution="64x48", **arguments)
-        check_env(env.unwrapped)
-        env.close()
+        for observation in OBSERVATIONS if full else OBSERVATIONS[i % 4 : i % 4 + 1]:
+            arguments = {"action_format": action_format, "full_actions": i % 2 == 0, "observation": observation}
+            env = gymnasium.make(env_id, render_mode="rgb_array", resolution="64x48", **arguments)
+            check_env(env.unwrapped)
+            env.close()
 
 
 @pytest.mark.parametrize("action_format", FORMATS)

@@ -107,13 +107,13 @@ def test_the_program_comes_with_the_wheel() -> None:
     assert done.returncode == 2 and done.stderr == "hasard: --on 'mars': give ray or ray:ADDRESS, with --workers N\n"
 
 
-@pytest.mark.parametrize("cell", ["gru", "lstm"])
-def test_the_torch_module_gives_the_same_outputs(run: hasard_rs.Run, tmp_path: Path, cell: str) -> None:
+@pytest.mark.parametrize("other", [{}, {"network.cell": "lstm"}, {"network.residual": "[32,32]"}])
+def test_the_torch_module_gives_the_same_outputs(run: hasard_rs.Run, tmp_path: Path, other: dict[str, str]) -> None:
     torch = pytest.importorskip("torch")
     import hasard_rs.torch
 
-    if cell != "gru":
-        settings = {**SMALL, "frames": 1024, "set": {"network.cell": cell}}
+    if other:
+        settings = {**SMALL, "frames": 1024, "set": other}
         run = hasard_rs.train(ENV, "PPOLag", out=tmp_path / "other", **settings)
     agent = hasard_rs.Agent.load(run.directory)
     envs = agent.make_vec(5)

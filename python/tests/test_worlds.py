@@ -105,6 +105,78 @@ def test_pickles_and_copies_go_on_alike(vector: bool) -> None:
     assert_same(others[0].reset(), env.reset())
 
 
+@pytest.mark.parametrize("mode", [None, "NextStep", "SameStep", "Disabled"])
+def test_a_saved_moment_brings_everything_back(mode: str | None) -> None:
+    # Into an environment that has played something else, and over the ends of episodes: what they have cost so far is part of the moment.
+    env_id = "hasard/VolcanicVentureLevel1-v0"
+    arguments = {"resolution": "64x48", "frame_skip": 20, "max_episode_steps": 12, "infos": "full", "env_stats": True, "frame_stack": 2}
+
+    def made(seed: int) -> Any:
+        env: Any = hasard_rs.make_vec(env_id, 3, autoreset_mode=mode, **arguments) if mode else hasard_rs.Env(scenario="VolcanicVenture", level=1, **arguments)
+        env.reset(seed=seed)
+        return env
+
+    def moved(env: Any, action: Any) -> Any:
+        told = env.step(action)
+        over = told[2] | told[3]
+        if mode == "Disabled" and np.any(over):
+            return told, env.reset(options={"reset_mask": over})
+        return (told, env.reset()) if mode is None and over else (told,)
+
+    env, other = made(3), made(99)
+    env.action_space.seed(1)
+    actions = [env.action_space.sample() for _ in range(40)]
+    costs = 0.0
+    for action in actions[:8]:
+        costs += np.sum(moved(env, action)[0][4]["cost"])
+    for action in actions[30:]:
+        moved(other, action)
+    assert costs > 0.0
+    other.load(env.save())
+    assert other.save() == env.save()
+    for action in actions[8:]:
+        assert_same(moved(other, action), moved(env, action))
+
+
+def test_before_the_first_reset_there_is_a_moment_too() -> None:
+    one, other = (hasard_rs.Env(scenario="RemedyRush", level=1, resolution="64x48", seed=6) for _ in range(2))
+    assert not one.reset(seed=8)[1]["cost"] and one.step([0, 1, 0, 0])
+    one.load(other.save())
+    with pytest.raises(hasard_rs.ResetNeeded):
+        one.step([0, 1, 0, 0])
+    assert_same(one.reset(), other.reset())
+
+
+@pytest.mark.parametrize("vector", [False, True])
+def test_the_seed_in_a_summary_repeats_the_episode(vector: bool) -> None:
+    # As a float it lost the last bits of most seeds.
+    arguments = {"resolution": "64x48", "max_episode_steps": 2, "infos": "full"}
+    env: Any = hasard_rs.make_vec(ENV, 1, **arguments) if vector else hasard_rs.Env(scenario="RemedyRush", level=1, **arguments)
+    for _ in range(5):
+        began = np.atleast_1d(env.reset(seed=None)[1]["episode_seed"])
+        env.step(env.action_space.sample())
+        seed = np.atleast_1d(env.step(env.action_space.sample())[4]["episode_summary"]["seed"])
+        assert seed.dtype == np.uint64 and seed.tolist() == began.tolist()
+
+
+def test_lanes_and_groups_that_are_none_are_told_so() -> None:
+    made = Worlds(ENV, 4, groups=2, resolution="64x48", num_threads=0)
+    made.reset(1)
+    for wrong in (-1, 4, 1 << 70):
+        for call in (made.render, made.state_hash, made.stats):
+            with pytest.raises(IndexError, match=rf"lane {wrong} is not one of"):
+                call(wrong)
+        with pytest.raises(hasard_rs.InvalidOption, match=str(wrong)):
+            made.step(np.zeros((1, 4), int), lanes=[wrong])
+        for call in (made.recv, lambda group: made.send(np.zeros((2, 4), int), group=group)):
+            with pytest.raises(hasard_rs.InvalidOption, match="group cannot be"):
+                call(wrong)
+    for call in (made.render, made.state_hash, made.stats, made.recv):
+        with pytest.raises(TypeError, match="must be an integer, got 0.5"):
+            call(0.5)
+    assert made.state_hash(np.int16(3)) == made.state_hash(3)
+
+
 def test_a_thousand_pickles_and_constructions_leave_no_memory_behind() -> None:
     import resource
 

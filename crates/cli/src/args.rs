@@ -262,6 +262,9 @@ pub struct BenchArgs {
     /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512 chooses others
     #[arg(long, requires = "learn")]
     pub portable: bool,
+    /// With --learn: any setting of config.json but threads, such as learning.reuse_forward=true; may be given several times
+    #[arg(long, value_name = "NAME=VALUE", requires = "learn")]
+    pub set: Vec<String>,
     /// Seed
     #[arg(long, default_value_t = 0)]
     pub seed: u64,

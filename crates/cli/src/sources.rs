@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use hasard_engine::assets::Assets;
 use hasard_envs::EnvOptions;
-use hasard_envs::maps::{Maps, find_iwad, find_maps};
+use hasard_envs::maps::{Maps, find_iwad, find_maps, pictures_beside};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -32,9 +32,12 @@ pub fn looks_telling(maps: Option<&Path>, iwad: Option<&Path>, tell: fn(&str)) -
     Ok(EnvOptions { maps: Some(Arc::new(maps)), ..EnvOptions::default() })
 }
 
-/// The pictures of an IWAD.
+/// The pictures of an IWAD, with those of the published engine's own file where that lies beside it.
 fn assets(path: &Path) -> Result<Arc<Assets>, Failure> {
     let bytes = hasard_media::files::read_limited(path, LARGEST_IWAD).map_err(Failure::bad)?;
-    let assets = Assets::from_iwad(&bytes).map_err(|error| Failure::bad(format!("{}: {error}", path.display())))?;
+    let engine = pictures_beside(path).map_err(Failure::bad)?;
+    let additions: Vec<&[u8]> = engine.as_deref().into_iter().collect();
+    let assets =
+        Assets::from_wads(&bytes, &additions, &|_| true).map_err(|error| Failure::bad(format!("{}: {error}", path.display())))?;
     Ok(Arc::new(assets))
 }

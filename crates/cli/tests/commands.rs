@@ -110,6 +110,8 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("rollout RemedyRushLevel1-v0 --maps folder", &["folder", "remedy_rush/level_1.wad"]),
         ("bench RemedyRushLevel1-v0 --maps none", &["none", "remedy_rush/level_1.wad"]),
         ("rollout RemedyRushLevel1-v0 --maps folder --iwad none.wad", &["folder"]),
+        ("bench RemedyRushLevel1-v0 --learn --set learning.rate=fast", &["learning.rate=fast"]),
+        ("bench RemedyRushLevel1-v0 --set learning.rate=1", &["--learn"]),
         ("train RemedyRushLevel1-v0 --maps text.wad --out new", &["text.wad"]),
         ("record RemedyRushLevel1-v0 -o a.avi", &["a.avi", ".mp4, .gif, .episode"]),
         ("record RemedyRushLevel1-v0 -o a", &["--out a", ".mp4"]),

@@ -9,42 +9,20 @@
 The simplified actions and colour frames of 128x72, one at a time; rewards and costs are read as the published package reads them.
 """
 
-import glob
-import json
 import os
 import sys
 import tempfile
 
 import numpy as np
 
-from numpy_agent import Agent
+from numpy_agent import of_run, reduced
 from published_engine import Published
-
-
-def checkpoint_of(run, latest):
-    """The weights that `hasard eval` plays: of the checkpoint that the run hands out, where it has one, or the latest."""
-    found = lambda name: sorted(glob.glob(os.path.join(run, "checkpoints", name, "weights.safetensors")))
-    best = [] if latest else found("best_*")
-    return (best or found("frames_*"))[-1]
-
-
-def reduced(frame):
-    """The nearest-neighbour reduction of 160x120 to 128x72 that learners see."""
-    rows, columns = np.arange(72) * 120 // 72, np.arange(128) * 160 // 128
-    return frame[rows][:, columns]
 
 
 def main():
     run, listed, episodes = sys.argv[1], sys.argv[2], int(sys.argv[3])
     greedy = "--greedy" in sys.argv
-    with open(os.path.join(run, "config.json")) as file:
-        config = json.load(file)
-    env = config["env"]
-    if env["full_actions"] or env["observation"] != "rgb" or env["frame_stack"] != 1 or env["size"] != [128, 72] or config["network"]["separate"]:
-        sys.exit(f"{run}: needs an agent of simplified actions that sees one colour frame of 128x72, values and policy in one network")
-    with open(listed) as file:
-        groups = next(known["actions"]["simplified"] for known in map(json.loads, file) if known["id"] == env["id"])
-    agent = Agent(checkpoint_of(run, "--latest" in sys.argv), config["network"]["convolutions"], [len(group) + 1 for group in groups])
+    agent, env, groups = of_run(run, listed, "--latest" in sys.argv)
     scenario, level = env["id"].split("Level")
     os.chdir(tempfile.mkdtemp())
     original = Published(scenario, int(level[0]), env["hard"], groups, frames=True)

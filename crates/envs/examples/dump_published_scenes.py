@@ -2,6 +2,7 @@
 
     pip install vizdoom==1.3.2 hasard==0.2.0 numpy opencv-python-headless
     python crates/envs/examples/dump_published_scenes.py OUT [--scenarios a,b] [--levels 1,2,3] [--moments 40] [--size 160X120]
+    python crates/envs/examples/dump_published_scenes.py OUT --agent RUN ENVS_JSON    # the level of a run, played by its agent
 
 For every level one folder OUT/SCENARIO_LEVEL_SIZE_SEED with scenes.json (position, facing, eye, floors, things in view,
 inventory) and, of every moment, its colours, depth and labels as PNG files. `--example pixels` draws them with our engine.
@@ -16,6 +17,8 @@ import tempfile
 import cv2
 import numpy as np
 import vizdoom
+from numpy_agent import of_run, reduced
+from published_engine import FOLDERS
 from vizdoom import GameVariable
 
 SCENARIOS = (
@@ -33,15 +36,52 @@ STRIDE, EPISODE = 13, 300
 CHANGE, PRESSED = 0.3, {"MOVE_FORWARD": 0.75, "USE": 0.12}
 
 
-def open_game(args, folder, level):
+class Random:
+    """Holds buttons and lets them go at random."""
+
+    def __init__(self, seed, buttons):
+        self.rng, self.buttons, self.held = np.random.default_rng(seed), buttons, [0.0] * len(buttons)
+
+    def begin(self):
+        pass
+
+    def act(self, _):
+        for i, button in enumerate(self.buttons):
+            if self.rng.random() < CHANGE:
+                self.held[i] = float(self.rng.random() < PRESSED.get(button, 0.4))
+        return self.held
+
+
+class Trained:
+    """The agent of a run."""
+
+    def __init__(self, seed, agent, groups):
+        self.rng, self.agent, self.groups = np.random.default_rng(seed), agent, groups
+
+    def begin(self):
+        self.agent.forget()
+
+    def act(self, frame):
+        choices = self.agent.act(reduced(frame), self.rng)
+        return [float(choice == index + 1) for group, choice in zip(self.groups, choices) for index in range(len(group))]
+
+
+def open_game(args, folder, level, groups):
     game = vizdoom.DoomGame()
     game.load_config(os.path.join(folder, "conf.cfg"))
+    if groups:
+        game.set_available_buttons([getattr(vizdoom.Button, name) for group in groups for name in group])
+    if args.no_particles:
+        game.set_render_particles(False)
+    if args.no_decals:
+        game.set_render_decals(False)
     game.set_doom_scenario_path(os.path.join(folder, f"level_{level}.wad"))
     game.set_available_game_variables([getattr(GameVariable, name) for name in VARIABLES])
     game.set_screen_resolution(getattr(vizdoom.ScreenResolution, "RES_" + args.size))
     game.set_screen_format(vizdoom.ScreenFormat.RGB24)
     game.set_window_visible(False)
     game.set_sectors_info_enabled(True)
+    game.set_objects_info_enabled(True)
     game.set_labels_buffer_enabled(True)
     game.set_depth_buffer_enabled(True)
     game.set_seed(args.seed)
@@ -49,7 +89,14 @@ def open_game(args, folder, level):
     return game
 
 
-def told(number, state):
+def note_bursts(bursts, state):
+    """Remembers where rockets have burst: they stand still then."""
+    for thing in state.objects:
+        if thing.name == "Rocket" and thing.velocity_x == thing.velocity_y == 0:
+            bursts[thing.id] = [thing.position_x, thing.position_y, thing.position_z]
+
+
+def told(number, state, bursts):
     """What the engine tells of a moment."""
     return {
         "number": number,
@@ -57,6 +104,7 @@ def told(number, state):
         "variables": dict(zip(VARIABLES, map(float, state.game_variables))),
         "floors": [float(sector.floor_height) for sector in state.sectors],
         "ceilings": [float(sector.ceiling_height) for sector in state.sectors],
+        "bursts": list(bursts.values()),
         "labels": [
             {
                 "name": label.object_name, "value": int(label.value), "angle": label.object_angle,
@@ -67,29 +115,30 @@ def told(number, state):
     }
 
 
-def dump(args, scenario, level, out):
+def dump(args, scenario, level, out, trained=None):
     packages = os.path.dirname(os.path.dirname(vizdoom.__file__))
     folder = os.path.join(packages, "hasard", "envs", scenario)
-    game = open_game(args, folder, level)
+    game = open_game(args, folder, level, trained and trained.groups)
     buttons = [str(button).split(".")[-1] for button in game.get_available_buttons()]
-    rng = np.random.default_rng(args.seed)
-    held, scenes, step = [0.0] * len(buttons), [], 0
+    player, scenes, bursts, step = trained or Random(args.seed, buttons), [], {}, 0
     os.makedirs(out, exist_ok=True)
+    player.begin()
     while len(scenes) < args.moments:
-        for i, button in enumerate(buttons):
-            if rng.random() < CHANGE:
-                held[i] = float(rng.random() < PRESSED.get(button, 0.4))
-        game.make_action(held, FRAME_SKIP)
+        game.make_action(player.act(game.get_state().screen_buffer), FRAME_SKIP)
         step += 1
+        if not game.is_episode_finished():
+            note_bursts(bursts, game.get_state())
         if game.is_episode_finished() or step % EPISODE == 0:
             game.new_episode()
+            bursts.clear()
+            player.begin()
             game.make_action([0.0] * len(buttons), FRAME_SKIP)
         elif step % STRIDE == 0:
             state = game.get_state()
             pictures = {"rgb": state.screen_buffer[:, :, ::-1], "depth": state.depth_buffer, "labels": state.labels_buffer}
             for name, picture in pictures.items():
                 cv2.imwrite(os.path.join(out, f"{len(scenes):02}_{name}.png"), picture)
-            scenes.append(told(len(scenes), state))
+            scenes.append(told(len(scenes), state, bursts))
     game.close()
     width, height = map(int, args.size.split("X"))
     head = {
@@ -109,10 +158,19 @@ def main():
     parser.add_argument("--moments", type=int, default=40)
     parser.add_argument("--size", default="160X120")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--no-particles", action="store_true", help="without what the engine throws by chance")
+    parser.add_argument("--no-decals", action="store_true", help="without soot and holes on walls")
+    parser.add_argument("--agent", nargs=2, metavar=("RUN", "ENVS_JSON"), help="ENVS_JSON is what `hasard envs --json` prints")
     args = parser.parse_args()
     out = os.path.abspath(args.out)
+    if args.agent:
+        agent, env, groups = of_run(*args.agent)
+        scenario, level = env["id"].split("Level")
     # The published engine leaves files where it is started.
     os.chdir(tempfile.mkdtemp())
+    if args.agent:
+        scenario, level, trained = FOLDERS[scenario], int(level[0]), Trained(args.seed, agent, groups)
+        return dump(args, scenario, level, os.path.join(out, f"{scenario}_{level}_{args.size}_agent"), trained)
     for scenario in args.scenarios.split(","):
         for level in map(int, args.levels.split(",")):
             dump(args, scenario, level, os.path.join(out, f"{scenario}_{level}_{args.size}_{args.seed}"))

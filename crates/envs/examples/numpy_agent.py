@@ -1,9 +1,11 @@
-"""The policy network of a checkpoint in NumPy, for scripts that run nothing of ours.
+"""The policy network of a run's checkpoint in NumPy, for scripts that run nothing of ours.
 
 `python/tests/test_numpy_agent.py` holds its outputs against the program's own.
 """
 
+import glob
 import json
+import os
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -22,6 +24,31 @@ def tensors(path):
     kinds = {"F32": np.float32, "F64": np.float64}
     read = lambda info: np.frombuffer(data[8 + length :][slice(*info["data_offsets"])], kinds[info["dtype"]]).reshape(info["shape"])
     return {name: read(info) for name, info in names.items()}
+
+
+def checkpoint_of(run, latest):
+    """The weights that `hasard eval` plays: of the checkpoint that the run hands out, where it has one, or the latest."""
+    found = lambda name: sorted(glob.glob(os.path.join(run, "checkpoints", name, "weights.safetensors")))
+    best = [] if latest else found("best_*")
+    return (best or found("frames_*"))[-1]
+
+
+def of_run(run, listed, latest=False):
+    """A run's agent, its environment's settings, and its sub-actions, which the file `listed` has from `hasard envs --json`."""
+    with open(os.path.join(run, "config.json")) as file:
+        config = json.load(file)
+    env = config["env"]
+    if env["full_actions"] or env["observation"] != "rgb" or env["frame_stack"] != 1 or env["size"] != [128, 72] or config["network"]["separate"]:
+        raise SystemExit(f"{run}: needs an agent of simplified actions that sees one colour frame of 128x72, values and policy in one network")
+    with open(listed) as file:
+        groups = next(known["actions"]["simplified"] for known in map(json.loads, file) if known["id"] == env["id"])
+    return Agent(checkpoint_of(run, latest), config["network"]["convolutions"], [len(group) + 1 for group in groups]), env, groups
+
+
+def reduced(frame):
+    """The nearest-neighbour reduction of 160x120 to 128x72 that learners see."""
+    rows, columns = np.arange(72) * 120 // 72, np.arange(128) * 160 // 128
+    return frame[rows][:, columns]
 
 
 def elu(x):
@@ -45,6 +72,8 @@ class Agent:
         return x @ self.weights[f"network0.{name}.weight"] + self.weights[f"network0.{name}.bias"]
 
     def forget(self):
+        if "network0.stage0.convolution.weight" in self.weights:
+            raise SystemExit("this example computes plain convolutions, and the run has a residual encoder: train with network.residual=[]")
         if "network0.lstm.hidden_weight" in self.weights:
             raise SystemExit("this example computes GRUs, and the run has an LSTM: train with network.cell=\"gru\"")
         hidden = self.weights.get("network0.gru.hidden_weight")

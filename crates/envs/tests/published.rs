@@ -10,6 +10,10 @@ use published_figures::{COLUMNS, allowed, ours, published, standard_error};
 const EPISODES: u64 = 320;
 const IDLE_EPISODES: u64 = 20;
 
+/// A row whose path hangs on a rare event, which needs more: in one episode of seventy (17 of 1,200; two of the 60 published ones)
+/// a rocket bursts so near that it throws the agent by some map units. Of 320 episodes as few as one may have it.
+const RARE: (&str, &str, u64) = ("CollateralDamageLevel3-v0", "hold-after:1:ATTACK", 960);
+
 /// Figures that are known to differ, and why.
 const KNOWN: &[(&str, &str, &str)] =
     &[("RemedyRush", "highest", "our town is of our own design: other things to climb on, none of which anything lies on")];
@@ -20,7 +24,11 @@ fn differences(scenario: &str) -> Vec<String> {
     let rows: Vec<_> = published().into_iter().filter(|row| row.id.starts_with(scenario)).collect();
     assert!(rows.len() >= 12, "measurements of {scenario} are missing");
     for row in rows {
-        let episodes = if row.policy == "noop" { IDLE_EPISODES } else { EPISODES };
+        let episodes = match (row.id.as_str(), row.policy.as_str()) {
+            (_, "noop") => IDLE_EPISODES,
+            (id, policy) if (id, policy) == (RARE.0, RARE.1) => RARE.2,
+            _ => EPISODES,
+        };
         let measured = ours(&row, episodes);
         for (column, name) in COLUMNS.into_iter().enumerate() {
             let (theirs, mine) = (row.columns[column], measured[column]);

@@ -7,6 +7,7 @@ use hasard_learn::config::curriculum::Lesson;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which};
+use hasard_learn::runs::checkpoint::Loaded;
 use hasard_learn::runs::evaluate::{Evaluation, play};
 use hasard_learn::runs::run_directory::read_config;
 use hasard_learn::runs::trainer::{Hooks, Start, train};
@@ -309,6 +310,25 @@ fn a_loaded_agent_acts_as_it_learned() {
         panic!("weights of another shape were accepted")
     };
     assert!(error.to_string().contains("does not fit"), "{error}");
+    fs::remove_dir_all(path).unwrap();
+}
+
+#[test]
+fn a_residual_encoder_takes_the_place_of_the_convolutions() {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    assert!(!config.network.convolutions.is_empty());
+    config.network.residual = vec![32];
+    config.frames = 2 * config.frames_per_rollout();
+    let path = tiny::directory("residual");
+    tiny::run(Start::Fresh(config), &path).0.unwrap();
+    let loaded = Loaded::read(checkpoints(&path).last().unwrap()).unwrap();
+    let tensors = loaded.tensors().unwrap();
+    assert_eq!(tensors.tensor("network0.stage0.block1.convolution1.weight").unwrap().shape(), [3, 3, 32, 32]);
+    assert!(tensors.names().iter().all(|name| !name.starts_with("network0.convolution")));
+    let shape = ActionShape { sizes: vec![2, 3], deltas: 0 };
+    let side = tiny::SIDE;
+    let mut agent = Agent::load(&path, Which::Latest, Choice::Greedy, 2, [side, side, 1], shape, &mut |_| {}).unwrap();
+    assert_eq!(agent.act(&vec![9; 2 * side * side]).len(), 2);
     fs::remove_dir_all(path).unwrap();
 }
 

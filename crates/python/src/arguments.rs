@@ -2,7 +2,7 @@
 
 use crate::errors::{INVALID_OPTION, raise};
 use hasard_envs::{Autoreset, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyIndexError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
@@ -129,6 +129,31 @@ fn typed<'py, T: FromPyObjectOwned<'py>>(name: &str, given: &Bound<'py, PyAny>, 
 pub fn number(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyResult<u64> {
     let value: Result<u64, _> = given.call_method0("__index__").and_then(|index| index.extract());
     value.ok().filter(|value| (least..=most).contains(value)).ok_or_else(|| refused(given, name, &format!("{least}..={most}")))
+}
+
+/// Which one of several is meant: none if no machine could have so many, or the number is negative.
+fn place(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    let wrong = |_| PyTypeError::new_err(format!("{name} must be an integer, got {}", shown(given)));
+    Ok(given.call_method0("__index__").map_err(wrong)?.extract().ok())
+}
+
+/// A lane to look at; whether there are so many is for the worlds to say, by the same `IndexError`.
+pub fn lane(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+    let none = || PyIndexError::new_err(format!("lane {} is not one of these; they are counted from 0", shown(given)));
+    place("a lane", given)?.ok_or_else(none)
+}
+
+/// Lanes to step, or `None`.
+pub fn lanes(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<usize>>> {
+    let one = |lane: Bound<'_, PyAny>| {
+        place("a lane to step", &lane)?.ok_or_else(|| refused(&lane, "a lane to step", "less than the number of lanes, from 0"))
+    };
+    if given.is_none() { Ok(None) } else { given.try_iter()?.map(|lane| one(lane?)).collect::<PyResult<_>>().map(Some) }
+}
+
+/// A group of lanes; whether there are so many is for the worlds to say.
+pub fn group(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+    place("group", given)?.ok_or_else(|| refused(given, "group", "less than the number of groups, from 0"))
 }
 
 fn choice<T: Copy>(name: &str, given: &Bound<'_, PyAny>, choices: &[(&str, T)]) -> PyResult<T> {

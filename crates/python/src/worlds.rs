@@ -337,15 +337,16 @@ impl Worlds {
     ///     A Batch of m rows, in the order of lanes.
     ///
     /// Raises:
-    ///     InvalidAction, which names lane, part, value and range; TypeError or ValueError for the wrong dtype or shape; ResetNeeded before the
-    ///     first reset, or where an episode is over under "Disabled"; OutOfTurn with a batch under way. Nothing has moved then.
+    ///     InvalidAction, which names lane, part, value and range; TypeError or ValueError for the wrong dtype or shape; InvalidOption for a lane
+    ///     that is none, or named twice; ResetNeeded before the first reset, or where an episode is over under "Disabled"; OutOfTurn with a batch
+    ///     under way. Nothing has moved then.
     #[pyo3(signature = (actions, deltas=None, *, lanes=None))]
     fn step(
         &self,
         py: Python<'_>,
         actions: &Bound<'_, PyAny>,
         deltas: Option<&Bound<'_, PyAny>>,
-        lanes: Option<Vec<usize>>,
+        #[pyo3(from_py_with = arguments::lanes)] lanes: Option<Vec<usize>>,
     ) -> PyResult<Batch> {
         let count = lanes.as_ref().map_or(self.facts.lanes, Vec::len);
         let lane = |row: usize| lanes.as_ref().map_or(row, |lanes| lanes[row]);
@@ -379,7 +380,13 @@ impl Worlds {
     /// Raises:
     ///     What `step` raises; OutOfTurn if the group's last batch was not fetched by `recv`; InvalidOption for a group that is none.
     #[pyo3(signature = (actions, deltas=None, *, group=0))]
-    fn send(&self, py: Python<'_>, actions: &Bound<'_, PyAny>, deltas: Option<&Bound<'_, PyAny>>, group: usize) -> PyResult<()> {
+    fn send(
+        &self,
+        py: Python<'_>,
+        actions: &Bound<'_, PyAny>,
+        deltas: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = arguments::group)] group: usize,
+    ) -> PyResult<()> {
         self.check_group(py, group)?;
         let lanes = self.lanes_of(group);
         let (actions, deltas) = self.read(actions, deltas, lanes.len(), |row| lanes.start + row)?;
@@ -412,7 +419,7 @@ impl Worlds {
     /// Raises:
     ///     OutOfTurn if nothing was sent; InvalidOption for a group that is none.
     #[pyo3(signature = (group=0))]
-    fn recv(&self, py: Python<'_>, group: usize) -> PyResult<Batch> {
+    fn recv(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::group)] group: usize) -> PyResult<Batch> {
         self.check_group(py, group)?;
         let came_back = self.with(py, |inner| {
             let batch = inner.worlds().recv(group)?;
@@ -525,7 +532,7 @@ impl Worlds {
     fn render<'py>(
         &self,
         py: Python<'py>,
-        lane: usize,
+        #[pyo3(from_py_with = arguments::lane)] lane: usize,
         kind: &str,
         resolution: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -555,7 +562,7 @@ impl Worlds {
     /// Returns a fingerprint (64 bits) of everything that the future of `lane` depends on, the same on every platform. Raises IndexError for a lane
     /// that is none, OutOfTurn with a batch under way.
     #[pyo3(signature = (lane=0))]
-    fn state_hash(&self, py: Python<'_>, lane: usize) -> PyResult<u64> {
+    fn state_hash(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::lane)] lane: usize) -> PyResult<u64> {
         self.check_lane(lane)?;
         self.with(py, |inner| {
             crate::bind::idle(inner)?;
@@ -567,7 +574,7 @@ impl Worlds {
     ///
     /// Returns the statistics of the episode of `lane` so far, by name. Raises IndexError for a lane that is none.
     #[pyo3(signature = (lane=0))]
-    fn stats(&self, py: Python<'_>, lane: usize) -> PyResult<Vec<(&'static str, f64)>> {
+    fn stats(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::lane)] lane: usize) -> PyResult<Vec<(&'static str, f64)>> {
         self.check_lane(lane)?;
         self.with(py, |inner| Ok(inner.look(lane, |env| env.stats())))
     }
@@ -587,6 +594,12 @@ impl Worlds {
         let lanes = self.facts.lanes;
         let seeds = self.with(py, |inner| Ok((0..lanes).map(|lane| inner.look(lane, |env| env.seed())).collect::<Vec<u64>>()))?;
         array(py, seeds, &[lanes])
+    }
+
+    /// Whether episodes have begun: by a reset, or by a load of a moment after one.
+    #[getter]
+    fn started(&self, py: Python<'_>) -> PyResult<bool> {
+        self.with(py, |inner| Ok(inner.started))
     }
 
     /// Which lanes' episodes are over without the next one having begun: bool [num_envs].

@@ -62,6 +62,7 @@ fn learn(args: &BenchArgs) -> Outcome {
     (config.learning.epochs, config.learning.minibatches) = (1, 1);
     config.seed = args.seed;
     config.sampling.lanes = args.envs as usize;
+    let mut config = config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     config.check().map_err(Failure::bad)?;
     let options = settings::trained_options(&config.env)?;
     let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
@@ -74,8 +75,12 @@ fn learn(args: &BenchArgs) -> Outcome {
     threads.dedup();
     let rounds = ((args.seconds / ROUND_SECONDS).ceil() as usize).max(LEAST_ROUNDS);
     if !args.json {
-        let worlds = args.envs;
-        say!("{} on {}, preset {preset}, 1 epoch, {worlds} worlds: worlds, inference and learning", config.algorithm, args.env);
+        let (algorithm, epochs, worlds) = (config.algorithm, config.learning.epochs, config.sampling.lanes);
+        let set: String = args.set.iter().map(|setting| format!(", {setting}")).collect();
+        say!(
+            "{algorithm} on {}, preset {preset}{set}, {epochs} epoch(s), {worlds} worlds: worlds, inference and learning",
+            args.env
+        );
     }
     for (threads, kernels) in threads.iter().flat_map(|threads| families.iter().map(move |kernels| (*threads, *kernels))) {
         (config.learning.threads, config.sampling.samplers) = (threads, threads);
@@ -104,7 +109,8 @@ fn report(args: &BenchArgs, config: &TrainConfig, measured: &Measurement) -> Out
             "flop_per_step": measured.flop_per_step,
             "bound_steps_per_second": measured.bound(),
             "share": measured.share(),
-            "envs": args.envs,
+            "envs": config.sampling.lanes,
+            "set": args.set,
             "rounds": measured.rounds,
         });
         say!("{object}");

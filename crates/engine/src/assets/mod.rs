@@ -25,6 +25,30 @@ pub struct Image {
     pub mask: Option<Box<[u8]>>,
 }
 
+/// Something dark on a wall: how much it hides of what is under it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stain {
+    /// Width in texels.
+    pub width: u16,
+    /// Height in texels.
+    pub height: u16,
+    /// Texels to the left of its anchor.
+    pub offset_x: i16,
+    /// Texels above its anchor.
+    pub offset_y: i16,
+    /// How much each texel hides, 0 to 255, column by column.
+    pub texels: Box<[u8]>,
+}
+
+impl Stain {
+    /// A column, from the left or, mirrored, from the right; none beside the picture.
+    #[must_use]
+    pub fn column(&self, u: i64, mirrored: bool) -> Option<&[u8]> {
+        let u = usize::try_from(if mirrored { i64::from(self.width) - 1 - u } else { u }).ok()?;
+        self.texels.chunks_exact(usize::from(self.height).max(1)).nth(u)
+    }
+}
+
 /// The views of one frame of a sprite: for each of the 8 rotations (0 = facing the viewer, then counter-clockwise
 /// as the viewer walks around it: the classic rotation digits 1..=8) an index into [`Assets::images`] and whether it is mirrored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -61,6 +85,8 @@ pub struct Assets {
     pub graphics: std::collections::BTreeMap<crate::map::TextureName, u32>,
     /// The picture of the sky, where the files name one.
     pub sky: Option<crate::map::TextureName>,
+    /// What bursting rockets leave on walls, where the files bring it; without it walls stay clean.
+    pub soot: Option<Stain>,
     /// What the files hold and wanted textures ask for, but is not drawn as they say; a phrase each.
     pub left_out: std::collections::BTreeSet<String>,
 }
@@ -89,7 +115,7 @@ pub struct TextureEntry {
 }
 
 /// Four-letter sprite names; an actor's `sprite` is an index into this list.
-pub const SPRITE_NAMES: [&str; 72] = [
+pub const SPRITE_NAMES: [&str; 73] = [
     "BON1", "STIM", "MEDI", "BON2", "ROCK", "SHEL", "CELL", "CLIP", "PVIS", "PINS", "PMAP", "BPAK", "SUIT", "YKEY",
     "BSKU", // items
     "PIST", "SHOT", "SGN2", "MGUN", "LAUN", "PLAS", "BFUG", // weapons to pick up
@@ -98,6 +124,7 @@ pub const SPRITE_NAMES: [&str; 72] = [
     "TLMP", "TLP2", "COL4", "COL2", "COL5", "ELEC", "TRE1", "SMIT", "TRE2", "POL5", "PLAY", "BRS1", "COL1", // decor, player
     "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", "SHT2", "PLSF", "BFGF", // view weapons
     "CAND", "SMBT", "SMGT", "SMRT", "POB1", "FTOP", "FDEB", // decor of the published maps
+    "RSMK", // smoke of rockets
 ];
 
 /// The index of a sprite name; `const`, so that the state tables resolve their names while compiling.

@@ -15,6 +15,8 @@ pub(super) struct Blend {
     /// The nearest index of every colour reduced to [`BITS`] a channel: a mixture of any two needs no search, and none is
     /// kept of all pairs and all shares.
     nearest: Box<[u8]>,
+    /// The index of black.
+    black: u8,
 }
 
 impl Blend {
@@ -23,7 +25,7 @@ impl Blend {
         let widened = |channel: usize| (channel << 3 | channel >> 2) as u8;
         let colour = |i: usize| [2 * BITS, BITS, 0].map(|shift| widened(i >> shift & MOST));
         let nearest = (0..1 << (3 * BITS)).map(|i| nearest_colour(palette, colour(i))).collect();
-        Blend { palette: Box::new(*palette), nearest }
+        Blend { palette: Box::new(*palette), nearest, black: nearest_colour(palette, [0; 3]) }
     }
 
     /// The palette index of `upper`, which has so many parts of [`OPAQUE`], over `lower`; each of the two is cut to a quarter
@@ -37,6 +39,12 @@ impl Blend {
             (parts >> BITS) & MOST
         };
         self.nearest[mixed(0) << (2 * BITS) | mixed(1) << BITS | mixed(2)]
+    }
+
+    /// A palette index under so many parts of black.
+    #[inline]
+    pub fn darkened(&self, lower: u8, share: u8) -> u8 {
+        self.over(self.black, lower, share)
     }
 }
 

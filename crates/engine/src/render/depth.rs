@@ -32,6 +32,12 @@ impl Depths {
         scaled(((distance << 16) / focal_y - 500) * 255 / 319_500, rows)
     }
 
+    /// Depth of soot on a wall. The published engine tells none: 0 there in most places.
+    #[inline]
+    pub fn stain(self, distance: i64) -> u8 {
+        if self.published.is_some() { 0 } else { even(distance) }
+    }
+
     /// Depth of a floor or ceiling, in every size the same.
     #[inline]
     pub fn plane(self, distance: i64) -> u8 {
@@ -70,7 +76,8 @@ mod tests {
         let depths = Depths::default();
         for distance in [0, 72, 73, 730, 1860, 30_000].map(units) {
             let level = ((distance >> 16) * 10 / 73).min(255) as u8;
-            assert_eq!([depths.wall(distance), depths.plane(distance), depths.sprite(distance, 96 << 16)], [level; 3]);
+            let told = [depths.wall(distance), depths.plane(distance), depths.sprite(distance, 96 << 16), depths.stain(distance)];
+            assert_eq!(told, [level; 4]);
         }
         assert_eq!(depths.farthest(), 255);
     }

@@ -46,6 +46,7 @@ mod size;
 mod sky;
 #[cfg(target_arch = "x86_64")]
 mod sky_wide;
+mod soot;
 #[cfg(target_arch = "x86_64")]
 mod span_wide;
 mod sprite;

@@ -12,19 +12,19 @@ use crate::map::TextureId;
 use crate::math::Fixed;
 
 /// A seg in view, on its way through the stages.
-struct SeenSeg<'a> {
+pub(super) struct SeenSeg<'a> {
     index: u32,
-    seg: &'a SceneSeg,
-    face: &'a Face,
+    pub seg: &'a SceneSeg,
+    pub face: &'a Face,
     /// Its line.
-    line: SeenLine,
+    pub line: SeenLine,
     /// Its line as drawn between the whole columns of its ends.
-    ends: SeenLine,
+    pub ends: SeenLine,
     /// Inverse distances of its farther and its nearer end.
     inverses: [i64; 2],
     /// Frame columns.
-    first: usize,
-    end: usize,
+    pub first: usize,
+    pub end: usize,
 }
 
 /// The columns of a seg that faces the eye.
@@ -243,6 +243,7 @@ impl Walk<'_> {
     /// Draws the wall between the upper and the lower scratch.
     fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, texture: Option<TextureId>, hung_from: Fixed) {
         let range = seen.first..seen.end;
+        let light = Light::new(self.camera, i32::from(front.light) + seen.face.contrast);
         let shader = WallShader {
             camera: self.camera,
             view: self.view,
@@ -252,11 +253,14 @@ impl Walk<'_> {
             ends: &seen.ends,
             texture: TextureLine::new(self.camera, seen.face),
             picture: &self.scene.textures.walls[self.picture(texture)],
-            light: Light::new(self.camera, i32::from(front.light) + seen.face.contrast),
+            light,
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };
         let (tops, bottoms) = (&self.scratch.upper[range.clone()], &self.scratch.lower[range]);
         shader.draw::<DEPTH>(self.simd, self.columns, seen.first, tops, bottoms);
+        if !self.world.soot.is_empty() {
+            self.soot::<DEPTH>(seen, light);
+        }
     }
 
     fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {

@@ -15,6 +15,7 @@ impl Clone for World {
             rng: self.rng.clone(),
             tic: self.tic,
             events: self.events.clone(),
+            soot: self.soot.clone(),
             no_autoaim: self.no_autoaim,
             monsters_drop_items: self.monsters_drop_items,
             awake: self.awake.clone(),
@@ -41,6 +42,7 @@ impl Clone for World {
             rng,
             tic,
             events,
+            soot,
             no_autoaim,
             monsters_drop_items,
             awake,
@@ -64,6 +66,7 @@ impl Clone for World {
         self.rng.clone_from(rng);
         self.tic = *tic;
         self.events.clone_from(events);
+        self.soot.clone_from(soot);
         self.no_autoaim = *no_autoaim;
         self.monsters_drop_items = *monsters_drop_items;
         self.awake.clone_from(awake);
@@ -78,7 +81,7 @@ impl Clone for World {
 }
 
 impl Hash for World {
-    /// Everything but the map and the caller's list of events, and all of it as it is now: what is computed when somebody
+    /// Everything but the map, the caller's list of events and soot, of which nothing else depends, and all of it as it is now: what is computed when somebody
     /// looks hashes as if somebody had looked.
     fn hash<H: Hasher>(&self, state: &mut H) {
         state.write_usize(self.sectors.len());

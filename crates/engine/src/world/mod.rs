@@ -34,6 +34,7 @@ mod riders;
 mod sector;
 mod sight;
 mod slide;
+mod soot;
 mod spawn;
 mod states;
 mod think;
@@ -54,6 +55,7 @@ pub use inventory::{BLUE_SKULL, YELLOW_CARD};
 pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
 pub use sector::{SectorDamage, SectorState};
+pub use soot::Soot;
 pub use states::{Action, Animation, Frame, OPAQUE, Phase, Picture, Then, animation, is_timed};
 pub use weapon::{Hands, WeaponState};
 pub use weapon_info::ammo;
@@ -86,6 +88,8 @@ pub struct World {
     /// [`World::finish_tic`]: what is new can act there already (a rocket that bursts in its first tic), and that is for
     /// the scripts of the next tic.
     pub events: Vec<Event>,
+    /// Soot on walls, the oldest first.
+    pub soot: Vec<Soot>,
     /// Monsters and weapons do not search for targets vertically or sideways (Collateral Damage).
     pub no_autoaim: bool,
     /// Killed soldiers drop their weapon or clip.
@@ -129,6 +133,7 @@ impl World {
             rng: Rng::new(seed),
             tic: 0,
             events: Vec::new(),
+            soot: Vec::new(),
             no_autoaim: false,
             monsters_drop_items: false,
             awake: Vec::new(),

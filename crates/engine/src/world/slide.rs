@@ -39,16 +39,20 @@ impl Trace {
         Trace { x: line.v1.x, y: line.v1.y, dx: line.dx, dy: line.dy }
     }
 
-    /// Where another straight line crosses this one, in 65536ths of its direction, rounded to nearest; 0 where they are parallel.
+    /// Where another straight line crosses this one, in 65536ths of its direction, rounded to the nearest, halves to the even one; 0 where they are parallel.
     fn crossing(&self, other: &Trace) -> i64 {
         let wide = |value: Fixed| i128::from(value.0);
         let denominator = wide(other.dy) * wide(self.dx) - wide(other.dx) * wide(self.dy);
         let numerator = wide(other.x - self.x) * wide(other.dy) + wide(self.y - other.y) * wide(other.dx);
         let (numerator, denominator) = if denominator < 0 { (-numerator, -denominator) } else { (numerator, denominator) };
-        match denominator {
-            0 => 0,
-            _ => ((numerator << 17) + denominator).div_euclid(2 * denominator) as i64,
+        if denominator == 0 {
+            return 0;
         }
+        // Halves go to the even neighbour, which slanting lines with whole coordinates often need.
+        let twice = numerator << 17;
+        let rounded = (twice + denominator).div_euclid(2 * denominator);
+        let is_half = (twice + denominator).rem_euclid(2 * denominator) == 0;
+        (rounded - i128::from(is_half && rounded & 1 != 0)) as i64
     }
 }
 

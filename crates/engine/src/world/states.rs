@@ -94,7 +94,7 @@ pub const OPAQUE: u8 = 64;
 fn opacity(kind: ActorKind, phase: Phase) -> u8 {
     match (kind, phase) {
         (K::BulletPuff | K::BlurSphere, _) => OPAQUE / 2,
-        (K::RocketSmokeTrail, _) => OPAQUE / 3,
+        (K::RocketSmokeTrail, _) => OPAQUE * 2 / 5,
         (K::LostSoul, _) => OPAQUE * 3 / 4,
         (K::Rocket, Phase::Death) => OPAQUE * 2 / 3,
         _ => OPAQUE,
@@ -206,8 +206,8 @@ const fn idle_of(kind: ActorKind) -> Animation {
         K::LostSoul => stand!("SKUL", b"AB", true),
         K::ExplosiveBarrel => idle!("BAR1", b"AB", 6),
         K::Rocket => once!(Loop: act(bright("MISL", b'A', 4), Action::Smoke)),
-        K::RocketSmokeTrail => once!(Vanish: still("PUFF", b'B', 4), still("PUFF", b'C', 4), still("PUFF", b'B', 4),
-            still("PUFF", b'C', 4), still("PUFF", b'D', 4)),
+        K::RocketSmokeTrail => once!(Vanish: still("RSMK", b'A', 5), still("RSMK", b'B', 5), still("RSMK", b'C', 5),
+            still("RSMK", b'D', 5), still("RSMK", b'E', 5)),
         K::PlasmaBall => idle!("PLSS", b"AB", 6, true),
         K::BfgBall => idle!("BFS1", b"AB", 4, true),
         K::BulletPuff => once!(Vanish: bright("PUFF", b'A', 4), still("PUFF", b'B', 4), still("PUFF", b'C', 4),

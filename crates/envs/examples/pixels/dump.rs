@@ -32,6 +32,9 @@ pub struct Moment {
     /// Of each sector.
     pub floors: Vec<f64>,
     pub ceilings: Vec<f64>,
+    /// Where rockets have burst since the episode began.
+    #[serde(default)]
+    pub bursts: Vec<[f64; 3]>,
     /// The things in view.
     pub labels: Vec<Thing>,
 }

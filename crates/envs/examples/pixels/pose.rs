@@ -3,12 +3,14 @@
 use crate::Any;
 use crate::dump::{Level, Moment};
 use hasard_engine::assets::Assets;
-use hasard_engine::map::{Map, SectorId, udmf};
+use hasard_engine::map::{Line, Map, SectorId, udmf};
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::render::{FrameSize, RenderOptions, Renderer, Scene, View};
 use hasard_engine::wad::Wad;
 use hasard_engine::world::{ActorId, ActorKind, Weapon, World};
+use hasard_envs::maps::pictures_beside;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 /// What scripts paint floors with.
@@ -46,7 +48,9 @@ impl Stage {
         source.things.retain(|thing| thing.kind == 1);
         source.things.truncate(1);
         let map = Arc::new(Map::build(&source, &level.scenario, &SCRIPTED_TEXTURES)?);
-        let assets = Arc::new(Assets::from_wads(&iwad, &[&pwad], &|name| map.textures.contains(&name))?);
+        let engine = pictures_beside(Path::new(&level.iwad))?;
+        let additions: Vec<&[u8]> = engine.as_deref().into_iter().chain([&pwad[..]]).collect();
+        let assets = Arc::new(Assets::from_wads(&iwad, &additions, &|name| map.textures.contains(&name))?);
         let scene = Arc::new(Scene::new(&map, assets));
         let size = FrameSize { width: level.width, height: level.height };
         let mut renderer = Renderer::new(scene, Arc::new(View::new(size)?));
@@ -69,6 +73,7 @@ impl Stage {
         let mut world = self.world.clone();
         self.set_sectors(&mut world, level, moment);
         set_player(&mut world, moment);
+        moment.bursts.iter().for_each(|&burst| leave_soot(&mut world, burst.map(fixed)));
         let actors = moment.labels.iter().filter_map(|thing| {
             let name = thing.name.strip_prefix("Dead").unwrap_or(&thing.name);
             let &kind = self.kinds.get(name).filter(|&&kind| kind != ActorKind::Player)?;
@@ -109,6 +114,24 @@ impl Stage {
             };
             sector.floor_texture = painted.unwrap_or(sector.floor_texture);
         }
+    }
+}
+
+/// A rocket no farther than this from a wall burst at it, map units.
+const AT_WALL: f64 = 32.0;
+
+/// Leaves soot on the wall next to a place, if one is near.
+fn leave_soot(world: &mut World, [x, y, z]: [Fixed; 3]) {
+    let square_away = |line: &Line| {
+        let [x, y, x1, y1, dx, dy] = [x, y, line.v1.x, line.v1.y, line.dx, line.dy].map(Fixed::to_f64);
+        let part = (((x - x1) * dx + (y - y1) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+        let [east, north] = [x - x1 - part * dx, y - y1 - part * dy];
+        east * east + north * north
+    };
+    let near =
+        (0..).zip(&world.map.lines).map(|(index, line)| (square_away(line), index)).filter(|&(away, _)| away < AT_WALL * AT_WALL);
+    if let Some((_, line)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        world.leave_soot(line, x, y, z);
     }
 }
 

@@ -15,9 +15,12 @@ pub enum Kind {
     Sprites,
     Depth,
     Labels,
+    /// Whatever there is, of the pixels that a learner's frame of 128x72 keeps.
+    Learner,
 }
 
-const NAMES: [&str; 10] = ["wall", "floor", "ceiling", "sky", "world", "status bar", "weapon", "sprites", "depth", "labels"];
+const NAMES: [&str; 11] =
+    ["wall", "floor", "ceiling", "sky", "world", "status bar", "weapon", "sprites", "depth", "labels", "learner's frame"];
 
 /// Counts of one kind.
 #[derive(Clone, Copy, Default)]

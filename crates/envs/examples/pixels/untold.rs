@@ -59,6 +59,9 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
     if scenario == "collateral_damage" {
         try_all(posed, launcher(), &everywhere);
     }
+    for mark in 0..posed.world.soot.len() {
+        try_all(posed, turned(mark), &world);
+    }
     for (label, id) in posed.actors.clone() {
         let slot = usize::from(id.slot);
         let dead = moment.labels.iter().any(|thing| thing.value == label && thing.name.starts_with("Dead"));
@@ -103,6 +106,14 @@ fn darkness(world: &World) -> Vec<Change> {
     };
     let lights = [None, Some(SCRIPTED_LIGHTS[0]), Some(SCRIPTED_LIGHTS[1])];
     lights.into_iter().flat_map(|light| [false, true].map(|goggles| variant(light, goggles))).collect()
+}
+
+/// A mark of soot every way round.
+fn turned(mark: usize) -> Vec<Change> {
+    let turn = |mirrored, upturned| -> Change {
+        Box::new(move |world: &mut World| (world.soot[mark].mirrored, world.soot[mark].upturned) = (mirrored, upturned))
+    };
+    [(false, false), (true, false), (false, true), (true, true)].map(|(mirrored, upturned)| turn(mirrored, upturned)).into()
 }
 
 /// The rocket launcher at rest and every frame of its shot.

@@ -1,12 +1,15 @@
 //! Maps from files: the published package's, where the user has it, or the user's own in their place.
 //!
 //! A folder of maps is laid out as the published package is: `remedy_rush/level_1.wad`, and beside the levels `level_1_hard.wad`.
-//! Each file is a WAD with a UDMF map `MAP01`; its pictures are laid over the IWAD's. The scenario's rules act on the map at hand:
+//! Each file is a WAD with a UDMF map `MAP01`; its pictures are laid over the IWAD's,
+//! and over those of the published engine's own file where that lies beside the IWAD. The scenario's rules act on the map at hand:
 //! `docs/guide/maps.md` says what they look for.
 
 mod auto;
+mod engine_file;
 
 pub use auto::{ask, find_iwad, find_maps};
+pub use engine_file::pictures_beside;
 
 use crate::{EnvError, EnvId, RuleSet, Scenario, scenarios};
 use hasard_engine::assets::Assets;
@@ -80,11 +83,12 @@ impl Maps {
         let mut left_out = source.left_out();
         let assets = match &self.iwad {
             Some(path) => {
-                let iwad = read(path)?;
+                let (iwad, engine) = (read(path)?, pictures_beside(path)?);
                 let mut wanted = source.textures();
                 let (_, more) = scenarios::map_source(id, rules, hard);
                 wanted.extend(more.iter().map(|name| TextureName::new(name)));
-                let assets = Assets::from_wads(&iwad, &[&bytes], &|name| wanted.contains(&name))
+                let additions: Vec<&[u8]> = engine.as_deref().into_iter().chain([&bytes[..]]).collect();
+                let assets = Assets::from_wads(&iwad, &additions, &|name| wanted.contains(&name))
                     .map_err(|error| EnvError::Map { why: format!("{} over {}: {error}", shown(&file), shown(path)) })?;
                 left_out.extend(assets.left_out.iter().cloned());
                 let unknown = |name: &&TextureName| name.is_some() && **name != SKY && !assets.textures.contains_key(name);

@@ -34,6 +34,7 @@ pub const SETTINGS: Target = Target {
         "\"convolutions\":[]",
         "\"dense\":[32]",
         "\"recurrent\":null",
+        "\"residual\":[32]",
         "\"channels\":32",
         "\"kernel\":",
         "\"stride\":",
@@ -109,7 +110,7 @@ const BORDER: &[u8] = b"\n--next file--\n";
 const FILES: [&str; 3] = ["weights.safetensors", "training.safetensors", "state.json"];
 
 /// A run that begins in milliseconds.
-fn small() -> TrainConfig {
+pub(super) fn small() -> TrainConfig {
     let env = EnvConfig { size: (64, 48), observation: "grey".into(), ..EnvConfig::new(ID) };
     let mut config = TrainConfig::new(AlgorithmKind::PpoLag, Preset::Paper, env).expect("a preset is sound");
     config.network.convolutions = vec![Convolution { channels: 32, kernel: 16, stride: 16 }];
@@ -122,7 +123,7 @@ fn small() -> TrainConfig {
 }
 
 /// Real worlds; their map and pictures are made once.
-fn worlds(options: VecOptions) -> Result<VecEnv, EnvError> {
+fn worlds(_: &EnvConfig, options: VecOptions) -> Result<VecEnv, EnvError> {
     static FIRST: LazyLock<Mutex<Env>> = LazyLock::new(|| {
         let options = small().env.options().expect("options of a sound run");
         Mutex::new(Env::new(ID, &options).expect("an environment of the benchmark"))
@@ -131,23 +132,31 @@ fn worlds(options: VecOptions) -> Result<VecEnv, EnvError> {
 }
 
 /// A folder of this process for checkpoints, in memory where the system has such a place.
-fn folder(name: &str) -> PathBuf {
+pub(super) fn folder(name: &str) -> PathBuf {
     let base = Some(PathBuf::from("/dev/shm")).filter(|path| path.is_dir()).unwrap_or_else(std::env::temp_dir);
     base.join(format!("hasard-fuzz-{}-{name}", std::process::id()))
 }
 
-/// The three files of a real run's checkpoint.
-fn checkpoint() -> Vec<u8> {
-    let run = folder("run");
+/// What `read` makes of a real run's directory.
+pub(super) fn of_a_run(name: &str, config: TrainConfig, read: impl FnOnce(&Path) -> Vec<u8>) -> Vec<u8> {
+    let run = folder(name);
     let _ = std::fs::remove_dir_all(&run);
     let stop = AtomicBool::new(false);
     let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut |_| {} };
-    train(Start::Fresh(small()), &run, &worlds, &mut hooks).expect("the sample run trains");
-    let checkpoints = std::fs::read_dir(run.join("checkpoints")).expect("the sample run has checkpoints");
-    let path = checkpoints.map(|entry| entry.expect("a readable folder").path()).max().expect("the sample run has a checkpoint");
-    let files = FILES.map(|name| std::fs::read(path.join(name)).expect("a checkpoint is three files"));
+    train(Start::Fresh(config), &run, &worlds, &mut hooks).expect("the sample run trains");
+    let bytes = read(&run);
     let _ = std::fs::remove_dir_all(&run);
-    files.join(BORDER)
+    bytes
+}
+
+/// The three files of its checkpoint.
+fn checkpoint() -> Vec<u8> {
+    of_a_run("run", small(), |run| {
+        let checkpoints = std::fs::read_dir(run.join("checkpoints")).expect("the sample run has checkpoints");
+        let path = checkpoints.map(|entry| entry.expect("a readable folder").path()).max();
+        let path = path.expect("the sample run has a checkpoint");
+        FILES.map(|name| std::fs::read(path.join(name)).expect("a checkpoint is three files")).join(BORDER)
+    })
 }
 
 fn files(bytes: &[u8]) -> [&[u8]; 3] {
@@ -176,7 +185,7 @@ fn fit(bytes: Vec<u8>) -> Vec<u8> {
 }
 
 /// A safetensors file begins with the length of its header, which ends in braces and spaces.
-fn fit_header(file: &[u8]) -> Vec<u8> {
+pub(super) fn fit_header(file: &[u8]) -> Vec<u8> {
     let mut file = file.to_vec();
     let end = file.windows(2).take(1 << 14).rposition(|window| window == b"}}").map(|at| at + 2);
     if let Some(end) = end.filter(|&end| end > 8) {

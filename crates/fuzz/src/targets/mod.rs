@@ -1,7 +1,7 @@
 //! The readers, each with valid samples made by our own writers.
 
+mod agents;
 mod episodes;
-#[cfg(feature = "learn")]
 mod learning;
 mod levels;
 mod maps;
@@ -36,10 +36,9 @@ pub static ALL: &[Target] = &[
     sweeps::SWEEP,
     runs::RUN,
     words::WORDS,
-    #[cfg(feature = "learn")]
     learning::SETTINGS,
-    #[cfg(feature = "learn")]
     learning::CHECKPOINT,
+    agents::AGENT,
 ];
 
 /// For formats without checksums.

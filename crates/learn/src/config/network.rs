@@ -9,6 +9,10 @@ use super::names::names;
 pub struct NetworkConfig {
     /// Convolutions.
     pub convolutions: Vec<Convolution>,
+    /// Channels of each stage of a residual encoder, which then stands in the place of the convolutions: what IMPALA's larger network has
+    /// (Espeholt et al. 2018, arXiv 1802.01561, figure 3), there 16, 32 and 32, here multiples of 32. Empty for plain convolutions.
+    #[serde(default)]
+    pub residual: Vec<usize>,
     /// Units of the dense layers.
     pub dense: Vec<usize>,
     /// Units of the recurrent layer; `null` for a feed-forward network.

@@ -39,6 +39,7 @@ impl TrainConfig {
                     Convolution { channels: 64, kernel: 4, stride: 2 },
                     Convolution { channels: 128, kernel: 3, stride: 2 },
                 ],
+                residual: vec![],
                 dense: if released { vec![512] } else { vec![512, 512] },
                 recurrent: Some(512),
                 cell: RecurrentCell::Gru,

@@ -5,9 +5,9 @@
 
 use std::sync::Arc;
 
-use burn::tensor::activation::{elu, sigmoid, tanh};
-use burn::tensor::module::conv2d;
-use burn::tensor::ops::ConvOptions;
+use burn::tensor::activation::{elu, relu, sigmoid, tanh};
+use burn::tensor::module::{conv2d, max_pool2d};
+use burn::tensor::ops::{ConvOptions, MaxPoolOptions};
 use burn::tensor::{Device, Int, Tensor, TensorData};
 
 use crate::config::RecurrentCell;
@@ -89,13 +89,27 @@ impl BurnNetwork {
         let mut parameters = self.parameters.iter().zip(&table);
         let mut next = || parameters.next().expect("table of parameters");
         let mut images = self.images(&batch.observations, device);
-        for layer in &shape.convolutions {
+        let mut convolved = |images: Tensor<4>, stride: usize, border: usize| -> Tensor<4> {
             let (weights, entry) = next();
             let [a, b, c, d] = [entry.shape[0], entry.shape[1], entry.shape[2], entry.shape[3]];
             let weights = weights.clone().reshape([a, b, c, d]).permute([3, 2, 0, 1]);
             let (biases, _) = next();
-            let options = ConvOptions::new([layer.stride; 2], [0; 2], [1; 2], 1);
-            images = elu(conv2d(images, weights, Some(biases.clone()), options), 1.0);
+            conv2d(images, weights, Some(biases.clone()), ConvOptions::new([stride; 2], [border; 2], [1; 2], 1))
+        };
+        for layer in &shape.convolutions {
+            images = elu(convolved(images, layer.stride, 0), 1.0);
+        }
+        for _ in &shape.residual {
+            let options =
+                MaxPoolOptions { kernel_size: [3; 2], stride: [2; 2], padding: [(1, 1); 2], dilation: [1; 2], ceil_mode: false };
+            images = max_pool2d(convolved(images, 1, 1), options);
+            for _block in 0..2 {
+                let once = convolved(relu(images.clone()), 1, 1);
+                images = images + convolved(relu(once), 1, 1);
+            }
+        }
+        if !shape.residual.is_empty() {
+            images = relu(images);
         }
         let mut values: Tensor<2> = images.permute([0, 2, 3, 1]).reshape([rows, shape.features()]);
         let mut matrix = || -> Tensor<2> {

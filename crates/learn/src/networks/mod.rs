@@ -6,11 +6,13 @@ pub mod cpu;
 pub mod device;
 pub mod distribution;
 mod initialise;
+mod layers;
 mod network;
 mod shape;
 mod shared_network;
 mod stack;
 
+pub use layers::EncoderLayer;
 pub use network::{
     ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Place, Published, RecordedLane, Recording, Sequences,
 };

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::layers::{EncoderLayer, STAGE};
 use crate::config::{Convolution, RecurrentCell};
 use crate::error::LearnError;
 
@@ -36,7 +37,7 @@ impl ImageShape {
     }
 }
 
-/// One network: convolutions, dense layers, an optional recurrent layer, and linear heads, all on one 8-bit image.
+/// One network: convolutions or a residual encoder, dense layers, an optional recurrent layer, and linear heads, all on one 8-bit image.
 ///
 /// The original's is [`NetworkShape::default`]: 32@8/4, 64@4/2, 128@3/2, dense 512, GRU 512.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
@@ -45,6 +46,9 @@ pub struct NetworkShape {
     pub image: ImageShape,
     /// Convolutions, the first one on the image.
     pub convolutions: Vec<Convolution>,
+    /// Channels of each stage of a residual encoder in place of the convolutions.
+    #[serde(default)]
+    pub residual: Vec<usize>,
     /// Units of the dense layers after them, multiples of 32.
     pub dense: Vec<usize>,
     /// Numbers that join the last dense layer's output (the safety state of PPOSaute).
@@ -67,6 +71,7 @@ impl Default for NetworkShape {
                 Convolution { channels: 64, kernel: 4, stride: 2 },
                 Convolution { channels: 128, kernel: 3, stride: 2 },
             ],
+            residual: vec![],
             dense: vec![512],
             extra_inputs: 0,
             recurrent: Some(512),
@@ -132,6 +137,12 @@ impl NetworkShape {
         if image.size() == 0 {
             return bad(format!("observation of {}x{}x{} has no pixels", image.height, image.width, image.channels));
         }
+        if !self.residual.is_empty() && !self.convolutions.is_empty() {
+            return bad("a network has convolutions or a residual encoder, not both: leave one of them empty".into());
+        }
+        if let Some(channels) = self.residual.iter().find(|&&channels| channels == 0 || !channels.is_multiple_of(32)) {
+            return bad(format!("residual stage of {channels} channels: use a multiple of 32"));
+        }
         for convolution in &self.convolutions {
             if convolution.channels == 0 || !convolution.channels.is_multiple_of(32) {
                 return bad(format!("convolution of {} channels: use a multiple of 32", convolution.channels));
@@ -164,8 +175,9 @@ impl NetworkShape {
             return bad("every head needs at least one output".into());
         }
         let widths = self.convolutions.iter().map(|convolution| &convolution.channels);
-        let widest = widths.chain(&self.dense).chain(&self.recurrent).chain(&self.heads).max().copied().unwrap_or(0);
-        let layers = self.convolutions.len() + self.dense.len() + self.heads.len();
+        let widest =
+            widths.chain(&self.residual).chain(&self.dense).chain(&self.recurrent).chain(&self.heads).max().copied().unwrap_or(0);
+        let layers = self.convolutions.len() + self.residual.len() * STAGE + self.dense.len() + self.heads.len();
         // With these bounds no product of sizes wraps around.
         if widest > WIDEST || layers > MOST_LAYERS || self.parameter_count() > MOST_PARAMETERS {
             return bad(format!(
@@ -174,23 +186,6 @@ impl NetworkShape {
             ));
         }
         Ok(())
-    }
-
-    /// Shape of the image before each convolution and after the last.
-    #[must_use]
-    pub fn images(&self) -> Vec<ImageShape> {
-        let mut images = vec![self.image];
-        for convolution in &self.convolutions {
-            let next = images[images.len() - 1].after(convolution).expect("checked shape");
-            images.push(next);
-        }
-        images
-    }
-
-    /// Values that the convolutions hand to the first dense layer.
-    #[must_use]
-    pub fn features(&self) -> usize {
-        self.images().last().map_or(0, ImageShape::size)
     }
 
     /// Numbers of the state carried from step to step.
@@ -227,9 +222,8 @@ impl NetworkShape {
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut table = Table::default();
-        for (index, (convolution, image)) in self.convolutions.iter().zip(self.images()).enumerate() {
-            let shape = vec![convolution.kernel, convolution.kernel, image.channels, convolution.channels];
-            table.layer(&format!("convolution{index}"), shape, ParameterKind::Convolution);
+        for EncoderLayer { name, convolution: Convolution { kernel, channels, .. }, image, .. } in self.encoder_layers() {
+            table.layer(&name, vec![kernel, kernel, image.channels, channels], ParameterKind::Convolution);
         }
         let mut inputs = self.features();
         for (index, &units) in self.dense.iter().enumerate() {
@@ -258,27 +252,22 @@ impl NetworkShape {
     /// Floating-point operations of one forward pass of one sample (a multiply-add is two), matrix products alone.
     #[must_use]
     pub fn forward_flop(&self) -> f64 {
-        let images = self.images();
-        let per_use = |parameter: &Parameter| match parameter.kind {
-            ParameterKind::Bias | ParameterKind::RecurrentBias => 0.0,
-            ParameterKind::Convolution => {
-                let digits = parameter.name.trim_start_matches("convolution").split('.').next();
-                let layer: usize = digits.and_then(|digits| digits.parse().ok()).expect("name of a convolution");
-                (images[layer + 1].height * images[layer + 1].width * parameter.size()) as f64
-            }
+        let once = |parameter: &Parameter| match parameter.kind {
+            ParameterKind::Bias | ParameterKind::RecurrentBias | ParameterKind::Convolution => 0.0,
             _ => parameter.size() as f64,
         };
-        2.0 * self.parameters().iter().map(per_use).sum::<f64>()
+        let convolved: f64 = self.encoder_layers().iter().map(EncoderLayer::products).sum();
+        2.0 * (convolved + self.parameters().iter().map(once).sum::<f64>())
     }
 
     /// Floating-point operations of forward and backward passes of one sample; nothing flows back into the image.
     #[must_use]
     pub fn training_flop(&self) -> f64 {
-        let first = match (self.convolutions.first(), self.images().get(1)) {
-            (Some(c), Some(out)) => out.height * out.width * c.kernel * c.kernel * self.image.channels * c.channels,
-            _ => self.features() * self.dense[0],
+        let first = match self.encoder_layers().first() {
+            Some(layer) => layer.products(),
+            None => (self.features() * self.dense[0]) as f64,
         };
-        3.0 * self.forward_flop() - 2.0 * first as f64
+        3.0 * self.forward_flop() - 2.0 * first
     }
 }
 
@@ -348,6 +337,9 @@ mod tests {
         refuse(|s| s.convolutions[1].channels = 30, "30 channels");
         refuse(|s| s.convolutions[0].stride = 9, "stride 9");
         refuse(|s| s.heads = vec![], "head");
+        refuse(|s| s.residual = vec![32], "not both");
+        refuse(|s| (s.convolutions, s.residual) = (vec![], vec![32, 16]), "16 channels");
+        refuse(|s| (s.convolutions, s.residual) = (vec![], vec![32; 13]), "too large");
         refuse(|s| s.dense = vec![1 << 40], "too large");
         refuse(|s| s.dense = vec![32; 65], "too large");
         refuse(|s| s.dense = vec![1 << 16, 1 << 16], "too large");

@@ -39,7 +39,8 @@ impl ModelShape {
     ) -> Result<ModelShape, LearnError> {
         let network = |heads: Vec<usize>| NetworkShape {
             image,
-            convolutions: config.convolutions.clone(),
+            convolutions: if config.residual.is_empty() { config.convolutions.clone() } else { vec![] },
+            residual: config.residual.clone(),
             dense: config.dense.clone(),
             extra_inputs,
             recurrent: config.recurrent,

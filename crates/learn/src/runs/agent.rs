@@ -125,7 +125,13 @@ impl TrainedPolicy {
     ) -> Result<TrainedPolicy, LearnError> {
         if directory.is_file() {
             let file = AgentFile::read(directory)?;
-            return TrainedPolicy::restored(&file.card.config, observation, action, |learner| file.restore_weights(learner));
+            return TrainedPolicy::restored(
+                &file.card.config,
+                observation,
+                action,
+                |shape| file.check_fits(shape),
+                |learner| file.restore_weights(learner),
+            );
         }
         let config = read_config(directory)?;
         let store = Store::new(directory, 1);
@@ -135,14 +141,21 @@ impl TrainedPolicy {
         };
         let missing = "no checkpoint was written yet; let the run go on with `hasard train --resume`";
         let loaded = loaded.ok_or_else(|| LearnError::content(directory, missing))?;
-        TrainedPolicy::restored(&config, observation, action, |learner| loaded.restore_weights(learner))
+        TrainedPolicy::restored(
+            &config,
+            observation,
+            action,
+            |shape| loaded.check_fits(shape),
+            |learner| loaded.restore_weights(learner),
+        )
     }
 
-    /// A policy for the processor, whose weights `restore` puts into a learner.
+    /// A policy for the processor, whose weights `restore` puts into a learner, if `check_fits` finds as many as its shape has.
     pub(crate) fn restored(
         config: &TrainConfig,
         [height, width, channels]: [usize; 3],
         action: ActionShape,
+        check_fits: impl FnOnce(&ModelShape) -> Result<(), LearnError>,
         restore: impl FnOnce(&mut Learner) -> Result<(), LearnError>,
     ) -> Result<TrainedPolicy, LearnError> {
         let mut config = config.clone();
@@ -150,6 +163,8 @@ impl TrainedPolicy {
         let image = ImageShape { height, width, channels };
         let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
         let shape = ModelShape::new(image, action, cost_critics, Shaping::new(&config).extra_inputs(), &config.network)?;
+        // Before memory is taken for as many weights as the settings speak of.
+        check_fits(&shape)?;
         // Wherever it was trained, it acts on the processor.
         config.device = "cpu".into();
         let device = ComputeDevice::of(&config)?;

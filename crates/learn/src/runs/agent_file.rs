@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
+use crate::networks::ModelShape;
 use crate::runs::checkpoint::{Loaded, Store, parameter_names};
 use crate::runs::hand_out::HandOut;
 use crate::runs::run_directory::{read_config, read_hand_out};
@@ -154,6 +155,10 @@ fn sixteen_bits(view: &TensorView<'_>, squared: bool) -> Vec<u8> {
     steps.flat_map(u16::to_le_bytes).collect()
 }
 
+fn misfit(name: &str) -> LearnError {
+    LearnError::Config(format!("the agent's file does not fit its own settings: {name}"))
+}
+
 impl AgentFile {
     /// Reads an agent's file.
     pub fn read(path: &Path) -> Result<AgentFile, LearnError> {
@@ -194,9 +199,20 @@ impl AgentFile {
         Ok(AgentFile { card, codes, pixel_mean, pixel_variance })
     }
 
+    /// Refuses a shape of other weights than the file's.
+    pub(crate) fn check_fits(&self, shape: &ModelShape) -> Result<(), LearnError> {
+        for (name, _, range) in parameter_names(shape) {
+            let (bytes, scales) = self.codes.get(&name).ok_or_else(|| misfit(&name))?;
+            let whole = bytes.len() == range.len() || bytes.len() == range.len().div_ceil(2);
+            if !whole || scales.len() != range.len().div_ceil(BLOCK) {
+                return Err(misfit(&name));
+            }
+        }
+        Ok(())
+    }
+
     /// Puts the weights into a learner.
     pub(crate) fn restore_weights(&self, learner: &mut Learner) -> Result<(), LearnError> {
-        let misfit = |name: &str| LearnError::Config(format!("the agent's file does not fit its own settings: {name}"));
         for (name, _, range) in parameter_names(learner.shape()) {
             let (bytes, scales) = self.codes.get(&name).ok_or_else(|| misfit(&name))?;
             let weights = unround(bytes, scales, range.len()).ok_or_else(|| misfit(&name))?;

@@ -274,6 +274,19 @@ impl Loaded {
         SafeTensors::deserialize(&self.weights).map_err(|error| error.to_string())
     }
 
+    /// Refuses a shape of other weights than the checkpoint's.
+    pub(crate) fn check_fits(&self, shape: &ModelShape) -> Result<(), LearnError> {
+        let misfit = |problem: String| LearnError::Config(format!("the checkpoint does not fit: {problem}"));
+        let tensors = self.tensors().map_err(misfit)?;
+        for (name, _, range) in parameter_names(shape) {
+            let found = tensors.tensor(&name).map_err(|error| misfit(format!("{name}: {error}")))?;
+            if found.data().len() != 4 * range.len() {
+                return Err(misfit(format!("{name} has {} bytes, not those of {} weights", found.data().len(), range.len())));
+            }
+        }
+        Ok(())
+    }
+
     /// Puts weights and normalisers into a learner: all that acting needs, and what a new run may begin with.
     pub fn restore_weights(&self, learner: &mut Learner) -> Result<(), LearnError> {
         self.weights_into(learner).map_err(|problem| LearnError::Config(format!("the checkpoint does not fit: {problem}")))

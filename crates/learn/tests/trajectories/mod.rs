@@ -12,6 +12,7 @@ pub fn small_shapes() -> Vec<(&'static str, NetworkShape)> {
             Convolution { channels: 32, kernel: 4, stride: 2 },
             Convolution { channels: 32, kernel: 3, stride: 2 },
         ],
+        residual: vec![],
         dense: vec![64, 32],
         extra_inputs: 1,
         recurrent: Some(32),
@@ -22,6 +23,7 @@ pub fn small_shapes() -> Vec<(&'static str, NetworkShape)> {
         ("overlapping kernels, extra input, two dense layers", small.clone()),
         ("feed-forward", NetworkShape { recurrent: None, ..small.clone() }),
         ("long short-term memory", NetworkShape { cell: RecurrentCell::Lstm, ..small.clone() }),
+        ("residual encoder", NetworkShape { convolutions: vec![], residual: vec![32, 64], ..small.clone() }),
         ("no convolution", NetworkShape { convolutions: vec![], ..small.clone() }),
         (
             "block kernels in a row",

@@ -52,6 +52,7 @@ fn paint() -> Assets {
         sprites: Vec::new(),
         graphics: BTreeMap::new(),
         sky: None,
+        soot: None,
         left_out: std::collections::BTreeSet::new(),
     });
     textures::paint(&mut gallery);
@@ -117,7 +118,17 @@ mod tests {
     fn every_sprite_has_the_frames_that_things_show_and_all_eight_sides() {
         let assets = Assets::embedded();
         let counts = [("POSS", 12), ("SPOS", 12), ("CPOS", 14), ("TROO", 13), ("SARG", 14), ("SKEL", 17), ("SKUL", 11)];
-        let more = [("HEAD", 12), ("PLAY", 23), ("BEXP", 5), ("MISL", 4), ("PUFF", 4), ("PISG", 3), ("SHT2", 10), ("MISF", 4)];
+        let more = [
+            ("HEAD", 12),
+            ("PLAY", 23),
+            ("BEXP", 5),
+            ("MISL", 4),
+            ("PUFF", 4),
+            ("PISG", 3),
+            ("SHT2", 10),
+            ("MISF", 4),
+            ("RSMK", 5),
+        ];
         for (name, sprite) in SPRITE_NAMES.iter().zip(&assets.sprites) {
             let listed = counts.iter().chain(&more).find(|(known, _)| known == name);
             let expected = listed.map_or(1, |&(_, count)| count);

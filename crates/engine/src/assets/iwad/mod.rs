@@ -39,6 +39,9 @@ const STATUS_BAR: [&str; 9] = ["STBAR", "STARMS", "STTNUM", "STTMINUS", "STTPRCN
 /// Which textures are needed: those of additions can be many more than a map shows.
 type Wanted<'a> = &'a dyn Fn(TextureName) -> bool;
 
+/// The picture of soot.
+const SOOT: TextureName = TextureName::new("SCORCH1");
+
 /// The map whose sky counts.
 const MAP: &str = "MAP01";
 
@@ -71,6 +74,7 @@ impl Assets {
             sprites: Vec::new(),
             graphics: BTreeMap::new(),
             sky: sky::of_map(&wad, MAP),
+            soot: None,
             left_out: BTreeSet::new(),
         };
         let mut reader = Reader::new(set.palette);
@@ -88,6 +92,9 @@ impl Assets {
         substitutes::textures(&mut set);
         sprites::load(&mut set, &sections, &mut reader)?;
         substitutes::sprites(&mut set, &Assets::embedded());
+        if let Some(lump) = sections.rest.iter().rfind(|lump| lump.name == SOOT) {
+            set.soot = Some(png::stain(lump, &mut reader)?);
+        }
         for lump in &sections.rest {
             if STATUS_BAR.iter().any(|prefix| lump.name.as_str().starts_with(prefix)) {
                 let image = reader.picture(lump)?;

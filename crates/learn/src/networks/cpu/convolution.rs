@@ -10,7 +10,7 @@ use super::product::{Left, Right, Size, multiply};
 use super::simd::Kernels;
 use super::tile::PANEL;
 use crate::config::Convolution;
-use crate::networks::ImageShape;
+use crate::networks::{EncoderLayer, ImageShape};
 
 /// How an image is stored as the input of a convolution, and the sizes of the products.
 #[derive(Clone, Debug)]
@@ -110,6 +110,21 @@ impl ConvolutionPlan {
             run_length,
             weight_rows,
         }
+    }
+
+    /// The plan of a layer of an encoder: `places` and `runs` speak of its image, without the border of zeros that the stored input has.
+    #[must_use]
+    pub fn of(kernels: Kernels, layer: &EncoderLayer) -> ConvolutionPlan {
+        let (image, border) = (layer.image, layer.border);
+        let around = image.bordered(border);
+        let mut plan = ConvolutionPlan::new(kernels, around, &layer.convolution);
+        if border > 0 {
+            let rows = (0..image.height).map(|y| (y + border) * around.width + border);
+            plan.places = rows.flat_map(|first| plan.places[first..first + image.width].to_vec()).collect();
+            plan.runs = (0..).step_by(image.channels).zip(&plan.places).map(|(from, &to)| (from, to as u32)).collect();
+            plan.run_length = image.channels;
+        }
+        plan
     }
 
     /// Channels of the output.

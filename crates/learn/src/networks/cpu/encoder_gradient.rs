@@ -4,8 +4,9 @@ use super::convolution::ConvolutionPlan;
 use super::elementwise::{add, add_column_sums, elu_backward_gather};
 use super::forward::{output_places, sized};
 use super::pixels::store_pixels;
+use super::residual::ResidualImage;
 use super::tape::TapeLane;
-use super::weights::{Backward, Plan};
+use super::weights::{Backward, PackedWeights, Plan};
 use crate::networks::PixelScale;
 
 /// Gradients of the convolutions' weights and biases over some lanes, weights in the order of the stored inputs.
@@ -20,6 +21,7 @@ pub struct Scratch {
     bytes: Vec<u8>,
     image: Vec<f32>,
     patches: Vec<f32>,
+    residual: ResidualImage,
     /// Gradient of each layer's sums, zero around the pixels that exist.
     padded: Vec<Vec<f32>>,
     /// Gradient of each layer's input.
@@ -29,10 +31,10 @@ pub struct Scratch {
 impl Scratch {
     /// Makes room for a plan.
     pub fn prepare(&mut self, plan: &Plan) {
-        let layers = plan.convolutions.len();
+        let layers = if plan.shape.residual.is_empty() { plan.convolutions.len() } else { 0 };
         self.padded.resize_with(layers, Vec::new);
         self.stored.resize_with(layers, Vec::new);
-        for (layer, convolution) in plan.convolutions.iter().enumerate() {
+        for (layer, convolution) in plan.convolutions.iter().take(layers).enumerate() {
             sized(&mut self.padded[layer], convolution.gradient_size()).fill(0.0);
             sized(&mut self.stored[layer], if layer > 0 { convolution.stored } else { 0 });
         }
@@ -54,6 +56,7 @@ impl EncoderGradient {
     pub fn add_lane(
         &mut self,
         plan: &Plan,
+        weights: &PackedWeights,
         back: &Backward,
         pixels: &PixelScale,
         lane: TapeLane<'_>,
@@ -64,6 +67,16 @@ impl EncoderGradient {
         let kernels = plan.kernels;
         let features = plan.shape.features();
         let layers = plan.convolutions.len();
+        if !plan.shape.residual.is_empty() {
+            for ((observation, d), features) in observations
+                .iter()
+                .zip(feature_gradient.chunks_exact(features))
+                .zip(lane.of(&lane.tape.features, features).chunks_exact(features))
+            {
+                scratch.residual.add_gradients(plan, weights, back, pixels, observation, features, d, &mut self.layers);
+            }
+            return;
+        }
         let places: Vec<_> = (0..layers).map(|layer| output_places(plan, layer)).collect();
         for (step, observation) in observations.iter().enumerate() {
             for layer in (0..layers).rev() {

@@ -8,6 +8,7 @@ use super::cells::{gru_gates, lstm_gates};
 use super::elementwise::{bias_elu_rows, bias_elu_scatter, bias_rows, scale_pixels};
 use super::pixels::store_pixels;
 use super::product::{Left, Right, Size, multiply};
+use super::residual::ResidualImage;
 use super::tape::{Rows, Tape};
 use super::weights::{PackedWeights, Plan};
 use crate::config::RecurrentCell;
@@ -32,6 +33,7 @@ pub struct Input<'a> {
 pub struct Forward {
     bytes: Vec<u8>,
     image: Vec<f32>,
+    residual: ResidualImage,
     raw: Vec<f32>,
     patches: Vec<f32>,
     state: Vec<f32>,
@@ -90,10 +92,17 @@ impl Forward {
         &self.state
     }
 
-    /// Convolutions of every row, and the features that they end in.
+    /// The encoder on every row, and the features that it ends in.
     fn encode(&mut self, plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, tape: &mut Tape) {
         let kernels = plan.kernels;
         let features = plan.shape.features();
+        if !plan.shape.residual.is_empty() {
+            for (row, observation) in rows.iter().zip(input.observations) {
+                let to = &mut tape.features[row * features..(row + 1) * features];
+                self.residual.forward(plan, weights, input.pixels, observation, to);
+            }
+            return;
+        }
         let places: Vec<_> = (0..plan.convolutions.len()).map(|layer| output_places(plan, layer)).collect();
         for (row, observation) in rows.iter().zip(input.observations) {
             let to = &mut tape.features[row * features..(row + 1) * features];

@@ -10,7 +10,7 @@ use super::outer::{Workspace, sum_outer_products};
 use super::simd::Kernels;
 use super::tape::{Tape, TapeLane};
 use super::threads::{deal, in_parallel};
-use super::weights::{Backward, Plan};
+use super::weights::{Backward, PackedWeights, Plan};
 use crate::networks::PixelScale;
 
 /// Most groups that lanes are dealt into, which bounds memory and the threads that convolutions keep busy.
@@ -31,6 +31,8 @@ pub struct Finished<'a> {
     pub lanes: &'a [TapeLane<'a>],
     /// Images, by lane, then by time.
     pub observations: &'a [&'a [u8]],
+    /// Weights of that pass.
+    pub weights: &'a PackedWeights,
     /// How pixels enter.
     pub pixels: &'a PixelScale,
     /// Gradients of rows, their lanes one after the other.
@@ -158,7 +160,8 @@ impl ParameterGradients {
                         for lane in lanes.clone() {
                             let observations = &batch.observations[lane * steps..(lane + 1) * steps];
                             let from = feature_gradients[lane];
-                            group.add_lane(plan, back, batch.pixels, batch.lanes[lane], observations, from, scratch);
+                            let lane = batch.lanes[lane];
+                            group.add_lane(plan, batch.weights, back, batch.pixels, lane, observations, from, scratch);
                         }
                     }
                 }

@@ -156,7 +156,8 @@ impl LearningNetwork for CpuLearner {
             }
         }));
         let dealt: Vec<&RowGradients> = rows.iter().collect();
-        let finished = Finished { lanes: &lanes, observations: &observations, pixels: &self.pixels, rows: &dealt };
+        let (weights, pixels) = (&*self.weights, &*self.pixels);
+        let finished = Finished { lanes: &lanes, observations: &observations, weights, pixels, rows: &dealt };
         parameters.run(&plan, &self.backward, &finished, self.threads, gradient);
         (self.rows, self.parameters) = (rows, parameters);
     }

@@ -11,7 +11,7 @@ pub struct Tape {
     pub steps: usize,
     /// Lanes.
     pub lanes: usize,
-    /// Output of each convolution but the last, in the layout of the next one's input, row after row.
+    /// Output of each convolution but the last, in the layout of the next one's input, row after row; empty for a residual encoder.
     pub activations: Vec<Vec<f32>>,
     /// Output of the last convolution, or the image without one.
     pub features: Vec<f32>,
@@ -37,8 +37,9 @@ impl Tape {
         let shape = &plan.shape;
         let rows = steps * lanes;
         (self.steps, self.lanes) = (steps, lanes);
-        self.activations.resize_with(plan.convolutions.len().saturating_sub(1), Vec::new);
-        for (activations, next) in self.activations.iter_mut().zip(plan.convolutions.iter().skip(1)) {
+        let kept = if shape.residual.is_empty() { plan.convolutions.get(1..).unwrap_or(&[]) } else { &[] };
+        self.activations.resize_with(kept.len(), Vec::new);
+        for (activations, next) in self.activations.iter_mut().zip(kept) {
             activations.resize(rows * next.stored, 0.0);
         }
         self.features.resize(rows * shape.features(), 0.0);

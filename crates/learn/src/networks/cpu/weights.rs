@@ -5,7 +5,7 @@ use super::elementwise::NOWHERE;
 use super::pack::{pack, pack_transposed};
 use super::simd::Kernels;
 use super::tile::PANEL;
-use crate::networks::{NetworkShape, Parameter, PixelScale};
+use crate::networks::{EncoderLayer, NetworkShape, Parameter, PixelScale};
 
 /// What follows from a shape once and for all: plans of the convolutions, places of parameters.
 #[derive(Clone, Debug)]
@@ -14,7 +14,9 @@ pub struct Plan {
     pub kernels: Kernels,
     /// The shape.
     pub shape: NetworkShape,
-    /// A plan for each convolution.
+    /// The convolutions of the encoder.
+    pub layers: Vec<EncoderLayer>,
+    /// A plan for each of them.
     pub convolutions: Vec<ConvolutionPlan>,
     /// The table of parameters.
     pub parameters: Vec<Parameter>,
@@ -26,12 +28,11 @@ impl Plan {
     /// The plan of a checked shape.
     #[must_use]
     pub fn new(kernels: Kernels, shape: &NetworkShape) -> Plan {
-        let images = shape.images();
-        let convolutions =
-            shape.convolutions.iter().zip(&images).map(|(layer, &image)| ConvolutionPlan::new(kernels, image, layer)).collect();
+        let layers = shape.encoder_layers();
         Plan {
             kernels,
-            convolutions,
+            convolutions: layers.iter().map(|layer| ConvolutionPlan::of(kernels, layer)).collect(),
+            layers,
             parameters: shape.parameters(),
             padded_outputs: shape.outputs().next_multiple_of(PANEL),
             shape: shape.clone(),

@@ -35,6 +35,9 @@ pub(super) fn paint(gallery: &mut Gallery) {
         let canvas = if i == 0 { fireball(size, 0.85, &FIRE, 20) } else { smoke(size, i as u32) };
         centred(gallery, "PUFF", &canvas);
     }
+    for (i, size) in [16, 20, 23, 25, 26].into_iter().enumerate() {
+        centred(gallery, "RSMK", &smoke(size, i as u32));
+    }
     for (i, size) in [9, 8, 6].into_iter().enumerate() {
         let blood = [Colour::hex(0x400404), Colour::hex(0x980C08), Colour::hex(0xE02818)];
         centred(gallery, "BLUD", &fireball(size, 0.7, &blood, 30 + i as u32));

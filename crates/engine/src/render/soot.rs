@@ -1,0 +1,170 @@
+//! Soot on walls: darkens what was just drawn of one.
+//!
+//! Fitted to moments of the published engine. Not as there: a mark that reaches beyond its line ends there, where the original
+//! draws the rest on the next one.
+
+use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::seg::SeenSeg;
+use super::walk::Walk;
+use super::wall::{INVERSE_BITS, TextureLine};
+use crate::assets::Stain;
+use crate::math::Fixed;
+use crate::world::{OPAQUE, Soot};
+
+/// Texels of a stain to a map unit.
+const TEXELS: i64 = 2;
+
+/// How many light tables there are.
+const LIGHT_TABLES: usize = 32;
+
+impl Walk<'_> {
+    /// Darkens the part of a wall between the upper and the lower scratch where its side bears soot.
+    pub fn soot<const DEPTH: bool>(&mut self, seen: &SeenSeg<'_>, light: Light) {
+        let Some(stain) = &self.scene.assets.soot else { return };
+        let world = self.world;
+        for mark in world.soot.iter().filter(|mark| mark.side.0 == seen.seg.face) {
+            self.stain::<DEPTH>(seen, light, stain, mark);
+        }
+    }
+
+    fn stain<const DEPTH: bool>(&mut self, seen: &SeenSeg<'_>, light: Light, stain: &Stain, mark: &Soot) {
+        let (camera, view, face) = (self.camera, self.view, seen.face);
+        let along = |x: Fixed, y: Fixed| {
+            (i64::from(x.0) * i64::from(face.along[0]) + i64::from(y.0) * i64::from(face.along[1]) + face.origin) >> 28
+        };
+        let texture = TextureLine::new(camera, face);
+        // Where its left and upper end lie: along the line, and above the eye.
+        let left = along(mark.x, mark.y) - (i64::from(stain.offset_x) << 16) / TEXELS;
+        let above = i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - camera.z;
+        for x in seen.first..seen.end {
+            let column = i64::from(view.columns[x]);
+            let distance = seen.line.distance_at(column);
+            let u = ((texture.at(column, distance) - face.u_offset - left) * TEXELS) >> 16;
+            let Some(texels) = stain.column(u, mark.mirrored) else { continue };
+            let nearness = (seen.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+            let table = light.table(nearness);
+            let step = ((distance * view.inverse_focal_y) >> 16) * TEXELS;
+            // By the lower edges of rows as all things are, but upside down by the upper ones.
+            let from_edge = if mark.upturned { step } else { 0 };
+            let at = ((above * TEXELS) << 16) - camera.to_horizon(step) - from_edge;
+            let depth = self.depths.stain(distance);
+            for row in self.scratch.upper[x].max(0) as usize..self.scratch.lower[x].max(0) as usize {
+                let v = (at + step * i64::from(view.rows[row])) >> 32;
+                let v = if mark.upturned { i64::from(stain.height) - 1 - v } else { v };
+                let Some(&texel) = usize::try_from(v).ok().and_then(|v| texels.get(v)) else { continue };
+                let share = share(texel, table);
+                if share > 0 {
+                    let pixel = &mut self.columns.colour_of(x)[row];
+                    *pixel = self.scene.blend.darkened(*pixel, share);
+                    if DEPTH {
+                        self.columns.depth_of(x)[row] = depth;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Parts of [`OPAQUE`] that a texel hides in the light of a table: in the dark there is less to hide.
+fn share(texel: u8, table: usize) -> u8 {
+    (((usize::from(texel) + 2) * (LIGHT_TABLES - table) + 2) >> 7).min(usize::from(OPAQUE)) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::Assets;
+    use crate::map::{Map, MapBuilder, Style};
+    use crate::math::Angle;
+    use crate::render::{Buffers, FrameSize, Renderer, Scene, View};
+    use crate::world::World;
+    use std::sync::Arc;
+
+    /// A room whose eastern wall the player faces, and the pictures with a stain of 16 by 16 texels that hides all but its rim.
+    fn room() -> (World, Arc<Scene>) {
+        let style = Style {
+            floor: 0,
+            ceiling: 128,
+            light: 255,
+            floor_texture: "STONE5",
+            ceiling_texture: "STONE5",
+            wall: "STONE5",
+            step: "STONE5",
+            lintel: "STONE5",
+            special: 0,
+            tag: 0,
+        };
+        let mut builder = MapBuilder::new();
+        builder.rectangle(style, -64, -64, 64, 64);
+        builder.thing(1, 0.0, 0.0, 0);
+        let map = Arc::new(Map::build(&builder.finish().unwrap(), "room", &[]).unwrap());
+        let texels = (0..256).map(|at| if at % 16 % 15 == 0 || at / 16 % 15 == 0 { 0 } else { 255 }).collect();
+        let soot = Some(Stain { width: 16, height: 16, offset_x: 8, offset_y: 8, texels });
+        let scene = Arc::new(Scene::new(&map, Arc::new(Assets { soot, ..(*Assets::embedded()).clone() })));
+        (World::new(map, 1), scene)
+    }
+
+    fn leave(world: &mut World, y: i32) {
+        let east = Fixed::from_int(64);
+        let index = world.map.lines.iter().position(|line| line.v1.x == east && line.v2.x == east).unwrap();
+        world.leave_soot(index as u32, Fixed::from_int(50), Fixed::from_int(y), Fixed::from_int(41));
+    }
+
+    fn frame(world: &World, scene: &Arc<Scene>, size: FrameSize) -> Vec<[u8; 3]> {
+        let mut renderer = Renderer::new(Arc::clone(scene), Arc::new(View::new(size).unwrap()));
+        renderer.render(world, 0, Buffers { depth: true, labels: true });
+        let mut rgb = vec![0; size.pixels() * 3];
+        renderer.write_rgb_hwc(&mut rgb);
+        rgb.as_chunks().0.to_vec()
+    }
+
+    #[test]
+    fn a_stain_darkens_as_much_of_the_view_as_its_size_says() {
+        let (mut world, scene) = room();
+        let id = world.players[0].actor;
+        world.get_mut(id).unwrap().angle = Angle::EAST;
+        world.players[0].view_z = Fixed::from_int(41);
+        world.players[0].sprites = [None; 2];
+        for size in [FrameSize { width: 160, height: 120 }, FrameSize { width: 640, height: 480 }] {
+            world.soot.clear();
+            let clean = frame(&world, &scene, size);
+            leave(&mut world, 0);
+            let sooty = frame(&world, &scene, size);
+            let dark: Vec<usize> = (0..clean.len()).filter(|&at| clean[at] != sooty[at]).collect();
+            let darkest: Vec<[u8; 3]> = dark.iter().map(|&at| sooty[at]).collect();
+            assert!(darkest.iter().flatten().all(|&channel| channel < 16), "{darkest:?}");
+            // 14 texels are 7 units, 64 away: seven 128ths of the width, and 1.2 times as many rows.
+            let width = usize::from(size.width);
+            let extent = |places: Vec<usize>| 1 + places.iter().max().unwrap() - places.iter().min().unwrap();
+            let columns = extent(dark.iter().map(|at| at % width).collect());
+            let rows = extent(dark.iter().map(|at| at / width).collect());
+            assert!(
+                columns.abs_diff(width * 7 / 128) <= 1 && rows.abs_diff(width * 84 / 1280) <= 1,
+                "{size:?}: {columns} {rows}"
+            );
+            assert_eq!(dark.len(), columns * rows);
+        }
+    }
+
+    #[test]
+    fn the_learners_frame_is_the_reduction_and_clean_pictures_stay_clean() {
+        let (mut world, scene) = room();
+        leave(&mut world, -3);
+        leave(&mut world, 11);
+        let large = frame(&world, &scene, FrameSize { width: 160, height: 120 });
+        let small = frame(&world, &scene, FrameSize::LEARNER);
+        let kept = (0..72 * 128).map(|at| large[at / 128 * 120 / 72 * 160 + at % 128 * 160 / 128]);
+        assert!(kept.eq(small.iter().copied()));
+        let without = Arc::new(Scene::new(&world.map, Assets::embedded()));
+        let clean = frame(&world, &without, FrameSize::LEARNER);
+        world.soot.clear();
+        assert_eq!(frame(&world, &without, FrameSize::LEARNER), clean);
+        assert_ne!(small, clean);
+    }
+
+    #[test]
+    fn in_the_dark_there_is_less_to_hide() {
+        assert_eq!([share(255, 0), share(0, 0), share(128, 0)], [OPAQUE, 0, 32]);
+        assert_eq!([share(255, 16), share(255, 31)], [32, 2]);
+    }
+}
