@@ -127,7 +127,14 @@ def thread(rounds):
     envs.reset(seed=0)
     actions = envs.action_space.sample()
 
-    def counted(beside):
+    def counted():
+        count, start = 0, time.perf_counter()
+        while time.perf_counter() - start < SECONDS:
+            for _ in range(1000):
+                count += 1
+        return count / (time.perf_counter() - start)
+
+    def beside_worlds():
         over = threading.Event()
 
         def work():
@@ -135,19 +142,22 @@ def thread(rounds):
                 envs.step(actions)
 
         worker = threading.Thread(target=work)
-        if beside:
-            worker.start()
-        count, start = 0, time.perf_counter()
-        while time.perf_counter() - start < SECONDS:
-            for _ in range(1000):
-                count += 1
-        found = count / (time.perf_counter() - start)
+        worker.start()
+        found = counted()
         over.set()
-        if beside:
-            worker.join()
+        worker.join()
         return found
 
-    told("a second Python thread's count, while 32 worlds step and alone", [(counted(True), counted(False)) for _ in range(rounds)])
+    def beside_a_process():
+        looping = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+        found = counted()
+        looping.kill()
+        looping.wait()
+        return found
+
+    told("a second Python thread's count, while 32 worlds step and alone", [(beside_worlds(), counted()) for _ in range(rounds)])
+    # What a second core is worth at all on this machine just now.
+    told("the same beside a process that only loops, and alone", [(beside_a_process(), counted()) for _ in range(rounds)])
 
 
 def imported(rounds):

@@ -10,7 +10,7 @@ frames = int(sys.argv[2]) if len(sys.argv) > 2 else 200_000
 
 
 def callback(report: dict) -> bool:
-    print({name: report.get(name) for name in ("frames", "return", "cost")})
+    print({name: report.get(name) for name in ("frames", "return_mean", "cost_mean")})
     return report["frames"] >= frames
 
 
