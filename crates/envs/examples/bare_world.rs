@@ -56,6 +56,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         Angle(angle(start[3]) as u32),
         angle(start[4]) as i32,
     );
+    // Scripts put a body over the floor under its middle, be a higher one beside it.
+    if let Some(body) = world.get_mut(own) {
+        body.floor_z = body.floor_z.min(body.z);
+    }
     let mut out = BufWriter::new(std::io::stdout().lock());
     for line in lines {
         world.run_thinkers(&[parse_command(line)?]);
