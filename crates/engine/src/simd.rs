@@ -90,13 +90,13 @@ impl Simd {
 
 /// Asks for a value to be brought into the nearest cache: a hint without effect on any result.
 #[inline(always)]
-pub(crate) fn prefetch<T>(value: &T) {
+pub(crate) fn prefetch<T: ?Sized>(value: &T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         const LINE: usize = 64;
         let start: *const i8 = std::ptr::from_ref(value).cast();
-        for offset in (0..size_of::<T>()).step_by(LINE) {
+        for offset in (0..size_of_val(value)).step_by(LINE) {
             // SAFETY: every x86-64 has the instruction, and it may be given any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(offset)) }
         }

@@ -235,6 +235,34 @@ fn swinging_floors_have_the_scripts_amplitude_and_period() {
 }
 
 #[test]
+fn floors_that_are_stopped_stay_and_the_others_swing_on() {
+    let swinging = || {
+        let mut world = hall(8, 2, (64, 64), |_, _| 32);
+        (1..=6).for_each(|tag| world.floor_waggle(tag, 100 + 20 * tag, 256, 0, 1));
+        world.floor_move_to_value(7, 1, 100);
+        run(&mut world, 60, NOTHING);
+        world
+    };
+    let (mut world, mut undisturbed) = (swinging(), swinging());
+    let stopped = [2, 5, 7].map(|tag| {
+        world.stop_floors(tag);
+        (tag, floor(&world, tag))
+    });
+    for tic in 0..300 {
+        run(&mut world, 1, NOTHING);
+        run(&mut undisturbed, 1, NOTHING);
+        for tag in [1, 3, 4, 6] {
+            assert_eq!(floor(&world, tag), floor(&undisturbed, tag), "floor {tag}, {tic} tics later");
+        }
+        assert!(stopped.iter().all(|&(tag, height)| floor(&world, tag) == height), "{tic} tics later");
+    }
+    assert!((1..=7).all(|tag| !world.sector(sector(&world, tag)).floor_busy));
+    world.floor_waggle(5, 200, 256, 0, 1);
+    run(&mut world, 60, NOTHING);
+    assert_ne!(floor(&world, 5), stopped[1].1);
+}
+
+#[test]
 fn lights_glow_in_a_triangle_and_strobe_dark_first() {
     let mut world = hall(4, 2, (64, 64), |_, _| 0);
     world.light_glow(1, 200, 100, 50);

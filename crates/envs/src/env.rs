@@ -224,6 +224,7 @@ impl Env {
             return Step { reward: 0.0, cost: 0.0, ..self.last };
         }
         let game = &mut self.game;
+        game.world.prefetch();
         (game.outcome.reward, game.outcome.costs) = (0.0, [0.0; MOST_TERMS]);
         for _ in 0..self.blueprint.options.frame_skip {
             game.tic(command);

@@ -7,6 +7,7 @@ mod common;
 use browser::Browser;
 use common::{folder, serve, serve_at, write_heatmaps, write_run};
 use serde_json::json;
+use std::time::Duration;
 
 /// A key by its name in the browser, as WebDriver wants it.
 fn key(name: &str) -> &str {
@@ -126,6 +127,40 @@ fn an_episode_is_played_kept_and_found_in_the_table() {
     // It plays here too.
     browser.script("document.body.append(Object.assign(document.createElement('video'), { src: document.querySelector('#best a[href*=mp4]').href, id: 'film', muted: true })); document.getElementById('film').play()");
     browser.wait("document.getElementById('film').currentTime > 0.2 && document.getElementById('film').videoWidth == 320");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn a_finger_walks_and_a_caught_mouse_turns() {
+    let Some(browser) = Browser::open(1280, 1000, false) else { return };
+    let folder = folder("chromium-pointer");
+    let address = serve(&folder, None);
+    browser.touched();
+    browser.go(&format!("http://{address}/#play?env=VolcanicVentureLevel1-v0&seed=3&hard=true&size=320x240"));
+    browser.wait("document.querySelector('#numbers b')");
+    // Into the lava, as in the test of keys.
+    browser.wait("document.querySelector('.touch').offsetHeight > 0");
+    browser.pointer("touch", Ok("button[aria-label=MOVE_FORWARD]"), Some(true));
+    browser.wait("document.querySelector('#words').innerText.includes('kept as')");
+    browser.pointer("touch", Ok("button[aria-label=MOVE_FORWARD]"), Some(false));
+
+    browser.go(&format!("http://{address}/#play?env=ArmamentBurdenLevel1-v0&seed=3&size=320x240"));
+    browser.wait("document.querySelector('#numbers b')");
+    browser.pointer("mouse", Ok("#game"), Some(true));
+    browser.pointer("mouse", Ok("#game"), Some(false));
+    browser.wait("document.pointerLockElement?.id == 'game' && document.querySelector('#numbers b').innerText != '0.0 s'");
+    // The share of the picture that is another than at first.
+    browser.script(
+        "window.changed = () => { const copy = Object.assign(document.createElement('canvas'), { width: 320, height: 240 }); \
+         const pen = copy.getContext('2d'); pen.drawImage(document.getElementById('game'), 0, 0, 320, 240); \
+         const now = pen.getImageData(0, 0, 320, 240).data; window.first ??= now; \
+         return now.filter((value, at) => Math.abs(value - first[at]) > 24).length / now.length; }; changed()",
+    );
+    std::thread::sleep(Duration::from_millis(300));
+    let still = browser.script("return changed()").as_f64().unwrap();
+    assert!(still < 0.1, "{still} of the picture changed by itself");
+    browser.pointer("mouse", Err([200, 0]), None);
+    browser.wait(&format!("changed() > {}", 2.0 * still + 0.1));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 

@@ -65,9 +65,9 @@ impl Masked<'_> {
             if first >= end {
                 continue;
             }
-            let silhouette = *silhouette;
-            if !self.is_behind(sprite, &silhouette) {
+            if !self.is_behind(sprite, silhouette) {
                 if silhouette.masked {
+                    let silhouette = *silhouette;
                     self.texture::<DEPTH, CLASS>(&silhouette, first, end);
                 }
                 continue;

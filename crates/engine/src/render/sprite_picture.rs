@@ -3,6 +3,7 @@
 
 use super::picture::MaskedPicture;
 use crate::assets::Image;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Texels that wide code loads at once; rows are padded to whole blocks of these.
@@ -21,6 +22,8 @@ pub(super) struct SpritePicture {
     pub offset_y: i32,
     /// The same by columns.
     columns: MaskedPicture,
+    /// Of each column the first row without a hole, and one past the last.
+    extents: Arc<[[u16; 2]]>,
     /// From one row to the next.
     pub stride: usize,
     /// Palette indices by rows.
@@ -34,11 +37,18 @@ impl SpritePicture {
         let (width, height) = (usize::from(image.width), usize::from(image.height));
         let (stride, columns) = (width.next_multiple_of(TEXEL_BLOCK), MaskedPicture::new(image));
         let (mut texels, mut opaque) = (vec![0; stride * height], vec![0; stride * height / TEXEL_BLOCK]);
+        let is_opaque = |texel: &u16| texel & MaskedPicture::OPAQUE != 0;
+        let extents = (0..width).map(|column| {
+            let texels = columns.column(column as u32);
+            let ends = texels.iter().position(is_opaque).zip(texels.iter().rposition(is_opaque));
+            ends.map_or([0, 0], |(first, last)| [first as u16, last as u16 + 1])
+        });
+        let extents = extents.collect();
         for column in 0..width {
             for (row, &texel) in columns.column(column as u32).iter().enumerate() {
                 let to = row * stride + column;
                 texels[to] = texel as u8;
-                opaque[to / TEXEL_BLOCK] |= u64::from(texel & MaskedPicture::OPAQUE != 0) << (to % TEXEL_BLOCK);
+                opaque[to / TEXEL_BLOCK] |= u64::from(is_opaque(&texel)) << (to % TEXEL_BLOCK);
             }
         }
         SpritePicture {
@@ -47,6 +57,7 @@ impl SpritePicture {
             offset_x: i32::from(image.offset_x),
             offset_y: i32::from(image.offset_y),
             columns,
+            extents,
             stride,
             texels: texels.into(),
             opaque: opaque.into(),
@@ -64,6 +75,13 @@ impl SpritePicture {
     #[inline(always)]
     pub fn column(&self, column: u16) -> &[u16] {
         self.columns.column(u32::from(column))
+    }
+
+    /// The rows of a column between which all texels without a hole lie.
+    #[inline(always)]
+    pub fn extent(&self, column: u16) -> Range<usize> {
+        let [first, end] = self.extents[usize::from(column)].map(usize::from);
+        first..end
     }
 
     /// The palette indices of all texels without a hole.

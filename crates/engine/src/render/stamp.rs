@@ -126,18 +126,32 @@ impl Stamp<'_> {
         frame: &mut Frame,
         base_rows: &[u32],
         i: usize,
-        open: Range<usize>,
+        mut open: Range<usize>,
         covered: &mut Covered,
     ) {
         let (x, width) = (self.first + i, frame.width);
         let texels = self.picture.column(self.columns.texels[i]);
-        let pixels = frame.colour[open.start * width + x..].iter_mut().step_by(width);
-        for (pixel, &base_row) in pixels.zip(&base_rows[open.clone()]) {
-            let texel = texels[self.texel_row(base_row)];
-            let lit = self.table[usize::from(texel as u8)];
-            let lit = self.blend.map_or(lit, |(blend, opacity)| blend.over(lit, *pixel, opacity));
-            // Which texels are holes cannot be foretold.
-            *pixel = if texel & MaskedPicture::OPAQUE != 0 { lit } else { *pixel };
+        // Half of a weapon's picture is air above it.
+        let extent = self.picture.extent(self.columns.texels[i]);
+        while !open.is_empty() && self.texel_row(base_rows[open.start]) < extent.start {
+            open.start += 1;
+        }
+        while !open.is_empty() && self.texel_row(base_rows[open.end - 1]) >= extent.end {
+            open.end -= 1;
+        }
+        let lines = frame.colour[open.start * width..].chunks_exact_mut(width).zip(&base_rows[open.clone()]);
+        // Which texels are holes cannot be foretold.
+        match self.blend {
+            None => lines.for_each(|(line, &base_row)| {
+                let texel = texels[self.texel_row(base_row)];
+                let lit = self.table[usize::from(texel as u8)];
+                line[x] = if texel & MaskedPicture::OPAQUE != 0 { lit } else { line[x] };
+            }),
+            Some((blend, opacity)) => lines.for_each(|(line, &base_row)| {
+                let texel = texels[self.texel_row(base_row)];
+                let lit = blend.over(self.table[usize::from(texel as u8)], line[x], opacity);
+                line[x] = if texel & MaskedPicture::OPAQUE != 0 { lit } else { line[x] };
+            }),
         }
         if !(DEPTH || CLASS) {
             return;

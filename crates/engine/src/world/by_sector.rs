@@ -1,6 +1,7 @@
 //! Which entry of a list belongs to a sector.
 
 use crate::map::SectorId;
+use crate::simd::prefetch;
 
 /// For each sector the index of its entry in some list, if it has one. Worlds without entries pay nothing.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +15,11 @@ impl BySector {
     #[inline]
     pub(crate) fn get(&self, sector: SectorId) -> Option<usize> {
         self.0.get(sector.0 as usize).filter(|&&index| index != NONE).map(|&index| index as usize)
+    }
+
+    /// Asks the processor for all of it.
+    pub(crate) fn prefetch(&self) {
+        prefetch(&self.0[..]);
     }
 
     /// Gives a sector an entry, or another one.

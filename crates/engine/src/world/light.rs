@@ -4,6 +4,7 @@
 use super::World;
 use super::by_sector::BySector;
 use crate::map::SectorId;
+use crate::simd::prefetch;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
@@ -79,6 +80,12 @@ impl Lights {
     /// Whether some have not run in this tic.
     pub(crate) fn wait(&self) -> bool {
         self.run < self.list.len()
+    }
+
+    /// Asks the processor for all of them.
+    pub(crate) fn prefetch(&self) {
+        prefetch(&self.list[..]);
+        self.of_sector.prefetch();
     }
 
     fn now(&self, index: usize, level: i16) -> (Effect, i16) {

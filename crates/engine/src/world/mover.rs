@@ -5,6 +5,7 @@ use super::waggle::Waggle;
 use super::{Actor, ActorFlags, World};
 use crate::map::SectorId;
 use crate::math::Fixed;
+use crate::simd::prefetch;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
@@ -63,13 +64,28 @@ impl Movers {
         self.note(self.list.len() - 1);
     }
 
-    /// Ends a mover before its time.
-    fn remove(&mut self, index: usize) {
-        if let Mover::Waggle(waggle) = self.list.remove(index) {
-            self.swings.clear(waggle.sector);
+    /// Ends the movers of floors before their time, where `stopped` says so of their sector. What is noted of the others stays
+    /// true but for their numbers.
+    fn stop_floors(&mut self, stopped: impl Fn(SectorId) -> bool) {
+        let mut kept = 0;
+        for index in 0..self.list.len() {
+            let mover = self.list[index];
+            if mover.floor().is_some_and(&stopped) {
+                self.run -= usize::from(kept < self.run);
+                if let Mover::Waggle(waggle) = mover {
+                    self.swings.clear(waggle.sector);
+                }
+                continue;
+            }
+            if kept < index {
+                self.list[kept] = mover;
+                if let Mover::Waggle(waggle) = mover {
+                    self.swings.set(waggle.sector, kept);
+                }
+            }
+            kept += 1;
         }
-        self.run -= usize::from(index < self.run);
-        (index..self.list.len()).for_each(|moved| self.note(moved));
+        self.list.truncate(kept);
     }
 
     /// Notes what follows from the mover of number `index`.
@@ -92,6 +108,12 @@ impl Movers {
     #[inline]
     pub(crate) fn swing_of(&self, sector: SectorId) -> Option<usize> {
         self.swings.get(sector)
+    }
+
+    /// Asks the processor for all of them.
+    pub(crate) fn prefetch(&self) {
+        prefetch(&self.list[..]);
+        self.swings.prefetch();
     }
 
     /// The swinging floor of number `index` as it is now, if its entry lags behind.
@@ -128,10 +150,11 @@ pub(crate) enum Mover {
 }
 
 impl Mover {
-    fn moves_floor_of(&self, sector: SectorId) -> bool {
+    /// The sector whose floor it moves.
+    fn floor(&self) -> Option<SectorId> {
         match self {
-            Mover::Plane(plane) => plane.sector == sector && !plane.ceiling,
-            Mover::Waggle(waggle) => waggle.sector == sector,
+            Mover::Plane(plane) => (!plane.ceiling).then_some(plane.sector),
+            Mover::Waggle(waggle) => Some(waggle.sector),
         }
     }
 }
@@ -174,13 +197,15 @@ impl World {
     /// Ends whatever the floors of the sectors with a tag still do: they stay at the height that they have.
     pub fn stop_floors(&mut self, tag: i32) {
         let map = Arc::clone(&self.map);
+        let mut any = false;
         for sector in map.tagged(tag) {
-            if !std::mem::replace(&mut self.sector_mut(sector).floor_busy, false) {
-                continue;
-            }
-            if let Some(index) = self.movers.list.iter().position(|mover| mover.moves_floor_of(sector)) {
-                self.movers.remove(index);
-            }
+            any |= std::mem::replace(&mut self.sector_mut(sector).floor_busy, false);
+        }
+        // In one pass over the movers: there may be as many as there are floors to stop.
+        if any {
+            let sectors = &self.sectors;
+            let stopped = |SectorId(sector)| !sectors[sector as usize].floor_busy && map.sectors[sector as usize].tag == tag;
+            self.movers.stop_floors(stopped);
         }
     }
 

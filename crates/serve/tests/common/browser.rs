@@ -126,6 +126,29 @@ impl Browser {
         self.here("POST", "/actions", &json!({ "actions": [{ "type": "key", "id": "keys", "actions": actions }] }));
     }
 
+    /// As on a tablet: fingers, and nothing that hovers.
+    #[allow(dead_code, reason = "each test file uses some of it")]
+    pub fn touched(&self) {
+        let fingers = json!({ "cmd": "Emulation.setTouchEmulationEnabled", "params": { "enabled": true, "maxTouchPoints": 5 } });
+        self.here("POST", "/goog/cdp/execute", &fingers);
+    }
+
+    /// Moves a pointer (`mouse` or `touch`) to the middle of the element that `selector` finds, or by some pixels from where it is, and
+    /// presses or releases it there.
+    #[allow(dead_code, reason = "each test file uses some of it")]
+    pub fn pointer(&self, kind: &str, to: Result<&str, [i32; 2]>, press: Option<bool>) {
+        let mut actions = vec![match to {
+            Ok(selector) => {
+                let found = self.here("POST", "/element", &json!({ "using": "css selector", "value": selector }));
+                json!({ "type": "pointerMove", "duration": 0, "origin": found, "x": 0, "y": 0 })
+            }
+            Err([x, y]) => json!({ "type": "pointerMove", "duration": 100, "origin": "pointer", "x": x, "y": y }),
+        }];
+        actions.extend(press.map(|down| json!({ "type": if down { "pointerDown" } else { "pointerUp" }, "button": 0 })));
+        let pointer = json!({ "type": "pointer", "id": kind, "parameters": { "pointerType": kind }, "actions": actions });
+        self.here("POST", "/actions", &json!({ "actions": [pointer] }));
+    }
+
     /// Errors that the console shows.
     pub fn errors(&self) -> Vec<String> {
         let log = self.here("POST", "/se/log", &json!({ "type": "browser" }));
