@@ -10,7 +10,7 @@ use published_figures::{COLUMNS, allowed, ours, published, standard_error};
 const EPISODES: u64 = 320;
 const IDLE_EPISODES: u64 = 20;
 
-/// A row whose path hangs on a rare event, which needs more: in one episode of seventy (17 of 1,200; two of the 60 published ones)
+/// A row whose path hangs on a rare event, which needs more: in one episode of seventy (17 of 1,200; some two of the 60 published ones, inferred from their mean and deviation)
 /// a rocket bursts so near that it throws the agent by some map units. Of 320 episodes as few as one may have it.
 const RARE: (&str, &str, u64) = ("CollateralDamageLevel3-v0", "hold-after:1:ATTACK", 960);
 
