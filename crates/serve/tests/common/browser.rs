@@ -118,6 +118,22 @@ impl Browser {
         }
     }
 
+    /// The picture of a canvas, once it has stayed the same for half a second.
+    #[allow(dead_code, reason = "each test file uses some of it")]
+    pub fn resting(&self, canvas: &str) -> Value {
+        let look = format!("return document.querySelector('{canvas}').toDataURL()");
+        let (begun, mut picture, mut since) = (Instant::now(), self.script(&look), Instant::now());
+        while since.elapsed() < Duration::from_millis(500) {
+            assert!(begun.elapsed() < Duration::from_secs(60), "{canvas} does not come to rest");
+            std::thread::sleep(Duration::from_millis(100));
+            let now = self.script(&look);
+            if now != picture {
+                (picture, since) = (now, Instant::now());
+            }
+        }
+        picture
+    }
+
     /// Presses keys one after the other (`down`) or lets them go.
     #[allow(dead_code, reason = "each test file uses some of it")]
     pub fn keys(&self, keys: &[&str], down: bool) {
