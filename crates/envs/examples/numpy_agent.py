@@ -64,6 +64,10 @@ class Agent:
 
     def __init__(self, checkpoint, convolutions, sizes):
         self.weights, self.convolutions, self.sizes = tensors(checkpoint), convolutions, sizes
+        if "network0.stage0.convolution.weight" in self.weights:
+            raise SystemExit("this example computes plain convolutions, and the run has a residual encoder: train with network.residual=[]")
+        if "network0.lstm.hidden_weight" in self.weights:
+            raise SystemExit("this example computes GRUs, and the run has an LSTM: train with network.cell=\"gru\"")
         deviation = np.sqrt(self.weights["pixels.variance"] + PIXEL_EPSILON)
         self.scale, self.shift = 1 / (255 * deviation), -self.weights["pixels.mean"] / deviation
         self.forget()
@@ -72,10 +76,6 @@ class Agent:
         return x @ self.weights[f"network0.{name}.weight"] + self.weights[f"network0.{name}.bias"]
 
     def forget(self):
-        if "network0.stage0.convolution.weight" in self.weights:
-            raise SystemExit("this example computes plain convolutions, and the run has a residual encoder: train with network.residual=[]")
-        if "network0.lstm.hidden_weight" in self.weights:
-            raise SystemExit("this example computes GRUs, and the run has an LSTM: train with network.cell=\"gru\"")
         hidden = self.weights.get("network0.gru.hidden_weight")
         self.state = None if hidden is None else np.zeros(len(hidden), np.float32)
 

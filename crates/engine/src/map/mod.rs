@@ -14,6 +14,8 @@ mod hostile_tests;
 mod left_out;
 mod locator;
 mod source;
+#[cfg(test)]
+mod stone_room;
 mod tile_grid;
 pub mod udmf;
 
@@ -24,4 +26,6 @@ pub use built::{
 pub use error::MapError;
 pub use locator::Locator;
 pub use source::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+#[cfg(test)]
+pub(crate) use stone_room::stone_room;
 pub use tile_grid::TileGrid;

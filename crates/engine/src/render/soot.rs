@@ -74,7 +74,7 @@ fn share(texel: u8, table: usize) -> u8 {
 mod tests {
     use super::*;
     use crate::assets::Assets;
-    use crate::map::{Map, MapBuilder, Style};
+    use crate::map::stone_room;
     use crate::math::Angle;
     use crate::render::{Buffers, FrameSize, Renderer, Scene, View};
     use crate::world::World;
@@ -82,22 +82,7 @@ mod tests {
 
     /// A room whose eastern wall the player faces, and the pictures with a stain of 16 by 16 texels that hides all but its rim.
     fn room() -> (World, Arc<Scene>) {
-        let style = Style {
-            floor: 0,
-            ceiling: 128,
-            light: 255,
-            floor_texture: "STONE5",
-            ceiling_texture: "STONE5",
-            wall: "STONE5",
-            step: "STONE5",
-            lintel: "STONE5",
-            special: 0,
-            tag: 0,
-        };
-        let mut builder = MapBuilder::new();
-        builder.rectangle(style, -64, -64, 64, 64);
-        builder.thing(1, 0.0, 0.0, 0);
-        let map = Arc::new(Map::build(&builder.finish().unwrap(), "room", &[]).unwrap());
+        let map = stone_room(255, [-64, -64, 64, 64], &[[0.0, 0.0]]);
         let texels = (0..256).map(|at| if at % 16 % 15 == 0 || at / 16 % 15 == 0 { 0 } else { 255 }).collect();
         let soot = Some(Stain { width: 16, height: 16, offset_x: 8, offset_y: 8, texels });
         let scene = Arc::new(Scene::new(&map, Arc::new(Assets { soot, ..(*Assets::embedded()).clone() })));

@@ -125,27 +125,12 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Map, MapBuilder, Style};
+    use crate::map::stone_room;
     use crate::world::ActorId;
-    use std::sync::Arc;
 
     #[test]
     fn puffs_of_smoke_live_as_long_as_in_the_original() {
-        let style = Style {
-            floor: 0,
-            ceiling: 128,
-            light: 200,
-            floor_texture: "STONE5",
-            ceiling_texture: "STONE5",
-            wall: "STONE5",
-            step: "STONE5",
-            lintel: "STONE5",
-            special: 0,
-            tag: 0,
-        };
-        let mut builder = MapBuilder::new();
-        builder.rectangle(style, 0, 0, 4000, 256);
-        let mut world = World::new(Arc::new(Map::build(&builder.finish().unwrap(), "room", &[]).unwrap()), 5);
+        let mut world = World::new(stone_room(200, [0, 0, 4000, 256], &[]), 5);
         let id = world.spawn(ActorKind::Rocket, Fixed::from_int(64), Fixed::from_int(128), Fixed::from_int(50));
         world.get_mut(id).unwrap().vx = Fixed::from_int(20);
         let mut seen: Vec<(ActorId, i32)> = Vec::new();

@@ -52,27 +52,12 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Map, MapBuilder, Style};
+    use crate::map::stone_room;
     use crate::math::Angle;
     use crate::world::ActorKind;
-    use std::sync::Arc;
 
     fn room() -> World {
-        let style = Style {
-            floor: 0,
-            ceiling: 128,
-            light: 200,
-            floor_texture: "STONE5",
-            ceiling_texture: "STONE5",
-            wall: "STONE5",
-            step: "STONE5",
-            lintel: "STONE5",
-            special: 0,
-            tag: 0,
-        };
-        let mut builder = MapBuilder::new();
-        builder.rectangle(style, -256, -256, 256, 256);
-        World::new(Arc::new(Map::build(&builder.finish().unwrap(), "room", &[]).unwrap()), 1)
+        World::new(stone_room(200, [-256, -256, 256, 256], &[]), 1)
     }
 
     #[test]

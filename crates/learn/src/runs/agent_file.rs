@@ -81,19 +81,22 @@ fn nibble(code: i8) -> u8 {
     (code + 8).cast_unsigned() & 15
 }
 
+/// Bits of the codes of so many weights; `None` if codes and scales are not those of so many.
+fn bits_of(bytes: &[u8], scales: &[f32], count: usize) -> Option<u32> {
+    let bits = [(8, count), (4, count.div_ceil(2))].into_iter().find(|&(_, length)| bytes.len() == length)?.0;
+    (scales.len() == count.div_ceil(BLOCK)).then_some(bits)
+}
+
 /// The weights that codes and scales stand for; `None` if they do not belong together.
 fn unround(bytes: &[u8], scales: &[f32], count: usize) -> Option<Vec<f32>> {
-    let (bits, codes): (u32, Vec<i8>) = if bytes.len() == count {
-        (8, bytes.iter().map(|byte| byte.cast_signed()).collect())
-    } else if bytes.len() == count.div_ceil(2) {
-        let two = |byte: &u8| [(byte & 15).cast_signed() - 8, (byte >> 4).cast_signed() - 8];
-        (4, bytes.iter().flat_map(two).take(count).collect())
-    } else {
-        return None;
+    let bits = bits_of(bytes, scales, count)?;
+    let codes: Vec<i8> = match bits {
+        8 => bytes.iter().map(|byte| byte.cast_signed()).collect(),
+        _ => {
+            let two = |byte: &u8| [(byte & 15).cast_signed() - 8, (byte >> 4).cast_signed() - 8];
+            bytes.iter().flat_map(two).take(count).collect()
+        }
     };
-    if scales.len() != count.div_ceil(BLOCK) {
-        return None;
-    }
     let blocks = codes.chunks(BLOCK).zip(scales);
     Some(blocks.flat_map(|(block, scale)| block.iter().map(move |&code| f32::from(code) * scale / largest_code(bits))).collect())
 }
@@ -203,10 +206,7 @@ impl AgentFile {
     pub(crate) fn check_fits(&self, shape: &ModelShape) -> Result<(), LearnError> {
         for (name, _, range) in parameter_names(shape) {
             let (bytes, scales) = self.codes.get(&name).ok_or_else(|| misfit(&name))?;
-            let whole = bytes.len() == range.len() || bytes.len() == range.len().div_ceil(2);
-            if !whole || scales.len() != range.len().div_ceil(BLOCK) {
-                return Err(misfit(&name));
-            }
+            bits_of(bytes, scales, range.len()).ok_or_else(|| misfit(&name))?;
         }
         Ok(())
     }

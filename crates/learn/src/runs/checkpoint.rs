@@ -93,6 +93,15 @@ impl View for &Block {
     }
 }
 
+/// Refuses a block of another kind or number of values.
+fn check_block(view: &TensorView<'_>, kind: Dtype, length: usize, name: &str) -> Result<(), String> {
+    let count = 8 * view.data().len() / kind.bitsize();
+    if view.dtype() != kind || count != length {
+        return Err(format!("'{name}' has {count} values of {:?}, not {length}", view.dtype()));
+    }
+    Ok(())
+}
+
 macro_rules! block {
     ($name:ident, $parse:ident, $type:ty, $kind:ident) => {
         fn $name(values: &[$type], shape: Vec<usize>) -> Block {
@@ -100,10 +109,8 @@ macro_rules! block {
         }
 
         fn $parse(view: &TensorView<'_>, length: usize, name: &str) -> Result<Vec<$type>, String> {
+            check_block(view, Dtype::$kind, length, name)?;
             let (chunks, _) = view.data().as_chunks::<{ size_of::<$type>() }>();
-            if view.dtype() != Dtype::$kind || chunks.len() != length {
-                return Err(format!("'{name}' has {} values of {:?}, not {length}", chunks.len(), view.dtype()));
-            }
             Ok(chunks.iter().map(|bytes| <$type>::from_le_bytes(*bytes)).collect())
         }
     };
@@ -280,9 +287,7 @@ impl Loaded {
         let tensors = self.tensors().map_err(misfit)?;
         for (name, _, range) in parameter_names(shape) {
             let found = tensors.tensor(&name).map_err(|error| misfit(format!("{name}: {error}")))?;
-            if found.data().len() != 4 * range.len() {
-                return Err(misfit(format!("{name} has {} bytes, not those of {} weights", found.data().len(), range.len())));
-            }
+            check_block(&found, Dtype::F32, range.len(), &name).map_err(misfit)?;
         }
         Ok(())
     }

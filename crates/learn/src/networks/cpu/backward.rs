@@ -69,7 +69,7 @@ impl RowGradients {
                 Some(before) => (before, shape.dense[index - 1]),
                 // Nothing flows into an image.
                 None if plan.convolutions.is_empty() => break,
-                None => (&mut self.features, shape.features()),
+                None => (&mut self.features, plan.features),
             };
             let to = sized(to, rows * inputs);
             let left = Left { data: sums, row_stride: units, inner_stride: 1 };

@@ -65,15 +65,11 @@ impl EncoderGradient {
         scratch: &mut Scratch,
     ) {
         let kernels = plan.kernels;
-        let features = plan.shape.features();
+        let features = plan.features;
         let layers = plan.convolutions.len();
         if !plan.shape.residual.is_empty() {
-            for ((observation, d), features) in observations
-                .iter()
-                .zip(feature_gradient.chunks_exact(features))
-                .zip(lane.of(&lane.tape.features, features).chunks_exact(features))
-            {
-                scratch.residual.add_gradients(plan, weights, back, pixels, observation, features, d, &mut self.layers);
+            for (observation, d) in observations.iter().zip(feature_gradient.chunks_exact(features)) {
+                scratch.residual.add_gradients(plan, weights, back, pixels, observation, d, &mut self.layers);
             }
             return;
         }

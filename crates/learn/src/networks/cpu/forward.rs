@@ -95,7 +95,7 @@ impl Forward {
     /// The encoder on every row, and the features that it ends in.
     fn encode(&mut self, plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, tape: &mut Tape) {
         let kernels = plan.kernels;
-        let features = plan.shape.features();
+        let features = plan.features;
         if !plan.shape.residual.is_empty() {
             for (row, observation) in rows.iter().zip(input.observations) {
                 let to = &mut tape.features[row * features..(row + 1) * features];
@@ -189,7 +189,7 @@ fn dense(plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, ta
     for (index, &units) in shape.dense.iter().enumerate() {
         let (earlier, rest) = tape.dense.split_at_mut(index);
         let (from, inputs) = match earlier.last() {
-            None => (&tape.features, shape.features()),
+            None => (&tape.features, plan.features),
             Some(before) => (before, shape.dense[index - 1]),
         };
         let (to, width) = match rest.first_mut() {

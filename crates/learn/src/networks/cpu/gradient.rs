@@ -138,7 +138,7 @@ impl ParameterGradients {
         }
         deal_out_heads(&heads, &mut self.joined_heads, &mut self.joined_biases, &mut jobs);
 
-        let features = shape.features();
+        let features = plan.features;
         let feature_gradients: Vec<&[f32]> = batch
             .rows
             .iter()

@@ -43,21 +43,17 @@ vectorised! {
     }
 }
 
-vectorised! {
-    /// Copies the pixels of an image to `targets`.
-    pub fn scatter(image: &[f32], channels: usize, targets: &[usize], out: &mut [f32]) {
-        for (from, &target) in image.chunks_exact(channels).zip(targets) {
-            out[target..target + channels].copy_from_slice(from);
-        }
+/// Copies the pixels of an image to `targets`.
+pub fn scatter(image: &[f32], channels: usize, targets: &[usize], out: &mut [f32]) {
+    for (from, &target) in image.chunks_exact(channels).zip(targets) {
+        out[target..target + channels].copy_from_slice(from);
     }
 }
 
-vectorised! {
-    /// Copies the pixels at `sources` to an image.
-    pub fn gather(from: &[f32], sources: &[usize], channels: usize, image: &mut [f32]) {
-        for (&source, to) in sources.iter().zip(image.chunks_exact_mut(channels)) {
-            to.copy_from_slice(&from[source..source + channels]);
-        }
+/// Copies the pixels at `sources` to an image.
+pub fn gather(from: &[f32], sources: &[usize], channels: usize, image: &mut [f32]) {
+    for (&source, to) in sources.iter().zip(image.chunks_exact_mut(channels)) {
+        to.copy_from_slice(&from[source..source + channels]);
     }
 }
 

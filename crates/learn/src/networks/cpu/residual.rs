@@ -45,6 +45,12 @@ impl ResidualImage {
         observation: &[u8],
         features: &mut [f32],
     ) {
+        self.run(plan, weights, pixels, observation);
+        features.iter_mut().zip(&self.flow).for_each(|(to, from)| *to = from.max(0.0));
+    }
+
+    /// Computes what flows out of the last stage, a rectifier before the features.
+    fn run(&mut self, plan: &Plan, weights: &PackedWeights, pixels: &PixelScale, observation: &[u8]) {
         let kernels = plan.kernels;
         self.stored.resize_with(plan.convolutions.len(), Vec::new);
         for (stored, convolution) in self.stored.iter_mut().zip(&plan.convolutions) {
@@ -73,10 +79,9 @@ impl ResidualImage {
                 let (from, bias) = (&plan.convolutions[one + 1].raw_places, &weights.convolution_biases[one + 1]);
                 add_biased(kernels, &self.raw, from, bias, &mut self.flow[..image.pooled().size()]);
             }
-            let flow = &self.flow[..image.pooled().size()];
-            match plan.convolutions.get(first + STAGE) {
-                Some(next) => scatter(kernels, flow, channels, &next.places, &mut self.stored[first + STAGE]),
-                None => features.iter_mut().zip(flow).for_each(|(to, from)| *to = from.max(0.0)),
+            if let Some(next) = plan.convolutions.get(first + STAGE) {
+                let flow = &self.flow[..image.pooled().size()];
+                scatter(flow, channels, &next.places, &mut self.stored[first + STAGE]);
             }
         }
     }
@@ -98,28 +103,24 @@ impl ResidualImage {
         back: &Backward,
         pixels: &PixelScale,
         observation: &[u8],
-        features: &[f32],
         feature_gradient: &[f32],
         layers: &mut [(Vec<f32>, Vec<f32>)],
     ) {
         let kernels = plan.kernels;
-        let mut again = std::mem::take(&mut self.received);
-        self.forward(plan, weights, pixels, observation, sized(&mut again, features.len()));
-        self.received = again;
+        self.run(plan, weights, pixels, observation);
         self.sums.resize_with(plan.convolutions.len(), Vec::new);
         for (sums, convolution) in self.sums.iter_mut().zip(&plan.convolutions) {
             sized(sums, convolution.gradient_size());
         }
-        let flow = sized(&mut self.flow, features.len());
-        for ((flow, gradient), feature) in flow.iter_mut().zip(feature_gradient).zip(features) {
-            *flow = if *feature > 0.0 { *gradient } else { 0.0 };
+        for (flow, gradient) in self.flow.iter_mut().zip(feature_gradient) {
+            *flow = if *flow > 0.0 { *gradient } else { 0.0 };
         }
         for (stage, &channels) in plan.shape.residual.iter().enumerate().rev() {
             let first = stage * STAGE;
             let size = plan.layers[first].output.pooled().size();
             for one in BLOCKS.map(|part| first + part).into_iter().rev() {
                 let (before, after) = (&plan.convolutions[one], &plan.convolutions[one + 1]);
-                scatter(kernels, &self.flow[..size], channels, &after.gradient_places, &mut self.sums[one + 1]);
+                scatter(&self.flow[..size], channels, &after.gradient_places, &mut self.sums[one + 1]);
                 self.descend(plan, back, one + 1, layers);
                 let (places, targets) = (&after.places, &before.gradient_places);
                 let sums = &mut self.sums[one];
@@ -135,7 +136,7 @@ impl ResidualImage {
             if stage > 0 {
                 let image = plan.layers[first].image;
                 let flow = sized(&mut self.flow, image.size());
-                gather(kernels, &self.received, &plan.convolutions[first].places, image.channels, flow);
+                gather(&self.received, &plan.convolutions[first].places, image.channels, flow);
             }
         }
     }

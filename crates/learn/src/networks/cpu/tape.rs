@@ -42,7 +42,7 @@ impl Tape {
         for (activations, next) in self.activations.iter_mut().zip(kept) {
             activations.resize(rows * next.stored, 0.0);
         }
-        self.features.resize(rows * shape.features(), 0.0);
+        self.features.resize(rows * plan.features, 0.0);
         self.dense.resize_with(shape.dense.len() - 1, Vec::new);
         for (dense, units) in self.dense.iter_mut().zip(&shape.dense) {
             dense.resize(rows * units, 0.0);

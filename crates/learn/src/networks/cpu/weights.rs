@@ -20,6 +20,8 @@ pub struct Plan {
     pub convolutions: Vec<ConvolutionPlan>,
     /// The table of parameters.
     pub parameters: Vec<Parameter>,
+    /// Values that the encoder hands to the first dense layer.
+    pub features: usize,
     /// Width of the output rows inside: the outputs rounded up to whole panels.
     pub padded_outputs: usize,
 }
@@ -34,6 +36,7 @@ impl Plan {
             convolutions: layers.iter().map(|layer| ConvolutionPlan::of(kernels, layer)).collect(),
             layers,
             parameters: shape.parameters(),
+            features: shape.features(),
             padded_outputs: shape.outputs().next_multiple_of(PANEL),
             shape: shape.clone(),
         }
