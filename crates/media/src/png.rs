@@ -28,6 +28,51 @@ pub fn write(picture: &Picture, path: &Path) -> Result<(), MediaError> {
     file.finish()
 }
 
+/// Pixels as a renderer has them, row after row.
+#[derive(Clone, Copy, Debug)]
+pub enum Pixels<'a> {
+    /// Indices into colours.
+    Indexed(&'a [u8], &'a [[u8; 3]; 256]),
+    /// Black to white.
+    Grey(&'a [u8]),
+    /// Red, green, blue.
+    Rgb(&'a [u8]),
+}
+
+/// The bytes of a PNG file, made quickly: for frames that are sent to a viewer as they come, about twice as large as those
+/// of [`encode`] and a hundred times as fast.
+///
+/// # Errors
+/// When the pixels are not those of `width * height` or there are none.
+pub fn encode_quickly(width: usize, height: usize, pixels: Pixels<'_>) -> Result<Vec<u8>, MediaError> {
+    let failed = |e: png::EncodingError| MediaError::Size(format!("no PNG of {width}x{height}: {e}"));
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
+    encoder.set_depth(png::BitDepth::Eight);
+    // Near walls and floors rows repeat; runs of zeros are nearly all that the quickest coder finds.
+    encoder.set_filter(png::Filter::Up);
+    encoder.set_deflate_compression(png::DeflateCompression::FdeflateUltraFast);
+    let data = match pixels {
+        Pixels::Indexed(indices, palette) => {
+            encoder.set_color(png::ColorType::Indexed);
+            encoder.set_palette(palette.as_flattened());
+            indices
+        }
+        Pixels::Grey(data) => {
+            encoder.set_color(png::ColorType::Grayscale);
+            data
+        }
+        Pixels::Rgb(data) => {
+            encoder.set_color(png::ColorType::Rgb);
+            data
+        }
+    };
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(data).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}
+
 fn write_to(picture: &Picture, out: impl std::io::Write) -> Result<(), png::EncodingError> {
     let mut encoder = png::Encoder::new(out, picture.width() as u32, picture.height() as u32);
     encoder.set_depth(png::BitDepth::Eight);

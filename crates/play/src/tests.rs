@@ -222,6 +222,16 @@ fn views_and_panel_have_their_sizes() {
     assert_eq!((alone.width(), alone.height()), (320, 240));
     assert!(all.width() > 5 * 320 && all.height() > 240);
     assert_eq!(all.get(4 + 100, 4 + 100), alone.get(100, 100));
+    // As files, made quickly, they are the same pictures, even reduced.
+    for size in [size, FrameSize { width: 128, height: 72 }] {
+        let mut views = Views::new(&stage, size, &every).unwrap();
+        let pictures = views.pictures(stage.world());
+        let files = views.png_files(stage.world());
+        assert_eq!(files.iter().map(|(kind, _)| *kind).collect::<Vec<_>>(), every);
+        for ((kind, file), picture) in files.iter().zip(&pictures) {
+            assert!(hasard_media::png::decode(file, Path::new("memory")).unwrap() == *picture, "{kind:?}");
+        }
+    }
     let panel = Panel::of(&stage, "P: pause");
     let whole = with_panel(&alone, &panel);
     assert_eq!(whole.height(), 240 + Panel::HEIGHT);

@@ -4,8 +4,8 @@ use crate::{PlayError, Stage};
 use hasard_engine::render::{Buffers, FrameSize, Renderer, SegmentationColours, TopDown};
 use hasard_engine::world::World;
 use hasard_envs::Env;
-use hasard_media::Picture;
 use hasard_media::compose::{Panel, side_by_side};
+use hasard_media::{Picture, png};
 
 /// What a view shows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -85,10 +85,32 @@ impl Views {
     /// # Panics
     /// When the world is of another environment.
     pub fn pictures(&mut self, world: &World) -> Vec<Picture> {
+        self.render(world);
+        self.kinds.iter().map(|kind| self.pixels(*kind, world).picture()).collect()
+    }
+
+    /// The same as PNG files, made quickly: for frames that are sent to somebody as they come.
+    ///
+    /// # Panics
+    /// When the world is of another environment.
+    pub fn png_files(&mut self, world: &World) -> Vec<(ViewKind, Vec<u8>)> {
+        self.render(world);
+        let file = |kind: ViewKind| match kind {
+            // As it was drawn: a byte a pixel.
+            ViewKind::Colour => {
+                let (width, height) = (usize::from(self.size.width), usize::from(self.size.height));
+                let pixels = png::Pixels::Indexed(self.renderer.indices(), self.renderer.palette());
+                png::encode_quickly(width, height, pixels).expect("a frame has the size that was asked for")
+            }
+            _ => self.pixels(kind, world).png_file(),
+        };
+        self.kinds.iter().map(|&kind| (kind, file(kind))).collect()
+    }
+
+    fn render(&mut self, world: &World) {
         let wants = |wanted: &[ViewKind]| self.kinds.iter().any(|kind| wanted.contains(kind));
         let buffers = Buffers { depth: wants(&[ViewKind::Depth]), labels: wants(&[ViewKind::Segmented, ViewKind::Labels]) };
         self.renderer.render(world, 0, buffers);
-        self.kinds.iter().map(|kind| self.picture(*kind, world)).collect()
     }
 
     /// The moment: the view alone, or several side by side with captions.
@@ -111,27 +133,44 @@ impl Views {
         &self.renderer
     }
 
-    fn picture(&self, kind: ViewKind, world: &World) -> Picture {
+    /// What a view shows of the moment that was rendered.
+    fn pixels(&self, kind: ViewKind, world: &World) -> Pixels {
         let (width, height) = (usize::from(self.size.width), usize::from(self.size.height));
-        let rgb = |width: usize, height: usize, write: &dyn Fn(&mut [u8])| {
-            let mut bytes = vec![0; width * height * 3];
+        let drawn = |width: usize, height: usize, channels: usize, write: &dyn Fn(&mut [u8])| {
+            let mut bytes = vec![0; width * height * channels];
             write(&mut bytes);
-            Picture::from_rgb(width, height, bytes)
-        };
-        let grey = |write: &dyn Fn(&mut [u8])| {
-            let mut bytes = vec![0; width * height];
-            write(&mut bytes);
-            Picture::from_grey(width, height, &bytes)
+            Pixels { width, height, channels, bytes }
         };
         let renderer = &self.renderer;
-        let picture = match (kind, &self.automap) {
-            (ViewKind::Automap, Some((map, width, height))) => rgb(*width, *height, &|out| map.draw(world, out)),
-            (ViewKind::Colour | ViewKind::Automap, _) => rgb(width, height, &|out| renderer.write_rgb_hwc(out)),
-            (ViewKind::Segmented, _) => rgb(width, height, &|out| renderer.write_segmented_hwc(&self.colours, out)),
-            (ViewKind::Depth, _) => grey(&|out| renderer.write_depth(out)),
-            (ViewKind::Labels, _) => grey(&|out| renderer.write_labels(out)),
-            (ViewKind::Grey, _) => grey(&|out| renderer.write_grey(out)),
-        };
+        match (kind, &self.automap) {
+            (ViewKind::Automap, Some((map, width, height))) => drawn(*width, *height, 3, &|out| map.draw(world, out)),
+            (ViewKind::Colour | ViewKind::Automap, _) => drawn(width, height, 3, &|out| renderer.write_rgb_hwc(out)),
+            (ViewKind::Segmented, _) => drawn(width, height, 3, &|out| renderer.write_segmented_hwc(&self.colours, out)),
+            (ViewKind::Depth, _) => drawn(width, height, 1, &|out| renderer.write_depth(out)),
+            (ViewKind::Labels, _) => drawn(width, height, 1, &|out| renderer.write_labels(out)),
+            (ViewKind::Grey, _) => drawn(width, height, 1, &|out| renderer.write_grey(out)),
+        }
+    }
+}
+
+/// One view of a moment: red, green and blue or one grey of each pixel, row after row.
+struct Pixels {
+    width: usize,
+    height: usize,
+    channels: usize,
+    bytes: Vec<u8>,
+}
+
+impl Pixels {
+    fn picture(self) -> Picture {
+        let Pixels { width, height, channels, bytes } = self;
+        let picture =
+            if channels == 3 { Picture::from_rgb(width, height, bytes) } else { Picture::from_grey(width, height, &bytes) };
         picture.expect("a frame has the size that was asked for")
+    }
+
+    fn png_file(self) -> Vec<u8> {
+        let pixels = if self.channels == 3 { png::Pixels::Rgb(&self.bytes) } else { png::Pixels::Grey(&self.bytes) };
+        png::encode_quickly(self.width, self.height, pixels).expect("a frame has the size that was asked for")
     }
 }

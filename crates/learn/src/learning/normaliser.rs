@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::networks::PixelScale;
 use crate::networks::cpu::simd::{Kernels, vectorised};
-use crate::networks::cpu::threads::in_parallel;
+use crate::networks::cpu::threads::{in_parallel, pieces};
 
 /// Added to variances before their root is taken.
 const EPSILON: f64 = 1e-5;
@@ -129,10 +129,10 @@ impl PixelSums {
         let mut all = vec![0; 2 * pixels + 1];
         all[2 * pixels] = frames.len() as u64;
         let (sums, squares) = all[..2 * pixels].split_at_mut(pixels);
-        let share = pixels.div_ceil(threads.max(1)).next_multiple_of(BLOCK);
+        let share = pixels.div_ceil(pieces(threads)).next_multiple_of(BLOCK);
         let parts = sums.chunks_mut(share).zip(squares.chunks_mut(share)).enumerate();
-        in_parallel(parts.map(|(part, (sums, squares))| {
-            move || {
+        let work = parts.map(|(part, (sums, squares))| {
+            move |_: &mut ()| {
                 let (mut some_sums, mut some_squares) = ([0u32; BLOCK], [0u32; BLOCK]);
                 for (block, (sums, squares)) in sums.chunks_mut(BLOCK).zip(squares.chunks_mut(BLOCK)).enumerate() {
                     let first = part * share + block * BLOCK;
@@ -149,7 +149,8 @@ impl PixelSums {
                     }
                 }
             }
-        }));
+        });
+        in_parallel(&mut vec![(); threads.max(1)], work);
         PixelSums(all)
     }
 }

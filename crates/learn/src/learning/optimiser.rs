@@ -3,7 +3,7 @@
 use crate::config::LearningConfig;
 use crate::networks::cpu::elementwise::{AdamStep, adam};
 use crate::networks::cpu::simd::Kernels;
-use crate::networks::cpu::threads::in_parallel;
+use crate::networks::cpu::threads::{in_parallel, pieces};
 
 /// Adam (Kingma and Ba 2015) over a flat parameter vector.
 #[derive(Clone, PartialEq, Debug)]
@@ -45,16 +45,15 @@ impl Adam {
             epsilon: settings.adam_epsilon as f32,
         };
         // Every parameter is its own; stretches go to threads because the pass is bound by memory.
-        let stretch = parameters.len().div_ceil(settings.threads.max(1)).max(1 << 16);
+        let stretch = parameters.len().div_ceil(pieces(settings.threads)).max(1 << 16);
         let parts = gradient
             .chunks(stretch)
             .zip(self.first.chunks_mut(stretch))
             .zip(self.second.chunks_mut(stretch))
             .zip(parameters.chunks_mut(stretch));
-        in_parallel(
-            parts.map(|(((gradient, first), second), parameters)| {
-                move || adam(kernels, step, gradient, first, second, parameters)
-            }),
-        );
+        let work = parts.map(|(((gradient, first), second), parameters)| {
+            move |_: &mut ()| adam(kernels, step, gradient, first, second, parameters)
+        });
+        in_parallel(&mut vec![(); settings.threads.max(1)], work);
     }
 }

@@ -36,7 +36,7 @@ export class Screen {
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
     let at = 4 + length;
     const pictures = await Promise.all(header.pictures.map(async ({ view, bytes }) => {
-      const blob = new Blob([new Uint8Array(data, at, bytes)], { type: 'image/jpeg' });
+      const blob = new Blob([new Uint8Array(data, at, bytes)], { type: 'image/png' });
       at += bytes;
       return [view, await createImageBitmap(blob)];
     }));

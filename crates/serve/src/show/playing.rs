@@ -136,8 +136,8 @@ impl Game {
             "tic": self.stage.world().tic, "seconds": panel.seconds, "return": panel.episode_return, "cost": panel.cost,
             "budget": panel.budget, "paused": self.paused, "ended": self.stage.ended(), "seed": self.seed,
         });
-        let picture = self.views.draw(&self.stage);
+        let pictures = self.views.png_files(self.stage.world());
         self.fresh = false;
-        line.frame(message(header, &[(ViewKind::Colour, picture)], self.paused || self.stage.ended()))
+        line.frame(message(header, &pictures))
     }
 }

@@ -6,7 +6,7 @@ use super::line::{Ask, Line};
 use super::query::WatchQuery;
 use super::rehearsal::Rehearsal;
 use crate::server::Shared;
-use hasard_play::{Moment, Stage, ViewKind, Views};
+use hasard_play::{Moment, Stage, Views};
 use serde_json::json;
 use std::time::{Duration, Instant};
 
@@ -40,7 +40,6 @@ struct Show<'a> {
     rehearsal: Rehearsal,
     stage: Stage,
     views: Views,
-    kinds: Vec<ViewKind>,
     paused: bool,
     speed: f64,
     /// Moments of the episode that were passed, by their steps, in order.
@@ -67,7 +66,6 @@ impl<'a> Show<'a> {
             rehearsal,
             stage,
             views,
-            kinds,
             paused,
             speed: 1.0,
             kept: Vec::new(),
@@ -223,9 +221,8 @@ impl<'a> Show<'a> {
         header["tic"] = json!(self.stage.world().tic);
         header["paused"] = json!(self.paused);
         header["ended"] = json!(self.ended());
-        let pictures = self.views.pictures(self.stage.world());
-        let pictures: Vec<_> = self.kinds.iter().copied().zip(pictures).collect();
+        let pictures = self.views.png_files(self.stage.world());
         self.fresh = false;
-        line.frame(message(header, &pictures, self.paused || self.ended()))
+        line.frame(message(header, &pictures))
     }
 }

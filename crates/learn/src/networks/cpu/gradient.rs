@@ -9,7 +9,7 @@ use super::encoder_gradient::{EncoderGradient, Scratch};
 use super::outer::{Workspace, sum_outer_products};
 use super::simd::Kernels;
 use super::tape::{Tape, TapeLane};
-use super::threads::{deal, in_parallel};
+use super::threads::{Piece, deal, in_parallel, pieces};
 use super::weights::{Backward, PackedWeights, Plan};
 use crate::networks::PixelScale;
 
@@ -39,11 +39,7 @@ pub struct Finished<'a> {
     pub rows: &'a [&'a RowGradients],
 }
 
-/// Part of the gradient of one layer's weights, or all of its biases'.
-enum Job<'a> {
-    Weights { factors: &'a Factors<'a>, first: usize, out: &'a mut [f32] },
-    Biases { factors: &'a Factors<'a>, out: &'a mut [f32] },
-}
+type Work<'a> = Piece<'a, (Scratch, Workspace)>;
 
 /// The factors of a weight gradient, row by row.
 struct Factors<'a> {
@@ -54,28 +50,26 @@ struct Factors<'a> {
 }
 
 impl<'a> Factors<'a> {
-    /// Rows of the gradient for every thread.
-    fn deal_out<'b>(&'b self, mut out: &'b mut [f32], jobs: &mut [Vec<Job<'b>>]) {
-        for (rows, jobs) in deal(out.len() / self.columns, jobs.len()).zip(jobs) {
-            let part;
-            (part, out) = out.split_at_mut(rows.len() * self.columns);
-            jobs.push(Job::Weights { factors: self, first: rows.start, out: part });
+    /// The gradient of the weights, its rows in so many pieces, and that of the biases.
+    fn deal_out<'b>(
+        &'b self,
+        kernels: Kernels,
+        pieces: usize,
+        mut weights: &'b mut [f32],
+        biases: &'b mut [f32],
+        work: &mut Vec<Work<'b>>,
+    ) {
+        for rows in deal(weights.len() / self.columns, pieces) {
+            let out;
+            (out, weights) = weights.split_at_mut(rows.len() * self.columns);
+            work.push(Box::new(move |(_, workspace)| {
+                sum_outer_products(kernels, &self.inputs, rows, &self.sums, self.columns, out, workspace);
+            }));
         }
-    }
-}
-
-impl Job<'_> {
-    fn run(self, kernels: Kernels, workspace: &mut Workspace) {
-        match self {
-            Job::Weights { factors, first, out } => {
-                let rows = first..first + out.len() / factors.columns;
-                sum_outer_products(kernels, &factors.inputs, rows, &factors.sums, factors.columns, out, workspace);
-            }
-            Job::Biases { factors, out } => {
-                out.fill(0.0);
-                factors.sums.iter().for_each(|row| add(kernels, out, row));
-            }
-        }
+        work.push(Box::new(move |_| {
+            biases.fill(0.0);
+            self.sums.iter().for_each(|row| add(kernels, biases, row));
+        }));
     }
 }
 
@@ -128,47 +122,43 @@ impl ParameterGradients {
         let layers = batch.layers(plan);
         let heads = batch.factors(|tape| tape.core(plan), shape.head_inputs(), |rows| &rows.outputs, plan.padded_outputs, false);
         let (convolutions, mut rest) = gradient.split_at_mut(plan.dense(0).offset);
-        let mut jobs: Vec<Vec<Job<'_>>> = (0..threads).map(|_| Vec::new()).collect();
-        for (index, factors) in layers.iter().enumerate() {
-            let (weights, biases);
-            (weights, rest) = rest.split_at_mut(factors.width * factors.columns);
-            (biases, rest) = rest.split_at_mut(factors.columns);
-            factors.deal_out(weights, &mut jobs);
-            jobs[index % threads].push(Job::Biases { factors, out: biases });
-        }
-        deal_out_heads(&heads, &mut self.joined_heads, &mut self.joined_biases, &mut jobs);
-
+        let lanes: Vec<_> = deal(batch.lanes.len(), MOST_GROUPS).collect();
+        self.groups.resize_with(lanes.len(), Default::default);
         let features = plan.features;
         let feature_gradients: Vec<&[f32]> = batch
             .rows
             .iter()
             .flat_map(|rows| (0..rows.lanes).map(|lane| rows.features.get(lane * steps * features..).unwrap_or(&[])))
             .collect();
-        let lanes: Vec<_> = deal(batch.lanes.len(), MOST_GROUPS).collect();
-        self.groups.resize_with(lanes.len(), Default::default);
-        self.threads.resize_with(threads, Default::default);
-        let mut groups = self.groups.iter_mut().zip(&lanes);
-        let mut shares = deal(lanes.len(), threads);
-        let work = self.threads.iter_mut().zip(jobs).map(|((scratch, workspace), jobs)| {
-            let groups: Vec<_> = groups.by_ref().take(shares.next().map_or(0, |share| share.len())).collect();
-            let feature_gradients = &feature_gradients;
-            move || {
-                if !plan.convolutions.is_empty() {
-                    scratch.prepare(plan);
-                    for (group, lanes) in groups {
-                        group.clear(plan);
-                        for lane in lanes.clone() {
-                            let observations = &batch.observations[lane * steps..(lane + 1) * steps];
-                            let from = feature_gradients[lane];
-                            let lane = batch.lanes[lane];
-                            group.add_lane(plan, batch.weights, back, batch.pixels, lane, observations, from, scratch);
-                        }
+        let mut work: Vec<Work<'_>> = Vec::new();
+        // The longest pieces first.
+        if !plan.convolutions.is_empty() {
+            for (group, lanes) in self.groups.iter_mut().zip(&lanes) {
+                let feature_gradients = &feature_gradients;
+                work.push(Box::new(move |(scratch, _)| {
+                    group.clear(plan);
+                    for lane in lanes.clone() {
+                        let observations = &batch.observations[lane * steps..(lane + 1) * steps];
+                        let from = feature_gradients[lane];
+                        let lane = batch.lanes[lane];
+                        group.add_lane(plan, batch.weights, back, batch.pixels, lane, observations, from, scratch);
                     }
-                }
-                jobs.into_iter().for_each(|job| job.run(kernels, workspace));
+                }));
             }
-        });
-        in_parallel(work);
+        }
+        for factors in &layers {
+            let (weights, biases);
+            (weights, rest) = rest.split_at_mut(factors.width * factors.columns);
+            (biases, rest) = rest.split_at_mut(factors.columns);
+            factors.deal_out(kernels, pieces(threads), weights, biases, &mut work);
+        }
+        // The heads' lie side by side, padded to whole panels, until they are split.
+        self.joined_heads.resize(heads.width * heads.columns, 0.0);
+        self.joined_biases.resize(heads.columns, 0.0);
+        heads.deal_out(kernels, pieces(threads), &mut self.joined_heads, &mut self.joined_biases, &mut work);
+        self.threads.resize_with(threads, Default::default);
+        self.threads.iter_mut().for_each(|(scratch, _)| scratch.prepare(plan));
+        in_parallel(&mut self.threads, work);
 
         let mut rest = convolutions;
         let mut work = Vec::new();
@@ -177,13 +167,13 @@ impl ParameterGradients {
             (weights, rest) = rest.split_at_mut(plan.convolution(layer).size());
             (biases, rest) = rest.split_at_mut(convolution.channels());
             let groups = &self.groups;
-            work.push(move || {
+            work.push(move |_: &mut _| {
                 weights.fill(0.0);
                 biases.fill(0.0);
                 groups.iter().for_each(|group| group.add_to(layer, convolution, plan, weights, biases));
             });
         }
-        in_parallel(work);
+        in_parallel(&mut self.threads, work);
         self.split_heads(plan, gradient);
     }
 
@@ -200,12 +190,4 @@ impl ParameterGradients {
             first += count;
         }
     }
-}
-
-/// The heads' gradients go to scratch: there they lie side by side, padded to whole panels.
-fn deal_out_heads<'a>(factors: &'a Factors<'a>, weights: &'a mut Vec<f32>, biases: &'a mut Vec<f32>, jobs: &mut [Vec<Job<'a>>]) {
-    weights.resize(factors.width * factors.columns, 0.0);
-    biases.resize(factors.columns, 0.0);
-    factors.deal_out(weights, jobs);
-    jobs[0].push(Job::Biases { factors, out: biases });
 }

@@ -7,7 +7,7 @@ use super::forward::{Forward, Input};
 use super::gradient::{Finished, ParameterGradients};
 use super::simd::Kernels;
 use super::tape::{Tape, TapeLane};
-use super::threads::{deal, in_parallel};
+use super::threads::{Piece, deal, in_parallel, pieces};
 use super::weights::{Backward, PackedWeights, Plan, stored_pixels};
 use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, RecordedLane, Sequences};
 
@@ -19,9 +19,10 @@ pub struct CpuLearner {
     spare: Vec<Arc<PackedWeights>>,
     backward: Backward,
     pixels: Arc<PixelScale>,
-    threads: usize,
+    /// What each thread works in.
+    forwards: Vec<Forward>,
     /// Forward passes of the last batch, their lanes one after the other; unused when all of it was recorded.
-    passes: Vec<(Forward, Tape)>,
+    passes: Vec<Tape>,
     /// The last forward pass was found in recordings.
     recorded: bool,
     rows: Vec<RowGradients>,
@@ -38,7 +39,7 @@ impl CpuLearner {
             spare: Vec::new(),
             backward: Backward::default(),
             pixels: Arc::new(PixelScale::unit(0)),
-            threads: threads.max(1),
+            forwards: std::iter::repeat_with(Forward::default).take(threads.max(1)).collect(),
             passes: Vec::new(),
             recorded: false,
             rows: Vec::new(),
@@ -51,7 +52,7 @@ impl CpuLearner {
         if self.recorded {
             return batch.recorded.iter().map(|lane| TapeLane { tape: &lane.recording.tape, lane: lane.lane }).collect();
         }
-        let lanes = self.passes.iter().flat_map(|(_, tape)| (0..tape.lanes).map(move |lane| TapeLane { tape, lane }));
+        let lanes = self.passes.iter().flat_map(|tape| (0..tape.lanes).map(move |lane| TapeLane { tape, lane }));
         lanes.collect()
     }
 }
@@ -78,12 +79,9 @@ impl LearningNetwork for CpuLearner {
         let mut fresh = free.map_or_else(Arc::default, |index| self.spare.swap_remove(index));
         let packed = Arc::get_mut(&mut fresh).expect("nobody else holds it");
         let (plan, backward) = (&self.plan, &mut self.backward);
-        let mut work: Vec<Box<dyn FnOnce() + Send + '_>> =
-            vec![Box::new(|| packed.load(plan, parameters)), Box::new(|| backward.load(plan, parameters))];
-        if self.threads == 1 {
-            work.drain(..).for_each(|work| work());
-        }
-        in_parallel(work);
+        let work: [Piece<'_, Forward>; 2] =
+            [Box::new(|_| packed.load(plan, parameters)), Box::new(|_| backward.load(plan, parameters))];
+        in_parallel(&mut self.forwards, work);
         self.spare.push(std::mem::replace(&mut self.weights, fresh));
     }
 
@@ -105,10 +103,10 @@ impl LearningNetwork for CpuLearner {
             let (units, extra_inputs) = (shape.state_size(), shape.extra_inputs);
             let observations = by_lane(batch, &batch.observations, 1);
             let (extra, reset) = (by_lane(batch, &batch.extra, extra_inputs), by_lane(batch, &batch.reset, 1));
-            let dealt = deal(lanes, self.threads);
+            let dealt = deal(lanes, pieces(self.forwards.len()));
             self.passes.resize_with(dealt.clone().count(), Default::default);
             let (plan, weights, pixels) = (&*self.plan, &*self.weights, &*self.pixels);
-            in_parallel(self.passes.iter_mut().zip(dealt).map(|((forward, tape), lanes)| {
+            let work = self.passes.iter_mut().zip(dealt).map(|(tape, lanes)| {
                 let rows = lanes.start * steps..lanes.end * steps;
                 let input = Input {
                     observations: &observations[rows.clone()],
@@ -117,11 +115,12 @@ impl LearningNetwork for CpuLearner {
                     reset: &reset[rows],
                     pixels,
                 };
-                move || {
+                move |forward: &mut Forward| {
                     tape.prepare(plan, steps, lanes.len());
                     forward.run(plan, weights, &input, 0..steps, 0..lanes.len(), tape);
                 }
-            }));
+            });
+            in_parallel(&mut self.forwards, work);
         }
         let (outputs, padded) = (self.plan.shape.outputs(), self.plan.padded_outputs);
         let mut all = vec![0.0; batch.rows() * outputs];
@@ -140,13 +139,14 @@ impl LearningNetwork for CpuLearner {
         let output_gradient = by_lane(batch, output_gradient, outputs);
         let (mut rows, mut parameters) = (std::mem::take(&mut self.rows), std::mem::take(&mut self.parameters));
         let lanes = self.tapes(batch);
-        let dealt = deal(batch.lanes, self.threads);
+        let threads = self.forwards.len();
+        let dealt = deal(batch.lanes, pieces(threads));
         rows.resize_with(dealt.clone().count(), Default::default);
-        in_parallel(rows.iter_mut().zip(dealt).map(|(rows, own)| {
+        let work = rows.iter_mut().zip(dealt).map(|(rows, own)| {
             let (plan, back, lanes) = (&*plan, &self.backward, &lanes[own.clone()]);
             let reset = &reset[own.start * steps..own.end * steps];
             let from = &output_gradient[own.start * steps * outputs..own.end * steps * outputs];
-            move || {
+            move |_: &mut ()| {
                 rows.outputs.clear();
                 rows.outputs.resize(own.len() * steps * padded, 0.0);
                 for (to, from) in rows.outputs.chunks_exact_mut(padded).zip(from.chunks_exact(outputs)) {
@@ -154,11 +154,12 @@ impl LearningNetwork for CpuLearner {
                 }
                 rows.run(plan, back, lanes, reset);
             }
-        }));
+        });
+        in_parallel(&mut vec![(); threads], work);
         let dealt: Vec<&RowGradients> = rows.iter().collect();
         let (weights, pixels) = (&*self.weights, &*self.pixels);
         let finished = Finished { lanes: &lanes, observations: &observations, weights, pixels, rows: &dealt };
-        parameters.run(&plan, &self.backward, &finished, self.threads, gradient);
+        parameters.run(&plan, &self.backward, &finished, threads, gradient);
         (self.rows, self.parameters) = (rows, parameters);
     }
 }

@@ -1,6 +1,7 @@
 //! Work dealt out to threads.
 
 use std::ops::Range;
+use std::sync::Mutex;
 
 /// Items dealt into at most so many runs as equal as they can be, the longer ones first; none is empty unless all are.
 pub fn deal(items: usize, parts: usize) -> impl Iterator<Item = Range<usize>> + Clone {
@@ -12,17 +13,39 @@ pub fn deal(items: usize, parts: usize) -> impl Iterator<Item = Range<usize>> + 
     })
 }
 
-/// Does all of the work at once, the first piece on this thread and each other on one of its own.
-pub fn in_parallel<W: FnOnce() + Send>(work: impl IntoIterator<Item = W>) {
+/// A piece of work, with the scratch of the thread that does it.
+pub type Piece<'a, S> = Box<dyn FnOnce(&mut S) + Send + 'a>;
+
+/// Pieces that work is best dealt into: more than threads, for when the system holds one of them up; one thread needs one.
+pub fn pieces(threads: usize) -> usize {
+    if threads <= 1 { 1 } else { 2 * threads }
+}
+
+/// Does pieces of work on as many threads as there is scratch, this one among them. Each takes the next piece, in their order,
+/// when it is done with one, so that whatever else the machine does delays all of them alike.
+///
+/// # Panics
+/// If there is no scratch.
+pub fn in_parallel<S: Send, W: FnOnce(&mut S) + Send>(scratch: &mut [S], work: impl IntoIterator<Item = W, IntoIter: Send>) {
+    let (own, others) = scratch.split_first_mut().expect("there is a thread");
+    let mut work = work.into_iter();
+    if others.is_empty() {
+        return work.for_each(|piece| piece(own));
+    }
+    let Some(first) = work.next() else { return };
+    let work = Mutex::new(work);
+    // The lock is held while a piece is taken, not while it is done.
+    let next = || work.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).next();
     std::thread::scope(|scope| {
-        let mut work = work.into_iter();
-        let own = work.next();
-        for other in work {
-            scope.spawn(other);
+        for scratch in others {
+            let Some(piece) = next() else { break };
+            scope.spawn(move || {
+                piece(scratch);
+                std::iter::from_fn(next).for_each(|piece| piece(scratch));
+            });
         }
-        if let Some(own) = own {
-            own();
-        }
+        first(own);
+        std::iter::from_fn(next).for_each(|piece| piece(own));
     });
 }
 
@@ -37,6 +60,27 @@ mod tests {
                 let dealt: Vec<Range<usize>> = deal(items, parts).collect();
                 assert!(dealt.len() <= parts && dealt.iter().all(|run| !run.is_empty() || items == 0));
                 assert_eq!(dealt.into_iter().flatten().collect::<Vec<_>>(), (0..items).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn every_piece_is_done_once() {
+        for threads in 1..5 {
+            for count in 0..20 {
+                let mut done = vec![0; count];
+                let mut scratch = vec![0; threads];
+                in_parallel(
+                    &mut scratch,
+                    done.iter_mut().map(|done| {
+                        move |own: &mut i32| {
+                            *done += 1;
+                            *own += 1;
+                        }
+                    }),
+                );
+                assert!(done.iter().all(|&times| times == 1));
+                assert_eq!(scratch.iter().sum::<i32>() as usize, count);
             }
         }
     }
