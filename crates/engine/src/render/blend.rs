@@ -8,13 +8,18 @@ const BITS: usize = 5;
 /// The largest channel of so many bits.
 const MOST: usize = (1 << BITS) - 1;
 
+/// Bits of a channel of which a part was taken: a quarter of a level each.
+const PART_BITS: usize = 10;
+
 /// The palette, ready for mixing.
 #[derive(Debug)]
 pub(super) struct Blend {
-    palette: Box<[[u8; 3]; 256]>,
+    /// So many parts of [`OPAQUE`] of every colour, cut to a quarter of a level: red, green and blue of [`PART_BITS`] each in a
+    /// number, so that the parts of two colours are added at once.
+    pub parts: Box<[[u32; 256]]>,
     /// The nearest index of every colour reduced to [`BITS`] a channel: a mixture of any two needs no search, and none is
-    /// kept of all pairs and all shares.
-    nearest: Box<[u8]>,
+    /// kept of all pairs and all shares. Padded, so that four bytes may be read at each.
+    pub nearest: Box<[u8]>,
     /// The index of black.
     black: u8,
 }
@@ -24,21 +29,24 @@ impl Blend {
         // Eight bits of five by repeating the topmost.
         let widened = |channel: usize| (channel << 3 | channel >> 2) as u8;
         let colour = |i: usize| [2 * BITS, BITS, 0].map(|shift| widened(i >> shift & MOST));
-        let nearest = (0..1 << (3 * BITS)).map(|i| nearest_colour(palette, colour(i))).collect();
-        Blend { palette: Box::new(*palette), nearest, black: nearest_colour(palette, [0; 3]) }
+        let nearest = (0..1 << (3 * BITS)).map(|i| nearest_colour(palette, colour(i))).chain([0; 3]).collect();
+        let part = |share: u8, [red, green, blue]: [u8; 3]| {
+            [red, green, blue]
+                .iter()
+                .fold(0, |packed, &channel| packed << PART_BITS | (u32::from(channel) * u32::from(share)) >> 4)
+        };
+        let parts = (0..=OPAQUE).map(|share| palette.map(|colour| part(share, colour))).collect();
+        Blend { parts, nearest, black: nearest_colour(palette, [0; 3]) }
     }
 
     /// The palette index of `upper`, which has so many parts of [`OPAQUE`], over `lower`; each of the two is cut to a quarter
     /// of a level. By this, nearly every pixel of the original's puffs and souls comes out.
     #[inline]
     pub fn over(&self, upper: u8, lower: u8, share: u8) -> u8 {
-        let (share, [upper, lower]) = (usize::from(share), [upper, lower].map(|index| self.palette[usize::from(index)]));
-        let rest = usize::from(OPAQUE) - share;
-        let mixed = |channel: usize| {
-            let parts = ((usize::from(upper[channel]) * share) >> 4) + ((usize::from(lower[channel]) * rest) >> 4);
-            (parts >> BITS) & MOST
-        };
-        self.nearest[mixed(0) << (2 * BITS) | mixed(1) << BITS | mixed(2)]
+        let of = |share: u8, index: u8| self.parts[usize::from(share)][usize::from(index)];
+        let sum = of(share, upper) + of(OPAQUE - share, lower);
+        let [red, green, blue] = [2, 1, 0].map(|channel| (sum >> (channel * PART_BITS + PART_BITS - BITS)) as usize & MOST);
+        self.nearest[red << (2 * BITS) | green << BITS | blue]
     }
 
     /// A palette index under so many parts of black.
@@ -61,6 +69,22 @@ mod tests {
         let grey = |share| i32::from(palette[usize::from(blend.over(white, black, share))][1]);
         for share in 0..=OPAQUE {
             assert!((grey(share) - 255 * i32::from(share) / i32::from(OPAQUE)).abs() <= 16, "{share}: {}", grey(share));
+        }
+    }
+
+    #[test]
+    fn channels_are_mixed_apart() {
+        let palette = &Assets::embedded().palette;
+        let blend = Blend::new(palette);
+        for share in 0..=OPAQUE {
+            for (upper, lower) in (0..=255).zip((0..=255u8).map(|i| i.wrapping_mul(37).wrapping_add(share))) {
+                let colour: [u8; 3] = std::array::from_fn(|channel| {
+                    let part = |index: u8, share: u8| (u32::from(palette[usize::from(index)][channel]) * u32::from(share)) >> 4;
+                    let five = (part(upper, share) + part(lower, OPAQUE - share)) >> 5;
+                    (five << 3 | five >> 2) as u8
+                });
+                assert_eq!(blend.over(upper, lower, share), nearest_colour(palette, colour));
+            }
         }
     }
 

@@ -179,13 +179,15 @@ impl Stamp<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assets::Image;
+    use crate::assets::{Assets, Image};
     use crate::math::Rng;
+    use crate::world::OPAQUE;
 
     #[test]
     fn all_ways_stamp_the_same_pixels() {
         let mut rng = Rng::new(6);
         let table: [u8; 256] = std::array::from_fn(|_| rng.byte() as u8);
+        let blend = Blend::new(&Assets::embedded().palette);
         for round in 0..600 {
             let (width, height) = (1 + rng.below(300) as u16, 1 + rng.below(60) as u16);
             let texels = usize::from(width) * usize::from(height);
@@ -214,6 +216,7 @@ mod tests {
             let base_rows: Vec<u32> = (0..frame_rows as u32).collect();
             // A little more than nothing at row 0, as much as the step loses in all rows by rounding.
             let (v, v_step) = (frame_rows as i64, (i64::from(height) << TEXEL_BITS) / frame_rows as i64);
+            let opacity = rng.below(u32::from(OPAQUE) + 1) as u8;
             let stamp = Stamp {
                 picture: &picture,
                 table: &table,
@@ -222,7 +225,7 @@ mod tests {
                 rows,
                 v,
                 v_step,
-                blend: None,
+                blend: (round % 3 == 0).then_some((&blend, opacity)),
                 depth: 9,
                 class: 33,
             };
@@ -237,7 +240,12 @@ mod tests {
                     let texel = || usize::from(columns.texels[i]) * usize::from(height) + row * usize::from(height) / frame_rows;
                     let shown = inside && image.mask.as_ref().is_none_or(|mask| mask[texel()] != 0);
                     let at = row * frame_width + x;
-                    let colour = if shown { table[usize::from(image.pixels[texel()])] } else { before.colour[at] };
+                    let own = || table[usize::from(image.pixels[texel()])];
+                    let colour = match (shown, stamp.blend) {
+                        (false, _) => before.colour[at],
+                        (true, None) => own(),
+                        (true, Some((blend, opacity))) => blend.over(own(), before.colour[at], opacity),
+                    };
                     assert_eq!((plain.colour[at], plain.class[at]), (colour, if shown { 33 } else { 7 }));
                 }
             }

@@ -6,7 +6,7 @@ use super::Signal;
 use crate::config::AlgorithmConfig;
 
 /// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess). With damping the present
-/// excess counts beside its integral, without being remembered.
+/// excess counts beside its integral, without being remembered; with growth both count 1 + growth * lambda times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lagrange {
     /// The multiplier.
@@ -17,6 +17,8 @@ pub struct Lagrange {
     rate: f64,
     #[serde(default)]
     damping: f64,
+    #[serde(default)]
+    growth: f64,
     /// The largest it may become.
     limit: Option<f64>,
 }
@@ -30,6 +32,7 @@ impl Lagrange {
             integral: None,
             rate: settings.multiplier_rate,
             damping: settings.multiplier_damping,
+            growth: settings.multiplier_growth,
             limit: settings.multiplier_limit,
         };
         Multipliers::Lagrange(vec![one; constraints])
@@ -38,8 +41,9 @@ impl Lagrange {
     /// Moves by what the constraint costs per step above its budget.
     pub fn update(&mut self, signal: &Signal) {
         let limit = self.limit.unwrap_or(f64::INFINITY);
-        let excess = signal.step_excess();
-        let integral = (self.integral.unwrap_or(self.value) + self.rate * excess).clamp(0.0, limit);
+        let before = self.integral.unwrap_or(self.value);
+        let excess = (1.0 + self.growth * before) * signal.step_excess();
+        let integral = (before + self.rate * excess).clamp(0.0, limit);
         self.integral = Some(integral);
         self.value = (integral + self.damping * excess).clamp(0.0, limit);
     }
@@ -194,6 +198,28 @@ mod tests {
         };
         assert!(swing(0.0) > 10.0, "{}", swing(0.0));
         assert!(swing(1.5) < 2.0, "{}", swing(1.5));
+    }
+
+    /// A cost that answers to ratios of the multiplier, with a delay: the same rule settles where one ten times as large is
+    /// needed under a budget of a tenth, within the same number of updates.
+    #[test]
+    fn growth_brings_small_budgets_to_rest_as_soon() {
+        let distance = |growth: f64, scale: f64| {
+            let settings =
+                AlgorithmConfig { multiplier_rate: 0.01, multiplier_damping: 1.5, multiplier_growth: growth, ..settings() };
+            let mut multiplier = Lagrange::all(&settings, 1);
+            let budget = 50.0 / scale;
+            let mut cost = 2.0 * budget;
+            for _ in 0..12_000 {
+                let wanted = budget * (1.0 - (multiplier.values()[0] / (0.3 * scale)).max(0.05).ln());
+                cost += (wanted - cost) / 146.0;
+                let signal = Signal { episode_cost: cost, episode_budget: budget, episode_steps: 525.0 };
+                multiplier.update(&[signal]);
+            }
+            (cost / budget - 1.0).abs()
+        };
+        assert!(distance(0.0, 1.0) < 0.01 && distance(0.0, 10.0) > 0.5, "{} {}", distance(0.0, 1.0), distance(0.0, 10.0));
+        assert!(distance(4.0, 1.0) < 0.01 && distance(4.0, 10.0) < 0.05, "{} {}", distance(4.0, 1.0), distance(4.0, 10.0));
     }
 
     #[test]

@@ -80,6 +80,10 @@ pub struct AlgorithmConfig {
     /// it damps the circles that the integral alone runs in. 0 for none.
     #[serde(default)]
     pub multiplier_damping: f64,
+    /// Lagrangian algorithms: by how much a multiplier moves faster for each unit that it has reached. Where it has to become
+    /// large, as under a small budget, the cost answers to its ratios rather than to its differences. 0 for none.
+    #[serde(default)]
+    pub multiplier_growth: f64,
     /// PID: proportional, integral and derivative gains.
     pub pid_gains: (f64, f64, f64),
     /// PID: the integral before the first update.

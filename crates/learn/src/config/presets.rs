@@ -91,6 +91,7 @@ impl TrainConfig {
                 multiplier_initial: 0.0,
                 multiplier_rate: 0.01,
                 multiplier_damping: 0.0,
+                multiplier_growth: 0.0,
                 pid_gains: (0.1, 0.01, 0.01),
                 pid_initial: 0.001,
                 pid_decay: 0.95,
