@@ -67,7 +67,7 @@ pub struct EnvArgs {
     #[arg(long, value_name = "TICS", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=35))]
     pub frame_skip: u32,
     /// Frame size, 64x48 to 1920x1080; if absent 128x72 for learners (the nearest-neighbour reduction of 160x120), 640x480
-    /// to play and render, 320x240 to record
+    /// to play and render, 320x240 to record, 160x120 as .gif
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
     /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
@@ -467,7 +467,7 @@ pub struct FilmArgs {
     /// Other views beside the player's, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW,...")]
     pub beside: Vec<View>,
-    /// Tics (1/35 s) from one frame to the next; 1 for .mp4 and 4 for .gif if absent
+    /// Tics (1/35 s) from one frame to the next; 1 for .mp4 and 5 for .gif if absent
     #[arg(long, value_name = "TICS", value_parser = clap::value_parser!(u32).range(1..=350))]
     pub frame_every: Option<u32>,
     /// How depth and segmentation look
@@ -515,9 +515,9 @@ pub struct ReplayArgs {
     /// Policy step at which a .png is drawn; the episode's end if absent
     #[arg(long)]
     pub step: Option<u32>,
-    /// Frame size
-    #[arg(long, value_name = "WxH", default_value_t = Size { width: 640, height: 480 })]
-    pub size: Size,
+    /// Frame size; 640x480 if absent, 160x120 as .gif
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
     /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,

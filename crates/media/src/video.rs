@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Most frames between pictures that stand alone, where players can jump to.
 const KEY_INTERVAL: u32 = 140;
 /// Bits a pixel that the encoder aims at: 60 seconds of 320x258 at 35 frames a second are below 3 MB.
-const BITS_A_PIXEL: f64 = 0.135;
+const BITS_A_PIXEL: f64 = 0.132;
 /// Quantiser that the search for that rate begins with.
 const QUANTISER: u8 = 32;
 /// Largest side in pixels: what level 5.1 of the standard holds in a square.

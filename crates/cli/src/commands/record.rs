@@ -30,10 +30,18 @@ impl Kind {
     }
 }
 
+fn is_gif(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gif"))
+}
+
+/// Size of a GIF where none is asked for: that of a whole episode stays below 5 MB.
+const GIF_SIZE: Size = Size { width: 160, height: 120 };
+
 /// Runs `hasard record`.
 pub fn run(args: &RecordArgs) -> Outcome {
     let kind = Kind::of(&args.out, &[("mp4", Kind::Film), ("gif", Kind::Film), ("episode", Kind::Episode)])?;
-    let looks = settings::env_options(&args.env_args, Size { width: 320, height: 240 })?;
+    let usual = if is_gif(&args.out) { GIF_SIZE } else { Size { width: 320, height: 240 } };
+    let looks = settings::env_options(&args.env_args, usual)?;
     let looks = settings::looking(looks, &args.film.looks);
     let agent = zoo::is_agent(&args.what);
     let what = &zoo::find(&args.what)?;
@@ -102,6 +110,8 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
         return Err(Failure::bad("--step: is for a single picture; give an --out that ends in .png"));
     }
     let mut replay = open(&args.file, &looks)?;
+    let usual = if args.out.as_deref().is_some_and(is_gif) { GIF_SIZE } else { Size { width: 640, height: 480 } };
+    let size = args.size.unwrap_or(usual).into();
     match (&args.out, kind) {
         (Some(out), Some(Kind::Picture)) => {
             replay.skip_to(args.step.unwrap_or(u32::MAX));
@@ -110,12 +120,12 @@ pub fn replay(args: &ReplayArgs) -> Outcome {
                 return Err(Failure::bad(format!("--step {step}: the episode ends at step {length}; give a smaller one")));
             }
             let kinds = settings::views(View::Rgb, &args.film.beside);
-            let mut views = Views::new(replay.stage(), args.size.into(), &kinds).map_err(Failure::bad)?;
+            let mut views = Views::new(replay.stage(), size, &kinds).map_err(Failure::bad)?;
             hasard_media::png::write(&views.draw(replay.stage()), out).map_err(Failure::bad)?;
             return tell(replay.stage().env(), args.json, Some(out), None);
         }
         (Some(out), _) => {
-            let film = play_out(&mut replay, out, args.size.into(), &args.film, None)?;
+            let film = play_out(&mut replay, out, size, &args.film, None)?;
             tell(replay.stage().env(), args.json, Some(out), Some(film))?;
         }
         _ => {
@@ -132,8 +142,7 @@ fn open(file: &Path, looks: &EnvOptions) -> Result<Replay, Failure> {
 }
 
 fn begin(stage: &Stage, out: &Path, size: FrameSize, args: &FilmArgs) -> Result<Film, Failure> {
-    let gif = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gif"));
-    let every = args.frame_every.unwrap_or(if gif { 4 } else { 1 });
+    let every = args.frame_every.unwrap_or(if is_gif(out) { 5 } else { 1 });
     Film::begin(stage, out, size, &settings::views(View::Rgb, &args.beside), every).map_err(Failure::bad)
 }
 

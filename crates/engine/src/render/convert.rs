@@ -107,15 +107,13 @@ const STRETCH: usize = 1024;
 
 /// Red, green, blue of each pixel in turn, and its depth.
 pub(super) fn rgb_depth_interleaved(simd: Simd, colours: &Colours, indices: &[u8], depth: &[u8], out: &mut [u8]) {
-    let mut planes = [[0; STRETCH]; 3];
-    for ((to, indices), depth) in out.chunks_mut(STRETCH * 4).zip(indices.chunks(STRETCH)).zip(depth.chunks(STRETCH)) {
-        for (table, plane) in colours.channels.iter().zip(&mut planes) {
-            look_up(simd, table, indices, &mut plane[..indices.len()]);
-        }
-        let [red, green, blue] = &planes;
-        for ((((to, &red), &green), &blue), &depth) in to.chunks_exact_mut(4).zip(red).zip(green).zip(blue).zip(depth) {
-            to.copy_from_slice(&[red, green, blue, depth]);
-        }
+    #[cfg(target_arch = "x86_64")]
+    let done = Wide::of(simd).map_or(0, |wide| wide.with_depth(&colours.channels, indices, depth, out));
+    #[cfg(not(target_arch = "x86_64"))]
+    let (_, done) = (simd, 0);
+    let (pixels, _) = out[done * 4..].as_chunks_mut::<4>();
+    for ((to, &index), &depth) in pixels.iter_mut().zip(&indices[done..]).zip(&depth[done..]) {
+        *to = (colours.words[usize::from(index)] | u32::from(depth) << 24).to_le_bytes();
     }
 }
 

@@ -8,8 +8,8 @@
 
 use crate::simd::{Level, Simd};
 use std::arch::x86_64::{
-    __m512i, _mm512_loadu_si512, _mm512_mask_blend_epi8, _mm512_mask_permutexvar_epi8, _mm512_movepi8_mask,
-    _mm512_permutex2var_epi8, _mm512_storeu_si512,
+    __m512i, _mm512_loadu_si512, _mm512_mask_blend_epi8, _mm512_mask_blend_epi16, _mm512_mask_permutexvar_epi8,
+    _mm512_movepi8_mask, _mm512_permutex2var_epi8, _mm512_storeu_si512,
 };
 
 /// Proof that the processor has the instructions.
@@ -36,6 +36,12 @@ impl Wide {
     pub fn interleaved(self, tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) -> usize {
         // SAFETY: a `Wide` exists only where the instructions do.
         unsafe { interleaved(tables, indices, out) }
+    }
+
+    /// The same with a fourth byte of its own a pixel.
+    pub fn with_depth(self, tables: &[[u8; 256]; 3], indices: &[u8], depth: &[u8], out: &mut [u8]) -> usize {
+        // SAFETY: a `Wide` exists only where the instructions do.
+        unsafe { with_depth(tables, indices, depth, out) }
     }
 }
 
@@ -115,4 +121,33 @@ fn interleaved(tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) -> usize
         }
     }
     blocks.len().min(triples.len()) * LANES
+}
+
+/// For each of the four output blocks, which lane of the first or the second (plus 64) of two bytes goes where.
+const PAIRS: [[u8; LANES]; 4] = {
+    let mut pairs = [[0; LANES]; 4];
+    let mut at = 0;
+    while at < 4 * LANES {
+        pairs[at / LANES][at % LANES] = (at / 4 + at % 2 * LANES) as u8;
+        at += 1;
+    }
+    pairs
+};
+
+#[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
+fn with_depth(tables: &[[u8; 256]; 3], indices: &[u8], depth: &[u8], out: &mut [u8]) -> usize {
+    let tables = [load_table(&tables[0]), load_table(&tables[1]), load_table(&tables[2])];
+    let ((blocks, _), (depths, _)) = (indices.as_chunks::<LANES>(), depth.as_chunks::<LANES>());
+    let (out_blocks, _) = out.as_chunks_mut::<LANES>();
+    let (fours, _) = out_blocks.as_chunks_mut::<4>();
+    for ((four, from), depth) in fours.iter_mut().zip(blocks).zip(depths) {
+        let (from, depth) = (load(from), load(depth));
+        let [red, green, blue] = [look_up_block(tables[0], from), look_up_block(tables[1], from), look_up_block(tables[2], from)];
+        for (to, pairs) in four.iter_mut().zip(&PAIRS) {
+            let pairs = load(pairs);
+            let (first, second) = (_mm512_permutex2var_epi8(red, pairs, green), _mm512_permutex2var_epi8(blue, pairs, depth));
+            store(to, _mm512_mask_blend_epi16(0xaaaa_aaaa, first, second));
+        }
+    }
+    blocks.len().min(fours.len()) * LANES
 }

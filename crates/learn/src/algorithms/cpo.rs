@@ -162,7 +162,8 @@ mod tests {
             let fisher = p * (1.0 - p);
             // The reward is 1 with the action of cost 1: the best step goes to the edge of the budget.
             let (g, b) = (-fisher, fisher);
-            let excess = surrogate_excess(&Signal { episode_cost: cost, episode_budget: budget, episode_steps: steps });
+            let excess =
+                surrogate_excess(&Signal { episode_cost: cost, episode_budget: budget, episode_steps: steps, done: 0.0 });
             let weights = Plane { q: g * g / fisher, r: g * b / fisher, s: b * b / fisher, excess, radius: 0.05 }.solve();
             let step = -(weights.reward * g + weights.cost * b) / fisher;
             let after = steps / (1.0 + libm::exp(-(theta + step)));

@@ -6,7 +6,8 @@ use super::Signal;
 use crate::config::AlgorithmConfig;
 
 /// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess). With damping the present
-/// excess counts beside its integral, without being remembered; with growth both count 1 + growth * lambda times.
+/// excess counts beside its integral, without being remembered; with growth both count 1 + growth * lambda times at the end of
+/// training, and in proportion to its progress before.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lagrange {
     /// The multiplier.
@@ -42,7 +43,7 @@ impl Lagrange {
     pub fn update(&mut self, signal: &Signal) {
         let limit = self.limit.unwrap_or(f64::INFINITY);
         let before = self.integral.unwrap_or(self.value);
-        let excess = (1.0 + self.growth * before) * signal.step_excess();
+        let excess = (1.0 + self.growth * signal.done * before) * signal.step_excess();
         let integral = (before + self.rate * excess).clamp(0.0, limit);
         self.integral = Some(integral);
         self.value = (integral + self.damping * excess).clamp(0.0, limit);
@@ -146,7 +147,7 @@ mod tests {
     use crate::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
 
     fn signal(step_cost: f64) -> Signal {
-        Signal { episode_cost: step_cost * 525.0, episode_budget: 50.0, episode_steps: 525.0 }
+        Signal { episode_cost: step_cost * 525.0, episode_budget: 50.0, episode_steps: 525.0, done: 0.0 }
     }
 
     fn settings() -> AlgorithmConfig {
@@ -210,10 +211,11 @@ mod tests {
             let mut multiplier = Lagrange::all(&settings, 1);
             let budget = 50.0 / scale;
             let mut cost = 2.0 * budget;
-            for _ in 0..12_000 {
+            for update in 0..12_000 {
                 let wanted = budget * (1.0 - (multiplier.values()[0] / (0.3 * scale)).max(0.05).ln());
                 cost += (wanted - cost) / 146.0;
-                let signal = Signal { episode_cost: cost, episode_budget: budget, episode_steps: 525.0 };
+                let signal =
+                    Signal { episode_cost: cost, episode_budget: budget, episode_steps: 525.0, done: f64::from(update) / 12e3 };
                 multiplier.update(&[signal]);
             }
             (cost / budget - 1.0).abs()

@@ -267,7 +267,7 @@ impl Session {
             self.means.add(name, share);
         }
         let passes = Passes::new(&self.config, self.rollouts, rollout.lanes());
-        let signals = |costs: &[f64]| self.watch.signals(&self.config, costs);
+        let signals = |costs: &[f64]| self.watch.signals(&self.config, done, costs);
         self.algorithm.learn(&mut self.learner, &prepared, &passes, &signals, &mut self.means)?;
         if learning.reuse_forward {
             self.learner.absorb(rollout)?;

@@ -95,14 +95,15 @@ impl Watch {
         last.details.iter().map(mean).collect()
     }
 
-    /// What each constraint costs at present; nothing while that is not known yet.
+    /// What each constraint costs at present, when so much of the training is over; nothing while that is not known yet.
     #[must_use]
-    pub fn signals(&self, config: &TrainConfig, minibatch_costs: &[f64]) -> Vec<Signal> {
+    pub fn signals(&self, config: &TrainConfig, done: f64, minibatch_costs: &[f64]) -> Vec<Signal> {
         let episode_steps = f64::from(config.episode_steps);
         let signal = |index: usize, episode_cost: f64| Signal {
             episode_cost,
             episode_budget: config.constraints[index].budget * config.budget_share,
             episode_steps,
+            done,
         };
         match config.constraint_statistic {
             ConstraintStatistic::StepMean => {
@@ -146,17 +147,17 @@ mod tests {
         config.constraints =
             vec![Constraint { term: None, budget: 50.0 }, Constraint { term: Some("jumps".into()), budget: 3.0 }];
         let mut watch = Watch::new(&config);
-        assert!(watch.signals(&config, &[0.1, 0.2]).is_empty());
+        assert!(watch.signals(&config, 0.0, &[0.1, 0.2]).is_empty());
         for (cost, jumps) in [(1000.0, 50.0), (60.0, 4.0), (80.0, 8.0)] {
             watch.add(&episode(cost, jumps), &config.constraints);
         }
-        let signals = watch.signals(&config, &[0.1, 0.2]);
+        let signals = watch.signals(&config, 0.0, &[0.1, 0.2]);
         assert_eq!(signals[0].episode_excess(), 20.0);
         assert_eq!(signals[1].episode_excess(), 3.0);
         assert!((signals[0].step_excess() - 20.0 / 525.0).abs() < 1e-12);
         assert_eq!(watch.details()[2], ("stats/deaths".to_string(), 1.0));
         config.constraint_statistic = ConstraintStatistic::StepMean;
-        let signals = watch.signals(&config, &[0.3, 0.2]);
+        let signals = watch.signals(&config, 0.0, &[0.3, 0.2]);
         assert!((signals[0].step_excess() - (0.3 - 50.0 / 2100.0 * 4.0)).abs() < 1e-12);
     }
 }
