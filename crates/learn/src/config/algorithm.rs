@@ -80,8 +80,9 @@ pub struct AlgorithmConfig {
     /// it damps the circles that the integral alone runs in. 0 for none.
     #[serde(default)]
     pub multiplier_damping: f64,
-    /// Lagrangian algorithms: by how much a multiplier moves faster for each unit that it has reached. Where it has to become
-    /// large, as under a small budget, the cost answers to its ratios rather than to its differences. 0 for none.
+    /// Lagrangian algorithms: by how much faster a multiplier moves for each unit beyond 1 that it has reached, at the end of
+    /// training, and in proportion to its progress before. Where it has to become large, as under a small budget, the cost
+    /// answers to its ratios rather than to its differences; but an agent that is held back early never learns to earn. 0 for none.
     #[serde(default)]
     pub multiplier_growth: f64,
     /// PID: proportional, integral and derivative gains.

@@ -82,7 +82,7 @@ impl TrainConfig {
                 exploration_coefficient: 0.001,
                 final_exploration_coefficient: None,
                 bootstrap_time_outs: !released,
-                reuse_forward: false,
+                reuse_forward: true,
                 threads: cores,
                 portable: false,
             },
@@ -152,12 +152,15 @@ fn quicken(config: &mut TrainConfig) {
     let passes = if config.algorithm.separates_networks() { 1 } else { 2 };
     config.learning.epochs = passes;
     config.learning.minibatches = passes;
+    // It would spare one pass in four.
+    config.learning.reuse_forward = false;
     // Damped, the multiplier no longer circles; and what it lags behind a policy that grows better at earning is taken off the
     // budget beforehand. docs/tried/multiplier_rate.md has the numbers.
     // FOCOPS and CUP move theirs once a rollout, not once a minibatch of each pass.
     let once = matches!(config.algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup);
     config.algorithm_settings.multiplier_rate = if once { 0.04 } else { 0.01 };
     config.algorithm_settings.multiplier_damping = 1.5;
+    config.algorithm_settings.multiplier_growth = 8.0;
     config.algorithm_settings.pid_gains = (1.5, 0.01, 0.0);
     config.algorithm_settings.pid_decay = 0.0;
     config.budget_share = 0.9;
