@@ -63,7 +63,7 @@ pub const fn of(scenario: Scenario) -> [Moment; 6] {
             at(2, 3, &[(6, "sticky:12")]),
             at(2, 1, &[(140, "sticky:12")]),
             at(3, 3, &[(103, "sticky:12")]),
-            at(3, 2, &[(60, "sticky:12")]),
+            at(3, 4, &[(60, "sticky:12")]),
         ],
         Scenario::VolcanicVenture => [
             at(1, 1, &[(130, "sticky:10")]),
