@@ -39,8 +39,8 @@ pub enum Pixels<'a> {
     Rgb(&'a [u8]),
 }
 
-/// The bytes of a PNG file, made quickly: for frames that are sent to a viewer as they come, about twice as large as those
-/// of [`encode`] and a hundred times as fast.
+/// The bytes of a PNG file, made quickly rather than small: for frames that are sent to a viewer as they come
+/// (docs/results/serve.md has times and sizes).
 ///
 /// # Errors
 /// When the pixels are not those of `width * height` or there are none.

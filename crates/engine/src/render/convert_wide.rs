@@ -87,6 +87,20 @@ fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) -> usize {
     blocks.len().min(out_blocks.len()) * LANES
 }
 
+/// Three tables in registers.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn load_tables([red, green, blue]: &[[u8; 256]; 3]) -> [[__m512i; 4]; 3] {
+    [load_table(red), load_table(green), load_table(blue)]
+}
+
+/// What each of three tables has for 64 indices.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
+fn look_up_channels([red, green, blue]: [[__m512i; 4]; 3], indices: __m512i) -> [__m512i; 3] {
+    [look_up_block(red, indices), look_up_block(green, indices), look_up_block(blue, indices)]
+}
+
 /// For each of the three output blocks, which lane of red or green (plus 64) goes where, and where blue goes.
 const WEAVE: [([u8; LANES], u64, [u8; LANES]); 3] = {
     let mut weave = [([0; LANES], 0, [0; LANES]); 3];
@@ -108,13 +122,13 @@ const WEAVE: [([u8; LANES], u64, [u8; LANES]); 3] = {
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
 fn interleaved(tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) -> usize {
-    let tables = [load_table(&tables[0]), load_table(&tables[1]), load_table(&tables[2])];
+    let tables = load_tables(tables);
     let (blocks, _) = indices.as_chunks::<LANES>();
     let (out_blocks, _) = out.as_chunks_mut::<LANES>();
     let (triples, _) = out_blocks.as_chunks_mut::<3>();
     for (triple, from) in triples.iter_mut().zip(blocks) {
         let from = load(from);
-        let [red, green, blue] = [look_up_block(tables[0], from), look_up_block(tables[1], from), look_up_block(tables[2], from)];
+        let [red, green, blue] = look_up_channels(tables, from);
         for (to, (red_green, blue_lanes, blue_from)) in triple.iter_mut().zip(&WEAVE) {
             let woven = _mm512_permutex2var_epi8(red, load(red_green), green);
             store(to, _mm512_mask_permutexvar_epi8(woven, *blue_lanes, load(blue_from), blue));
@@ -136,13 +150,13 @@ const PAIRS: [[u8; LANES]; 4] = {
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
 fn with_depth(tables: &[[u8; 256]; 3], indices: &[u8], depth: &[u8], out: &mut [u8]) -> usize {
-    let tables = [load_table(&tables[0]), load_table(&tables[1]), load_table(&tables[2])];
+    let tables = load_tables(tables);
     let ((blocks, _), (depths, _)) = (indices.as_chunks::<LANES>(), depth.as_chunks::<LANES>());
     let (out_blocks, _) = out.as_chunks_mut::<LANES>();
     let (fours, _) = out_blocks.as_chunks_mut::<4>();
     for ((four, from), depth) in fours.iter_mut().zip(blocks).zip(depths) {
         let (from, depth) = (load(from), load(depth));
-        let [red, green, blue] = [look_up_block(tables[0], from), look_up_block(tables[1], from), look_up_block(tables[2], from)];
+        let [red, green, blue] = look_up_channels(tables, from);
         for (to, pairs) in four.iter_mut().zip(&PAIRS) {
             let pairs = load(pairs);
             let (first, second) = (_mm512_permutex2var_epi8(red, pairs, green), _mm512_permutex2var_epi8(blue, pairs, depth));
