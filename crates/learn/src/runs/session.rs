@@ -192,8 +192,11 @@ impl Session {
             }
             samplers.push(sampler);
         }
-        let ahead = if sampling.synchronous { 1 } else { sampling.accumulated + 1 };
-        let gatherer = Gatherer::new(samplers, sampling.rollout, ahead, learner.publish());
+        let gatherer = if sampling.synchronous {
+            Gatherer::in_turn(samplers, sampling.rollout, learner.publish())
+        } else {
+            Gatherer::ahead(samplers, sampling.rollout, sampling.accumulated + 1, learner.publish())
+        };
         let means = Means::default();
         Ok(Session {
             learner,

@@ -1,7 +1,5 @@
-//! Sampler threads and what passes between them and the learner.
-//!
-//! Every sampler has a thread of its own that works off a queue. Sampling and learning side by side or taking turns is
-//! one code path: the difference is how many rollouts are asked for ahead.
+//! The samplers of a run, and what passes between them and the learner: taking turns with it, or side by side with it, each
+//! on a thread of its own that works off a queue.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,6 +9,7 @@ use std::thread::JoinHandle;
 
 use crate::error::LearnError;
 use crate::networks::Published;
+use crate::networks::cpu::threads::in_parallel;
 use crate::sampling::rollout::{Part, Rollout};
 use crate::sampling::sampler::{Newest, Sampler, SamplerState};
 
@@ -33,6 +32,25 @@ struct Worker {
 }
 
 impl Worker {
+    fn next_part(&mut self) -> Result<Part, LearnError> {
+        if let Some(part) = self.waiting.pop_front() {
+            return Ok(*part);
+        }
+        match self.answer()? {
+            Answer::Filled(part) => Ok(*part),
+            Answer::Saved(_) => Err(LearnError::Panic("a sampler answered out of turn".into())),
+        }
+    }
+
+    fn next_state(&mut self) -> Result<SamplerState, LearnError> {
+        loop {
+            match self.answer()? {
+                Answer::Filled(part) => self.waiting.push_back(part),
+                Answer::Saved(state) => return Ok(state),
+            }
+        }
+    }
+
     fn answer(&self) -> Result<Answer, LearnError> {
         self.answers.recv().map_err(|_| LearnError::Panic("a sampler thread has ended".into()))?
     }
@@ -40,71 +58,89 @@ impl Worker {
 
 /// All samplers.
 pub struct Gatherer {
-    workers: Vec<Worker>,
+    crew: Crew,
     newest: Arc<Newest>,
-    /// Raised when no answer is wanted any more.
-    over: Arc<AtomicBool>,
+}
+
+enum Crew {
+    /// They gather on threads of the learner, when it waits for a rollout. (Threads of their own would often be woken
+    /// on one and the same core, and stay there for milliseconds.)
+    InTurn { samplers: Vec<Sampler>, parts: Vec<Box<Part>>, steps: usize },
+    /// Each gathers on a thread of its own, while the learner learns.
+    Ahead {
+        workers: Vec<Worker>,
+        /// Raised when no answer is wanted any more.
+        over: Arc<AtomicBool>,
+    },
 }
 
 impl Gatherer {
-    /// Puts samplers to work; `ahead` rollouts of `steps` steps are asked for at once (1 takes turns with the learner).
-    pub fn new(samplers: Vec<Sampler>, steps: usize, ahead: usize, published: Published) -> Gatherer {
-        let newest = Arc::new(RwLock::new(Arc::new(published)));
+    /// Samplers that take turns with the learner: a rollout of `steps` steps is gathered when it is waited for.
+    pub fn in_turn(samplers: Vec<Sampler>, steps: usize, published: Published) -> Gatherer {
+        let parts = samplers.iter().map(|_| Box::default()).collect();
+        Gatherer { crew: Crew::InTurn { samplers, parts, steps }, newest: newest(published) }
+    }
+
+    /// Samplers on threads of their own, of which `ahead` rollouts are asked at once.
+    pub fn ahead(samplers: Vec<Sampler>, steps: usize, ahead: usize, published: Published) -> Gatherer {
+        let newest = newest(published);
         let over = Arc::new(AtomicBool::new(false));
         let hire = |sampler| hire(sampler, steps, ahead, Arc::clone(&newest), Arc::clone(&over));
-        Gatherer { workers: samplers.into_iter().map(hire).collect(), newest, over }
+        Gatherer { crew: Crew::Ahead { workers: samplers.into_iter().map(hire).collect(), over }, newest }
     }
 
     /// Waits for the next rollout.
     pub fn next_rollout(&mut self) -> Result<Rollout, LearnError> {
-        let mut parts = Vec::with_capacity(self.workers.len());
-        for worker in &mut self.workers {
-            let part = match worker.waiting.pop_front() {
-                Some(part) => part,
-                None => match worker.answer()? {
-                    Answer::Filled(part) => part,
-                    Answer::Saved(_) => return Err(LearnError::Panic("a sampler answered out of turn".into())),
-                },
-            };
-            parts.push(*part);
-        }
-        Ok(Rollout { parts })
+        let parts: Result<Vec<Part>, LearnError> = match &mut self.crew {
+            Crew::InTurn { samplers, parts, steps } => {
+                let (steps, newest) = (*steps, &self.newest);
+                let mut threads = vec![(); samplers.len()];
+                let mut filled: Vec<Option<Result<Part, LearnError>>> = samplers.iter().map(|_| None).collect();
+                let work = samplers.iter_mut().zip(parts.drain(..)).zip(&mut filled).map(|((sampler, part), filled)| {
+                    move |_: &mut ()| *filled = Some(caught(|| fill(sampler, part, steps, newest)).map(|part| *part))
+                });
+                in_parallel(&mut threads, work);
+                filled.into_iter().flatten().collect()
+            }
+            Crew::Ahead { workers, .. } => workers.iter_mut().map(Worker::next_part).collect(),
+        };
+        Ok(Rollout { parts: parts? })
     }
 
     /// Publishes new weights, then asks for another rollout in the memory of one that has been learned from.
-    pub fn go_on(&self, rollout: Rollout, published: Published) {
+    pub fn go_on(&mut self, rollout: Rollout, published: Published) {
         *self.newest.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = Arc::new(published);
-        for (worker, part) in self.workers.iter().zip(rollout.parts) {
-            // A worker that has gone is found out by the next answer.
-            let _ = worker.asks.send(Ask::Fill(Box::new(part)));
+        let boxed = rollout.parts.into_iter().map(Box::new);
+        match &mut self.crew {
+            Crew::InTurn { parts, .. } => *parts = boxed.collect(),
+            Crew::Ahead { workers, .. } => {
+                for (worker, part) in workers.iter().zip(boxed) {
+                    // A worker that has gone is found out by the next answer.
+                    let _ = worker.asks.send(Ask::Fill(part));
+                }
+            }
         }
     }
 
     /// Where all samplers are, once they have done what they were asked for before.
     pub fn save(&mut self) -> Result<Vec<SamplerState>, LearnError> {
-        for worker in &self.workers {
-            let _ = worker.asks.send(Ask::Save);
-        }
-        let mut states = Vec::new();
-        for worker in &mut self.workers {
-            loop {
-                match worker.answer()? {
-                    Answer::Filled(part) => worker.waiting.push_back(part),
-                    Answer::Saved(state) => {
-                        states.push(state);
-                        break;
-                    }
+        match &mut self.crew {
+            Crew::InTurn { samplers, .. } => samplers.iter_mut().map(Sampler::save).collect(),
+            Crew::Ahead { workers, .. } => {
+                for worker in workers.iter() {
+                    let _ = worker.asks.send(Ask::Save);
                 }
+                workers.iter_mut().map(Worker::next_state).collect()
             }
         }
-        Ok(states)
     }
 }
 
 impl Drop for Gatherer {
     fn drop(&mut self) {
-        self.over.store(true, Ordering::Relaxed);
-        for worker in &mut self.workers {
+        let Crew::Ahead { workers, over } = &mut self.crew else { return };
+        over.store(true, Ordering::Relaxed);
+        for worker in workers {
             // Hanging up ends the thread after the rollout that it is at.
             let (nowhere, _) = channel();
             worker.asks = nowhere;
@@ -113,6 +149,19 @@ impl Drop for Gatherer {
             }
         }
     }
+}
+
+fn newest(published: Published) -> Arc<Newest> {
+    Arc::new(RwLock::new(Arc::new(published)))
+}
+
+fn fill(sampler: &mut Sampler, mut part: Box<Part>, steps: usize, newest: &Newest) -> Result<Box<Part>, LearnError> {
+    sampler.fill(&mut part, steps, newest).map(|()| part)
+}
+
+/// What a sampler does, a panic being an error.
+fn caught<T>(work: impl FnOnce() -> Result<T, LearnError>) -> Result<T, LearnError> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("a sampler", &*panic))))
 }
 
 fn hire(mut sampler: Sampler, steps: usize, ahead: usize, newest: Arc<Newest>, over: Arc<AtomicBool>) -> Worker {
@@ -126,11 +175,10 @@ fn hire(mut sampler: Sampler, steps: usize, ahead: usize, newest: Arc<Newest>, o
             if over.load(Ordering::Relaxed) {
                 return;
             }
-            let answer = catch_unwind(AssertUnwindSafe(|| match ask {
-                Ask::Fill(mut part) => sampler.fill(&mut part, steps, &newest).map(|()| Answer::Filled(part)),
+            let answer = caught(|| match ask {
+                Ask::Fill(part) => fill(&mut sampler, part, steps, &newest).map(Answer::Filled),
                 Ask::Save => sampler.save().map(Answer::Saved),
-            }));
-            let answer = answer.unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("a sampler", &*panic))));
+            });
             let failed = answer.is_err();
             if answering.send(answer).is_err() || failed {
                 return;

@@ -78,10 +78,8 @@ impl LearningNetwork for CpuLearner {
         let free = self.spare.iter().position(|spare| Arc::strong_count(spare) == 1);
         let mut fresh = free.map_or_else(Arc::default, |index| self.spare.swap_remove(index));
         let packed = Arc::get_mut(&mut fresh).expect("nobody else holds it");
-        let (plan, backward) = (&self.plan, &mut self.backward);
-        let work: [Piece<'_, Forward>; 2] =
-            [Box::new(|_| packed.load(plan, parameters)), Box::new(|_| backward.load(plan, parameters))];
-        in_parallel(&mut self.forwards, work);
+        let work: Vec<Piece<'_, Forward>> = packed.loading(&self.plan, parameters);
+        in_parallel(&mut self.forwards, work.into_iter().chain(self.backward.loading(&self.plan, parameters)));
         self.spare.push(std::mem::replace(&mut self.weights, fresh));
     }
 

@@ -4,6 +4,7 @@ use super::convolution::ConvolutionPlan;
 use super::elementwise::NOWHERE;
 use super::pack::{pack, pack_transposed};
 use super::simd::Kernels;
+use super::threads::Piece;
 use super::tile::PANEL;
 use crate::networks::{EncoderLayer, NetworkShape, Parameter, PixelScale};
 
@@ -122,38 +123,53 @@ fn resized(buffer: &mut Vec<f32>, length: usize) -> &mut [f32] {
 impl PackedWeights {
     /// Packs `parameters`, reusing this value's memory.
     pub fn load(&mut self, plan: &Plan, parameters: &[f32]) {
+        self.loading(plan, parameters).into_iter().for_each(|piece| piece(&mut ()));
+    }
+
+    /// The same as pieces of work: one a layer, and one for the heads.
+    pub fn loading<'a, S>(&'a mut self, plan: &'a Plan, parameters: &'a [f32]) -> Vec<Piece<'a, S>> {
         let shape = &plan.shape;
-        self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
-        self.convolution_biases.resize_with(plan.convolutions.len(), Vec::new);
-        for (index, convolution) in plan.convolutions.iter().enumerate() {
-            let weights = plan.convolution(index);
-            convolution.pack_forward(&parameters[weights.range()], resized(&mut self.convolutions[index], weights.size()));
-            copy(&mut self.convolution_biases[index], &parameters[plan.after(weights).range()]);
-        }
-        self.dense.resize_with(shape.dense.len(), Vec::new);
-        self.dense_biases.resize_with(shape.dense.len(), Vec::new);
-        for (index, &units) in shape.dense.iter().enumerate() {
-            let weights = plan.dense(index);
-            let packed = resized(&mut self.dense[index], weights.size());
-            pack(&parameters[weights.range()], weights.inputs, units, packed);
-            copy(&mut self.dense_biases[index], &parameters[plan.after(weights).range()]);
-        }
+        let mut pieces: Vec<Piece<'a, S>> = Vec::new();
         if let Some(units) = shape.recurrent {
             let [input, input_bias, hidden, hidden_bias] = plan.cell();
             let (inputs, columns) = (shape.core_inputs(), shape.gate_columns());
-            pack(&parameters[input.range()], inputs, columns, resized(&mut self.cell_input, input.size()));
-            pack(&parameters[hidden.range()], units, columns, resized(&mut self.cell_hidden, hidden.size()));
+            let (from_input, from_hidden) = (&mut self.cell_input, &mut self.cell_hidden);
             copy(&mut self.cell_biases[0], &parameters[input_bias.range()]);
             copy(&mut self.cell_biases[1], &parameters[hidden_bias.range()]);
+            pieces.push(Box::new(move |_| pack(&parameters[input.range()], inputs, columns, resized(from_input, input.size()))));
+            pieces.push(Box::new(move |_| pack(&parameters[hidden.range()], units, columns, resized(from_hidden, hidden.size()))));
         }
-        let joined = joined_heads(plan, parameters);
-        let packed = resized(&mut self.heads, joined.len());
-        pack(&joined, shape.head_inputs(), plan.padded_outputs, packed);
-        self.head_biases.clear();
-        for index in 0..shape.heads.len() {
-            self.head_biases.extend_from_slice(&parameters[plan.after(plan.head(index)).range()]);
+        self.dense.resize_with(shape.dense.len(), Vec::new);
+        self.dense_biases.resize_with(shape.dense.len(), Vec::new);
+        for (index, (packed, biases)) in self.dense.iter_mut().zip(&mut self.dense_biases).enumerate() {
+            let weights = plan.dense(index);
+            copy(biases, &parameters[plan.after(weights).range()]);
+            let units = shape.dense[index];
+            pieces.push(Box::new(move |_| {
+                pack(&parameters[weights.range()], weights.inputs, units, resized(packed, weights.size()));
+            }));
         }
-        self.head_biases.resize(plan.padded_outputs, 0.0);
+        self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
+        self.convolution_biases.resize_with(plan.convolutions.len(), Vec::new);
+        let convolutions = self.convolutions.iter_mut().zip(&mut self.convolution_biases).zip(&plan.convolutions);
+        for (index, ((packed, biases), convolution)) in convolutions.enumerate() {
+            let weights = plan.convolution(index);
+            copy(biases, &parameters[plan.after(weights).range()]);
+            pieces.push(Box::new(move |_| {
+                convolution.pack_forward(&parameters[weights.range()], resized(packed, weights.size()));
+            }));
+        }
+        let (heads, head_biases) = (&mut self.heads, &mut self.head_biases);
+        pieces.push(Box::new(move |_| {
+            let joined = joined_heads(plan, parameters);
+            pack(&joined, shape.head_inputs(), plan.padded_outputs, resized(heads, joined.len()));
+            head_biases.clear();
+            for index in 0..shape.heads.len() {
+                head_biases.extend_from_slice(&parameters[plan.after(plan.head(index)).range()]);
+            }
+            head_biases.resize(plan.padded_outputs, 0.0);
+        }));
+        pieces
     }
 }
 
@@ -175,36 +191,45 @@ pub fn stored_pixels(plan: &Plan, pixels: &PixelScale) -> PixelScale {
 }
 
 impl Backward {
-    /// Packs `parameters`, reusing this value's memory.
-    pub fn load(&mut self, plan: &Plan, parameters: &[f32]) {
+    /// Packs `parameters`, reusing this value's memory: a piece of work a layer, and one for the heads.
+    pub fn loading<'a, S>(&'a mut self, plan: &'a Plan, parameters: &'a [f32]) -> Vec<Piece<'a, S>> {
         let shape = &plan.shape;
-        let joined_heads = joined_heads(plan, parameters);
-        self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
-        for (index, convolution) in plan.convolutions.iter().enumerate().skip(1) {
-            let weights = plan.convolution(index);
-            let packed = resized(&mut self.convolutions[index], weights.size());
-            convolution.pack_backward(&parameters[weights.range()], packed);
-        }
-        self.dense.resize_with(shape.dense.len(), Vec::new);
-        for (index, &units) in shape.dense.iter().enumerate() {
-            if index == 0 && plan.convolutions.is_empty() {
-                continue;
-            }
-            let weights = plan.dense(index);
-            let packed = resized(&mut self.dense[index], weights.size());
-            pack_transposed(&parameters[weights.range()], units, weights.inputs, packed);
-        }
+        let mut pieces: Vec<Piece<'a, S>> = Vec::new();
         if let Some(units) = shape.recurrent {
             let [input, _, hidden, _] = plan.cell();
             let (dense, columns) = (shape.core_inputs() - shape.extra_inputs, shape.gate_columns());
             let rows = &parameters[input.range()][..dense * columns];
-            pack_transposed(rows, columns, dense, resized(&mut self.cell_input, rows.len()));
-            pack_transposed(&parameters[hidden.range()], columns, units, resized(&mut self.cell_hidden, hidden.size()));
+            let (to_input, to_hidden) = (&mut self.cell_input, &mut self.cell_hidden);
+            pieces.push(Box::new(move |_| pack_transposed(rows, columns, dense, resized(to_input, rows.len()))));
+            let rows = &parameters[hidden.range()];
+            pieces.push(Box::new(move |_| pack_transposed(rows, columns, units, resized(to_hidden, rows.len()))));
         }
-        // Nothing flows into the extra inputs, which without a recurrent layer are the last inputs of the heads.
-        let inputs = if shape.recurrent.is_some() { shape.head_inputs() } else { shape.core_inputs() - shape.extra_inputs };
-        let rows = &joined_heads[..inputs * plan.padded_outputs];
-        pack_transposed(rows, plan.padded_outputs, inputs, resized(&mut self.heads, rows.len()));
+        self.dense.resize_with(shape.dense.len(), Vec::new);
+        for (index, packed) in self.dense.iter_mut().enumerate() {
+            if index == 0 && plan.convolutions.is_empty() {
+                continue;
+            }
+            let (weights, units) = (plan.dense(index), shape.dense[index]);
+            pieces.push(Box::new(move |_| {
+                pack_transposed(&parameters[weights.range()], units, weights.inputs, resized(packed, weights.size()));
+            }));
+        }
+        self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
+        for (index, (packed, convolution)) in self.convolutions.iter_mut().zip(&plan.convolutions).enumerate().skip(1) {
+            let weights = plan.convolution(index);
+            pieces.push(Box::new(move |_| {
+                convolution.pack_backward(&parameters[weights.range()], resized(packed, weights.size()));
+            }));
+        }
+        let heads = &mut self.heads;
+        pieces.push(Box::new(move |_| {
+            // Nothing flows into the extra inputs, which without a recurrent layer are the last inputs of the heads.
+            let inputs =
+                if shape.recurrent.is_some() { shape.head_inputs() } else { shape.core_inputs() - shape.extra_inputs };
+            let rows = &joined_heads(plan, parameters)[..inputs * plan.padded_outputs];
+            pack_transposed(rows, plan.padded_outputs, inputs, resized(heads, rows.len()));
+        }));
+        pieces
     }
 }
 
