@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::product::{block_rows, stretches};
 use super::simd::Kernels;
-use super::tile::{PANEL, Tile, tiles};
+use super::tile::{Ahead, PANEL, Tile, tiles};
 
 /// Memory for repacked factors.
 #[derive(Default)]
@@ -50,7 +50,8 @@ pub fn sum_outer_products(
                         right_inner: PANEL,
                         out_stride: columns,
                         accumulate: start > 0,
-                        ahead: (row + height == count).then_some(length * PANEL),
+                        next: length * PANEL,
+                        ahead: Ahead::at(row, row + height, count),
                     };
                     let left = &workspace.left[row * length..][..height * length];
                     let out = &mut out[row * columns + panel * PANEL..][..(height - 1) * columns + PANEL];

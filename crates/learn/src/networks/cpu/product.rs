@@ -8,7 +8,7 @@
 //! [`multiply`] asserts that every address that it will touch lies inside its slices.
 
 use super::simd::{Kernels, Level};
-use super::tile::{PANEL, Tile, tallest, tiles};
+use super::tile::{Ahead, PANEL, Tile, tallest, tiles};
 
 /// Left factor: element (row, inner) is `data[row * row_stride + inner * inner_stride]`.
 #[derive(Clone, Copy)]
@@ -114,15 +114,17 @@ pub fn multiply(
             right_inner: right.inner_stride,
             out_stride,
             accumulate: accumulate || start > 0,
-            ahead: None,
+            next: right.panel_stride,
+            ahead: Ahead::Nothing,
         };
         let block = block_rows(kernels, length);
         for first in (0..rows).step_by(block) {
             let block_rows = block.min(rows - first);
             for panel in 0..panels {
                 for (row, height) in tiles(kernels, block_rows) {
-                    // The last tile of a panel fetches the next panel: with few rows, weights come from afar all the time.
-                    tile.ahead = (row + height == block_rows && panel + 1 < panels).then_some(right.panel_stride);
+                    // The last tiles of a panel fetch the next: with few rows, weights come from afar all the time.
+                    let is_last = panel + 1 == panels;
+                    tile.ahead = if is_last { Ahead::Nothing } else { Ahead::at(row, row + height, block_rows) };
                     let row = first + row;
                     // SAFETY: the assertions above bound every element of the tile: rows `row..row + height` of the left
                     // factor and of the result, panel `panel` of the right factor and of the result, and the inner indices

@@ -35,9 +35,38 @@ pub(super) struct Tile {
     pub right_inner: usize,
     pub out_stride: usize,
     pub accumulate: bool,
-    /// How far behind the right factor lies what will be read in its place soon, if it is to be fetched on the way.
-    pub ahead: Option<usize>,
+    /// How far behind the right factor lies what will be read in its place soon.
+    pub next: usize,
+    /// What of that is fetched on the way.
+    pub ahead: Ahead,
 }
+
+/// The part of the next panel that a tile fetches while it works on this one.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Ahead {
+    Nothing,
+    LeftHalf,
+    RightHalf,
+    Everything,
+}
+
+impl Ahead {
+    /// What a tile fetches which ends at row `end` of `rows`: the last two of a panel share the next, so that it comes no faster
+    /// than it has to.
+    pub fn at(first: usize, end: usize, rows: usize) -> Ahead {
+        match (end == rows, first > 0) {
+            (true, false) => Ahead::Everything,
+            (true, true) => Ahead::RightHalf,
+            // Tiles differ by one row at most.
+            (false, _) if 2 * end - first + 1 >= rows => Ahead::LeftHalf,
+            _ => Ahead::Nothing,
+        }
+    }
+}
+
+/// The bits that kernels are made for: left half, right half.
+const LEFT: u8 = 1;
+const RIGHT: u8 = 2;
 
 impl Tile {
     /// Computes a tile of some height.
@@ -46,14 +75,19 @@ impl Tile {
     /// All elements of the tile must lie inside the allocations behind the pointers.
     #[inline]
     pub unsafe fn run(self, kernels: Kernels, height: usize, left: *const f32, right: *const f32, out: *mut f32) {
+        let next = right.wrapping_add(self.next);
         macro_rules! heights {
             ($function:ident: $($height:literal)*) => {
                 match (height, self.ahead) {
                     // SAFETY: as the caller promised; whoever has these kernels has their instructions.
-                    $(($height, None) => unsafe { $function::<$height, false>(self, left, right, right, out) },)*
+                    $(($height, Ahead::Nothing) => unsafe { $function::<$height, 0>(self, left, right, next, out) },)*
                     // SAFETY: as above.
-                    $(($height, Some(next)) => unsafe {
-                        $function::<$height, true>(self, left, right, right.wrapping_add(next), out);
+                    $(($height, Ahead::LeftHalf) => unsafe { $function::<$height, LEFT>(self, left, right, next, out) },)*
+                    // SAFETY: as above.
+                    $(($height, Ahead::RightHalf) => unsafe { $function::<$height, RIGHT>(self, left, right, next, out) },)*
+                    // SAFETY: as above.
+                    $(($height, Ahead::Everything) => unsafe {
+                        $function::<$height, { LEFT | RIGHT }>(self, left, right, next, out);
                     },)*
                     _ => unreachable!("tile height"),
                 }
@@ -71,7 +105,7 @@ impl Tile {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f")]
-unsafe fn avx512<const ROWS: usize, const AHEAD: bool>(
+unsafe fn avx512<const ROWS: usize, const AHEAD: u8>(
     tile: Tile,
     mut left: *const f32,
     mut right: *const f32,
@@ -92,11 +126,13 @@ unsafe fn avx512<const ROWS: usize, const AHEAD: bool>(
             }
         }
         for _ in 0..tile.inner {
-            if AHEAD {
+            if AHEAD & LEFT != 0 {
                 _mm_prefetch::<_MM_HINT_T1>(ahead.cast());
-                _mm_prefetch::<_MM_HINT_T1>(ahead.wrapping_add(16).cast());
-                ahead = ahead.wrapping_add(tile.right_inner);
             }
+            if AHEAD & RIGHT != 0 {
+                _mm_prefetch::<_MM_HINT_T1>(ahead.wrapping_add(16).cast());
+            }
+            ahead = ahead.wrapping_add(tile.right_inner);
             let low = _mm512_loadu_ps(right);
             let high = _mm512_loadu_ps(right.add(16));
             for (row, pair) in sums.iter_mut().enumerate() {
@@ -118,7 +154,7 @@ unsafe fn avx512<const ROWS: usize, const AHEAD: bool>(
 /// Half a panel at a time: two halves of six rows fill the sixteen registers.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-unsafe fn avx2<const ROWS: usize, const AHEAD: bool>(
+unsafe fn avx2<const ROWS: usize, const AHEAD: u8>(
     tile: Tile,
     left: *const f32,
     right: *const f32,
@@ -142,10 +178,10 @@ unsafe fn avx2<const ROWS: usize, const AHEAD: bool>(
                 }
             }
             for _ in 0..tile.inner {
-                if AHEAD {
+                if AHEAD & (if half == 0 { LEFT } else { RIGHT }) != 0 {
                     _mm_prefetch::<_MM_HINT_T1>(ahead.cast());
-                    ahead = ahead.wrapping_add(tile.right_inner);
                 }
+                ahead = ahead.wrapping_add(tile.right_inner);
                 let low = _mm256_loadu_ps(right);
                 let high = _mm256_loadu_ps(right.add(8));
                 for (row, pair) in sums.iter_mut().enumerate() {
@@ -166,7 +202,7 @@ unsafe fn avx2<const ROWS: usize, const AHEAD: bool>(
 }
 
 /// A quarter of a panel at a time, for processors of sixteen short registers.
-unsafe fn portable<const ROWS: usize, const AHEAD: bool>(
+unsafe fn portable<const ROWS: usize, const AHEAD: u8>(
     tile: Tile,
     left: *const f32,
     right: *const f32,
@@ -217,6 +253,21 @@ mod tests {
                     next += height;
                 }
                 assert_eq!(next, rows);
+            }
+        }
+    }
+
+    #[test]
+    fn the_next_panel_is_fetched_once() {
+        for kernels in Kernels::available() {
+            for rows in 1..60 {
+                let (mut left, mut right) = (0, 0);
+                for (first, height) in tiles(kernels, rows) {
+                    let ahead = Ahead::at(first, first + height, rows);
+                    left += u32::from(matches!(ahead, Ahead::LeftHalf | Ahead::Everything));
+                    right += u32::from(matches!(ahead, Ahead::RightHalf | Ahead::Everything));
+                }
+                assert_eq!((left, right), (1, 1), "{rows} rows");
             }
         }
     }
