@@ -6,8 +6,9 @@ use super::Signal;
 use crate::config::AlgorithmConfig;
 
 /// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess). With damping the present
-/// excess counts beside its integral, without being remembered; with growth both count
-/// 1 + growth * progress * max(0, lambda - 1) times, where progress is the share of the training that is over.
+/// excess counts beside its integral, without being remembered; with a reference budget both count
+/// 1 + progress^3 (reference / budget - 1) times, where progress is the share of the training that is over: at first an excess
+/// counts by itself, at last by its share of the budget.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lagrange {
     /// The multiplier.
@@ -19,7 +20,7 @@ pub struct Lagrange {
     #[serde(default)]
     damping: f64,
     #[serde(default)]
-    growth: f64,
+    reference: Option<f64>,
     /// The largest it may become.
     limit: Option<f64>,
 }
@@ -33,7 +34,7 @@ impl Lagrange {
             integral: None,
             rate: settings.multiplier_rate,
             damping: settings.multiplier_damping,
-            growth: settings.multiplier_growth,
+            reference: settings.multiplier_reference_budget,
             limit: settings.multiplier_limit,
         };
         Multipliers::Lagrange(vec![one; constraints])
@@ -43,8 +44,9 @@ impl Lagrange {
     pub fn update(&mut self, signal: &Signal) {
         let limit = self.limit.unwrap_or(f64::INFINITY);
         let before = self.integral.unwrap_or(self.value);
-        let speed = 1.0 + self.growth * signal.done * (before - 1.0).max(0.0);
-        let excess = speed * signal.step_excess();
+        // No budget is less than one event of an episode.
+        let ratio = self.reference.map_or(1.0, |reference| reference / signal.episode_budget.max(1.0));
+        let excess = (1.0 + signal.done.powi(3) * (ratio - 1.0)) * signal.step_excess();
         let integral = (before + self.rate * excess).clamp(0.0, limit);
         self.integral = Some(integral);
         self.value = (integral + self.damping * excess).clamp(0.0, limit);
@@ -202,15 +204,19 @@ mod tests {
         assert!(swing(1.5) < 2.0, "{}", swing(1.5));
     }
 
-    /// A cost that answers to ratios of the multiplier: the rule that settles where 0.3 is needed also does where 3 is, under a
-    /// budget of a tenth, and moves the small one as before.
+    /// A cost that answers to ratios of the multiplier: the rate that brings a budget of 45 to rest where 0.3 is needed also brings
+    /// one of 4.5 to rest where 3 is, and moves the first as it would without.
     #[test]
-    fn growth_brings_small_budgets_to_rest_as_soon() {
-        let distance = |growth: f64, scale: f64| {
-            let settings =
-                AlgorithmConfig { multiplier_rate: 0.01, multiplier_damping: 1.5, multiplier_growth: growth, ..settings() };
+    fn a_reference_brings_small_budgets_to_rest_as_soon() {
+        let distance = |reference: Option<f64>, scale: f64| {
+            let settings = AlgorithmConfig {
+                multiplier_rate: 0.01,
+                multiplier_damping: 1.5,
+                multiplier_reference_budget: reference,
+                ..settings()
+            };
             let mut multiplier = Lagrange::all(&settings, 1);
-            let budget = 50.0 / scale;
+            let budget = 45.0 / scale;
             let mut cost = 2.0 * budget;
             for update in 0..12_000 {
                 let wanted = budget * (1.0 - (multiplier.values()[0] / (0.3 * scale)).max(0.05).ln());
@@ -221,8 +227,28 @@ mod tests {
             }
             (cost / budget - 1.0).abs()
         };
-        assert!(distance(0.0, 1.0) < 0.01 && distance(0.0, 10.0) > 0.5, "{} {}", distance(0.0, 1.0), distance(0.0, 10.0));
-        assert!(distance(12.0, 1.0) == distance(0.0, 1.0) && distance(12.0, 10.0) < 0.15, "{}", distance(12.0, 10.0));
+        assert!(distance(None, 1.0) < 0.01 && distance(None, 10.0) > 0.5, "{} {}", distance(None, 1.0), distance(None, 10.0));
+        assert!(
+            distance(Some(45.0), 1.0) == distance(None, 1.0) && distance(Some(45.0), 10.0) < 0.25,
+            "{}",
+            distance(Some(45.0), 10.0)
+        );
+    }
+
+    /// Worked out by hand: halfway, an excess of 5 over a budget of 5 counts 1 + (45 / 5 - 1) / 8 = 2 times; at first it counts once.
+    /// A budget of nothing counts as one of 1.
+    #[test]
+    fn an_excess_counts_by_its_share_of_the_budget_at_last() {
+        let moved = |budget: f64, done: f64| {
+            let settings = AlgorithmConfig { multiplier_rate: 1.0, multiplier_reference_budget: Some(45.0), ..settings() };
+            let mut multiplier = Lagrange::all(&settings, 1);
+            multiplier.update(&[Signal { episode_cost: budget + 5.0, episode_budget: budget, episode_steps: 100.0, done }]);
+            multiplier.values()[0]
+        };
+        for (budget, done, expected) in [(5.0, 0.0, 0.05), (5.0, 0.5, 0.1), (5.0, 1.0, 0.45), (45.0, 1.0, 0.05), (0.0, 1.0, 2.25)]
+        {
+            assert!((moved(budget, done) - expected).abs() < 1e-12, "{budget} {done}: {}", moved(budget, done));
+        }
     }
 
     #[test]

@@ -80,11 +80,11 @@ pub struct AlgorithmConfig {
     /// it damps the circles that the integral alone runs in. 0 for none.
     #[serde(default)]
     pub multiplier_damping: f64,
-    /// Lagrangian algorithms: by how much faster a multiplier moves for each unit beyond 1 that it has reached, at the end of
-    /// training, and in proportion to its progress before. Where it has to become large, as under a small budget, the cost
-    /// answers to its ratios rather than to its differences; but an agent that is held back early never learns to earn. 0 for none.
+    /// Lagrangian algorithms: the budget for which the rate is meant. Toward the end of training, as the cube of its progress, an
+    /// excess then counts by its share of the budget, so that a tenth of the budget moves a multiplier ten times as fast; before,
+    /// it does not, since an agent that is held back early never learns to earn.
     #[serde(default)]
-    pub multiplier_growth: f64,
+    pub multiplier_reference_budget: Option<f64>,
     /// PID: proportional, integral and derivative gains.
     pub pid_gains: (f64, f64, f64),
     /// PID: the integral before the first update.

@@ -163,7 +163,12 @@ impl TrainConfig {
             ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
             ("the share of the budget", self.budget_share, 0.0, 1.0),
             ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
-            ("the growth of the multiplier", self.algorithm_settings.multiplier_growth, 0.0, f64::MAX),
+            (
+                "the reference budget of the multiplier",
+                self.algorithm_settings.multiplier_reference_budget.unwrap_or(0.0),
+                0.0,
+                f64::MAX,
+            ),
             ("the damping of the multiplier", self.algorithm_settings.multiplier_damping, 0.0, f64::MAX),
             ("the penalty scale", self.algorithm_settings.penalty_scale, 0.0, f64::MAX),
         ] {

@@ -91,7 +91,7 @@ impl TrainConfig {
                 multiplier_initial: 0.0,
                 multiplier_rate: 0.01,
                 multiplier_damping: 0.0,
-                multiplier_growth: 0.0,
+                multiplier_reference_budget: None,
                 pid_gains: (0.1, 0.01, 0.01),
                 pid_initial: 0.001,
                 pid_decay: 0.95,
@@ -160,7 +160,7 @@ fn quicken(config: &mut TrainConfig) {
     let once = matches!(config.algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup);
     config.algorithm_settings.multiplier_rate = if once { 0.04 } else { 0.01 };
     config.algorithm_settings.multiplier_damping = 1.5;
-    config.algorithm_settings.multiplier_growth = 8.0;
+    config.algorithm_settings.multiplier_reference_budget = Some(45.0);
     config.algorithm_settings.pid_gains = (1.5, 0.01, 0.0);
     config.algorithm_settings.pid_decay = 0.0;
     config.budget_share = 0.9;

@@ -137,7 +137,8 @@ impl PackedWeights {
             copy(&mut self.cell_biases[0], &parameters[input_bias.range()]);
             copy(&mut self.cell_biases[1], &parameters[hidden_bias.range()]);
             pieces.push(Box::new(move |_| pack(&parameters[input.range()], inputs, columns, resized(from_input, input.size()))));
-            pieces.push(Box::new(move |_| pack(&parameters[hidden.range()], units, columns, resized(from_hidden, hidden.size()))));
+            pieces
+                .push(Box::new(move |_| pack(&parameters[hidden.range()], units, columns, resized(from_hidden, hidden.size()))));
         }
         self.dense.resize_with(shape.dense.len(), Vec::new);
         self.dense_biases.resize_with(shape.dense.len(), Vec::new);
@@ -224,8 +225,7 @@ impl Backward {
         let heads = &mut self.heads;
         pieces.push(Box::new(move |_| {
             // Nothing flows into the extra inputs, which without a recurrent layer are the last inputs of the heads.
-            let inputs =
-                if shape.recurrent.is_some() { shape.head_inputs() } else { shape.core_inputs() - shape.extra_inputs };
+            let inputs = if shape.recurrent.is_some() { shape.head_inputs() } else { shape.core_inputs() - shape.extra_inputs };
             let rows = &joined_heads(plan, parameters)[..inputs * plan.padded_outputs];
             pack_transposed(rows, plan.padded_outputs, inputs, resized(heads, rows.len()));
         }));
