@@ -5,7 +5,7 @@
 //! verifies reward, cost and divergence. With several constraints the one furthest above its budget rules the step.
 
 use super::surrogate::{centred, standardised};
-use super::trust_region::{TrustRegion, dot, plus, train_critics};
+use super::trust_region::{TrustRegion, train_critics};
 use super::{Algorithm, Signal};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
@@ -123,17 +123,20 @@ impl Algorithm for Cpo {
         let mut origin = region.origin(learner, minibatch);
         let (reward_before, cost_before) = (reward_loss(&origin.heads), cost_loss(&origin.heads));
         let g = region.gradient(learner, minibatch, &reward_before);
-        let _ = learner.policy_outputs(&mut minibatch.batch, &origin.parameters);
+        let _ = learner.present_outputs(&mut minibatch.batch);
         let b = region.gradient(learner, minibatch, &cost_before);
         let (x, y) = (region.solve(learner, &mut origin, &g).direction, region.solve(learner, &mut origin, &b).direction);
         // Nothing is known yet: as if there were no budget.
         let excess = worst.map_or(f64::NEG_INFINITY, |index| surrogate_excess(&signals[index]));
-        let plane = Plane { q: dot(&g, &x), r: dot(&g, &y), s: dot(&b, &y), excess, radius: region.radius };
+        let vectors = learner.vectors();
+        let product = |a: &[f32], b: &[f32]| vectors.dot(a, b);
+        let plane = Plane { q: product(&g, &x), r: product(&g, &y), s: product(&b, &y), excess, radius: region.radius };
         let weights = plane.solve();
         means.add("policy_loss", reward_before.value);
         means.add("recovery", f64::from(u8::from(weights.recovery)));
-        let zero = vec![0.0; x.len()];
-        let step = plus(&plus(&zero, -weights.reward, &x), -weights.cost, &y);
+        let mut step = vec![0.0; x.len()];
+        vectors.add_scaled(&mut step, -weights.reward, &x);
+        vectors.add_scaled(&mut step, -weights.cost, &y);
         let allowed = (-excess).max(0.0);
         region.search(learner, minibatch, &origin, &step, means, |heads, divergence| {
             let (reward, cost) = (reward_loss(heads).value, cost_loss(heads).value);

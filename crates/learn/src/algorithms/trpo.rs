@@ -8,7 +8,7 @@
 //! critic never learns.
 
 use super::surrogate::{exploration_loss, standardised};
-use super::trust_region::{TrustRegion, dot, train_critics};
+use super::trust_region::{TrustRegion, train_critics};
 use super::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
@@ -58,7 +58,7 @@ impl Trpo {
         means.add("policy_loss", before);
         let gradient = region.gradient(learner, minibatch, &loss);
         let solution = region.solve(learner, &mut origin, &gradient);
-        let curvature = dot(&solution.direction, &solution.product);
+        let curvature = learner.vectors().dot(&solution.direction, &solution.product);
         let length = if curvature > 0.0 { (2.0 * region.radius / curvature).sqrt() } else { 0.0 };
         let step: Vec<f32> = solution.direction.iter().map(|value| (-length * f64::from(*value)) as f32).collect();
         let searched = if consistent { &advantages } else { &reward_advantages };

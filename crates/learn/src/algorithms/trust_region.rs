@@ -50,31 +50,6 @@ pub struct Solution {
     pub product: Vec<f32>,
 }
 
-/// Product of two vectors, summed in 64 bits: eight sums side by side, in an order that depends on nothing.
-#[must_use]
-pub fn dot(a: &[f32], b: &[f32]) -> f64 {
-    let mut sums = [0.0f64; 8];
-    for (a, b) in a.chunks(8).zip(b.chunks(8)) {
-        for ((sum, x), y) in sums.iter_mut().zip(a).zip(b) {
-            *sum += f64::from(*x) * f64::from(*y);
-        }
-    }
-    sums.iter().sum()
-}
-
-/// Adds `scale * b` to a vector, in place: vectors are as long as the network, and a new one costs more than the sum.
-pub fn add(to: &mut [f32], scale: f64, b: &[f32]) {
-    to.iter_mut().zip(b).for_each(|(x, y)| *x += scale as f32 * y);
-}
-
-/// `a + scale * b`.
-#[must_use]
-pub fn plus(a: &[f32], scale: f64, b: &[f32]) -> Vec<f32> {
-    let mut sum = a.to_vec();
-    add(&mut sum, scale, b);
-    sum
-}
-
 impl TrustRegion {
     /// The settings of a run.
     #[must_use]
@@ -99,10 +74,11 @@ impl TrustRegion {
         // Spread over all lanes; which ones does not matter, for each is in another episode.
         let sampled: Vec<usize> = (0..count).map(|index| index * lanes / count).collect();
         let mut sample = minibatch.batch.of_lanes(learner.shape(), &sampled);
-        let sample_outputs = learner.policy_outputs(&mut sample, &parameters);
+        let sample_outputs = learner.present_outputs(&mut sample);
         let action = &learner.shape().action;
         let sample_policy = Policy::new(action, &sample_outputs, action.parameters());
-        Origin { heads: learner.policy_heads(minibatch, &parameters), parameters, sample, sample_policy, sample_outputs }
+        let outputs = learner.present_outputs(&mut minibatch.batch);
+        Origin { heads: learner.policy_heads(minibatch, &outputs), parameters, sample, sample_policy, sample_outputs }
     }
 
     /// Gradient, in the policy network's parameters, of a loss of the policy at the origin. It must come right after the
@@ -115,14 +91,14 @@ impl TrustRegion {
 
     /// The damped Fisher matrix times a vector, written to `product`.
     pub fn fisher_times(&self, learner: &mut Learner, origin: &mut Origin<'_>, vector: &[f32], product: &mut [f32]) {
-        let norm = dot(vector, vector).sqrt();
+        let vectors = learner.vectors();
+        let norm = vectors.dot(vector, vector).sqrt();
         if norm == 0.0 {
             return product.fill(0.0);
         }
         let step = DIFFERENCE / norm;
         // What will hold the product holds the parameters a little way off first.
-        product.copy_from_slice(&origin.parameters);
-        add(product, step, vector);
+        vectors.set_sum(product, &origin.parameters, step, vector);
         let moved = learner.policy_outputs(&mut origin.sample, product);
         let change: Vec<f32> =
             moved.iter().zip(&origin.sample_outputs).map(|(there, here)| (f64::from(there - here) / step) as f32).collect();
@@ -130,33 +106,34 @@ impl TrustRegion {
         let count = origin.sample.sequences.rows() as f32;
         rows.iter_mut().for_each(|value| *value /= count);
         learner.policy_backward(&mut origin.sample, &rows, product);
-        add(product, self.damping, vector);
+        vectors.add_scaled(product, self.damping, vector);
     }
 
     /// Solves F x = b by conjugate gradients.
     #[must_use]
     pub fn solve(&self, learner: &mut Learner, origin: &mut Origin<'_>, b: &[f32]) -> Solution {
+        let vectors = learner.vectors();
         let (mut x, mut product) = (vec![0.0; b.len()], vec![0.0; b.len()]);
         let (mut rest, mut direction) = (b.to_vec(), b.to_vec());
-        let mut size = dot(&rest, &rest);
+        let mut size = vectors.dot(&rest, &rest);
         for _ in 0..self.iterations {
             if size < 1e-10 {
                 break;
             }
             self.fisher_times(learner, origin, &direction, &mut product);
-            let curvature = dot(&direction, &product);
+            let curvature = vectors.dot(&direction, &product);
             if curvature <= 0.0 {
                 break;
             }
             let length = size / curvature;
-            add(&mut x, length, &direction);
-            add(&mut rest, -length, &product);
-            let smaller = dot(&rest, &rest);
-            let share = (smaller / size) as f32;
-            direction.iter_mut().zip(&rest).for_each(|(direction, rest)| *direction = rest + share * *direction);
+            vectors.add_scaled(&mut x, length, &direction);
+            vectors.add_scaled(&mut rest, -length, &product);
+            let smaller = vectors.dot(&rest, &rest);
+            vectors.scale_and_add(&mut direction, smaller / size, &rest);
             size = smaller;
         }
-        Solution { direction: x, product: plus(b, -1.0, &rest) }
+        vectors.set_sum(&mut product, b, -1.0, &rest);
+        Solution { direction: x, product }
     }
 
     /// Shortens a step until it is accepted; `accept` is asked about the policy after it and its mean divergence from
@@ -172,9 +149,11 @@ impl TrustRegion {
     ) {
         let clip = learner.config.learning.clip_ratio;
         let mut share = 1.0;
+        let mut parameters = vec![0.0; step.len()];
         for _ in 0..self.search_steps {
-            let parameters = plus(&origin.parameters, share, step);
-            let heads = learner.policy_heads(minibatch, &parameters);
+            learner.vectors().set_sum(&mut parameters, &origin.parameters, share, step);
+            let outputs = learner.policy_outputs(&mut minibatch.batch, &parameters);
+            let heads = learner.policy_heads(minibatch, &outputs);
             let divergence = minibatch.old_policy.divergence(&heads.policy).mean();
             if divergence.is_finite() && accept(&heads, divergence) {
                 learner.set_policy_parameters(&parameters);
@@ -293,9 +272,9 @@ mod tests {
         let x = region.solve(&mut learner, &mut origin, &b);
         let mut back = vec![0.0; count];
         region.fisher_times(&mut learner, &mut origin, &x.direction, &mut back);
-        let rest = plus(&back, -1.0, &b);
-        assert!(dot(&rest, &rest) < 1e-3 * dot(&b, &b), "{} of {}", dot(&rest, &rest), dot(&b, &b));
-        let told = plus(&back, -1.0, &x.product);
-        assert!(dot(&told, &told) < 1e-3 * dot(&b, &b), "what is told of the product");
+        let squares = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+        let (rest, all) = (squares(&back, &b), squares(&b, &vec![0.0; count]));
+        assert!(rest < 1e-3 * all, "{rest} of {all}");
+        assert!(squares(&back, &x.product) < 1e-3 * all, "what is told of the product");
     }
 }

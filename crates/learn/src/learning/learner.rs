@@ -11,6 +11,7 @@ use crate::learning::normaliser::{Moments, PixelNormaliser, PixelSums};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::{Policy, Taken};
 use crate::networks::cpu::simd::Kernels;
+use crate::networks::cpu::vectors::Vectors;
 use crate::networks::device::ComputeDevice;
 use crate::networks::{ModelSequences, ModelShape, Published, RecordedLane, Sequences, Stack};
 use crate::sampling::rollout::Rollout;
@@ -125,8 +126,8 @@ pub struct Learner {
     /// What computes everything but the networks on a card.
     kernels: Kernels,
     gradient: Vec<f32>,
-    /// The networks do not hold the present parameters yet.
-    stale: bool,
+    /// Which networks do not hold the present parameters.
+    stale: Vec<bool>,
     /// Nor the present statistics of pixels.
     stale_pixels: bool,
     /// The workers that learn together.
@@ -159,7 +160,7 @@ impl Learner {
             gradient: vec![0.0; parameters.len()],
             parameters,
             shape: shape.clone(),
-            stale: true,
+            stale: vec![true; shape.networks.len()],
             stale_pixels: true,
             team: Team::default(),
         }
@@ -183,6 +184,12 @@ impl Learner {
     #[must_use]
     pub fn kernels(&self) -> Kernels {
         self.kernels
+    }
+
+    /// What computes with vectors as long as a network.
+    #[must_use]
+    pub fn vectors(&self) -> Vectors {
+        Vectors { kernels: self.kernels, threads: self.config.learning.threads }
     }
 
     /// The present weights for samplers.
@@ -321,9 +328,9 @@ impl Learner {
     }
 
     fn refresh(&mut self) {
-        if self.stale {
-            self.networks.load(&self.parameters);
-            self.stale = false;
+        for (network, stale) in self.stale.iter_mut().enumerate().filter(|(_, stale)| **stale) {
+            self.networks.load_network(network, &self.parameters[self.shape.parameter_range(network)]);
+            *stale = false;
         }
         self.refresh_pixels();
     }
@@ -371,6 +378,7 @@ impl Learner {
         let scale = if largest > 0.0 { (largest / norm.max(1e-12)).min(1.0) } else { 1.0 };
         let count = self.shape.networks.len();
         for network in networks {
+            self.stale[network] = true;
             let range = self.shape.parameter_range(network);
             let parameters = &mut self.parameters[range.clone()];
             let rate = match settings.critic_rate {
@@ -381,7 +389,6 @@ impl Learner {
         }
         self.gradient = gradient;
         self.version += 1;
-        self.stale = true;
         Ok(())
     }
 
@@ -422,18 +429,24 @@ impl Learner {
         self.parameters[self.shape.parameter_range(0)].to_vec()
     }
 
+    /// The policy network's outputs under its present parameters: where actors recorded them, they are not computed anew.
+    pub fn present_outputs(&mut self, batch: &mut ModelSequences<'_>) -> Vec<f32> {
+        self.refresh();
+        self.networks.forward_network(0, batch)
+    }
+
     /// Policy outputs under other parameters of the policy network.
     pub fn policy_outputs(&mut self, batch: &mut ModelSequences<'_>, parameters: &[f32]) -> Vec<f32> {
         self.refresh_pixels();
-        self.stale = true;
+        self.stale[0] = true;
         self.networks.load_network(0, parameters);
         self.networks.forward_network(0, batch)
     }
 
-    /// The policy under other parameters of its network, as heads without values.
-    pub fn policy_heads(&mut self, minibatch: &mut Minibatch<'_>, parameters: &[f32]) -> Heads {
-        let outputs = self.policy_outputs(&mut minibatch.batch, parameters);
-        Heads::new(&self.shape, &outputs, self.shape.action.parameters(), minibatch)
+    /// The policy that some outputs of its network are, as heads without values.
+    #[must_use]
+    pub fn policy_heads(&self, minibatch: &Minibatch<'_>, outputs: &[f32]) -> Heads {
+        Heads::new(&self.shape, outputs, self.shape.action.parameters(), minibatch)
     }
 
     /// The gradient in the policy network's parameters from that of its outputs of the last forward pass.
@@ -445,7 +458,7 @@ impl Learner {
     pub fn set_policy_parameters(&mut self, parameters: &[f32]) {
         let range = self.shape.parameter_range(0);
         self.parameters[range].copy_from_slice(parameters);
-        self.stale = true;
+        self.stale[0] = true;
     }
 
     /// Takes over weights and normalisers of another learner of the same shape, and its count of updates.
@@ -465,7 +478,8 @@ impl Learner {
 
     /// Tells the learner that parameters or statistics were replaced from outside.
     pub fn replaced(&mut self) {
-        (self.stale, self.stale_pixels) = (true, true);
+        self.stale.fill(true);
+        self.stale_pixels = true;
     }
 }
 

@@ -27,14 +27,14 @@ struct Worker {
     asks: Sender<Ask>,
     answers: Receiver<Result<Answer, LearnError>>,
     /// Filled parts that came while something else was waited for.
-    waiting: std::collections::VecDeque<Box<Part>>,
+    waiting: std::collections::VecDeque<Part>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
     fn next_part(&mut self) -> Result<Part, LearnError> {
         if let Some(part) = self.waiting.pop_front() {
-            return Ok(*part);
+            return Ok(part);
         }
         match self.answer()? {
             Answer::Filled(part) => Ok(*part),
@@ -45,7 +45,7 @@ impl Worker {
     fn next_state(&mut self) -> Result<SamplerState, LearnError> {
         loop {
             match self.answer()? {
-                Answer::Filled(part) => self.waiting.push_back(part),
+                Answer::Filled(part) => self.waiting.push_back(*part),
                 Answer::Saved(state) => return Ok(state),
             }
         }
@@ -65,7 +65,7 @@ pub struct Gatherer {
 enum Crew {
     /// They gather on threads of the learner, when it waits for a rollout. (Threads of their own would often be woken
     /// on one and the same core, and stay there for milliseconds.)
-    InTurn { samplers: Vec<Sampler>, parts: Vec<Box<Part>>, steps: usize },
+    InTurn { samplers: Vec<Sampler>, parts: Vec<Part>, steps: usize },
     /// Each gathers on a thread of its own, while the learner learns.
     Ahead {
         workers: Vec<Worker>,
@@ -77,7 +77,7 @@ enum Crew {
 impl Gatherer {
     /// Samplers that take turns with the learner: a rollout of `steps` steps is gathered when it is waited for.
     pub fn in_turn(samplers: Vec<Sampler>, steps: usize, published: Published) -> Gatherer {
-        let parts = samplers.iter().map(|_| Box::default()).collect();
+        let parts = samplers.iter().map(|_| Part::default()).collect();
         Gatherer { crew: Crew::InTurn { samplers, parts, steps }, newest: newest(published) }
     }
 
@@ -97,7 +97,7 @@ impl Gatherer {
                 let mut threads = vec![(); samplers.len()];
                 let mut filled: Vec<Option<Result<Part, LearnError>>> = samplers.iter().map(|_| None).collect();
                 let work = samplers.iter_mut().zip(parts.drain(..)).zip(&mut filled).map(|((sampler, part), filled)| {
-                    move |_: &mut ()| *filled = Some(caught(|| fill(sampler, part, steps, newest)).map(|part| *part))
+                    move |_: &mut ()| *filled = Some(caught(|| fill(sampler, part, steps, newest)))
                 });
                 in_parallel(&mut threads, work);
                 filled.into_iter().flatten().collect()
@@ -110,13 +110,12 @@ impl Gatherer {
     /// Publishes new weights, then asks for another rollout in the memory of one that has been learned from.
     pub fn go_on(&mut self, rollout: Rollout, published: Published) {
         *self.newest.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = Arc::new(published);
-        let boxed = rollout.parts.into_iter().map(Box::new);
         match &mut self.crew {
-            Crew::InTurn { parts, .. } => *parts = boxed.collect(),
+            Crew::InTurn { parts, .. } => *parts = rollout.parts,
             Crew::Ahead { workers, .. } => {
-                for (worker, part) in workers.iter().zip(boxed) {
+                for (worker, part) in workers.iter().zip(rollout.parts) {
                     // A worker that has gone is found out by the next answer.
-                    let _ = worker.asks.send(Ask::Fill(part));
+                    let _ = worker.asks.send(Ask::Fill(Box::new(part)));
                 }
             }
         }
@@ -155,7 +154,7 @@ fn newest(published: Published) -> Arc<Newest> {
     Arc::new(RwLock::new(Arc::new(published)))
 }
 
-fn fill(sampler: &mut Sampler, mut part: Box<Part>, steps: usize, newest: &Newest) -> Result<Box<Part>, LearnError> {
+fn fill(sampler: &mut Sampler, mut part: Part, steps: usize, newest: &Newest) -> Result<Part, LearnError> {
     sampler.fill(&mut part, steps, newest).map(|()| part)
 }
 
@@ -176,7 +175,7 @@ fn hire(mut sampler: Sampler, steps: usize, ahead: usize, newest: Arc<Newest>, o
                 return;
             }
             let answer = caught(|| match ask {
-                Ask::Fill(part) => fill(&mut sampler, part, steps, &newest).map(Answer::Filled),
+                Ask::Fill(part) => fill(&mut sampler, *part, steps, &newest).map(|part| Answer::Filled(Box::new(part))),
                 Ask::Save => sampler.save().map(Answer::Saved),
             });
             let failed = answer.is_err();

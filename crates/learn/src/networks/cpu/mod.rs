@@ -1,7 +1,7 @@
 //! The network on the processor: fused kernels that reach most of what its multiply-add units can do.
 //!
 //! From the bottom up: [`simd`] chooses the kernels, [`tile`], [`product`], [`outer`] and [`pack`] multiply matrices,
-//! [`elementwise`] does the rest of the arithmetic, [`convolution`] turns convolutions into products, of which `residual`
+//! [`elementwise`] does the rest of the arithmetic (and [`vectors`] that of the second-order algorithms), [`convolution`] turns convolutions into products, of which `residual`
 //! makes the other encoder; [`forward`] writes a
 //! [`tape`] that [`backward`], [`encoder_gradient`] and [`gradient`] read; [`network`] is what the rest of the crate sees.
 //!
@@ -26,4 +26,5 @@ pub mod simd;
 pub mod tape;
 pub mod threads;
 pub mod tile;
+pub mod vectors;
 pub mod weights;
