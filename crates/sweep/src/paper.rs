@@ -68,13 +68,7 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
         "depth" => vec![observed(grid(&["PrecipicePlunge"], &[2], &["PPOPID"], 200_000_000), "rgb+depth")],
         "segmentation" => vec![observed(grid(&["ArmamentBurden"], &[2], &["PPOPID"], 500_000_000), "segmented")],
         "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOLag"], 10_000_000))],
-        // The last two need longest until they are within their small budgets.
-        "quick-all" => [
-            (&["ArmamentBurden", "RemedyRush", "VolcanicVenture", "PrecipicePlunge"][..], 12_000_000),
-            (&["CollateralDamage", "DetonatorsDilemma"][..], 16_000_000),
-        ]
-        .map(|(scenarios, frames)| Grid { seeds: vec![1], ..quick(grid(scenarios, &[1], &["PPOLag"], frames)) })
-        .to_vec(),
+        "quick-all" => vec![Grid { seeds: vec![1], ..quick(grid(&SCENARIOS, &[1], &["PPOLag"], 12_000_000)) }],
         "quick-algorithms" => {
             let all = [&six[..], &["TRPO", "TRPOLag", "TRPOPID", "CPO", "FOCOPS", "CUP", "IPO"]].concat();
             [("VolcanicVenture", &all[..]), ("RemedyRush", &six[..])]

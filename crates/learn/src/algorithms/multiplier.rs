@@ -7,7 +7,7 @@ use crate::config::AlgorithmConfig;
 
 /// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess). With damping the present
 /// excess counts beside its integral, without being remembered; with a reference budget both count
-/// 1 + progress^2 (reference / budget - 1) times, where progress is the share of the training that is over: at first an excess
+/// 1 + progress^3 (reference / budget - 1) times, where progress is the share of the training that is over: at first an excess
 /// counts by itself, at last by its share of the budget.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lagrange {
@@ -46,7 +46,7 @@ impl Lagrange {
         let before = self.integral.unwrap_or(self.value);
         // No budget is less than one event of an episode.
         let ratio = self.reference.map_or(1.0, |reference| reference / signal.episode_budget.max(1.0));
-        let excess = (1.0 + signal.done.powi(2) * (ratio - 1.0)) * signal.step_excess();
+        let excess = (1.0 + signal.done.powi(3) * (ratio - 1.0)) * signal.step_excess();
         let integral = (before + self.rate * excess).clamp(0.0, limit);
         self.integral = Some(integral);
         self.value = (integral + self.damping * excess).clamp(0.0, limit);
@@ -235,7 +235,7 @@ mod tests {
         );
     }
 
-    /// Worked out by hand: halfway, an excess of 5 over a budget of 5 counts 1 + (45 / 5 - 1) / 4 = 3 times; at first it counts once.
+    /// Worked out by hand: halfway, an excess of 5 over a budget of 5 counts 1 + (45 / 5 - 1) / 8 = 2 times; at first it counts once.
     /// A budget of nothing counts as one of 1.
     #[test]
     fn an_excess_counts_by_its_share_of_the_budget_at_last() {
@@ -246,7 +246,7 @@ mod tests {
             multiplier.values()[0]
         };
         for (budget, done, expected) in
-            [(5.0, 0.0, 0.05), (5.0, 0.5, 0.15), (5.0, 1.0, 0.45), (45.0, 1.0, 0.05), (0.0, 1.0, 2.25)]
+            [(5.0, 0.0, 0.05), (5.0, 0.5, 0.1), (5.0, 1.0, 0.45), (45.0, 1.0, 0.05), (0.0, 1.0, 2.25)]
         {
             assert!((moved(budget, done) - expected).abs() < 1e-12, "{budget} {done}: {}", moved(budget, done));
         }

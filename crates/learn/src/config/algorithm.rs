@@ -80,7 +80,7 @@ pub struct AlgorithmConfig {
     /// it damps the circles that the integral alone runs in. 0 for none.
     #[serde(default)]
     pub multiplier_damping: f64,
-    /// Lagrangian algorithms: the budget for which the rate is meant. Toward the end of training, as the square of its progress, an
+    /// Lagrangian algorithms: the budget for which the rate is meant. Toward the end of training, as the cube of its progress, an
     /// excess then counts by its share of the budget, so that a tenth of the budget moves a multiplier ten times as fast; before,
     /// it does not, since an agent that is held back early never learns to earn.
     #[serde(default)]
