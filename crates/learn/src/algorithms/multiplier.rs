@@ -245,8 +245,7 @@ mod tests {
             multiplier.update(&[Signal { episode_cost: budget + 5.0, episode_budget: budget, episode_steps: 100.0, done }]);
             multiplier.values()[0]
         };
-        for (budget, done, expected) in
-            [(5.0, 0.0, 0.05), (5.0, 0.5, 0.1), (5.0, 1.0, 0.45), (45.0, 1.0, 0.05), (0.0, 1.0, 2.25)]
+        for (budget, done, expected) in [(5.0, 0.0, 0.05), (5.0, 0.5, 0.1), (5.0, 1.0, 0.45), (45.0, 1.0, 0.05), (0.0, 1.0, 2.25)]
         {
             assert!((moved(budget, done) - expected).abs() < 1e-12, "{budget} {done}: {}", moved(budget, done));
         }
