@@ -244,13 +244,6 @@ impl Stack {
         self.networks = std::mem::take(&mut self.networks).into_iter().map(shared).collect();
     }
 
-    /// Takes over weights.
-    pub fn load(&mut self, parameters: &[f32]) {
-        for index in 0..self.networks.len() {
-            self.load_network(index, &parameters[self.shape.parameter_range(index)]);
-        }
-    }
-
     /// Takes over weights of one network.
     pub fn load_network(&mut self, network: usize, parameters: &[f32]) {
         self.networks[network].load(parameters);

@@ -41,13 +41,13 @@ pub(super) struct Tile {
     pub ahead: Ahead,
 }
 
-/// The part of the next panel that a tile fetches while it works on this one.
+/// The part of the next panel that a tile fetches while it works on this one; a bit for each half, as kernels are made for it.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Ahead {
-    Nothing,
-    LeftHalf,
-    RightHalf,
-    Everything,
+    Nothing = 0,
+    LeftHalf = 1,
+    RightHalf = 2,
+    Everything = 3,
 }
 
 impl Ahead {
@@ -64,9 +64,8 @@ impl Ahead {
     }
 }
 
-/// The bits that kernels are made for: left half, right half.
-const LEFT: u8 = 1;
-const RIGHT: u8 = 2;
+const LEFT: u8 = Ahead::LeftHalf as u8;
+const RIGHT: u8 = Ahead::RightHalf as u8;
 
 impl Tile {
     /// Computes a tile of some height.
