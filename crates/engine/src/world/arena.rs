@@ -128,6 +128,20 @@ impl World {
         }
     }
 
+    /// The first slot from `from` on whose actor runs every tic. Which ones do cannot be foretold: eight at a time, without a
+    /// branch for each.
+    #[inline]
+    pub(crate) fn next_awake(&self, mut from: usize) -> Option<usize> {
+        while let Some(eight) = self.awake[from..].first_chunk::<8>() {
+            let word = u64::from_le_bytes(eight.map(u8::from));
+            if word != 0 {
+                return Some(from + word.trailing_zeros() as usize / 8);
+            }
+            from += 8;
+        }
+        self.awake[from..].iter().position(|&awake| awake).map(|more| from + more)
+    }
+
     /// Whether a slot's actor was created in this tic and has not run yet.
     fn is_fresh(&self, slot: usize) -> bool {
         self.fresh[self.fresh_run..].iter().any(|id| usize::from(id.slot) == slot)

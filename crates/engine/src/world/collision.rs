@@ -71,7 +71,8 @@ pub(crate) fn behind(line: &Line, x: Fixed, y: Fixed) -> bool {
 pub(crate) fn cuts(line: &Line, x: Fixed, y: Fixed, radius: Fixed) -> bool {
     let (west, east, south, north) = (x - radius, x + radius, y - radius, y + radius);
     let [line_west, line_east, line_south, line_north] = line.bounds;
-    if west >= line_east || east <= line_west || south >= line_north || north <= line_south {
+    // Most lines around lie apart, but to which side cannot be foretold: one branch for all four.
+    if (west >= line_east) | (east <= line_west) | (south >= line_north) | (north <= line_south) {
         return false;
     }
     // The corners that are farthest to either side of the line's direction.

@@ -77,6 +77,7 @@ impl Clone for World {
         self.movers.copy_from(movers);
         self.lights.copy_from(lights);
         self.footings.clone_from(footings);
+        self.riders.forget_all();
     }
 }
 

@@ -189,10 +189,10 @@ impl World {
             self.tick_powers(index);
         }
         self.run_lights();
-        for slot in 0..self.awake.len() {
-            if self.awake[slot] {
-                self.run_actor(slot);
-            }
+        let mut from = 0;
+        while let Some(slot) = self.next_awake(from) {
+            self.run_actor(slot);
+            from = slot + 1;
         }
         self.run_movers();
     }

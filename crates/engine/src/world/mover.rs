@@ -29,22 +29,24 @@ pub(crate) struct Movers {
     next_end: u32,
     /// The movers of sectors whose floors swing.
     swings: BySector,
+    /// Changes whenever `swings` does.
+    swings_made: u32,
 }
 
 impl Default for Movers {
     fn default() -> Movers {
         let (list, swings) = (Vec::new(), BySector::default());
-        Movers { list, run: 0, tics: 0, waiting_from: usize::MAX, planes: false, next_end: u32::MAX, swings }
+        Movers { list, run: 0, tics: 0, waiting_from: usize::MAX, planes: false, next_end: u32::MAX, swings, swings_made: 0 }
     }
 }
 
 impl Movers {
     /// Copies without allocating where this list is large enough.
     pub(crate) fn copy_from(&mut self, source: &Movers) {
-        let Movers { list, run, tics, waiting_from, planes, next_end, swings } = source;
+        let Movers { list, run, tics, waiting_from, planes, next_end, swings, swings_made } = source;
         self.list.clone_from(list);
         (self.run, self.tics, self.waiting_from) = (*run, *tics, *waiting_from);
-        (self.planes, self.next_end) = (*planes, *next_end);
+        (self.planes, self.next_end, self.swings_made) = (*planes, *next_end, *swings_made);
         self.swings.clone_from(swings);
     }
 
@@ -58,8 +60,14 @@ impl Movers {
         self.run < self.list.len()
     }
 
+    /// Changes whenever another floor swings, one comes to rest, or their movers get other numbers.
+    pub(crate) fn swings_made(&self) -> u32 {
+        self.swings_made
+    }
+
     /// Starts a mover.
     pub(crate) fn add(&mut self, mover: Mover) {
+        self.swings_made = self.swings_made.wrapping_add(1);
         self.list.push(mover);
         self.note(self.list.len() - 1);
     }
@@ -67,6 +75,7 @@ impl Movers {
     /// Ends the movers of floors before their time, where `stopped` says so of their sector. What is noted of the others stays
     /// true but for their numbers.
     fn stop_floors(&mut self, stopped: impl Fn(SectorId) -> bool) {
+        self.swings_made = self.swings_made.wrapping_add(1);
         let mut kept = 0;
         for index in 0..self.list.len() {
             let mover = self.list[index];
@@ -250,6 +259,7 @@ impl World {
 
     /// Runs the movers from number `first` on in their order, and drops those that are done.
     fn run_every_mover(&mut self, first: usize) {
+        self.movers.swings_made = self.movers.swings_made.wrapping_add(1);
         let mut kept = first;
         for index in first..self.movers.list.len() {
             self.movers.waiting_from = index + 1;
@@ -273,15 +283,12 @@ impl World {
 
     /// Runs the swinging floors that somebody touches, in the order of the movers.
     fn run_ridden_floors(&mut self) {
-        let mut ridden = std::mem::take(&mut self.riders.movers);
-        ridden.clear();
-        ridden.extend(self.riders.sectors().filter_map(|sector| self.movers.swing_of(sector)));
-        ridden.sort_unstable();
-        for &index in &ridden {
+        let mut at = 0;
+        while let Some(index) = self.riders.ridden(at) {
             self.movers.waiting_from = index + 1;
             self.run_waggle(index);
+            at += 1;
         }
-        self.riders.movers = ridden;
         self.movers.run = self.movers.list.len();
         self.movers.waiting_from = usize::MAX;
     }

@@ -58,17 +58,32 @@ fn for_each_sector_under(map: &Map, actor: &Actor, mut visit: impl FnMut(SectorI
     }
 }
 
-/// The actors on moving sectors: lists by sector, made anew whenever movers run.
+/// An actor of which the lists are out of date: it has moved, came or went.
+#[derive(Clone, Copy, Debug)]
+struct Moved {
+    slot: u16,
+    /// Under which sectors it is listed.
+    listed: Footing,
+}
+
+/// Most actors that are moved from list to list one by one; when there are more, all lists are made anew.
+const FEW: usize = 6;
+
+/// The actors on moving sectors: a list for each sector, by falling slots.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Riders {
     /// First entry of each sector's list.
     heads: Vec<u32>,
-    /// The sectors whose lists are not empty.
-    sectors: Vec<SectorId>,
     /// Slot, and the next entry.
     entries: Vec<(u16, u32)>,
-    /// Scratch: the movers that somebody touches.
-    pub(crate) movers: Vec<usize>,
+    /// First of the entries that no list has.
+    free: u32,
+    /// Movers of the swinging floors that have a list, in the order of the movers.
+    ridden: Vec<u32>,
+    /// What has changed since.
+    moved: Vec<Moved>,
+    /// What the lists were made for; `None`: they must be made anew.
+    made_for: Option<u32>,
 }
 
 impl Riders {
@@ -86,28 +101,87 @@ impl Riders {
         (usize::from(slot), Some(next).filter(|&next| next != Riders::END).map(|next| next as usize))
     }
 
-    /// The sectors with a list, each once.
-    pub(crate) fn sectors(&self) -> impl Iterator<Item = SectorId> + '_ {
-        self.sectors.iter().copied()
+    /// The mover of the swinging floor that is number `at` of those with a list.
+    pub(crate) fn ridden(&self, at: usize) -> Option<usize> {
+        self.ridden.get(at).map(|&index| index as usize)
+    }
+
+    /// Nothing is known of any actor any more.
+    pub(crate) fn forget_all(&mut self) {
+        self.made_for = None;
+    }
+
+    fn forget(&mut self, slot: u16, listed: Footing) {
+        if self.made_for.is_none() || self.moved.iter().any(|moved| moved.slot == slot) {
+        } else if self.moved.len() < FEW {
+            self.moved.push(Moved { slot, listed });
+        } else {
+            self.made_for = None;
+        }
     }
 
     fn clear(&mut self, sectors: usize) {
+        self.heads.clear();
         self.heads.resize(sectors, Riders::END);
-        for sector in self.sectors.drain(..) {
-            self.heads[sector.0 as usize] = Riders::END;
-        }
         self.entries.clear();
+        self.free = Riders::END;
+        self.ridden.clear();
+        self.moved.clear();
     }
 
-    fn add(&mut self, sector: usize, slot: usize) {
-        let head = self.heads[sector];
-        if head == Riders::END {
-            self.sectors.push(SectorId(sector as u32));
+    /// Where the link to the first entry of a list is whose slot is not above `slot`: the entry before, or none.
+    fn before(&self, sector: usize, slot: u16) -> (Option<usize>, u32) {
+        let (mut before, mut at) = (None, self.heads[sector]);
+        while at != Riders::END && self.entries[at as usize].0 > slot {
+            (before, at) = (Some(at as usize), self.entries[at as usize].1);
         }
-        // All entries of one actor are made in a row: a sector met twice has it on top.
-        if head == Riders::END || usize::from(self.entries[head as usize].0) != slot {
-            self.heads[sector] = self.entries.len() as u32;
-            self.entries.push((slot as u16, head));
+        (before, at)
+    }
+
+    fn link(&mut self, sector: usize, before: Option<usize>, to: u32) {
+        match before {
+            Some(before) => self.entries[before].1 = to,
+            None => self.heads[sector] = to,
+        }
+    }
+
+    /// Enters an actor into the list of a sector, the swinging floor of which is moved by `mover`.
+    fn add(&mut self, sector: usize, slot: u16, mover: Option<usize>) {
+        let (before, at) = self.before(sector, slot);
+        if at != Riders::END && self.entries[at as usize].0 == slot {
+            return;
+        }
+        if let Some(mover) = mover
+            && self.heads[sector] == Riders::END
+            && let Err(place) = self.ridden.binary_search(&(mover as u32))
+        {
+            self.ridden.insert(place, mover as u32);
+        }
+        let entry = if self.free == Riders::END {
+            self.entries.push((slot, at));
+            self.entries.len() as u32 - 1
+        } else {
+            let entry = self.free;
+            self.free = std::mem::replace(&mut self.entries[entry as usize], (slot, at)).1;
+            entry
+        };
+        self.link(sector, before, entry);
+    }
+
+    /// Takes an actor out of the list of a sector.
+    fn take(&mut self, sector: usize, slot: u16, mover: Option<usize>) {
+        let (before, at) = self.before(sector, slot);
+        if at == Riders::END || self.entries[at as usize].0 != slot {
+            return;
+        }
+        let next = std::mem::replace(&mut self.entries[at as usize].1, self.free);
+        self.free = at;
+        self.link(sector, before, next);
+        if let Some(mover) = mover
+            && self.heads[sector] == Riders::END
+            && let Ok(place) = self.ridden.binary_search(&(mover as u32))
+        {
+            self.ridden.remove(place);
         }
     }
 }
@@ -116,44 +190,64 @@ impl World {
     /// An actor has moved, or is in no block any more.
     pub(crate) fn forget_footing(&mut self, slot: usize) {
         if let Some(footing) = self.footings.get_mut(slot) {
-            *footing = Footing::UNKNOWN;
+            let listed = std::mem::replace(footing, Footing::UNKNOWN);
+            self.riders.forget(slot as u16, listed);
         }
     }
 
     /// Lists the actors that touch a busy sector. Actors keep their places while movers run, so that the lists stay true.
     pub(crate) fn list_riders(&mut self) {
+        let swings = self.movers.swings_made();
+        // While planes move, which sectors are busy changes; swings come and go together.
+        if self.movers.move_planes() || self.footings.len() != self.actors.len() || self.riders.made_for != Some(swings) {
+            return self.list_all_riders(swings);
+        }
+        for at in 0..self.riders.moved.len() {
+            let Moved { slot, listed } = self.riders.moved[at];
+            for &sector in &listed.sectors[..usize::from(listed.count)] {
+                if let Some(mover) = self.movers.swing_of(SectorId(u32::from(sector))) {
+                    self.riders.take(usize::from(sector), slot, Some(mover));
+                }
+            }
+            self.list_rider(usize::from(slot));
+        }
+        self.riders.moved.clear();
+    }
+
+    fn list_all_riders(&mut self, swings: u32) {
         self.riders.clear(self.sectors.len());
+        self.riders.made_for = Some(swings);
         self.footings.resize(self.actors.len(), Footing::UNKNOWN);
+        for slot in 0..self.actors.len() {
+            self.list_rider(slot);
+        }
+    }
+
+    /// Enters an actor into the lists of the busy sectors under it.
+    fn list_rider(&mut self, slot: usize) {
         let World { riders, footings, sectors, actors, map, movers, .. } = self;
+        let footing = &mut footings[slot];
+        // Only what is in a block has a known footing: most actors need not be looked at.
+        if footing.count == 0 {
+            let actor = &actors[slot];
+            if actor.removed || actor.block == NO_BLOCK {
+                return;
+            }
+            *footing = Footing::of(map, actor);
+        }
         // The short list of swings first: the sectors of a whole world would come into the cache for a bit each.
         let planes = movers.move_planes();
-        let busy = |sector: usize| {
-            movers.swing_of(SectorId(sector as u32)).is_some()
-                || (planes && (sectors[sector].floor_busy || sectors[sector].ceiling_busy))
+        let mut add = |sector: usize| {
+            let mover = movers.swing_of(SectorId(sector as u32));
+            if mover.is_some() || (planes && (sectors[sector].floor_busy || sectors[sector].ceiling_busy)) {
+                riders.add(sector, slot as u16, mover);
+            }
         };
-        for (slot, footing) in footings.iter_mut().enumerate() {
-            // Only what is in a block has a known footing: most actors need not be looked at.
-            if footing.count == 0 {
-                let actor = &actors[slot];
-                if actor.removed || actor.block == NO_BLOCK {
-                    continue;
-                }
-                *footing = Footing::of(map, actor);
-            }
-            let Footing { count, sectors: under } = *footing;
-            for &sector in &under[..usize::from(count)] {
-                if busy(usize::from(sector)) {
-                    riders.add(usize::from(sector), slot);
-                }
-            }
-            if count == 0 {
-                let actor = &actors[slot];
-                for_each_sector_under(map, actor, |sector| {
-                    if busy(sector.0 as usize) {
-                        riders.add(sector.0 as usize, slot);
-                    }
-                });
-            }
+        let Footing { count, sectors: under } = *footing;
+        under[..usize::from(count)].iter().for_each(|&sector| add(usize::from(sector)));
+        if count == 0 {
+            for_each_sector_under(map, &actors[slot], |sector| add(sector.0 as usize));
+            riders.made_for = None;
         }
     }
 
@@ -165,5 +259,79 @@ impl World {
             (floor, self.sectors[usize::from(sector)].ceiling, floor)
         });
         planes.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1), a.2.min(b.2)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{MapBuilder, Style, TileGrid};
+    use crate::math::Rng;
+    use crate::world::{ActorKind, Buttons, Command};
+    use std::sync::Arc;
+
+    /// A hall of tiles with tags from 1.
+    fn hall() -> World {
+        let style = |tag| Style {
+            floor: 0,
+            ceiling: 200,
+            light: 200,
+            floor_texture: "FLOOR0_1",
+            ceiling_texture: "CEIL1_1",
+            wall: "STARTAN2",
+            step: "STARTAN2",
+            lintel: "STARTAN2",
+            special: 0,
+            tag,
+        };
+        let grid = TileGrid::new((0, 0), 64, 6, 4, |column, row| style((row * 6 + column) as i32 + 1));
+        let mut builder = MapBuilder::new();
+        grid.paint(&mut builder);
+        builder.thing(1, 96.0, 96.0, 0);
+        World::new(Arc::new(Map::build(&builder.finish().unwrap(), "hall", &[]).unwrap()), 5)
+    }
+
+    /// The slots on each sector, and the movers that are ridden.
+    fn lists(world: &World) -> (Vec<Vec<usize>>, Vec<u32>) {
+        let of_sector = |sector: u32| {
+            let mut next = world.riders.first(SectorId(sector));
+            std::iter::from_fn(|| {
+                let (slot, following) = world.riders.entry(next?);
+                next = following;
+                Some(slot)
+            })
+            .collect()
+        };
+        ((0..world.sectors.len() as u32).map(of_sector).collect(), world.riders.ridden.clone())
+    }
+
+    #[test]
+    fn lists_that_are_kept_are_those_made_anew() {
+        let (mut world, mut rng) = (hall(), Rng::new(6));
+        let mut kept = 0;
+        for tic in 0..2000 {
+            let (x, y) = (Fixed::from_int(rng.between(20, 360)), Fixed::from_int(rng.between(20, 230)));
+            match rng.below(60) {
+                0 => world.floor_waggle(rng.between(1, 24), 64, 64, rng.between(0, 63), rng.between(0, 2)),
+                1 => world.stop_floors(rng.between(1, 24)),
+                2 => world.floor_lower_by_value(rng.between(1, 24), 64, rng.between(-8, 8)),
+                3..8 => _ = world.spawn(ActorKind::ArmorBonus, x, y, Fixed::ZERO),
+                8 => _ = world.set_position(world.players[0].actor, x, y, Fixed::from_int(40)),
+                9..14 => {
+                    let any = world.living().map(|(id, _)| id).filter(|&id| id != world.players[0].actor).last();
+                    any.into_iter().for_each(|id| world.remove(id));
+                }
+                _ => {}
+            }
+            let buttons = if tic % 40 < 20 { Buttons::MOVE_FORWARD | Buttons::SPEED } else { Buttons::TURN_LEFT };
+            world.run_thinkers(&[Command { buttons, ..Command::default() }]);
+            world.finish_tic();
+            kept += u32::from(world.riders.made_for == Some(world.movers.swings_made()));
+            let mut anew = world.clone();
+            world.list_riders();
+            anew.list_riders();
+            assert_eq!(lists(&world), lists(&anew), "tic {tic}");
+        }
+        assert!((500..2000).contains(&kept), "{kept} times lists were kept");
     }
 }

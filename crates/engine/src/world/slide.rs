@@ -138,7 +138,7 @@ impl World {
         for &index in blocks.lines_in(column, row) {
             let line = &self.map.lines[index as usize];
             // The original lists a line on the border of two blocks only in the eastern or northern one.
-            if column < blocks.column_of(line.bounds[0]) || row < blocks.row_of(line.bounds[2]) {
+            if (column < blocks.column_of(line.bounds[0])) | (row < blocks.row_of(line.bounds[2])) {
                 continue;
             }
             if let Some(fraction) = trace.meets(line)
