@@ -37,11 +37,9 @@ impl Masked<'_> {
         for sprite in sprites {
             self.sprite::<DEPTH, CLASS>(sprite);
         }
-        for index in (0..self.silhouettes.list.len()).rev() {
-            let silhouette = self.silhouettes.list[index];
-            if silhouette.masked {
-                self.texture::<DEPTH, CLASS>(&silhouette, silhouette.first, silhouette.end);
-            }
+        for at in (0..self.silhouettes.masked().len()).rev() {
+            let silhouette = self.silhouettes.list[self.silhouettes.masked()[at] as usize];
+            self.texture::<DEPTH, CLASS>(&silhouette, silhouette.first, silhouette.end);
         }
     }
 
@@ -59,12 +57,9 @@ impl Masked<'_> {
     fn sprite<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &SeenSprite) {
         let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else { return };
         sprite.open(self.columns, self.view);
-        for index in (0..self.silhouettes.list.len()).rev() {
-            let silhouette = &self.silhouettes.list[index];
+        for at in (0..self.silhouettes.meet(sprite.first, sprite.end, sprite.inverse)).rev() {
+            let silhouette = &self.silhouettes.list[self.silhouettes.met(at)];
             let (first, end) = (silhouette.first.max(sprite.first), silhouette.end.min(sprite.end));
-            if first >= end {
-                continue;
-            }
             if !self.is_behind(sprite, silhouette) {
                 if silhouette.masked {
                     let silhouette = *silhouette;

@@ -92,6 +92,8 @@ pub struct Scene {
     pub(super) sky: usize,
     /// The images that sprites use, by index into `Assets::images`.
     pub(super) sprite_pictures: Vec<Option<SpritePicture>>,
+    /// No picture of these reaches farther to a side of its anchor, mirrored or not; texels.
+    pub(super) sprite_reach: i64,
     /// Index of the solid picture that fills what has no texture, in `textures.walls`.
     pub(super) missing_picture: usize,
     /// The status bar's pictures.
@@ -119,6 +121,7 @@ impl Scene {
         let missing_picture = textures.walls.len();
         textures.add(&assets, no_entry, missing);
 
+        let sprite_pictures = sprite_pictures(&assets);
         let mut faces = vec![None; map.sides.len()];
         for line in &map.lines {
             let (dx, dy) = (i64::from(line.dx.0), i64::from(line.dy.0));
@@ -171,7 +174,8 @@ impl Scene {
             sector_count: map.sectors.len(),
             sky_flat: map.textures.iter().position(|&name| name == SKY_FLAT).map(|i| TextureId(i as u16)),
             sky,
-            sprite_pictures: sprite_pictures(&assets),
+            sprite_reach: sprite_pictures.iter().flatten().map(SpritePicture::reach).max().unwrap_or(0),
+            sprite_pictures,
             textures,
             missing_picture,
             bar: BarArt::new(&assets),

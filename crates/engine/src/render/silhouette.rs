@@ -31,10 +31,26 @@ pub(super) struct Silhouette {
     pub rows: usize,
 }
 
+/// What decides in most cases that a silhouette and a sprite have nothing to do with each other, on its own: a frame has
+/// dozens of silhouettes, and each sprite asks all of them.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    first: u32,
+    end: u32,
+    /// Inverse distance of the nearer end; the greatest number if it has a masked texture.
+    near: i64,
+}
+
 /// The silhouettes of a frame, near to far as the walk found them.
 #[derive(Debug, Default)]
 pub(super) struct Silhouettes {
     pub list: Vec<Silhouette>,
+    /// As many.
+    reaches: Vec<Reach>,
+    /// Those that the sprite at hand has to do with; see [`Silhouettes::meet`].
+    met: Vec<u32>,
+    /// Those with a masked texture.
+    masked: Vec<u32>,
     /// First open rows, all silhouettes one after another; there is room for more than are used.
     pub tops: Vec<i16>,
     /// One past the last open rows.
@@ -49,6 +65,8 @@ impl Silhouettes {
     /// Forgets the last frame.
     pub fn reset(&mut self) {
         self.list.clear();
+        self.reaches.clear();
+        self.masked.clear();
         self.used = 0;
         self.drawn.clear();
     }
@@ -69,8 +87,35 @@ impl Silhouettes {
         }
         if silhouette.masked {
             self.drawn.resize(self.used, false);
+            self.masked.push(self.list.len() as u32);
         }
+        let near = if silhouette.masked { i64::MAX } else { silhouette.inverses[1] };
+        self.reaches.push(Reach { first: silhouette.first as u32, end: silhouette.end as u32, near });
         self.list.push(silhouette);
+    }
+
+    /// Lists the silhouettes that share a column with a sprite of the columns `first..end`, and stand before it in part or have a
+    /// masked texture; `inverse` is its inverse distance. Which ones do cannot be foretold: it is found without a branch. Gives
+    /// how many there are; they are [`Silhouettes::met`].
+    pub fn meet(&mut self, first: usize, end: usize, inverse: i64) -> usize {
+        self.met.resize(self.reaches.len(), 0);
+        let (first, end) = (first as u32, end as u32);
+        let mut count = 0;
+        for (index, reach) in (0..).zip(&self.reaches) {
+            self.met[count] = index;
+            count += usize::from((reach.first < end) & (reach.end > first) & (reach.near >= inverse));
+        }
+        count
+    }
+
+    /// Indices of the silhouettes with a masked texture, near to far.
+    pub fn masked(&self) -> &[u32] {
+        &self.masked
+    }
+
+    /// Index of the silhouette that was met at place `at`, near to far.
+    pub fn met(&self, at: usize) -> usize {
+        self.met[at] as usize
     }
 }
 

@@ -88,6 +88,11 @@ fn see(
     if distance < NEAREST {
         return None;
     }
+    // Most actors of a large map are far beside the view: no picture of theirs would reach into it.
+    let reach = (scene.sprite_reach + 1) << 16;
+    if (left < -reach) | (right < -reach) {
+        return None;
+    }
     let shown = actor.picture(tic);
     let frame = scene.assets.sprites.get(usize::from(shown.sprite))?.frames.get(usize::from(shown.frame))?;
     let rotation = if frame.images.iter().all(|&image| image == frame.images[0]) { 0 } else { rotation(camera, actor, x, y) };

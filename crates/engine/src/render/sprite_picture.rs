@@ -33,6 +33,12 @@ pub(super) struct SpritePicture {
 }
 
 impl SpritePicture {
+    /// How far it reaches to either side of its anchor at most, mirrored or not; texels.
+    pub fn reach(&self) -> i64 {
+        let (width, left) = (i64::from(self.width), i64::from(self.offset_x));
+        left.abs().max((width - left).abs())
+    }
+
     pub fn new(image: &Image) -> SpritePicture {
         let (width, height) = (usize::from(image.width), usize::from(image.height));
         let (stride, columns) = (width.next_multiple_of(TEXEL_BLOCK), MaskedPicture::new(image));
