@@ -40,7 +40,21 @@ pub(super) fn avx512<const BITS: u32>(column: &Column, pixels: &mut [u8], rows: 
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
 fn texels_avx512<const BITS: u32>(column: &Column, rows: &[u32; ROW_BLOCK]) -> __m512i {
-    let (at, step) = (_mm512_set1_epi32(column.at as i32), _mm512_set1_epi32(column.step as i32));
+    let positions = highest_bytes(column.at, column.step, rows);
+    // Bits that a byte gets from its neighbour are above those that the permutations look at.
+    let (blocks, _) = column.texels.as_chunks::<64>();
+    if BITS == 7 {
+        _mm512_permutex2var_epi8(load(&blocks[0]), _mm512_srli_epi16(positions, 1), load(&blocks[1]))
+    } else {
+        _mm512_permutexvar_epi8(_mm512_srli_epi16(positions, 2), load(&blocks[0]))
+    }
+}
+
+/// The highest byte of the texture positions of 64 rows.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
+pub(super) fn highest_bytes(at: u32, step: u32, rows: &[u32; ROW_BLOCK]) -> __m512i {
+    let (at, step) = (_mm512_set1_epi32(at as i32), _mm512_set1_epi32(step as i32));
     let (quarters, _) = rows.as_chunks::<16>();
     let positions = |quarter: usize| {
         // SAFETY: 64 bytes are readable behind the reference.
@@ -50,14 +64,7 @@ fn texels_avx512<const BITS: u32>(column: &Column, rows: &[u32; ROW_BLOCK]) -> _
     let pick = load(&HIGHEST_BYTES);
     let low = _mm512_permutex2var_epi8(positions(0), pick, positions(1));
     let high = _mm512_permutex2var_epi8(positions(2), pick, positions(3));
-    let positions = _mm512_mask_blend_epi8(0xFFFF_FFFF_0000_0000, low, high);
-    // Bits that a byte gets from its neighbour are above those that the permutations look at.
-    let (blocks, _) = column.texels.as_chunks::<64>();
-    if BITS == 7 {
-        _mm512_permutex2var_epi8(load(&blocks[0]), _mm512_srli_epi16(positions, 1), load(&blocks[1]))
-    } else {
-        _mm512_permutexvar_epi8(_mm512_srli_epi16(positions, 2), load(&blocks[0]))
-    }
+    _mm512_mask_blend_epi8(0xFFFF_FFFF_0000_0000, low, high)
 }
 
 /// The same with vectors of 32 bytes: whole groups of eight rows are written, and what lies behind is put back.

@@ -61,6 +61,8 @@ mod view;
 mod walk;
 mod wall;
 #[cfg(target_arch = "x86_64")]
+mod wall_list;
+#[cfg(target_arch = "x86_64")]
 mod wall_wide;
 mod weapon;
 mod workspace;

@@ -124,6 +124,8 @@ impl Renderer {
             silhouettes: &mut space.silhouettes,
             entered: &mut space.entered,
             scratch: &mut space.walk,
+            #[cfg(target_arch = "x86_64")]
+            walls: &mut space.walls,
             simd: self.simd,
         };
         walk.run::<DEPTH>();

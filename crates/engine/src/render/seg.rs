@@ -8,8 +8,12 @@ use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
 use super::walk::Walk;
 use super::wall::{END_BITS, Edge, SeenLine, TextureLine, WallShader};
+#[cfg(target_arch = "x86_64")]
+use super::wall_list::WallList;
 use crate::map::TextureId;
 use crate::math::Fixed;
+#[cfg(target_arch = "x86_64")]
+use crate::simd::Level;
 
 /// A seg in view, on its way through the stages.
 pub(super) struct SeenSeg<'a> {
@@ -242,7 +246,7 @@ impl Walk<'_> {
 
     /// Draws the wall between the upper and the lower scratch.
     fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, texture: Option<TextureId>, hung_from: Fixed) {
-        let range = seen.first..seen.end;
+        let (first, end, picture) = (seen.first, seen.end, self.picture(texture));
         let light = Light::new(self.camera, i32::from(front.light) + seen.face.contrast);
         let shader = WallShader {
             camera: self.camera,
@@ -252,14 +256,37 @@ impl Walk<'_> {
             line: &seen.line,
             ends: &seen.ends,
             texture: TextureLine::new(self.camera, seen.face),
-            picture: &self.scene.textures.walls[self.picture(texture)],
+            picture: &self.scene.textures.walls[picture],
             light,
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };
-        let (tops, bottoms) = (&self.scratch.upper[range.clone()], &self.scratch.lower[range]);
-        shader.draw::<DEPTH>(self.simd, self.columns, seen.first, tops, bottoms);
+        let (tops, bottoms) = (&self.scratch.upper[first..], &self.scratch.lower[first..]);
+        #[cfg(target_arch = "x86_64")]
+        let listed = self.simd.level() == Level::Avx512 && WallList::takes(shader.picture);
+        #[cfg(target_arch = "x86_64")]
+        if listed {
+            // SAFETY: whoever has this `Simd` has the instructions.
+            unsafe { self.walls.add(&shader, picture, first, end - first, tops, bottoms) }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let listed = false;
+        if !listed {
+            shader.draw::<DEPTH>(self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
+        }
         if !self.world.soot.is_empty() {
+            self.draw_walls::<DEPTH>();
             self.soot::<DEPTH>(seen, light);
+        }
+    }
+
+    /// Draws the walls that wait for it.
+    pub fn draw_walls<const DEPTH: bool>(&mut self) {
+        #[cfg(target_arch = "x86_64")]
+        if self.simd.level() == Level::Avx512 {
+            let (rows, tables) = (&self.view.rows, &self.scene.assets.light_tables);
+            // SAFETY: whoever has this `Simd` has the instructions.
+            unsafe { self.walls.draw::<DEPTH>(self.columns, rows, &self.scene.textures.walls, tables, self.depths) }
+            self.walls.clear();
         }
     }
 

@@ -10,6 +10,8 @@ use super::openings::Openings;
 use super::plane::Planes;
 use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
+#[cfg(target_arch = "x86_64")]
+use super::wall_list::WallList;
 use crate::map::Node;
 use crate::math::Fixed;
 use crate::simd::{Simd, prefetch};
@@ -32,6 +34,9 @@ pub(super) struct Walk<'a> {
     /// Sectors that were entered.
     pub entered: &'a mut [bool],
     pub scratch: &'a mut WalkScratch,
+    /// Columns of walls that wait to be drawn.
+    #[cfg(target_arch = "x86_64")]
+    pub walls: &'a mut WallList,
     pub simd: Simd,
 }
 
@@ -90,11 +95,17 @@ impl WedgeSide {
 }
 
 impl Walk<'_> {
+    /// Draws all walls, and lists what else there is to draw.
+    pub fn run<const DEPTH: bool>(&mut self) {
+        self.visit::<DEPTH>();
+        self.draw_walls::<DEPTH>();
+    }
+
     /// Walks until everything is covered.
     ///
     /// Which child is near and which one is in view cannot be foretold, so that all of it is arithmetic without
     /// branches: children that are out of view are written to the stack too, but not counted.
-    pub fn run<const DEPTH: bool>(&mut self) {
+    fn visit<const DEPTH: bool>(&mut self) {
         let scene = self.scene;
         let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
         let mut open = self.openings.range();

@@ -239,7 +239,7 @@ impl WallShader<'_> {
         }
     }
 
-    fn slope(&self) -> WallSlope {
+    pub fn slope(&self) -> WallSlope {
         // Texels are those of the rows' lower edges.
         let start = (self.hung_from * self.picture.inverse_height) >> 16;
         WallSlope { start, rows: 1 - (self.camera.horizon >> 16), fraction: self.camera.horizon & 0xFFFF }

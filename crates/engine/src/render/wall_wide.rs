@@ -5,19 +5,20 @@ use super::wall::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, WALL_BLOCK
 use std::arch::x86_64::*;
 
 /// For each of eight columns what [`WallShader::column`] gives.
-pub(super) struct WallColumns {
-    pub distance: [i64; WALL_BLOCK],
+#[derive(Clone, Copy)]
+pub(super) struct WallVectors {
+    pub distance: __m512i,
     /// Horizontal texture position.
-    pub u: [i64; WALL_BLOCK],
-    pub table: [i64; WALL_BLOCK],
-    pub at: [i64; WALL_BLOCK],
-    pub step: [i64; WALL_BLOCK],
+    pub u: __m512i,
+    pub table: __m512i,
+    pub at: __m512i,
+    pub step: __m512i,
 }
 
 /// The eight base columns `columns`.
 #[inline]
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-pub(super) fn columns(shader: &WallShader, slope: &WallSlope, columns: &[u32; WALL_BLOCK]) -> WallColumns {
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+pub(super) fn vectors(shader: &WallShader, slope: &WallSlope, columns: &[u32; WALL_BLOCK]) -> WallVectors {
     // SAFETY: 32 bytes are readable behind the reference.
     let column = _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(columns.as_ptr().cast()) });
     let distance = quotients(inverse_at(shader.line, column));
@@ -27,14 +28,30 @@ pub(super) fn columns(shader: &WallShader, slope: &WallSlope, columns: &[u32; WA
     let step = _mm512_srai_epi64(_mm512_mullo_epi64(step, _mm512_set1_epi64(shader.picture.inverse_height)), 24);
     let whole = _mm512_mullo_epi64(step, _mm512_set1_epi64(slope.rows));
     let part = _mm512_srai_epi64(_mm512_mullo_epi64(step, _mm512_set1_epi64(slope.fraction)), 16);
-    let at = _mm512_sub_epi64(_mm512_add_epi64(_mm512_set1_epi64(slope.start), whole), part);
-    WallColumns {
-        distance: listed(distance),
-        u: listed(texture_at(&shader.texture, column, distance)),
-        table: listed(tables(shader.light, nearness)),
-        at: listed(at),
-        step: listed(step),
+    WallVectors {
+        distance,
+        u: texture_at(&shader.texture, column, distance),
+        table: tables(shader.light, nearness),
+        at: _mm512_sub_epi64(_mm512_add_epi64(_mm512_set1_epi64(slope.start), whole), part),
+        step,
     }
+}
+
+/// The same as lists.
+pub(super) struct WallColumns {
+    pub distance: [i64; WALL_BLOCK],
+    pub u: [i64; WALL_BLOCK],
+    pub table: [i64; WALL_BLOCK],
+    pub at: [i64; WALL_BLOCK],
+    pub step: [i64; WALL_BLOCK],
+}
+
+/// The same as lists.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+pub(super) fn columns(shader: &WallShader, slope: &WallSlope, columns: &[u32; WALL_BLOCK]) -> WallColumns {
+    let WallVectors { distance, u, table, at, step } = vectors(shader, slope, columns);
+    WallColumns { distance: listed(distance), u: listed(u), table: listed(table), at: listed(at), step: listed(step) }
 }
 
 /// [`SeenLine::inverse_at`].

@@ -13,6 +13,8 @@ use super::silhouette::Silhouettes;
 use super::sprite::SeenSprite;
 use super::stamp::StampColumns;
 use super::walk::WalkScratch;
+#[cfg(target_arch = "x86_64")]
+use super::wall_list::WallList;
 use std::cell::RefCell;
 
 thread_local! {
@@ -27,6 +29,9 @@ pub(super) struct Workspace {
     pub silhouettes: Silhouettes,
     pub walk: WalkScratch,
     pub looks: Looks,
+    /// Columns of walls that wait to be drawn.
+    #[cfg(target_arch = "x86_64")]
+    pub walls: WallList,
     /// What is drawn by columns.
     pub columns: Columns,
     /// Sectors that the frame entered.
