@@ -288,6 +288,11 @@ impl<'a> PlaneShader<'a> {
         spans: &[Span],
     ) {
         #[cfg(target_arch = "x86_64")]
+        if simd.level() == Level::Avx512 {
+            // SAFETY: whoever has this `Simd` has the instructions.
+            return unsafe { self.draw_avx512::<DEPTH, CLASS, BITS, TEXELS>(frame, texels, spans) };
+        }
+        #[cfg(target_arch = "x86_64")]
         if simd.level() >= Level::Avx2 {
             // SAFETY: whoever has this `Simd` has the instructions.
             return unsafe { self.draw_wide::<DEPTH, CLASS, BITS, TEXELS>(frame, texels, spans) };
@@ -320,6 +325,25 @@ impl<'a> PlaneShader<'a> {
             let columns = self.view.columns[first..].first_chunk().expect("the list is padded");
             let walk = self.walk::<BITS>(distance);
             row_wide::draw::<BITS, TEXELS>(&walk, pixels, end - first, columns, self.view.chunk_stride, (texels, table));
+            self.tell::<DEPTH, CLASS>(frame, distance, start + first..start + end);
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
+    fn draw_avx512<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS: usize>(
+        &self,
+        frame: &mut Frame,
+        texels: &[u8; TEXELS],
+        spans: &[Span],
+    ) {
+        for span in spans {
+            let (first, end) = (usize::from(span.first), usize::from(span.end));
+            let (distance, table, start) = self.row(frame.width, span.row);
+            let pixels = &mut frame.colour[start + first..start + end];
+            let columns = self.view.columns[first..].first_chunk().expect("the list is padded");
+            let walk = self.walk::<BITS>(distance);
+            row_wide::draw_avx512::<BITS, TEXELS>(&walk, pixels, columns, self.view.chunk_stride, (texels, table));
             self.tell::<DEPTH, CLASS>(frame, distance, start + first..start + end);
         }
     }
