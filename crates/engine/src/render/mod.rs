@@ -32,6 +32,8 @@ mod openings;
 mod palette;
 mod picture;
 mod plane;
+#[cfg(target_arch = "x86_64")]
+mod plane_wide;
 #[cfg(test)]
 mod render_tests;
 mod renderer;

@@ -230,15 +230,15 @@ impl Plane {
 
 /// What the rows of a plane have in common.
 pub(super) struct PlaneShader<'a> {
-    camera: &'a Camera,
-    view: &'a View,
-    tables: &'a [[u8; 256]; 32],
+    pub camera: &'a Camera,
+    pub view: &'a View,
+    pub tables: &'a [[u8; 256]; 32],
     /// Distance of the plane from the eye's height, 16.16, positive.
-    height: i64,
-    slopes: &'a RowSlopes,
-    light: Light,
+    pub height: i64,
+    pub slopes: &'a RowSlopes,
+    pub light: Light,
     /// [`ONE_TABLE_DISTANCE`] over the distance in the first row from the horizon, 32 fractional bits.
-    nearness: i64,
+    pub nearness: i64,
     class: u16,
 }
 
@@ -288,11 +288,6 @@ impl<'a> PlaneShader<'a> {
         spans: &[Span],
     ) {
         #[cfg(target_arch = "x86_64")]
-        if simd.level() == Level::Avx512 {
-            // SAFETY: whoever has this `Simd` has the instructions.
-            return unsafe { self.draw_avx512::<DEPTH, CLASS, BITS, TEXELS>(frame, texels, spans) };
-        }
-        #[cfg(target_arch = "x86_64")]
         if simd.level() >= Level::Avx2 {
             // SAFETY: whoever has this `Simd` has the instructions.
             return unsafe { self.draw_wide::<DEPTH, CLASS, BITS, TEXELS>(frame, texels, spans) };
@@ -329,25 +324,6 @@ impl<'a> PlaneShader<'a> {
         }
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
-    fn draw_avx512<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS: usize>(
-        &self,
-        frame: &mut Frame,
-        texels: &[u8; TEXELS],
-        spans: &[Span],
-    ) {
-        for span in spans {
-            let (first, end) = (usize::from(span.first), usize::from(span.end));
-            let (distance, table, start) = self.row(frame.width, span.row);
-            let pixels = &mut frame.colour[start + first..start + end];
-            let columns = self.view.columns[first..].first_chunk().expect("the list is padded");
-            let walk = self.walk::<BITS>(distance);
-            row_wide::draw_avx512::<BITS, TEXELS>(&walk, pixels, columns, self.view.chunk_stride, (texels, table));
-            self.tell::<DEPTH, CLASS>(frame, distance, start + first..start + end);
-        }
-    }
-
     /// How far the plane is in a row, its light there, and the row's first pixel.
     #[inline(always)]
     fn row(&self, width: usize, row: u16) -> (i64, &[u8; 256], usize) {
@@ -358,7 +334,7 @@ impl<'a> PlaneShader<'a> {
     }
 
     #[inline(always)]
-    fn tell<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, distance: i64, pixels: Range<usize>) {
+    pub fn tell<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, distance: i64, pixels: Range<usize>) {
         if DEPTH {
             let depth = frame.depths.plane(distance);
             frame.depth[pixels.clone()].fill(depth);

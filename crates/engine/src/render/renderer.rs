@@ -16,6 +16,8 @@ use super::status_bar::{BarState, StatusBar};
 use super::walk::Walk;
 use super::workspace::Workspace;
 use super::{Buffers, SegmentationColours, View, convert, weapon};
+#[cfg(target_arch = "x86_64")]
+use crate::simd::Level;
 use crate::simd::Simd;
 use crate::world::World;
 use std::sync::Arc;
@@ -200,16 +202,24 @@ impl Renderer {
             if plane.is_empty() || (plane.key.sky && !CLASS) {
                 continue;
             }
-            let count = plane.spans(self.simd, &mut space.span_starts, &mut space.spans);
-            let spans = &space.spans[..count];
             if plane.key.sky {
-                self.frame.classify(spans, class::SKY);
-            } else {
-                let picture = space.pictures[usize::from(plane.key.texture.0)] as usize;
-                let (flat, square) = (&self.scene.textures.flats[picture], self.scene.textures.squares[picture]);
-                let shader = PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key, square);
-                shader.draw::<DEPTH, CLASS>(self.simd, &mut self.frame, flat, spans);
+                let count = plane.spans(self.simd, &mut space.span_starts, &mut space.spans);
+                self.frame.classify(&space.spans[..count], class::SKY);
+                continue;
             }
+            let picture = space.pictures[usize::from(plane.key.texture.0)] as usize;
+            let (flat, square) = (&self.scene.textures.flats[picture], self.scene.textures.squares[picture]);
+            let shader = PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key, square);
+            #[cfg(target_arch = "x86_64")]
+            if self.simd.level() == Level::Avx512 {
+                // SAFETY: whoever has this `Simd` has the instructions.
+                let drawn = unsafe { shader.draw_plane::<DEPTH, CLASS>(&mut self.frame, flat, plane) };
+                if drawn {
+                    continue;
+                }
+            }
+            let count = plane.spans(self.simd, &mut space.span_starts, &mut space.spans);
+            shader.draw::<DEPTH, CLASS>(self.simd, &mut self.frame, flat, &space.spans[..count]);
         }
     }
 

@@ -3,23 +3,12 @@
 
 use super::plane::{Plane, SPAN_BLOCK, Span};
 use std::arch::x86_64::*;
-use std::ops::Range;
-
-/// The last row that fits a byte.
-const LAST_BYTE: i16 = 255;
-/// Columns of learners' frames at most.
-const TWO_BLOCKS: usize = 2 * SPAN_BLOCK;
 
 /// With vectors of 64 bytes.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
 pub(super) fn spans_avx512(plane: &Plane, spans: &mut Vec<Span>) -> usize {
     let (first_row, end_row) = rows(plane);
     let mut list = RowSpans { spans, count: 0, row_start: 0, row: 0 };
-    match (end_row, plane.end - plane.first) {
-        (..=LAST_BYTE, ..=SPAN_BLOCK) => return bytes_avx512::<1>(plane, list, first_row..end_row),
-        (..=LAST_BYTE, ..=TWO_BLOCKS) => return bytes_avx512::<2>(plane, list, first_row..end_row),
-        _ => {}
-    }
     for row in first_row..end_row {
         let here = _mm512_set1_epi16(row);
         list.begin(row, plane);
@@ -36,38 +25,9 @@ pub(super) fn spans_avx512(plane: &Plane, spans: &mut Vec<Span>) -> usize {
     list.count
 }
 
-/// The same where rows fit bytes and columns fit `BLOCKS` blocks: nothing is loaded again for each row.
-#[inline]
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn bytes_avx512<const BLOCKS: usize>(plane: &Plane, mut list: RowSpans, rows: Range<i16>) -> usize {
-    let mut ends = [[_mm512_setzero_si512(); 2]; BLOCKS];
-    for (i, ends) in ends.iter_mut().enumerate() {
-        let (top, bottom) = block(plane, plane.first + i * SPAN_BLOCK);
-        *ends = [bytes_of(top), bytes_of(bottom)];
-    }
-    for row in rows {
-        let here = _mm512_set1_epi8(row as i8);
-        list.begin(row, plane);
-        for (i, [top, bottom]) in ends.iter().enumerate() {
-            let mask = _mm512_mask_cmpgt_epu8_mask(_mm512_cmple_epu8_mask(*top, here), *bottom, here);
-            list.add(plane.first + i * SPAN_BLOCK, mask);
-        }
-    }
-    list.count
-}
-
-/// Rows as bytes; those of columns without rows, which may be negative, as 0.
-#[inline]
-#[target_feature(enable = "avx512f,avx512bw")]
-fn bytes_of(list: &[i16; SPAN_BLOCK]) -> __m512i {
-    let [low, high] = load_avx512(list);
-    let bytes = |half: __m512i| _mm512_cvtepi16_epi8(_mm512_max_epi16(half, _mm512_setzero_si512()));
-    _mm512_inserti64x4(_mm512_castsi256_si512(bytes(low)), bytes(high), 1)
-}
-
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn load_avx512(list: &[i16; SPAN_BLOCK]) -> [__m512i; 2] {
+pub(super) fn load_avx512(list: &[i16; SPAN_BLOCK]) -> [__m512i; 2] {
     // SAFETY: 128 bytes are readable behind the reference.
     unsafe { [_mm512_loadu_si512(list.as_ptr().cast()), _mm512_loadu_si512(list.as_ptr().add(32).cast())] }
 }
@@ -129,7 +89,7 @@ fn block(plane: &Plane, from: usize) -> (&[i16; SPAN_BLOCK], &[i16; SPAN_BLOCK])
 
 /// The first row of a plane, and one past the last.
 #[inline(always)]
-fn rows(plane: &Plane) -> (i16, i16) {
+pub(super) fn rows(plane: &Plane) -> (i16, i16) {
     let (mut first, mut end) = (i16::MAX, 0);
     for (&top, &bottom) in plane.top[plane.first..plane.end].iter().zip(&plane.bottom[plane.first..plane.end]) {
         first = if top < bottom { first.min(top) } else { first };

@@ -1,0 +1,139 @@
+//! Whole floors and ceilings with 64-byte vectors, in frames as small as learners': which columns of a row belong to the plane
+//! is one mask or two, and what is the same all along a row is worked out for eight rows side by side. The plain twins are in
+//! `plane`; a test in `render_tests` compares whole frames.
+
+use super::frame::Frame;
+use super::picture::FlatPicture;
+use super::plane::{Plane, PlaneShader, SPAN_BLOCK};
+use super::row_walk::RowWalk;
+use super::row_wide;
+use super::span_wide::{load_avx512, rows};
+use super::wall_wide::tables;
+use std::arch::x86_64::*;
+
+/// The last row that fits a byte.
+const LAST_BYTE: i16 = 255;
+/// Rows that are worked out side by side.
+const EIGHT: usize = 8;
+
+/// What eight rows show.
+struct EightRows {
+    walks: [[u32; EIGHT]; 4],
+    distances: [i64; EIGHT],
+    tables: [i64; EIGHT],
+}
+
+impl PlaneShader<'_> {
+    /// Draws a plane, if it is small enough; returns whether it was.
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+    pub fn draw_plane<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, flat: &FlatPicture, plane: &Plane) -> bool {
+        let (first, end) = rows(plane);
+        let blocks = (plane.end - plane.first).div_ceil(SPAN_BLOCK);
+        if end > LAST_BYTE || blocks > 2 {
+            return false;
+        }
+        match (flat, blocks) {
+            (FlatPicture::Small(texels), 1) => self.draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 1>(frame, texels, plane, first, end),
+            (FlatPicture::Small(texels), _) => self.draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 2>(frame, texels, plane, first, end),
+            (FlatPicture::Large(texels), 1) => self.draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 1>(frame, texels, plane, first, end),
+            (FlatPicture::Large(texels), _) => self.draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 2>(frame, texels, plane, first, end),
+        }
+        true
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+    fn draw_rows<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS: usize, const BLOCKS: usize>(
+        &self,
+        frame: &mut Frame,
+        texels: &[u8; TEXELS],
+        plane: &Plane,
+        first: i16,
+        end: i16,
+    ) {
+        let mut ends = [[_mm512_setzero_si512(); 2]; BLOCKS];
+        for (i, ends) in ends.iter_mut().enumerate() {
+            let block = |list: &[i16]| bytes_of(list[plane.first + i * SPAN_BLOCK..].first_chunk().expect("lists are padded"));
+            *ends = [block(&plane.top), block(&plane.bottom)];
+        }
+        let (first, end) = (first.max(0) as usize, end.max(0) as usize);
+        for from in (first..end).step_by(EIGHT) {
+            let eight = self.eight_rows::<BITS>(from);
+            for i in 0..EIGHT.min(end - from) {
+                let here = _mm512_set1_epi8((from + i) as i8);
+                let walk = RowWalk {
+                    u: eight.walks[0][i],
+                    v: eight.walks[1][i],
+                    u_step: eight.walks[2][i],
+                    v_step: eight.walks[3][i],
+                };
+                let table = &self.tables[eight.tables[i] as usize & 31];
+                let row = (from + i) * frame.width;
+                for (block, [top, bottom]) in ends.iter().enumerate() {
+                    let left = plane.first + block * SPAN_BLOCK;
+                    let mut mask = _mm512_mask_cmpgt_epu8_mask(_mm512_cmple_epu8_mask(*top, here), *bottom, here);
+                    while mask != 0 {
+                        // Adding to the lowest bit of a run carries to the place behind the run.
+                        let behind = mask.wrapping_add(mask & mask.wrapping_neg());
+                        let run = left + mask.trailing_zeros() as usize..left + behind.trailing_zeros() as usize;
+                        let columns = self.view.columns[run.start..].first_chunk().expect("the list is padded");
+                        let pixels = row + run.start..row + run.end;
+                        let stride = self.view.chunk_stride;
+                        let colours = &mut frame.colour[pixels.clone()];
+                        row_wide::draw_avx512::<BITS, TEXELS>(&walk, colours, columns, stride, (texels, table));
+                        self.tell::<DEPTH, CLASS>(frame, eight.distances[i], pixels);
+                        mask &= behind;
+                    }
+                }
+            }
+        }
+    }
+
+    /// What the rows from `first` on have in common all along: [`PlaneShader::row`] and [`PlaneShader::walk`].
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq")]
+    fn eight_rows<const BITS: u32>(&self, first: usize) -> EightRows {
+        let (camera, splat) = (self.camera, |number: i64| _mm512_set1_epi64(number));
+        let slopes = load(&self.slopes.distances[first..]);
+        let distance = _mm512_srai_epi64(_mm512_mullo_epi64(splat(self.height), slopes), 16);
+        let rows = load(&self.slopes.rows[first..]);
+        let nearness = _mm512_srai_epi64(_mm512_mullo_epi64(splat(self.nearness), rows), 32);
+        let part = |position: __m512i| match BITS {
+            6 => _mm512_cvtepi64_epi32(_mm512_srli_epi64(position, 22)),
+            _ => _mm512_cvtepi64_epi32(_mm512_srli_epi64(position, 23)),
+        };
+        let along = |ray: i64| _mm512_mullo_epi64(distance, splat(ray));
+        let u = _mm512_add_epi64(splat(camera.x << 32), along(camera.plane_ray[0]));
+        let v = _mm512_add_epi64(splat(camera.y << 32), along(camera.plane_ray[1]));
+        let minus = |vector: __m512i| _mm512_sub_epi64(_mm512_setzero_si512(), vector);
+        let walks = [part(u), part(minus(v)), part(along(camera.plane_step[0])), part(minus(along(camera.plane_step[1])))];
+        let mut eight = EightRows { walks: [[0; EIGHT]; 4], distances: [0; EIGHT], tables: [0; EIGHT] };
+        for (to, from) in eight.walks.iter_mut().zip(walks) {
+            // SAFETY: 32 bytes are writable behind the reference.
+            unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
+        }
+        for (to, from) in [(&mut eight.distances, distance), (&mut eight.tables, tables(self.light, nearness))] {
+            // SAFETY: 64 bytes are writable behind the reference.
+            unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), from) }
+        }
+        eight
+    }
+}
+
+/// Rows as bytes; those of columns without rows, which may be negative, as 0.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw")]
+fn bytes_of(list: &[i16; SPAN_BLOCK]) -> __m512i {
+    let [low, high] = load_avx512(list);
+    let bytes = |half: __m512i| _mm512_cvtepi16_epi8(_mm512_max_epi16(half, _mm512_setzero_si512()));
+    _mm512_inserti64x4(_mm512_castsi256_si512(bytes(low)), bytes(high), 1)
+}
+
+/// Eight numbers, or as many as there are.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn load(list: &[i64]) -> __m512i {
+    let there = if list.len() >= EIGHT { u8::MAX } else { (1 << list.len()) - 1 };
+    // SAFETY: only the numbers that are there are read.
+    unsafe { _mm512_maskz_loadu_epi64(there, list.as_ptr()) }
+}
