@@ -2,11 +2,12 @@
 //! is one mask or two, and what is the same all along a row is worked out for eight rows side by side. The plain twins are in
 //! `plane`; a test in `render_tests` compares whole frames.
 
+use super::convert_wide::{load_table, look_up_block};
 use super::frame::Frame;
 use super::picture::FlatPicture;
 use super::plane::{Plane, PlaneShader, SPAN_BLOCK};
 use super::row_walk::RowWalk;
-use super::row_wide;
+use super::row_wide::{self, ROW_VECTOR};
 use super::span_wide::{load_avx512, rows};
 use super::wall_wide::tables;
 use std::arch::x86_64::*;
@@ -57,33 +58,41 @@ impl PlaneShader<'_> {
             *ends = [block(&plane.top), block(&plane.bottom)];
         }
         let (first, end) = (first.max(0) as usize, end.max(0) as usize);
+        let (stride, from_left) = (self.view.chunk_stride, &self.view.columns[plane.first..]);
+        // Texels are fetched one by one, and lit as vectors some hundred instructions later: bytes that were just written one by
+        // one cannot be loaded together at once.
+        let mut unlit = [[[0; SPAN_BLOCK + ROW_VECTOR]; BLOCKS]; EIGHT];
+        let mut masks = [[0; BLOCKS]; EIGHT];
         for from in (first..end).step_by(EIGHT) {
-            let eight = self.eight_rows::<BITS>(from);
-            for i in 0..EIGHT.min(end - from) {
+            let (eight, count) = (self.eight_rows::<BITS>(from), EIGHT.min(end - from));
+            for (i, (unlit, masks)) in unlit.iter_mut().zip(&mut masks).enumerate().take(count) {
                 let here = _mm512_set1_epi8((from + i) as i8);
-                let walk = RowWalk {
-                    u: eight.walks[0][i],
-                    v: eight.walks[1][i],
-                    u_step: eight.walks[2][i],
-                    v_step: eight.walks[3][i],
-                };
-                let table = &self.tables[eight.tables[i] as usize & 31];
-                let row = (from + i) * frame.width;
-                for (block, [top, bottom]) in ends.iter().enumerate() {
-                    let left = plane.first + block * SPAN_BLOCK;
+                let [u, v, u_step, v_step] = eight.walks.map(|list| list[i]);
+                let walk = RowWalk { u, v, u_step, v_step };
+                for (block, ((unlit, whole), [top, bottom])) in unlit.iter_mut().zip(masks).zip(&ends).enumerate() {
                     let mut mask = _mm512_mask_cmpgt_epu8_mask(_mm512_cmple_epu8_mask(*top, here), *bottom, here);
+                    *whole = mask;
                     while mask != 0 {
                         // Adding to the lowest bit of a run carries to the place behind the run.
                         let behind = mask.wrapping_add(mask & mask.wrapping_neg());
-                        let run = left + mask.trailing_zeros() as usize..left + behind.trailing_zeros() as usize;
-                        let columns = self.view.columns[run.start..].first_chunk().expect("the list is padded");
-                        let pixels = row + run.start..row + run.end;
-                        let stride = self.view.chunk_stride;
-                        let colours = &mut frame.colour[pixels.clone()];
-                        row_wide::draw_avx512::<BITS, TEXELS>(&walk, colours, columns, stride, (texels, table));
-                        self.tell::<DEPTH, CLASS>(frame, eight.distances[i], pixels);
+                        let run = mask.trailing_zeros() as usize..behind.trailing_zeros() as usize;
+                        let columns = from_left[block * SPAN_BLOCK + run.start..].first_chunk().expect("the list is padded");
+                        row_wide::fetch_avx512::<BITS, TEXELS>(&walk, &mut unlit[run.start..], run.len(), columns, stride, texels);
+                        if DEPTH || CLASS {
+                            let left = (from + i) * frame.width + plane.first + block * SPAN_BLOCK;
+                            self.tell::<DEPTH, CLASS>(frame, eight.distances[i], left + run.start..left + run.end);
+                        }
                         mask &= behind;
                     }
+                }
+            }
+            for (i, (unlit, masks)) in unlit.iter().zip(&masks).enumerate().take(count) {
+                let table = load_table(&self.tables[eight.tables[i] as usize & 31]);
+                for (block, (unlit, &mask)) in unlit.iter().zip(masks).enumerate() {
+                    let pixels = &mut frame.colour[(from + i) * frame.width + plane.first + block * SPAN_BLOCK..];
+                    let lit = look_up_block(table, super::convert_wide::load(unlit.first_chunk().expect("a block")));
+                    // SAFETY: only columns of the mask are written, which the frame has.
+                    unsafe { _mm512_mask_storeu_epi8(pixels.as_mut_ptr().cast(), mask, lit) }
                 }
             }
         }

@@ -1,6 +1,5 @@
 //! Pixels of a row of a floor, eight at a time; the plain twin is in `row_walk`, where a test compares them.
 
-use super::convert_wide::{load_table, look_up_block};
 use super::row_walk::RowWalk;
 use std::arch::x86_64::*;
 
@@ -49,15 +48,16 @@ pub(super) fn draw<const BITS: u32, const TEXELS: usize>(
 /// Pixels of a vector of 64 bytes.
 pub(super) const ROW_VECTOR: usize = 16;
 
-/// The same sixteen pixels at a time.
+/// Fetches the texels of `count` pixels without their light, sixteen at a time: whole vectors are written.
 #[inline]
-#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512vbmi")]
-pub(super) fn draw_avx512<const BITS: u32, const TEXELS: usize>(
+#[target_feature(enable = "avx512f")]
+pub(super) fn fetch_avx512<const BITS: u32, const TEXELS: usize>(
     walk: &RowWalk,
-    pixels: &mut [u8],
+    unlit: &mut [u8],
+    count: usize,
     columns: &[u32; ROW_VECTOR],
     stride: u32,
-    (texels, table): (&[u8; TEXELS], &[u8; 256]),
+    texels: &[u8; TEXELS],
 ) {
     const { assert!(TEXELS == 1 << (2 * BITS) && (BITS == 6 || BITS == 7)) }
     let splat = |number: u32| _mm512_set1_epi32(number as i32);
@@ -67,21 +67,20 @@ pub(super) fn draw_avx512<const BITS: u32, const TEXELS: usize>(
     let (mut u, mut v) = (start(walk.u, walk.u_step), start(walk.v, walk.v_step));
     let u_stride = splat(walk.u_step.wrapping_mul(2 * stride));
     let v_stride = splat(walk.v_step.wrapping_mul(2 * stride));
-    let table = load_table(table);
-    for group in pixels.chunks_mut(ROW_VECTOR) {
+    let (groups, _) = unlit[..count.next_multiple_of(ROW_VECTOR)].as_chunks_mut::<ROW_VECTOR>();
+    for group in groups {
         let index = if BITS == 6 {
             _mm512_or_si512(_mm512_slli_epi32(_mm512_srli_epi32(u, 26), 6), _mm512_srli_epi32(v, 26))
         } else {
             _mm512_or_si512(_mm512_slli_epi32(_mm512_srli_epi32(u, 25), 7), _mm512_srli_epi32(v, 25))
         };
         (u, v) = (_mm512_add_epi32(u, u_stride), _mm512_add_epi32(v, v_stride));
-        // SAFETY: whole words of the texels, as the index is below their number.
-        let words = unsafe { _mm512_i32gather_epi32::<4>(_mm512_srli_epi32(index, 2), texels.as_ptr().cast()) };
-        let bytes = _mm512_srlv_epi32(words, _mm512_slli_epi32(_mm512_and_si512(index, splat(3)), 3));
-        let lit = look_up_block(table, _mm512_castsi128_si512(_mm512_cvtepi32_epi8(bytes)));
-        let mask = (u32::MAX >> (32 - group.len() as u32)) as u16;
-        // SAFETY: only the group's bytes are written.
-        unsafe { _mm_mask_storeu_epi8(group.as_mut_ptr().cast(), mask, _mm512_castsi512_si128(lit)) }
+        let mut indices = [0u32; ROW_VECTOR];
+        // SAFETY: 64 bytes are writable behind the reference.
+        unsafe { _mm512_storeu_si512(indices.as_mut_ptr().cast(), index) }
+        for (texel, index) in group.iter_mut().zip(indices) {
+            *texel = texels[index as usize & (TEXELS - 1)];
+        }
     }
 }
 
