@@ -79,6 +79,23 @@ impl Columns {
         &mut self.colour[x * self.stride..(x + 1) * self.stride + ROW_GROUP]
     }
 
+    /// Whether each column is one block of rows.
+    pub fn are_blocks(&self) -> bool {
+        self.stride == ROW_BLOCK
+    }
+
+    /// The palette indices of all columns, where each is one block of rows.
+    #[inline]
+    pub fn colour_blocks(&mut self) -> &mut [[u8; ROW_BLOCK]] {
+        self.colour.as_chunks_mut().0
+    }
+
+    /// The depth of all columns, where each is one block of rows.
+    #[inline]
+    pub fn depth_blocks(&mut self) -> &mut [[u8; ROW_BLOCK]] {
+        self.depth.as_chunks_mut().0
+    }
+
     /// The depth of a column.
     #[inline]
     pub fn depth_of(&mut self, x: usize) -> &mut [u8] {

@@ -1,5 +1,7 @@
 //! Textures prepared for drawing: sizes and reciprocals worked out, flats cut to powers of two.
 
+#[cfg(target_arch = "x86_64")]
+use super::wall_list::{MOST_TEXELS, WallList};
 use crate::assets::{Assets, Image, TextureEntry};
 use std::sync::Arc;
 
@@ -144,6 +146,12 @@ pub(super) struct Textures {
     pub masked: Vec<MaskedPicture>,
     /// By frame: whether it is a square of 64 texels.
     pub squares: Vec<bool>,
+    /// The texels of all walls that can be drawn as a list of columns, and as many more as a column has.
+    #[cfg(target_arch = "x86_64")]
+    pub listed: Vec<u8>,
+    /// By frame: where its texels begin in `listed`.
+    #[cfg(target_arch = "x86_64")]
+    pub listed_from: Vec<Option<u32>>,
 }
 
 impl Textures {
@@ -155,11 +163,26 @@ impl Textures {
         for frame in 0..frames {
             let image = assets.images.get(entry.first.saturating_add(frame) as usize);
             let image = image.filter(|image| image.width > 0 && image.height > 0).unwrap_or(&solid);
-            self.walls.push(WallPicture::new(image));
+            let wall = WallPicture::new(image);
+            #[cfg(target_arch = "x86_64")]
+            self.list_texels(&wall);
+            self.walls.push(wall);
             self.flats.push(FlatPicture::new(image));
             self.masked.push(MaskedPicture::new(image));
             self.squares.push((image.width, image.height) == (64, 64));
         }
         self.list.push(Texture { first, frames, tics: u32::from(entry.tics).max(1) });
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn list_texels(&mut self, wall: &WallPicture) {
+        let end = self.listed.len().saturating_sub(MOST_TEXELS);
+        let takes = WallList::takes(wall.width, wall.height);
+        if takes {
+            self.listed.truncate(end);
+            self.listed.extend_from_slice(&wall.pixels);
+            self.listed.resize(self.listed.len() + MOST_TEXELS, 0);
+        }
+        self.listed_from.push(takes.then_some(end as u32));
     }
 }

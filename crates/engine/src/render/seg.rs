@@ -8,8 +8,6 @@ use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
 use super::walk::Walk;
 use super::wall::{END_BITS, Edge, SeenLine, TextureLine, WallShader};
-#[cfg(target_arch = "x86_64")]
-use super::wall_list::WallList;
 use crate::map::TextureId;
 use crate::math::Fixed;
 #[cfg(target_arch = "x86_64")]
@@ -262,15 +260,15 @@ impl Walk<'_> {
         };
         let (tops, bottoms) = (&self.scratch.upper[first..], &self.scratch.lower[first..]);
         #[cfg(target_arch = "x86_64")]
-        let listed = self.simd.level() == Level::Avx512 && WallList::takes(shader.picture);
+        let start = self.scene.textures.listed_from[picture].filter(|_| self.lists_walls());
         #[cfg(target_arch = "x86_64")]
-        if listed {
+        if let Some(start) = start {
             // SAFETY: whoever has this `Simd` has the instructions.
-            unsafe { self.walls.add(&shader, picture, first, end - first, tops, bottoms) }
+            unsafe { self.walls.add::<DEPTH>(&shader, start, first, end - first, tops, bottoms) }
         }
         #[cfg(not(target_arch = "x86_64"))]
-        let listed = false;
-        if !listed {
+        let start: Option<u32> = None;
+        if start.is_none() {
             shader.draw::<DEPTH>(self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
         }
         if !self.world.soot.is_empty() {
@@ -279,13 +277,20 @@ impl Walk<'_> {
         }
     }
 
+    /// Whether columns of walls are listed and drawn together.
+    #[cfg(target_arch = "x86_64")]
+    fn lists_walls(&self) -> bool {
+        self.simd.level() == Level::Avx512 && self.columns.are_blocks()
+    }
+
     /// Draws the walls that wait for it.
     pub fn draw_walls<const DEPTH: bool>(&mut self) {
         #[cfg(target_arch = "x86_64")]
-        if self.simd.level() == Level::Avx512 {
-            let (rows, tables) = (&self.view.rows, &self.scene.assets.light_tables);
+        if self.lists_walls() {
+            let (scene, rows) = (self.scene, self.view.rows.first_chunk().expect("the list is padded"));
+            let tables = &scene.assets.light_tables;
             // SAFETY: whoever has this `Simd` has the instructions.
-            unsafe { self.walls.draw::<DEPTH>(self.columns, rows, &self.scene.textures.walls, tables, self.depths) }
+            unsafe { self.walls.draw::<DEPTH>(self.columns, rows, &scene.textures.listed, tables, self.depths) }
             self.walls.clear();
         }
     }
