@@ -1,4 +1,4 @@
-//! A body alone in the map of an environment, without rules and things: `beside_published.py` drives it.
+//! A body alone in the map of an environment, without rules and what moves or can be taken: `beside_published.py` drives it.
 //!
 //! Argument: a folder of maps, or none for the built-in ones; floors are then given in the order of that map's sectors.
 //! Standard input: a line with the id; a line with the start (x, y, z, angle, pitch: map units and degrees); a line with the
@@ -7,7 +7,7 @@
 
 use hasard_engine::map::SectorId;
 use hasard_engine::math::{Angle, Fixed};
-use hasard_engine::world::World;
+use hasard_engine::world::{ActorFlags, World};
 use hasard_envs::maps::Maps;
 use hasard_envs::{Env, EnvOptions, RuleSet, parse_command};
 use std::error::Error;
@@ -43,9 +43,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         (sector.floor, sector.ceiling) = (fixed(floor[2]), fixed(floor[3]));
         sector.damage = Default::default();
     }
-    // The original's things have been taken away as well.
+    // What the original has left as well: the body, trees and lamps.
     let own = world.players[0].actor;
-    let things: Vec<_> = (0..world.actors.len()).map(|slot| world.id_of(slot)).filter(|&id| id != own).collect();
+    let moves =
+        |slot: &usize| world.actors[*slot].flags.any(ActorFlags::ITEM.with(ActorFlags::MONSTER).with(ActorFlags::SHOOTABLE));
+    let things: Vec<_> = (0..world.actors.len()).filter(moves).map(|slot| world.id_of(slot)).filter(|&id| id != own).collect();
     things.into_iter().for_each(|id| world.remove(id));
     let angle = |degrees: f64| (degrees * TURN).round() as i64;
     world.place_player(

@@ -4,7 +4,8 @@
     cargo build --release -p hasard && cargo build --release -p hasard-envs --example bare_world
     python beside_published.py TARGET/release whole 100        # Precipice Plunge 1, which draws nothing at random: whole episodes
     python beside_published.py TARGET/release bodies VolcanicVenture 60   # bodies among the floors that the original drew
-    python beside_published.py TARGET/release bodies RemedyRush 60        # the same in the published map, which has no tiles
+    python beside_published.py TARGET/release bodies RemedyRush 60        # the same in the published map, which has no tiles, among its trees
+    python beside_published.py TARGET/release traces RemedyRush 3         # there, the buttons of all motion that was recorded elsewhere
     python beside_published.py TARGET/release returns RemedyRush 1 300    # returns and costs in the published map, both engines
     python beside_published.py TARGET/release returns all 300             # all 24 maps (examples: action_episodes)
 
@@ -13,6 +14,7 @@ to 1/65536 map unit and 0.01 degree.
 """
 
 import csv
+import glob
 import json
 import os
 import subprocess
@@ -27,6 +29,12 @@ from published_engine import FOLDERS, MAPS, Published
 VARIABLES = "POSITION_X POSITION_Y POSITION_Z ANGLE PITCH VELOCITY_X VELOCITY_Y VELOCITY_Z".split()
 # Our maps of these are of our own design.
 PUBLISHED_MAPS = ("RemedyRush", "DetonatorsDilemma")
+# What stands in them all the time, some of it in a body's way.
+STANDING = (
+    "TorchTree Stalagtite BigTree TechLamp TechLamp2 Candlestick ShortRedTorch ShortBlueTorch ShortGreenTorch "
+    "burning_top burning_debris".split()
+)
+RECORDINGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../engine/tests/traces/*.trace")
 SIMPLE = "TURN_LEFT TURN_RIGHT MOVE_FORWARD MOVE_BACKWARD LOOK_UP LOOK_DOWN JUMP".split()
 FULL = SIMPLE + "MOVE_LEFT MOVE_RIGHT SPEED CROUCH TURN180 LOOK_UP_DOWN_DELTA TURN_LEFT_RIGHT_DELTA".split()
 
@@ -107,38 +115,84 @@ def whole(programs, episodes):
 
 
 def bodies(programs, scenario, episodes):
-    """A body alone among the floors that the original has drawn by then, by the example `bare_world`."""
-    original = game(scenario, FULL)
-    for seed in range(1, episodes + 1):
+    """Random buttons for bodies among the floors that the original has drawn by then."""
+    original, seed = game(scenario, FULL), 0
+    while episodes:
+        seed += 1
         rng = np.random.default_rng(seed)
         tics = held(rng, FULL, 1000)
-        original.set_seed(seed)
-        original.new_episode()
-        original.make_action([0] * len(FULL), 40)
-        state = original.get_state()
-        lines = [line for sector in state.sectors for line in sector.lines]
-        west, east = min(line.x1 for line in lines) + 40, max(line.x1 for line in lines) - 40
-        south, north = min(line.y1 for line in lines) + 40, max(line.y1 for line in lines) - 40
-        for kind in {thing.name for thing in state.objects} - {"DoomPlayer"}:
-            original.send_game_command(f"remove {kind}")
-        original.send_game_command("god")
-        if scenario not in PUBLISHED_MAPS:  # there the rules have put the agent somewhere
-            original.send_game_command(f"warp {rng.uniform(west, east):.0f} {rng.uniform(south, north):.0f}")
-        original.make_action([0] * len(FULL), 40)
-        state = original.get_state()
-        start = " ".join(repr(float(value)) for value in state.game_variables[:5])
-        floors = []
-        for sector in state.sectors:
-            count = 2 * len(sector.lines)
-            x = sum(line.x1 + line.x2 for line in sector.lines) / count
-            y = sum(line.y1 + line.y2 for line in sector.lines) / count
-            floors.append(f"{x} {y} {sector.floor_height} {sector.ceiling_height}")
-        theirs = played(original, tics)
-        text = [f"{scenario}Level1-v0", start, str(len(floors)), *floors, *(words(FULL, values) for values in tics[: len(theirs)])]
-        program = [f"{programs}/examples/bare_world"] + ([MAPS] if scenario in PUBLISHED_MAPS else [])
-        out = subprocess.run(program, input="\n".join(text) + "\n", capture_output=True, text=True, check=True)
-        ours = [[float(value) for value in line.split(",")] for line in out.stdout.splitlines()]
-        yield seed, len(theirs), first_difference(theirs, ours)
+        outcome = body(programs, original, scenario, seed, tics, rng)
+        if outcome is None:
+            print(f"seed {seed}: the original locked the agent up in rock, left out")
+            continue
+        episodes -= 1
+        yield seed, *outcome
+
+
+def traces(programs, scenario, seeds):
+    """The buttons of every recording in `crates/engine/tests/traces`, each from a few places."""
+    original = game(scenario, FULL)
+    recorded = {tuple(map(tuple, recorded_buttons(path))): path for path in sorted(glob.glob(RECORDINGS))}
+    for tics, path in recorded.items():
+        for seed in range(1, seeds + 1):
+            outcome = body(programs, original, scenario, seed, [list(values) for values in tics], np.random.default_rng(seed))
+            if outcome is not None:
+                yield f"{os.path.basename(path)}, {seed}", *outcome
+
+
+def recorded_buttons(path):
+    """What a recording held down, tic by tic, as values of FULL."""
+    tics, now = [], [0.0] * len(FULL)
+    for line in open(path).read().splitlines()[1:]:
+        if line.startswith("> "):
+            pressed = dict((word.split("=") + ["1"])[:2] for word in line[2:].split("+"))
+            now = [float(pressed.get(name, 0)) for name in FULL]
+        else:
+            tics += [now] * (int(line[1:] or 1) if line.startswith(".") else 1)
+    return tics
+
+
+def inside(sectors, x, y):
+    """Whether a point lies in a sector: an odd number of its lines are crossed on the way out."""
+    def crossed(line):
+        (x1, y1), (x2, y2) = (line.x1, line.y1), (line.x2, line.y2)
+        return (y1 > y) != (y2 > y) and x < x1 + (y - y1) * (x2 - x1) / (y2 - y1)
+    return any(sum(map(crossed, sector.lines)) % 2 for sector in sectors)
+
+
+def body(programs, original, scenario, seed, tics, rng):
+    """A body alone, by the example `bare_world`: tics compared and the first that differs; nothing for one that begins in rock, where
+    there is no floor but what the order of an engine's nodes makes of it."""
+    original.set_seed(seed)
+    original.new_episode()
+    original.make_action([0] * len(FULL), 40)
+    state = original.get_state()
+    lines = [line for sector in state.sectors for line in sector.lines]
+    west, east = min(line.x1 for line in lines) + 40, max(line.x1 for line in lines) - 40
+    south, north = min(line.y1 for line in lines) + 40, max(line.y1 for line in lines) - 40
+    for kind in {thing.name for thing in state.objects} - {"DoomPlayer", *STANDING}:
+        original.send_game_command(f"remove {kind}")
+    original.send_game_command("god")
+    if scenario not in PUBLISHED_MAPS:  # there the rules have put the agent somewhere
+        original.send_game_command(f"warp {rng.uniform(west, east):.0f} {rng.uniform(south, north):.0f}")
+    original.make_action([0] * len(FULL), 40)
+    state = original.get_state()
+    x, y = state.game_variables[:2]
+    if scenario in PUBLISHED_MAPS and not inside(state.sectors, x, y):
+        return None
+    start = " ".join(repr(float(value)) for value in state.game_variables[:5])
+    floors = []
+    for sector in state.sectors:
+        count = 2 * len(sector.lines)
+        x = sum(line.x1 + line.x2 for line in sector.lines) / count
+        y = sum(line.y1 + line.y2 for line in sector.lines) / count
+        floors.append(f"{x} {y} {sector.floor_height} {sector.ceiling_height}")
+    theirs = played(original, tics)
+    text = [f"{scenario}Level1-v0", start, str(len(floors)), *floors, *(words(FULL, values) for values in tics[: len(theirs)])]
+    program = [f"{programs}/examples/bare_world"] + ([MAPS] if scenario in PUBLISHED_MAPS else [])
+    out = subprocess.run(program, input="\n".join(text) + "\n", capture_output=True, text=True, check=True)
+    ours = [[float(value) for value in line.split(",")] for line in out.stdout.splitlines()]
+    return len(theirs), first_difference(theirs, ours)
 
 
 def both(programs, scenario, level, hard, episodes):
@@ -190,7 +244,7 @@ def main():
     os.chdir(tempfile.mkdtemp())
     if what == "returns":
         return returns(programs, rest)
-    runs = whole(programs, int(rest[0])) if what == "whole" else bodies(programs, rest[0], int(rest[1]))
+    runs = whole(programs, int(rest[0])) if what == "whole" else {"bodies": bodies, "traces": traces}[what](programs, rest[0], int(rest[1]))
     tics = episodes = astray = 0
     for seed, length, difference in runs:
         episodes, tics = episodes + 1, tics + length

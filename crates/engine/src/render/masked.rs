@@ -121,6 +121,8 @@ impl Masked<'_> {
         let (upper, lower) =
             (silhouette.ends.edge(self.camera, self.view, top), silhouette.ends.edge(self.camera, self.view, bottom));
         let first_rows = &self.view.first_row;
+        // The published engine draws four columns at once; the depth of those that do not fill a four it tells as a sprite's.
+        let whole_fours = (self.view.columns[first] + 3) & !3..(self.view.columns[end - 1] + 1) & !3;
         for x in first..end {
             let row_index = silhouette.rows + x - silhouette.first;
             let (open_top, open_bottom) = (self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]);
@@ -131,6 +133,7 @@ impl Masked<'_> {
             if drawn || rows.is_empty() {
                 continue;
             }
+            let in_four = whole_fours.contains(&column);
             let column = i64::from(column);
             let distance = silhouette.line.distance_at(column);
             let nearness = (silhouette.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
@@ -141,7 +144,7 @@ impl Masked<'_> {
             let at = ((hung_from - self.camera.z) << 16) - self.camera.to_horizon(step);
             let shown = MaskedColumn { texels, table, at, step };
             let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
-            let told = depths.wall(distance);
+            let told = if in_four { depths.wall(distance) } else { depths.sprite(distance, self.view.focal_y) };
             shown.draw(self.simd, &self.view.rows, rows.start as usize..rows.end as usize, |row, lit| {
                 let pixel = row * *width + x;
                 colour[pixel] = lit;
