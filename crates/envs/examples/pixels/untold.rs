@@ -59,8 +59,13 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
     if scenario == "collateral_damage" {
         try_all(posed, launcher(), &everywhere);
     }
-    for mark in 0..posed.world.soot.len() {
-        try_all(posed, turned(mark), &world);
+    let marks = posed.world.soot.len();
+    for mark in 0..marks {
+        try_all(posed, turned(&[mark]), &world);
+    }
+    // Where marks overlap, how one is turned is told only together with the others.
+    for (one, other) in (0..marks).flat_map(|one| (0..one).map(move |other| (one, other))) {
+        try_all(posed, turned(&[one, other]), &world);
     }
     for (label, id) in posed.actors.clone() {
         let slot = usize::from(id.slot);
@@ -108,12 +113,19 @@ fn darkness(world: &World) -> Vec<Change> {
     lights.into_iter().flat_map(|light| [false, true].map(|goggles| variant(light, goggles))).collect()
 }
 
-/// A mark of soot every way round.
-fn turned(mark: usize) -> Vec<Change> {
-    let turn = |mirrored, upturned| -> Change {
-        Box::new(move |world: &mut World| (world.soot[mark].mirrored, world.soot[mark].upturned) = (mirrored, upturned))
+/// Marks of soot, each every way round.
+fn turned(marks: &[usize]) -> Vec<Change> {
+    let ways = 1 << (2 * marks.len());
+    let turn = |way: usize| -> Change {
+        let marks = marks.to_vec();
+        Box::new(move |world: &mut World| {
+            for (place, &mark) in marks.iter().enumerate() {
+                let way = way >> (2 * place);
+                (world.soot[mark].mirrored, world.soot[mark].upturned) = (way & 1 != 0, way & 2 != 0);
+            }
+        })
     };
-    [(false, false), (true, false), (false, true), (true, true)].map(|(mirrored, upturned)| turn(mirrored, upturned)).into()
+    (0..ways).map(turn).collect()
 }
 
 /// The rocket launcher at rest and every frame of its shot.
