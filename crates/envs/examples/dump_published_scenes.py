@@ -93,7 +93,7 @@ def note_bursts(bursts, state):
     """Remembers where rockets have burst: they stand still then."""
     for thing in state.objects:
         if thing.name == "Rocket" and thing.velocity_x == thing.velocity_y == 0:
-            bursts[thing.id] = [thing.position_x, thing.position_y, thing.position_z]
+            bursts[thing.id] = [thing.position_x, thing.position_y, thing.position_z, thing.angle]
 
 
 def told(number, state, bursts):

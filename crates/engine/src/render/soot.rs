@@ -1,7 +1,6 @@
 //! Soot on walls: darkens what was just drawn of one.
 //!
-//! Fitted to moments of the published engine. Not as there: a mark that reaches beyond its line ends there, where the original
-//! draws the rest on the next one.
+//! Fitted to moments of the published engine.
 
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::seg::SeenSeg;

@@ -32,9 +32,9 @@ pub struct Moment {
     /// Of each sector.
     pub floors: Vec<f64>,
     pub ceilings: Vec<f64>,
-    /// Where rockets have burst since the episode began.
+    /// Where rockets have burst since the episode began, and the way that they flew, degrees.
     #[serde(default)]
-    pub bursts: Vec<[f64; 3]>,
+    pub bursts: Vec<[f64; 4]>,
     /// The things in view.
     pub labels: Vec<Thing>,
 }

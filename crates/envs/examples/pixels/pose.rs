@@ -3,7 +3,7 @@
 use crate::Any;
 use crate::dump::{Level, Moment};
 use hasard_engine::assets::Assets;
-use hasard_engine::map::{Line, Map, SectorId, udmf};
+use hasard_engine::map::{Map, SectorId, udmf};
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::render::{FrameSize, RenderOptions, Renderer, Scene, View};
 use hasard_engine::wad::Wad;
@@ -73,7 +73,7 @@ impl Stage {
         let mut world = self.world.clone();
         self.set_sectors(&mut world, level, moment);
         set_player(&mut world, moment);
-        moment.bursts.iter().for_each(|&burst| leave_soot(&mut world, burst.map(fixed)));
+        moment.bursts.iter().for_each(|&burst| leave_soot(&mut world, burst));
         let actors = moment.labels.iter().filter_map(|thing| {
             let name = thing.name.strip_prefix("Dead").unwrap_or(&thing.name);
             let &kind = self.kinds.get(name).filter(|&&kind| kind != ActorKind::Player)?;
@@ -117,21 +117,22 @@ impl Stage {
     }
 }
 
-/// A rocket no farther than this from a wall burst at it, map units.
-const AT_WALL: f64 = 32.0;
+/// Speed of rockets, map units a tic.
+const ROCKET_SPEED: f64 = 20.0;
 
-/// Leaves soot on the wall next to a place, if one is near.
-fn leave_soot(world: &mut World, [x, y, z]: [Fixed; 3]) {
-    let square_away = |line: &Line| {
-        let [x, y, x1, y1, dx, dy] = [x, y, line.v1.x, line.v1.y, line.dx, line.dy].map(Fixed::to_f64);
-        let part = (((x - x1) * dx + (y - y1) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
-        let [east, north] = [x - x1 - part * dx, y - y1 - part * dy];
-        east * east + north * north
-    };
-    let near =
-        (0..).zip(&world.map.lines).map(|(index, line)| (square_away(line), index)).filter(|&(away, _)| away < AT_WALL * AT_WALL);
-    if let Some((_, line)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) {
-        world.leave_soot(line, x, y, z);
+/// Leaves the soot of a rocket that has burst at a place: it bursts there once more if a wall was in its way.
+fn leave_soot(world: &mut World, [x, y, z, angle]: [f64; 4]) {
+    let mut again = world.clone();
+    let place = [x, y, z].map(fixed);
+    let id = again.spawn(ActorKind::Rocket, place[0], place[1], place[2]);
+    if let Some(rocket) = again.get_mut(id) {
+        (rocket.x, rocket.y, rocket.z) = place.into();
+        [rocket.vx, rocket.vy] = [angle.to_radians().cos(), angle.to_radians().sin()].map(|part| fixed(ROCKET_SPEED * part));
+    }
+    again.run_thinkers(&[]);
+    again.finish_tic();
+    if again.get(id).is_some_and(|rocket| [rocket.x, rocket.y, rocket.z] == place) {
+        world.soot = again.soot;
     }
 }
 
