@@ -90,10 +90,17 @@ pub struct Picture {
 /// The opacity of what hides all that is behind it.
 pub const OPAQUE: u8 = 64;
 
-/// How opaque a kind is in a phase, as measured in the original; barrels burst without shining through.
-fn opacity(kind: ActorKind, phase: Phase) -> u8 {
+/// Tics of a blur sphere's pulse: half of them it fades, by a 32nd a tic, the other half it comes back.
+const PULSE_TICS: u32 = 48;
+
+/// How opaque a kind is in a phase and at an age in tics, as measured in the original; barrels burst without shining through.
+fn opacity(kind: ActorKind, phase: Phase, age: u32) -> u8 {
     match (kind, phase) {
-        (K::BulletPuff | K::BlurSphere, _) => OPAQUE / 2,
+        (K::BulletPuff, _) => OPAQUE / 2,
+        (K::BlurSphere, _) => {
+            let faded = age % PULSE_TICS;
+            OPAQUE - OPAQUE / 32 * faded.min(PULSE_TICS - faded) as u8
+        }
         (K::RocketSmokeTrail, _) => OPAQUE * 2 / 5,
         (K::LostSoul, _) => OPAQUE * 3 / 4,
         (K::Rocket, Phase::Death) => OPAQUE * 2 / 3,
@@ -438,12 +445,12 @@ impl Actor {
     /// What of the actor is drawn after `tic` completed tics of its world.
     #[must_use]
     pub fn picture(&self, tic: u32) -> Picture {
-        let animations = &ANIMATIONS[self.kind as usize];
+        let (age, animations) = (tic.wrapping_sub(self.spawn_tic), &ANIMATIONS[self.kind as usize]);
         let frames = animations.by_phase[self.phase as usize].frames;
         let frame = if self.phase == Phase::Idle && animations.idle_is_timed {
             let mut left = match animations.idle_period {
                 0 => 0,
-                period => (tic.wrapping_sub(self.spawn_tic) % period) as i16,
+                period => (age % period) as i16,
             };
             let mut step = 0;
             while left >= frames[step].tics && frames[step].tics > 0 {
@@ -454,7 +461,7 @@ impl Actor {
         } else {
             &frames[usize::from(self.step)]
         };
-        Picture { sprite: frame.sprite, frame: frame.frame, bright: frame.bright, opacity: opacity(self.kind, self.phase) }
+        Picture { sprite: frame.sprite, frame: frame.frame, bright: frame.bright, opacity: opacity(self.kind, self.phase, age) }
     }
 
     /// Name of the actor in label lists: the class name, with `Dead` before it once it is dying.
@@ -480,6 +487,13 @@ impl Actor {
 mod tests {
     use super::*;
     use crate::assets::{Assets, SPRITE_NAMES};
+
+    #[test]
+    fn blur_spheres_pulse_as_measured() {
+        // Of a sphere called up beside a player who stands still: opaque at first, a quarter after 24 tics, opaque again after 48.
+        let opacities = [0, 1, 12, 23, 24, 25, 47, 48, 49].map(|age| opacity(ActorKind::BlurSphere, Phase::Idle, age));
+        assert_eq!(opacities, [64, 62, 40, 18, 16, 18, 62, 64, 62]);
+    }
 
     #[test]
     fn every_frame_of_every_animation_is_painted() {

@@ -159,7 +159,7 @@ fn frames(world: &World, slot: usize, dead: bool) -> Vec<Change> {
         return steps(Phase::Death).map(|(phase, step)| set(phase, step, 0)).collect();
     }
     if is_timed(kind, Phase::Idle) {
-        return (0..48).step_by(2).map(|tics| set(Phase::Idle, 0, world.tic.wrapping_sub(tics))).collect();
+        return (0..48).map(|tics| set(Phase::Idle, 0, world.tic.wrapping_sub(tics))).collect();
     }
     let phases = [Phase::Idle, Phase::Walk, Phase::Pain, Phase::Death];
     phases.into_iter().flat_map(steps).map(|(phase, step)| set(phase, step, 0)).collect()
