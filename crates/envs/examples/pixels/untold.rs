@@ -67,11 +67,14 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
     for (one, other) in (0..marks).flat_map(|one| (0..one).map(move |other| (one, other))) {
         try_all(posed, turned(&[one, other]), &world);
     }
-    for (label, id) in posed.actors.clone() {
+    let things = |at: usize| at < view && !matches!(theirs.labels[at], 0 | 1 | 255);
+    // What shines through is told only together with what is behind it: another round, by the pixels of all things.
+    let twice = [false, true].map(|again| posed.actors.iter().map(move |&(label, id)| (again, label, id)).collect::<Vec<_>>());
+    for (again, label, id) in twice.into_iter().flatten() {
         let slot = usize::from(id.slot);
         let dead = moment.labels.iter().any(|thing| thing.value == label && thing.name.starts_with("Dead"));
         let variants = frames(&posed.world, slot, dead);
-        try_all(posed, variants, &|at| at < view && theirs.labels[at] == label);
+        try_all(posed, variants, &|at| if again { things(at) } else { at < view && theirs.labels[at] == label });
     }
     let player = &posed.world.players[0];
     format!(
