@@ -51,10 +51,10 @@ impl Walk<'_> {
                 let v = (at + step * i64::from(view.rows[row])) >> 32;
                 let v = if mark.upturned { i64::from(stain.height) - 1 - v } else { v };
                 let Some(&texel) = usize::try_from(v).ok().and_then(|v| texels.get(v)) else { continue };
-                let share = share(texel, table);
-                if share > 0 {
+                let opacity = opacity(texel, table);
+                if opacity > 0 {
                     let pixel = &mut self.columns.colour_of(x)[row];
-                    *pixel = self.scene.blend.darkened(*pixel, share);
+                    *pixel = self.scene.blend.darkened(*pixel, opacity);
                     if DEPTH {
                         self.columns.depth_of(x)[row] = depth;
                     }
@@ -65,8 +65,9 @@ impl Walk<'_> {
 }
 
 /// Parts of [`OPAQUE`] that a texel hides in the light of a table: in the dark there is less to hide.
-fn share(texel: u8, table: usize) -> u8 {
-    (((usize::from(texel) + 2) * (LIGHT_TABLES - table) + 2) >> 7).min(usize::from(OPAQUE)) as u8
+fn opacity(texel: u8, table: usize) -> u8 {
+    let hidden = ((usize::from(texel) + 2) * (LIGHT_TABLES - table) + 2) >> 7;
+    (2 * hidden).min(usize::from(OPAQUE)) as u8
 }
 
 #[cfg(test)]
@@ -148,7 +149,7 @@ mod tests {
 
     #[test]
     fn in_the_dark_there_is_less_to_hide() {
-        assert_eq!([share(255, 0), share(0, 0), share(128, 0)], [OPAQUE, 0, 32]);
-        assert_eq!([share(255, 16), share(255, 31)], [32, 2]);
+        assert_eq!([opacity(255, 0), opacity(0, 0), opacity(128, 0)], [OPAQUE, 0, OPAQUE / 2]);
+        assert_eq!([opacity(255, 16), opacity(255, 31)], [OPAQUE / 2, 4]);
     }
 }

@@ -6,7 +6,6 @@ use super::convert_wide::{load, load_table, look_up_block, store};
 use super::frame::Frame;
 use super::sprite_picture::TEXEL_BLOCK;
 use super::stamp::{Covered, STAMP_BLOCK, Stamp};
-use crate::world::OPAQUE;
 use std::arch::x86_64::*;
 use std::ops::Range;
 
@@ -123,7 +122,7 @@ fn pick_bits(row: &[u64], columns: __m512i) -> u64 {
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 fn shine_through(blend: &Blend, opacity: u8, pixels: &mut [u8], mask: u64, lit: __m512i) {
     const LANES: usize = 16;
-    let [upper_parts, lower_parts] = [opacity, OPAQUE - opacity].map(|share| blend.parts[usize::from(share)].as_ptr());
+    let [upper_parts, lower_parts] = Blend::shares(opacity).map(|share| blend.parts[share].as_ptr());
     let mut colours = [0; STAMP_BLOCK];
     store(&mut colours, lit);
     let colours = colours.as_chunks::<LANES>().0;

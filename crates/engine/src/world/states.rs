@@ -87,11 +87,17 @@ pub struct Picture {
     pub opacity: u8,
 }
 
-/// The opacity of what hides all that is behind it.
-pub const OPAQUE: u8 = 64;
+/// The opacity of what hides all that is behind it. Twice as fine as colours are mixed: either colour's part is cut to a 64th, so
+/// that what is two fifths opaque shows 25 of them and leaves 38.
+pub const OPAQUE: u8 = 128;
 
 /// Tics of a blur sphere's pulse: half of them it fades, by a 32nd a tic, the other half it comes back.
 const PULSE_TICS: u32 = 48;
+
+/// A fraction of [`OPAQUE`].
+fn parts(upper: u16, lower: u16) -> u8 {
+    (u16::from(OPAQUE) * upper / lower) as u8
+}
 
 /// How opaque a kind is in a phase and at an age in tics, as measured in the original; barrels burst without shining through.
 fn opacity(kind: ActorKind, phase: Phase, age: u32) -> u8 {
@@ -101,9 +107,9 @@ fn opacity(kind: ActorKind, phase: Phase, age: u32) -> u8 {
             let faded = age % PULSE_TICS;
             OPAQUE - OPAQUE / 32 * faded.min(PULSE_TICS - faded) as u8
         }
-        (K::RocketSmokeTrail, _) => OPAQUE * 2 / 5,
-        (K::LostSoul, _) => OPAQUE * 3 / 4,
-        (K::Rocket, Phase::Death) => OPAQUE * 2 / 3,
+        (K::RocketSmokeTrail, _) => parts(2, 5),
+        (K::LostSoul, _) => parts(3, 4),
+        (K::Rocket, Phase::Death) => parts(2, 3),
         _ => OPAQUE,
     }
 }
@@ -492,7 +498,7 @@ mod tests {
     fn blur_spheres_pulse_as_measured() {
         // Of a sphere called up beside a player who stands still: opaque at first, a quarter after 24 tics, opaque again after 48.
         let opacities = [0, 1, 12, 23, 24, 25, 47, 48, 49].map(|age| opacity(ActorKind::BlurSphere, Phase::Idle, age));
-        assert_eq!(opacities, [64, 62, 40, 18, 16, 18, 62, 64, 62]);
+        assert_eq!(opacities, [64, 62, 40, 18, 16, 18, 62, 64, 62].map(|parts| OPAQUE / 64 * parts));
     }
 
     #[test]

@@ -69,12 +69,16 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
     }
     let things = |at: usize| at < view && !matches!(theirs.labels[at], 0 | 1 | 255);
     // What shines through is told only together with what is behind it: another round, by the pixels of all things.
-    let twice = [false, true].map(|again| posed.actors.iter().map(move |&(label, id)| (again, label, id)).collect::<Vec<_>>());
-    for (again, label, id) in twice.into_iter().flatten() {
-        let slot = usize::from(id.slot);
-        let dead = moment.labels.iter().any(|thing| thing.value == label && thing.name.starts_with("Dead"));
-        let variants = frames(&posed.world, slot, dead);
-        try_all(posed, variants, &|at| if again { things(at) } else { at < view && theirs.labels[at] == label });
+    for again in [false, true] {
+        for (label, id) in posed.actors.clone() {
+            let slot = usize::from(id.slot);
+            let dead = moment.labels.iter().any(|thing| thing.value == label && thing.name.starts_with("Dead"));
+            let variants = frames(&posed.world, slot, dead);
+            try_all(posed, variants, &|at| if again { things(at) } else { at < view && theirs.labels[at] == label });
+        }
+        for mark in 0..marks {
+            try_all(posed, turned(&[mark]), &everywhere);
+        }
     }
     let player = &posed.world.players[0];
     format!(
