@@ -177,10 +177,18 @@ impl Builder<'_> {
             }
         }
         drop(segs);
-        let bounds = [bounds_of(&right), bounds_of(&left)];
-        let children = [self.grow(right, depth + 1)?, self.grow(left, depth + 1)?];
+        let mut bounds = [bounds_of(&right), bounds_of(&left)];
+        let mut children = [self.grow(right, depth + 1)?, self.grow(left, depth + 1)?];
         let line = &self.lines[partition.line as usize];
-        self.tree.nodes.push(Node { x: line.v1.x, y: line.v1.y, dx: line.dx, dy: line.dy, bounds, children });
+        let mut dx = line.dx;
+        // Points on a partition are on its right. Those that run west are turned about: a thing exactly on the line between two
+        // sectors, one north of the other, belongs to the southern one in the original, which lights it.
+        if line.dy.0 == 0 && dx.0 < 0 {
+            dx = -dx;
+            bounds.reverse();
+            children.reverse();
+        }
+        self.tree.nodes.push(Node { x: line.v1.x, y: line.v1.y, dx, dy: line.dy, bounds, children });
         Ok(self.tree.nodes.len() as u32 - 1)
     }
 

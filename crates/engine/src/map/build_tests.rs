@@ -62,6 +62,19 @@ fn sector_by_rays(map: &Map, x: f64, y: f64, margin: f64) -> Option<Option<Secto
     Some(inside.first().map(|&s| SectorId(s as u32)))
 }
 
+#[test]
+fn points_on_a_line_between_north_and_south_belong_to_the_south() {
+    // The patch's northern and southern lines run opposite ways.
+    let mut builder = MapBuilder::new();
+    builder.rectangle(ROOM, -256, -256, 256, 256);
+    builder.rectangle(Style { floor: 8, ..ROOM }, -64, -64, 64, 64);
+    let map = Map::build(&builder.finish().unwrap(), "patch", &[]).unwrap();
+    for x in -63..64 {
+        let floor = |y| map.sectors[map.sector_at(Fixed::from_int(x), Fixed::from_int(y)).0 as usize].floor.floor();
+        assert_eq!([65, 64, 63, -63, -64, -65].map(floor), [0, 8, 8, 8, 0, 0], "at {x}");
+    }
+}
+
 fn check_points(map: &Map, step: i32) -> usize {
     let mut checked = 0;
     for x in (-1100..1200).step_by(step as usize) {

@@ -37,6 +37,8 @@ impl Locator {
         };
         let shift = (LEAST_SHIFT..32).find(fits).unwrap_or(32);
         let (columns, rows) = cells(shift);
+        // A cell has its northern edge and not its southern one: points on a line between north and south belong to the south.
+        let (south, rows) = (south + 1 - (1 << shift), rows + 1);
         let mut locator = Locator { origin: [west, south], shift, columns, rows, starts: Vec::new() };
         let last = (1i64 << shift) - 1;
         for (row, column) in (0..rows as i64).flat_map(|row| (0..columns as i64).map(move |column| (row, column))) {
