@@ -4,7 +4,7 @@
 //! difference.
 
 use super::{Actor, ActorFlags, World};
-use crate::map::{Line, SectorId};
+use crate::map::{Line, Map, SectorId};
 use crate::math::Fixed;
 
 /// Most items that one test of a position remembers; the recorded scenarios never have this many overlapping.
@@ -67,21 +67,34 @@ pub(crate) fn behind(line: &Line, x: Fixed, y: Fixed) -> bool {
     across >> 32 > 0
 }
 
-/// Whether a line cuts the inside of the square of half side `radius` around (x, y).
-pub(crate) fn cuts(line: &Line, x: Fixed, y: Fixed, radius: Fixed) -> bool {
+/// Visits every line that cuts the inside of the square of half side `radius` around (x, y), block by block: one that lies in
+/// several blocks comes several times.
+#[inline]
+pub(crate) fn for_each_line_across(map: &Map, x: Fixed, y: Fixed, radius: Fixed, mut visit: impl FnMut(u32, &Line)) {
     let (west, east, south, north) = (x - radius, x + radius, y - radius, y + radius);
-    let [line_west, line_east, line_south, line_north] = line.bounds;
-    // Most lines around lie apart, but to which side cannot be foretold: one branch for all four.
-    if (west >= line_east) | (east <= line_west) | (south >= line_north) | (north <= line_south) {
-        return false;
-    }
-    // The corners that are farthest to either side of the line's direction.
-    if line.dx.0 == 0 || line.dy.0 == 0 {
-        true
-    } else if (line.dx.0 ^ line.dy.0) >= 0 {
-        behind(line, west, north) != behind(line, east, south)
-    } else {
-        behind(line, east, north) != behind(line, west, south)
+    let blocks = &map.blockmap;
+    for row in blocks.row_of(south)..=blocks.row_of(north) {
+        for column in blocks.column_of(west)..=blocks.column_of(east) {
+            for &index in blocks.lines_in(column, row) {
+                let line = &map.lines[index as usize];
+                let [line_west, line_east, line_south, line_north] = line.bounds;
+                // Most lines lie apart, but to which side cannot be foretold: one branch for all four.
+                if (west >= line_east) | (east <= line_west) | (south >= line_north) | (north <= line_south) {
+                    continue;
+                }
+                // The corners that are farthest to either side of the line's direction.
+                let cuts = if line.dx.0 == 0 || line.dy.0 == 0 {
+                    true
+                } else if (line.dx.0 ^ line.dy.0) >= 0 {
+                    behind(line, west, north) != behind(line, east, south)
+                } else {
+                    behind(line, east, north) != behind(line, west, south)
+                };
+                if cuts {
+                    visit(index, line);
+                }
+            }
+        }
     }
 }
 
@@ -220,41 +233,30 @@ impl World {
 
     /// Narrows the opening by every line that cuts the footprint, and notes one that blocks.
     fn check_lines(&self, actor: &Actor, x: Fixed, y: Fixed, position: &mut Position) {
-        let blocks = &self.map.blockmap;
-        let (west, east) = (blocks.column_of(x - actor.radius), blocks.column_of(x + actor.radius));
-        let (south, north) = (blocks.row_of(y - actor.radius), blocks.row_of(y + actor.radius));
         let missile = actor.flags.any(ActorFlags::MISSILE);
-        for row in south..=north {
-            for column in west..=east {
-                for &index in blocks.lines_in(column, row) {
-                    let line = &self.map.lines[index as usize];
-                    if !cuts(line, x, y, actor.radius) {
-                        continue;
-                    }
-                    let Some(back) = line.back_sector else {
-                        position.free = false;
-                        position.blocking_line = Some(index);
-                        continue;
-                    };
-                    if line.flags.blocking && !missile {
-                        position.free = false;
-                        position.blocking_line = Some(index);
-                        continue;
-                    }
-                    let opening = self.opening(line.front_sector, back);
-                    if opening.top < position.ceiling_z {
-                        position.ceiling_z = opening.top;
-                        position.ceiling_line = Some(index);
-                        position.blocking_line = Some(index);
-                    }
-                    if opening.bottom > position.floor_z {
-                        position.floor_z = opening.bottom;
-                        position.blocking_line = Some(index);
-                    }
-                    position.dropoff_z = position.dropoff_z.min(opening.low_floor);
-                }
+        for_each_line_across(&self.map, x, y, actor.radius, |index, line| {
+            let Some(back) = line.back_sector else {
+                position.free = false;
+                position.blocking_line = Some(index);
+                return;
+            };
+            if line.flags.blocking && !missile {
+                position.free = false;
+                position.blocking_line = Some(index);
+                return;
             }
-        }
+            let opening = self.opening(line.front_sector, back);
+            if opening.top < position.ceiling_z {
+                position.ceiling_z = opening.top;
+                position.ceiling_line = Some(index);
+                position.blocking_line = Some(index);
+            }
+            if opening.bottom > position.floor_z {
+                position.floor_z = opening.bottom;
+                position.blocking_line = Some(index);
+            }
+            position.dropoff_z = position.dropoff_z.min(opening.low_floor);
+        });
     }
 
     /// Moves an actor to (x, y) if it may be there: players climb steps and walk over low things, `dropoff` lets it

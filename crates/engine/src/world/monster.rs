@@ -4,6 +4,7 @@
 //! block each other: two who meet head-on slide aside together for hundreds of map units, because a direction once
 //! chosen is kept for up to 16 steps.
 
+use super::collision::for_each_line_across;
 use super::patrol::Heading;
 use super::{ActorFlags, Phase, World, approximate_distance};
 use crate::math::{Angle, Fixed};
@@ -173,31 +174,20 @@ impl World {
             return None;
         }
         let (mut away_x, mut away_y) = (Fixed::ZERO, Fixed::ZERO);
-        let blocks = &self.map.blockmap;
-        let columns = blocks.column_of(actor.x - actor.radius)..=blocks.column_of(actor.x + actor.radius);
-        for row in blocks.row_of(actor.y - actor.radius)..=blocks.row_of(actor.y + actor.radius) {
-            for column in columns.clone() {
-                for &index in blocks.lines_in(column, row) {
-                    let line = &self.map.lines[index as usize];
-                    let Some(back) = line.back_sector else { continue };
-                    if !super::collision::cuts(line, actor.x, actor.y, actor.radius) {
-                        continue;
-                    }
-                    let front = self.floor_of(line.front_sector);
-                    let back = self.floor_of(back);
-                    let deep = actor.z - actor.max_dropoff;
-                    let direction = if back == actor.z && front < deep {
-                        Angle::of_vector(line.dx, line.dy)
-                    } else if front == actor.z && back < deep {
-                        Angle::of_vector(-line.dx, -line.dy)
-                    } else {
-                        continue;
-                    };
-                    away_x -= direction.sin() * BACK_OFF;
-                    away_y += direction.cos() * BACK_OFF;
-                }
-            }
-        }
+        for_each_line_across(&self.map, actor.x, actor.y, actor.radius, |_, line| {
+            let Some(back) = line.back_sector else { return };
+            let (front, back) = (self.floor_of(line.front_sector), self.floor_of(back));
+            let deep = actor.z - actor.max_dropoff;
+            let direction = if back == actor.z && front < deep {
+                Angle::of_vector(line.dx, line.dy)
+            } else if front == actor.z && back < deep {
+                Angle::of_vector(-line.dx, -line.dy)
+            } else {
+                return;
+            };
+            away_x -= direction.sin() * BACK_OFF;
+            away_y += direction.cos() * BACK_OFF;
+        });
         (away_x.0 | away_y.0 != 0).then_some((away_x, away_y))
     }
 

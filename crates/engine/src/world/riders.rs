@@ -2,7 +2,7 @@
 
 use super::World;
 use super::actor::{Actor, NO_BLOCK};
-use super::collision::cuts;
+use super::collision::for_each_line_across;
 use crate::map::{Map, SectorId};
 use crate::math::Fixed;
 
@@ -41,21 +41,14 @@ impl Footing {
 fn for_each_sector_under(map: &Map, actor: &Actor, mut visit: impl FnMut(SectorId)) {
     visit(actor.sector);
     let Actor { x, y, radius, .. } = *actor;
-    let blocks = &map.blockmap;
-    for row in blocks.row_of(y - radius)..=blocks.row_of(y + radius) {
-        for column in blocks.column_of(x - radius)..=blocks.column_of(x + radius) {
-            for &index in blocks.lines_in(column, row) {
-                let line = &map.lines[index as usize];
-                if let Some(back) = line.back_sector
-                    && !line.flags.blocking
-                    && cuts(line, x, y, radius)
-                {
-                    visit(line.front_sector);
-                    visit(back);
-                }
-            }
+    for_each_line_across(map, x, y, radius, |_, line| {
+        if let Some(back) = line.back_sector
+            && !line.flags.blocking
+        {
+            visit(line.front_sector);
+            visit(back);
         }
-    }
+    });
 }
 
 /// An actor of which the lists are out of date: it has moved, came or went.
