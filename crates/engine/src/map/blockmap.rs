@@ -2,6 +2,7 @@
 
 use super::{Blockmap, Line, MapError};
 use crate::math::Fixed;
+use std::ops::Range;
 
 /// Side of a block: 128 map units, as a shift of raw fixed-point values.
 const BLOCK_SHIFT: u32 = 16 + 7;
@@ -47,17 +48,30 @@ impl Blockmap {
                 next[block] += 1;
             });
         }
-        Ok(Blockmap { origin_x: Fixed(origin_x), origin_y: Fixed(origin_y), columns, rows, starts, lines: entries })
+        let bounds = entries.iter().map(|&index| lines[index as usize].bounds).collect();
+        let (origin_x, origin_y) = (Fixed(origin_x), Fixed(origin_y));
+        Ok(Blockmap { origin_x, origin_y, columns, rows, starts, lines: entries, bounds })
     }
 
     /// The lines of the block in column `column` and row `row`; none outside the map.
     #[must_use]
     pub fn lines_in(&self, column: i32, row: i32) -> &[u32] {
+        &self.lines[self.entries_of(column, row)]
+    }
+
+    /// The same with their limits.
+    #[inline]
+    pub(crate) fn bounded_lines_in(&self, column: i32, row: i32) -> impl Iterator<Item = (u32, &[Fixed; 4])> {
+        let entries = self.entries_of(column, row);
+        self.lines[entries.clone()].iter().copied().zip(&self.bounds[entries])
+    }
+
+    fn entries_of(&self, column: i32, row: i32) -> Range<usize> {
         if column < 0 || row < 0 || column >= self.columns || row >= self.rows {
-            return &[];
+            return 0..0;
         }
         let block = (row * self.columns + column) as usize;
-        &self.lines[self.starts[block] as usize..self.starts[block + 1] as usize]
+        self.starts[block] as usize..self.starts[block + 1] as usize
     }
 
     /// The block column of `x`, which may lie outside the map.

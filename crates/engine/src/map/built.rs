@@ -192,6 +192,8 @@ pub struct Blockmap {
     pub starts: Vec<u32>,
     /// Line indices, block after block.
     pub lines: Vec<u32>,
+    /// The limits of these lines, as [`Line::bounds`]: side by side, as most lines around a body are only found to lie apart.
+    pub bounds: Vec<[Fixed; 4]>,
 }
 
 /// A built map. Worlds share it behind an `Arc` and never change it.

@@ -75,13 +75,11 @@ pub(crate) fn for_each_line_across(map: &Map, x: Fixed, y: Fixed, radius: Fixed,
     let blocks = &map.blockmap;
     for row in blocks.row_of(south)..=blocks.row_of(north) {
         for column in blocks.column_of(west)..=blocks.column_of(east) {
-            for &index in blocks.lines_in(column, row) {
-                let line = &map.lines[index as usize];
-                let [line_west, line_east, line_south, line_north] = line.bounds;
-                // Most lines lie apart, but to which side cannot be foretold: one branch for all four.
+            for (index, &[line_west, line_east, line_south, line_north]) in blocks.bounded_lines_in(column, row) {
                 if (west >= line_east) | (east <= line_west) | (south >= line_north) | (north <= line_south) {
                     continue;
                 }
+                let line = &map.lines[index as usize];
                 // The corners that are farthest to either side of the line's direction.
                 let cuts = if line.dx.0 == 0 || line.dy.0 == 0 {
                     true
