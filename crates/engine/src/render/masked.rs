@@ -57,7 +57,7 @@ impl Masked<'_> {
     fn sprite<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &SeenSprite) {
         let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else { return };
         sprite.open(self.columns, self.view);
-        for at in (0..self.silhouettes.meet(sprite.first, sprite.end, sprite.inverse)).rev() {
+        for at in (0..self.silhouettes.meet(self.simd, sprite.first, sprite.end, sprite.inverse)).rev() {
             let silhouette = &self.silhouettes.list[self.silhouettes.met(at)];
             let (first, end) = (silhouette.first.max(sprite.first), silhouette.end.min(sprite.end));
             if !self.is_behind(sprite, silhouette) {

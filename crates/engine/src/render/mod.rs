@@ -44,6 +44,8 @@ mod scene;
 mod seg;
 mod segmentation;
 mod silhouette;
+#[cfg(target_arch = "x86_64")]
+mod silhouette_wide;
 mod size;
 mod sky;
 #[cfg(target_arch = "x86_64")]

@@ -1,8 +1,13 @@
 //! What the walls leave for the sprites: which segs hide things behind them, and in which rows.
 
 use super::narrow::{BLOCK, padded};
+#[cfg(target_arch = "x86_64")]
+use super::silhouette_wide;
 use super::wall::SeenLine;
 use crate::math::Fixed;
+#[cfg(target_arch = "x86_64")]
+use crate::simd::Level;
+use crate::simd::Simd;
 
 /// A seg that hides part of what is behind it, or that has a masked texture.
 #[derive(Clone, Copy, Debug)]
@@ -32,13 +37,50 @@ pub(super) struct Silhouette {
 }
 
 /// What decides in most cases that a silhouette and a sprite have nothing to do with each other, on its own: a frame has
-/// dozens of silhouettes, and each sprite asks all of them.
-#[derive(Clone, Copy, Debug)]
-struct Reach {
-    first: u32,
-    end: u32,
-    /// Inverse distance of the nearer end; the greatest number if it has a masked texture.
-    near: i64,
+/// dozens of silhouettes, and each sprite asks all of them. Lists of `count`, padded to whole blocks.
+#[derive(Debug, Default)]
+pub(super) struct Reaches {
+    pub count: usize,
+    /// First columns.
+    pub firsts: Vec<u32>,
+    /// One past the last columns.
+    pub ends: Vec<u32>,
+    /// Inverse distances of the nearer ends; the greatest number where there is a masked texture.
+    pub nears: Vec<i64>,
+}
+
+/// Silhouettes that are asked at once at most.
+pub(super) const MEET_BLOCK: usize = 8;
+
+impl Reaches {
+    fn push(&mut self, first: usize, end: usize, near: i64) {
+        if self.count + MEET_BLOCK > self.nears.len() {
+            let length = 2 * (self.count + MEET_BLOCK);
+            self.firsts.resize(length, 0);
+            self.ends.resize(length, 0);
+            self.nears.resize(length, 0);
+        }
+        (self.firsts[self.count], self.ends[self.count], self.nears[self.count]) = (first as u32, end as u32, near);
+        self.count += 1;
+    }
+
+    /// Writes the indices of those that share a column with the columns `first..end` and have `near` at `inverse` or above it to
+    /// `met`, which is padded; gives how many there are. Which ones do cannot be foretold: it is found without a branch.
+    fn meet(&self, simd: Simd, [first, end]: [u32; 2], inverse: i64, met: &mut [u32]) -> usize {
+        #[cfg(target_arch = "x86_64")]
+        if simd.level() == Level::Avx512 {
+            // SAFETY: whoever has this `Simd` has the instructions.
+            return unsafe { silhouette_wide::meet(self, [first, end], inverse, met) };
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = simd;
+        let mut count = 0;
+        for i in 0..self.count {
+            met[count] = i as u32;
+            count += usize::from((self.firsts[i] < end) & (self.ends[i] > first) & (self.nears[i] >= inverse));
+        }
+        count
+    }
 }
 
 /// The silhouettes of a frame, near to far as the walk found them.
@@ -46,7 +88,7 @@ struct Reach {
 pub(super) struct Silhouettes {
     pub list: Vec<Silhouette>,
     /// As many.
-    reaches: Vec<Reach>,
+    reaches: Reaches,
     /// Those that the sprite at hand has to do with; see [`Silhouettes::meet`].
     met: Vec<u32>,
     /// Those with a masked texture.
@@ -65,7 +107,7 @@ impl Silhouettes {
     /// Forgets the last frame.
     pub fn reset(&mut self) {
         self.list.clear();
-        self.reaches.clear();
+        self.reaches.count = 0;
         self.masked.clear();
         self.used = 0;
         self.drawn.clear();
@@ -90,22 +132,15 @@ impl Silhouettes {
             self.masked.push(self.list.len() as u32);
         }
         let near = if silhouette.masked { i64::MAX } else { silhouette.inverses[1] };
-        self.reaches.push(Reach { first: silhouette.first as u32, end: silhouette.end as u32, near });
+        self.reaches.push(silhouette.first, silhouette.end, near);
         self.list.push(silhouette);
     }
 
     /// Lists the silhouettes that share a column with a sprite of the columns `first..end`, and stand before it in part or have a
-    /// masked texture; `inverse` is its inverse distance. Which ones do cannot be foretold: it is found without a branch. Gives
-    /// how many there are; they are [`Silhouettes::met`].
-    pub fn meet(&mut self, first: usize, end: usize, inverse: i64) -> usize {
-        self.met.resize(self.reaches.len(), 0);
-        let (first, end) = (first as u32, end as u32);
-        let mut count = 0;
-        for (index, reach) in (0..).zip(&self.reaches) {
-            self.met[count] = index;
-            count += usize::from((reach.first < end) & (reach.end > first) & (reach.near >= inverse));
-        }
-        count
+    /// masked texture; `inverse` is its inverse distance. Gives how many there are; they are [`Silhouettes::met`].
+    pub fn meet(&mut self, simd: Simd, first: usize, end: usize, inverse: i64) -> usize {
+        self.met.resize(self.reaches.nears.len(), 0);
+        self.reaches.meet(simd, [first as u32, end as u32], inverse, &mut self.met)
     }
 
     /// Indices of the silhouettes with a masked texture, near to far.
@@ -123,4 +158,31 @@ impl Silhouettes {
 fn copy_block(to: &mut [i16], from: &[i16]) {
     let to: &mut [i16; BLOCK] = to.first_chunk_mut().expect("lists are padded");
     *to = *from.first_chunk().expect("lists are padded");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    #[test]
+    fn all_ways_meet_the_same() {
+        let mut rng = Rng::new(31);
+        for count in 0..60 {
+            let mut reaches = Reaches::default();
+            for _ in 0..count {
+                let first = rng.below(120) as usize;
+                reaches.push(first, first + 1 + rng.below(40) as usize, rng.next_u64() as i64 >> 20);
+            }
+            let (first, inverse) = (rng.below(120), rng.next_u64() as i64 >> 20);
+            let listed = |simd: Simd| {
+                let mut met = vec![0; count + 2 * MEET_BLOCK];
+                let found = reaches.meet(simd, [first, first + 8], inverse, &mut met);
+                met.truncate(found);
+                met
+            };
+            let plain = listed(Simd::PLAIN);
+            Simd::available().into_iter().for_each(|simd| assert_eq!(listed(simd), plain, "{simd:?}"));
+        }
+    }
 }
