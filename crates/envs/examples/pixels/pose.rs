@@ -118,7 +118,7 @@ impl Stage {
 }
 
 /// Speed of rockets, map units a tic.
-const ROCKET_SPEED: f64 = 20.0;
+const ROCKET_SPEED: i32 = 20;
 
 /// Leaves the soot of a rocket that has burst at a place: it bursts there once more if a wall was in its way.
 fn leave_soot(world: &mut World, [x, y, z, angle]: [f64; 4]) {
@@ -127,7 +127,8 @@ fn leave_soot(world: &mut World, [x, y, z, angle]: [f64; 4]) {
     let id = again.spawn(ActorKind::Rocket, place[0], place[1], place[2]);
     if let Some(rocket) = again.get_mut(id) {
         (rocket.x, rocket.y, rocket.z) = place.into();
-        [rocket.vx, rocket.vy] = [angle.to_radians().cos(), angle.to_radians().sin()].map(|part| fixed(ROCKET_SPEED * part));
+        let way = Angle::from_degrees(angle);
+        (rocket.vx, rocket.vy) = (way.cos() * ROCKET_SPEED, way.sin() * ROCKET_SPEED);
     }
     again.run_thinkers(&[]);
     again.finish_tic();
