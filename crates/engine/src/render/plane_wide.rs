@@ -34,10 +34,18 @@ impl PlaneShader<'_> {
             return false;
         }
         match (flat, blocks) {
-            (FlatPicture::Small(texels), 1) => self.draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 1>(frame, texels, plane, first, end),
-            (FlatPicture::Small(texels), _) => self.draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 2>(frame, texels, plane, first, end),
-            (FlatPicture::Large(texels), 1) => self.draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 1>(frame, texels, plane, first, end),
-            (FlatPicture::Large(texels), _) => self.draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 2>(frame, texels, plane, first, end),
+            (FlatPicture::Small(texels), 1) => {
+                self.draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 1>(frame, texels, plane, first, end)
+            }
+            (FlatPicture::Small(texels), _) => {
+                self.draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 2>(frame, texels, plane, first, end)
+            }
+            (FlatPicture::Large(texels), 1) => {
+                self.draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 1>(frame, texels, plane, first, end)
+            }
+            (FlatPicture::Large(texels), _) => {
+                self.draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 2>(frame, texels, plane, first, end)
+            }
         }
         true
     }
@@ -77,7 +85,14 @@ impl PlaneShader<'_> {
                         let behind = mask.wrapping_add(mask & mask.wrapping_neg());
                         let run = mask.trailing_zeros() as usize..behind.trailing_zeros() as usize;
                         let columns = from_left[block * SPAN_BLOCK + run.start..].first_chunk().expect("the list is padded");
-                        row_wide::fetch_avx512::<BITS, TEXELS>(&walk, &mut unlit[run.start..], run.len(), columns, stride, texels);
+                        row_wide::fetch_avx512::<BITS, TEXELS>(
+                            &walk,
+                            &mut unlit[run.start..],
+                            run.len(),
+                            columns,
+                            stride,
+                            texels,
+                        );
                         if DEPTH || CLASS {
                             let left = (from + i) * frame.width + plane.first + block * SPAN_BLOCK;
                             self.tell::<DEPTH, CLASS>(frame, eight.distances[i], left + run.start..left + run.end);

@@ -3,6 +3,7 @@
 //! Fitted to moments of the published engine.
 
 use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::scene::Face;
 use super::seg::SeenSeg;
 use super::walk::Walk;
 use super::wall::{INVERSE_BITS, TextureLine};
@@ -16,47 +17,90 @@ const TEXELS: i64 = 2;
 /// How many light tables there are.
 const LIGHT_TABLES: usize = 32;
 
+/// A column of a wall that bears soot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SootyColumn {
+    /// Frame column.
+    x: usize,
+    /// First frame row of the wall, and one past the last.
+    rows: [usize; 2],
+    /// Position along the line, 16.16.
+    along: i64,
+    /// Light table.
+    table: usize,
+    /// Change of the stain's texel row a base row, 32 fractional bits.
+    step: i64,
+    /// The same from the lower edge of base row 0 to the horizon.
+    to_horizon: i64,
+    depth: u8,
+}
+
 impl Walk<'_> {
     /// Darkens the part of a wall between the upper and the lower scratch where its side bears soot.
     pub fn soot<const DEPTH: bool>(&mut self, seen: &SeenSeg<'_>, light: Light) {
         let Some(stain) = &self.scene.assets.soot else { return };
         let world = self.world;
-        for mark in world.soot.iter().filter(|mark| mark.side.0 == seen.seg.face) {
-            self.stain::<DEPTH>(seen, light, stain, mark);
+        let mut marks = world.soot.iter().filter(|mark| mark.side.0 == seen.seg.face).peekable();
+        if marks.peek().is_none() {
+            return;
         }
+        self.list_sooty_columns(seen, light);
+        let columns = std::mem::take(&mut self.scratch.sooty);
+        for mark in marks {
+            self.stain::<DEPTH>(&columns, seen.face, stain, mark);
+        }
+        self.scratch.sooty = columns;
     }
 
-    fn stain<const DEPTH: bool>(&mut self, seen: &SeenSeg<'_>, light: Light, stain: &Stain, mark: &Soot) {
-        let (camera, view, face) = (self.camera, self.view, seen.face);
+    /// What all marks of a wall need of its columns: a wall may bear dozens, most of which touch few of them.
+    fn list_sooty_columns(&mut self, seen: &SeenSeg<'_>, light: Light) {
+        let (camera, view, texture) = (self.camera, self.view, TextureLine::new(self.camera, seen.face));
+        let rows = self.scratch.upper.iter().zip(&self.scratch.lower).enumerate();
+        let shown = rows.take(seen.end).skip(seen.first).filter(|(_, (top, bottom))| top < bottom);
+        self.scratch.sooty.clear();
+        self.scratch.sooty.extend(shown.map(|(x, (&top, &bottom))| {
+            let column = i64::from(view.columns[x]);
+            let distance = seen.line.distance_at(column);
+            let nearness = (seen.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+            let step = ((distance * view.inverse_focal_y) >> 16) * TEXELS;
+            SootyColumn {
+                x,
+                rows: [top.max(0) as usize, bottom.max(0) as usize],
+                along: texture.at(column, distance) - seen.face.u_offset,
+                table: light.table(nearness),
+                step,
+                to_horizon: camera.to_horizon(step),
+                depth: self.depths.stain(distance),
+            }
+        }));
+    }
+
+    fn stain<const DEPTH: bool>(&mut self, columns: &[SootyColumn], face: &Face, stain: &Stain, mark: &Soot) {
         let along = |x: Fixed, y: Fixed| {
             (i64::from(x.0) * i64::from(face.along[0]) + i64::from(y.0) * i64::from(face.along[1]) + face.origin) >> 28
         };
-        let texture = TextureLine::new(camera, face);
         // Where its left and upper end lie: along the line, and above the eye.
         let left = along(mark.x, mark.y) - (i64::from(stain.offset_x) << 16) / TEXELS;
-        let above = i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - camera.z;
-        for x in seen.first..seen.end {
-            let column = i64::from(view.columns[x]);
-            let distance = seen.line.distance_at(column);
-            let u = ((texture.at(column, distance) - face.u_offset - left) * TEXELS) >> 16;
-            let Some(texels) = stain.column(u, mark.mirrored) else { continue };
-            let nearness = (seen.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
-            let table = light.table(nearness);
-            let step = ((distance * view.inverse_focal_y) >> 16) * TEXELS;
+        let above = i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - self.camera.z;
+        for column in columns {
+            let Some(texels) = stain.column(((column.along - left) * TEXELS) >> 16, mark.mirrored) else { continue };
             // By the lower edges of rows as all things are, but upside down by the upper ones.
-            let from_edge = if mark.upturned { step } else { 0 };
-            let at = ((above * TEXELS) << 16) - camera.to_horizon(step) - from_edge;
-            let depth = self.depths.stain(distance);
-            for row in self.scratch.upper[x].max(0) as usize..self.scratch.lower[x].max(0) as usize {
-                let v = (at + step * i64::from(view.rows[row])) >> 32;
-                let v = if mark.upturned { i64::from(stain.height) - 1 - v } else { v };
-                let Some(&texel) = usize::try_from(v).ok().and_then(|v| texels.get(v)) else { continue };
-                let opacity = opacity(texel, table);
+            let from_edge = if mark.upturned { column.step } else { 0 };
+            let at = ((above * TEXELS) << 16) - column.to_horizon - from_edge;
+            let texel_row = |row: u32| (at + column.step * i64::from(row)) >> 32;
+            let [top, bottom] = column.rows;
+            let base_rows = &self.view.rows[top..bottom];
+            // Downwards texel rows grow: those of the picture are one run.
+            let first = base_rows.partition_point(|&row| texel_row(row) < 0);
+            let end = base_rows.partition_point(|&row| texel_row(row) < texels.len() as i64);
+            for row in top + first..top + end {
+                let v = texel_row(self.view.rows[row]) as usize;
+                let opacity = opacity(texels[if mark.upturned { texels.len() - 1 - v } else { v }], column.table);
                 if opacity > 0 {
-                    let pixel = &mut self.columns.colour_of(x)[row];
+                    let pixel = &mut self.columns.colour_of(column.x)[row];
                     *pixel = self.scene.blend.darkened(*pixel, opacity);
                     if DEPTH {
-                        self.columns.depth_of(x)[row] = depth;
+                        self.columns.depth_of(column.x)[row] = column.depth;
                     }
                 }
             }

@@ -10,6 +10,7 @@ use super::openings::Openings;
 use super::plane::Planes;
 use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
+use super::soot::SootyColumn;
 #[cfg(target_arch = "x86_64")]
 use super::wall_list::WallList;
 use crate::map::Node;
@@ -51,6 +52,8 @@ pub(super) struct WalkScratch {
     pub upper: Vec<i16>,
     /// Rows of its lower end.
     pub lower: Vec<i16>,
+    /// Its columns, where it bears soot.
+    pub sooty: Vec<SootyColumn>,
 }
 
 impl WalkScratch {
