@@ -32,14 +32,14 @@ pub(super) struct PlaneKey {
 }
 
 impl PlaneKey {
-    fn bucket(self) -> usize {
-        let mixed = (self.height.0 as u32 ^ (u32::from(self.texture.0) << 8) ^ self.light as u32).wrapping_mul(0x9E37_79B1);
-        (mixed >> 26) as usize
+    /// All of it in a word: what shows the sky's texture is the sky.
+    fn packed(self) -> u64 {
+        u64::from(self.height.0 as u32) | u64::from(self.texture.0) << 32 | u64::from(self.light as u16) << 48
     }
 }
 
-/// Buckets of the table of planes.
-const BUCKETS: usize = 64;
+/// Buckets of the table of planes: two to the power of these.
+const BUCKET_BITS: u32 = 6;
 /// Columns that are looked at at once at most; a plane's lists are that much longer than a frame is wide.
 pub(super) const SPAN_BLOCK: usize = 64;
 /// No plane.
@@ -51,8 +51,6 @@ const NO_ROW: i16 = -1;
 #[derive(Clone, Debug)]
 pub(super) struct Plane {
     pub key: PlaneKey,
-    /// The next plane of the same bucket.
-    next: u16,
     /// First column.
     pub first: usize,
     /// One past the last column.
@@ -64,12 +62,20 @@ pub(super) struct Plane {
 }
 
 /// The planes of a frame.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Planes {
     list: Vec<Plane>,
     used: usize,
-    buckets: Vec<u16>,
+    /// Of each plane in use its packed key, and the next plane of the same bucket.
+    keys: Vec<(u64, u16)>,
+    buckets: [u16; 1 << BUCKET_BITS],
     width: usize,
+}
+
+impl Default for Planes {
+    fn default() -> Planes {
+        Planes { list: Vec::new(), used: 0, keys: Vec::new(), buckets: [NONE; 1 << BUCKET_BITS], width: 0 }
+    }
 }
 
 impl Planes {
@@ -77,8 +83,8 @@ impl Planes {
     pub fn reset(&mut self, width: usize) {
         self.used = 0;
         self.width = width;
-        self.buckets.clear();
-        self.buckets.resize(BUCKETS, NONE);
+        self.keys.clear();
+        self.buckets.fill(NONE);
     }
 
     /// The planes in the order in which they were found.
@@ -88,13 +94,14 @@ impl Planes {
 
     /// The newest plane with a key.
     pub fn find(&mut self, key: PlaneKey) -> u16 {
-        let mut index = self.buckets[key.bucket()];
+        let packed = key.packed();
+        let mut index = self.buckets[bucket(packed)];
         while index != NONE {
-            let plane = &self.list[usize::from(index)];
-            if plane.key == key {
+            let (other, next) = self.keys[usize::from(index)];
+            if other == packed {
                 return index;
             }
-            index = plane.next;
+            index = next;
         }
         self.start(key)
     }
@@ -102,13 +109,14 @@ impl Planes {
     fn start(&mut self, key: PlaneKey) -> u16 {
         if self.used == self.list.len() {
             let (top, bottom) = (vec![], vec![]);
-            self.list.push(Plane { key, next: NONE, first: 0, end: 0, top, bottom });
+            self.list.push(Plane { key, first: 0, end: 0, top, bottom });
         }
         let index = self.used;
         self.used += 1;
+        let packed = key.packed();
+        self.keys.push((packed, std::mem::replace(&mut self.buckets[bucket(packed)], index as u16)));
         let plane = &mut self.list[index];
         plane.key = key;
-        plane.next = std::mem::replace(&mut self.buckets[key.bucket()], index as u16);
         (plane.first, plane.end) = (self.width, 0);
         // What is more than there are columns ends the last span.
         plane.top.resize(self.width + SPAN_BLOCK, 0);
@@ -131,6 +139,10 @@ impl Planes {
     pub fn start_another(&mut self, index: u16) -> u16 {
         self.start(self.list[usize::from(index)].key)
     }
+}
+
+fn bucket(packed: u64) -> usize {
+    (packed.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> (u64::BITS - BUCKET_BITS)) as usize
 }
 
 /// A run of pixels of a row.

@@ -272,7 +272,6 @@ impl Walk<'_> {
             shader.draw::<DEPTH>(self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
         }
         if !self.world.soot.is_empty() {
-            self.draw_walls::<DEPTH>();
             self.soot::<DEPTH>(seen, light);
         }
     }

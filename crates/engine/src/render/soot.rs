@@ -44,6 +44,7 @@ impl Walk<'_> {
         if marks.peek().is_none() {
             return;
         }
+        self.draw_walls::<DEPTH>();
         self.list_sooty_columns(seen, light);
         let columns = std::mem::take(&mut self.scratch.sooty);
         for mark in marks {

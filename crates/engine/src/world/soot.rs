@@ -79,7 +79,7 @@ impl World {
                 corner - Fixed((i64::from((far - corner).0) * i64::from(passed.0) / i64::from(length.0.max(1))) as i32)
             };
             self.add_soot(Soot { side: next.side, x: before(corner.x, far.x), y: before(corner.y, far.y), ..mark });
-            (passed, facing) = (passed + length, next);
+            (passed, facing) = (passed + length.min(REACH), next);
         }
     }
 
