@@ -105,6 +105,13 @@ pub(crate) fn prefetch<T: ?Sized>(value: &T) {
     let _ = value;
 }
 
+/// The mask of the first `count` of eight numbers side by side, of all if there are more.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(crate) const fn first_of_eight(count: usize) -> u8 {
+    if count < 8 { (1 << count) - 1 } else { u8::MAX }
+}
+
 /// `HASARD_SIMD` names no family of this processor.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct SimdError {

@@ -43,6 +43,13 @@ impl Fixed {
         self.0 >> 16
     }
 
+    /// The length of a vector, rounded down; the greatest number if that is too long.
+    #[must_use]
+    pub fn length_of(x: Fixed, y: Fixed) -> Fixed {
+        let square = |part: Fixed| i64::from(part.0).unsigned_abs().pow(2);
+        Fixed((square(x) + square(y)).isqrt().min(i32::MAX as u64) as i32)
+    }
+
     /// The absolute value.
     #[must_use]
     pub const fn abs(self) -> Fixed {

@@ -2,7 +2,7 @@
 //! is one mask or two, and what is the same all along a row is worked out for eight rows side by side. The plain twins are in
 //! `plane`; a test in `render_tests` compares whole frames.
 
-use super::convert_wide::{load_table, look_up_block};
+use super::convert_wide::{load, load_table, look_up_block};
 use super::frame::Frame;
 use super::picture::FlatPicture;
 use super::plane::{Plane, PlaneShader, SPAN_BLOCK};
@@ -10,6 +10,7 @@ use super::row_walk::RowWalk;
 use super::row_wide::{self, ROW_VECTOR};
 use super::span_wide::{load_avx512, rows};
 use super::wall_wide::tables;
+use crate::simd::first_of_eight;
 use std::arch::x86_64::*;
 
 /// The last row that fits a byte.
@@ -105,7 +106,7 @@ impl PlaneShader<'_> {
                 let table = load_table(&self.tables[eight.tables[i] as usize & 31]);
                 for (block, (unlit, &mask)) in unlit.iter().zip(masks).enumerate() {
                     let pixels = &mut frame.colour[(from + i) * frame.width + plane.first + block * SPAN_BLOCK..];
-                    let lit = look_up_block(table, super::convert_wide::load(unlit.first_chunk().expect("a block")));
+                    let lit = look_up_block(table, load(unlit.first_chunk().expect("a block")));
                     // SAFETY: only columns of the mask are written, which the frame has.
                     unsafe { _mm512_mask_storeu_epi8(pixels.as_mut_ptr().cast(), mask, lit) }
                 }
@@ -118,9 +119,9 @@ impl PlaneShader<'_> {
     #[target_feature(enable = "avx512f,avx512dq")]
     fn eight_rows<const BITS: u32>(&self, first: usize) -> EightRows {
         let (camera, splat) = (self.camera, |number: i64| _mm512_set1_epi64(number));
-        let slopes = load(&self.slopes.distances[first..]);
+        let slopes = load_rows(&self.slopes.distances[first..]);
         let distance = _mm512_srai_epi64(_mm512_mullo_epi64(splat(self.height), slopes), 16);
-        let rows = load(&self.slopes.rows[first..]);
+        let rows = load_rows(&self.slopes.rows[first..]);
         let nearness = _mm512_srai_epi64(_mm512_mullo_epi64(splat(self.nearness), rows), 32);
         let part = |position: __m512i| match BITS {
             6 => _mm512_cvtepi64_epi32(_mm512_srli_epi64(position, 22)),
@@ -156,8 +157,7 @@ fn bytes_of(list: &[i16; SPAN_BLOCK]) -> __m512i {
 /// Eight numbers, or as many as there are.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn load(list: &[i64]) -> __m512i {
-    let there = if list.len() >= EIGHT { u8::MAX } else { (1 << list.len()) - 1 };
+fn load_rows(list: &[i64]) -> __m512i {
     // SAFETY: only the numbers that are there are read.
-    unsafe { _mm512_maskz_loadu_epi64(there, list.as_ptr()) }
+    unsafe { _mm512_maskz_loadu_epi64(first_of_eight(list.len()), list.as_ptr()) }
 }

@@ -2,6 +2,7 @@
 //! them.
 
 use super::silhouette::{MEET_BLOCK, Reaches};
+use crate::simd::first_of_eight;
 use std::arch::x86_64::*;
 
 /// [`Reaches::meet`].
@@ -19,8 +20,7 @@ pub(super) fn meet(reaches: &Reaches, [first, end]: [u32; 2], inverse: i64, met:
             let [firsts, ends] = [firsts, ends].map(|list| _mm256_loadu_si256(list.as_ptr().cast()));
             (firsts, ends, _mm512_loadu_si512(nears.as_ptr().cast()))
         };
-        let inside = if reaches.count - from < MEET_BLOCK { (1 << (reaches.count - from)) - 1 } else { u8::MAX };
-        let meets = _mm256_mask_cmplt_epu32_mask(inside, firsts, end);
+        let meets = _mm256_mask_cmplt_epu32_mask(first_of_eight(reaches.count - from), firsts, end);
         let meets = _mm256_mask_cmpgt_epu32_mask(meets, ends, first);
         let meets = _mm512_mask_cmpge_epi64_mask(meets, nears, inverse);
         let to: &mut [u32; MEET_BLOCK] = met[count..].first_chunk_mut().expect("the list is padded");

@@ -12,6 +12,7 @@ use super::frame::Columns;
 use super::picture::WallPicture;
 use super::wall::{WALL_BLOCK, WallShader, WallSlope};
 use super::wall_wide::{self, WallVectors};
+use crate::simd::first_of_eight;
 use std::arch::x86_64::*;
 
 /// Most texels of a column: two vectors.
@@ -63,8 +64,7 @@ impl WallList {
         self.make_room(self.count + count + WALL_BLOCK);
         for from in (0..count).step_by(WALL_BLOCK) {
             let (tops, bottoms) = (rows(&tops[from..]), rows(&bottoms[from..]));
-            let inside = if count - from < WALL_BLOCK { (1 << (count - from)) - 1 } else { u8::MAX };
-            let shown = _mm512_mask_cmplt_epi64_mask(inside, tops, bottoms);
+            let shown = _mm512_mask_cmplt_epi64_mask(first_of_eight(count - from), tops, bottoms);
             self.add_block::<DEPTH>(shader, &slope, start, first + from, shown, [tops, bottoms]);
         }
     }

@@ -58,10 +58,7 @@ impl World {
         let distance = match gap {
             Fixed(-1) => beside.max(Fixed::ZERO),
             _ if beside <= Fixed::ZERO => gap,
-            _ => {
-                let square = |f: Fixed| f.0.unsigned_abs() as u64 * f.0.unsigned_abs() as u64;
-                Fixed((square(beside) + square(gap)).isqrt().min(i32::MAX as u64) as i32)
-            }
+            _ => Fixed::length_of(beside, gap),
         };
         let points = Fixed::from_int(BLAST) - distance;
         if points <= Fixed::ZERO || !self.sees(victim, slot) {

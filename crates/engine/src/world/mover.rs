@@ -65,9 +65,13 @@ impl Movers {
         self.swings_made
     }
 
+    fn renew_swings(&mut self) {
+        self.swings_made = self.swings_made.wrapping_add(1);
+    }
+
     /// Starts a mover.
     pub(crate) fn add(&mut self, mover: Mover) {
-        self.swings_made = self.swings_made.wrapping_add(1);
+        self.renew_swings();
         self.list.push(mover);
         self.note(self.list.len() - 1);
     }
@@ -75,7 +79,7 @@ impl Movers {
     /// Ends the movers of floors before their time, where `stopped` says so of their sector. What is noted of the others stays
     /// true but for their numbers.
     fn stop_floors(&mut self, stopped: impl Fn(SectorId) -> bool) {
-        self.swings_made = self.swings_made.wrapping_add(1);
+        self.renew_swings();
         let mut kept = 0;
         for index in 0..self.list.len() {
             let mover = self.list[index];
@@ -259,7 +263,7 @@ impl World {
 
     /// Runs the movers from number `first` on in their order, and drops those that are done.
     fn run_every_mover(&mut self, first: usize) {
-        self.movers.swings_made = self.movers.swings_made.wrapping_add(1);
+        self.movers.renew_swings();
         let mut kept = first;
         for index in first..self.movers.list.len() {
             self.movers.waiting_from = index + 1;

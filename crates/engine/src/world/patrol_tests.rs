@@ -5,7 +5,7 @@ use crate::map::{Map, MapBuilder, Style};
 use crate::math::{Angle, Fixed, Rng};
 use std::sync::Arc;
 
-const STYLE: Style = Style {
+pub(super) const STYLE: Style = Style {
     floor: 0,
     ceiling: 80,
     light: 210,

@@ -161,8 +161,8 @@ impl Riders {
         self.link(sector, before, entry);
     }
 
-    /// Takes an actor out of the list of a sector.
-    fn take(&mut self, sector: usize, slot: u16, mover: Option<usize>) {
+    /// Takes an actor out of the list of a sector, the swinging floor of which is moved by `mover`.
+    fn take(&mut self, sector: usize, slot: u16, mover: usize) {
         let (before, at) = self.before(sector, slot);
         if at == Riders::END || self.entries[at as usize].0 != slot {
             return;
@@ -170,8 +170,7 @@ impl Riders {
         let next = std::mem::replace(&mut self.entries[at as usize].1, self.free);
         self.free = at;
         self.link(sector, before, next);
-        if let Some(mover) = mover
-            && self.heads[sector] == Riders::END
+        if self.heads[sector] == Riders::END
             && let Ok(place) = self.ridden.binary_search(&(mover as u32))
         {
             self.ridden.remove(place);
@@ -199,7 +198,7 @@ impl World {
             let Moved { slot, listed } = self.riders.moved[at];
             for &sector in &listed.sectors[..usize::from(listed.count)] {
                 if let Some(mover) = self.movers.swing_of(SectorId(u32::from(sector))) {
-                    self.riders.take(usize::from(sector), slot, Some(mover));
+                    self.riders.take(usize::from(sector), slot, mover);
                 }
             }
             self.list_rider(usize::from(slot));
@@ -260,24 +259,14 @@ mod tests {
     use super::*;
     use crate::map::{MapBuilder, Style, TileGrid};
     use crate::math::Rng;
+    use crate::world::patrol_tests::STYLE;
     use crate::world::{ActorKind, Buttons, Command};
     use std::sync::Arc;
 
     /// A hall of tiles with tags from 1.
     fn hall() -> World {
-        let style = |tag| Style {
-            floor: 0,
-            ceiling: 200,
-            light: 200,
-            floor_texture: "FLOOR0_1",
-            ceiling_texture: "CEIL1_1",
-            wall: "STARTAN2",
-            step: "STARTAN2",
-            lintel: "STARTAN2",
-            special: 0,
-            tag,
-        };
-        let grid = TileGrid::new((0, 0), 64, 6, 4, |column, row| style((row * 6 + column) as i32 + 1));
+        let tag = |column, row| (row * 6 + column) as i32 + 1;
+        let grid = TileGrid::new((0, 0), 64, 6, 4, |column, row| Style { tag: tag(column, row), ..STYLE });
         let mut builder = MapBuilder::new();
         grid.paint(&mut builder);
         builder.thing(1, 96.0, 96.0, 0);

@@ -119,8 +119,7 @@ impl Facing {
 impl Vertex {
     /// The distance to a point.
     fn away(self, x: Fixed, y: Fixed) -> Fixed {
-        let [dx, dy] = [x - self.x, y - self.y].map(|part| i64::from(part.0).unsigned_abs());
-        Fixed((dx * dx + dy * dy).isqrt().min(i32::MAX as u64) as i32)
+        Fixed::length_of(x - self.x, y - self.y)
     }
 }
 
