@@ -13,6 +13,7 @@ use super::scene::Scene;
 use super::sky::{self, SkyShader};
 use super::sprite;
 use super::status_bar::{BarState, StatusBar};
+use super::trail::SeenTrail;
 use super::walk::Walk;
 use super::workspace::Workspace;
 use super::{Buffers, SegmentationColours, View, convert, weapon};
@@ -147,6 +148,8 @@ impl Renderer {
     ) {
         self.labels.list.clear();
         sprite::collect(&mut space.sprites, &self.scene, &self.view, camera, world, player, &space.entered);
+        space.trails.clear();
+        space.trails.extend(world.trails.iter().filter_map(|trail| SeenTrail::new(camera, world, trail)));
         let mut masked = Masked {
             scene: &self.scene,
             view: &self.view,
@@ -156,6 +159,7 @@ impl Renderer {
             frame: &mut self.frame,
             silhouettes: &mut space.silhouettes,
             labels: &mut self.labels,
+            trails: &mut space.trails,
             columns: &mut space.stamp_columns,
             simd: self.simd,
         };

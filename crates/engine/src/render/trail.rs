@@ -1,0 +1,174 @@
+//! The squares of rockets' trails on the frame, between the sprites.
+//!
+//! The squares of one tic are drawn together: they lie within a tic's way of each other, and a rocket flies straight, so that a
+//! trail is sorted by distance as it is by time.
+
+use super::camera::Camera;
+use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::masked::Masked;
+use super::sprite::{Extent, NEAREST};
+use super::wall::INVERSE_BITS;
+use crate::math::Fixed;
+use crate::world::{SQUARES, Square, Trail, World};
+use std::ops::Range;
+
+/// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's palette that the published engine shows.
+pub(super) const SHADES: [[u8; 3]; 3] = [[171; 3], [87; 3], [255, 255, 0]];
+
+/// Fractional bits of the inverse of a distance in 16.16: few enough that all products fit.
+const NEAR_BITS: u32 = 44;
+
+/// Nearness brightens squares as if they were half as far away as they are.
+const ONE_TABLE: i64 = 2 * ONE_TABLE_DISTANCE;
+
+/// A trail of which some squares are still to be drawn.
+#[derive(Clone, Debug)]
+pub(super) struct SeenTrail {
+    trail: Trail,
+    /// The tics of flight whose squares are left.
+    tics: Range<u32>,
+    /// Distance of the middle of the trail's way in its first tic, and what a tic adds, 16.16.
+    distance: i64,
+    step: i64,
+    light: Light,
+}
+
+impl SeenTrail {
+    pub fn new(camera: &Camera, world: &World, trail: &Trail) -> Option<SeenTrail> {
+        let tics = trail.tics(world.tic);
+        if tics.is_empty() {
+            return None;
+        }
+        let [x, y, vx, vy] = [trail.point[0], trail.point[1], trail.velocity[0], trail.velocity[1]].map(|part| i64::from(part.0));
+        let forward = |x: i64, y: i64| camera.edges(x, y).iter().sum::<i64>() / 2;
+        let (distance, step) = (forward(x - vx / 2, y - vy / 2), forward(camera.x + vx, camera.y + vy));
+        let light = Light::new(camera, i32::from(world.sector(trail.sector).light));
+        Some(SeenTrail { trail: *trail, tics, distance, step, light })
+    }
+
+    /// The farthest tic that is left, if it is farther away than a distance; it is left no more.
+    fn next_beyond(&mut self, distance: i64) -> Option<u32> {
+        let away = |tic: u32| self.distance + i64::from(tic - self.trail.begun) * self.step;
+        let outwards = self.step > 0;
+        let tic = if outwards { self.tics.end.wrapping_sub(1) } else { self.tics.start };
+        if self.tics.is_empty() || away(tic) <= distance {
+            return None;
+        }
+        if outwards { self.tics.end -= 1 } else { self.tics.start += 1 }
+        Some(tic)
+    }
+}
+
+/// What a square covers of the frame.
+#[derive(Clone, Copy)]
+struct Spot {
+    columns: [usize; 2],
+    rows: [i16; 2],
+    colour: u8,
+    opacity: u8,
+}
+
+impl Masked<'_> {
+    /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet.
+    pub fn squares_beyond<const DEPTH: bool, const CLASS: bool>(&mut self, distance: i64) {
+        for index in 0..self.trails.len() {
+            while let Some(tic) = self.trails[index].next_beyond(distance) {
+                self.squares_of::<DEPTH, CLASS>(index, tic);
+            }
+        }
+    }
+
+    /// Draws the squares that a rocket shed in a tic. Depth and labels tell nothing of them.
+    fn squares_of<const DEPTH: bool, const CLASS: bool>(&mut self, index: usize, tic: u32) {
+        let seen = &self.trails[index];
+        let away = seen.distance + i64::from(tic - seen.trail.begun) * seen.step;
+        if away < NEAREST {
+            return;
+        }
+        let middle = [0, 1].map(|axis| {
+            let half_tics = 2 * i64::from(tic - seen.trail.begun) - 1;
+            i64::from(seen.trail.point[axis].0) + i64::from(seen.trail.velocity[axis].0) * half_tics / 2
+        });
+        let mut extent = Extent {
+            inverse: (1 << (INVERSE_BITS + 16)) / away,
+            x: middle[0],
+            y: middle[1],
+            top: Fixed(i32::MIN),
+            bottom: Fixed(i32::MAX),
+            first: usize::MAX,
+            end: 0,
+        };
+        let (mut spots, mut count) = ([None; SQUARES as usize], 0);
+        for square in seen.trail.squares(tic, self.world.tic) {
+            if let Some(spot) = self.spot(&square, seen.light) {
+                extent.first = extent.first.min(spot.columns[0]);
+                extent.end = extent.end.max(spot.columns[1]);
+                extent.top = extent.top.max(square.place[2]);
+                extent.bottom = extent.bottom.min(square.place[2]);
+                spots[count] = Some(spot);
+                count += 1;
+            }
+        }
+        if count == 0 {
+            return;
+        }
+        // Nothing is before most squares.
+        let met = self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse);
+        if met == 0 {
+            spots[..count].iter().flatten().for_each(|spot| self.cover(spot, |_, rows| rows));
+            return;
+        }
+        self.columns.open(0..self.view.view_rows as i16, (extent.first..extent.end).map(|_| 0));
+        self.narrow_by::<DEPTH, CLASS>(&extent, met);
+        let columns = std::mem::take(self.columns);
+        let open = |column: usize, [top, bottom]: [i16; 2]| {
+            let own = column - extent.first;
+            [top.max(columns.tops[own]), bottom.min(columns.bottoms[own])]
+        };
+        spots[..count].iter().flatten().for_each(|spot| self.cover(spot, open));
+        *self.columns = columns;
+    }
+
+    /// Mixes the colour of a spot into the rows that `open` leaves of each of its columns.
+    #[inline]
+    fn cover(&mut self, spot: &Spot, open: impl Fn(usize, [i16; 2]) -> [i16; 2]) {
+        let width = self.frame.width;
+        for column in spot.columns[0]..spot.columns[1] {
+            let [top, bottom] = open(column, spot.rows);
+            for row in top..bottom {
+                let pixel = &mut self.frame.colour[row as usize * width + column];
+                *pixel = self.scene.blend.over(spot.colour, *pixel, spot.opacity);
+            }
+        }
+    }
+
+    /// What a square covers if nothing hides it: whole columns from that of its left edge to that of its right one, one at
+    /// least, and whole rows, that of its lower edge too.
+    #[inline]
+    fn spot(&self, square: &Square, light: Light) -> Option<Spot> {
+        let (camera, view) = (self.camera, self.view);
+        let [x, y, z] = square.place.map(|part| i64::from(part.0));
+        let [left, right] = camera.edges(x, y);
+        let (distance, across) = ((left + right) / 2, (left - right) / 2);
+        if distance < NEAREST || across.abs() > distance {
+            return None;
+        }
+        let near = (1 << NEAR_BITS) / distance;
+        let base_width = i64::from(view.base_width);
+        let [across, up, half] = [across, z - camera.z, i64::from(square.half.0)].map(|units| (units * near) >> (NEAR_BITS - 16));
+        let [column, half_width] = [across + (1 << 16), half].map(|part| part * base_width / 2);
+        let [row, half_height] = [camera.horizon - (up * view.focal_y >> 16), half * view.focal_y >> 16];
+        let first = (column - half_width) >> 16;
+        let end = ((column + half_width) >> 16).max(first + 1);
+        let columns = [first, end].map(|column| usize::from(view.first_column[column.clamp(0, base_width) as usize]));
+        let rows = [(row - half_height) >> 16, ((row + half_height) >> 16) + 1];
+        let rows = rows.map(|row| view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize]);
+        if columns[0] >= columns[1] || rows[0] >= rows[1] {
+            return None;
+        }
+        let table = light.table((ONE_TABLE * near) >> (NEAR_BITS - 32));
+        let colour = self.scene.shades[square.shade as usize];
+        let colour = self.scene.assets.light_tables[table][usize::from(colour)];
+        Some(Spot { columns, rows, colour, opacity: square.opacity })
+    }
+}
