@@ -41,7 +41,7 @@ impl Masked<'_> {
             self.squares_beyond::<DEPTH, CLASS>(sprite.distance);
             self.sprite::<DEPTH, CLASS>(sprite);
         }
-        self.squares_beyond::<DEPTH, CLASS>(0);
+        self.squares_beyond::<DEPTH, CLASS>(i64::MIN);
         for at in (0..self.silhouettes.masked().len()).rev() {
             let silhouette = self.silhouettes.list[self.silhouettes.masked()[at] as usize];
             self.texture::<DEPTH, CLASS>(&silhouette, silhouette.first, silhouette.end);

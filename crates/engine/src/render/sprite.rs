@@ -11,7 +11,7 @@ use crate::math::{Angle, Fixed};
 use crate::world::{Actor, ActorKind, OPAQUE, World};
 
 /// Actors nearer than this, in 16.16 map units, are not drawn.
-pub(super) const NEAREST: i64 = 4 << 16;
+const NEAREST: i64 = 4 << 16;
 
 /// Where something flat that faces the eye is: what decides which walls hide it.
 #[derive(Clone, Copy, Debug)]

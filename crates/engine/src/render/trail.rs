@@ -6,7 +6,7 @@
 use super::camera::Camera;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::masked::Masked;
-use super::sprite::{Extent, NEAREST};
+use super::sprite::Extent;
 use super::wall::INVERSE_BITS;
 use crate::math::Fixed;
 use crate::world::{SQUARES, Square, Trail, World};
@@ -14,6 +14,9 @@ use std::ops::Range;
 
 /// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's palette that the published engine shows.
 pub(super) const SHADES: [[u8; 3]; 3] = [[171; 3], [87; 3], [255, 255, 0]];
+
+/// Squares nearer than this, in 16.16 map units, are not drawn: the largest that were seen are as near.
+const NEAREST: i64 = 2 << 16;
 
 /// Fractional bits of the inverse of a distance in 16.16: few enough that all products fit.
 const NEAR_BITS: u32 = 44;
@@ -39,9 +42,12 @@ impl SeenTrail {
         if tics.is_empty() {
             return None;
         }
-        let [x, y, vx, vy] = [trail.point[0], trail.point[1], trail.velocity[0], trail.velocity[1]].map(|part| i64::from(part.0));
-        let forward = |x: i64, y: i64| camera.edges(x, y).iter().sum::<i64>() / 2;
-        let (distance, step) = (forward(x - vx / 2, y - vy / 2), forward(camera.x + vx, camera.y + vy));
+        let forward = |tic: u32| {
+            let [x, y, _] = trail.middle(tic);
+            camera.edges(i64::from(x.0), i64::from(y.0)).iter().sum::<i64>() / 2
+        };
+        let distance = forward(trail.begun);
+        let step = forward(trail.begun + 1) - distance;
         let light = Light::new(camera, i32::from(world.sector(trail.sector).light));
         Some(SeenTrail { trail: *trail, tics, distance, step, light })
     }
@@ -54,13 +60,17 @@ impl SeenTrail {
         if self.tics.is_empty() || away(tic) <= distance {
             return None;
         }
-        if outwards { self.tics.end -= 1 } else { self.tics.start += 1 }
+        if outwards {
+            self.tics.end -= 1
+        } else {
+            self.tics.start += 1
+        }
         Some(tic)
     }
 }
 
 /// What a square covers of the frame.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Spot {
     columns: [usize; 2],
     rows: [i16; 2],
@@ -82,40 +92,34 @@ impl Masked<'_> {
     fn squares_of<const DEPTH: bool, const CLASS: bool>(&mut self, index: usize, tic: u32) {
         let seen = &self.trails[index];
         let away = seen.distance + i64::from(tic - seen.trail.begun) * seen.step;
-        if away < NEAREST {
-            return;
-        }
-        let middle = [0, 1].map(|axis| {
-            let half_tics = 2 * i64::from(tic - seen.trail.begun) - 1;
-            i64::from(seen.trail.point[axis].0) + i64::from(seen.trail.velocity[axis].0) * half_tics / 2
-        });
+        let [x, y, _] = seen.trail.middle(tic).map(|part| i64::from(part.0));
         let mut extent = Extent {
-            inverse: (1 << (INVERSE_BITS + 16)) / away,
-            x: middle[0],
-            y: middle[1],
+            inverse: (1 << (INVERSE_BITS + 16)) / away.max(NEAREST),
+            x,
+            y,
             top: Fixed(i32::MIN),
             bottom: Fixed(i32::MAX),
             first: usize::MAX,
             end: 0,
         };
-        let (mut spots, mut count) = ([None; SQUARES as usize], 0);
-        for square in seen.trail.squares(tic, self.world.tic) {
+        let (mut spots, mut count) = ([Spot::default(); SQUARES as usize], 0);
+        seen.trail.each_square(tic, self.world.tic, |square| {
             if let Some(spot) = self.spot(&square, seen.light) {
                 extent.first = extent.first.min(spot.columns[0]);
                 extent.end = extent.end.max(spot.columns[1]);
                 extent.top = extent.top.max(square.place[2]);
                 extent.bottom = extent.bottom.min(square.place[2]);
-                spots[count] = Some(spot);
+                spots[count] = spot;
                 count += 1;
             }
-        }
+        });
         if count == 0 {
             return;
         }
         // Nothing is before most squares.
         let met = self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse);
         if met == 0 {
-            spots[..count].iter().flatten().for_each(|spot| self.cover(spot, |_, rows| rows));
+            spots[..count].iter().for_each(|spot| self.cover(spot, |_, rows| rows));
             return;
         }
         self.columns.open(0..self.view.view_rows as i16, (extent.first..extent.end).map(|_| 0));
@@ -125,7 +129,7 @@ impl Masked<'_> {
             let own = column - extent.first;
             [top.max(columns.tops[own]), bottom.min(columns.bottoms[own])]
         };
-        spots[..count].iter().flatten().for_each(|spot| self.cover(spot, open));
+        spots[..count].iter().for_each(|spot| self.cover(spot, open));
         *self.columns = columns;
     }
 
@@ -144,31 +148,37 @@ impl Masked<'_> {
 
     /// What a square covers if nothing hides it: whole columns from that of its left edge to that of its right one, one at
     /// least, and whole rows, that of its lower edge too.
-    #[inline]
+    #[inline(always)]
     fn spot(&self, square: &Square, light: Light) -> Option<Spot> {
         let (camera, view) = (self.camera, self.view);
-        let [x, y, z] = square.place.map(|part| i64::from(part.0));
-        let [left, right] = camera.edges(x, y);
-        let (distance, across) = ((left + right) / 2, (left - right) / 2);
-        if distance < NEAREST || across.abs() > distance {
+        let [left, right] = camera.edges(i64::from(square.place[0].0), i64::from(square.place[1].0));
+        let (distance, across) = ((left + right) >> 1, (left - right) >> 1);
+        if distance < NEAREST || across.abs() > distance + i64::from(square.half.0) {
             return None;
         }
+        // Of whatever is at that distance, its part of the distance; 16.16.
         let near = (1 << NEAR_BITS) / distance;
-        let base_width = i64::from(view.base_width);
-        let [across, up, half] = [across, z - camera.z, i64::from(square.half.0)].map(|units| (units * near) >> (NEAR_BITS - 16));
-        let [column, half_width] = [across + (1 << 16), half].map(|part| part * base_width / 2);
-        let [row, half_height] = [camera.horizon - (up * view.focal_y >> 16), half * view.focal_y >> 16];
+        let part = |units: i64| (units * near) >> (NEAR_BITS - 16);
+        let half = part(i64::from(square.half.0));
+        let width = i64::from(view.base_width);
+        let (column, half_width) = (((part(across) + (1 << 16)) * width) >> 1, (half * width) >> 1);
         let first = (column - half_width) >> 16;
         let end = ((column + half_width) >> 16).max(first + 1);
-        let columns = [first, end].map(|column| usize::from(view.first_column[column.clamp(0, base_width) as usize]));
-        let rows = [(row - half_height) >> 16, ((row + half_height) >> 16) + 1];
-        let rows = rows.map(|row| view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize]);
-        if columns[0] >= columns[1] || rows[0] >= rows[1] {
+        let frame_column = |column: i64| usize::from(view.first_column[column.clamp(0, width) as usize]);
+        let columns = [frame_column(first), frame_column(end)];
+        // Learners' frames leave out every fifth column and two rows of five.
+        if columns[0] >= columns[1] {
+            return None;
+        }
+        let above = part(i64::from(square.place[2].0) - camera.z);
+        let (row, half_height) = (camera.horizon - ((above * view.focal_y) >> 16), (half * view.focal_y) >> 16);
+        let frame_row = |row: i64| view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize];
+        let rows = [frame_row((row - half_height) >> 16), frame_row(((row + half_height) >> 16) + 1)];
+        if rows[0] >= rows[1] {
             return None;
         }
         let table = light.table((ONE_TABLE * near) >> (NEAR_BITS - 32));
-        let colour = self.scene.shades[square.shade as usize];
-        let colour = self.scene.assets.light_tables[table][usize::from(colour)];
-        Some(Spot { columns, rows, colour, opacity: square.opacity })
+        let colour = usize::from(self.scene.shades[square.shade as usize]);
+        Some(Spot { columns, rows, colour: self.scene.assets.light_tables[table][colour], opacity: square.opacity })
     }
 }

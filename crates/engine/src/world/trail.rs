@@ -5,7 +5,7 @@
 //! number, by draws of its own that take nothing from the world's randomness. Where the published engine's squares are is
 //! told by nothing; how many, how they look and how they move was measured there (docs/results/pixels.md) and is the same here.
 
-use super::{ActorId, OPAQUE, Phase, World};
+use super::{ActorId, ActorKind, OPAQUE, Phase, World};
 use crate::map::SectorId;
 use crate::math::{Angle, Fixed, Rng};
 use std::ops::Range;
@@ -22,30 +22,34 @@ const LONGEST_LIFE: u32 = SHORTEST_LIFE + 31;
 /// Grey squares appear up to so much above the trail, map units; yellow ones on it.
 const SPREAD: Fixed = Fixed::from_int(4);
 
-/// A 15th of the fastest drift along each axis, a twelfth of a map unit a tic, and of what a tic adds to it at most, a hundredth.
-/// Both are differences of two draws from 0 to 15: slow ones are more frequent.
-const DRIFT: i32 = Fixed::ONE.scale(1, 12 * 15).0;
-const DRIFT_GAIN: i32 = Fixed::ONE.scale(1, 100 * 15).0;
+/// Fastest drift to either side of the way, map units a tic. Of grey squares all speeds are as likely; of yellow ones, the mean of
+/// two draws, slow ones are likelier.
+const DRIFT: Fixed = Fixed::ONE.scale(6, 10);
+
+/// Fastest drift along the way and up at first, and what a tic's rise or fall has more or less than others' at most, map units a tic.
+/// Differences of two draws: slow ones are likelier.
+const SLOW_DRIFT: Fixed = Fixed::ONE.scale(1, 20);
+const RISE_SPREAD: Fixed = Fixed::ONE.scale(1, 90);
 
 /// What a tic adds to the rise of grey squares and to that of yellow ones, map units a tic.
 const RISES: [Fixed; 2] = [Fixed::ONE.scale(252, 10_000), Fixed::ONE.scale(-508, 10_000)];
-
-/// The end of a trail whose rocket still flies.
-const FLYING: u32 = u32::MAX;
 
 /// Where a rocket flew, straight on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trail {
     /// The rocket.
     pub rocket: ActorId,
-    /// The trail's point after the first tic of flight: behind the rocket, at two thirds of its height. East, north and up.
-    pub point: [Fixed; 3],
+    /// The trail's point after the first tic of flight: twice the rocket's radius behind it, at two thirds of its height. East, north
+    /// and up.
+    point: [Fixed; 3],
     /// The rocket's velocity, map units a tic.
-    pub velocity: [Fixed; 3],
+    velocity: [Fixed; 3],
+    /// Cosine and sine of its way over the map.
+    way: [Fixed; 2],
     /// The first tic of flight.
     pub begun: u32,
-    /// One past the last; in the tic in which it bursts, a rocket sheds nothing.
-    ended: u32,
+    /// One past the last, [`Trail::FLYING`] until it is known; in the tic in which it bursts, a rocket sheds nothing.
+    pub ended: u32,
     /// Where the rocket was thrown: squares are lit by its light.
     pub sector: SectorId,
     /// What the draws hang on.
@@ -85,81 +89,98 @@ impl World {
         let tic = self.tic;
         self.trails.retain(|trail| trail.ended.saturating_add(LONGEST_LIFE) > tic);
         let rocket = &self.actors[slot];
-        let (way, behind) = (Angle::of_vector(rocket.vx, rocket.vy), rocket.radius * 2);
         let velocity = [rocket.vx, rocket.vy, rocket.vz];
-        let start = [rocket.x - behind * way.cos(), rocket.y - behind * way.sin(), rocket.z + rocket.height.scale(2, 3)];
-        self.trails.push(Trail {
-            rocket: self.id_of(slot),
-            point: [0, 1, 2].map(|axis| start[axis] + velocity[axis]),
-            velocity,
-            begun: tic,
-            ended: FLYING,
-            sector: rocket.sector,
-            // Told apart by what the world has drawn so far, which goes on as if nobody had looked.
-            key: Rng::for_lane(self.rng.state(), u64::from(tic)).state(),
-        });
+        let place = [rocket.x + rocket.vx, rocket.y + rocket.vy, rocket.z + rocket.vz];
+        // Told apart by what the world has drawn so far, which goes on as if nobody had looked.
+        let key = Rng::for_lane(self.rng.state(), u64::from(tic)).state();
+        let trail = Trail::new(self.id_of(slot), place, velocity, tic, rocket.sector, key);
+        self.trails.push(trail);
     }
 
     /// The rocket of a slot, or whatever is in it, flies no more.
     pub(super) fn end_trail(&mut self, slot: usize) {
         let (id, tic) = (self.id_of(slot), self.tic);
-        if let Some(trail) = self.trails.iter_mut().find(|trail| trail.rocket == id && trail.ended == FLYING) {
+        if let Some(trail) = self.trails.iter_mut().find(|trail| trail.rocket == id && trail.ended == Trail::FLYING) {
             trail.ended = tic;
         }
     }
 }
 
 impl Trail {
+    /// The end of a trail whose rocket still flies.
+    pub const FLYING: u32 = u32::MAX;
+
+    /// The trail of a rocket that is at `place` after its first tic of flight, `begun`, and goes on by `velocity` a tic; lit as
+    /// `sector` is, with squares that hang on `key`.
+    #[must_use]
+    pub fn new(rocket: ActorId, place: [Fixed; 3], velocity: [Fixed; 3], begun: u32, sector: SectorId, key: u64) -> Trail {
+        let ([x, y, z], way, kind) = (place, Angle::of_vector(velocity[0], velocity[1]), ActorKind::Rocket);
+        let (way, behind) = ([way.cos(), way.sin()], kind.radius() * 2);
+        let point = [x - behind * way[0], y - behind * way[1], z + kind.height().scale(2, 3)];
+        Trail { rocket, point, velocity, way, begun, ended: Trail::FLYING, sector, key }
+    }
+
+    /// The middle of the way on which the squares of a tic of flight appeared: east, north and up.
+    #[must_use]
+    pub fn middle(&self, tic: u32) -> [Fixed; 3] {
+        [0, 1, 2].map(|axis| self.point[axis] + Fixed(self.way_in(axis, (i64::from(tic - self.begun) << 7) - 64)))
+    }
+
+    /// How far the rocket goes along an axis in so many 128ths of a tic.
+    #[inline(always)]
+    fn way_in(&self, axis: usize, parts: i64) -> i32 {
+        ((i64::from(self.velocity[axis].0) * parts) >> 7) as i32
+    }
+
     /// The tics of flight of which squares may be left when `now` tics are over.
     #[must_use]
     pub fn tics(&self, now: u32) -> Range<u32> {
         self.begun.max(now.saturating_sub(LONGEST_LIFE))..self.ended.min(now)
     }
 
-    /// The squares of those shed in a tic of flight that are left when `now` tics are over.
-    #[inline]
-    pub fn squares(&self, tic: u32, now: u32) -> impl Iterator<Item = Square> {
+    /// Hands out the squares of those shed in a tic of flight that are left when `now` tics are over.
+    #[inline(always)]
+    pub fn each_square(&self, tic: u32, now: u32, mut see: impl FnMut(Square)) {
         // A stream of draws for each tic: the first number tells of every square how long it lives and its shade.
         let mut draws = Rng::from_state(self.key.wrapping_add(u64::from(tic).wrapping_mul(0xD1B5_4A32_D192_ED03)));
         let (mut lots, age) = (draws.next_u64(), now - 1 - tic);
-        (0..SQUARES).filter_map(move |index| {
-            let (life, shade) = (SHORTEST_LIFE + (lots & 31) as u32, lots >> 5 & 7);
+        for index in 0..SQUARES {
+            let (draw, life, lot) = (draws.next_u64(), SHORTEST_LIFE + (lots & 31) as u32, lots >> 5 & 7);
             lots >>= 8;
-            let draw = draws.next_u64();
-            (age < life).then(|| {
-                let shade = match shade {
+            if age < life {
+                let shade = match lot {
                     _ if index == 0 => Shade::Yellow,
                     0 => Shade::Dark,
                     _ => Shade::Light,
                 };
-                self.square(tic, age, life, shade, draw)
-            })
-        })
+                see(self.square(tic, age as i32, life as i32, shade, draw));
+            }
+        }
     }
 
-    /// A square of an age in tics, by a draw.
-    #[inline]
-    fn square(&self, tic: u32, age: u32, life: u32, shade: Shade, mut draw: u64) -> Square {
-        let mut take = |bits: u32| {
-            let taken = (draw & ((1 << bits) - 1)) as i32;
-            draw >>= bits;
-            taken
-        };
+    /// A square of an age, by a draw.
+    #[inline(always)]
+    fn square(&self, tic: u32, age: i32, life: i32, shade: Shade, draw: u64) -> Square {
+        let lot = |from: u32, bits: u32| (draw >> from & ((1 << bits) - 1)) as i32;
+        let difference = |from: u32| lot(from, 4) - lot(from + 4, 4);
         let yellow = shade == Shade::Yellow;
-        // Anywhere on the way of its tic, in 128ths, and at most as far above it as squares spread, in 64ths.
-        let from_first = (i64::from(tic - self.begun) << 7) - i64::from(take(7));
-        let above = take(6) * (SPREAD.0 >> 6);
-        let mut difference = || take(4) - take(4);
-        let age = age as i32;
-        let mut place = [0, 1, 2].map(|axis| {
-            let (drift, gain) = (difference() * DRIFT, difference() * DRIFT_GAIN);
-            let along = Fixed((i64::from(self.velocity[axis].0) * from_first >> 7) as i32);
-            self.point[axis] + along + Fixed(drift * age + gain * age * age / 2)
-        });
-        place[2] = place[2] + Fixed(if yellow { 0 } else { above } + RISES[usize::from(yellow)].0 * age * age / 2);
+        // Anywhere on the way of its tic, in 128ths, and above it up to the whole spread, in 64ths.
+        let parts = (i64::from(tic - self.begun) << 7) - i64::from(lot(0, 7));
+        let above = if yellow { 0 } else { lot(7, 6) * (SPREAD.0 >> 6) };
+        let sideways = if yellow { lot(13, 8) + lot(21, 8) - 255 } else { 2 * lot(13, 8) - 255 } * (DRIFT.0 / 255) * age;
+        let onwards = difference(29) * (SLOW_DRIFT.0 / 15) * age;
+        let rise = RISES[usize::from(yellow)].0 + difference(37) * (RISE_SPREAD.0 / 15);
+        let up = difference(45) * (SLOW_DRIFT.0 / 15) * age + rise * age * age / 2;
+        let part = |of: i32, unit: Fixed| ((i64::from(of) * i64::from(unit.0)) >> 16) as i32;
+        let [cos, sin] = self.way;
+        let place = [
+            self.point[0] + Fixed(self.way_in(0, parts) + part(onwards, cos) - part(sideways, sin)),
+            self.point[1] + Fixed(self.way_in(1, parts) + part(onwards, sin) + part(sideways, cos)),
+            self.point[2] + Fixed(self.way_in(2, parts) + above + up),
+        ];
         // Evenly to nothing, in steps of a 256th, and shown to a 64th.
-        let opacity = ((256 - 255 / life as i32 * age) >> 2) as u8;
-        let half = Fixed::ONE.scale(if yellow { 2 } else { 3 }, 8);
-        Square { place, half, shade, opacity: opacity * (OPAQUE / 64) }
+        let opacity = ((256 - 255 / life * age) >> 2) as u8 * (OPAQUE / 64);
+        let half = if yellow { Fixed::ONE.scale(1, 4) } else { Fixed::ONE.scale(3, 8) };
+        Square { place, half, shade, opacity }
     }
 }
