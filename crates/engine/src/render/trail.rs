@@ -182,3 +182,120 @@ impl Masked<'_> {
         Some(Spot { columns, rows, colour: self.scene.assets.light_tables[table][colour], opacity: square.opacity })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::Assets;
+    use crate::map::stone_room;
+    use crate::math::Angle;
+    use crate::render::{Buffers, FrameSize, Renderer, Scene, View};
+    use crate::simd::Simd;
+    use crate::world::ActorKind;
+    use std::sync::Arc;
+
+    const SIZES: [FrameSize; 3] = [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 640, height: 480 }];
+
+    /// A room whose eastern wall the player faces, and a trail northwards at a distance; its squares are of all ages.
+    fn world(east: i32) -> World {
+        let mut world = World::new(stone_room(255, [-64, -512, 256, 512], &[[0.0, 0.0]]), 1);
+        let id = world.players[0].actor;
+        world.get_mut(id).unwrap().angle = Angle::EAST;
+        (world.players[0].view_z, world.players[0].sprites) = (Fixed::from_int(41), [None; 2]);
+        world.tic = 50;
+        let place = [Fixed::from_int(east), Fixed::from_int(-320), Fixed::from_int(36)];
+        let velocity = [Fixed::ZERO, Fixed::from_int(20), Fixed::ZERO];
+        let sector = world.map.sector_at(Fixed::ZERO, Fixed::ZERO);
+        world.trails.push(Trail::new(id, place, velocity, 18, sector, 5));
+        world
+    }
+
+    struct Shot {
+        rgb: Vec<u8>,
+        rest: (Vec<u8>, Vec<u16>),
+    }
+
+    fn shoot(world: &World, size: FrameSize, simd: Simd) -> Shot {
+        let scene = Arc::new(Scene::new(&world.map, Assets::embedded()));
+        let mut renderer = Renderer::new(scene, Arc::new(View::new(size).unwrap()));
+        renderer.set_simd(simd);
+        renderer.render(world, 0, Buffers { depth: true, labels: true });
+        let mut rgb = vec![0; size.pixels() * 3];
+        renderer.write_rgb_hwc(&mut rgb);
+        Shot { rgb, rest: (renderer.depth().to_vec(), renderer.classes().to_vec()) }
+    }
+
+    fn changed(with: &Shot, without: &Shot) -> usize {
+        with.rgb.chunks_exact(3).zip(without.rgb.chunks_exact(3)).filter(|(a, b)| a != b).count()
+    }
+
+    fn without_trails(world: &World) -> World {
+        let mut bare = world.clone();
+        bare.trails.clear();
+        bare
+    }
+
+    #[test]
+    fn squares_show_in_colours_alone_and_the_same_by_all_instructions() {
+        let world = world(128);
+        for size in SIZES {
+            let (plain, bare) = (shoot(&world, size, Simd::PLAIN), shoot(&without_trails(&world), size, Simd::PLAIN));
+            let pixels = changed(&plain, &bare);
+            // About 60 are in view, 0.75 units wide and high, and a row more.
+            let side = 0.75 * f64::from(size.width) / 2.0 / 128.0;
+            let expected =
+                if size.width < 640 { 20..140 } else { (40.0 * side * side) as usize..(160.0 * (side + 1.0).powi(2)) as usize };
+            assert!(expected.contains(&pixels), "{pixels} pixels, not {expected:?}, at {size:?}");
+            assert_eq!(plain.rest, bare.rest, "depth and labels tell nothing of squares");
+            for simd in Simd::available() {
+                assert!(shoot(&world, size, simd).rgb == plain.rgb, "{simd:?}");
+            }
+            assert!(shoot(&world.clone(), size, Simd::PLAIN).rgb == plain.rgb);
+        }
+    }
+
+    #[test]
+    fn walls_hide_squares() {
+        let world = world(300);
+        for size in SIZES {
+            let [with, without] = [&world, &without_trails(&world)].map(|world| shoot(world, size, Simd::PLAIN));
+            assert_eq!(changed(&with, &without), 0, "behind the eastern wall");
+        }
+    }
+
+    #[test]
+    fn sprites_before_squares_hide_them_and_those_behind_do_not() {
+        let mut world = world(128);
+        let size = SIZES[2];
+        let seen = |world: &World| changed(&shoot(world, size, Simd::PLAIN), &shoot(&without_trails(world), size, Simd::PLAIN));
+        let alone = seen(&world);
+        let id = world.spawn(ActorKind::BigTree, Fixed::from_int(200), Fixed::ZERO, Fixed::ZERO);
+        // Where a square has the colour of what is behind it, it changes nothing.
+        assert!(seen(&world).abs_diff(alone) <= alone / 10, "a tree behind them");
+        world.get_mut(id).unwrap().x = Fixed::from_int(40);
+        assert!(seen(&world) < alone * 9 / 10, "{} of {alone} past a tree before them", seen(&world));
+    }
+
+    #[test]
+    fn what_flies_towards_the_eye_is_drawn_far_to_near_too() {
+        let mut world = world(128);
+        let sector = world.map.sector_at(Fixed::ZERO, Fixed::ZERO);
+        let trail = |start: i32, speed: i32| {
+            let place = [start, 30, 36].map(Fixed::from_int);
+            Trail::new(world.players[0].actor, place, [speed, 0, 0].map(Fixed::from_int), 40, sector, 5)
+        };
+        let trails = [trail(40, 20), trail(240, -20)];
+        for trail in trails {
+            world.trails = vec![trail];
+            let mut seen = SeenTrail::new(&Camera { forward: [1 << 16, 0], ..Camera::default() }, &world, &trail).unwrap();
+            let mut last = i64::MAX;
+            let mut tics = 0;
+            while let Some(tic) = seen.next_beyond(i64::MIN) {
+                let away = i64::from(trail.middle(tic)[0].0);
+                assert!(away < last);
+                (last, tics) = (away, tics + 1);
+            }
+            assert_eq!(tics, 10);
+        }
+    }
+}

@@ -184,3 +184,112 @@ impl Trail {
         Square { place, half, shade, opacity }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::stone_room;
+
+    /// A world in which a player far from the eastern wall throws a rocket at it, a number of tics after.
+    fn flight(shed: bool, tics: u32) -> World {
+        let mut world = World::new(stone_room(200, [-64, -256, 4000, 256], &[[0.0, 0.0]]), 7);
+        world.rockets_shed = shed;
+        world.throw_missile(0, ActorKind::Rocket);
+        world.finish_tic();
+        for _ in 0..tics {
+            world.run_thinkers(&[]);
+            world.finish_tic();
+        }
+        world
+    }
+
+    fn squares(world: &World) -> Vec<(u32, Square)> {
+        let mut seen = Vec::new();
+        for trail in &world.trails {
+            for tic in trail.tics(world.tic) {
+                trail.each_square(tic, world.tic, |square| seen.push((world.tic - 1 - tic, square)));
+            }
+        }
+        seen
+    }
+
+    #[test]
+    fn as_many_squares_fly_as_in_the_original_and_as_old() {
+        let (mut count, mut worlds) = ([0; 3], 0);
+        let mut ages = [0; LONGEST_LIFE as usize];
+        for tics in 40..160 {
+            let world = flight(true, tics);
+            for (age, square) in squares(&world) {
+                count[square.shade as usize] += 1;
+                ages[age as usize] += 1;
+            }
+            worlds += 1;
+        }
+        // Measured: seven a tic, one of them yellow, an eighth of the others dark; all lives from 3 to 34 tics as often.
+        let all: i32 = count.iter().sum();
+        assert!((all - worlds * 259 / 2).abs() < worlds * 4, "{all} in {worlds} worlds");
+        assert!((all - count[Shade::Yellow as usize] * 7).abs() < all / 10, "{count:?}");
+        assert!((all - count[Shade::Yellow as usize] - count[Shade::Dark as usize] * 8).abs() < all / 10, "{count:?}");
+        assert!(ages[..3].iter().all(|&age| age == worlds * SQUARES as i32), "{ages:?}");
+        for (age, &number) in ages.iter().enumerate().skip(3) {
+            let left = 7 * worlds * (LONGEST_LIFE as i32 - age as i32) / 32;
+            assert!((number - left).abs() <= 12 + left / 5, "{number} of age {age}, not {left}");
+        }
+    }
+
+    #[test]
+    fn squares_appear_behind_the_rocket_and_drift_as_measured() {
+        let world = flight(true, 100);
+        let rocket = world.actors.iter().find(|actor| actor.kind == ActorKind::Rocket).unwrap();
+        let (mut aside, mut rises) = (Vec::new(), Vec::new());
+        for (age, square) in squares(&world) {
+            let [x, y, z] = square.place.map(Fixed::to_f64);
+            let [behind, above] = [rocket.x.to_f64() - x - 20.0 * f64::from(age), z - rocket.z.to_f64()];
+            assert!((20.0..=44.0).contains(&behind), "{behind} behind at age {age}");
+            if age == 0 {
+                assert_eq!((y, square.opacity), (0.0, OPAQUE));
+                assert!((5.3..9.4).contains(&above) && (square.shade != Shade::Yellow || above < 5.4), "{square:?}");
+            } else {
+                aside.push(y / f64::from(age));
+            }
+            if age == 20 && square.shade != Shade::Yellow {
+                rises.push(above - 7.3);
+            }
+        }
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let spread = (aside.iter().map(|v| v * v).sum::<f64>() / aside.len() as f64).sqrt();
+        assert!(mean(&aside).abs() < 0.08 && (0.28..0.39).contains(&spread), "{} {spread}", mean(&aside));
+        assert!(rises.is_empty() || (1.0..9.0).contains(&mean(&rises)), "{rises:?}");
+    }
+
+    #[test]
+    fn only_pictures_mind_them() {
+        for tics in [0, 30, 150, 260] {
+            let (with, without) = (flight(true, tics), flight(false, tics));
+            assert_eq!((with.state_hash(), &with.rng), (without.state_hash(), &without.rng));
+            assert!(without.trails.is_empty() && with.trails.len() == 1);
+            assert_eq!(squares(&with.clone()), squares(&with));
+        }
+    }
+
+    #[test]
+    fn a_trail_ends_where_its_rocket_bursts_and_fades() {
+        let burst =
+            |world: &World| world.actors.iter().all(|actor| actor.kind != ActorKind::Rocket || actor.phase == Phase::Death);
+        let mut world = flight(true, 0);
+        for _ in 0..300 {
+            if burst(&world) {
+                break;
+            }
+            world.run_thinkers(&[]);
+            world.finish_tic();
+        }
+        let ended = world.trails[0].ended;
+        assert_eq!(ended, world.tic - 1);
+        assert!(squares(&world).iter().all(|&(age, _)| age > 0) && !squares(&world).is_empty());
+        world.tic += LONGEST_LIFE;
+        assert!(squares(&world).is_empty());
+        world.trails.retain(|trail| trail.ended.saturating_add(LONGEST_LIFE) > world.tic);
+        assert!(world.trails.is_empty());
+    }
+}
