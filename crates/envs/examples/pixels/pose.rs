@@ -144,8 +144,9 @@ const MUZZLE: f64 = 10.0;
 pub fn leave_trails(world: &mut World, moment: &Moment) {
     let [x, y] = ["CAMERA_POSITION_X", "CAMERA_POSITION_Y"].map(|name| moment.value(name));
     let tics_to = |flight: &Flight, place: &[f64; 3]| {
-        let speed = flight.velocity[0].hypot(flight.velocity[1]);
-        (((place[0] - x).hypot(place[1] - y) - MUZZLE) / speed).max(0.0)
+        let length = |x: f64, y: f64| (x * x + y * y).sqrt();
+        let speed = length(flight.velocity[0], flight.velocity[1]);
+        ((length(place[0] - x, place[1] - y) - MUZZLE) / speed).max(0.0)
     };
     for (number, flight) in (0..).zip(&moment.flights) {
         let flown = tics_to(flight, &flight.place).round();
