@@ -8,7 +8,7 @@ use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::masked_column::MaskedColumn;
 use super::scene::Scene;
 use super::silhouette::{Silhouette, Silhouettes};
-use super::sprite::SeenSprite;
+use super::sprite::{SeenSprite, Sprites};
 use super::stamp::{Covered, StampColumns};
 use super::wall::{INVERSE_BITS, TextureLine};
 use crate::map::SectorId;
@@ -32,9 +32,9 @@ pub(super) struct Masked<'a> {
 }
 
 impl Masked<'_> {
-    /// Draws sprites, which are sorted far to near, with the masked textures between them.
-    pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &[SeenSprite]) {
-        for sprite in sprites {
+    /// Draws sprites with the masked textures between them.
+    pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &Sprites) {
+        for sprite in sprites.far_to_near() {
             self.sprite::<DEPTH, CLASS>(sprite);
         }
         for at in (0..self.silhouettes.masked().len()).rev() {
