@@ -88,21 +88,28 @@ impl Simd {
     }
 }
 
+/// Bytes that come to a cache together, mostly.
+const LINE: usize = 64;
+
 /// Asks for a value to be brought into the nearest cache: a hint without effect on any result.
 #[inline(always)]
 pub(crate) fn prefetch<T: ?Sized>(value: &T) {
+    prefetch_lines(std::ptr::from_ref(value).cast::<u8>(), size_of_val(value).div_ceil(LINE));
+}
+
+/// Asks for some cache lines from an address on, which need not be that of anything.
+#[inline(always)]
+pub(crate) fn prefetch_lines<T>(start: *const T, lines: usize) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        const LINE: usize = 64;
-        let start: *const i8 = std::ptr::from_ref(value).cast();
-        for offset in (0..size_of_val(value)).step_by(LINE) {
+        for line in 0..lines {
             // SAFETY: every x86-64 has the instruction, and it may be given any address.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(offset)) }
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.cast::<i8>().wrapping_add(LINE * line)) }
         }
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = value;
+    let _ = (start, lines);
 }
 
 /// The mask of the first `count` of eight numbers side by side, of all if there are more.

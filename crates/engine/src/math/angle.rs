@@ -68,12 +68,12 @@ impl Angle {
             return Angle(0);
         }
         let (ax, ay) = (i64::from(dx.0).abs(), i64::from(dy.0).abs());
-        // First octant: find t with tan(t) = small / large by bisection over the quarter table (0..=45 degrees).
+        // First octant: the last table angle t with tan(t) at most small / large. A list has the one for whole 1024ths, and
+        // between two of these lie no more than two.
         let (small, large) = if ay <= ax { (ay, ax) } else { (ax, ay) };
-        let (mut low, mut high) = (0usize, 1024usize);
-        while high - low > 1 {
-            let middle = (low + high) / 2;
-            if excess(small, large, middle) >= 0 { low = middle } else { high = middle }
+        let mut low = usize::from(OF_RATIO[((small << 10) / large) as usize & 2047]);
+        for _ in 0..2 {
+            low += usize::from(low < LAST_OF_OCTANT && excess(small, large, low + 1) >= 0);
         }
         let (below, above) = (excess(small, large, low), excess(small, large, low + 1));
         let fraction = if below > above { ((below << 19) / (below - above)) as u32 } else { 0 };
@@ -89,10 +89,27 @@ impl Angle {
 }
 
 /// `small * cos(i) - large * sin(i)`: positive while the table angle `i` is below the vector's.
-fn excess(small: i64, large: i64, i: usize) -> i64 {
-    let cosine = if i == 0 { 1 << 16 } else { i64::from(QUARTER_SINE[2048 - i]) };
-    (small * cosine - large * i64::from(QUARTER_SINE[i])) >> 16
+const fn excess(small: i64, large: i64, i: usize) -> i64 {
+    let cosine = if i == 0 { 1 << 16 } else { QUARTER_SINE[2048 - i] as i64 };
+    (small * cosine - large * QUARTER_SINE[i] as i64) >> 16
 }
+
+/// The last table angle below 45 degrees.
+const LAST_OF_OCTANT: usize = 1023;
+
+/// For each 1024th, up to 1, the last table angle of the first octant whose tangent is no greater; padded.
+static OF_RATIO: [u16; 2048] = {
+    let mut list = [LAST_OF_OCTANT as u16; 2048];
+    let (mut ratio, mut angle) = (0, 0);
+    while ratio < 1024 {
+        while angle < LAST_OF_OCTANT && excess(ratio, 1024, angle + 1) >= 0 {
+            angle += 1;
+        }
+        list[ratio as usize] = angle as u16;
+        ratio += 1;
+    }
+    list
+};
 
 /// The whole fine sine. Its second quarter mirrors the first one entry early (entry `2048 + i` is entry `2047 - i`, the
 /// peak apart), so that it is not quite symmetric: the recorded view bob follows exactly this table.
@@ -175,6 +192,31 @@ mod tests {
         for i in 1..2048 {
             assert_eq!(sine(2048 + i), sine(2047 - i), "entry {i} of the second quarter");
             assert_eq!(sine(4096 + i), -sine(i), "entry {i} of the third quarter");
+        }
+    }
+
+    #[test]
+    fn the_table_angle_of_a_vector_is_the_last_one_below_it() {
+        let mut rng = crate::math::Rng::new(77);
+        for round in 0..20_000u32 {
+            // Short vectors, long ones, and those near 45 degrees or an axis.
+            let mut any = |bits: u32| (rng.next_u64() >> (64 - bits)) as i32;
+            let dx = 1 + any(1 + round % 30);
+            let dy = match round % 4 {
+                0 => (dx - any(4)).max(0),
+                1 => any(4).min(dx),
+                _ => (i64::from(dx) * i64::from(any(20)) >> 20) as i32,
+            };
+            let bisected = {
+                let (mut low, mut high) = (0, 1024);
+                while high - low > 1 {
+                    let middle = (low + high) / 2;
+                    if excess(i64::from(dy), i64::from(dx), middle) >= 0 { low = middle } else { high = middle }
+                }
+                low
+            };
+            let angle = Angle::of_vector(Fixed(dx), Fixed(dy)).0;
+            assert!((0..=1 << 19).contains(&(angle - ((bisected as u32) << 19))), "({dx}, {dy}): {angle:#x}, not {bisected}");
         }
     }
 

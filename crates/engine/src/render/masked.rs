@@ -8,9 +8,9 @@ use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::masked_column::MaskedColumn;
 use super::scene::Scene;
 use super::silhouette::{Silhouette, Silhouettes};
-use super::sprite::{Extent, SeenSprite};
+use super::sprite::{Extent, SeenSprite, Sprites};
 use super::stamp::{Covered, StampColumns};
-use super::trail::SeenTrail;
+use super::trail::SeenTrails;
 use super::wall::{INVERSE_BITS, TextureLine};
 use crate::map::SectorId;
 use crate::math::Fixed;
@@ -28,16 +28,17 @@ pub(super) struct Masked<'a> {
     pub silhouettes: &'a mut Silhouettes,
     pub labels: &'a mut Labels,
     /// Trails, as far as they are not drawn yet.
-    pub trails: &'a mut [SeenTrail],
+    pub trails: &'a mut SeenTrails,
     /// Scratch: the columns of the sprite at hand.
     pub columns: &'a mut StampColumns,
     pub simd: Simd,
 }
 
 impl Masked<'_> {
-    /// Draws sprites, which are sorted far to near, with the squares of trails and the masked textures between them.
-    pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &[SeenSprite]) {
-        for sprite in sprites {
+    /// Draws sprites with the squares of trails and the masked textures between them.
+    pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &Sprites) {
+        self.meet_trails();
+        for sprite in sprites.far_to_near() {
             self.squares_beyond::<DEPTH, CLASS>(sprite.distance);
             self.sprite::<DEPTH, CLASS>(sprite);
         }

@@ -2,6 +2,7 @@
 
 #[cfg(target_arch = "x86_64")]
 use super::narrow_wide::{Avx2, Avx512};
+use super::openings::OpenColumns;
 use super::view::RowScale;
 use super::wall::Edge;
 #[cfg(target_arch = "x86_64")]
@@ -27,6 +28,8 @@ pub(super) struct Columns<'a> {
     pub top: &'a mut [i16],
     /// One past the last open row.
     pub bottom: &'a mut [i16],
+    /// Which are open.
+    pub open: OpenColumns<'a>,
     /// Where the rows of a wall go: first, and one past the last.
     pub wall: [&'a mut [i16]; 2],
     /// The rows of the plane that ends at the seg, if it is seen.
@@ -40,8 +43,6 @@ pub(super) struct Narrowed {
     pub done: usize,
     /// Some of the wall is to be seen.
     pub walled: bool,
-    /// A column was closed.
-    pub closed: bool,
 }
 
 /// The plane takes the rows up to `edge`, the wall those from there to `wall`, and what is left stays open: from below if
@@ -107,6 +108,8 @@ pub(super) trait Rows: Copy {
     fn choose(self, yes: Self, no: Self) -> Self;
     /// Whether the answer is yes in any column.
     fn any(self) -> bool;
+    /// A bit for each column, set where the answer is yes.
+    fn bits(self) -> u64;
     /// Yes in the first `count` columns.
     fn first(count: usize) -> Self;
 }
@@ -166,6 +169,11 @@ impl Rows for i16 {
     }
 
     #[inline(always)]
+    fn bits(self) -> u64 {
+        u64::from(self != 0)
+    }
+
+    #[inline(always)]
     fn first(_: usize) -> i16 {
         -1
     }
@@ -178,9 +186,9 @@ fn pass<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
     columns: &mut Columns,
     done: usize,
 ) -> Narrowed {
-    let Columns { count, base, top: tops, bottom: bottoms, wall: [uppers, lowers], plane: [plane_tops, plane_bottoms] } = columns;
-    let nowhere = R::first(0).and_not(R::first(0));
-    let (mut at, mut walled, mut closed) = (done, nowhere, nowhere);
+    let Columns { count, base, top: tops, bottom: bottoms, open: open_columns, wall: [uppers, lowers], plane } = columns;
+    let [plane_tops, plane_bottoms] = plane;
+    let (mut at, mut walled) = (done, R::first(0).and_not(R::first(0)));
     while at < *count {
         let inside = R::first(*count - at);
         let (top, bottom) = (R::load(&tops[at..]), R::load(&bottoms[at..]));
@@ -206,18 +214,14 @@ fn pass<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
             lower.store(&mut lowers[at..]);
             walled = inside.and(upper.is_less(lower)).choose(inside, walled);
         }
-        let was_open = inside.and(top.is_less(bottom));
-        let stays_open = if FLOOR {
-            inside.choose(open, bottom).store(&mut bottoms[at..]);
-            top.is_less(open)
-        } else {
-            inside.choose(open, top).store(&mut tops[at..]);
-            open.is_less(bottom)
-        };
-        closed = was_open.and_not(stays_open).choose(inside, closed);
+        let (open_top, open_bottom) = if FLOOR { (top, open) } else { (open, bottom) };
+        let closed = inside.and(top.is_less(bottom)).and_not(open_top.is_less(open_bottom));
+        inside.choose(open_top, top).and_not(closed).store(&mut tops[at..]);
+        inside.choose(open_bottom, bottom).and_not(closed).store(&mut bottoms[at..]);
+        open_columns.close(at, closed.bits());
         at += R::COUNT;
     }
-    Narrowed { done: at.min(*count), walled: walled.any(), closed: closed.any() }
+    Narrowed { done: at.min(*count), walled: walled.any() }
 }
 
 #[cfg(test)]
@@ -226,20 +230,20 @@ mod tests {
     use crate::math::Rng;
     use crate::render::{FrameSize, View};
 
-    /// The lists of a seg and of the plane that ends there.
+    /// The lists of a seg and of the plane that ends there, and the bits of columns that are open.
     #[derive(Clone, PartialEq, Debug)]
-    struct Lists([Vec<i16>; 6]);
+    struct Lists([Vec<i16>; 6], Vec<u64>);
 
     /// What the pass means, a column at a time.
     fn plainly<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
         view: &View,
         [edge, wall]: [Edge; 2],
-        lists: &mut Lists,
+        Lists(lists, open_bits): &mut Lists,
         first: usize,
         count: usize,
     ) -> Narrowed {
         let mut narrowed = Narrowed::default();
-        let [tops, bottoms, uppers, lowers, plane_tops, plane_bottoms] = &mut lists.0;
+        let [tops, bottoms, uppers, lowers, plane_tops, plane_bottoms] = lists;
         for x in first..first + count {
             let frame_row = |edge: Edge| {
                 view.first_row[edge.base_row(i64::from(view.columns[x])).clamp(0, i64::from(view.base_view_rows)) as usize]
@@ -256,7 +260,10 @@ mod tests {
                 narrowed.walled |= open != row;
             }
             *(if FLOOR { &mut bottoms[x] } else { &mut tops[x] }) = open;
-            narrowed.closed |= top < bottom && tops[x] >= bottoms[x];
+            if tops[x] >= bottoms[x] {
+                open_bits[x / 64] &= !(1 << (x % 64));
+                (tops[x], bottoms[x]) = (0, 0);
+            }
             narrowed.done += 1;
         }
         narrowed
@@ -268,9 +275,13 @@ mod tests {
         let mut any_row = |range: i32| rng.between(0, range) as i16;
         let open: Vec<(i16, i16)> = (0..padded(width)).map(|_| (any_row(rows / 2), any_row(rows))).collect();
         let nothing = vec![0; padded(width)];
-        let lists = [open.iter().map(|o| o.0).collect(), open.iter().map(|o| o.1.max(o.0)).collect()];
+        // What is closed has no rows.
+        let open: Vec<(i16, i16)> =
+            open.into_iter().map(|(top, bottom)| if top < bottom { (top, bottom) } else { (0, 0) }).collect();
+        let lists = [open.iter().map(|o| o.0).collect(), open.iter().map(|o| o.1).collect()];
         let [top, bottom]: [Vec<i16>; 2] = lists;
-        let mut lists = Lists([top, bottom, nothing.clone(), nothing.clone(), nothing.clone(), nothing]);
+        let bits = open.chunks(64).map(|open| open.iter().rev().fold(0, |bits, o| bits << 1 | u64::from(o.0 < o.1))).collect();
+        let mut lists = Lists([top, bottom, nothing.clone(), nothing.clone(), nothing.clone(), nothing], bits);
         let first = rng.below(width as u32) as usize;
         let count = 1 + rng.below((width - first) as u32) as usize;
         let mut edge = |spread: i32| Edge {
@@ -283,12 +294,15 @@ mod tests {
         let start = lists.clone();
         for simd in Simd::available() {
             lists.clone_from(&start);
-            let [top, bottom, upper, lower, plane_top, plane_bottom] = lists.0.each_mut().map(|list| &mut list[first..]);
+            let Lists(rows, bits) = &mut lists;
+            let [top, bottom, upper, lower, plane_top, plane_bottom] = rows.each_mut().map(|list| &mut list[first..]);
+            let mut closed = 0;
             let mut columns = Columns {
                 count,
                 base: &view.columns[first..],
                 top,
                 bottom,
+                open: OpenColumns { bits, closed: &mut closed, first },
                 wall: [upper, lower],
                 plane: [plane_top, plane_bottom],
             };
@@ -298,6 +312,8 @@ mod tests {
                 lists.0[wall][first + count..].fill(0);
             }
             assert_eq!(lists, plain, "{simd:?}");
+            let open = |lists: &Lists| lists.1.iter().map(|word| word.count_ones() as usize).sum::<usize>();
+            assert_eq!(closed, open(&start) - open(&plain), "{simd:?}");
         }
     }
 
@@ -326,16 +342,18 @@ mod tests {
             (plane[0][40], plane[1][40]) = (3, 4);
             let [plane_top, plane_bottom] = &mut plane;
             let (top, bottom) = (&mut top[..], &mut bottom[..]);
+            let (mut bits, mut closed) = ([u64::MAX; 2], 0);
             let mut columns = Columns {
                 count: 64,
                 base: &view.columns,
                 top,
                 bottom,
+                open: OpenColumns { bits: &mut bits, closed: &mut closed, first: 0 },
                 wall: [&mut [], &mut []],
                 plane: [plane_top, plane_bottom],
             };
             let narrowed = narrow::<false, true, false>(simd, &view.row_scale, edges, &mut columns, 0);
-            assert!((32..=40).contains(&narrowed.done) && !narrowed.walled && !narrowed.closed, "{narrowed:?}");
+            assert!((32..=40).contains(&narrowed.done) && !narrowed.walled && closed == 0, "{narrowed:?}");
         }
     }
 }

@@ -101,6 +101,16 @@ impl<const AVX512: bool> Rows for Wide<AVX512> {
     }
 
     #[inline(always)]
+    fn bits(self) -> u64 {
+        // SAFETY: as above.
+        let bits = unsafe {
+            let halves = (_mm256_castsi256_si128(self.0), _mm256_extracti128_si256(self.0, 1));
+            _mm_movemask_epi8(_mm_packs_epi16(halves.0, halves.1))
+        };
+        bits as u64
+    }
+
+    #[inline(always)]
     fn first(count: usize) -> Self {
         Wide::load(&YES_NO[BLOCK - count.min(BLOCK)..])
     }

@@ -96,24 +96,38 @@ impl Openings {
         });
     }
 
-    /// Notes which columns of `first..end` have no open row left.
-    #[inline]
-    pub fn note_closed(&mut self, first: usize, end: usize) {
-        for_each_word(first, end, |word, mask| {
-            let from = word * 64 + mask.trailing_zeros() as usize;
-            let count = mask.count_ones() as usize;
-            let rows = self.top[from..from + count].iter().zip(&self.bottom[from..from + count]);
-            // Which columns close cannot be foretold: bits without a branch, and then those that closed just now.
-            let closed = rows.rev().fold(0, |bits, (top, bottom)| bits << 1 | u64::from(top >= bottom));
-            let mut newly = (closed << (from % 64)) & self.open[word];
-            self.open[word] &= !newly;
-            self.closed += newly.count_ones() as usize;
-            while newly != 0 {
-                let x = word * 64 + newly.trailing_zeros() as usize;
-                (self.top[x], self.bottom[x]) = (0, 0);
-                newly &= newly - 1;
-            }
-        });
+    /// The first open rows of the columns from `first` on, one past the last ones, and which of them are open.
+    #[inline(always)]
+    pub fn from(&mut self, first: usize) -> (&mut [i16], &mut [i16], OpenColumns<'_>) {
+        let open = OpenColumns { bits: &mut self.open, closed: &mut self.closed, first };
+        (&mut self.top[first..], &mut self.bottom[first..], open)
+    }
+}
+
+/// Which columns are open, counted from one of them.
+pub(super) struct OpenColumns<'a> {
+    /// A bit for each column of the frame.
+    pub bits: &'a mut [u64],
+    /// How many are closed.
+    pub closed: &'a mut usize,
+    /// The column that is counted from.
+    pub first: usize,
+}
+
+impl OpenColumns<'_> {
+    /// Closes those of the columns from `from` on that `columns` has bits of; all of them are open.
+    #[inline(always)]
+    pub fn close(&mut self, from: usize, columns: u64) {
+        if columns == 0 {
+            return;
+        }
+        *self.closed += columns.count_ones() as usize;
+        let (word, shift) = ((self.first + from) / 64, (self.first + from) % 64);
+        self.bits[word] &= !(columns << shift);
+        let beyond = columns >> 1 >> (63 - shift);
+        if beyond != 0 {
+            self.bits[word + 1] &= !beyond;
+        }
     }
 }
 
@@ -133,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn notes_are_those_of_single_columns() {
+    fn bits_are_those_of_single_columns() {
         let mut rng = crate::math::Rng::new(20);
         for width in [128, 160, 100, 64, 1001] {
             let mut openings = Openings::default();
@@ -146,16 +160,15 @@ mod tests {
                     openings.close(first, end);
                     open[first..end].fill(false);
                 } else {
-                    for x in (first..end).filter(|_| rng.below(9) == 0) {
-                        if open[x] {
-                            (openings.top[x], openings.bottom[x]) = (30, 29);
-                        }
-                        open[x] = false;
-                    }
-                    openings.note_closed(first, end);
+                    let count = (end - first).min(16);
+                    let chosen = (0..count).filter(|i| open[first + i] && rng.below(9) == 0);
+                    let bits = chosen.fold(0, |bits, i| bits | 1 << i);
+                    // Counted from a column further left.
+                    let from = rng.below(first as u32 + 1) as usize;
+                    openings.from(from).2.close(first - from, bits);
+                    (0..count).filter(|i| bits >> i & 1 != 0).for_each(|i| open[first + i] = false);
                 }
                 assert!((0..width).all(|x| openings.any_open(x, x + 1) == open[x]));
-                assert!((0..width).all(|x| open[x] || (openings.top[x], openings.bottom[x]) == (0, 0)));
                 let range = open.iter().position(|&open| open).zip(open.iter().rposition(|&open| open));
                 let (first, end) = openings.range();
                 assert_eq!(range.is_none(), first >= end);

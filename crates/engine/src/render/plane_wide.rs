@@ -12,6 +12,7 @@ use super::span_wide::{load_avx512, rows};
 use super::wall_wide::tables;
 use crate::simd::first_of_eight;
 use std::arch::x86_64::*;
+use std::ops::Range;
 
 /// The last row that fits a byte.
 const LAST_BYTE: i16 = 255;
@@ -67,7 +68,7 @@ impl PlaneShader<'_> {
             *ends = [block(&plane.top), block(&plane.bottom)];
         }
         let (first, end) = (first.max(0) as usize, end.max(0) as usize);
-        let (stride, from_left) = (self.view.chunk_stride, &self.view.columns[plane.first..]);
+        let from_left = &self.view.columns[plane.first..];
         // Texels are fetched one by one, and lit as vectors some hundred instructions later: bytes that were just written one by
         // one cannot be loaded together at once.
         let mut unlit = [[[0; SPAN_BLOCK + ROW_VECTOR]; BLOCKS]; EIGHT];
@@ -82,23 +83,19 @@ impl PlaneShader<'_> {
                     let mut mask = _mm512_mask_cmpgt_epu8_mask(_mm512_cmple_epu8_mask(*top, here), *bottom, here);
                     *whole = mask;
                     while mask != 0 {
-                        // Adding to the lowest bit of a run carries to the place behind the run.
-                        let behind = mask.wrapping_add(mask & mask.wrapping_neg());
-                        let run = mask.trailing_zeros() as usize..behind.trailing_zeros() as usize;
-                        let columns = from_left[block * SPAN_BLOCK + run.start..].first_chunk().expect("the list is padded");
-                        row_wide::fetch_avx512::<BITS, TEXELS>(
-                            &walk,
-                            &mut unlit[run.start..],
-                            run.len(),
-                            columns,
-                            stride,
-                            texels,
-                        );
-                        if DEPTH || CLASS {
-                            let left = (from + i) * frame.width + plane.first + block * SPAN_BLOCK;
+                        // Whole vectors, runs or not: how many runs there are and how long they are cannot be foretold.
+                        let first = mask.trailing_zeros() as usize;
+                        let columns = from_left[block * SPAN_BLOCK + first..].first_chunk().expect("the list is padded");
+                        let unlit = unlit[first..].first_chunk_mut().expect("a block and a vector");
+                        row_wide::fetch_avx512::<BITS, TEXELS>(&walk, unlit, columns, texels);
+                        mask &= !(((1 << ROW_VECTOR) - 1) << first);
+                    }
+                    if DEPTH || CLASS {
+                        let (mut mask, left) = (*whole, (from + i) * frame.width + plane.first + block * SPAN_BLOCK);
+                        while mask != 0 {
+                            let run = next_run(&mut mask);
                             self.tell::<DEPTH, CLASS>(frame, eight.distances[i], left + run.start..left + run.end);
                         }
-                        mask &= behind;
                     }
                 }
             }
@@ -143,6 +140,16 @@ impl PlaneShader<'_> {
         }
         eight
     }
+}
+
+/// Takes the lowest run of bits out of a mask.
+#[inline(always)]
+fn next_run(mask: &mut u64) -> Range<usize> {
+    // Adding to the lowest bit of a run carries to the place behind the run.
+    let behind = mask.wrapping_add(*mask & mask.wrapping_neg());
+    let run = mask.trailing_zeros() as usize..behind.trailing_zeros() as usize;
+    *mask &= behind;
+    run
 }
 
 /// Rows as bytes; those of columns without rows, which may be negative, as 0.

@@ -13,7 +13,6 @@ use super::scene::Scene;
 use super::sky::{self, SkyShader};
 use super::sprite;
 use super::status_bar::{BarState, StatusBar};
-use super::trail::SeenTrail;
 use super::walk::Walk;
 use super::workspace::Workspace;
 use super::{Buffers, SegmentationColours, View, convert, weapon};
@@ -148,8 +147,7 @@ impl Renderer {
     ) {
         self.labels.list.clear();
         sprite::collect(&mut space.sprites, &self.scene, &self.view, camera, world, player, &space.entered);
-        space.trails.clear();
-        space.trails.extend(world.trails.iter().filter_map(|trail| SeenTrail::new(camera, world, trail)));
+        space.trails.collect(&self.scene, &self.view, camera, world);
         let mut masked = Masked {
             scene: &self.scene,
             view: &self.view,

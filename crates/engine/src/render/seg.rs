@@ -192,26 +192,24 @@ impl Walk<'_> {
         wall: Edge,
     ) -> bool {
         let (first, end) = (seen.first, seen.end);
-        let (mut walled, mut closed, mut done) = (false, false, 0);
+        let (mut walled, mut done) = (false, 0);
         while done < end - first {
+            let (top, bottom, open) = self.openings.from(first);
             let mut columns = Columns {
                 count: end - first,
                 base: &self.view.columns[first..],
-                top: &mut self.openings.top[first..],
-                bottom: &mut self.openings.bottom[first..],
+                top,
+                bottom,
+                open,
                 wall: [&mut self.scratch.upper[first..], &mut self.scratch.lower[first..]],
                 plane: if PLANE { self.planes.columns(plane, first, end) } else { [&mut [], &mut []] },
             };
             let narrowed = narrow::<FLOOR, PLANE, WALL>(self.simd, &self.view.row_scale, [edge, wall], &mut columns, done);
             walled |= narrowed.walled;
-            closed |= narrowed.closed;
             done = narrowed.done;
             if done < end - first {
                 plane = self.planes.start_another(plane);
             }
-        }
-        if closed {
-            self.openings.note_closed(first, end);
         }
         walled
     }

@@ -87,15 +87,26 @@ fn block(plane: &Plane, from: usize) -> (&[i16; SPAN_BLOCK], &[i16; SPAN_BLOCK])
     (top, bottom)
 }
 
-/// The first row of a plane, and one past the last.
-#[inline(always)]
+/// The first row of a plane, and one past the last; not below the first where the plane has no row.
+#[inline]
+#[target_feature(enable = "avx2")]
 pub(super) fn rows(plane: &Plane) -> (i16, i16) {
-    let (mut first, mut end) = (i16::MAX, 0);
-    for (&top, &bottom) in plane.top[plane.first..plane.end].iter().zip(&plane.bottom[plane.first..plane.end]) {
-        first = if top < bottom { first.min(top) } else { first };
-        end = end.max(bottom);
+    let none = _mm256_set1_epi16(i16::MAX);
+    let (mut first, mut end) = (none, _mm256_setzero_si256());
+    let lists = plane.top[plane.first..].chunks_exact(16).zip(plane.bottom[plane.first..].chunks_exact(16));
+    // Beyond its last column a plane has no rows.
+    for (top, bottom) in lists.take((plane.end - plane.first).div_ceil(16)) {
+        // SAFETY: 32 bytes are readable behind both references.
+        let [top, bottom] = [top, bottom].map(|list| unsafe { _mm256_loadu_si256(list.as_ptr().cast()) });
+        first = _mm256_min_epi16(first, _mm256_blendv_epi8(none, top, _mm256_cmpgt_epi16(bottom, top)));
+        end = _mm256_max_epi16(end, bottom);
     }
-    (first, end)
+    // Of numbers that are not negative there is an instruction for the least of eight.
+    let least = |sixteen: __m256i| {
+        let eight = _mm_min_epi16(_mm256_castsi256_si128(sixteen), _mm256_extracti128_si256(sixteen, 1));
+        _mm_cvtsi128_si32(_mm_minpos_epu16(eight)) as i16
+    };
+    (least(first), i16::MAX - least(_mm256_sub_epi16(none, end)))
 }
 
 /// Spans as they are found, row by row and from left to right.

@@ -57,9 +57,28 @@ pub(super) struct SeenSprite {
     v_step: i64,
 }
 
-/// Collects the actors that the frame may show, far to near.
+/// Beyond all distances.
+const FARTHEST: i64 = 1 << 40;
+
+/// The sprites of a frame.
+#[derive(Debug, Default)]
+pub(super) struct Sprites {
+    list: Vec<SeenSprite>,
+    /// Far to near: distance from the farthest possible one with the actor's slot below, and place in the list. Keys are sorted
+    /// in place of sprites, which are large.
+    order: Vec<(u64, u32)>,
+}
+
+impl Sprites {
+    /// Far to near.
+    pub fn far_to_near(&self) -> impl Iterator<Item = &SeenSprite> {
+        self.order.iter().map(|&(_, place)| &self.list[place as usize])
+    }
+}
+
+/// Collects the actors that the frame may show.
 pub(super) fn collect(
-    seen: &mut Vec<SeenSprite>,
+    Sprites { list: seen, order }: &mut Sprites,
     scene: &Scene,
     view: &View,
     camera: &Camera,
@@ -77,7 +96,10 @@ pub(super) fn collect(
             seen.extend(see(scene, view, camera, actor, slot as u16, world.tic, level));
         }
     }
-    seen.sort_unstable_by_key(|sprite| (-sprite.distance, sprite.slot));
+    order.clear();
+    let key = |sprite: &SeenSprite| ((FARTHEST - sprite.distance) as u64) << 16 | u64::from(sprite.slot);
+    order.extend(seen.iter().map(key).zip(0..));
+    order.sort_unstable();
 }
 
 fn see(

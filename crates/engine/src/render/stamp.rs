@@ -133,12 +133,8 @@ impl Stamp<'_> {
         let texels = self.picture.column(self.columns.texels[i]);
         // Half of a weapon's picture is air above it.
         let extent = self.picture.extent(self.columns.texels[i]);
-        while !open.is_empty() && self.texel_row(base_rows[open.start]) < extent.start {
-            open.start += 1;
-        }
-        while !open.is_empty() && self.texel_row(base_rows[open.end - 1]) >= extent.end {
-            open.end -= 1;
-        }
+        let before = |texel: usize| base_rows[open.clone()].partition_point(|&base_row| self.texel_row(base_row) < texel);
+        open = open.start + before(extent.start)..open.start + before(extent.end);
         let lines = frame.colour[open.start * width..].chunks_exact_mut(width).zip(&base_rows[open.clone()]);
         // Which texels are holes cannot be foretold.
         match self.blend {

@@ -6,10 +6,12 @@
 use super::camera::Camera;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::masked::Masked;
+use super::scene::Scene;
 use super::sprite::Extent;
+use super::view::View;
 use super::wall::INVERSE_BITS;
 use crate::math::Fixed;
-use crate::world::{SQUARES, Square, Trail, World};
+use crate::world::{Shed, Square, Trail, World};
 use std::ops::Range;
 
 /// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's palette that the published engine shows.
@@ -24,104 +26,142 @@ const NEAR_BITS: u32 = 44;
 /// Nearness brightens squares as if they were half as far away as they are.
 const ONE_TABLE: i64 = 2 * ONE_TABLE_DISTANCE;
 
+/// The trails of a frame.
+#[derive(Debug, Default)]
+pub(super) struct SeenTrails {
+    list: Vec<SeenTrail>,
+    /// What their squares cover, trail after trail and tic after tic.
+    spots: Vec<Spot>,
+    /// Scratch.
+    left: Vec<Shed>,
+}
+
 /// A trail of which some squares are still to be drawn.
 #[derive(Clone, Debug)]
-pub(super) struct SeenTrail {
+struct SeenTrail {
     trail: Trail,
-    /// The tics of flight whose squares are left.
-    tics: Range<u32>,
+    /// The spots that are left.
+    spots: Range<usize>,
     /// Distance of the middle of the trail's way in its first tic, and what a tic adds, 16.16.
     distance: i64,
     step: i64,
-    light: Light,
+    /// Silhouettes may hide some of it.
+    hidden: bool,
+}
+
+/// What a square covers of the frame.
+#[derive(Clone, Copy, Default, Debug)]
+struct Spot {
+    tic: u32,
+    columns: [u16; 2],
+    rows: [i16; 2],
+    /// Of its middle.
+    height: Fixed,
+    colour: u8,
+    opacity: u8,
+}
+
+impl SeenTrails {
+    /// Works out what squares cover if nothing hides them.
+    pub fn collect(&mut self, scene: &Scene, view: &View, camera: &Camera, world: &World) {
+        self.list.clear();
+        self.spots.clear();
+        for trail in world.trails.iter().filter(|trail| !trail.tics(world.tic).is_empty()) {
+            let light = Light::new(camera, i32::from(world.sector(trail.sector).light));
+            self.left.clear();
+            trail.list(world.tic, &mut self.left);
+            let first = self.spots.len();
+            let mut end = first;
+            self.spots.resize(first + self.left.len(), Spot::default());
+            for shed in &self.left {
+                // Which are in view cannot be foretold: all are written, and those counted.
+                let (spot, is_seen) = spot(scene, view, camera, light, shed.tic, &trail.square(shed, world.tic));
+                self.spots[end] = spot;
+                end += usize::from(is_seen);
+            }
+            self.spots.truncate(end);
+            self.list.push(SeenTrail::new(camera, trail, first..end));
+        }
+    }
 }
 
 impl SeenTrail {
-    pub fn new(camera: &Camera, world: &World, trail: &Trail) -> Option<SeenTrail> {
-        let tics = trail.tics(world.tic);
-        if tics.is_empty() {
-            return None;
-        }
+    fn new(camera: &Camera, trail: &Trail, spots: Range<usize>) -> SeenTrail {
         let forward = |tic: u32| {
             let [x, y, _] = trail.middle(tic);
             camera.edges(i64::from(x.0), i64::from(y.0)).iter().sum::<i64>() / 2
         };
         let distance = forward(trail.begun);
         let step = forward(trail.begun + 1) - distance;
-        let light = Light::new(camera, i32::from(world.sector(trail.sector).light));
-        Some(SeenTrail { trail: *trail, tics, distance, step, light })
+        SeenTrail { trail: *trail, spots, distance, step, hidden: true }
     }
 
-    /// The farthest tic that is left, if it is farther away than a distance; it is left no more.
-    fn next_beyond(&mut self, distance: i64) -> Option<u32> {
-        let away = |tic: u32| self.distance + i64::from(tic - self.trail.begun) * self.step;
-        let outwards = self.step > 0;
-        let tic = if outwards { self.tics.end.wrapping_sub(1) } else { self.tics.start };
-        if self.tics.is_empty() || away(tic) <= distance {
+    /// Distance of the squares of a tic.
+    fn away(&self, tic: u32) -> i64 {
+        self.distance + i64::from(tic - self.trail.begun) * self.step
+    }
+
+    /// The spots of the farthest tic that is left, if it is farther away than a distance; they are left no more.
+    fn next_beyond(&mut self, spots: &[Spot], distance: i64) -> Option<Range<usize>> {
+        let Range { start, end } = self.spots;
+        let (outwards, left) = (self.step > 0, &spots[start..end]);
+        let tic = if outwards { left.last()? } else { left.first()? }.tic;
+        if self.away(tic) <= distance {
             return None;
         }
-        if outwards {
-            self.tics.end -= 1
+        let next = if outwards {
+            end - left.iter().rev().take_while(|spot| spot.tic == tic).count()..end
         } else {
-            self.tics.start += 1
-        }
-        Some(tic)
+            start..start + left.iter().take_while(|spot| spot.tic == tic).count()
+        };
+        self.spots = if outwards { start..next.start } else { next.end..end };
+        Some(next)
     }
-}
 
-/// What a square covers of the frame.
-#[derive(Clone, Copy, Default)]
-struct Spot {
-    columns: [usize; 2],
-    rows: [i16; 2],
-    colour: u8,
-    opacity: u8,
+    /// What decides what hides some spots that are as far away as those of a tic.
+    fn extent(&self, spots: &[Spot], tic: u32) -> Extent {
+        let [x, y, _] = self.trail.middle(tic).map(|part| i64::from(part.0));
+        let inverse = (1 << (INVERSE_BITS + 16)) / self.away(tic).max(NEAREST);
+        let bounds = spots.iter().fold((u16::MAX, 0, Fixed(i32::MIN), Fixed(i32::MAX)), |(first, end, top, bottom), spot| {
+            (first.min(spot.columns[0]), end.max(spot.columns[1]), top.max(spot.height), bottom.min(spot.height))
+        });
+        let (first, end, top, bottom) = bounds;
+        Extent { inverse, x, y, top, bottom, first: usize::from(first), end: usize::from(end) }
+    }
 }
 
 impl Masked<'_> {
-    /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet.
-    pub fn squares_beyond<const DEPTH: bool, const CLASS: bool>(&mut self, distance: i64) {
-        for index in 0..self.trails.len() {
-            while let Some(tic) = self.trails[index].next_beyond(distance) {
-                self.squares_of::<DEPTH, CLASS>(index, tic);
+    /// Finds the trails of which silhouettes may hide something: nothing is before most.
+    pub fn meet_trails(&mut self) {
+        let SeenTrails { list, spots, .. } = &mut *self.trails;
+        for seen in list {
+            let spots = &spots[seen.spots.clone()];
+            if let [first, .., last] = spots {
+                let farthest = if seen.step > 0 { last.tic } else { first.tic };
+                let extent = seen.extent(spots, farthest);
+                seen.hidden = self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse) > 0;
             }
         }
     }
 
-    /// Draws the squares that a rocket shed in a tic. Depth and labels tell nothing of them.
-    fn squares_of<const DEPTH: bool, const CLASS: bool>(&mut self, index: usize, tic: u32) {
-        let seen = &self.trails[index];
-        let away = seen.distance + i64::from(tic - seen.trail.begun) * seen.step;
-        let [x, y, _] = seen.trail.middle(tic).map(|part| i64::from(part.0));
-        let mut extent = Extent {
-            inverse: (1 << (INVERSE_BITS + 16)) / away.max(NEAREST),
-            x,
-            y,
-            top: Fixed(i32::MIN),
-            bottom: Fixed(i32::MAX),
-            first: usize::MAX,
-            end: 0,
-        };
-        let (mut spots, mut count) = ([Spot::default(); SQUARES as usize], 0);
-        seen.trail.each_square(tic, self.world.tic, |square| {
-            if let Some(spot) = self.spot(&square, seen.light) {
-                extent.first = extent.first.min(spot.columns[0]);
-                extent.end = extent.end.max(spot.columns[1]);
-                extent.top = extent.top.max(square.place[2]);
-                extent.bottom = extent.bottom.min(square.place[2]);
-                spots[count] = spot;
-                count += 1;
+    /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet. Depth and labels tell nothing of them.
+    pub fn squares_beyond<const DEPTH: bool, const CLASS: bool>(&mut self, distance: i64) {
+        for index in 0..self.trails.list.len() {
+            while let Some(spots) = self.trails.list[index].next_beyond(&self.trails.spots, distance) {
+                self.squares::<DEPTH, CLASS>(index, spots);
             }
-        });
-        if count == 0 {
+        }
+    }
+
+    /// Draws the squares that a rocket shed in a tic.
+    fn squares<const DEPTH: bool, const CLASS: bool>(&mut self, index: usize, spots: Range<usize>) {
+        let seen = &self.trails.list[index];
+        if !seen.hidden {
+            spots.for_each(|spot| self.cover(spot, |_, rows| rows));
             return;
         }
-        // Nothing is before most squares.
+        let extent = seen.extent(&self.trails.spots[spots.clone()], self.trails.spots[spots.start].tic);
         let met = self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse);
-        if met == 0 {
-            spots[..count].iter().for_each(|spot| self.cover(spot, |_, rows| rows));
-            return;
-        }
         self.columns.open(0..self.view.view_rows as i16, (extent.first..extent.end).map(|_| 0));
         self.narrow_by::<DEPTH, CLASS>(&extent, met);
         let columns = std::mem::take(self.columns);
@@ -129,15 +169,15 @@ impl Masked<'_> {
             let own = column - extent.first;
             [top.max(columns.tops[own]), bottom.min(columns.bottoms[own])]
         };
-        spots[..count].iter().for_each(|spot| self.cover(spot, open));
+        spots.for_each(|spot| self.cover(spot, open));
         *self.columns = columns;
     }
 
     /// Mixes the colour of a spot into the rows that `open` leaves of each of its columns.
     #[inline]
-    fn cover(&mut self, spot: &Spot, open: impl Fn(usize, [i16; 2]) -> [i16; 2]) {
-        let width = self.frame.width;
-        for column in spot.columns[0]..spot.columns[1] {
+    fn cover(&mut self, spot: usize, open: impl Fn(usize, [i16; 2]) -> [i16; 2]) {
+        let (width, spot) = (self.frame.width, self.trails.spots[spot]);
+        for column in usize::from(spot.columns[0])..usize::from(spot.columns[1]) {
             let [top, bottom] = open(column, spot.rows);
             for row in top..bottom {
                 let pixel = &mut self.frame.colour[row as usize * width + column];
@@ -145,42 +185,34 @@ impl Masked<'_> {
             }
         }
     }
+}
 
-    /// What a square covers if nothing hides it: whole columns from that of its left edge to that of its right one, one at
-    /// least, and whole rows, that of its lower edge too.
-    #[inline(always)]
-    fn spot(&self, square: &Square, light: Light) -> Option<Spot> {
-        let (camera, view) = (self.camera, self.view);
-        let [left, right] = camera.edges(i64::from(square.place[0].0), i64::from(square.place[1].0));
-        let (distance, across) = ((left + right) >> 1, (left - right) >> 1);
-        if distance < NEAREST || across.abs() > distance + i64::from(square.half.0) {
-            return None;
-        }
-        // Of whatever is at that distance, its part of the distance; 16.16.
-        let near = (1 << NEAR_BITS) / distance;
-        let part = |units: i64| (units * near) >> (NEAR_BITS - 16);
-        let half = part(i64::from(square.half.0));
-        let width = i64::from(view.base_width);
-        let (column, half_width) = (((part(across) + (1 << 16)) * width) >> 1, (half * width) >> 1);
-        let first = (column - half_width) >> 16;
-        let end = ((column + half_width) >> 16).max(first + 1);
-        let frame_column = |column: i64| usize::from(view.first_column[column.clamp(0, width) as usize]);
-        let columns = [frame_column(first), frame_column(end)];
-        // Learners' frames leave out every fifth column and two rows of five.
-        if columns[0] >= columns[1] {
-            return None;
-        }
-        let above = part(i64::from(square.place[2].0) - camera.z);
-        let (row, half_height) = (camera.horizon - ((above * view.focal_y) >> 16), (half * view.focal_y) >> 16);
-        let frame_row = |row: i64| view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize];
-        let rows = [frame_row((row - half_height) >> 16), frame_row(((row + half_height) >> 16) + 1)];
-        if rows[0] >= rows[1] {
-            return None;
-        }
-        let table = light.table((ONE_TABLE * near) >> (NEAR_BITS - 32));
-        let colour = usize::from(self.scene.shades[square.shade as usize]);
-        Some(Spot { columns, rows, colour: self.scene.assets.light_tables[table][colour], opacity: square.opacity })
-    }
+/// What a square covers if nothing hides it, and whether that is anything: whole columns from that of its left edge to that of its
+/// right one, one at least, and whole rows, that of its lower edge too.
+#[inline(always)]
+fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, tic: u32, square: &Square) -> (Spot, bool) {
+    let [left, right] = camera.edges(i64::from(square.place[0].0), i64::from(square.place[1].0));
+    let (away, across) = ((left + right) >> 1, (left - right) >> 1);
+    let distance = away.max(NEAREST);
+    let beside = across.abs() > distance + i64::from(square.half.0);
+    // Of whatever is at that distance, its part of the distance; 16.16.
+    let near = (1 << NEAR_BITS) / distance;
+    let part = |units: i64| (units * near) >> (NEAR_BITS - 16);
+    let half = part(i64::from(square.half.0));
+    let width = i64::from(view.base_width);
+    let (column, half_width) = (((part(across) + (1 << 16)) * width) >> 1, (half * width) >> 1);
+    let first = (column - half_width) >> 16;
+    let end = ((column + half_width) >> 16).max(first + 1);
+    let columns = [first, end].map(|column| view.first_column[column.clamp(0, width) as usize]);
+    let above = part(i64::from(square.place[2].0) - camera.z);
+    let (row, half_height) = (camera.horizon - ((above * view.focal_y) >> 16), (half * view.focal_y) >> 16);
+    let frame_row = |row: i64| view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize];
+    let rows = [frame_row((row - half_height) >> 16), frame_row(((row + half_height) >> 16) + 1)];
+    // Learners' frames leave out every fifth column and two rows of five.
+    let is_seen = (away >= NEAREST) & !beside & (columns[0] < columns[1]) & (rows[0] < rows[1]);
+    let table = light.table((ONE_TABLE * near) >> (NEAR_BITS - 32));
+    let colour = scene.assets.light_tables[table][usize::from(scene.shades[square.shade as usize])];
+    (Spot { tic, columns, rows, height: square.place[2], colour, opacity: square.opacity }, is_seen)
 }
 
 #[cfg(test)]
@@ -278,7 +310,7 @@ mod tests {
 
     #[test]
     fn what_flies_towards_the_eye_is_drawn_far_to_near_too() {
-        let mut world = world(128);
+        let world = world(128);
         let sector = world.map.sector_at(Fixed::ZERO, Fixed::ZERO);
         let trail = |start: i32, speed: i32| {
             let place = [start, 30, 36].map(Fixed::from_int);
@@ -286,16 +318,19 @@ mod tests {
         };
         let trails = [trail(40, 20), trail(240, -20)];
         for trail in trails {
-            world.trails = vec![trail];
-            let mut seen = SeenTrail::new(&Camera { forward: [1 << 16, 0], ..Camera::default() }, &world, &trail).unwrap();
-            let mut last = i64::MAX;
-            let mut tics = 0;
-            while let Some(tic) = seen.next_beyond(i64::MIN) {
+            let mut left = Vec::new();
+            trail.list(world.tic, &mut left);
+            let spots: Vec<Spot> = left.iter().map(|shed| Spot { tic: shed.tic, ..Spot::default() }).collect();
+            let mut seen = SeenTrail::new(&Camera { forward: [1 << 16, 0], ..Camera::default() }, &trail, 0..spots.len());
+            let (mut last, mut tics, mut count) = (i64::MAX, 0, 0);
+            while let Some(next) = seen.next_beyond(&spots, i64::MIN) {
+                let tic = spots[next.start].tic;
+                assert!(spots[next.clone()].iter().all(|spot| spot.tic == tic));
                 let away = i64::from(trail.middle(tic)[0].0);
                 assert!(away < last);
-                (last, tics) = (away, tics + 1);
+                (last, tics, count) = (away, tics + 1, count + next.len());
             }
-            assert_eq!(tics, 10);
+            assert_eq!((tics, count), (10, spots.len()));
         }
     }
 }

@@ -15,7 +15,7 @@ use super::soot::SootyColumn;
 use super::wall_list::WallList;
 use crate::map::Node;
 use crate::math::Fixed;
-use crate::simd::{Simd, prefetch};
+use crate::simd::{Simd, prefetch, prefetch_lines};
 use crate::world::World;
 
 /// Everything that the walk reads and writes.
@@ -97,6 +97,18 @@ impl WedgeSide {
     }
 }
 
+/// Asks for the memory that a visit to a child reads first, its node or the segs of its subsector: a map is larger than the
+/// nearest cache, and the way to it depends on what is found there.
+#[inline(always)]
+fn ask_for(scene: &Scene, child: u32) {
+    let (is_subsector, index) = (child & Node::SUBSECTOR != 0, (child & !Node::SUBSECTOR) as usize);
+    // Which of both it is cannot be foretold.
+    let [first_seg, ..] = scene.subsectors[if is_subsector { index } else { 0 }];
+    let segs = scene.segs.as_ptr().wrapping_add(first_seg as usize).cast::<u8>();
+    let node = scene.nodes.as_ptr().wrapping_add(index).cast::<u8>();
+    prefetch_lines(if is_subsector { segs } else { node }, 3);
+}
+
 impl Walk<'_> {
     /// Draws all walls, and lists what else there is to draw.
     pub fn run<const DEPTH: bool>(&mut self) {
@@ -137,6 +149,7 @@ impl Walk<'_> {
                     let inside = wedge[0].inside(bounds) | wedge[1].inside(bounds);
                     self.scratch.stack[stacked] = child * 2 + side;
                     stacked += usize::from(inside >= 0);
+                    ask_for(scene, node.children[side as usize]);
                 }
             }
             // The next child that is not hidden.

@@ -10,9 +10,9 @@ use super::openings::Openings;
 use super::plane::{Planes, Span};
 use super::scene::Scene;
 use super::silhouette::Silhouettes;
-use super::sprite::SeenSprite;
+use super::sprite::Sprites;
 use super::stamp::StampColumns;
-use super::trail::SeenTrail;
+use super::trail::SeenTrails;
 use super::walk::WalkScratch;
 #[cfg(target_arch = "x86_64")]
 use super::wall_list::WallList;
@@ -45,8 +45,8 @@ pub(super) struct Workspace {
     pub spans: Vec<Span>,
     /// Start of each column's texels in the sky's picture.
     pub sky_columns: Vec<u32>,
-    pub sprites: Vec<SeenSprite>,
-    pub trails: Vec<SeenTrail>,
+    pub sprites: Sprites,
+    pub trails: SeenTrails,
     /// Columns of the sprite or weapon at hand.
     pub stamp_columns: StampColumns,
 }

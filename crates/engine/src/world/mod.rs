@@ -58,7 +58,7 @@ pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
 pub use sector::{SectorDamage, SectorState};
 pub use soot::Soot;
 pub use states::{Action, Animation, Frame, OPAQUE, Phase, Picture, Then, animation, is_timed};
-pub use trail::{SQUARES, Shade, Square, Trail};
+pub use trail::{SQUARES, Shade, Shed, Square, Trail};
 pub use weapon::{Hands, WeaponState};
 pub use weapon_info::ammo;
 
@@ -94,7 +94,7 @@ pub struct World {
     pub soot: Vec<Soot>,
     /// Trails of rockets of which squares may be left, the oldest first.
     pub trails: Vec<Trail>,
-    /// Rockets shed squares as they fly (Collateral Damage, the one scenario whose published settings draw them).
+    /// Rockets shed squares as they fly (Collateral Damage on its published maps, whose settings draw them).
     pub rockets_shed: bool,
     /// Monsters and weapons do not search for targets vertically or sideways (Collateral Damage).
     pub no_autoaim: bool,

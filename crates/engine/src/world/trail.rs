@@ -67,6 +67,18 @@ pub enum Shade {
     Yellow,
 }
 
+/// A square that is left of a trail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shed {
+    /// The tic of flight in which it appeared.
+    pub tic: u32,
+    /// Tics that it is seen.
+    life: u8,
+    shade: Shade,
+    /// What all else follows from.
+    draw: u64,
+}
+
 /// A square as it is in a tic; it always faces the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Square {
@@ -138,29 +150,32 @@ impl Trail {
         self.begun.max(now.saturating_sub(LONGEST_LIFE))..self.ended.min(now)
     }
 
-    /// Hands out the squares of those shed in a tic of flight that are left when `now` tics are over.
-    #[inline(always)]
-    pub fn each_square(&self, tic: u32, now: u32, mut see: impl FnMut(Square)) {
-        // A stream of draws for each tic: the first number tells of every square how long it lives and its shade.
-        let mut draws = Rng::from_state(self.key.wrapping_add(u64::from(tic).wrapping_mul(0xD1B5_4A32_D192_ED03)));
-        let (mut lots, age) = (draws.next_u64(), now - 1 - tic);
-        for index in 0..SQUARES {
-            let (draw, life, lot) = (draws.next_u64(), SHORTEST_LIFE + (lots & 31) as u32, lots >> 5 & 7);
-            lots >>= 8;
-            if age < life {
-                let shade = match lot {
-                    _ if index == 0 => Shade::Yellow,
-                    0 => Shade::Dark,
-                    _ => Shade::Light,
-                };
-                see(self.square(tic, age as i32, life as i32, shade, draw));
+    /// Adds the squares that are left when `now` tics are over to a list, the oldest first.
+    pub fn list(&self, now: u32, left: &mut Vec<Shed>) {
+        let (tics, mut count) = (self.tics(now), left.len());
+        left.resize(count + SQUARES as usize * tics.len(), Shed { tic: 0, life: 0, shade: Shade::Light, draw: 0 });
+        for tic in tics {
+            // A stream of draws for each tic: the first number tells of every square how long it lives and its shade.
+            let mut draws = Rng::from_state(self.key.wrapping_add(u64::from(tic).wrapping_mul(0xD1B5_4A32_D192_ED03)));
+            let (mut lots, age) = (draws.next_u64(), now - 1 - tic);
+            for index in 0..SQUARES {
+                let (draw, life, lot) = (draws.next_u64(), SHORTEST_LIFE + (lots & 31) as u32, lots >> 5 & 7);
+                lots >>= 8;
+                let grey = if lot == 0 { Shade::Dark } else { Shade::Light };
+                let shade = if index == 0 { Shade::Yellow } else { grey };
+                // Which are left cannot be foretold: all are written, and those counted.
+                left[count] = Shed { tic, life: life as u8, shade, draw };
+                count += usize::from(age < life);
             }
         }
+        left.truncate(count);
     }
 
-    /// A square of an age, by a draw.
+    /// Where a square is when `now` tics are over.
     #[inline(always)]
-    fn square(&self, tic: u32, age: i32, life: i32, shade: Shade, draw: u64) -> Square {
+    #[must_use]
+    pub fn square(&self, &Shed { tic, life, shade, draw }: &Shed, now: u32) -> Square {
+        let (age, life) = ((now - 1 - tic) as i32, i32::from(life));
         let lot = |from: u32, bits: u32| (draw >> from & ((1 << bits) - 1)) as i32;
         let difference = |from: u32| lot(from, 4) - lot(from + 4, 4);
         let yellow = shade == Shade::Yellow;
@@ -179,11 +194,22 @@ impl Trail {
             self.point[2] + Fixed(self.way_in(2, parts) + above + up),
         ];
         // Evenly to nothing, in steps of a 256th, and shown to a 64th.
-        let opacity = ((256 - 255 / life * age) >> 2) as u8 * (OPAQUE / 64);
+        let opacity = ((256 - FADES[life as usize] * age) >> 2) as u8 * (OPAQUE / 64);
         let half = if yellow { Fixed::ONE.scale(1, 4) } else { Fixed::ONE.scale(3, 8) };
         Square { place, half, shade, opacity }
     }
 }
+
+/// What a tic takes of a square's 256 parts, by the tics of its life.
+const FADES: [i32; LONGEST_LIFE as usize + 1] = {
+    let mut list = [255; LONGEST_LIFE as usize + 1];
+    let mut life = 1;
+    while life < list.len() {
+        list[life] = 255 / life as i32;
+        life += 1;
+    }
+    list
+};
 
 #[cfg(test)]
 mod tests {
@@ -206,9 +232,9 @@ mod tests {
     fn squares(world: &World) -> Vec<(u32, Square)> {
         let mut seen = Vec::new();
         for trail in &world.trails {
-            for tic in trail.tics(world.tic) {
-                trail.each_square(tic, world.tic, |square| seen.push((world.tic - 1 - tic, square)));
-            }
+            let mut left = Vec::new();
+            trail.list(world.tic, &mut left);
+            seen.extend(left.iter().map(|shed| (world.tic - 1 - shed.tic, trail.square(shed, world.tic))));
         }
         seen
     }

@@ -96,7 +96,6 @@ impl Rules {
             self.walk_on(NEUTRAL, world);
         }
         world.no_autoaim = true;
-        world.rockets_shed = true;
         world.clear_inventory(0);
         world.players[0].damage_factor = Fixed::ZERO;
         world.give_weapon(0, Weapon::RocketLauncher, false);
