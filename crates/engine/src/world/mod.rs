@@ -94,7 +94,7 @@ pub struct World {
     pub soot: Vec<Soot>,
     /// Trails of rockets of which squares may be left, the oldest first.
     pub trails: Vec<Trail>,
-    /// Rockets shed squares as they fly (Collateral Damage on its published maps, whose settings draw them).
+    /// Rockets shed squares as they fly (Collateral Damage with its published maps and pictures, whose settings draw them).
     pub rockets_shed: bool,
     /// Monsters and weapons do not search for targets vertically or sideways (Collateral Damage).
     pub no_autoaim: bool,
