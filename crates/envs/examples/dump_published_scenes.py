@@ -89,14 +89,22 @@ def open_game(args, folder, level, groups):
     return game
 
 
-def note_bursts(bursts, state):
-    """Remembers where rockets have burst: they stand still then."""
+def note_rockets(bursts, flights, state):
+    """Remembers where rockets have burst (they stand still then), and where they flew: place, velocity and tic when first seen."""
     for thing in state.objects:
-        if thing.name == "Rocket" and thing.velocity_x == thing.velocity_y == 0:
-            bursts[thing.id] = [thing.position_x, thing.position_y, thing.position_z, thing.angle]
+        if thing.name != "Rocket":
+            continue
+        place = [thing.position_x, thing.position_y, thing.position_z]
+        velocity = [thing.velocity_x, thing.velocity_y, thing.velocity_z]
+        if any(velocity):
+            flights.setdefault(thing.id, {"tic": int(state.tic), "place": place, "velocity": velocity})
+        else:
+            bursts[thing.id] = [*place, thing.angle]
+            if thing.id in flights:
+                flights[thing.id]["burst"] = place
 
 
-def told(number, state, bursts):
+def told(number, state, bursts, flights):
     """What the engine tells of a moment."""
     return {
         "number": number,
@@ -105,6 +113,7 @@ def told(number, state, bursts):
         "floors": [float(sector.floor_height) for sector in state.sectors],
         "ceilings": [float(sector.ceiling_height) for sector in state.sectors],
         "bursts": list(bursts.values()),
+        "flights": [dict(flight) for flight in flights.values()],
         "labels": [
             {
                 "name": label.object_name, "value": int(label.value), "angle": label.object_angle,
@@ -120,17 +129,18 @@ def dump(args, scenario, level, out, trained=None):
     folder = os.path.join(packages, "hasard", "envs", scenario)
     game = open_game(args, folder, level, trained and trained.groups)
     buttons = [str(button).split(".")[-1] for button in game.get_available_buttons()]
-    player, scenes, bursts, step = trained or Random(args.seed, buttons), [], {}, 0
+    player, scenes, bursts, flights, step = trained or Random(args.seed, buttons), [], {}, {}, 0
     os.makedirs(out, exist_ok=True)
     player.begin()
     while len(scenes) < args.moments:
         game.make_action(player.act(game.get_state().screen_buffer), FRAME_SKIP)
         step += 1
         if not game.is_episode_finished():
-            note_bursts(bursts, game.get_state())
+            note_rockets(bursts, flights, game.get_state())
         if game.is_episode_finished() or step % EPISODE == 0:
             game.new_episode()
             bursts.clear()
+            flights.clear()
             player.begin()
             game.make_action([0.0] * len(buttons), FRAME_SKIP)
         elif step % STRIDE == 0:
@@ -138,7 +148,7 @@ def dump(args, scenario, level, out, trained=None):
             pictures = {"rgb": state.screen_buffer[:, :, ::-1], "depth": state.depth_buffer, "labels": state.labels_buffer}
             for name, picture in pictures.items():
                 cv2.imwrite(os.path.join(out, f"{len(scenes):02}_{name}.png"), picture)
-            scenes.append(told(len(scenes), state, bursts))
+            scenes.append(told(len(scenes), state, bursts, flights))
     game.close()
     width, height = map(int, args.size.split("X"))
     head = {

@@ -8,8 +8,9 @@ use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::masked_column::MaskedColumn;
 use super::scene::Scene;
 use super::silhouette::{Silhouette, Silhouettes};
-use super::sprite::{SeenSprite, Sprites};
+use super::sprite::{Extent, SeenSprite, Sprites};
 use super::stamp::{Covered, StampColumns};
+use super::trail::SeenTrails;
 use super::wall::{INVERSE_BITS, TextureLine};
 use crate::map::SectorId;
 use crate::math::Fixed;
@@ -26,64 +27,81 @@ pub(super) struct Masked<'a> {
     pub frame: &'a mut Frame,
     pub silhouettes: &'a mut Silhouettes,
     pub labels: &'a mut Labels,
+    /// Trails, as far as they are not drawn yet.
+    pub trails: &'a mut SeenTrails,
     /// Scratch: the columns of the sprite at hand.
     pub columns: &'a mut StampColumns,
     pub simd: Simd,
 }
 
 impl Masked<'_> {
-    /// Draws sprites with the masked textures between them.
+    /// Draws sprites with the squares of trails and the masked textures between them.
     pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &Sprites) {
+        self.meet_trails();
         for sprite in sprites.far_to_near() {
+            self.squares_beyond::<DEPTH, CLASS>(sprite.distance);
             self.sprite::<DEPTH, CLASS>(sprite);
         }
+        self.squares_beyond::<DEPTH, CLASS>(i64::MIN);
         for at in (0..self.silhouettes.masked().len()).rev() {
             let silhouette = self.silhouettes.list[self.silhouettes.masked()[at] as usize];
             self.texture::<DEPTH, CLASS>(&silhouette, silhouette.first, silhouette.end);
         }
     }
 
-    /// Whether a sprite stands behind a silhouette where the two overlap.
-    fn is_behind(&self, sprite: &SeenSprite, silhouette: &Silhouette) -> bool {
+    /// Whether something stands behind a silhouette where the two overlap.
+    fn is_behind(&self, extent: &Extent, silhouette: &Silhouette) -> bool {
         let [far, near] = silhouette.inverses;
-        if near < sprite.inverse {
+        if near < extent.inverse {
             return false;
         }
         let seg = &self.scene.segs[silhouette.seg as usize];
-        let in_front = || seg.away(sprite.x, sprite.y) > 0;
-        far >= sprite.inverse || !in_front()
+        let in_front = || seg.away(extent.x, extent.y) > 0;
+        far >= extent.inverse || !in_front()
     }
 
-    fn sprite<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &SeenSprite) {
-        let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else { return };
-        sprite.open(self.columns, self.view);
-        for at in (0..self.silhouettes.meet(self.simd, sprite.first, sprite.end, sprite.inverse)).rev() {
+    /// Narrows the columns at hand to what is seen of something past the silhouettes before it, and draws the masked textures that are
+    /// behind it.
+    fn narrow<const DEPTH: bool, const CLASS: bool>(&mut self, extent: &Extent) {
+        let met = self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse);
+        self.narrow_by::<DEPTH, CLASS>(extent, met);
+    }
+
+    /// The same, where so many silhouettes were met.
+    pub fn narrow_by<const DEPTH: bool, const CLASS: bool>(&mut self, extent: &Extent, met: usize) {
+        for at in (0..met).rev() {
             let silhouette = &self.silhouettes.list[self.silhouettes.met(at)];
-            let (first, end) = (silhouette.first.max(sprite.first), silhouette.end.min(sprite.end));
-            if !self.is_behind(sprite, silhouette) {
+            let (first, end) = (silhouette.first.max(extent.first), silhouette.end.min(extent.end));
+            if !self.is_behind(extent, silhouette) {
                 if silhouette.masked {
                     let silhouette = *silhouette;
                     self.texture::<DEPTH, CLASS>(&silhouette, first, end);
                 }
                 continue;
             }
-            let own = first - sprite.first..end - sprite.first;
+            let own = first - extent.first..end - extent.first;
             if silhouette.solid {
                 self.columns.bottoms[own].fill(0);
                 continue;
             }
             let open = silhouette.rows + first - silhouette.first..silhouette.rows + end - silhouette.first;
-            if silhouette.floor.is_some_and(|height| sprite.bottom < height) {
+            if silhouette.floor.is_some_and(|height| extent.bottom < height) {
                 for (row, &limit) in self.columns.bottoms[own.clone()].iter_mut().zip(&self.silhouettes.bottoms[open.clone()]) {
                     *row = (*row).min(limit);
                 }
             }
-            if silhouette.ceiling.is_some_and(|height| sprite.top > height) {
+            if silhouette.ceiling.is_some_and(|height| extent.top > height) {
                 for (row, &limit) in self.columns.tops[own].iter_mut().zip(&self.silhouettes.tops[open]) {
                     *row = (*row).max(limit);
                 }
             }
         }
+    }
+
+    fn sprite<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &SeenSprite) {
+        let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else { return };
+        sprite.open(self.columns, self.view);
+        self.narrow::<DEPTH, CLASS>(&sprite.extent);
         let label = self.labels.next_class();
         let depth = self.frame.depths.sprite(sprite.distance, self.view.focal_y);
         let stamp = sprite.stamp(self.scene, picture, self.columns, depth, label);

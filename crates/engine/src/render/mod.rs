@@ -60,6 +60,7 @@ mod stamp;
 mod stamp_wide;
 mod status_bar;
 mod top_down;
+mod trail;
 mod turn;
 mod view;
 mod walk;

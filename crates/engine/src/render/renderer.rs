@@ -147,6 +147,7 @@ impl Renderer {
     ) {
         self.labels.list.clear();
         sprite::collect(&mut space.sprites, &self.scene, &self.view, camera, world, player, &space.entered);
+        space.trails.collect(&self.scene, &self.view, camera, world);
         let mut masked = Masked {
             scene: &self.scene,
             view: &self.view,
@@ -156,6 +157,7 @@ impl Renderer {
             frame: &mut self.frame,
             silhouettes: &mut space.silhouettes,
             labels: &mut self.labels,
+            trails: &mut space.trails,
             columns: &mut space.stamp_columns,
             simd: self.simd,
         };

@@ -4,6 +4,7 @@ use super::blend::Blend;
 use super::picture::Textures;
 use super::sprite_picture::SpritePicture;
 use super::status_bar::BarArt;
+use super::trail;
 use crate::assets::{Assets, TextureEntry};
 use crate::map::{Map, Node, Seg, Side, TextureId, TextureName};
 use std::sync::Arc;
@@ -100,6 +101,8 @@ pub struct Scene {
     pub(super) bar: BarArt,
     /// What shines through.
     pub(super) blend: Blend,
+    /// Palette indices of the squares that rockets shed, by [`Shade`](crate::world::Shade).
+    pub(super) shades: [u8; 3],
 }
 
 impl Scene {
@@ -180,6 +183,7 @@ impl Scene {
             missing_picture,
             bar: BarArt::new(&assets),
             blend: Blend::new(&assets.palette),
+            shades: trail::SHADES.map(|colour| nearest_colour(&assets.palette, colour)),
             assets,
         }
     }

@@ -13,6 +13,22 @@ use crate::world::{Actor, ActorKind, OPAQUE, World};
 /// Actors nearer than this, in 16.16 map units, are not drawn.
 const NEAREST: i64 = 4 << 16;
 
+/// Where something flat that faces the eye is: what decides which walls hide it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    /// Inverse distance, [`INVERSE_BITS`] fractional bits.
+    pub inverse: i64,
+    /// Where it stands, 16.16.
+    pub x: i64,
+    pub y: i64,
+    /// Height of its upper and lower end.
+    pub top: Fixed,
+    pub bottom: Fixed,
+    /// Frame columns.
+    pub first: usize,
+    pub end: usize,
+}
+
 /// An actor in view.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SeenSprite {
@@ -26,19 +42,10 @@ pub(super) struct SeenSprite {
     pub opacity: u8,
     /// Distance, 16.16.
     pub distance: i64,
-    /// Inverse distance.
-    pub inverse: i64,
     /// Light table.
     pub table: usize,
-    /// Where it stands.
-    pub x: i64,
-    pub y: i64,
-    /// Height of the picture's upper and lower end.
-    pub top: Fixed,
-    pub bottom: Fixed,
-    /// Frame columns.
-    pub first: usize,
-    pub end: usize,
+    /// What of the frame its picture may cover.
+    pub extent: Extent,
     /// Frame rows before clipping.
     pub first_row: i16,
     pub end_row: i16,
@@ -159,14 +166,16 @@ fn see(
         picture: index,
         opacity: shown.opacity,
         distance,
-        inverse: (1 << (INVERSE_BITS + 16)) / distance,
         table,
-        x,
-        y,
-        top,
-        bottom: top - Fixed::from_int(picture.height as i32),
-        first,
-        end,
+        extent: Extent {
+            inverse: (1 << (INVERSE_BITS + 16)) / distance,
+            x,
+            y,
+            top,
+            bottom: top - Fixed::from_int(picture.height as i32),
+            first,
+            end,
+        },
         first_row,
         end_row,
         u,
@@ -189,7 +198,7 @@ impl SeenSprite {
     /// Opens its columns in rows down to `view_rows`; what stands before it narrows them.
     pub fn open(&self, columns: &mut StampColumns, view: &View) {
         let texel = |&column: &u32| ((self.u + self.u_step * i64::from(column)) >> 16) as u16;
-        columns.open(0..view.view_rows as i16, view.columns[self.first..self.end].iter().map(texel));
+        columns.open(0..view.view_rows as i16, view.columns[self.extent.first..self.extent.end].iter().map(texel));
     }
 
     /// The picture on its way to the frame; `depth` and `class` are what its pixels get.
@@ -204,7 +213,7 @@ impl SeenSprite {
         Stamp {
             picture,
             table: &scene.assets.light_tables[self.table],
-            first: self.first,
+            first: self.extent.first,
             columns,
             rows: self.first_row as usize..self.end_row as usize,
             v: self.v,

@@ -12,6 +12,7 @@ use super::scene::Scene;
 use super::silhouette::Silhouettes;
 use super::sprite::Sprites;
 use super::stamp::StampColumns;
+use super::trail::SeenTrails;
 use super::walk::WalkScratch;
 #[cfg(target_arch = "x86_64")]
 use super::wall_list::WallList;
@@ -45,6 +46,7 @@ pub(super) struct Workspace {
     /// Start of each column's texels in the sky's picture.
     pub sky_columns: Vec<u32>,
     pub sprites: Sprites,
+    pub trails: SeenTrails,
     /// Columns of the sprite or weapon at hand.
     pub stamp_columns: StampColumns,
 }

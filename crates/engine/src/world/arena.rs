@@ -81,6 +81,7 @@ impl World {
             return;
         }
         let slot = usize::from(id.slot);
+        self.end_trail(slot);
         self.unlink(slot);
         self.actors[slot].removed = true;
         self.actors[slot].generation = id.generation.wrapping_add(1);

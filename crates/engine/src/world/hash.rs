@@ -16,6 +16,8 @@ impl Clone for World {
             tic: self.tic,
             events: self.events.clone(),
             soot: self.soot.clone(),
+            trails: self.trails.clone(),
+            rockets_shed: self.rockets_shed,
             no_autoaim: self.no_autoaim,
             monsters_drop_items: self.monsters_drop_items,
             awake: self.awake.clone(),
@@ -43,6 +45,8 @@ impl Clone for World {
             tic,
             events,
             soot,
+            trails,
+            rockets_shed,
             no_autoaim,
             monsters_drop_items,
             awake,
@@ -67,6 +71,8 @@ impl Clone for World {
         self.tic = *tic;
         self.events.clone_from(events);
         self.soot.clone_from(soot);
+        self.trails.clone_from(trails);
+        self.rockets_shed = *rockets_shed;
         self.no_autoaim = *no_autoaim;
         self.monsters_drop_items = *monsters_drop_items;
         self.awake.clone_from(awake);
@@ -82,8 +88,8 @@ impl Clone for World {
 }
 
 impl Hash for World {
-    /// Everything but the map, the caller's list of events and soot, of which nothing else depends, and all of it as it is now: what is computed when somebody
-    /// looks hashes as if somebody had looked.
+    /// Everything but the map, the caller's list of events, soot and trails, of which nothing else depends, and all of it as it is
+    /// now: what is computed when somebody looks hashes as if somebody had looked.
     fn hash<H: Hasher>(&self, state: &mut H) {
         state.write_usize(self.sectors.len());
         self.sectors().for_each(|sector| sector.hash(state));

@@ -24,6 +24,9 @@ impl World {
         actor.vy = pitch.cos() * aim.angle.sin() * actor.speed;
         actor.vz = -pitch.sin() * actor.speed;
         self.advance_from_thrower(slot, body.radius);
+        if kind == ActorKind::Rocket && self.get(missile).is_some() {
+            self.begin_trail(slot);
+        }
     }
 
     /// Puts a new missile some way along its flight, still within its thrower; it may burst at once.
@@ -101,6 +104,7 @@ impl World {
 
     /// Stops a missile and starts its explosion, whose first frame is up to 3 tics shorter.
     fn burst(&mut self, slot: usize) {
+        self.end_trail(slot);
         let actor = &mut self.actors[slot];
         (actor.vx, actor.vy, actor.vz) = (Fixed::ZERO, Fixed::ZERO, Fixed::ZERO);
         self.set_phase(slot, Phase::Death);

@@ -38,6 +38,7 @@ mod soot;
 mod spawn;
 mod states;
 mod think;
+mod trail;
 mod view;
 mod waggle;
 mod weapon;
@@ -57,6 +58,7 @@ pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
 pub use sector::{SectorDamage, SectorState};
 pub use soot::Soot;
 pub use states::{Action, Animation, Frame, OPAQUE, Phase, Picture, Then, animation, is_timed};
+pub use trail::{SQUARES, Shade, Shed, Square, Trail};
 pub use weapon::{Hands, WeaponState};
 pub use weapon_info::ammo;
 
@@ -90,6 +92,10 @@ pub struct World {
     pub events: Vec<Event>,
     /// Soot on walls, the oldest first.
     pub soot: Vec<Soot>,
+    /// Trails of rockets of which squares may be left, the oldest first.
+    pub trails: Vec<Trail>,
+    /// Rockets shed squares as they fly (Collateral Damage with its published maps and pictures, whose settings draw them).
+    pub rockets_shed: bool,
     /// Monsters and weapons do not search for targets vertically or sideways (Collateral Damage).
     pub no_autoaim: bool,
     /// Killed soldiers drop their weapon or clip.
@@ -134,6 +140,8 @@ impl World {
             tic: 0,
             events: Vec::new(),
             soot: Vec::new(),
+            trails: Vec::new(),
+            rockets_shed: false,
             no_autoaim: false,
             monsters_drop_items: false,
             awake: Vec::new(),

@@ -35,8 +35,22 @@ pub struct Moment {
     /// Where rockets have burst since the episode began, and the way that they flew, degrees.
     #[serde(default)]
     pub bursts: Vec<[f64; 4]>,
+    /// Where rockets have flown since the episode began.
+    #[serde(default)]
+    pub flights: Vec<Flight>,
     /// The things in view.
     pub labels: Vec<Thing>,
+}
+
+/// How a rocket flew.
+#[derive(Deserialize)]
+pub struct Flight {
+    /// When it was first seen, where, and how fast.
+    pub tic: u32,
+    pub place: [f64; 3],
+    pub velocity: [f64; 3],
+    /// Where it burst, if it has.
+    pub burst: Option<[f64; 3]>,
 }
 
 /// A thing in view.
