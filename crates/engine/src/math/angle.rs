@@ -205,7 +205,7 @@ mod tests {
             let dy = match round % 4 {
                 0 => (dx - any(4)).max(0),
                 1 => any(4).min(dx),
-                _ => (i64::from(dx) * i64::from(any(20)) >> 20) as i32,
+                _ => ((i64::from(dx) * i64::from(any(20))) >> 20) as i32,
             };
             let bisected = {
                 let (mut low, mut high) = (0, 1024);
