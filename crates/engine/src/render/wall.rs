@@ -10,6 +10,7 @@ use super::picture::WallPicture;
 use super::scene::{Face, SceneSeg};
 #[cfg(target_arch = "x86_64")]
 use super::wall_wide;
+use crate::math::divided_by_count;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
@@ -113,7 +114,8 @@ impl SeenLine {
             let change = (i128::from(self.inverse_step) * i128::from(position)) >> END_BITS;
             (self.inverse + change as i64).max(LEAST_INVERSE)
         });
-        let inverse_step = divided(end - first, columns[1] - columns[0]);
+        // Every seg in view waits for this one.
+        let inverse_step = divided_by_count(end - first, columns[1] - columns[0]);
         SeenLine { inverse: first - inverse_step * columns[0], inverse_step }
     }
 
@@ -123,39 +125,6 @@ impl SeenLine {
         let scale = i128::from(height * view.focal_y);
         let rows = |inverse: i64| ((scale * i128::from(inverse)) >> (32 + INVERSE_BITS - ROW_BITS)) as i64;
         Edge { at: (camera.horizon << (ROW_BITS - 16)) - rows(self.inverse), step: -rows(self.inverse_step) }
-    }
-}
-
-/// Most columns of a frame.
-const MOST_COLUMNS: usize = 1920;
-
-/// For each number of columns `2^64` divided by it, rounded up; the first two are not used.
-static COUNT_INVERSES: [u64; MOST_COLUMNS + 1] = {
-    let mut list = [0; MOST_COLUMNS + 1];
-    let mut count = 2;
-    while count <= MOST_COLUMNS {
-        list[count] = u64::MAX / count as u64 + 1;
-        count += 1;
-    }
-    list
-};
-
-/// `whole / columns`, rounded towards 0, by a product in place of a division: every seg in view has to wait for it. `columns`
-/// below 1 count as 1.
-#[inline]
-fn divided(whole: i64, columns: i64) -> i64 {
-    // The inverse is too large by less than one part in `2^64 / columns`: too little to show in the quotient.
-    const LIMIT: u64 = u64::MAX / MOST_COLUMNS as u64;
-    let size = whole.unsigned_abs();
-    if columns <= 1 {
-        return whole;
-    }
-    match COUNT_INVERSES.get(columns as usize) {
-        Some(&inverse) if size < LIMIT => {
-            let quotient = ((u128::from(size) * u128::from(inverse)) >> 64) as i64;
-            if whole < 0 { -quotient } else { quotient }
-        }
-        _ => whole / columns,
     }
 }
 
@@ -323,29 +292,6 @@ impl WallColumn {
             table: block.table[i] as usize,
             at: block.at[i] as u32,
             step: block.step[i] as u32,
-        }
-    }
-}
-
-#[cfg(test)]
-mod division_tests {
-    use super::*;
-    use crate::math::Rng;
-
-    #[test]
-    fn products_divide_exactly() {
-        let mut rng = Rng::new(55);
-        for columns in -1..=MOST_COLUMNS as i64 + 2 {
-            let divisor = columns.max(1);
-            let limit = (u64::MAX / MOST_COLUMNS as u64) as i64;
-            for round in 0..60 {
-                let any = rng.next_u64() as i64 >> (round % 60);
-                // Multiples and what is next to them are where a quotient jumps.
-                let multiple = any / divisor * divisor;
-                for whole in [any, multiple, multiple - 1, multiple + 1, limit - round, -limit + round, i64::MAX, i64::MIN + 1] {
-                    assert_eq!(divided(whole, columns), whole / divisor, "{whole} / {columns}");
-                }
-            }
         }
     }
 }
