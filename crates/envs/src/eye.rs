@@ -108,21 +108,20 @@ impl Eye {
     fn draw(&mut self, world: &World, out: &mut [u8]) {
         let depth = self.kind == ObservationKind::RgbDepth;
         let labels = self.kind == ObservationKind::Segmented;
-        self.renderer.render(world, 0, Buffers { depth, labels });
-        let renderer = &self.renderer;
-        match (self.kind, self.layout) {
+        let (kind, layout, colours) = (self.kind, self.layout, &self.colours);
+        self.renderer.render_then(world, 0, Buffers { depth, labels }, |renderer| match (kind, layout) {
             (ObservationKind::Rgb, Layout::Hwc) => renderer.write_rgb_hwc(out),
             (ObservationKind::Rgb, Layout::Chw) => renderer.write_rgb_chw(out),
             (ObservationKind::Grey, _) => renderer.write_grey(out),
-            (ObservationKind::Segmented, Layout::Hwc) => renderer.write_segmented_hwc(&self.colours, out),
-            (ObservationKind::Segmented, Layout::Chw) => renderer.write_segmented_chw(&self.colours, out),
+            (ObservationKind::Segmented, Layout::Hwc) => renderer.write_segmented_hwc(colours, out),
+            (ObservationKind::Segmented, Layout::Chw) => renderer.write_segmented_chw(colours, out),
             (ObservationKind::RgbDepth, Layout::Chw) => {
                 let (colour, depth) = out.split_at_mut(out.len() / 4 * 3);
                 renderer.write_rgb_chw(colour);
                 renderer.write_depth(depth);
             }
             (ObservationKind::RgbDepth, Layout::Hwc) => renderer.write_rgb_depth_hwc(out),
-        }
+        });
     }
 
     /// Draws the present with the wanted buffers, for tools that read them.

@@ -1,5 +1,6 @@
 //! The buffers that are drawn into.
 
+use super::View;
 use super::column::{ROW_BLOCK, ROW_GROUP};
 use super::depth::Depths;
 use super::plane::Span;
@@ -41,6 +42,22 @@ pub(super) struct Frame {
     pub class: Vec<u16>,
     /// How depth is told.
     pub depths: Depths,
+}
+
+impl Frame {
+    /// A frame of a view; the status bar's rows keep their depth and class.
+    pub fn new(view: &View, depths: Depths) -> Frame {
+        let (width, pixels) = (view.width(), view.size().pixels());
+        Frame { width, colour: vec![0; pixels], depth: vec![0; pixels], class: vec![class::STATUS_BAR; pixels], depths }
+    }
+
+    /// Makes it one of a view.
+    pub fn fit(&mut self, view: &View, depths: Depths) {
+        if (self.width, self.colour.len()) != (view.width(), view.size().pixels()) {
+            *self = Frame::new(view, depths);
+        }
+        self.depths = depths;
+    }
 }
 
 /// Colour and depth column by column, while walls are drawn.

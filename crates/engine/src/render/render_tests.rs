@@ -130,6 +130,33 @@ fn every_family_of_instructions_draws_the_same_bits() {
 }
 
 #[test]
+fn what_does_not_stay_is_drawn_as_what_does() {
+    let (mut world, mut rng) = (yard_world(), Rng::new(34));
+    let sizes = [(128, 72), (160, 120), (128, 72), (100, 48)];
+    let mut pairs = sizes.map(|(width, height)| [renderer(width, height), renderer(width, height)]);
+    for frame in 0..60 {
+        look_anywhere(&mut world, &mut rng);
+        for ([keeps, passes], _) in pairs.iter_mut().zip(sizes) {
+            let buffers = [Buffers::default(), ALL, Buffers { depth: true, labels: false }][frame % 3];
+            keeps.render(&world, 0, buffers);
+            let mut written = 0;
+            passes.render_then(&world, 0, buffers, |passes| {
+                assert!(passes.indices() == keeps.indices() && passes.palette() == keeps.palette(), "frame {frame}");
+                if buffers.depth {
+                    assert!(passes.depth() == keeps.depth(), "depth of frame {frame}");
+                }
+                if buffers.labels {
+                    assert!(passes.classes() == keeps.classes() && passes.labels() == keeps.labels(), "frame {frame}");
+                }
+                written += 1;
+            });
+            assert_eq!(written, 1);
+            assert!(passes.indices().is_empty(), "it does not stay");
+        }
+    }
+}
+
+#[test]
 fn the_learners_frame_is_the_reduction_of_the_classic_one() {
     let (mut world, mut rng) = (yard_world(), Rng::new(21));
     let (mut small, mut large) = (renderer(128, 72), renderer(160, 120));

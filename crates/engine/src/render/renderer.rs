@@ -22,7 +22,7 @@ use crate::simd::Simd;
 use crate::world::World;
 use std::sync::Arc;
 
-/// Draws frames of one size of the worlds of one map. It owns what stays of a frame; what a frame is drawn in belongs to
+/// Draws frames of one size of the worlds of one map. It owns what stays of a frame; what one is drawn in belongs to
 /// its thread, and drawing allocates nothing once every buffer has grown.
 #[derive(Clone, Debug)]
 pub struct Renderer {
@@ -57,17 +57,8 @@ impl Renderer {
     /// A renderer for worlds of the scene's map.
     #[must_use]
     pub fn new(scene: Arc<Scene>, view: Arc<View>) -> Renderer {
-        let (width, pixels) = (view.width(), view.size.pixels());
-        // The status bar's rows keep their depth and class.
-        let frame = Frame {
-            width,
-            colour: vec![0; pixels],
-            depth: vec![0; pixels],
-            class: vec![class::STATUS_BAR; pixels],
-            depths: Depths::default(),
-        };
         Renderer {
-            frame,
+            frame: Frame::default(),
             slopes: RowSlopes::default(),
             labels: Labels::default(),
             status_bar: StatusBar::new(&scene.bar, &view),
@@ -98,13 +89,36 @@ impl Renderer {
     /// # Panics
     /// If the world is of another map than the scene, or has no such player.
     pub fn render(&mut self, world: &World, player: usize, buffers: Buffers) {
+        self.frame.fit(&self.view, self.frame.depths);
+        Workspace::with(|space| self.draw_buffers(space, world, player, buffers));
+    }
+
+    /// Draws what player `player` of `world` sees, and lets `write` read it; it does not stay. Renderers of a thread share the
+    /// memory of such frames, so that it is in a near cache however many worlds take turns.
+    ///
+    /// # Panics
+    /// If the world is of another map than the scene, or has no such player; if `write` draws.
+    pub fn render_then(&mut self, world: &World, player: usize, buffers: Buffers, write: impl FnOnce(&Renderer)) {
+        Workspace::with(|space| {
+            let mut shared = std::mem::take(&mut space.frame);
+            shared.fit(&self.view, self.frame.depths);
+            std::mem::swap(&mut self.frame, &mut shared);
+            self.draw_buffers(space, world, player, buffers);
+            write(self);
+            std::mem::swap(&mut self.frame, &mut shared);
+            space.frame = shared;
+        });
+    }
+
+    #[inline(never)]
+    fn draw_buffers(&mut self, space: &mut Workspace, world: &World, player: usize, buffers: Buffers) {
         assert_eq!(world.sector_count(), self.scene.sector_count, "the world is of another map than the scene");
-        Workspace::with(|space| match (buffers.depth, buffers.labels) {
+        match (buffers.depth, buffers.labels) {
             (false, false) => self.draw::<false, false>(space, world, player),
             (true, false) => self.draw::<true, false>(space, world, player),
             (false, true) => self.draw::<false, true>(space, world, player),
             (true, true) => self.draw::<true, true>(space, world, player),
-        });
+        }
     }
 
     fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut Workspace, world: &World, player: usize) {

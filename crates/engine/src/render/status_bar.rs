@@ -130,14 +130,16 @@ const NUMBER_ROW: i32 = 3;
 pub(super) struct StatusBar {
     /// The bar without numbers, at the frame's size.
     background: Vec<u8>,
-    /// What the frame shows now.
+    /// The bar as it is.
+    pixels: Vec<u8>,
+    /// What it shows.
     shown: Option<BarState>,
 }
 
 impl StatusBar {
     pub fn new(art: &BarArt, view: &View) -> StatusBar {
         let (width, rows) = (view.width(), view.bar_rows.len());
-        let mut bar = StatusBar { background: vec![0; width * rows], shown: None };
+        let mut bar = StatusBar { background: vec![0; width * rows], pixels: vec![0; width * rows], shown: None };
         let mut background = std::mem::take(&mut bar.background);
         for (picture, x) in [(&art.bar, 0), (&art.arms, ARMS)] {
             draw(&mut background, view, picture.as_ref(), x, 0);
@@ -148,8 +150,7 @@ impl StatusBar {
 
     /// Brings the bar up to date.
     pub fn update(&mut self, frame: &mut Frame, art: &BarArt, view: &View, state: BarState) {
-        let start = view.view_rows * frame.width;
-        let pixels = &mut frame.colour[start..];
+        let pixels = &mut self.pixels[..];
         let old = self.shown.replace(state);
         let changed = |part: fn(&BarState, &BarState) -> bool| old.is_none_or(|old| !part(&old, &state));
         let mut canvas = |part: usize| {
@@ -209,6 +210,7 @@ impl StatusBar {
                 number(pixels, view, &art.yellow_digits, most, 314, y);
             }
         }
+        frame.colour[view.view_rows * frame.width..].copy_from_slice(&self.pixels);
     }
 }
 

@@ -4,7 +4,7 @@
 //! batch of 32 would not fit the second cache of a core, and every frame would begin with cold memory: 2 to 4 % of a step.
 
 use super::View;
-use super::frame::Columns;
+use super::frame::{Columns, Frame};
 use super::look::Looks;
 use super::openings::Openings;
 use super::plane::{Planes, Span};
@@ -25,6 +25,8 @@ thread_local! {
 /// What is worked out on the way to a frame. Whatever was drawn before it leaves no trace in the next.
 #[derive(Debug, Default)]
 pub(super) struct Workspace {
+    /// The frame of whoever does not keep it.
+    pub frame: Frame,
     pub openings: Openings,
     pub planes: Planes,
     pub silhouettes: Silhouettes,
