@@ -99,7 +99,7 @@ pub(crate) fn prefetch<T: ?Sized>(value: &T) {
 
 /// Asks for some cache lines from an address on, which need not be that of anything.
 #[inline(always)]
-pub(crate) fn prefetch_lines<T>(start: *const T, lines: usize) {
+pub(crate) fn prefetch_lines(start: *const u8, lines: usize) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};

@@ -45,16 +45,12 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// A frame of a view; the status bar's rows keep their depth and class.
-    pub fn new(view: &View, depths: Depths) -> Frame {
-        let (width, pixels) = (view.width(), view.size().pixels());
-        Frame { width, colour: vec![0; pixels], depth: vec![0; pixels], class: vec![class::STATUS_BAR; pixels], depths }
-    }
-
-    /// Makes it one of a view.
+    /// Makes it one of a view; the status bar's rows keep their depth and class.
     pub fn fit(&mut self, view: &View, depths: Depths) {
-        if (self.width, self.colour.len()) != (view.width(), view.size().pixels()) {
-            *self = Frame::new(view, depths);
+        let (width, pixels) = (view.width(), view.size().pixels());
+        if (self.width, self.colour.len()) != (width, pixels) {
+            let (depth, class) = (vec![0; pixels], vec![class::STATUS_BAR; pixels]);
+            *self = Frame { width, colour: vec![0; pixels], depth, class, depths };
         }
         self.depths = depths;
     }

@@ -62,14 +62,8 @@ impl Masked<'_> {
 
     /// Narrows the columns at hand to what is seen of something past the silhouettes before it, and draws the masked textures that are
     /// behind it.
-    fn narrow<const DEPTH: bool, const CLASS: bool>(&mut self, extent: &Extent) {
-        let met = self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse);
-        self.narrow_by::<DEPTH, CLASS>(extent, met);
-    }
-
-    /// The same, where so many silhouettes were met.
-    pub fn narrow_by<const DEPTH: bool, const CLASS: bool>(&mut self, extent: &Extent, met: usize) {
-        for at in (0..met).rev() {
+    pub fn narrow<const DEPTH: bool, const CLASS: bool>(&mut self, extent: &Extent) {
+        for at in (0..self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse)).rev() {
             let silhouette = &self.silhouettes.list[self.silhouettes.met(at)];
             let (first, end) = (silhouette.first.max(extent.first), silhouette.end.min(extent.end));
             if !self.is_behind(extent, silhouette) {

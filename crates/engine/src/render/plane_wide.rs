@@ -8,11 +8,10 @@ use super::picture::FlatPicture;
 use super::plane::{Plane, PlaneShader, SPAN_BLOCK};
 use super::row_walk::RowWalk;
 use super::row_wide::{self, ROW_VECTOR};
-use super::span_wide::{load_avx512, rows};
+use super::span_wide::{load_avx512, next_run, rows};
 use super::wall_wide::tables;
 use crate::simd::first_of_eight;
 use std::arch::x86_64::*;
-use std::ops::Range;
 
 /// The last row that fits a byte.
 const LAST_BYTE: i16 = 255;
@@ -140,16 +139,6 @@ impl PlaneShader<'_> {
         }
         eight
     }
-}
-
-/// Takes the lowest run of bits out of a mask.
-#[inline(always)]
-fn next_run(mask: &mut u64) -> Range<usize> {
-    // Adding to the lowest bit of a run carries to the place behind the run.
-    let behind = mask.wrapping_add(*mask & mask.wrapping_neg());
-    let run = mask.trailing_zeros() as usize..behind.trailing_zeros() as usize;
-    *mask &= behind;
-    run
 }
 
 /// Rows as bytes; those of columns without rows, which may be negative, as 0.

@@ -3,6 +3,7 @@
 
 use super::plane::{Plane, SPAN_BLOCK, Span};
 use std::arch::x86_64::*;
+use std::ops::Range;
 
 /// With vectors of 64 bytes.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
@@ -109,6 +110,16 @@ pub(super) fn rows(plane: &Plane) -> (i16, i16) {
     (least(first), i16::MAX - least(_mm256_sub_epi16(none, end)))
 }
 
+/// Takes the lowest run of bits out of a mask.
+#[inline(always)]
+pub(super) fn next_run(mask: &mut u64) -> Range<usize> {
+    // Adding to the lowest bit of a run carries to the place behind the run.
+    let behind = mask.wrapping_add(*mask & mask.wrapping_neg());
+    let run = mask.trailing_zeros() as usize..behind.trailing_zeros() as usize;
+    *mask &= behind;
+    run
+}
+
 /// Spans as they are found, row by row and from left to right.
 struct RowSpans<'a> {
     spans: &'a mut Vec<Span>,
@@ -140,13 +151,9 @@ impl RowSpans<'_> {
             mask &= mask.wrapping_add(1);
         }
         while mask != 0 {
-            // Adding to the lowest bit of a run carries to the place behind the run.
-            let first = mask.trailing_zeros();
-            let behind = mask.wrapping_add(mask & mask.wrapping_neg());
-            let end = if behind == 0 { 64 } else { behind.trailing_zeros() };
-            spans[self.count] = Span { row: self.row, first: (from as u32 + first) as u16, end: (from as u32 + end) as u16 };
+            let run = next_run(&mut mask);
+            spans[self.count] = Span { row: self.row, first: (from + run.start) as u16, end: (from + run.end) as u16 };
             self.count += 1;
-            mask &= behind;
         }
     }
 }

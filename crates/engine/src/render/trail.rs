@@ -161,9 +161,8 @@ impl Masked<'_> {
             return;
         }
         let extent = seen.extent(&self.trails.spots[spots.clone()], self.trails.spots[spots.start].tic);
-        let met = self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse);
         self.columns.open(0..self.view.view_rows as i16, (extent.first..extent.end).map(|_| 0));
-        self.narrow_by::<DEPTH, CLASS>(&extent, met);
+        self.narrow::<DEPTH, CLASS>(&extent);
         let columns = std::mem::take(self.columns);
         let open = |column: usize, [top, bottom]: [i16; 2]| {
             let own = column - extent.first;
