@@ -3,6 +3,8 @@
 #[cfg(target_arch = "x86_64")]
 use super::column_wide;
 #[cfg(target_arch = "x86_64")]
+use super::magnified_wide::LitTexels;
+#[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
 
@@ -21,10 +23,17 @@ pub(super) struct Column<'a> {
     pub step: u32,
 }
 
+/// What a column of a wall leaves to the next one.
+#[derive(Default)]
+pub(super) struct ColumnCache {
+    #[cfg(target_arch = "x86_64")]
+    pub lit: LitTexels,
+}
+
 impl Column<'_> {
     /// Draws the frame rows `top..bottom`; `rows` are the base rows. Both lists are padded.
     #[inline(always)]
-    pub fn draw(&self, simd: Simd, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+    pub fn draw(&self, simd: Simd, cache: &mut ColumnCache, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
         #[cfg(target_arch = "x86_64")]
         match (simd.level(), self.texels.len()) {
             // SAFETY: whoever has this `Simd` has the instructions, here and in the arms below.
@@ -32,13 +41,13 @@ impl Column<'_> {
             // SAFETY: as above.
             (Level::Avx512, 64) => return unsafe { column_wide::avx512::<6>(self, pixels, rows, top, bottom) },
             // SAFETY: as above.
-            (Level::Avx2, 128) => return unsafe { column_wide::avx2::<7>(self, pixels, rows, top, bottom) },
+            (Level::Avx2, 128) => return unsafe { column_wide::avx2::<7>(self, cache, pixels, rows, top, bottom) },
             // SAFETY: as above.
-            (Level::Avx2, 64) => return unsafe { column_wide::avx2::<6>(self, pixels, rows, top, bottom) },
+            (Level::Avx2, 64) => return unsafe { column_wide::avx2::<6>(self, cache, pixels, rows, top, bottom) },
             _ => {}
         }
         #[cfg(not(target_arch = "x86_64"))]
-        let _ = simd;
+        let _ = (simd, cache);
         self.draw_plainly(pixels, rows, top, bottom);
     }
 
@@ -56,24 +65,34 @@ mod tests {
     use crate::math::Rng;
 
     #[test]
-    fn all_ways_draw_the_same_column() {
+    fn all_ways_draw_the_same_columns() {
         let mut rng = Rng::new(4);
-        let table: [u8; 256] = std::array::from_fn(|_| rng.byte() as u8);
-        for round in 0..2000 {
+        let tables: [[u8; 256]; 2] = std::array::from_fn(|_| std::array::from_fn(|_| rng.byte() as u8));
+        for round in 0..1000 {
             let height = [64, 128, 96][round % 3];
             let length = [60usize, 100, 403][round / 3 % 3];
             let padded = length.next_multiple_of(ROW_BLOCK) + ROW_GROUP;
-            let texels: Vec<u8> = (0..height).map(|_| rng.byte() as u8).collect();
+            let texels: Vec<u8> = (0..2 * height).map(|_| rng.byte() as u8).collect();
             let rows: Vec<u32> = (0..padded as u32).map(|row| row * 5 / 3).collect();
             let before: Vec<u8> = (0..padded).map(|_| rng.byte() as u8).collect();
-            let (a, b) = (rng.below(length as u32 + 1) as usize, rng.below(length as u32 + 1) as usize);
-            let column = Column { texels: &texels, table: &table, at: rng.next_u64() as u32, step: rng.next_u64() as u32 >> 4 };
-            let mut plain = before.clone();
-            column.draw_plainly(&mut plain, &rows, a.min(b), a.max(b));
-            for simd in Simd::available() {
-                let mut pixels = before.clone();
-                column.draw(simd, &mut pixels, &rows, a.min(b), a.max(b));
-                assert_eq!(pixels, plain, "{simd:?}, rows {a} and {b} of {length}, texture of {height}");
+            let (at, step) = (rng.next_u64() as u32, rng.next_u64() as u32 >> rng.between(4, 12));
+            // Neighbours, of which some show the same texels in the same light, from a little elsewhere on.
+            let mut caches: Vec<ColumnCache> = Simd::available().iter().map(|_| ColumnCache::default()).collect();
+            for _ in 0..6 {
+                let (a, b) = (rng.below(length as u32 + 1) as usize, rng.below(length as u32 + 1) as usize);
+                let column = Column {
+                    texels: &texels[[0, height][rng.below(2) as usize]..][..height],
+                    table: &tables[rng.below(2) as usize],
+                    at: at.wrapping_add(rng.next_u64() as u32 >> 7),
+                    step: step + (rng.next_u64() as u32 >> 16),
+                };
+                let mut plain = before.clone();
+                column.draw_plainly(&mut plain, &rows, a.min(b), a.max(b));
+                for (simd, cache) in Simd::available().into_iter().zip(&mut caches) {
+                    let mut pixels = before.clone();
+                    column.draw(simd, cache, &mut pixels, &rows, a.min(b), a.max(b));
+                    assert_eq!(pixels, plain, "{simd:?}, rows {a} and {b} of {length}, texture of {height}");
+                }
             }
         }
     }

@@ -1,10 +1,11 @@
 //! Columns of textures 64 or 128 texels high, many rows at a time; the plain twin is in `column`, where a test compares them.
 //!
 //! With 64-byte vectors a column of the frame is one vector, the texture one or two, the light table four: nothing is
-//! fetched texel by texel. With 32-byte vectors only positions are computed eight at a time.
+//! fetched texel by texel. With 32-byte vectors only positions are computed eight at a time, but for walls at the eye (`magnified_wide`).
 
-use super::column::{Column, ROW_BLOCK, ROW_GROUP};
+use super::column::{Column, ColumnCache, ROW_BLOCK, ROW_GROUP};
 use super::convert_wide::{load, load_table, look_up_block};
+use super::magnified_wide;
 use std::arch::x86_64::*;
 
 /// The highest byte of each of sixteen numbers, twice.
@@ -70,7 +71,17 @@ pub(super) fn highest_bytes(at: u32, step: u32, rows: &[u32; ROW_BLOCK]) -> __m5
 /// The same with vectors of 32 bytes: whole groups of eight rows are written, and what lies behind is put back.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(super) fn avx2<const BITS: u32>(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+pub(super) fn avx2<const BITS: u32>(
+    column: &Column,
+    cache: &mut ColumnCache,
+    pixels: &mut [u8],
+    rows: &[u32],
+    top: usize,
+    bottom: usize,
+) {
+    if magnified_wide::draw::<BITS>(column, &mut cache.lit, pixels, rows, top, bottom) {
+        return;
+    }
     let texels = column.texels.first_chunk::<64>().expect("64 texels at least");
     let longer = column.texels.first_chunk::<128>();
     let (at, step) = (_mm256_set1_epi32(column.at as i32), _mm256_set1_epi32(column.step as i32));

@@ -21,6 +21,8 @@ mod horizon;
 mod label;
 mod light;
 mod look;
+#[cfg(target_arch = "x86_64")]
+mod magnified_wide;
 mod masked;
 mod masked_column;
 #[cfg(target_arch = "x86_64")]

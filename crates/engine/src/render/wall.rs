@@ -2,7 +2,7 @@
 
 use super::View;
 use super::camera::Camera;
-use super::column::Column;
+use super::column::{Column, ColumnCache};
 use super::depth::Depths;
 use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
@@ -216,7 +216,7 @@ impl WallShader<'_> {
 
     #[inline(always)]
     fn draw_columns<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
-        let slope = self.slope();
+        let (slope, mut cache) = (self.slope(), ColumnCache::default());
         for from in (0..tops.len()).step_by(WALL_BLOCK) {
             #[cfg(target_arch = "x86_64")]
             let block = (simd.level() == Level::Avx512).then(|| {
@@ -236,7 +236,7 @@ impl WallShader<'_> {
                 };
                 #[cfg(not(target_arch = "x86_64"))]
                 let column = self.column(&slope, i64::from(self.view.columns[x]));
-                self.draw_column::<DEPTH>(simd, frame, x, [top as usize, bottom as usize], column);
+                self.draw_column::<DEPTH>(simd, &mut cache, frame, x, [top as usize, bottom as usize], column);
             }
         }
     }
@@ -267,13 +267,14 @@ impl WallShader<'_> {
     fn draw_column<const DEPTH: bool>(
         &self,
         simd: Simd,
+        cache: &mut ColumnCache,
         frame: &mut Columns,
         x: usize,
         [top, bottom]: [usize; 2],
         WallColumn { distance, u, table, at, step }: WallColumn,
     ) {
         let column = Column { texels: self.picture.column(u), table: &self.tables[table], at, step };
-        column.draw(simd, frame.colour_of(x), &self.view.rows, top, bottom);
+        column.draw(simd, cache, frame.colour_of(x), &self.view.rows, top, bottom);
         if DEPTH {
             let depth = self.depths.wall(distance);
             frame.depth_of(x)[top..bottom].fill(depth);
