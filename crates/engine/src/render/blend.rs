@@ -9,7 +9,7 @@ const BITS: usize = 5;
 const MOST: usize = (1 << BITS) - 1;
 
 /// Parts of a colour that a mixture is made of; an opacity is twice as fine.
-const WHOLE: u8 = OPAQUE / 2;
+pub(super) const WHOLE: u8 = OPAQUE / 2;
 
 /// Bits of a channel of which a part was taken: a quarter of a level each.
 const PART_BITS: usize = 10;
@@ -23,8 +23,8 @@ pub(super) struct Blend {
     /// The nearest index of every colour reduced to [`BITS`] a channel: a mixture of any two needs no search, and none is
     /// kept of all pairs and all shares. Padded, so that four bytes may be read at each.
     pub nearest: Box<[u8]>,
-    /// The index of black.
-    black: u8,
+    /// Every colour under so many parts of [`WHOLE`] of black.
+    darkened: Box<[[u8; 256]]>,
 }
 
 impl Blend {
@@ -39,7 +39,11 @@ impl Blend {
                 .fold(0, |packed, &channel| packed << PART_BITS | (u32::from(channel) * u32::from(share)) >> 4)
         };
         let parts = (0..=WHOLE).map(|share| palette.map(|colour| part(share, colour))).collect();
-        Blend { parts, nearest, black: nearest_colour(palette, [0; 3]) }
+        let mut blend = Blend { parts, nearest, darkened: Box::default() };
+        let black = nearest_colour(palette, [0; 3]);
+        let under = |share: u8| std::array::from_fn(|lower| blend.over(black, lower as u8, 2 * share));
+        blend.darkened = (0..=WHOLE).map(under).collect();
+        blend
     }
 
     /// The parts of the upper and the lower colour where the upper one is so opaque, each cut to a whole one.
@@ -58,10 +62,10 @@ impl Blend {
         self.nearest[red << (2 * BITS) | green << BITS | blue]
     }
 
-    /// A palette index under black that hides so many parts of [`OPAQUE`].
+    /// A palette index under black that hides so many parts of [`WHOLE`].
     #[inline]
-    pub fn darkened(&self, lower: u8, opacity: u8) -> u8 {
-        self.over(self.black, lower, opacity)
+    pub fn darkened(&self, lower: u8, hidden: u8) -> u8 {
+        self.darkened[usize::from(hidden)][usize::from(lower)]
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Fitted to moments of the published engine.
 
+use super::blend::WHOLE;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::scene::Face;
 use super::seg::SeenSeg;
@@ -9,7 +10,7 @@ use super::walk::Walk;
 use super::wall::{INVERSE_BITS, TextureLine};
 use crate::assets::Stain;
 use crate::math::Fixed;
-use crate::world::{OPAQUE, Soot};
+use crate::world::Soot;
 
 /// Texels of a stain to a map unit.
 const TEXELS: i64 = 2;
@@ -80,39 +81,51 @@ impl Walk<'_> {
         let along = |x: Fixed, y: Fixed| {
             (i64::from(x.0) * i64::from(face.along[0]) + i64::from(y.0) * i64::from(face.along[1]) + face.origin) >> 28
         };
+        let (width, height) = (usize::from(stain.width), usize::from(stain.height));
         // Where its left and upper end lie: along the line, and above the eye.
         let left = along(mark.x, mark.y) - (i64::from(stain.offset_x) << 16) / TEXELS;
         let above = i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - self.camera.z;
-        for column in columns {
-            let Some(texels) = stain.column(((column.along - left) * TEXELS) >> 16, mark.mirrored) else { continue };
+        // From column to column positions along the wall rise.
+        let texel_column = |column: &SootyColumn| ((column.along - left) * TEXELS) >> 16;
+        let first = columns.partition_point(|column| texel_column(column) < 0);
+        let count = columns[first..].partition_point(|column| texel_column(column) < width as i64);
+        for column in &columns[first..first + count] {
+            let u = texel_column(column) as usize;
+            let texels = &stain.texels[if mark.mirrored { width - 1 - u } else { u } * height..][..height];
             // By the lower edges of rows as all things are, but upside down by the upper ones.
             let from_edge = if mark.upturned { column.step } else { 0 };
             let at = ((above * TEXELS) << 16) - column.to_horizon - from_edge;
             let texel_row = |row: u32| (at + column.step * i64::from(row)) >> 32;
-            let [top, bottom] = column.rows;
-            let base_rows = &self.view.rows[top..bottom];
             // Downwards texel rows grow: those of the picture are one run.
-            let first = base_rows.partition_point(|&row| texel_row(row) < 0);
-            let end = base_rows.partition_point(|&row| texel_row(row) < texels.len() as i64);
-            for row in top + first..top + end {
+            let [top, bottom] = column.rows;
+            let frame_row = |texel: usize| {
+                let base_row = ((texel as i64) << 32).wrapping_sub(at + 1).div_euclid(column.step) + 1;
+                self.view.first_row[base_row.clamp(0, i64::from(self.view.base_view_rows)) as usize] as usize
+            };
+            let rows = frame_row(0).max(top)..frame_row(height).min(bottom);
+            let hidden = |row: usize| {
                 let v = texel_row(self.view.rows[row]) as usize;
-                let opacity = opacity(texels[if mark.upturned { texels.len() - 1 - v } else { v }], column.table);
-                if opacity > 0 {
-                    let pixel = &mut self.columns.colour_of(column.x)[row];
-                    *pixel = self.scene.blend.darkened(*pixel, opacity);
-                    if DEPTH {
-                        self.columns.depth_of(column.x)[row] = column.depth;
-                    }
+                hidden(texels[if mark.upturned { height - 1 - v } else { v }], column.table)
+            };
+            let pixels = self.columns.colour_of(column.x);
+            for row in rows.clone() {
+                let hidden = hidden(row);
+                if hidden > 0 {
+                    pixels[row] = self.scene.blend.darkened(pixels[row], hidden);
                 }
+            }
+            if DEPTH {
+                let pixels = self.columns.depth_of(column.x);
+                rows.filter(|&row| hidden(row) > 0).for_each(|row| pixels[row] = column.depth);
             }
         }
     }
 }
 
-/// Parts of [`OPAQUE`] that a texel hides in the light of a table: in the dark there is less to hide.
-fn opacity(texel: u8, table: usize) -> u8 {
+/// Parts of [`WHOLE`] that a texel hides in the light of a table: in the dark there is less to hide.
+fn hidden(texel: u8, table: usize) -> u8 {
     let hidden = ((usize::from(texel) + 2) * (LIGHT_TABLES - table) + 2) >> 7;
-    (2 * hidden).min(usize::from(OPAQUE)) as u8
+    hidden.min(usize::from(WHOLE)) as u8
 }
 
 #[cfg(test)]
@@ -194,7 +207,7 @@ mod tests {
 
     #[test]
     fn in_the_dark_there_is_less_to_hide() {
-        assert_eq!([opacity(255, 0), opacity(0, 0), opacity(128, 0)], [OPAQUE, 0, OPAQUE / 2]);
-        assert_eq!([opacity(255, 16), opacity(255, 31)], [OPAQUE / 2, 4]);
+        assert_eq!([hidden(255, 0), hidden(0, 0), hidden(128, 0)], [WHOLE, 0, WHOLE / 2]);
+        assert_eq!([hidden(255, 16), hidden(255, 31)], [WHOLE / 2, 2]);
     }
 }
