@@ -23,8 +23,8 @@ pub(super) struct Blend {
     /// The nearest index of every colour reduced to [`BITS`] a channel: a mixture of any two needs no search, and none is
     /// kept of all pairs and all shares. Padded, so that four bytes may be read at each.
     pub nearest: Box<[u8]>,
-    /// Every colour under so many parts of [`WHOLE`] of black.
-    darkened: Box<[[u8; 256]]>,
+    /// Every colour under so many parts of [`WHOLE`] of black; under none it stays as it is.
+    darkened: Box<[[u8; 256]; 1 << (WHOLE.ilog2() + 1)]>,
 }
 
 impl Blend {
@@ -39,10 +39,12 @@ impl Blend {
                 .fold(0, |packed, &channel| packed << PART_BITS | (u32::from(channel) * u32::from(share)) >> 4)
         };
         let parts = (0..=WHOLE).map(|share| palette.map(|colour| part(share, colour))).collect();
-        let mut blend = Blend { parts, nearest, darkened: Box::default() };
+        let as_it_is = Box::new(std::array::from_fn(|_| std::array::from_fn(|index| index as u8)));
+        let mut blend = Blend { parts, nearest, darkened: as_it_is };
         let black = nearest_colour(palette, [0; 3]);
-        let under = |share: u8| std::array::from_fn(|lower| blend.over(black, lower as u8, 2 * share));
-        blend.darkened = (0..=WHOLE).map(under).collect();
+        for share in 1..=WHOLE {
+            blend.darkened[usize::from(share)] = std::array::from_fn(|lower| blend.over(black, lower as u8, 2 * share));
+        }
         blend
     }
 
@@ -65,7 +67,7 @@ impl Blend {
     /// A palette index under black that hides so many parts of [`WHOLE`].
     #[inline]
     pub fn darkened(&self, lower: u8, hidden: u8) -> u8 {
-        self.darkened[usize::from(hidden)][usize::from(lower)]
+        self.darkened[usize::from(hidden) % self.darkened.len()][usize::from(lower)]
     }
 }
 

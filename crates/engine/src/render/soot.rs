@@ -95,28 +95,27 @@ impl Walk<'_> {
             // By the lower edges of rows as all things are, but upside down by the upper ones.
             let from_edge = if mark.upturned { column.step } else { 0 };
             let at = ((above * TEXELS) << 16) - column.to_horizon - from_edge;
-            let texel_row = |row: u32| (at + column.step * i64::from(row)) >> 32;
             // Downwards texel rows grow: those of the picture are one run.
             let [top, bottom] = column.rows;
             let frame_row = |texel: usize| {
                 let base_row = ((texel as i64) << 32).wrapping_sub(at + 1).div_euclid(column.step) + 1;
                 self.view.first_row[base_row.clamp(0, i64::from(self.view.base_view_rows)) as usize] as usize
             };
-            let rows = frame_row(0).max(top)..frame_row(height).min(bottom);
-            let hidden = |row: usize| {
-                let v = texel_row(self.view.rows[row]) as usize;
-                hidden(texels[if mark.upturned { height - 1 - v } else { v }], column.table)
-            };
-            let pixels = self.columns.colour_of(column.x);
-            for row in rows.clone() {
-                let hidden = hidden(row);
-                if hidden > 0 {
-                    pixels[row] = self.scene.blend.darkened(pixels[row], hidden);
-                }
+            let (first, end) = (frame_row(0).max(top), frame_row(height).min(bottom));
+            if first >= end {
+                continue;
+            }
+            // Upside down from the last row upwards: what is left of a row counts as a whole one.
+            let last = (height as i64) << 32;
+            let (at, step) = if mark.upturned { (last - 1 - at, -column.step) } else { (at, column.step) };
+            let hidden = |row: u32| hidden(texels[((at + step * i64::from(row)) >> 32) as usize], column.table);
+            let rows = &self.view.rows[first..end];
+            for (pixel, &row) in self.columns.colour_of(column.x)[first..end].iter_mut().zip(rows) {
+                *pixel = self.scene.blend.darkened(*pixel, hidden(row));
             }
             if DEPTH {
-                let pixels = self.columns.depth_of(column.x);
-                rows.filter(|&row| hidden(row) > 0).for_each(|row| pixels[row] = column.depth);
+                let pixels = self.columns.depth_of(column.x)[first..end].iter_mut();
+                pixels.zip(rows).filter(|&(_, &row)| hidden(row) > 0).for_each(|(pixel, _)| *pixel = column.depth);
             }
         }
     }
