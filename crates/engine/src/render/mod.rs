@@ -72,6 +72,7 @@ mod wall_list;
 #[cfg(target_arch = "x86_64")]
 mod wall_wide;
 mod weapon;
+mod weapon_cache;
 mod workspace;
 
 pub use frame::class;

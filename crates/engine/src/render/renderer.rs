@@ -190,8 +190,8 @@ impl Renderer {
         let state = BarState::of_player(world, player);
         let player = &world.players[player];
         let level = world.get(player.actor).map_or(0, |body| world.sector(body.sector).light);
-        let mut canvas =
-            weapon::Canvas { frame: &mut self.frame, columns: &mut space.stamp_columns, simd: self.simd, scene, view };
+        let (columns, cache) = (&mut space.stamp_columns, &mut space.weapons);
+        let mut canvas = weapon::Canvas { frame: &mut self.frame, columns, cache, simd: self.simd, scene, view };
         canvas.weapon::<DEPTH, CLASS>(camera, player, i32::from(level));
         self.status_bar.update(&mut self.frame, &scene.bar, view, state);
         let tint = Tint::of_player(player, self.options.green_goggles);

@@ -8,6 +8,7 @@ use super::trail;
 use crate::assets::{Assets, TextureEntry};
 use crate::map::{Map, Node, Seg, Side, TextureId, TextureName};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The name of the ceiling texture that is the sky.
 const SKY_FLAT: TextureName = TextureName::new("F_SKY1");
@@ -77,6 +78,8 @@ pub(super) struct Face {
 /// A map and the pictures it is drawn with, worked out once and shared by every world of the map.
 #[derive(Debug)]
 pub struct Scene {
+    /// No other scene of the process has it.
+    pub(super) serial: u64,
     pub(super) assets: Arc<Assets>,
     pub(super) segs: Vec<SceneSeg>,
     pub(super) faces: Vec<Face>,
@@ -167,7 +170,9 @@ impl Scene {
             lower_unpegged: false,
             contrast: 0,
         };
+        static MADE: AtomicU64 = AtomicU64::new(0);
         Scene {
+            serial: MADE.fetch_add(1, Ordering::Relaxed),
             segs: map.segs.iter().map(|seg| scene_seg(map, seg)).collect(),
             // A side that no line uses is never drawn.
             faces: faces.into_iter().map(|face| face.unwrap_or_else(|| bare.clone())).collect(),

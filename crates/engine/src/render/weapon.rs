@@ -7,6 +7,7 @@ use super::light::Light;
 use super::palette::power_shows;
 use super::scene::Scene;
 use super::stamp::{Stamp, StampColumns, TEXEL_BITS, first_row};
+use super::weapon_cache::{LayerKey, WeaponCache};
 use crate::simd::Simd;
 use crate::world::{OPAQUE, Player, PlayerSprite};
 
@@ -20,6 +21,7 @@ pub(super) struct Canvas<'a> {
     pub view: &'a View,
     /// Scratch: the columns of the layer at hand.
     pub columns: &'a mut StampColumns,
+    pub cache: &'a mut WeaponCache,
     pub simd: Simd,
 }
 
@@ -41,7 +43,13 @@ impl Canvas<'_> {
         let shown = scene.assets.sprites.get(usize::from(sprite.sprite));
         let image = shown.and_then(|shown| shown.frames.get(usize::from(sprite.frame))).map(|frame| frame.images[0]);
         let picture = image.and_then(|image| scene.sprite_pictures.get(image as usize)?.as_ref());
-        let Some(picture) = picture else { return };
+        let (Some(image), Some(picture)) = (image, picture) else { return };
+        let is_opaque = opacity == OPAQUE;
+        let (size, place) = (view.size(), [sprite.x, sprite.y]);
+        let key = LayerKey { scene: scene.serial, size, image, light_table: table, place };
+        if is_opaque && self.cache.copy::<DEPTH, CLASS>(&key, self.frame) {
+            return;
+        }
         let left = (i64::from(sprite.x.0) - (i64::from(picture.offset_x) << 16)) << (TEXEL_BITS - 16);
         let top = (i64::from(sprite.y.0) - (i64::from(picture.offset_y) << 16)) << (TEXEL_BITS - 16);
         let u_step = (SCREEN_WIDTH << TEXEL_BITS) / i64::from(view.base_width);
@@ -68,10 +76,13 @@ impl Canvas<'_> {
             rows: row(0)..row(picture.height),
             v,
             v_step,
-            blend: (opacity < OPAQUE).then_some((&scene.blend, opacity)),
+            blend: (!is_opaque).then_some((&scene.blend, opacity)),
             depth: 0,
             class: class::WEAPON,
         };
+        if is_opaque {
+            self.cache.note(key, &stamp, self.simd, view);
+        }
         stamp.draw::<DEPTH, CLASS>(self.simd, self.frame, &view.rows);
     }
 }

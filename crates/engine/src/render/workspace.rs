@@ -16,6 +16,7 @@ use super::trail::SeenTrails;
 use super::walk::WalkScratch;
 #[cfg(target_arch = "x86_64")]
 use super::wall_list::WallList;
+use super::weapon_cache::WeaponCache;
 use std::cell::RefCell;
 
 thread_local! {
@@ -51,12 +52,19 @@ pub(super) struct Workspace {
     pub trails: SeenTrails,
     /// Columns of the sprite or weapon at hand.
     pub stamp_columns: StampColumns,
+    pub weapons: WeaponCache,
 }
 
 impl Workspace {
     /// Draws in this thread's workspace.
     pub fn with(draw: impl FnOnce(&mut Workspace)) {
         WORKSPACE.with_borrow_mut(draw);
+    }
+
+    /// How many layers of weapons this thread would copy.
+    #[cfg(test)]
+    pub fn weapons_known() -> usize {
+        WORKSPACE.with_borrow(|space| space.weapons.known())
     }
 
     /// Makes ready for a frame of a scene at tic `tic`.
