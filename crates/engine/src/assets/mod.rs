@@ -45,7 +45,8 @@ impl Stain {
     #[must_use]
     pub fn column(&self, u: i64, mirrored: bool) -> Option<&[u8]> {
         let u = usize::try_from(if mirrored { i64::from(self.width) - 1 - u } else { u }).ok()?;
-        self.texels.chunks_exact(usize::from(self.height).max(1)).nth(u)
+        let height = usize::from(self.height);
+        self.texels.get(u * height..(u + 1) * height)
     }
 }
 

@@ -6,6 +6,7 @@ use super::blend::WHOLE;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::scene::Face;
 use super::seg::SeenSeg;
+use super::stamp::first_row;
 use super::walk::Walk;
 use super::wall::{INVERSE_BITS, TextureLine};
 use crate::assets::Stain;
@@ -81,32 +82,27 @@ impl Walk<'_> {
         let along = |x: Fixed, y: Fixed| {
             (i64::from(x.0) * i64::from(face.along[0]) + i64::from(y.0) * i64::from(face.along[1]) + face.origin) >> 28
         };
-        let (width, height) = (usize::from(stain.width), usize::from(stain.height));
         // Where its left and upper end lie: along the line, and above the eye.
         let left = along(mark.x, mark.y) - (i64::from(stain.offset_x) << 16) / TEXELS;
         let above = i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - self.camera.z;
         // From column to column positions along the wall rise.
         let texel_column = |column: &SootyColumn| ((column.along - left) * TEXELS) >> 16;
         let first = columns.partition_point(|column| texel_column(column) < 0);
-        let count = columns[first..].partition_point(|column| texel_column(column) < width as i64);
+        let count = columns[first..].partition_point(|column| texel_column(column) < i64::from(stain.width));
         for column in &columns[first..first + count] {
-            let u = texel_column(column) as usize;
-            let texels = &stain.texels[if mark.mirrored { width - 1 - u } else { u } * height..][..height];
+            let Some(texels) = stain.column(texel_column(column), mark.mirrored) else { continue };
             // By the lower edges of rows as all things are, but upside down by the upper ones.
             let from_edge = if mark.upturned { column.step } else { 0 };
             let at = ((above * TEXELS) << 16) - column.to_horizon - from_edge;
             // Downwards texel rows grow: those of the picture are one run.
             let [top, bottom] = column.rows;
-            let frame_row = |texel: usize| {
-                let base_row = ((texel as i64) << 32).wrapping_sub(at + 1).div_euclid(column.step) + 1;
-                self.view.first_row[base_row.clamp(0, i64::from(self.view.base_view_rows)) as usize] as usize
-            };
-            let (first, end) = (frame_row(0).max(top), frame_row(height).min(bottom));
+            let frame_row = |texel: usize| first_row(self.view, texel as u32, at, column.step.max(1)) as usize;
+            let (first, end) = (frame_row(0).max(top), frame_row(texels.len()).min(bottom));
             if first >= end {
                 continue;
             }
             // Upside down from the last row upwards: what is left of a row counts as a whole one.
-            let last = (height as i64) << 32;
+            let last = (texels.len() as i64) << 32;
             let (at, step) = if mark.upturned { (last - 1 - at, -column.step) } else { (at, column.step) };
             let hidden = |row: u32| hidden(texels[((at + step * i64::from(row)) >> 32) as usize], column.table);
             let rows = &self.view.rows[first..end];

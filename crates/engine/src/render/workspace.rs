@@ -23,7 +23,7 @@ thread_local! {
     static WORKSPACE: RefCell<Workspace> = RefCell::default();
 }
 
-/// What is worked out on the way to a frame. Whatever was drawn before it leaves no trace in the next.
+/// What is worked out on the way to a frame. Whatever was drawn before it shows in no pixel of the next.
 #[derive(Debug, Default)]
 pub(super) struct Workspace {
     /// The frame of whoever does not keep it.
