@@ -140,13 +140,19 @@ fn what_is_left_out_is_told_in_one_line() {
     let folder = Folder::new("left-out");
     let env = one_map(&folder, "RemedyRushLevel1-v0", |source| {
         source.lines[0].special = 160;
+        // A door that nobody can open, as nothing sets it off.
+        source.lines[1].special = 12;
         source.sectors[0].special = 9;
         source.things.push(thing(9080, 224.0, 20.0, 0, 0));
     });
     let told = env.unwrap().left_out().unwrap();
     let line = ": left out: line special 160 (1), sector special 9 (1), thing type 9080 (1)";
     assert!(told.ends_with(line) && told.contains("one.wad"), "{told}");
-    assert_eq!(one_map(&folder, "RemedyRushLevel1-v0", |_| ()).unwrap().left_out(), None);
+    let left_out = |change: fn(&mut MapSource)| one_map(&folder, "RemedyRushLevel1-v0", change).unwrap().left_out();
+    assert_eq!(left_out(|_| ()), None);
+    // The numbers of an older game's line types, where they are: every one of them acts.
+    let told = left_out(|source| (source.namespace, source.lines[1].special) = ("doom".into(), 12)).unwrap();
+    assert!(told.ends_with(": left out: line special 12 (1)"), "{told}");
 }
 
 #[test]

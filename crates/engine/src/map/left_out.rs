@@ -1,14 +1,19 @@
 //! What a map asks for that the engine does not do.
 
-use super::{MapSource, TextureName};
+use super::{MapSource, SourceLine, TextureName, special};
 use crate::world::ActorKind;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Sector specials that are played: none, harm before any script.
-const SECTOR_SPECIALS: [i32; 2] = [0, 83];
+/// Sector specials that are played, or that mean nothing.
+const SECTOR_SPECIALS: [i32; 8] = {
+    let [step, other_step] = special::SEQUENCE_STEPS;
+    // 8 and 17 flicker in older games' numbers only.
+    [0, special::PHASED, special::SEQUENCE_START, step, other_step, 8, 17, special::LAVA]
+};
 
-/// Editor numbers of player starts, of deathmatch starts and of the editor's camera, which nothing is lost by.
-const NO_THINGS: [i32; 6] = [1, 2, 3, 4, 11, 32000];
+/// Editor numbers of player starts, of deathmatch starts, of where teleporters lead and of the editor's camera, which nothing
+/// is lost by.
+const NO_THINGS: [i32; 7] = [1, 2, 3, 4, 11, 14, 32000];
 
 impl MapSource {
     /// What the engine leaves out of this map, a phrase each with how often it occurs; empty if nothing.
@@ -19,9 +24,10 @@ impl MapSource {
             numbers.for_each(|number| *counts.entry(number).or_default() += 1);
             counts
         };
+        let acts = |line: &SourceLine| special::acts(&self.namespace, line.special, line.triggered);
         let known = |kind: i32| NO_THINGS.contains(&kind) || ActorKind::from_editor_number(kind).is_some();
         let lists = [
-            ("line special", count(&mut self.lines.iter().map(|line| line.special).filter(|&special| special != 0))),
+            ("line special", count(&mut self.lines.iter().filter(|line| acts(line)).map(|line| line.special))),
             (
                 "sector special",
                 count(&mut self.sectors.iter().map(|sector| sector.special).filter(|special| !SECTOR_SPECIALS.contains(special))),

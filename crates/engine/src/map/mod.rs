@@ -14,6 +14,7 @@ mod hostile_tests;
 mod left_out;
 mod locator;
 mod source;
+pub mod special;
 #[cfg(test)]
 mod stone_room;
 mod tile_grid;

@@ -112,6 +112,8 @@ pub struct SourceLine {
     pub id: i32,
     /// Line special.
     pub special: i32,
+    /// Somebody can set off its special (`playeruse`, `playercross`, ...). Nothing does here, so that it is not written.
+    pub triggered: bool,
     /// Arguments of the special.
     pub args: [i32; 5],
 }

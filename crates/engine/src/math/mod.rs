@@ -7,8 +7,10 @@ mod count_division;
 mod fixed;
 mod quarter_sine;
 mod rng;
+mod tangent;
 
 pub use angle::Angle;
 pub(crate) use count_division::divided_by_count;
 pub use fixed::Fixed;
 pub use rng::Rng;
+pub(crate) use tangent::fine_tangent;

@@ -129,12 +129,13 @@ impl Masked<'_> {
         let top = hung_from.min(i64::from(ceiling.0)) - self.camera.z;
         let bottom = (hung_from - i64::from(height.0)).max(i64::from(floor.0)) - self.camera.z;
         let light = Light::new(self.camera, i32::from(front.light) + face.contrast);
-        let along = TextureLine::new(self.camera, face);
+        let along = TextureLine::new(self.camera, face, silhouette.first);
         let (upper, lower) =
             (silhouette.ends.edge(self.camera, self.view, top), silhouette.ends.edge(self.camera, self.view, bottom));
         let first_rows = &self.view.first_row;
         // The published engine draws four columns at once; the depth of those that do not fill a four it tells as a sprite's.
         let whole_fours = (self.view.columns[first] + 3) & !3..(self.view.columns[end - 1] + 1) & !3;
+        let level = self.level_row(hung_from);
         for x in first..end {
             let row_index = silhouette.rows + x - silhouette.first;
             let (open_top, open_bottom) = (self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]);
@@ -157,16 +158,33 @@ impl Masked<'_> {
             let shown = MaskedColumn { texels, table, at, step };
             let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
             let told = if in_four { depths.wall(distance) } else { depths.sprite(distance, self.view.focal_y) };
-            shown.draw(self.simd, &self.view.rows, rows.start as usize..rows.end as usize, |row, lit| {
-                let pixel = row * *width + x;
-                colour[pixel] = lit;
-                if DEPTH {
-                    depth[pixel] = told;
-                }
-                if CLASS {
-                    classes[pixel] = class::WALL;
-                }
-            });
+            let rows = rows.start as usize..rows.end as usize;
+            let hole = level.filter(|&(row, texel)| rows.contains(&row) && shown.begins_at(texel));
+            let end_above = hole.map_or(rows.end, |(row, _)| row);
+            for rows in [rows.start..end_above, end_above + 1..rows.end] {
+                shown.draw(self.simd, &self.view.rows, rows, |row, lit| {
+                    let pixel = row * *width + x;
+                    colour[pixel] = lit;
+                    if DEPTH {
+                        depth[pixel] = told;
+                    }
+                    if CLASS {
+                        classes[pixel] = class::WALL;
+                    }
+                });
+            }
         }
+    }
+
+    /// The frame row just above the horizon and the texel at the height of the eye, where a texture hangs so that a texel's upper edge
+    /// is as high as the eye: a run of texels that begins there shows only below.
+    fn level_row(&self, hung_from: i64) -> Option<(usize, i64)> {
+        let above = hung_from - self.camera.z;
+        if (self.camera.horizon | above) & 0xFFFF != 0 {
+            return None;
+        }
+        let base_row = u32::try_from((self.camera.horizon >> 16) - 1).ok()?;
+        let row = usize::try_from(*self.view.first_row.get(base_row as usize)?).ok()?;
+        (self.view.rows[row] == base_row && row < self.view.view_rows).then_some((row, above >> 16))
     }
 }

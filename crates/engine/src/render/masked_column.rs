@@ -22,6 +22,15 @@ pub(super) struct MaskedColumn<'a> {
 }
 
 impl MaskedColumn<'_> {
+    /// Whether a run of texels without holes begins at one.
+    pub fn begins_at(&self, texel: i64) -> bool {
+        let is_opaque = |texel: i64| {
+            let texel = usize::try_from(texel).ok().and_then(|texel| self.texels.get(texel));
+            texel.is_some_and(|&texel| texel & MaskedPicture::OPAQUE != 0)
+        };
+        is_opaque(texel) && !is_opaque(texel - 1)
+    }
+
     /// Gives the frame rows of `rows` without a hole and their colours to `put`; `base_rows` are the base rows, padded.
     #[inline(always)]
     pub fn draw(&self, simd: Simd, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {

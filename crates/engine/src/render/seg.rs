@@ -126,13 +126,13 @@ impl Walk<'_> {
     fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, back: &Look) {
         let face = seen.face;
         let shut = back.ceiling <= front.floor || back.floor >= front.ceiling || back.floor >= back.ceiling;
-        // Between two skies there is no wall: the sky goes on.
+        // Between two skies there is no wall: the sky goes on, down to the floor at most.
         let both_sky = self.is_sky(front.ceiling_texture) && self.is_sky(back.ceiling_texture);
         let other_light = front.light != back.light;
-        let ceiling = if both_sky { back.ceiling } else { front.ceiling };
+        let ceiling = if both_sky { back.ceiling.max(front.floor) } else { front.ceiling };
         let other_texture = front.ceiling_texture != back.ceiling_texture;
         if shut || ceiling != back.ceiling || other_texture || (other_light && !both_sky) {
-            let wall = (back.ceiling < ceiling).then(|| self.edge(seen, back.ceiling));
+            let wall = (back.ceiling < ceiling && !both_sky).then(|| self.edge(seen, back.ceiling));
             let part = Part { plane: self.ceiling_plane(front), edge: self.edge(seen, ceiling), wall };
             if self.above(seen, part) {
                 let hung_from = match face.top {
@@ -251,7 +251,7 @@ impl Walk<'_> {
             tables: &self.scene.assets.light_tables,
             line: &seen.line,
             ends: &seen.ends,
-            texture: TextureLine::new(self.camera, seen.face),
+            texture: TextureLine::new(self.camera, seen.face, first),
             picture: &self.scene.textures.walls[picture],
             light,
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,

@@ -8,15 +8,15 @@ use super::column::ROW_GROUP;
 use super::frame::column_stride;
 use super::narrow::padded;
 use super::{FrameSize, SizeError};
-use crate::math::{Angle, Fixed};
+use crate::math::{Angle, fine_tangent};
 
 /// Height of the status bar's art, in its own pixels; its width is 320.
 pub(super) const BAR_ART_HEIGHT: u32 = 32;
 /// Width of the status bar's art.
 pub(super) const BAR_ART_WIDTH: u32 = 320;
 
-/// A fine angle, of which there are 8192 a turn.
-const FINE: u32 = 1 << 19;
+/// Half the view, in the angles of which there are 8192 a turn.
+const FINE_45_DEGREES: i32 = 1024;
 
 /// Columns that rows are drawn in steps of: the base columns of a chunk repeat in the next one, a constant to the right.
 pub(super) const CHUNK: usize = 8;
@@ -122,12 +122,14 @@ impl View {
     }
 }
 
-/// Direction of the left edge of a base column relative to the view direction, to the next fine angle to the left.
+/// Direction of the left edge of a base column relative to the view direction: the first fine angle, from the right, whose
+/// tangent lies at the edge or to the left of it.
 fn column_angle(width: u32, column: u32) -> Angle {
     // To the left is positive. Half a base column is the unit.
-    let left = width as i32 - 2 * column as i32;
-    let exact = Angle::of_vector(Fixed::from_int(width as i32), Fixed::from_int(left));
-    Angle(exact.0.wrapping_add(FINE - 1) & !(FINE - 1))
+    let (width, left) = (i64::from(width), i64::from(width) - 2 * i64::from(column));
+    let angles: Vec<i32> = (-FINE_45_DEGREES..=FINE_45_DEGREES).collect();
+    let first = angles.partition_point(|&fine| i64::from(fine_tangent(fine)) * width < left << 16);
+    Angle::from_fine(first as i32 - FINE_45_DEGREES)
 }
 
 /// From base rows to the first frame row at or below them, without a table: the frame row `y` shows base row

@@ -43,6 +43,8 @@ pub(super) struct TextureLine {
     pub gain: i64,
     /// Its change a column.
     pub gain_step: i64,
+    /// First position that is shown: the line's, or none at the left edge of the screen.
+    pub least: i64,
     /// Last position of the line.
     pub last: i64,
     /// Texture position of the line's start.
@@ -50,24 +52,26 @@ pub(super) struct TextureLine {
 }
 
 impl TextureLine {
-    /// The texture positions of one side of a line.
-    pub fn new(camera: &Camera, face: &Face) -> TextureLine {
+    /// The texture positions of one side of a line, of which the piece in view begins at a column.
+    pub fn new(camera: &Camera, face: &Face, first: usize) -> TextureLine {
         let [tx, ty] = face.along.map(i64::from);
         TextureLine {
             along: (camera.x * tx + camera.y * ty + face.origin) >> 28,
             gain: tx * camera.ray[0] + ty * camera.ray[1],
             gain_step: tx * camera.ray_step[0] + ty * camera.ray_step[1],
+            least: if first == 0 { i64::MIN } else { 0 },
             last: face.texels - 1,
             offset: face.u_offset,
         }
     }
 
     /// Horizontal texture position at a base column where the distance is known, 16.16. The left edge of a line's first
-    /// column may lie before the line: it shows the line's first texel.
+    /// column may lie before the line: it shows the line's first texel. In the first column of the screen, where lines begin
+    /// that reach farther, it shows the texel that would be there.
     #[inline]
     pub fn at(&self, column: i64, distance: i64) -> i64 {
         let gain = (self.gain + self.gain_step * column) >> 32;
-        (self.along + ((distance * gain) >> 28)).min(self.last).max(0) + self.offset
+        (self.along + ((distance * gain) >> 28)).min(self.last).max(self.least) + self.offset
     }
 }
 
@@ -333,6 +337,7 @@ mod tests {
                     along: signed(30),
                     gain: signed(58),
                     gain_step: signed(50),
+                    least: [0, i64::MIN][(signed(1) & 1) as usize],
                     last: signed(24).abs(),
                     offset: signed(24),
                 },

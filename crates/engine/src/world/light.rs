@@ -30,12 +30,19 @@ struct Light {
 
 /// How a light changes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-enum Effect {
+pub(super) enum Effect {
     /// A ramp from one level to the other and back.
     Glow { from: i32, to: i32, tics: i32, done: i32 },
     /// Bright and dark by turns.
     Strobe { bright: i32, dark: i32, bright_tics: i32, dark_tics: i32, left: i32 },
+    /// A gleam that comes and goes every [`PHASES`] tics and is dark between; `phase` is the next tic's.
+    Phased { dark: i32, phase: u32 },
 }
+
+/// Tics from one gleam of a phased light to the next; the last of them gleam.
+pub(super) const PHASES: u32 = 64;
+/// Tics that a gleam needs to be as bright as light gets. A step less, and it goes again.
+const GLEAM_TICS: i32 = 12;
 
 impl Effect {
     /// The effect and its level after some tics more, at least one, from the level that it has now.
@@ -63,6 +70,13 @@ impl Effect {
                     }
                 }
                 (Effect::Strobe { bright, dark, bright_tics, dark_tics, left: left - count as i32 }, level)
+            }
+            Effect::Phased { dark, phase } => {
+                let shown = phase.wrapping_add(count - 1) % PHASES;
+                let left = (PHASES - shown) as i32;
+                let steps = left.min(2 * GLEAM_TICS - 1 - left).max(0);
+                let level = dark + (255 - dark) * steps / GLEAM_TICS;
+                (Effect::Phased { dark, phase: (shown + 1) % PHASES }, clamp_light(level))
             }
         }
     }
@@ -123,12 +137,14 @@ impl World {
 
     fn start_lights(&mut self, tag: i32, effect: Effect) {
         let map = Arc::clone(&self.map);
-        for sector in map.tagged(tag) {
-            let busy = &mut self.sectors[sector.0 as usize].light_busy;
-            if !std::mem::replace(busy, true) {
-                self.lights.of_sector.set(sector, self.lights.list.len());
-                self.lights.list.push(Light { sector, effect, as_of: self.lights.tics });
-            }
+        map.tagged(tag).for_each(|sector| self.start_light(sector, effect));
+    }
+
+    pub(super) fn start_light(&mut self, sector: SectorId, effect: Effect) {
+        let busy = &mut self.sectors[sector.0 as usize].light_busy;
+        if !std::mem::replace(busy, true) {
+            self.lights.of_sector.set(sector, self.lights.list.len());
+            self.lights.list.push(Light { sector, effect, as_of: self.lights.tics });
         }
     }
 
@@ -192,6 +208,7 @@ mod tests {
             Effect::Glow { from: -20, to: 40_000, tics: 1, done: -1 },
             Effect::Strobe { bright: 200, dark: 100, bright_tics: 3, dark_tics: 5, left: 1 },
             Effect::Strobe { bright: 90, dark: 90, bright_tics: 3, dark_tics: 1, left: 1 },
+            Effect::Phased { dark: 48, phase: 17 },
         ];
         for start in effects {
             let mut one_by_one = vec![(start, 128)];

@@ -21,6 +21,7 @@ mod hash;
 mod hitscan;
 mod inventory;
 mod light;
+mod map_lights;
 mod missile;
 mod monster;
 mod movement;
@@ -156,6 +157,7 @@ impl World {
             scratch_crossings: Vec::new(),
             scratch_slots: Vec::new(),
         };
+        world.start_lights_of_map();
         for number in 1..=4 {
             for thing in map.things.iter().filter(|thing| thing.kind == number) {
                 world.add_player(thing.x, thing.y, thing.angle);

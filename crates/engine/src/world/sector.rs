@@ -1,7 +1,7 @@
 //! What changes of a sector.
 
 use super::{DamageKind, World};
-use crate::map::{Sector, SectorId, TextureId};
+use crate::map::{Sector, SectorId, TextureId, special};
 use crate::math::Fixed;
 use std::sync::Arc;
 
@@ -40,10 +40,10 @@ pub struct SectorState {
 }
 
 impl SectorState {
-    /// A sector as the map starts it. Special 83 is lava before any script: 8 points every 32 tics, through any suit.
+    /// A sector as the map starts it. Lava hurts before any script: 8 points every 32 tics, through any suit.
     pub(crate) fn new(sector: &Sector) -> SectorState {
         let damage = match sector.special & 0xFF {
-            83 => SectorDamage { amount: 8, interval: 32, leak: 256 },
+            special::LAVA => SectorDamage { amount: 8, interval: 32, leak: 256 },
             _ => SectorDamage::default(),
         };
         SectorState {

@@ -4,6 +4,20 @@ use super::error::{UdmfError, UdmfFault};
 use super::lexer::{Lexer, TokenKind};
 use crate::map::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
 
+/// Fields of a line by which somebody can set off its special.
+const TRIGGERS: [&str; 10] = [
+    "playeruse",
+    "playeruseback",
+    "playercross",
+    "playerpush",
+    "monsteruse",
+    "monstercross",
+    "monsterpush",
+    "missilecross",
+    "impact",
+    "anycross",
+];
+
 /// Reads UDMF text. Indices are not checked here; [`Map::build`](crate::map::Map::build) does.
 ///
 /// # Errors
@@ -132,6 +146,7 @@ impl<'a> Reader<'a> {
                 "dontpegbottom" => line.lower_unpegged = self.truth(field)?,
                 "id" => line.id = self.whole(field)?,
                 "special" => line.special = self.whole(field)?,
+                name if TRIGGERS.contains(&name) => line.triggered |= self.truth(field)?,
                 name => self.argument(name, field, &mut line.args)?,
             }
         }

@@ -34,6 +34,7 @@ fn random_source(rng: &mut Rng) -> MapSource {
             lower_unpegged: rng.below(2) == 0,
             id: any(rng),
             special: any(rng),
+            triggered: false,
             args: args(rng),
         });
         source.sides.push(SourceSide {
@@ -90,7 +91,7 @@ fn the_grammar_is_read_in_all_its_forms() {
         vertex { x = 010; y = .5; ; }
         sector { texturefloor = "flat5"; textureceiling = "-"; heightfloor = 8.0; id = 7; user_glow = true; }
         sidedef { sector = 0; texturemiddle = "stone"; offsetx = 4; offsetx = 5; }
-        linedef { v1 = 0; v2 = 1; sidefront = 0; sideback = -1; blocking = true; dontpegtop = FALSE; arg4 = 3; arg5 = "x"; }
+        linedef { v1 = 0; v2 = 1; sidefront = 0; sideback = -1; blocking = true; dontpegtop = FALSE; playerUse = true; arg4 = 3; arg5 = "x"; }
         thing { x = 0.25; y = 0; type = 1; angle = -90; }"#;
     let map = read(text.as_bytes()).unwrap();
     assert_eq!(map.namespace, "zdoom");
@@ -100,7 +101,7 @@ fn the_grammar_is_read_in_all_its_forms() {
     assert_eq!(map.sectors[0].floor_texture, TextureName::new("FLAT5"));
     assert_eq!(map.sectors[0].ceiling_texture, TextureName::NONE);
     assert_eq!(map.sides[0].offset_x, 5.0, "the last of equal fields counts");
-    assert!(map.lines[0].blocking && !map.lines[0].upper_unpegged && map.lines[0].back.is_none());
+    assert!(map.lines[0].triggered && map.lines[0].blocking && !map.lines[0].upper_unpegged && map.lines[0].back.is_none());
     assert_eq!(map.lines[0].args, [0, 0, 0, 0, 3]);
     assert_eq!((map.things[0].kind, map.things[0].angle), (1, -90));
 }
