@@ -13,4 +13,4 @@ pub use angle::Angle;
 pub(crate) use count_division::divided_by_count;
 pub use fixed::Fixed;
 pub use rng::Rng;
-pub(crate) use tangent::fine_tangent;
+pub(crate) use tangent::{STEEPEST, fine_tangent};

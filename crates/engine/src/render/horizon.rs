@@ -1,58 +1,23 @@
 //! Where the horizon lies at a pitch, and how far away floors are in each row below it.
 
 use super::View;
-
-/// Steepest pitch that is drawn, in fine angles of 8192 a turn: 60 degrees, beyond what a player can look.
-const STEEPEST: i32 = 8192 / 6;
-/// Fractional bits of the series.
-const BITS: u32 = 60;
-
-/// Tangents of the fine angles up to the steepest, 16.16. The sine table is too coarse to divide by itself.
-static TANGENTS: [i32; STEEPEST as usize + 1] = {
-    let mut table = [0; STEEPEST as usize + 1];
-    let mut i = 0;
-    while i < table.len() {
-        let (sine, cosine) = sine_and_cosine(i as i128);
-        table[i] = (((sine << 16) + cosine / 2) / cosine) as i32;
-        i += 1;
-    }
-    table
-};
-
-/// Sine and cosine of a fine angle by their power series.
-const fn sine_and_cosine(fine: i128) -> (i128, i128) {
-    // Pi with 60 fractional bits.
-    const PI: i128 = 0x3243_F6A8_885A_308D;
-    let angle = PI * fine / 4096;
-    let (mut sine, mut cosine) = (0, 0);
-    let (mut term, mut n) = (1i128 << BITS, 0);
-    while n < 24 {
-        let signed = if n % 4 < 2 { term } else { -term };
-        if n % 2 == 0 {
-            cosine += signed;
-        } else {
-            sine += signed;
-        }
-        n += 1;
-        term = ((term * angle) >> BITS) / n;
-    }
-    (sine, cosine)
-}
+use crate::math::{STEEPEST, fine_tangent};
 
 /// The horizon in base rows, 16.16, at a pitch (negative looks up): a shear, so that verticals stay vertical.
 pub(super) fn at_pitch(view: &View, pitch: i32) -> i64 {
     // A quarter turn less the pitch, cut to fine angles.
     let fine = ((0x4000_0000 - i64::from(pitch)) >> 19) as i32 - 2048;
-    let fine = fine.clamp(-STEEPEST, STEEPEST);
-    let tangent = i64::from(TANGENTS[fine.unsigned_abs() as usize]);
-    // Negative ones are rounded towards zero after a half was added, as the published engine was seen to do: a thousandth
-    // of a row, which moves distant floors by half a texel.
-    let tangent = if fine < 0 { 1 - tangent } else { tangent };
+    // Beyond what a player can look.
+    let tangent = fine_tangent(fine.clamp(-STEEPEST, STEEPEST));
     (i64::from(view.base_view_rows) << 15) + ((view.focal_y * tangent) >> 16)
 }
 
 /// The part of a row, 16.16, that floors in the row of the horizon count as below it at least.
 const NEAREST: i64 = 64;
+
+/// How much longer the vertical focal length is for floors than the horizontal one, 16.16: 1.2, but cut as in the published engine, which
+/// moves distant floors by a thousandth of a texel.
+const FLOOR_ASPECT: i64 = 78_643;
 
 /// What the rows of a frame have in common for every floor and ceiling.
 #[derive(Clone, Debug, Default)]
@@ -88,7 +53,8 @@ impl RowSlopes {
         self.sky.clear();
         // The middle of the row decides how far the floor is in it.
         let middle = |row: u32| (below(row) + (1 << 15)).abs().max(NEAREST);
-        self.distances.extend(rows.iter().map(|&row| (view.focal_y << 16) / middle(row)));
+        let focal = (i64::from(view.base_width) * FLOOR_ASPECT) >> 1;
+        self.distances.extend(rows.iter().map(|&row| (focal << 16) / middle(row)));
     }
 }
 
@@ -100,14 +66,6 @@ mod tests {
 
     fn view(width: u16, height: u16) -> View {
         View::new(FrameSize { width, height }).unwrap()
-    }
-
-    #[test]
-    fn tangents_are_rounded_to_the_nearest() {
-        for (fine, &tangent) in TANGENTS.iter().enumerate() {
-            let exact = (fine as f64 * std::f64::consts::TAU / 8192.0).tan() * 65536.0;
-            assert_eq!(f64::from(tangent), exact.round(), "fine angle {fine}");
-        }
     }
 
     #[test]

@@ -27,6 +27,8 @@ mod masked;
 mod masked_column;
 #[cfg(target_arch = "x86_64")]
 mod masked_wide;
+#[cfg(test)]
+mod measured_tests;
 mod narrow;
 #[cfg(target_arch = "x86_64")]
 mod narrow_wide;

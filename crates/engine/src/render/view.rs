@@ -128,7 +128,7 @@ fn column_angle(width: u32, column: u32) -> Angle {
     // To the left is positive. Half a base column is the unit.
     let (width, left) = (i64::from(width), i64::from(width) - 2 * i64::from(column));
     let angles: Vec<i32> = (-FINE_45_DEGREES..=FINE_45_DEGREES).collect();
-    let first = angles.partition_point(|&fine| i64::from(fine_tangent(fine)) * width < left << 16);
+    let first = angles.partition_point(|&fine| fine_tangent(fine) * width < left << 16);
     Angle::from_fine(first as i32 - FINE_45_DEGREES)
 }
 
@@ -200,6 +200,10 @@ mod tests {
         assert_eq!((angles[0], angles[80]), (1 << 29, 0), "45 degrees to the left, and straight ahead");
         // Column 79's left edge is atan(1/80) = 16.296 fine angles to the left, column 81's as many to the right.
         assert_eq!((angles[79], angles[81]), (17 << 19, -(16 << 19)));
+        // Measured at 640 columns where the edge lies next to a fine angle: at 380.0006, 213.9988, 57.0048, -133.9805 and -364.9978.
+        let wide = View::new(FrameSize { width: 640, height: 480 }).unwrap();
+        let fine = [224, 267, 306, 353, 412].map(|column: usize| wide.column_angles[column].0 as i32 >> 19);
+        assert_eq!(fine, [380, 215, 58, -134, -365]);
     }
 
     #[test]
