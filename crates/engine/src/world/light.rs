@@ -166,10 +166,11 @@ impl World {
     /// The light of a sector.
     #[inline]
     pub(crate) fn light_of(&self, sector: SectorId) -> i16 {
-        let level = self.sectors[sector.0 as usize].light;
-        match self.lights.of_sector.get(sector) {
-            None => level,
-            Some(index) => self.lights.now(index, level).1,
+        let state = &self.sectors[sector.0 as usize];
+        // Of a map with a few lights most sectors have none: the list need not be read for them.
+        match state.light_busy.then(|| self.lights.of_sector.get(sector)).flatten() {
+            None => state.light,
+            Some(index) => self.lights.now(index, state.light).1,
         }
     }
 
