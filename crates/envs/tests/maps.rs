@@ -151,8 +151,11 @@ fn what_is_left_out_is_told_in_one_line() {
     let left_out = |change: fn(&mut MapSource)| one_map(&folder, "RemedyRushLevel1-v0", change).unwrap().left_out();
     assert_eq!(left_out(|_| ()), None);
     // The numbers of an older game's line types, where they are: every one of them acts.
-    let told = left_out(|source| (source.namespace, source.lines[1].special) = ("doom".into(), 12)).unwrap();
-    assert!(told.ends_with(": left out: line special 12 (1)"), "{told}");
+    let told = left_out(|source| {
+        (source.namespace, source.lines[1].special, source.sectors[0].special) = ("doom".into(), 12, 1);
+    })
+    .unwrap();
+    assert!(told.ends_with(": left out: line special 12 (1), sector special 1 (1)"), "{told}");
 }
 
 #[test]

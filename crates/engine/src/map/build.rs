@@ -2,7 +2,7 @@
 
 use super::{
     Blockmap, Line, LineFlags, Locator, Map, MapError, MapSource, MapThing, Sector, SectorId, Side, SideId, TextureId,
-    TextureName, Vertex, bsp,
+    TextureName, Vertex, bsp, special,
 };
 use crate::math::{Angle, Fixed};
 use std::collections::BTreeMap;
@@ -210,7 +210,8 @@ fn build_sectors(source: &MapSource, names: &mut Names) -> Result<Vec<Sector>, M
             floor_texture: names.intern(sector.floor_texture),
             ceiling_texture: names.intern(sector.ceiling_texture),
             light: whole("sector", i, "lightlevel", sector.light, LIGHT_LIMIT)? as i16,
-            special: sector.special,
+            // Those of an older game mean something else.
+            special: if special::are_of(&source.namespace) { sector.special } else { 0 },
             tag: sector.tag,
             bounds: [Fixed::MAX, Fixed::MIN, Fixed::MAX, Fixed::MIN],
             lines: Vec::new(),

@@ -5,10 +5,10 @@ use crate::world::ActorKind;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sector specials that are played, or that mean nothing.
-const SECTOR_SPECIALS: [i32; 8] = {
+const SECTOR_SPECIALS: [i32; 7] = {
     let [step, other_step] = special::SEQUENCE_STEPS;
     // 8 and 17 flicker in older games' numbers only.
-    [0, special::PHASED, special::SEQUENCE_START, step, other_step, 8, 17, special::LAVA]
+    [special::PHASED, special::SEQUENCE_START, step, other_step, 8, 17, special::LAVA]
 };
 
 /// Editor numbers of player starts, of deathmatch starts, of where teleporters lead and of the editor's camera, which nothing
@@ -25,13 +25,11 @@ impl MapSource {
             counts
         };
         let acts = |line: &SourceLine| special::acts(&self.namespace, line.special, line.triggered);
+        let plays = |special: i32| special == 0 || special::are_of(&self.namespace) && SECTOR_SPECIALS.contains(&special);
         let known = |kind: i32| NO_THINGS.contains(&kind) || ActorKind::from_editor_number(kind).is_some();
         let lists = [
             ("line special", count(&mut self.lines.iter().filter(|line| acts(line)).map(|line| line.special))),
-            (
-                "sector special",
-                count(&mut self.sectors.iter().map(|sector| sector.special).filter(|special| !SECTOR_SPECIALS.contains(special))),
-            ),
+            ("sector special", count(&mut self.sectors.iter().map(|sector| sector.special).filter(|&special| !plays(special)))),
             ("thing type", count(&mut self.things.iter().map(|thing| thing.kind).filter(|&kind| !known(kind)))),
         ];
         let phrase = |(what, counts): (&str, BTreeMap<i32, usize>)| {

@@ -9,8 +9,10 @@ pub const SEQUENCE_STEPS: [i32; 2] = [3, 4];
 /// Sector: lava that hurts before any script.
 pub const LAVA: i32 = 83;
 
-/// Namespaces whose lines have these numbers. In all others they are the numbers of an older game's line types.
-const NAMESPACES: [&str; 2] = ["zdoom", "zdoomtranslated"];
+/// Whether the specials of a namespace have these numbers. In all others they are those of an older game.
+pub(super) fn are_of(namespace: &str) -> bool {
+    matches!(namespace, "zdoom" | "zdoomtranslated")
+}
 
 /// Line specials that need nobody to set them off: horizons, floors within floors, links, contents, scrolling, copied and
 /// sloping planes, lines and planes with an own light or air, mirrors, currents, wind, portals.
@@ -21,5 +23,5 @@ const AT_START: [i32; 30] = [
 
 /// Whether a line's special does anything where it stands: one that acts from the start, or one that somebody can set off.
 pub(super) fn acts(namespace: &str, special: i32, triggered: bool) -> bool {
-    special != 0 && (triggered || AT_START.contains(&special) || !NAMESPACES.contains(&namespace))
+    special != 0 && (triggered || AT_START.contains(&special) || !are_of(namespace))
 }

@@ -12,13 +12,14 @@ impl World {
     /// Starts phased lights, and those gleams that run along a row of neighbouring sectors.
     pub(super) fn start_lights_of_map(&mut self) {
         let map = Arc::clone(&self.map);
+        let mut taken = vec![false; map.sectors.len()];
         for (id, sector) in (0..).map(SectorId).zip(&map.sectors) {
             match sector.special & 0xFF {
                 special::PHASED => {
                     let phase = (i32::from(sector.light) + 1).rem_euclid(PHASES as i32) as u32;
                     self.start_light(id, Effect::Phased { dark: DARK, phase });
                 }
-                special::SEQUENCE_START => self.start_sequence(&sequence(&map, id)),
+                special::SEQUENCE_START => self.start_sequence(&sequence(&map, id, &mut taken)),
                 _ => {}
             }
         }
@@ -35,14 +36,16 @@ impl World {
     }
 }
 
-/// The sectors of a light sequence from its start: each borders the one before, and two specials take turns.
-fn sequence(map: &Map, start: SectorId) -> Vec<SectorId> {
+/// The sectors of a light sequence from its start: each borders the one before, and two specials take turns. Those that are
+/// taken belong to a sequence already.
+fn sequence(map: &Map, start: SectorId, taken: &mut [bool]) -> Vec<SectorId> {
     let (mut row, mut wanted) = (vec![start], special::SEQUENCE_STEPS);
     while let Some(&last) = row.last() {
         let lines = map.sectors[last.0 as usize].lines.iter().map(|&line| &map.lines[line as usize]);
         let mut neighbours = lines.flat_map(|line| [Some(line.front_sector), line.back_sector]).flatten();
-        let is_next = |id: &SectorId| map.sectors[id.0 as usize].special & 0xFF == wanted[0] && !row.contains(id);
+        let is_next = |id: &SectorId| map.sectors[id.0 as usize].special & 0xFF == wanted[0] && !taken[id.0 as usize];
         let Some(next) = neighbours.find(is_next) else { break };
+        taken[next.0 as usize] = true;
         row.push(next);
         wanted.swap(0, 1);
     }
@@ -116,5 +119,9 @@ mod tests {
         let darkest = |room: usize| all[room][1..].iter().copied().min().unwrap();
         assert_eq!([0, 1, 2, 3].map(darkest), [96, 96, 128, 96]);
         assert!(all[4].iter().all(|&level| level == 50) && all[5].iter().all(|&level| level == 70));
+        // Of two that begin at both ends of a row the first has it.
+        let both = levels(&[(special::SEQUENCE_START, 96), (step, 90), (other, 80), (special::SEQUENCE_START, 96)]);
+        let darkest = |room: usize| both[room][1..].iter().copied().min().unwrap();
+        assert_eq!([0, 1, 2, 3].map(darkest), [96, 90, 80, 96]);
     }
 }
