@@ -1,31 +1,20 @@
 //! Borders of what is drawn, as they were seen in the published engine (docs/results/pixels.md).
 
 use super::camera::Camera;
+use super::render_tests::{STYLE, assets};
 use super::wall::TextureLine;
 use super::*;
-use crate::assets::Assets;
 use crate::map::{Map, MapBuilder, Mark, Style};
 use crate::math::{Angle, Fixed};
 use crate::world::World;
 use std::sync::Arc;
 
-const YARD: Style = Style {
-    floor: 0,
-    ceiling: 300,
-    light: 210,
-    floor_texture: "LAVA1",
-    ceiling_texture: "F_SKY1",
-    wall: "A-BROK28",
-    step: "AQF052",
-    lintel: "AQF052",
-    special: 0,
-    tag: 0,
-};
+const YARD: Style = Style { ceiling: 300, ceiling_texture: "F_SKY1", ..STYLE };
 
 /// A world of what is built and one who looks east from (0, 0) at a height, and a renderer for 160x120.
 fn stand(builder: MapBuilder, view_z: i32) -> (World, Renderer, Arc<Scene>) {
     let map = Arc::new(Map::build(&builder.finish().unwrap(), "yard", &[]).unwrap());
-    let scene = Arc::new(Scene::new(&map, Assets::embedded()));
+    let scene = Arc::new(Scene::new(&map, assets()));
     let mut world = World::new(map, 1);
     world.add_player(Fixed::ZERO, Fixed::ZERO, Angle::EAST);
     world.players[0].view_z = Fixed::from_int(view_z);

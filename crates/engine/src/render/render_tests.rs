@@ -8,7 +8,7 @@ use crate::simd::Simd;
 use crate::world::{ActorKind, Weapon, World};
 use std::sync::{Arc, OnceLock};
 
-const STYLE: Style = Style {
+pub(super) const STYLE: Style = Style {
     floor: 0,
     ceiling: 250,
     light: 210,
@@ -21,7 +21,7 @@ const STYLE: Style = Style {
     tag: 0,
 };
 
-fn assets() -> Arc<Assets> {
+pub(super) fn assets() -> Arc<Assets> {
     static ASSETS: OnceLock<Arc<Assets>> = OnceLock::new();
     ASSETS.get_or_init(Assets::embedded).clone()
 }

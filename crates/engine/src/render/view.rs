@@ -80,7 +80,8 @@ impl View {
         rows.resize(column_stride(view_rows) + ROW_GROUP, 0);
 
         let focal_y = i64::from(width) * 6 * 65536 / 10;
-        let column_angles = columns.iter().map(|&column| column_angle(width, column)).collect();
+        let tangents: Vec<i64> = (-FINE_45_DEGREES..=FINE_45_DEGREES).map(fine_tangent).collect();
+        let column_angles = columns.iter().map(|&column| column_angle(&tangents, width, column)).collect();
         View {
             size,
             bar_rows: all_rows[view_rows..].into(),
@@ -123,12 +124,11 @@ impl View {
 }
 
 /// Direction of the left edge of a base column relative to the view direction: the first fine angle, from the right, whose
-/// tangent lies at the edge or to the left of it.
-fn column_angle(width: u32, column: u32) -> Angle {
+/// tangent lies at the edge or to the left of it. `tangents` are those of half the view to the right and half to the left.
+fn column_angle(tangents: &[i64], width: u32, column: u32) -> Angle {
     // To the left is positive. Half a base column is the unit.
     let (width, left) = (i64::from(width), i64::from(width) - 2 * i64::from(column));
-    let angles: Vec<i32> = (-FINE_45_DEGREES..=FINE_45_DEGREES).collect();
-    let first = angles.partition_point(|&fine| fine_tangent(fine) * width < left << 16);
+    let first = tangents.partition_point(|&tangent| tangent * width < left << 16);
     Angle::from_fine(first as i32 - FINE_45_DEGREES)
 }
 

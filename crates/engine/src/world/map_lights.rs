@@ -57,25 +57,13 @@ mod tests {
     use super::*;
     use crate::map::{MapBuilder, Style};
     use crate::math::Fixed;
+    use crate::world::patrol_tests::STYLE;
 
     /// A row of rooms by special and light, the levels of each after 0 to 64 tics.
     fn levels(rooms: &[(i32, i32)]) -> Vec<Vec<i16>> {
         let mut builder = MapBuilder::new();
         for (room, &(special, light)) in (0..).zip(rooms) {
-            let stone = "STONE5";
-            let style = Style {
-                floor: 0,
-                ceiling: 128,
-                light,
-                special,
-                tag: 0,
-                floor_texture: stone,
-                ceiling_texture: stone,
-                wall: stone,
-                step: stone,
-                lintel: stone,
-            };
-            builder.rectangle(style, room * 64, 0, room * 64 + 64, 64);
+            builder.rectangle(Style { light, special, ..STYLE }, room * 64, 0, room * 64 + 64, 64);
         }
         builder.thing(1, 32.0, 32.0, 0);
         let map = Map::build(&builder.finish().unwrap(), "row", &[]).unwrap();
