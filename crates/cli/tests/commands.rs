@@ -276,3 +276,14 @@ fn a_run_hands_out_an_agent_that_fits_in_a_file() {
     assert_eq!((&config["frames"], &config["seed"]), (&Value::from(512), &Value::from(9)));
     assert_eq!(config["changes"].as_array().unwrap().len(), 3, "{config}");
 }
+
+#[test]
+fn a_measurement_of_beginnings_alone_says_so() {
+    let folder = Folder::new("bench");
+    let told = |line: &str| String::from_utf8(folder.run(line).stderr).unwrap();
+    let short = told("bench ArmamentBurdenLevel1-v0 --envs 256 --seconds 0.02");
+    assert!(short.lines().count() == 1 && short.contains("--seconds "), "{short}");
+    let episode: f64 = short.split("--seconds ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!(episode >= 1.0, "{short}");
+    assert_eq!(told("bench ArmamentBurdenLevel1-v0 --envs 1 --seconds 2"), "");
+}

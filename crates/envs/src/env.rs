@@ -32,7 +32,7 @@ pub(crate) struct Blueprint {
 }
 
 /// Length of an episode, in tics after its first observation.
-const EPISODE_TICS: u32 = 2100;
+pub(crate) const EPISODE_TICS: u32 = 2100;
 
 impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {

@@ -47,6 +47,13 @@ pub fn run(args: &BenchArgs) -> Outcome {
             report.resets
         );
     }
+    if args.seconds < report.episode_seconds {
+        eprintln!(
+            "hasard: this is the rate of episodes' beginnings, which cost more or less than the rest: --seconds {:.0} has whole ones of all {}",
+            report.episode_seconds.ceil(),
+            args.envs
+        );
+    }
     Ok(())
 }
 
