@@ -2,6 +2,7 @@
 
 use super::View;
 use super::camera::Camera;
+use super::fence::{Hung, Scales};
 use super::frame::{Frame, class};
 use super::label::{Label, Labels};
 use super::light::{Light, ONE_TABLE_DISTANCE};
@@ -121,9 +122,9 @@ impl Masked<'_> {
         let face = &scene.faces[seg.face as usize];
         let Some(texture) = face.middle else { return };
         let (front, back) = (self.world.sector(SectorId(seg.front)), self.world.sector(SectorId(seg.back)));
-        let picture = &scene.textures.masked[self.pictures[usize::from(texture.0)] as usize];
+        let fence = &scene.textures.fences[self.pictures[usize::from(texture.0)] as usize];
         let (floor, ceiling) = (front.floor.max(back.floor), front.ceiling.min(back.ceiling));
-        let height = Fixed::from_int(picture.height as i32);
+        let height = Fixed::from_int(fence.picture.height as i32);
         let hung_from = i64::from(if face.lower_unpegged { floor + height } else { ceiling }.0) + face.v_offset;
         // Of the texture, what is within the opening.
         let top = hung_from.min(i64::from(ceiling.0)) - self.camera.z;
@@ -135,7 +136,8 @@ impl Masked<'_> {
         let first_rows = &self.view.first_row;
         // The published engine draws four columns at once; the depth of those that do not fill a four it tells as a sprite's.
         let whole_fours = (self.view.columns[first] + 3) & !3..(self.view.columns[end - 1] + 1) & !3;
-        let level = self.level_row(hung_from);
+        let scales = Scales::new(self.view, &silhouette.line, silhouette.base_ends);
+        let eye = hung_from - self.camera.z;
         for x in first..end {
             let row_index = silhouette.rows + x - silhouette.first;
             let (open_top, open_bottom) = (self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]);
@@ -152,39 +154,24 @@ impl Masked<'_> {
             let nearness = (silhouette.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let table = &scene.assets.light_tables[light.table(nearness)];
             let u = along.at(column, distance) >> 16;
-            let texels = picture.column(u.rem_euclid(i64::from(picture.width)) as u32);
+            let (texels, runs) = fence.column(u.rem_euclid(i64::from(fence.picture.width)) as u32);
             let step = (distance * self.view.inverse_focal_y) >> 16;
-            let at = ((hung_from - self.camera.z) << 16) - self.camera.to_horizon(step);
-            let shown = MaskedColumn { texels, table, at, step };
+            let at = (eye << 16) - self.camera.to_horizon(step);
+            let hung = Hung { horizon: self.camera.horizon, eye, scale: scales.at(column) };
+            let shown = MaskedColumn { texels, table, at, step, runs, hung };
             let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
             let told = if in_four { depths.wall(distance) } else { depths.sprite(distance, self.view.focal_y) };
             let rows = rows.start as usize..rows.end as usize;
-            let hole = level.filter(|&(row, texel)| rows.contains(&row) && shown.begins_at(texel));
-            let end_above = hole.map_or(rows.end, |(row, _)| row);
-            for rows in [rows.start..end_above, end_above + 1..rows.end] {
-                shown.draw(self.simd, &self.view.rows, rows, |row, lit| {
-                    let pixel = row * *width + x;
-                    colour[pixel] = lit;
-                    if DEPTH {
-                        depth[pixel] = told;
-                    }
-                    if CLASS {
-                        classes[pixel] = class::WALL;
-                    }
-                });
-            }
+            shown.draw(self.simd, &self.view.rows, rows, |row, lit| {
+                let pixel = row * *width + x;
+                colour[pixel] = lit;
+                if DEPTH {
+                    depth[pixel] = told;
+                }
+                if CLASS {
+                    classes[pixel] = class::WALL;
+                }
+            });
         }
-    }
-
-    /// The frame row just above the horizon and the texel at the height of the eye, where a texture hangs so that a texel's upper edge
-    /// is as high as the eye: a run of texels that begins there shows only below.
-    fn level_row(&self, hung_from: i64) -> Option<(usize, i64)> {
-        let above = hung_from - self.camera.z;
-        if (self.camera.horizon | above) & 0xFFFF != 0 {
-            return None;
-        }
-        let base_row = u32::try_from((self.camera.horizon >> 16) - 1).ok()?;
-        let row = usize::try_from(*self.view.first_row.get(base_row as usize)?).ok()?;
-        (self.view.rows[row] == base_row && row < self.view.view_rows).then_some((row, above >> 16))
     }
 }

@@ -1,5 +1,6 @@
 //! One column of a texture with holes in an opening.
 
+use super::fence::{Hung, Runs};
 #[cfg(target_arch = "x86_64")]
 use super::masked_wide;
 use super::picture::MaskedPicture;
@@ -19,19 +20,12 @@ pub(super) struct MaskedColumn<'a> {
     /// Texture row at base row 0 and its change a base row, 32 fractional bits.
     pub at: i64,
     pub step: i64,
+    pub runs: Runs<'a>,
+    pub hung: Hung,
 }
 
 impl MaskedColumn<'_> {
-    /// Whether a run of texels without holes begins at one.
-    pub fn begins_at(&self, texel: i64) -> bool {
-        let is_opaque = |texel: i64| {
-            let texel = usize::try_from(texel).ok().and_then(|texel| self.texels.get(texel));
-            texel.is_some_and(|&texel| texel & MaskedPicture::OPAQUE != 0)
-        };
-        is_opaque(texel) && !is_opaque(texel - 1)
-    }
-
-    /// Gives the frame rows of `rows` without a hole and their colours to `put`; `base_rows` are the base rows, padded.
+    /// Gives the frame rows of `rows` that show a texel and their colours to `put`; `base_rows` are the base rows, padded.
     #[inline(always)]
     pub fn draw(&self, simd: Simd, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {
         #[cfg(target_arch = "x86_64")]
@@ -39,10 +33,10 @@ impl MaskedColumn<'_> {
             for first in (rows.start / MASKED_BLOCK * MASKED_BLOCK..rows.end).step_by(MASKED_BLOCK) {
                 let base_rows = base_rows[first..].first_chunk().expect("lists by row are padded");
                 // SAFETY: whoever has this `Simd` has the instructions.
-                let (colours, opaque) = unsafe { masked_wide::block(self, base_rows) };
+                let (colours, shown) = unsafe { masked_wide::block(self, base_rows) };
                 let above = rows.start.saturating_sub(first);
                 let below = (first + MASKED_BLOCK).saturating_sub(rows.end);
-                let mut shown = opaque & (u64::MAX << above) & (u64::MAX >> below);
+                let mut shown = shown & (u64::MAX << above) & (u64::MAX >> below);
                 while shown != 0 {
                     let i = shown.trailing_zeros() as usize;
                     put(first + i, colours[i]);
@@ -54,11 +48,19 @@ impl MaskedColumn<'_> {
         #[cfg(not(target_arch = "x86_64"))]
         let _ = simd;
         let last = self.texels.len() as i64 - 1;
+        let (mut run, mut first_row) = ((0, 0), 0);
         for row in rows {
             let v = (self.at + self.step * i64::from(base_rows[row])) >> 32;
-            let texel = self.texels[v.clamp(0, last) as usize];
-            if texel & MaskedPicture::OPAQUE != 0 {
-                put(row, self.table[usize::from(texel as u8)]);
+            let v = v.clamp(0, last) as usize;
+            if self.texels[v] & MaskedPicture::OPAQUE == 0 {
+                continue;
+            }
+            let own = (self.runs.starts[v], self.runs.ends[v]);
+            if own != run {
+                (run, first_row) = (own, self.hung.first_row(own.0, own.1));
+            }
+            if i64::from(base_rows[row]) >= first_row {
+                put(row, self.table[usize::from(self.texels[v] as u8)]);
             }
         }
     }
@@ -68,6 +70,7 @@ impl MaskedColumn<'_> {
 mod tests {
     use super::*;
     use crate::math::Rng;
+    use crate::render::fence::find_runs;
 
     #[test]
     fn all_ways_show_the_same_rows() {
@@ -77,10 +80,15 @@ mod tests {
             let height = [128, 72, 64, 33, 1, 200][round % 6];
             let length = [60u32, 100, 403][round / 6 % 3];
             let texels: Vec<u16> = (0..height).map(|_| rng.below(512) as u16).collect();
+            let (mut starts, mut ends) = (vec![0; texels.len()], vec![0; texels.len()]);
+            find_runs(&texels, &mut starts, &mut ends);
+            let runs = Runs { starts: &starts, ends: &ends };
             let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + 8).map(|row| row * 5 / 3).collect();
             let step = i64::from(rng.between(1, 1 << 30)) << rng.below(4);
             let at = i64::from(rng.between(-100, 100)) << 32;
-            let column = MaskedColumn { texels: &texels, table: &table, at, step };
+            let hung =
+                Hung { horizon: i64::from(rng.between(-100, 200)) << 16, eye: at >> 16, scale: (1 << 32) / (step >> 16).max(3) };
+            let column = MaskedColumn { texels: &texels, table: &table, at, step, runs, hung };
             let (a, b) = (rng.below(length + 1) as usize, rng.below(length + 1) as usize);
             let shown = |simd: Simd| {
                 let mut list = Vec::new();

@@ -9,17 +9,19 @@ use std::arch::x86_64::*;
 /// Most texels of a column.
 pub(super) const MOST_TEXELS: usize = 128;
 
-/// The colours of 64 base rows, and a bit for each that is no hole.
+/// The colours of 64 base rows, and a bit for each that shows.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
 pub(super) fn block(column: &MaskedColumn, base_rows: &[u32; MASKED_BLOCK]) -> ([u8; MASKED_BLOCK], u64) {
     let (halves, _) = base_rows.as_chunks::<32>();
-    let (low, high) = (texels(column, texel_rows(column, &halves[0])), texels(column, texel_rows(column, &halves[1])));
+    let rows = [texel_rows(column, &halves[0]), texel_rows(column, &halves[1])];
+    let [low, high] = rows.map(|rows| look_up(column.texels, rows));
     let is_opaque = _mm512_set1_epi16(MaskedPicture::OPAQUE as i16);
     let opaque = [low, high].map(|half| u64::from(_mm512_test_epi16_mask(half, is_opaque)));
+    let begun = [begun(column, rows[0], &halves[0]), begun(column, rows[1], &halves[1])];
     let indices = _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi16_epi8(low)), _mm512_cvtepi16_epi8(high), 1);
     let mut colours = [0; MASKED_BLOCK];
     store(&mut colours, look_up_block(load_table(column.table), indices));
-    (colours, opaque[0] | opaque[1] << 32)
+    (colours, (opaque[0] | opaque[1] << 32) & (begun[0] | begun[1] << 32))
 }
 
 /// The texture rows of 32 base rows, as words.
@@ -43,15 +45,44 @@ fn eight(column: &MaskedColumn, base_rows: &[u32; 8]) -> __m128i {
     _mm512_cvtepi64_epi16(_mm512_max_epi64(_mm512_min_epi64(v, last), _mm512_setzero_si512()))
 }
 
-/// The texels of 32 rows.
+/// A bit for each of 32 base rows: whether the run of its texel begins there or above.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn begun(column: &MaskedColumn, texel_rows: __m512i, base_rows: &[u32; 32]) -> u64 {
+    let (starts, ends) = (look_up(column.runs.starts, texel_rows), look_up(column.runs.ends, texel_rows));
+    let [at, change] = column.hung.rows().map(|number| _mm512_set1_epi64(number));
+    let row_of = |texels: __m128i| {
+        let moved = _mm512_mullo_epi64(_mm512_cvtepu16_epi64(texels), change);
+        _mm512_srai_epi64(_mm512_add_epi64(at, moved), 32)
+    };
+    let (eights, _) = base_rows.as_chunks::<8>();
+    let eight = |starts: __m128i, ends: __m128i, base_rows: &[u32; 8]| {
+        // SAFETY: 32 bytes are readable behind the reference.
+        let row = _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(base_rows.as_ptr().cast()) });
+        let first = row_of(starts);
+        u64::from(_mm512_cmple_epi64_mask(first, row) & _mm512_cmplt_epi64_mask(first, row_of(ends)))
+    };
+    let part = |vector: __m512i| {
+        [
+            _mm512_castsi512_si128(vector),
+            _mm512_extracti32x4_epi32(vector, 1),
+            _mm512_extracti32x4_epi32(vector, 2),
+            _mm512_extracti32x4_epi32(vector, 3),
+        ]
+    };
+    let (starts, ends) = (part(starts), part(ends));
+    (0..4).fold(0, |bits, i| bits | eight(starts[i], ends[i], &eights[i]) << (8 * i))
+}
+
+/// What a list of a column has for the texels of 32 rows.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw")]
-fn texels(column: &MaskedColumn, rows: __m512i) -> __m512i {
-    let low = _mm512_permutex2var_epi16(part(column.texels, 0), rows, part(column.texels, 32));
-    if column.texels.len() <= 64 {
+fn look_up(column: &[u16], rows: __m512i) -> __m512i {
+    let low = _mm512_permutex2var_epi16(part(column, 0), rows, part(column, 32));
+    if column.len() <= 64 {
         return low;
     }
-    let high = _mm512_permutex2var_epi16(part(column.texels, 64), rows, part(column.texels, 96));
+    let high = _mm512_permutex2var_epi16(part(column, 64), rows, part(column, 96));
     _mm512_mask_blend_epi16(_mm512_test_epi16_mask(rows, _mm512_set1_epi16(64)), low, high)
 }
 

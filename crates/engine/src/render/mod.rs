@@ -16,6 +16,7 @@ mod convert;
 #[cfg(target_arch = "x86_64")]
 mod convert_wide;
 mod depth;
+mod fence;
 mod frame;
 mod horizon;
 mod label;

@@ -1,5 +1,6 @@
 //! Textures prepared for drawing: sizes and reciprocals worked out, flats cut to powers of two.
 
+use super::fence::Fence;
 #[cfg(target_arch = "x86_64")]
 use super::wall_list::{MOST_TEXELS, WallList};
 use crate::assets::{Assets, Image, TextureEntry};
@@ -143,7 +144,7 @@ pub(super) struct Textures {
     /// By frame.
     pub flats: Vec<FlatPicture>,
     /// By frame.
-    pub masked: Vec<MaskedPicture>,
+    pub fences: Vec<Fence>,
     /// By frame: whether it is a square of 64 texels.
     pub squares: Vec<bool>,
     /// The texels of all walls that can be drawn as a list of columns, and as many more as a column has.
@@ -168,7 +169,7 @@ impl Textures {
             self.list_texels(&wall);
             self.walls.push(wall);
             self.flats.push(FlatPicture::new(image));
-            self.masked.push(MaskedPicture::new(image));
+            self.fences.push(Fence::new(image));
             self.squares.push((image.width, image.height) == (64, 64));
         }
         self.list.push(Texture { first, frames, tics: u32::from(entry.tics).max(1) });

@@ -27,6 +27,8 @@ pub(super) struct SeenSeg<'a> {
     /// Frame columns.
     pub first: usize,
     pub end: usize,
+    /// First base column and one past the last.
+    base_ends: [i64; 2],
 }
 
 /// The columns of a seg that faces the eye.
@@ -62,7 +64,7 @@ impl Walk<'_> {
         let ends = line.between(positions, base_ends);
         let [one, other] = base_ends.map(|column| ends.inverse_at(column));
         let inverses = [one.min(other), one.max(other)];
-        let seen = SeenSeg { index, seg, face, line, ends, inverses, first, end };
+        let seen = SeenSeg { index, seg, face, line, ends, inverses, first, end, base_ends };
         let front = &self.looks.of(self.world, seg.front);
         if seg.back == NO_SECTOR {
             self.solid::<DEPTH>(&seen, front);
@@ -296,6 +298,7 @@ impl Walk<'_> {
         let silhouette = Silhouette {
             first: seen.first,
             end: seen.end,
+            base_ends: seen.base_ends,
             line: seen.line,
             ends: seen.ends,
             seg: seen.index,

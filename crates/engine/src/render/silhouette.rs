@@ -16,6 +16,8 @@ pub(super) struct Silhouette {
     pub first: usize,
     /// One past the last.
     pub end: usize,
+    /// First base column and one past the last of the whole seg.
+    pub base_ends: [i64; 2],
     /// Its line on the screen.
     pub line: SeenLine,
     /// The same as drawn between the whole columns of its ends.
