@@ -16,6 +16,11 @@ impl Depths {
         Depths { published: Some(i64::from(rows)) }
     }
 
+    /// Whether the published engine's depth is told.
+    pub fn are_published(self) -> bool {
+        self.published.is_some()
+    }
+
     /// Depth of a wall at a distance in 16.16 map units. The published engine takes it from the step between the texels
     /// of neighbouring rows.
     #[inline]

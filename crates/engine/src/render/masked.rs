@@ -3,6 +3,7 @@
 use super::View;
 use super::camera::Camera;
 use super::fence::{Hung, Scales};
+use super::fence_depth::FenceDepth;
 use super::frame::{Frame, class};
 use super::label::{Label, Labels};
 use super::light::{Light, ONE_TABLE_DISTANCE};
@@ -32,12 +33,14 @@ pub(super) struct Masked<'a> {
     pub trails: &'a mut SeenTrails,
     /// Scratch: the columns of the sprite at hand.
     pub columns: &'a mut StampColumns,
+    pub fence_depth: &'a mut FenceDepth,
     pub simd: Simd,
 }
 
 impl Masked<'_> {
     /// Draws sprites with the squares of trails and the masked textures between them.
     pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &Sprites) {
+        self.fence_depth.tell(0);
         self.meet_trails();
         for sprite in sprites.far_to_near() {
             self.squares_beyond::<DEPTH, CLASS>(sprite.distance);
@@ -99,6 +102,7 @@ impl Masked<'_> {
         self.narrow::<DEPTH, CLASS>(&sprite.extent);
         let label = self.labels.next_class();
         let depth = self.frame.depths.sprite(sprite.distance, self.view.focal_y);
+        self.fence_depth.tell(depth);
         let stamp = sprite.stamp(self.scene, picture, self.columns, depth, label);
         let covered = stamp.draw::<DEPTH, CLASS>(self.simd, self.frame, &self.view.rows);
         if CLASS && covered != Covered::NOTHING {
@@ -136,6 +140,8 @@ impl Masked<'_> {
         let first_rows = &self.view.first_row;
         // The published engine draws four columns at once; the depth of those that do not fill a four it tells as a sprite's.
         let whole_fours = (self.view.columns[first] + 3) & !3..(self.view.columns[end - 1] + 1) & !3;
+        // A reduced frame lacks columns and rows that decide what is told.
+        let by_fours = self.frame.depths.are_published() && self.view.base_width as usize == self.view.width();
         let scales = Scales::new(self.view, &silhouette.line, silhouette.base_ends);
         let eye = hung_from - self.camera.z;
         for x in first..end {
@@ -145,33 +151,45 @@ impl Masked<'_> {
             let column = self.view.columns[x];
             let (open_top, open_bottom) = (i32::from(open_top), i32::from(open_bottom));
             let rows = upper.row(first_rows, column).max(open_top)..lower.row(first_rows, column).min(open_bottom);
-            if drawn || rows.is_empty() {
-                continue;
+            let in_four = whole_fours.contains(&column).then_some((column & 3) as usize);
+            if DEPTH && in_four == Some(0) {
+                self.fence_depth.begin();
             }
-            let in_four = whole_fours.contains(&column);
-            let column = i64::from(column);
-            let distance = silhouette.line.distance_at(column);
-            let nearness = (silhouette.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
-            let table = &scene.assets.light_tables[light.table(nearness)];
-            let u = along.at(column, distance) >> 16;
-            let (texels, runs) = fence.column(u.rem_euclid(i64::from(fence.picture.width)) as u32);
-            let step = (distance * self.view.inverse_focal_y) >> 16;
-            let at = (eye << 16) - self.camera.to_horizon(step);
-            let hung = Hung { horizon: self.camera.horizon, eye, scale: scales.at(column) };
-            let shown = MaskedColumn { texels, table, at, step, runs, hung };
-            let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
-            let told = if in_four { depths.wall(distance) } else { depths.sprite(distance, self.view.focal_y) };
-            let rows = rows.start as usize..rows.end as usize;
-            shown.draw(self.simd, &self.view.rows, rows, |row, lit| {
-                let pixel = row * *width + x;
-                colour[pixel] = lit;
-                if DEPTH {
-                    depth[pixel] = told;
+            if !drawn && !rows.is_empty() {
+                let column = i64::from(column);
+                let distance = silhouette.line.distance_at(column);
+                let nearness = (silhouette.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+                let table = &scene.assets.light_tables[light.table(nearness)];
+                let u = along.at(column, distance) >> 16;
+                let (texels, runs) = fence.column(u.rem_euclid(i64::from(fence.picture.width)) as u32);
+                let step = (distance * self.view.inverse_focal_y) >> 16;
+                let at = (eye << 16) - self.camera.to_horizon(step);
+                let hung = Hung { horizon: self.camera.horizon, eye, scale: scales.at(column) };
+                let shown = MaskedColumn { texels, table, at, step, runs, hung };
+                let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
+                let told = if in_four.is_some() { depths.wall(distance) } else { depths.sprite(distance, self.view.focal_y) };
+                if DEPTH && in_four.is_none() {
+                    self.fence_depth.tell(told);
                 }
-                if CLASS {
-                    classes[pixel] = class::WALL;
-                }
-            });
+                let rows = rows.start as usize..rows.end as usize;
+                shown.draw(self.simd, &self.view.rows, rows, |row, lit| {
+                    let pixel = row * *width + x;
+                    colour[pixel] = lit;
+                    if DEPTH {
+                        depth[pixel] = told;
+                        if by_fours && let Some(column) = in_four {
+                            self.fence_depth.add(column, row as u16, shown.run_at(self.view.rows[row]), told);
+                        }
+                    }
+                    if CLASS {
+                        classes[pixel] = class::WALL;
+                    }
+                });
+            }
+            if DEPTH && by_fours && in_four == Some(3) {
+                let Frame { width, depth, .. } = &mut *self.frame;
+                self.fence_depth.end(|column, row, told| depth[usize::from(row) * *width + x - 3 + column] = told);
+            }
         }
     }
 }

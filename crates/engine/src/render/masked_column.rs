@@ -25,6 +25,18 @@ pub(super) struct MaskedColumn<'a> {
 }
 
 impl MaskedColumn<'_> {
+    /// Start of the run that a base row shows.
+    pub fn run_at(&self, base_row: u32) -> u16 {
+        self.runs.starts[self.texel_at(base_row)]
+    }
+
+    /// The texel of a base row.
+    #[inline(always)]
+    fn texel_at(&self, base_row: u32) -> usize {
+        let v = (self.at + self.step * i64::from(base_row)) >> 32;
+        v.clamp(0, self.texels.len() as i64 - 1) as usize
+    }
+
     /// Gives the frame rows of `rows` that show a texel and their colours to `put`; `base_rows` are the base rows, padded.
     #[inline(always)]
     pub fn draw(&self, simd: Simd, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {
@@ -47,11 +59,9 @@ impl MaskedColumn<'_> {
         }
         #[cfg(not(target_arch = "x86_64"))]
         let _ = simd;
-        let last = self.texels.len() as i64 - 1;
         let (mut run, mut first_row) = ((0, 0), 0);
         for row in rows {
-            let v = (self.at + self.step * i64::from(base_rows[row])) >> 32;
-            let v = v.clamp(0, last) as usize;
+            let v = self.texel_at(base_rows[row]);
             if self.texels[v] & MaskedPicture::OPAQUE == 0 {
                 continue;
             }

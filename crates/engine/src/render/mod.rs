@@ -17,6 +17,7 @@ mod convert;
 mod convert_wide;
 mod depth;
 mod fence;
+mod fence_depth;
 mod frame;
 mod horizon;
 mod label;

@@ -173,6 +173,7 @@ impl Renderer {
             labels: &mut self.labels,
             trails: &mut space.trails,
             columns: &mut space.stamp_columns,
+            fence_depth: &mut space.fence_depth,
             simd: self.simd,
         };
         masked.draw::<DEPTH, CLASS>(&space.sprites);

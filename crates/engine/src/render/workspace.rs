@@ -4,6 +4,7 @@
 //! batch of 32 would not fit the second cache of a core, and every frame would begin with cold memory: 2 to 4 % of a step.
 
 use super::View;
+use super::fence_depth::FenceDepth;
 use super::frame::{Columns, Frame};
 use super::look::Looks;
 use super::openings::Openings;
@@ -53,6 +54,7 @@ pub(super) struct Workspace {
     /// Columns of the sprite or weapon at hand.
     pub stamp_columns: StampColumns,
     pub weapons: WeaponCache,
+    pub fence_depth: FenceDepth,
 }
 
 impl Workspace {

@@ -1,0 +1,123 @@
+//! The depth of fences as the published engine tells it, by what it was seen to tell (`docs/results/pixels.md`).
+//!
+//! It draws four columns at once, one whose number divides by four and the three after it: the rows that the four have in common
+//! together, the others column by column. Of those others a piece that is a single row is told not its own depth but the last one told before
+//! the four.
+
+/// First and last row of a part of a column without holes.
+type Piece = [u16; 2];
+
+/// The four columns at hand, and what was told before them.
+#[derive(Debug, Default)]
+pub(super) struct FenceDepth {
+    last_told: u8,
+    pieces: [Vec<Piece>; 4],
+    /// Start of the run of texels that the last piece of each column shows: pieces of two runs may touch.
+    runs: [u16; 4],
+    depths: [u8; 4],
+}
+
+impl FenceDepth {
+    /// Notes the depth of something that is drawn otherwise.
+    pub fn tell(&mut self, depth: u8) {
+        self.last_told = depth;
+    }
+
+    /// Begins another four.
+    pub fn begin(&mut self) {
+        self.pieces.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Adds a row to a column of the four, below those that it has.
+    pub fn add(&mut self, column: usize, row: u16, run: u16, depth: u8) {
+        match self.pieces[column].last_mut() {
+            Some([_, last]) if *last + 1 == row && self.runs[column] == run => *last = row,
+            _ => self.pieces[column].push([row, row]),
+        }
+        (self.runs[column], self.depths[column]) = (run, depth);
+    }
+
+    /// Ends the four: gives column, row and depth of the rows that are told another one than their own to `put`.
+    pub fn end(&mut self, mut put: impl FnMut(usize, u16, u8)) {
+        let told = self.last_told;
+        let mut alone = |column: usize, [first, last]: Piece| {
+            if first == last {
+                put(column, first, told);
+            }
+            column
+        };
+        let (mut done, mut last_column) = ([0; 4], None);
+        loop {
+            let piece = |column: usize, after: usize| self.pieces[column].get(done[column] + after).copied();
+            let present: [Option<Piece>; 4] = std::array::from_fn(|column| piece(column, 0));
+            // Where the pieces after those at hand begin.
+            let next = (0..4).filter_map(|column| piece(column, 1)).map(|[first, _]| first).min().unwrap_or(u16::MAX);
+            let top = present.iter().flatten().map(|[first, _]| *first).max();
+            let bottom = present.iter().flatten().map(|[_, last]| *last).min();
+            let (Some(top), Some(bottom)) = (top, bottom) else { break };
+            let shared = top <= bottom && present.iter().all(Option::is_some);
+            // Above the rows that all have in common; where there are none, to where the next pieces begin, which may have some.
+            let end = if shared { top } else { next };
+            for (column, piece) in present.iter().enumerate() {
+                let Some([first, last]) = *piece else { continue };
+                if first < end {
+                    last_column = Some(alone(column, [first, last.min(end - 1)]));
+                }
+                let go_on = if shared { bottom + 1 } else { end };
+                if last < go_on {
+                    done[column] += 1;
+                } else {
+                    let rest = &mut self.pieces[column][done[column]][0];
+                    *rest = (*rest).max(go_on);
+                }
+            }
+            if shared {
+                last_column = Some(3);
+            }
+        }
+        if let Some(column) = last_column {
+            self.last_told = self.depths[column];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is told of four columns of pieces, each in a run of its own, of depth 10 to 13, after a depth of 7.
+    fn told(columns: [&[Piece]; 4]) -> (Vec<(usize, u16)>, u8) {
+        let mut fences = FenceDepth::default();
+        fences.tell(7);
+        fences.begin();
+        for (column, pieces) in columns.iter().enumerate() {
+            for (run, &[first, last]) in pieces.iter().enumerate() {
+                (first..=last).for_each(|row| fences.add(column, row, run as u16, 10 + column as u8));
+            }
+        }
+        let mut list = Vec::new();
+        fences.end(|column, row, depth| {
+            assert_eq!(depth, 7);
+            list.push((column, row));
+        });
+        (list, fences.last_told)
+    }
+
+    #[test]
+    fn single_rows_that_not_all_columns_have_are_told_an_older_depth() {
+        // Rows 3 to 5 are common: of what is above, column 1 has one row and column 2 two; below, column 0 has one.
+        assert_eq!(told([&[[3, 6]], &[[2, 5]], &[[1, 5]], &[[3, 5]]]), (vec![(1, 2), (0, 6)], 10));
+        // A common row is no single one, and is told last of the fourth column.
+        assert_eq!(told([&[[4, 4]], &[[4, 4]], &[[4, 4]], &[[4, 4]]]), (vec![], 13));
+        // Without a common row: pieces of two rows keep their depth, though they touch pieces of other runs.
+        assert_eq!(told([&[[1, 1], [2, 2]], &[[5, 6]], &[], &[]]), (vec![(0, 1), (0, 2)], 11));
+        assert_eq!(told([&[], &[], &[], &[]]), (vec![], 7));
+    }
+
+    #[test]
+    fn pieces_without_a_common_row_end_where_the_next_ones_begin() {
+        // Column 1's first piece goes down into the rows of column 0's second, which all have in common.
+        let (list, _) = told([&[[1, 1], [4, 6]], &[[3, 6]], &[[4, 6]], &[[4, 6]]]);
+        assert_eq!(list, [(0, 1), (1, 3)]);
+    }
+}
