@@ -10,7 +10,8 @@ type Piece = [u16; 2];
 /// The four columns at hand, and what was told before them.
 #[derive(Debug, Default)]
 pub(super) struct FenceDepth {
-    last_told: u8,
+    /// None at first: then single rows are told their own.
+    last_told: Option<u8>,
     pieces: [Vec<Piece>; 4],
     /// Start of the run of texels that the last piece of each column shows: pieces of two runs may touch.
     runs: [u16; 4],
@@ -18,9 +19,14 @@ pub(super) struct FenceDepth {
 }
 
 impl FenceDepth {
+    /// Begins a frame.
+    pub fn reset(&mut self) {
+        self.last_told = None;
+    }
+
     /// Notes the depth of something that is drawn otherwise.
     pub fn tell(&mut self, depth: u8) {
-        self.last_told = depth;
+        self.last_told = Some(depth);
     }
 
     /// Begins another four.
@@ -41,7 +47,7 @@ impl FenceDepth {
     pub fn end(&mut self, mut put: impl FnMut(usize, u16, u8)) {
         let told = self.last_told;
         let mut alone = |column: usize, [first, last]: Piece| {
-            if first == last {
+            if let Some(told) = told.filter(|_| first == last) {
                 put(column, first, told);
             }
             column
@@ -76,7 +82,7 @@ impl FenceDepth {
             }
         }
         if let Some(column) = last_column {
-            self.last_told = self.depths[column];
+            self.last_told = Some(self.depths[column]);
         }
     }
 }
@@ -86,7 +92,7 @@ mod tests {
     use super::*;
 
     /// What is told of four columns of pieces, each in a run of its own, of depth 10 to 13, after a depth of 7.
-    fn told(columns: [&[Piece]; 4]) -> (Vec<(usize, u16)>, u8) {
+    fn told(columns: [&[Piece]; 4]) -> (Vec<(usize, u16)>, Option<u8>) {
         let mut fences = FenceDepth::default();
         fences.tell(7);
         fences.begin();
@@ -106,12 +112,12 @@ mod tests {
     #[test]
     fn single_rows_that_not_all_columns_have_are_told_an_older_depth() {
         // Rows 3 to 5 are common: of what is above, column 1 has one row and column 2 two; below, column 0 has one.
-        assert_eq!(told([&[[3, 6]], &[[2, 5]], &[[1, 5]], &[[3, 5]]]), (vec![(1, 2), (0, 6)], 10));
+        assert_eq!(told([&[[3, 6]], &[[2, 5]], &[[1, 5]], &[[3, 5]]]), (vec![(1, 2), (0, 6)], Some(10)));
         // A common row is no single one, and is told last of the fourth column.
-        assert_eq!(told([&[[4, 4]], &[[4, 4]], &[[4, 4]], &[[4, 4]]]), (vec![], 13));
+        assert_eq!(told([&[[4, 4]], &[[4, 4]], &[[4, 4]], &[[4, 4]]]), (vec![], Some(13)));
         // Without a common row: pieces of two rows keep their depth, though they touch pieces of other runs.
-        assert_eq!(told([&[[1, 1], [2, 2]], &[[5, 6]], &[], &[]]), (vec![(0, 1), (0, 2)], 11));
-        assert_eq!(told([&[], &[], &[], &[]]), (vec![], 7));
+        assert_eq!(told([&[[1, 1], [2, 2]], &[[5, 6]], &[], &[]]), (vec![(0, 1), (0, 2)], Some(11)));
+        assert_eq!(told([&[], &[], &[], &[]]), (vec![], Some(7)));
     }
 
     #[test]

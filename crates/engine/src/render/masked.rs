@@ -40,7 +40,7 @@ pub(super) struct Masked<'a> {
 impl Masked<'_> {
     /// Draws sprites with the squares of trails and the masked textures between them.
     pub fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, sprites: &Sprites) {
-        self.fence_depth.tell(0);
+        self.fence_depth.reset();
         self.meet_trails();
         for sprite in sprites.far_to_near() {
             self.squares_beyond::<DEPTH, CLASS>(sprite.distance);
