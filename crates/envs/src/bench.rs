@@ -15,8 +15,8 @@ pub struct BenchReport {
     pub tics_per_second: f64,
     /// Episodes that ended meanwhile.
     pub resets: u64,
-    /// Seconds that an episode of full length takes in every lane.
-    pub episode_seconds: f64,
+    /// Seconds that an episode of full length takes in every lane, where not even one fitted the time.
+    pub lacking_seconds: Option<f64>,
     /// Bytes that a lane's step writes to the observation buffer.
     pub observation_bytes: usize,
 }
@@ -26,7 +26,7 @@ pub struct BenchReport {
 ///
 /// All lanes begin together, and the beginning of an episode costs more or less than its end (a third more in Volcanic Venture).
 /// So that batches of different widths compare, the rate is that of as many episodes of full length as fit the time; where none
-/// does, see [`BenchReport::episode_seconds`], that of all of the time.
+/// does, see [`BenchReport::lacking_seconds`], that of all of the time.
 pub fn bench(id: &str, options: &EnvOptions, lanes: usize, threads: usize, seconds: f64) -> Result<BenchReport, EnvError> {
     // One of the threads is the caller's own, which helps while it waits.
     let hired = threads.saturating_sub(1);
@@ -56,13 +56,14 @@ pub fn bench(id: &str, options: &EnvOptions, lanes: usize, threads: usize, secon
             whole = Some((steps, resets, elapsed));
         }
     }
+    let lacking_seconds = whole.is_none().then(|| elapsed * episode as f64 / steps as f64);
     let (steps, resets, elapsed) = whole.unwrap_or((steps, resets, elapsed));
     let rate = (steps * lanes as u64) as f64 / elapsed;
     Ok(BenchReport {
         steps_per_second: rate,
         tics_per_second: rate * f64::from(options.frame_skip),
         resets,
-        episode_seconds: elapsed * episode as f64 / steps as f64,
+        lacking_seconds,
         observation_bytes: batch.observations.len() / lanes,
     })
 }

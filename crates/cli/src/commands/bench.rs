@@ -47,10 +47,10 @@ pub fn run(args: &BenchArgs) -> Outcome {
             report.resets
         );
     }
-    if args.seconds < report.episode_seconds {
+    if let Some(seconds) = report.lacking_seconds {
         eprintln!(
             "hasard: this is the rate of episodes' beginnings, which cost more or less than the rest: --seconds {:.0} has whole ones of all {}",
-            report.episode_seconds.ceil(),
+            seconds.ceil(),
             args.envs
         );
     }

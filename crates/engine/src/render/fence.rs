@@ -97,7 +97,8 @@ impl Hung {
         [(self.horizon * 65536).wrapping_sub(self.eye.wrapping_mul(self.scale)), self.scale << 16]
     }
 
-    /// The first base row of the run of texels from `start` to `end`; none, as it were, if it is less than a row high between two rows.
+    /// The first base row of the run of texels from `start` to `end`; none, as it were, if it is less than a row high between two rows,
+    /// as holes are, whose runs are empty.
     #[inline]
     pub fn first_row(&self, start: u16, end: u16) -> i64 {
         let [at, change] = self.rows();

@@ -141,7 +141,7 @@ impl Masked<'_> {
         // The published engine draws four columns at once; the depth of those that do not fill a four it tells as a sprite's.
         let whole_fours = (self.view.columns[first] + 3) & !3..(self.view.columns[end - 1] + 1) & !3;
         // A reduced frame lacks columns and rows that decide what is told.
-        let by_fours = self.frame.depths.are_published() && self.view.base_width as usize == self.view.width();
+        let by_fours = DEPTH && self.frame.depths.are_published() && self.view.base_width as usize == self.view.width();
         let scales = Scales::new(self.view, &silhouette.line, silhouette.base_ends);
         let eye = hung_from - self.camera.z;
         for x in first..end {
@@ -152,7 +152,7 @@ impl Masked<'_> {
             let (open_top, open_bottom) = (i32::from(open_top), i32::from(open_bottom));
             let rows = upper.row(first_rows, column).max(open_top)..lower.row(first_rows, column).min(open_bottom);
             let in_four = whole_fours.contains(&column).then_some((column & 3) as usize);
-            if DEPTH && in_four == Some(0) {
+            if by_fours && in_four == Some(0) {
                 self.fence_depth.begin();
             }
             if !drawn && !rows.is_empty() {
@@ -177,16 +177,16 @@ impl Masked<'_> {
                     colour[pixel] = lit;
                     if DEPTH {
                         depth[pixel] = told;
-                        if by_fours && let Some(column) = in_four {
-                            self.fence_depth.add(column, row as u16, shown.run_at(self.view.rows[row]), told);
-                        }
+                    }
+                    if by_fours && let Some(column) = in_four {
+                        self.fence_depth.add(column, row as u16, shown.run_at(self.view.rows[row]), told);
                     }
                     if CLASS {
                         classes[pixel] = class::WALL;
                     }
                 });
             }
-            if DEPTH && by_fours && in_four == Some(3) {
+            if by_fours && in_four == Some(3) {
                 let Frame { width, depth, .. } = &mut *self.frame;
                 self.fence_depth.end(|column, row, told| depth[usize::from(row) * *width + x - 3 + column] = told);
             }

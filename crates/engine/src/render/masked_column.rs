@@ -3,7 +3,6 @@
 use super::fence::{Hung, Runs};
 #[cfg(target_arch = "x86_64")]
 use super::masked_wide;
-use super::picture::MaskedPicture;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
@@ -14,7 +13,7 @@ pub(super) const MASKED_BLOCK: usize = 64;
 
 /// A column on its way to the frame.
 pub(super) struct MaskedColumn<'a> {
-    /// Palette indices, with [`MaskedPicture::OPAQUE`] where there is no hole.
+    /// Palette indices in the low bytes.
     pub texels: &'a [u16],
     pub table: &'a [u8; 256],
     /// Texture row at base row 0 and its change a base row, 32 fractional bits.
@@ -59,12 +58,9 @@ impl MaskedColumn<'_> {
         }
         #[cfg(not(target_arch = "x86_64"))]
         let _ = simd;
-        let (mut run, mut first_row) = ((0, 0), 0);
+        let (mut run, mut first_row) = ((0, 0), i64::MAX);
         for row in rows {
             let v = self.texel_at(base_rows[row]);
-            if self.texels[v] & MaskedPicture::OPAQUE == 0 {
-                continue;
-            }
             let own = (self.runs.starts[v], self.runs.ends[v]);
             if own != run {
                 (run, first_row) = (own, self.hung.first_row(own.0, own.1));

@@ -3,7 +3,6 @@
 
 use super::convert_wide::{load_table, look_up_block, store};
 use super::masked_column::{MASKED_BLOCK, MaskedColumn};
-use super::picture::MaskedPicture;
 use std::arch::x86_64::*;
 
 /// Most texels of a column.
@@ -15,13 +14,11 @@ pub(super) fn block(column: &MaskedColumn, base_rows: &[u32; MASKED_BLOCK]) -> (
     let (halves, _) = base_rows.as_chunks::<32>();
     let rows = [texel_rows(column, &halves[0]), texel_rows(column, &halves[1])];
     let [low, high] = rows.map(|rows| look_up(column.texels, rows));
-    let is_opaque = _mm512_set1_epi16(MaskedPicture::OPAQUE as i16);
-    let opaque = [low, high].map(|half| u64::from(_mm512_test_epi16_mask(half, is_opaque)));
     let begun = [begun(column, rows[0], &halves[0]), begun(column, rows[1], &halves[1])];
     let indices = _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi16_epi8(low)), _mm512_cvtepi16_epi8(high), 1);
     let mut colours = [0; MASKED_BLOCK];
     store(&mut colours, look_up_block(load_table(column.table), indices));
-    (colours, (opaque[0] | opaque[1] << 32) & (begun[0] | begun[1] << 32))
+    (colours, begun[0] | begun[1] << 32)
 }
 
 /// The texture rows of 32 base rows, as words.
@@ -37,15 +34,21 @@ fn texel_rows(column: &MaskedColumn, base_rows: &[u32; 32]) -> __m512i {
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
 fn eight(column: &MaskedColumn, base_rows: &[u32; 8]) -> __m128i {
-    // SAFETY: 32 bytes are readable behind the reference.
-    let row = _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(base_rows.as_ptr().cast()) });
+    let row = widened(base_rows);
     let change = _mm512_mullo_epi64(_mm512_set1_epi64(column.step), row);
     let v = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(column.at), change), 32);
     let last = _mm512_set1_epi64(column.texels.len() as i64 - 1);
     _mm512_cvtepi64_epi16(_mm512_max_epi64(_mm512_min_epi64(v, last), _mm512_setzero_si512()))
 }
 
-/// A bit for each of 32 base rows: whether the run of its texel begins there or above.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn widened(base_rows: &[u32; 8]) -> __m512i {
+    // SAFETY: 32 bytes are readable behind the reference.
+    _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(base_rows.as_ptr().cast()) })
+}
+
+/// A bit for each of 32 base rows: whether its texel is in a run, not a hole, that begins there or above.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
 fn begun(column: &MaskedColumn, texel_rows: __m512i, base_rows: &[u32; 32]) -> u64 {
@@ -57,10 +60,8 @@ fn begun(column: &MaskedColumn, texel_rows: __m512i, base_rows: &[u32; 32]) -> u
     };
     let (eights, _) = base_rows.as_chunks::<8>();
     let eight = |starts: __m128i, ends: __m128i, base_rows: &[u32; 8]| {
-        // SAFETY: 32 bytes are readable behind the reference.
-        let row = _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(base_rows.as_ptr().cast()) });
         let first = row_of(starts);
-        u64::from(_mm512_cmple_epi64_mask(first, row) & _mm512_cmplt_epi64_mask(first, row_of(ends)))
+        u64::from(_mm512_cmple_epi64_mask(first, widened(base_rows)) & _mm512_cmplt_epi64_mask(first, row_of(ends)))
     };
     let part = |vector: __m512i| {
         [
