@@ -5,29 +5,37 @@
 pub(super) struct Depths {
     /// Rows of the base grid where depth is as published.
     published: Option<i64>,
+    /// What shows of the published engine's drawing four columns at once.
+    by_fours: bool,
 }
 
 /// Height of the frames that the published depth is made for; the values of lower ones are smaller.
 const PUBLISHED_ROWS: i64 = 480;
 
 impl Depths {
-    /// As the published engine tells it in frames of `rows` rows.
-    pub fn published(rows: u32) -> Depths {
-        Depths { published: Some(i64::from(rows)) }
+    /// As the published engine tells it in frames of `rows` rows, or in what is left of them in a reduced frame, which lacks columns and
+    /// rows that decide what is told of fours.
+    pub fn published(rows: u32, reduced: bool) -> Depths {
+        Depths { published: Some(i64::from(rows)), by_fours: !reduced }
     }
 
-    /// Whether the published engine's depth is told.
-    pub fn are_published(self) -> bool {
-        self.published.is_some()
+    /// Whether it shows that the published engine draws four columns at once.
+    pub fn by_fours(self) -> bool {
+        self.by_fours
     }
 
-    /// Depth of a wall at a distance in 16.16 map units. The published engine takes it from the step between the texels
-    /// of neighbouring rows.
+    /// Depth of a wall at a distance in 16.16 map units that shows a texture of `height` texels. The published engine takes it from
+    /// the step between the texels of neighbouring rows; where that is half the texture or more, from what is left to the whole of it.
     #[inline]
-    pub fn wall(self, distance: i64) -> u8 {
+    pub fn wall(self, distance: i64, height: u32) -> u8 {
         let Some(rows) = self.published else { return even(distance) };
-        let step = (distance * 5 + rows / 2) / rows * 128;
-        scaled((step / 100 - 9500) * 255 / 1_590_500, rows)
+        let mut quarters = (distance * 5 + rows / 2) / rows;
+        if height.is_power_of_two() {
+            let whole = i64::from(height) << 18;
+            quarters &= whole - 1;
+            quarters = quarters.min(whole - quarters);
+        }
+        scaled((quarters * 128 / 100 - 9500) * 255 / 1_590_500, rows)
     }
 
     /// Depth of a sprite, from the texels that one of its rows is high.
@@ -81,7 +89,8 @@ mod tests {
         let depths = Depths::default();
         for distance in [0, 72, 73, 730, 1860, 30_000].map(units) {
             let level = ((distance >> 16) * 10 / 73).min(255) as u8;
-            let told = [depths.wall(distance), depths.plane(distance), depths.sprite(distance, 96 << 16), depths.stain(distance)];
+            let told =
+                [depths.wall(distance, 128), depths.plane(distance), depths.sprite(distance, 96 << 16), depths.stain(distance)];
             assert_eq!(told, [level; 4]);
         }
         assert_eq!(depths.farthest(), 255);
@@ -90,15 +99,25 @@ mod tests {
     #[test]
     fn published_depth_is_as_measured_in_tall_frames() {
         // Measured at 480 rows: 56 units 6, 256 units 34, 756 units 104.
-        let depths = Depths::published(480);
-        assert_eq!([56, 256, 756].map(|distance| depths.wall(units(distance))), [6, 34, 104]);
-        assert_eq!([depths.wall(units(5000)), depths.farthest()], [255, 255]);
+        let depths = Depths::published(480, false);
+        assert_eq!([56, 256, 756].map(|distance| depths.wall(units(distance), 128)), [6, 34, 104]);
+        assert_eq!([depths.wall(units(5000), 128), depths.farthest()], [255, 255]);
+    }
+
+    #[test]
+    fn published_depth_of_low_textures_falls_again_from_half_a_texture_a_row_on() {
+        // As measured at shutters of 16 texels in Remedy Rush, 1,131.7 and 1,302.1 units away in frames of 120 rows: 11.8 and 13.6
+        // texels a row.
+        let depths = Depths::published(120, false);
+        let told = |tenths: i64, height: u32| depths.wall((tenths << 16) / 10, height);
+        assert_eq!([told(11317, 16), told(13021, 16)], [56, 32]);
+        assert_eq!([told(11317, 128), told(13021, 100)], [63, 63]);
     }
 
     #[test]
     fn published_depth_ends_early_in_low_frames_except_on_floors() {
-        let depths = Depths::published(120);
-        assert_eq!([depths.wall(units(2000)), depths.sprite(units(2000), 96 << 16), depths.farthest()], [63; 3]);
+        let depths = Depths::published(120, false);
+        assert_eq!([depths.wall(units(2000), 128), depths.sprite(units(2000), 96 << 16), depths.farthest()], [63; 3]);
         assert_eq!([depths.plane(units(1000)), depths.plane(units(1900)), depths.plane(units(5))], [138, 255, 0]);
     }
 }

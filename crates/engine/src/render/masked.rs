@@ -13,7 +13,8 @@ use super::silhouette::{Silhouette, Silhouettes};
 use super::sprite::{Extent, SeenSprite, Sprites};
 use super::stamp::{Covered, StampColumns};
 use super::trail::SeenTrails;
-use super::wall::{INVERSE_BITS, TextureLine};
+use super::turned::TurnedLine;
+use super::wall::INVERSE_BITS;
 use crate::map::SectorId;
 use crate::math::Fixed;
 use crate::simd::Simd;
@@ -134,14 +135,14 @@ impl Masked<'_> {
         let top = hung_from.min(i64::from(ceiling.0)) - self.camera.z;
         let bottom = (hung_from - i64::from(height.0)).max(i64::from(floor.0)) - self.camera.z;
         let light = Light::new(self.camera, i32::from(front.light) + face.contrast);
-        let along = TextureLine::new(self.camera, face, silhouette.first);
+        let along = TurnedLine::of_face(self.camera, face).texture(self.view, face, silhouette.first);
         let (upper, lower) =
             (silhouette.ends.edge(self.camera, self.view, top), silhouette.ends.edge(self.camera, self.view, bottom));
         let first_rows = &self.view.first_row;
         // The published engine draws four columns at once; the depth of those that do not fill a four it tells as a sprite's.
         let whole_fours = (self.view.columns[first] + 3) & !3..(self.view.columns[end - 1] + 1) & !3;
         // A reduced frame lacks columns and rows that decide what is told.
-        let by_fours = DEPTH && self.frame.depths.are_published() && self.view.base_width as usize == self.view.width();
+        let by_fours = DEPTH && self.frame.depths.by_fours();
         let scales = Scales::new(self.view, &silhouette.line, silhouette.base_ends);
         let eye = hung_from - self.camera.z;
         for x in first..end {
@@ -151,7 +152,13 @@ impl Masked<'_> {
             let column = self.view.columns[x];
             let (open_top, open_bottom) = (i32::from(open_top), i32::from(open_bottom));
             let rows = upper.row(first_rows, column).max(open_top)..lower.row(first_rows, column).min(open_bottom);
-            let in_four = whole_fours.contains(&column).then_some((column & 3) as usize);
+            let mut whole = whole_fours.contains(&column);
+            if by_fours && whole {
+                // Nor does a four count as whole where nearer walls without an opening hide a column.
+                let four = row_index - (column & 3) as usize;
+                whole = self.silhouettes.bottoms[four..four + 4].iter().all(|&bottom| bottom > 0);
+            }
+            let in_four = whole.then_some((column & 3) as usize);
             if by_fours && in_four == Some(0) {
                 self.fence_depth.begin();
             }
@@ -167,7 +174,11 @@ impl Masked<'_> {
                 let hung = Hung { horizon: self.camera.horizon, eye, scale: scales.at(column) };
                 let shown = MaskedColumn { texels, table, at, step, runs, hung };
                 let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
-                let told = if in_four.is_some() { depths.wall(distance) } else { depths.sprite(distance, self.view.focal_y) };
+                let told = if in_four.is_some() {
+                    depths.wall(distance, fence.picture.height)
+                } else {
+                    depths.sprite(distance, self.view.focal_y)
+                };
                 if DEPTH && in_four.is_none() {
                     self.fence_depth.tell(told);
                 }

@@ -3,6 +3,7 @@
 use super::camera::Camera;
 use super::convert::Colours;
 use super::depth::Depths;
+use super::fours;
 use super::frame::{Frame, class};
 use super::horizon::RowSlopes;
 use super::label::{Label, Labels};
@@ -75,7 +76,7 @@ impl Renderer {
     /// Chooses what is drawn otherwise from the next frame on.
     pub fn set_options(&mut self, options: RenderOptions) {
         self.options = options;
-        let published = || Depths::published(self.view.base_rows());
+        let published = || Depths::published(self.view.base_rows(), self.view.is_reduced());
         self.frame.depths = if options.published_depth { published() } else { Depths::default() };
     }
 
@@ -145,7 +146,7 @@ impl Renderer {
             simd: self.simd,
         };
         walk.run::<DEPTH>();
-        self.draw_sky(space, &camera);
+        self.draw_sky::<DEPTH>(space, &camera);
         self.frame.take_walls::<DEPTH, CLASS>(self.simd, &space.columns, self.view.view_rows);
         self.draw_planes::<DEPTH, CLASS>(space, &camera);
         self.draw_masked::<DEPTH, CLASS>(space, &camera, world, player);
@@ -203,13 +204,17 @@ impl Renderer {
     }
 
     /// Draws the sky, as far as its colours go, into the workspace's columns: its depth is what they were emptied to.
-    fn draw_sky(&mut self, space: &mut Workspace, camera: &Camera) {
+    fn draw_sky<const DEPTH: bool>(&mut self, space: &mut Workspace, camera: &Camera) {
         let picture = &self.scene.textures.walls[self.scene.sky];
         // Whatever light there is, and by goggles too.
         let shader = SkyShader { camera, view: &self.view, table: &self.scene.assets.light_tables[0], picture };
         for plane in space.planes.used().iter().filter(|plane| plane.key.sky && !plane.is_empty()) {
             let rows = self.slopes.sky_rows(|horizon| sky::texel_rows(&self.view, horizon, picture.height));
             shader.draw(self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
+            if DEPTH && self.frame.depths.by_fours() {
+                let (first, shown, farthest) = (plane.first, plane.first..plane.end, self.frame.depths.farthest());
+                fours::draw_below(&mut space.columns, first, &plane.top[shown.clone()], &plane.bottom[shown], |_| farthest);
+            }
         }
     }
 

@@ -37,6 +37,8 @@ pub(super) struct SceneSeg {
     pub face: u32,
     /// It has a masked texture in its opening.
     pub masked: bool,
+    /// It is a piece of its line, not all of it.
+    pub piece: bool,
 }
 
 impl SceneSeg {
@@ -55,7 +57,9 @@ pub(super) struct Face {
     pub along: [i32; 2],
     /// Position of the map's origin along the line, 44 fractional bits.
     pub origin: i64,
-    /// Texels of the line, 16.16.
+    /// Ends of the line, left to right as seen from this side; 16.16.
+    pub ends: [[i32; 2]; 2],
+    /// Texels of the line.
     pub texels: i64,
     /// Texture position of the line's start, 16.16.
     pub u_offset: i64,
@@ -73,6 +77,26 @@ pub(super) struct Face {
     pub lower_unpegged: bool,
     /// Added to the sector's light: walls along one axis are lighter, along the other darker.
     pub contrast: i32,
+}
+
+impl Face {
+    /// One without textures.
+    pub fn bare() -> Face {
+        Face {
+            along: [0; 2],
+            origin: 0,
+            ends: [[0; 2]; 2],
+            texels: 1,
+            u_offset: 0,
+            v_offset: 0,
+            top: None,
+            middle: None,
+            bottom: None,
+            upper_unpegged: false,
+            lower_unpegged: false,
+            contrast: 0,
+        }
+    }
 }
 
 /// A map and the pictures it is drawn with, worked out once and shared by every world of the map.
@@ -139,13 +163,16 @@ impl Scene {
                 0
             };
             let (texels, along) = texels_along(dx, dy);
-            let sides = [Some((line.front, line.v1, along)), line.back.map(|back| (back, line.v2, [-along[0], -along[1]]))];
-            for (id, start, along) in sides.into_iter().flatten() {
+            let ends = [line.v1, line.v2].map(|vertex| [vertex.x.0, vertex.y.0]);
+            let sides =
+                [Some((line.front, ends, along)), line.back.map(|back| (back, [ends[1], ends[0]], [-along[0], -along[1]]))];
+            for (id, ends, along) in sides.into_iter().flatten() {
                 let side: &Side = &map.sides[id.0 as usize];
                 faces[id.0 as usize] = Some(Face {
                     along: along.map(|part| part as i32),
-                    origin: -(i64::from(start.x.0) * along[0] + i64::from(start.y.0) * along[1]),
-                    texels: texels << 16,
+                    origin: -(i64::from(ends[0][0]) * along[0] + i64::from(ends[0][1]) * along[1]),
+                    ends,
+                    texels,
                     u_offset: i64::from(side.offset_x.0),
                     v_offset: i64::from(side.offset_y.0),
                     top: side.top,
@@ -157,25 +184,12 @@ impl Scene {
                 });
             }
         }
-        let bare = Face {
-            along: [0; 2],
-            origin: 0,
-            texels: 1 << 16,
-            u_offset: 0,
-            v_offset: 0,
-            top: None,
-            middle: None,
-            bottom: None,
-            upper_unpegged: false,
-            lower_unpegged: false,
-            contrast: 0,
-        };
         static MADE: AtomicU64 = AtomicU64::new(0);
         Scene {
             serial: MADE.fetch_add(1, Ordering::Relaxed),
             segs: map.segs.iter().map(|seg| scene_seg(map, seg)).collect(),
             // A side that no line uses is never drawn.
-            faces: faces.into_iter().map(|face| face.unwrap_or_else(|| bare.clone())).collect(),
+            faces: faces.into_iter().map(|face| face.unwrap_or_else(Face::bare)).collect(),
             nodes: map.nodes.clone(),
             subsectors: map.subsectors.iter().map(|s| [s.first_seg, s.first_seg + s.seg_count, s.sector.0]).collect(),
             most_segs: map.subsectors.iter().map(|subsector| subsector.seg_count as usize).max().unwrap_or(0),
@@ -226,6 +240,7 @@ fn scene_seg(map: &Map, seg: &Seg) -> SceneSeg {
         front: seg.front_sector.0,
         back: seg.back_sector.map_or(NO_SECTOR, |sector| sector.0),
         face: seg.side.0,
+        piece: [seg.v1, seg.v2] != if line.back == Some(seg.side) { [line.v2, line.v1] } else { [line.v1, line.v2] },
         masked: seg.back_sector.is_some() && map.sides[seg.side.0 as usize].middle.is_some(),
     }
 }

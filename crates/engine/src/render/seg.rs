@@ -1,13 +1,15 @@
 //! What a seg does to the picture: it ends planes, has wall parts, and narrows or closes columns.
 
+use super::fours;
 use super::light::Light;
 use super::look::Look;
 use super::narrow::{Columns, narrow};
 use super::plane::PlaneKey;
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
+use super::turned::TurnedLine;
 use super::walk::Walk;
-use super::wall::{END_BITS, Edge, SeenLine, TextureLine, WallShader};
+use super::wall::{END_BITS, Edge, SeenLine, WallShader};
 use crate::map::TextureId;
 use crate::math::Fixed;
 #[cfg(target_arch = "x86_64")]
@@ -18,6 +20,8 @@ pub(super) struct SeenSeg<'a> {
     index: u32,
     pub seg: &'a SceneSeg,
     pub face: &'a Face,
+    /// Its line before the eye.
+    pub turned: TurnedLine,
     /// Its line.
     pub line: SeenLine,
     /// Its line as drawn between the whole columns of its ends.
@@ -40,6 +44,8 @@ struct SeenColumns {
     positions: [i64; 2],
     /// First base column and one past the last: what depends on these is the same in every reduction of a frame.
     base_ends: [i64; 2],
+    /// Its ends.
+    turned: TurnedLine,
 }
 
 /// The part of a seg above or below its opening.
@@ -54,17 +60,20 @@ struct Part {
 }
 
 impl Walk<'_> {
-    /// Draws a seg that faces the eye from `away`, the distance of its line with 44 fractional bits, if any column shows it.
+    /// Draws a seg that faces the eye, if any column shows it.
     #[inline]
-    pub fn seg<const DEPTH: bool>(&mut self, index: u32, away: i64) {
+    pub fn seg<const DEPTH: bool>(&mut self, index: u32) {
         let seg = &self.scene.segs[index as usize];
-        let Some(SeenColumns { first, end, positions, base_ends }) = self.columns(seg) else { return };
+        let Some(SeenColumns { first, end, positions, base_ends, mut turned }) = self.columns(seg) else { return };
         let face = &self.scene.faces[seg.face as usize];
-        let line = SeenLine::new(self.camera, seg, away);
+        if seg.piece {
+            turned = TurnedLine::of_face(self.camera, face);
+        }
+        let line = turned.seen(self.view);
         let ends = line.between(positions, base_ends);
         let [one, other] = base_ends.map(|column| ends.inverse_at(column));
         let inverses = [one.min(other), one.max(other)];
-        let seen = SeenSeg { index, seg, face, line, ends, inverses, first, end, base_ends };
+        let seen = SeenSeg { index, seg, face, turned, line, ends, inverses, first, end, base_ends };
         let front = &self.looks.of(self.world, seg.front);
         if seg.back == NO_SECTOR {
             self.solid::<DEPTH>(&seen, front);
@@ -78,7 +87,9 @@ impl Walk<'_> {
     #[inline]
     fn columns(&self, seg: &SceneSeg) -> Option<SeenColumns> {
         let (camera, view) = (self.camera, self.view);
-        let [[left1, right1], [left2, right2]] = seg.ends.map(|[x, y]| camera.edges(i64::from(x), i64::from(y)));
+        let turned = seg.ends.map(|end| camera.turned(end));
+        // How far they are to the right of the view's left edge and to the left of its right one.
+        let [[left1, right1], [left2, right2]] = turned.map(|[right, ahead]| [ahead + right, ahead - right]);
         // Facing the eye, it runs clockwise by less than half a turn: it enters the view over the left edge or not at
         // all, and leaves it over the right one.
         if (left1 < 0 && left2 < 0) || (right1 < 0 && right2 < 0) {
@@ -103,7 +114,7 @@ impl Walk<'_> {
         let first = usize::from(*view.first_column.get(base_ends[0] as usize)?);
         let end = usize::from(view.first_column[base_ends[1] as usize]);
         let seen = first < end && self.openings.any_open(first, end);
-        seen.then_some(SeenColumns { first, end, positions, base_ends })
+        seen.then_some(SeenColumns { first, end, positions, base_ends, turned: TurnedLine(turned) })
     }
 
     /// A wall without another side.
@@ -253,7 +264,7 @@ impl Walk<'_> {
             tables: &self.scene.assets.light_tables,
             line: &seen.line,
             ends: &seen.ends,
-            texture: TextureLine::new(self.camera, seen.face, first),
+            texture: seen.turned.texture(self.view, seen.face, first),
             picture: &self.scene.textures.walls[picture],
             light,
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
@@ -271,6 +282,11 @@ impl Walk<'_> {
         if start.is_none() {
             shader.draw::<DEPTH>(self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
         }
+        if DEPTH && self.depths.by_fours() {
+            let depth =
+                |x: usize| shader.depths.wall(seen.line.distance_at(i64::from(self.view.columns[x])), shader.picture.height);
+            fours::draw_below(self.columns, first, &tops[..end - first], &bottoms[..end - first], depth);
+        }
         if !self.world.soot.is_empty() {
             self.soot::<DEPTH>(seen, light);
         }
@@ -279,7 +295,7 @@ impl Walk<'_> {
     /// Whether columns of walls are listed and drawn together.
     #[cfg(target_arch = "x86_64")]
     fn lists_walls(&self) -> bool {
-        self.simd.level() == Level::Avx512 && self.columns.are_blocks()
+        self.simd.level() == Level::Avx512 && self.columns.are_blocks() && !self.depths.by_fours()
     }
 
     /// Draws the walls that wait for it.

@@ -8,7 +8,7 @@ use super::scene::Face;
 use super::seg::SeenSeg;
 use super::stamp::first_row;
 use super::walk::Walk;
-use super::wall::{INVERSE_BITS, TextureLine};
+use super::wall::INVERSE_BITS;
 use crate::assets::Stain;
 use crate::math::Fixed;
 use crate::world::Soot;
@@ -57,7 +57,8 @@ impl Walk<'_> {
 
     /// What all marks of a wall need of its columns: a wall may bear dozens, most of which touch few of them.
     fn list_sooty_columns(&mut self, seen: &SeenSeg<'_>, light: Light) {
-        let (camera, view, texture) = (self.camera, self.view, TextureLine::new(self.camera, seen.face, seen.first));
+        let (camera, view) = (self.camera, self.view);
+        let texture = seen.turned.texture(view, seen.face, seen.first);
         let rows = self.scratch.upper.iter().zip(&self.scratch.lower).enumerate();
         let shown = rows.take(seen.end).skip(seen.first).filter(|(_, (top, bottom))| top < bottom);
         self.scratch.sooty.clear();

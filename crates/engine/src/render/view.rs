@@ -7,6 +7,7 @@
 use super::column::ROW_GROUP;
 use super::frame::column_stride;
 use super::narrow::padded;
+use super::turned::COLUMN_RAY_BITS;
 use super::{FrameSize, SizeError};
 use crate::math::{Angle, fine_tangent};
 
@@ -28,6 +29,8 @@ pub struct View {
     pub(super) size: FrameSize,
     /// Width of the base grid.
     pub(super) base_width: u32,
+    /// By how much more to the right the ray of a base column goes than that of the one before, each a unit ahead; [`COLUMN_RAY_BITS`].
+    pub(super) column_ray: i64,
     /// Rows of the base grid that show the world; the status bar is below.
     pub(super) base_view_rows: u32,
     /// Rows of the frame that show the world.
@@ -86,6 +89,7 @@ impl View {
             size,
             bar_rows: all_rows[view_rows..].into(),
             base_width: width,
+            column_ray: (2 << COLUMN_RAY_BITS) / i64::from(width),
             base_view_rows,
             view_rows,
             chunk_stride: columns[CHUNK],
@@ -115,6 +119,11 @@ impl View {
     /// Rows of the whole base grid, the status bar among them.
     pub(super) fn base_rows(&self) -> u32 {
         if self.size == FrameSize::LEARNER { u32::from(FrameSize::CLASSIC.height) } else { u32::from(self.size.height) }
+    }
+
+    /// Whether the frame lacks columns and rows of the base grid.
+    pub(super) fn is_reduced(&self) -> bool {
+        self.base_width as usize != self.width()
     }
 
     /// Frame columns.

@@ -46,8 +46,8 @@ pub(super) struct Walk<'a> {
 pub(super) struct WalkScratch {
     /// Children to visit later: node index times two, plus the side.
     stack: Vec<u32>,
-    /// Segs of the subsector at hand that face the eye and matter, with their distance from it.
-    facing: Vec<(u32, i64)>,
+    /// Segs of the subsector at hand that face the eye and matter.
+    facing: Vec<u32>,
     /// Rows of the upper end of the part of a wall that is being drawn.
     pub upper: Vec<i16>,
     /// Rows of its lower end.
@@ -60,7 +60,7 @@ impl WalkScratch {
     /// Has room for frames of `width` columns of a scene.
     pub fn fit(&mut self, scene: &Scene, width: usize) {
         self.stack.resize(scene.nodes.len() + 2, 0);
-        self.facing.resize(scene.most_segs + 1, (0, 0));
+        self.facing.resize(scene.most_segs + 1, 0);
         self.upper.resize(padded(width), 0);
         self.lower.resize(padded(width), 0);
     }
@@ -211,26 +211,24 @@ impl Walk<'_> {
         // First those that face the eye, then those of them that matter, again without branches, then their drawing.
         let mut found = 0;
         for (index, seg) in (first..end).zip(&scene.segs[first as usize..end as usize]) {
-            let away = seg.away(self.camera.x, self.camera.y);
-            self.scratch.facing[found] = (index, away);
-            found += usize::from(away > 0);
+            self.scratch.facing[found] = index;
+            found += usize::from(seg.away(self.camera.x, self.camera.y) > 0);
         }
         let mut kept = 0;
         for i in 0..found {
-            let (index, away) = self.scratch.facing[i];
+            let index = self.scratch.facing[i];
             let seg = &scene.segs[index as usize];
             // A one-sided line differs from whatever its sector is compared with.
             let one_sided = seg.back == NO_SECTOR;
             let back = self.looks.of(self.world, if one_sided { sector } else { seg.back });
             let differs = own.difference(&back) | u64::from(one_sided | seg.masked);
-            self.scratch.facing[kept] = (index, away);
+            self.scratch.facing[kept] = index;
             // Of a map's many faces few are in the nearest cache, and they are needed late.
             prefetch(&scene.faces[seg.face as usize]);
             kept += usize::from(differs != 0);
         }
         for i in 0..kept {
-            let (index, away) = self.scratch.facing[i];
-            self.seg::<DEPTH>(index, away);
+            self.seg::<DEPTH>(self.scratch.facing[i]);
         }
     }
 }

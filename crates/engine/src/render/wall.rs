@@ -7,7 +7,7 @@ use super::depth::Depths;
 use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::WallPicture;
-use super::scene::{Face, SceneSeg};
+use super::scene::Face;
 #[cfg(target_arch = "x86_64")]
 use super::wall_wide;
 use crate::math::divided_by_count;
@@ -37,13 +37,13 @@ pub(super) struct SeenLine {
 /// Horizontal texture positions on a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TextureLine {
-    /// Position along the line of the point nearest to the eye, 16.16.
+    /// Position along the line of the point nearest to the eye, in texels.
     pub along: i64,
-    /// Position along the line that a ray gains a unit of distance at base column 0, 60 fractional bits.
+    /// Texels that a ray gains along the line a unit of distance, at base column 0.
     pub gain: i64,
     /// Its change a column.
     pub gain_step: i64,
-    /// First position that is shown: the line's, or none at the left edge of the screen.
+    /// First position that is shown, 16.16 as are the next two: the line's, or none at the left edge of the screen.
     pub least: i64,
     /// Last position of the line.
     pub last: i64,
@@ -52,15 +52,21 @@ pub(super) struct TextureLine {
 }
 
 impl TextureLine {
-    /// The texture positions of one side of a line, of which the piece in view begins at a column.
-    pub fn new(camera: &Camera, face: &Face, first: usize) -> TextureLine {
-        let [tx, ty] = face.along.map(i64::from);
+    /// Fractional bits of [`TextureLine::along`].
+    pub const ALONG_BITS: u32 = 44;
+    /// Fractional bits of [`TextureLine::gain`].
+    pub const GAIN_BITS: u32 = 60;
+
+    /// The texture positions of one side of a line, of which the piece in view begins at a frame column. They are those to the
+    /// nearest 65536th of a texel, which tells where walls begin or end right between two columns.
+    #[inline]
+    pub fn rounded(along: i64, gain: i64, gain_step: i64, face: &Face, first: usize) -> TextureLine {
         TextureLine {
-            along: (camera.x * tx + camera.y * ty + face.origin) >> 28,
-            gain: tx * camera.ray[0] + ty * camera.ray[1],
-            gain_step: tx * camera.ray_step[0] + ty * camera.ray_step[1],
+            along: along + (1 << (Self::ALONG_BITS - 17)),
+            gain: gain + (1 << (Self::GAIN_BITS - 29)),
+            gain_step,
             least: if first == 0 { i64::MIN } else { 0 },
-            last: face.texels - 1,
+            last: (face.texels << 16) - 1,
             offset: face.u_offset,
         }
     }
@@ -71,7 +77,7 @@ impl TextureLine {
     #[inline]
     pub fn at(&self, column: i64, distance: i64) -> i64 {
         let gain = (self.gain + self.gain_step * column) >> 32;
-        (self.along + ((distance * gain) >> 28)).min(self.last).max(self.least) + self.offset
+        ((self.along + distance * gain) >> 28).min(self.last).max(self.least) + self.offset
     }
 }
 
@@ -85,19 +91,6 @@ pub(super) struct Edge {
 }
 
 impl SeenLine {
-    /// The line of a seg that faces the camera from `away`, the distance with 44 fractional bits.
-    #[inline]
-    pub fn new(camera: &Camera, seg: &SceneSeg, away: i64) -> SeenLine {
-        let [nx, ny] = seg.normal.map(i64::from);
-        // Nearer than 1/256 unit counts as that far.
-        let reciprocal = (1i64 << 62) / (away >> 20).max(1 << 16);
-        let inverse = |ray: [i64; 2]| {
-            let towards = -(nx * ray[0] + ny * ray[1]);
-            ((i128::from(towards) * i128::from(reciprocal)) >> (98 - INVERSE_BITS)) as i64
-        };
-        SeenLine { inverse: inverse(camera.ray), inverse_step: inverse(camera.ray_step) }
-    }
-
     /// The inverse of the distance at a base column.
     #[inline]
     pub fn inverse_at(&self, column: i64) -> i64 {
@@ -280,7 +273,7 @@ impl WallShader<'_> {
         let column = Column { texels: self.picture.column(u), table: &self.tables[table], at, step };
         column.draw(simd, cache, frame.colour_of(x), &self.view.rows, top, bottom);
         if DEPTH {
-            let depth = self.depths.wall(distance);
+            let depth = self.depths.wall(distance, self.picture.height);
             frame.depth_of(x)[top..bottom].fill(depth);
         }
         // The class of a wall is what the frame was cleared to.

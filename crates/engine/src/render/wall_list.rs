@@ -136,7 +136,7 @@ impl WallList {
             let x = columns[i] as usize;
             store(&mut frame.colour_blocks()[x], masks[i], lit);
             if DEPTH {
-                let depth = depths.wall(self.distances[i] as i64);
+                let depth = depths.wall(self.distances[i] as i64, lasts[i] + 1);
                 store(&mut frame.depth_blocks()[x], masks[i], _mm512_set1_epi8(depth as i8));
             }
         }

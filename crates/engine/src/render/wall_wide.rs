@@ -85,8 +85,8 @@ fn quotients(divisor: __m512i) -> __m512i {
 fn texture_at(line: &TextureLine, column: __m512i, distance: __m512i) -> __m512i {
     let change = _mm512_mullo_epi64(_mm512_set1_epi64(line.gain_step), column);
     let gain = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(line.gain), change), 32);
-    let gained = _mm512_srai_epi64(_mm512_mullo_epi64(distance, gain), 28);
-    let along = _mm512_add_epi64(_mm512_set1_epi64(line.along), gained);
+    let gained = _mm512_mullo_epi64(distance, gain);
+    let along = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(line.along), gained), 28);
     let along = _mm512_max_epi64(_mm512_min_epi64(along, _mm512_set1_epi64(line.last)), _mm512_set1_epi64(line.least));
     _mm512_add_epi64(along, _mm512_set1_epi64(line.offset))
 }

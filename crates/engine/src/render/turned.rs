@@ -1,0 +1,167 @@
+//! Lines as they lie before the eye. The published engine turns the ends of a line into view and keeps 4096ths of a unit of them;
+//! distances along its wall and the texels that it shows follow from the ends so cut, not from the line on the map.
+
+use super::View;
+use super::camera::Camera;
+use super::scene::Face;
+use super::wall::{INVERSE_BITS, SeenLine, TextureLine};
+
+/// Fractional bits of turned points.
+pub(super) const TURNED_BITS: u32 = 12;
+/// Fractional bits of [`View::column_ray`].
+pub(super) const COLUMN_RAY_BITS: u32 = 40;
+/// `1 / number` is an [`Inverse`]'s digits by two to the power of this and its shift.
+const DIGIT_BITS: i32 = 95;
+
+/// How far a point is to the right of the eye, and how far ahead.
+pub(super) type Turned = [i64; 2];
+
+/// The ends of a line that faces the eye, from left to right as seen from its side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TurnedLine(pub [Turned; 2]);
+
+impl Camera {
+    /// A point of the map, 16.16, turned; the rest of its [`TURNED_BITS`] is cut.
+    #[inline]
+    pub fn turned(&self, [x, y]: [i32; 2]) -> Turned {
+        let (dx, dy) = (i64::from(x) - self.x, i64::from(y) - self.y);
+        let (cos, sin) = (self.forward[0], self.forward[1]);
+        [dx * sin - dy * cos, dx * cos + dy * sin].map(|part| part >> (32 - TURNED_BITS))
+    }
+}
+
+impl TurnedLine {
+    /// The line of a side.
+    #[inline]
+    pub fn of_face(camera: &Camera, face: &Face) -> TurnedLine {
+        TurnedLine(face.ends.map(|end| camera.turned(end)))
+    }
+
+    /// How far away its plane is in each column: where the ray `(r, 1)` meets the line from `p` to `p + d`, `(r * d.ahead -
+    /// d.right) / (p.ahead * d.right - p.right * d.ahead)` is the inverse of the distance.
+    #[inline]
+    pub fn seen(&self, view: &View) -> SeenLine {
+        let [[right, ahead], end] = self.0;
+        let along = [end[0] - right, end[1] - ahead];
+        // Nearer than 1/256 unit counts as that far.
+        let least = (along[0].abs() + along[1].abs()).max(1) << (TURNED_BITS - 8);
+        let Inverse { digits, shift } = Inverse::of((end[0] * ahead - right * end[1]).max(least));
+        let scaled = |part: i64| shifted(part, shift + DIGIT_BITS - (INVERSE_BITS + TURNED_BITS) as i32);
+        // The outermost ray is `(-1, 1)`.
+        let step = (i128::from(-along[1] * digits) * i128::from(view.column_ray)) >> COLUMN_RAY_BITS;
+        SeenLine { inverse: scaled((along[0] + along[1]) * digits), inverse_step: scaled(step as i64) }
+    }
+
+    /// The texture positions of the side whose line it is, of which the piece in view begins at a frame column: where a ray `(r, 1)`
+    /// of some length ends, the line has run for `((r, 1) * length - p) . d / (d . d)` of itself.
+    pub fn texture(&self, view: &View, face: &Face, first: usize) -> TextureLine {
+        let [start, end] = self.0;
+        let along = [end[0] - start[0], end[1] - start[1]];
+        let Inverse { digits, shift } = Inverse::of((along[0] * along[0] + along[1] * along[1]).max(1));
+        let texels = i128::from(digits * face.texels);
+        let scaled = |part: i64, bits: u32| shifted_wide(i128::from(part) * texels, shift + DIGIT_BITS - bits as i32);
+        // What a unit to the right and a unit ahead gain.
+        let [right, ahead] = along.map(|part| scaled(part, TextureLine::GAIN_BITS + TURNED_BITS));
+        let before = -(start[0] * along[0] + start[1] * along[1]);
+        let step = (i128::from(right) * i128::from(view.column_ray)) >> COLUMN_RAY_BITS;
+        TextureLine::rounded(scaled(before, TextureLine::ALONG_BITS), ahead - right, step as i64, face, first)
+    }
+}
+
+/// `1 / number` to 31 bits: `digits / 2^(DIGIT_BITS + shift)`.
+struct Inverse {
+    digits: i64,
+    shift: i32,
+}
+
+impl Inverse {
+    /// Of a positive number.
+    #[inline]
+    fn of(number: i64) -> Inverse {
+        let zeros = number.leading_zeros();
+        let leading = (number as u64) << zeros >> 32;
+        Inverse { digits: ((1u64 << 63) / leading) as i64, shift: -(zeros as i32) }
+    }
+}
+
+/// `number / 2^shift`, rounded down.
+#[inline]
+fn shifted(number: i64, shift: i32) -> i64 {
+    if shift >= 0 { number >> shift } else { number << -shift }
+}
+
+/// [`shifted`], of numbers that become small enough by it.
+#[inline]
+fn shifted_wide(number: i128, shift: i32) -> i64 {
+    (if shift >= 0 { number >> shift } else { number << -shift }) as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+    use crate::render::FrameSize;
+
+    /// A face of a line with these ends, 16.16, that is as many texels long.
+    fn face(ends: [[i32; 2]; 2], texels: i64) -> Face {
+        Face { ends, texels, ..Face::bare() }
+    }
+
+    #[test]
+    fn distances_and_texels_are_those_of_the_line_between_the_cut_ends() {
+        let mut rng = Rng::new(31);
+        let mut compared = 0;
+        for round in 0..3_000 {
+            let size = [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 640, height: 480 }][round % 3];
+            let view = View::new(size).unwrap();
+            let width = i64::from(view.base_width);
+            let mut place = |reach: i32| [0, 1].map(|_| rng.between(-reach << 16, reach << 16));
+            let ends = [place(3000), place(3000)];
+            let [x, y] = place(3000).map(i64::from);
+            let angle = crate::math::Angle(rng.next_u64() as u32);
+            let forward = [i64::from(angle.cos().0), i64::from(angle.sin().0)];
+            let camera = Camera { x, y, forward, ..Camera::default() };
+            let [dx, dy] = [0, 1].map(|i| f64::from(ends[1][i] - ends[0][i]) / 65536.0);
+            let texels = dx.hypot(dy).round().max(1.0) as i64;
+            let face = face(ends, texels);
+            let turned = TurnedLine::of_face(&camera, &face);
+            let [[x1, y1], [x2, y2]] = turned.0.map(|point| point.map(|part| part as f64 / 4096.0));
+            let (seen, texture) = (turned.seen(&view), turned.texture(&view, &face, 1));
+            // Where the ray (r, 1) * distance meets p + s (q - p), by Cramer's rule; from one unit to the side of the eye on, and
+            // in front.
+            for column in (0..width).step_by(7) {
+                let r = 2.0 * column as f64 / width as f64 - 1.0;
+                let determinant = r * (y2 - y1) - (x2 - x1);
+                let (distance, s) = ((x1 * (y2 - y1) - y1 * (x2 - x1)) / determinant, (x1 - r * y1) / determinant);
+                let length = (x2 - x1).hypot(y2 - y1);
+                let facing = x2 * y1 - x1 * y2 > length;
+                if !facing || !(1.0..8000.0).contains(&distance) || !(0.0..1.0).contains(&s) {
+                    continue;
+                }
+                let own = seen.distance_at(column);
+                assert!((own as f64 / 65536.0 - distance).abs() < 2e-5 + distance * 1e-6, "{own} for {distance}");
+                let u = texture.at(column, own) as f64 / 65536.0;
+                assert!((u - s * texels as f64).abs() < 0.01, "{u} for {}", s * texels as f64);
+                compared += 1;
+            }
+        }
+        assert!(compared > 10_000, "{compared}");
+    }
+
+    #[test]
+    fn a_texel_that_begins_right_at_a_column_is_shown_there() {
+        // A wall 64 units long across the view, its middle straight ahead, at any distance: its 33rd texel begins where the
+        // second half of the view does.
+        let view = View::new(FrameSize::CLASSIC).unwrap();
+        let angle = crate::math::Angle::EAST;
+        let forward = [i64::from(angle.cos().0), i64::from(angle.sin().0)];
+        let camera = Camera { forward, ..Camera::default() };
+        for distance in 20..2000 {
+            let x = distance << 16;
+            let face = face([[x, 32 << 16], [x, -32 << 16]], 64);
+            let turned = TurnedLine::of_face(&camera, &face);
+            let texel = turned.texture(&view, &face, 1).at(80, turned.seen(&view).distance_at(80)) >> 16;
+            assert_eq!(texel, 32, "{distance} units away");
+        }
+    }
+}
