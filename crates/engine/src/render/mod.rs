@@ -28,6 +28,7 @@ mod look;
 mod magnified_wide;
 mod masked;
 mod masked_column;
+mod masked_texture;
 #[cfg(target_arch = "x86_64")]
 mod masked_wide;
 #[cfg(test)]
