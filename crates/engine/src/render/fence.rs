@@ -17,6 +17,8 @@ pub(super) struct Runs<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Fence {
     pub picture: MaskedPicture,
+    /// Last of the columns whose runs are kept: the first where there is no hole, as in most pictures of walls.
+    last_runs: u32,
     starts: Vec<u16>,
     ends: Vec<u16>,
 }
@@ -24,20 +26,22 @@ pub(super) struct Fence {
 impl Fence {
     pub fn new(image: &Image) -> Fence {
         let picture = MaskedPicture::new(image);
-        let (mut starts, mut ends) = (vec![0; picture.texels.len()], vec![0; picture.texels.len()]);
         let height = picture.height as usize;
-        for (at, column) in picture.texels.chunks(height).enumerate() {
+        let has_holes = picture.texels.iter().any(|texel| texel & MaskedPicture::OPAQUE == 0);
+        let kept = if has_holes { picture.width } else { 1 };
+        let (mut starts, mut ends) = (vec![0; kept as usize * height], vec![0; kept as usize * height]);
+        for (at, column) in picture.texels.chunks(height).take(kept as usize).enumerate() {
             find_runs(column, &mut starts[at * height..], &mut ends[at * height..]);
         }
-        Fence { picture, starts, ends }
+        Fence { picture, last_runs: kept.saturating_sub(1), starts, ends }
     }
 
     /// The texels of a column and their runs.
     #[inline]
     pub fn column(&self, column: u32) -> (&[u16], Runs<'_>) {
-        let start = (column * self.picture.height) as usize;
-        let texels = start..start + self.picture.height as usize;
-        (self.picture.column(column), Runs { starts: &self.starts[texels.clone()], ends: &self.ends[texels] })
+        let start = (column.min(self.last_runs) * self.picture.height) as usize;
+        let runs = start..start + self.picture.height as usize;
+        (self.picture.column(column), Runs { starts: &self.starts[runs.clone()], ends: &self.ends[runs] })
     }
 }
 
@@ -117,6 +121,26 @@ mod tests {
         let (mut starts, mut ends) = ([0; 5], [0; 5]);
         find_runs(&[1, 0x101, 0x102, 2, 0x103], &mut starts, &mut ends);
         assert_eq!((starts, ends), ([0, 1, 1, 0, 4], [0, 3, 3, 0, 5]));
+    }
+
+    #[test]
+    fn a_picture_without_holes_keeps_the_runs_of_one_column() {
+        let image = |mask: Option<[u8; 6]>| {
+            let mask = mask.map(|mask| mask.into());
+            Fence::new(&Image { width: 3, height: 2, offset_x: 0, offset_y: 0, pixels: [1, 2, 3, 4, 5, 6].into(), mask })
+        };
+        let shown = |fence: &Fence| {
+            let column = |column| {
+                let (texels, Runs { starts, ends }) = fence.column(column);
+                [0, 1].map(|row| (texels[row] as u8, starts[row], ends[row]))
+            };
+            [0, 1, 2].map(column)
+        };
+        let whole = [[(1, 0, 2), (2, 0, 2)], [(3, 0, 2), (4, 0, 2)], [(5, 0, 2), (6, 0, 2)]];
+        assert_eq!((shown(&image(None)), image(None).starts.len()), (whole, 2));
+        let holes = [[(1, 0, 2), (2, 0, 2)], [(3, 0, 0), (4, 1, 2)], [(5, 0, 2), (6, 0, 2)]];
+        let masked = image(Some([1, 1, 0, 1, 1, 1]));
+        assert_eq!((shown(&masked), masked.starts.len()), (holes, 6));
     }
 
     #[test]

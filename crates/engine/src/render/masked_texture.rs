@@ -82,7 +82,7 @@ impl Masked<'_> {
             fence,
             edges: [top, bottom].map(|height| silhouette.ends.edge(camera, view, height - camera.z)),
             hung_from: hung_from - camera.z,
-            along: TurnedLine::of_face(camera, face).texture(view, face, silhouette.first),
+            along: TurnedLine::of_face(camera, face).texture(view, face, silhouette.base_ends),
             light: Light::new(camera, i32::from(front.light) + face.contrast),
             scales: Scales::new(view, &silhouette.line, silhouette.base_ends),
             fours: (view.columns[first] + 3) & !3..(view.columns[end - 1] + 1) & !3,

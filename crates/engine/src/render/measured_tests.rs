@@ -1,7 +1,6 @@
 //! Borders of what is drawn, as they were seen in the published engine (docs/results/pixels.md).
 
 use super::render_tests::{STYLE, assets};
-use super::wall::TextureLine;
 use super::*;
 use crate::map::{Map, MapBuilder, Mark, Style};
 use crate::math::{Angle, Fixed};
@@ -60,18 +59,4 @@ fn runs_of_a_fence_that_begin_at_the_eye_s_height_show_only_below_it() {
         }
     }
     assert!(begin > 100, "{begin}");
-}
-
-#[test]
-fn only_in_the_first_column_a_line_is_shown_from_before_its_start() {
-    let mut builder = MapBuilder::new();
-    builder.rectangle(YARD, -64, -512, 512, 512);
-    let (_, _, scene) = stand(builder, 41);
-    for face in &scene.faces {
-        let before = |first: usize| {
-            let line = TextureLine::rounded(-(5 << TextureLine::ALONG_BITS), 0, 0, face, first);
-            line.at(first as i64, 1 << 16) - line.offset
-        };
-        assert_eq!((before(0), before(1)), (-(5 << 16), 0));
-    }
 }

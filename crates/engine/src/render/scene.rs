@@ -80,6 +80,11 @@ pub(super) struct Face {
 }
 
 impl Face {
+    /// Last position on its line, 16.16 texels.
+    pub fn last_position(&self) -> i64 {
+        (self.texels << 16) - 1
+    }
+
     /// One without textures.
     pub fn bare() -> Face {
         Face {

@@ -32,7 +32,7 @@ pub(super) struct SeenSeg<'a> {
     pub first: usize,
     pub end: usize,
     /// First base column and one past the last.
-    base_ends: [i64; 2],
+    pub base_ends: [i64; 2],
 }
 
 /// The columns of a seg that faces the eye.
@@ -264,7 +264,7 @@ impl Walk<'_> {
             tables: &self.scene.assets.light_tables,
             line: &seen.line,
             ends: &seen.ends,
-            texture: seen.turned.texture(self.view, seen.face, first),
+            texture: seen.turned.texture(self.view, seen.face, seen.base_ends),
             picture: &self.scene.textures.walls[picture],
             light,
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,

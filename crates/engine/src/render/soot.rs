@@ -58,7 +58,7 @@ impl Walk<'_> {
     /// What all marks of a wall need of its columns: a wall may bear dozens, most of which touch few of them.
     fn list_sooty_columns(&mut self, seen: &SeenSeg<'_>, light: Light) {
         let (camera, view) = (self.camera, self.view);
-        let texture = seen.turned.texture(view, seen.face, seen.first);
+        let texture = seen.turned.texture(view, seen.face, seen.base_ends);
         let rows = self.scratch.upper.iter().zip(&self.scratch.lower).enumerate();
         let shown = rows.take(seen.end).skip(seen.first).filter(|(_, (top, bottom))| top < bottom);
         self.scratch.sooty.clear();

@@ -52,9 +52,9 @@ impl TurnedLine {
         SeenLine { inverse: scaled((along[0] + along[1]) * digits), inverse_step: scaled(step as i64) }
     }
 
-    /// The texture positions of the side whose line it is, of which the piece in view begins at a frame column: where a ray `(r, 1)`
-    /// of some length ends, the line has run for `((r, 1) * length - p) . d / (d . d)` of itself.
-    pub fn texture(&self, view: &View, face: &Face, first: usize) -> TextureLine {
+    /// The texture positions of the side whose line it is, of which a seg is seen in base columns: where a ray `(r, 1)` of some length
+    /// ends, the line has run for `((r, 1) * length - p) . d / (d . d)` of itself.
+    pub fn texture(&self, view: &View, face: &Face, base_ends: [i64; 2]) -> TextureLine {
         let [start, end] = self.0;
         let along = [end[0] - start[0], end[1] - start[1]];
         let Inverse { digits, shift } = Inverse::of((along[0] * along[0] + along[1] * along[1]).max(1));
@@ -64,7 +64,20 @@ impl TurnedLine {
         let [right, ahead] = along.map(|part| scaled(part, TextureLine::GAIN_BITS + TURNED_BITS));
         let before = -(start[0] * along[0] + start[1] * along[1]);
         let step = (i128::from(right) * i128::from(view.column_ray)) >> COLUMN_RAY_BITS;
-        TextureLine::rounded(scaled(before, TextureLine::ALONG_BITS), ahead - right, step as i64, face, first)
+        let least = self.least_position(face, base_ends);
+        TextureLine::rounded(scaled(before, TextureLine::ALONG_BITS), ahead - right, step as i64, least, face)
+    }
+
+    /// The first position that is shown, if there is one. The left edge of a line's first column may lie before the line: it shows the
+    /// line's first texel. In the first column of the screen it shows the texel that would be there, or, of a seg that ends in that
+    /// column too, the line's last one.
+    fn least_position(&self, face: &Face, base_ends: [i64; 2]) -> Option<i64> {
+        let [right, ahead] = self.0[0];
+        match base_ends {
+            [0, 1] if ahead + right > 0 => Some(face.last_position()),
+            [0, _] => None,
+            _ => Some(0),
+        }
     }
 }
 
@@ -126,7 +139,7 @@ mod tests {
             let face = face(ends, texels);
             let turned = TurnedLine::of_face(&camera, &face);
             let [[x1, y1], [x2, y2]] = turned.0.map(|point| point.map(|part| part as f64 / 4096.0));
-            let (seen, texture) = (turned.seen(&view), turned.texture(&view, &face, 1));
+            let (seen, texture) = (turned.seen(&view), turned.texture(&view, &face, [1, 160]));
             // Where the ray (r, 1) * distance meets p + s (q - p), by Cramer's rule; from one unit to the side of the eye on, and
             // in front.
             for column in (0..width).step_by(7) {
@@ -160,8 +173,29 @@ mod tests {
             let x = distance << 16;
             let face = face([[x, 32 << 16], [x, -32 << 16]], 64);
             let turned = TurnedLine::of_face(&camera, &face);
-            let texel = turned.texture(&view, &face, 1).at(80, turned.seen(&view).distance_at(80)) >> 16;
+            let texel = turned.texture(&view, &face, [1, 160]).at(80, turned.seen(&view).distance_at(80)) >> 16;
             assert_eq!(texel, 32, "{distance} units away");
         }
+    }
+
+    #[test]
+    fn only_in_the_first_column_a_line_is_shown_from_before_its_start() {
+        let view = View::new(FrameSize::CLASSIC).unwrap();
+        // It begins a little to the right of the view's left edge, along which lines go away.
+        let turned = TurnedLine([[-100 << 12, 101 << 12], [-95 << 12, 113 << 12]]);
+        let face = face([[0; 2]; 2], 13);
+        let shown = |base_ends: [i64; 2]| {
+            let texture = turned.texture(&view, &face, base_ends);
+            texture.at(base_ends[0], turned.seen(&view).distance_at(base_ends[0])) >> 16
+        };
+        // From the edge's column to where it is seen: half a column, nearly a unit.
+        assert_eq!(shown([0, 7]), -1);
+        // Where all of the seg lies in that column it is the last texel, as measured.
+        assert_eq!(shown([0, 1]), 12);
+        // A line that comes from beside the view has no such column.
+        let beside = TurnedLine([[-100 << 12, 50 << 12], [-95 << 12, 113 << 12]]);
+        let position = beside.texture(&view, &face, [0, 1]).at(0, beside.seen(&view).distance_at(0)) >> 16;
+        assert!((1..12).contains(&position), "{position}");
+        assert_eq!([turned.least_position(&face, [1, 7]), beside.least_position(&face, [0, 1])], [Some(0), None]);
     }
 }

@@ -43,7 +43,7 @@ pub(super) struct TextureLine {
     pub gain: i64,
     /// Its change a column.
     pub gain_step: i64,
-    /// First position that is shown, 16.16 as are the next two: the line's, or none at the left edge of the screen.
+    /// First position that is shown, 16.16 as are the next two.
     pub least: i64,
     /// Last position of the line.
     pub last: i64,
@@ -57,23 +57,21 @@ impl TextureLine {
     /// Fractional bits of [`TextureLine::gain`].
     pub const GAIN_BITS: u32 = 60;
 
-    /// The texture positions of one side of a line, of which the piece in view begins at a frame column. They are those to the
-    /// nearest 65536th of a texel, which tells where walls begin or end right between two columns.
+    /// The texture positions of one side of a line, to the nearest 65536th of a texel: what begins right between two columns begins
+    /// there.
     #[inline]
-    pub fn rounded(along: i64, gain: i64, gain_step: i64, face: &Face, first: usize) -> TextureLine {
+    pub fn rounded(along: i64, gain: i64, gain_step: i64, least: Option<i64>, face: &Face) -> TextureLine {
         TextureLine {
             along: along + (1 << (Self::ALONG_BITS - 17)),
             gain: gain + (1 << (Self::GAIN_BITS - 29)),
             gain_step,
-            least: if first == 0 { i64::MIN } else { 0 },
-            last: (face.texels << 16) - 1,
+            least: least.unwrap_or(i64::MIN),
+            last: face.last_position(),
             offset: face.u_offset,
         }
     }
 
-    /// Horizontal texture position at a base column where the distance is known, 16.16. The left edge of a line's first
-    /// column may lie before the line: it shows the line's first texel. In the first column of the screen, where lines begin
-    /// that reach farther, it shows the texel that would be there.
+    /// Horizontal texture position at a base column where the distance is known, 16.16.
     #[inline]
     pub fn at(&self, column: i64, distance: i64) -> i64 {
         let gain = (self.gain + self.gain_step * column) >> 32;
