@@ -44,7 +44,7 @@ impl Masked<'_> {
         for x in first..end {
             let row_index = silhouette.rows + x - silhouette.first;
             let drawn = std::mem::replace(&mut self.silhouettes.drawn[row_index], true);
-            let in_four = if DEPTH { self.in_four(&seen, x, by_fours) } else { None };
+            let in_four = if DEPTH { self.in_four(&seen, x) } else { None };
             if by_fours && in_four == Some(0) {
                 self.fence_depth.begin();
             }
@@ -53,7 +53,7 @@ impl Masked<'_> {
             let rows = top.max(open[0])..bottom.min(open[1]);
             if !drawn && !rows.is_empty() {
                 let rows = rows.start as usize..rows.end as usize;
-                self.texture_column::<DEPTH, CLASS>(&seen, Place { x, rows, in_four }, by_fours);
+                self.texture_column::<DEPTH, CLASS>(&seen, Place { x, rows, in_four });
             }
             if by_fours && in_four == Some(3) {
                 let Frame { width, depth, .. } = &mut *self.frame;
@@ -90,7 +90,7 @@ impl Masked<'_> {
     }
 
     /// Which of four columns that are drawn at once a frame column is.
-    fn in_four(&self, seen: &SeenTexture, x: usize, by_fours: bool) -> Option<usize> {
+    fn in_four(&self, seen: &SeenTexture, x: usize) -> Option<usize> {
         let column = self.view.columns[x];
         let place = (column & 3) as usize;
         // Nor are they drawn at once where nearer walls without an opening hide one of them.
@@ -98,11 +98,11 @@ impl Masked<'_> {
             let four = seen.silhouette.rows + x - seen.silhouette.first - place;
             self.silhouettes.bottoms[four..four + 4].iter().all(|&bottom| bottom > 0)
         };
-        (seen.fours.contains(&column) && (!by_fours || is_whole())).then_some(place)
+        (seen.fours.contains(&column) && (!self.frame.depths.by_fours() || is_whole())).then_some(place)
     }
 
     #[inline]
-    fn texture_column<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenTexture, place: Place, by_fours: bool) {
+    fn texture_column<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenTexture, place: Place) {
         let Place { x, rows, in_four } = place;
         let (silhouette, fence, base_column) = (seen.silhouette, seen.fence, i64::from(self.view.columns[x]));
         let distance = silhouette.line.distance_at(base_column);
@@ -132,7 +132,10 @@ impl Masked<'_> {
             if DEPTH {
                 depth[pixel] = told;
             }
-            if by_fours && let Some(column) = in_four {
+            if DEPTH
+                && depths.by_fours()
+                && let Some(column) = in_four
+            {
                 self.fence_depth.add(column, row as u16, shown.run_at(self.view.rows[row]), told);
             }
             if CLASS {

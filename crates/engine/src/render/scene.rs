@@ -7,6 +7,7 @@ use super::status_bar::BarArt;
 use super::trail;
 use crate::assets::{Assets, TextureEntry};
 use crate::map::{Map, Node, Seg, Side, TextureId, TextureName};
+use crate::math::Fixed;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -52,11 +53,6 @@ impl SceneSeg {
 /// One side of a line: how its textures lie.
 #[derive(Clone, Debug)]
 pub(super) struct Face {
-    /// Direction of growing horizontal texture positions, 28 fractional bits, by as much longer than a unit as the
-    /// texture is squeezed: a line is as many texels long as it has whole map units, to the nearest.
-    pub along: [i32; 2],
-    /// Position of the map's origin along the line, 44 fractional bits.
-    pub origin: i64,
     /// Ends of the line, left to right as seen from this side; 16.16.
     pub ends: [[i32; 2]; 2],
     /// Texels of the line.
@@ -80,6 +76,13 @@ pub(super) struct Face {
 }
 
 impl Face {
+    /// Position along its line of a point on it, 16.16 texels from the line's start.
+    pub fn position(&self, [x, y]: [Fixed; 2]) -> i64 {
+        let [[from_x, from_y], [to_x, to_y]] = self.ends.map(|end| end.map(i64::from));
+        let (_, along) = texels_along(to_x - from_x, to_y - from_y);
+        ((i64::from(x.0) - from_x) * along[0] + (i64::from(y.0) - from_y) * along[1]) >> 28
+    }
+
     /// Last position on its line, 16.16 texels.
     pub fn last_position(&self) -> i64 {
         (self.texels << 16) - 1
@@ -88,8 +91,6 @@ impl Face {
     /// One without textures.
     pub fn bare() -> Face {
         Face {
-            along: [0; 2],
-            origin: 0,
             ends: [[0; 2]; 2],
             texels: 1,
             u_offset: 0,
@@ -167,15 +168,12 @@ impl Scene {
             } else {
                 0
             };
-            let (texels, along) = texels_along(dx, dy);
+            let (texels, _) = texels_along(dx, dy);
             let ends = [line.v1, line.v2].map(|vertex| [vertex.x.0, vertex.y.0]);
-            let sides =
-                [Some((line.front, ends, along)), line.back.map(|back| (back, [ends[1], ends[0]], [-along[0], -along[1]]))];
-            for (id, ends, along) in sides.into_iter().flatten() {
+            let sides = [Some((line.front, ends)), line.back.map(|back| (back, [ends[1], ends[0]]))];
+            for (id, ends) in sides.into_iter().flatten() {
                 let side: &Side = &map.sides[id.0 as usize];
                 faces[id.0 as usize] = Some(Face {
-                    along: along.map(|part| part as i32),
-                    origin: -(i64::from(ends[0][0]) * along[0] + i64::from(ends[0][1]) * along[1]),
                     ends,
                     texels,
                     u_offset: i64::from(side.offset_x.0),

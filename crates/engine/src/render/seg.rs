@@ -64,11 +64,9 @@ impl Walk<'_> {
     #[inline]
     pub fn seg<const DEPTH: bool>(&mut self, index: u32) {
         let seg = &self.scene.segs[index as usize];
-        let Some(SeenColumns { first, end, positions, base_ends, mut turned }) = self.columns(seg) else { return };
+        let Some(SeenColumns { first, end, positions, base_ends, turned }) = self.columns(seg) else { return };
         let face = &self.scene.faces[seg.face as usize];
-        if seg.piece {
-            turned = TurnedLine::of_face(self.camera, face);
-        }
+        let turned = if seg.piece { TurnedLine::of_face(self.camera, face) } else { turned };
         let line = turned.seen(self.view);
         let ends = line.between(positions, base_ends);
         let [one, other] = base_ends.map(|column| ends.inverse_at(column));

@@ -10,7 +10,6 @@ use super::stamp::first_row;
 use super::walk::Walk;
 use super::wall::INVERSE_BITS;
 use crate::assets::Stain;
-use crate::math::Fixed;
 use crate::world::Soot;
 
 /// Texels of a stain to a map unit.
@@ -80,11 +79,8 @@ impl Walk<'_> {
     }
 
     fn stain<const DEPTH: bool>(&mut self, columns: &[SootyColumn], face: &Face, stain: &Stain, mark: &Soot) {
-        let along = |x: Fixed, y: Fixed| {
-            (i64::from(x.0) * i64::from(face.along[0]) + i64::from(y.0) * i64::from(face.along[1]) + face.origin) >> 28
-        };
         // Where its left and upper end lie: along the line, and above the eye.
-        let left = along(mark.x, mark.y) - (i64::from(stain.offset_x) << 16) / TEXELS;
+        let left = face.position([mark.x, mark.y]) - (i64::from(stain.offset_x) << 16) / TEXELS;
         let above = i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - self.camera.z;
         // From column to column positions along the wall rise.
         let texel_column = |column: &SootyColumn| ((column.along - left) * TEXELS) >> 16;
@@ -130,6 +126,7 @@ mod tests {
     use crate::assets::Assets;
     use crate::map::stone_room;
     use crate::math::Angle;
+    use crate::math::Fixed;
     use crate::render::{Buffers, FrameSize, Renderer, Scene, View};
     use crate::world::World;
     use std::sync::Arc;

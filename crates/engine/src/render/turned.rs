@@ -64,19 +64,26 @@ impl TurnedLine {
         let [right, ahead] = along.map(|part| scaled(part, TextureLine::GAIN_BITS + TURNED_BITS));
         let before = -(start[0] * along[0] + start[1] * along[1]);
         let step = (i128::from(right) * i128::from(view.column_ray)) >> COLUMN_RAY_BITS;
-        let least = self.least_position(face, base_ends);
-        TextureLine::rounded(scaled(before, TextureLine::ALONG_BITS), ahead - right, step as i64, least, face)
+        // To the nearest 65536th of a texel: what begins right between two columns begins there.
+        TextureLine {
+            along: scaled(before, TextureLine::ALONG_BITS) + (1 << (TextureLine::ALONG_BITS - 17)),
+            gain: ahead - right + (1 << (TextureLine::GAIN_BITS - 29)),
+            gain_step: step as i64,
+            least: self.least_position(face, base_ends),
+            last: face.last_position(),
+            offset: face.u_offset,
+        }
     }
 
-    /// The first position that is shown, if there is one. The left edge of a line's first column may lie before the line: it shows the
+    /// The first position that is shown. The left edge of a line's first column may lie before the line: it shows the
     /// line's first texel. In the first column of the screen it shows the texel that would be there, or, of a seg that ends in that
     /// column too, the line's last one.
-    fn least_position(&self, face: &Face, base_ends: [i64; 2]) -> Option<i64> {
+    fn least_position(&self, face: &Face, base_ends: [i64; 2]) -> i64 {
         let [right, ahead] = self.0[0];
         match base_ends {
-            [0, 1] if ahead + right > 0 => Some(face.last_position()),
-            [0, _] => None,
-            _ => Some(0),
+            [0, 1] if ahead + right > 0 => face.last_position(),
+            [0, _] => i64::MIN,
+            _ => 0,
         }
     }
 }
@@ -196,6 +203,6 @@ mod tests {
         let beside = TurnedLine([[-100 << 12, 50 << 12], [-95 << 12, 113 << 12]]);
         let position = beside.texture(&view, &face, [0, 1]).at(0, beside.seen(&view).distance_at(0)) >> 16;
         assert!((1..12).contains(&position), "{position}");
-        assert_eq!([turned.least_position(&face, [1, 7]), beside.least_position(&face, [0, 1])], [Some(0), None]);
+        assert_eq!([turned.least_position(&face, [1, 7]), beside.least_position(&face, [0, 1])], [0, i64::MIN]);
     }
 }

@@ -7,7 +7,6 @@ use super::depth::Depths;
 use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::picture::WallPicture;
-use super::scene::Face;
 #[cfg(target_arch = "x86_64")]
 use super::wall_wide;
 use crate::math::divided_by_count;
@@ -56,20 +55,6 @@ impl TextureLine {
     pub const ALONG_BITS: u32 = 44;
     /// Fractional bits of [`TextureLine::gain`].
     pub const GAIN_BITS: u32 = 60;
-
-    /// The texture positions of one side of a line, to the nearest 65536th of a texel: what begins right between two columns begins
-    /// there.
-    #[inline]
-    pub fn rounded(along: i64, gain: i64, gain_step: i64, least: Option<i64>, face: &Face) -> TextureLine {
-        TextureLine {
-            along: along + (1 << (Self::ALONG_BITS - 17)),
-            gain: gain + (1 << (Self::GAIN_BITS - 29)),
-            gain_step,
-            least: least.unwrap_or(i64::MIN),
-            last: face.last_position(),
-            offset: face.u_offset,
-        }
-    }
 
     /// Horizontal texture position at a base column where the distance is known, 16.16.
     #[inline]
