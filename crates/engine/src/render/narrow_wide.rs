@@ -29,33 +29,36 @@ static YES_NO: [i16; 2 * BLOCK] = {
     list
 };
 
-/// A block of a padded list.
-#[inline(always)]
-fn block<T>(list: &[T]) -> &[T; BLOCK] {
-    list.first_chunk().expect("lists are padded")
-}
-
 impl<const AVX512: bool> Rows for Wide<AVX512> {
     const COUNT: usize = BLOCK;
+    type Block<T> = [T; BLOCK];
 
     #[inline(always)]
-    fn of_edge(scale: &RowScale, edge: Edge, base: &[u32]) -> Self {
-        let base = block(base);
+    fn blocks<T>(list: &[T]) -> &[[T; BLOCK]] {
+        list.as_chunks().0
+    }
+
+    #[inline(always)]
+    fn blocks_mut<T>(list: &mut [T]) -> &mut [[T; BLOCK]] {
+        list.as_chunks_mut().0
+    }
+
+    #[inline(always)]
+    fn of_edge(scale: &RowScale, edge: Edge, base: &[u32; BLOCK]) -> Self {
         // SAFETY: the instructions are there, see above.
         Wide(unsafe { if AVX512 { rows_avx512(scale, edge, base) } else { rows_avx2(scale, edge, base) } })
     }
 
     #[inline(always)]
-    fn load(list: &[i16]) -> Self {
+    fn load(block: &[i16; BLOCK]) -> Self {
         // SAFETY: 32 bytes are readable behind the reference; the instructions are there.
-        Wide(unsafe { _mm256_loadu_si256(block(list).as_ptr().cast()) })
+        Wide(unsafe { _mm256_loadu_si256(block.as_ptr().cast()) })
     }
 
     #[inline(always)]
-    fn store(self, list: &mut [i16]) {
-        let list: &mut [i16; BLOCK] = list.first_chunk_mut().expect("lists are padded");
+    fn store(self, block: &mut [i16; BLOCK]) {
         // SAFETY: 32 bytes are writable behind the reference; the instructions are there.
-        unsafe { _mm256_storeu_si256(list.as_mut_ptr().cast(), self.0) }
+        unsafe { _mm256_storeu_si256(block.as_mut_ptr().cast(), self.0) }
     }
 
     #[inline(always)]
@@ -112,39 +115,34 @@ impl<const AVX512: bool> Rows for Wide<AVX512> {
 
     #[inline(always)]
     fn first(count: usize) -> Self {
-        Wide::load(&YES_NO[BLOCK - count.min(BLOCK)..])
+        Wide::load(YES_NO[BLOCK - count.min(BLOCK)..].first_chunk().expect("at most a block is left out"))
     }
 }
 
-/// The frame rows of an edge: its positions are a product of 64 and 32 bits, of which the low and the high half are
-/// multiplied apart.
+/// The frame rows of an edge that [is exact](Edge::is_exact): of doubles there is a product.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn rows_avx2(scale: &RowScale, edge: Edge, base: &[u32; BLOCK]) -> __m256i {
-    let (at, step) = (_mm256_set1_epi64x(edge.at), _mm256_set1_epi64x(edge.step));
-    let high_step = _mm256_srli_epi64(step, 32);
-    let (zero, last) = (_mm256_setzero_si256(), _mm256_set1_epi64x(i64::from(scale.last) << ROW_BITS));
+    const ONE_ROW: f64 = (1 << ROW_BITS) as f64;
+    let (at, step) = (_mm256_set1_pd(edge.at as f64 / ONE_ROW), _mm256_set1_pd(edge.step as f64 / ONE_ROW));
     let (fours, _) = base.as_chunks::<4>();
     let base_rows = |four: &[u32; 4]| {
         // SAFETY: 16 bytes are readable behind the reference.
-        let column = _mm256_cvtepu32_epi64(unsafe { _mm_loadu_si128(four.as_ptr().cast()) });
-        let high = _mm256_slli_epi64(_mm256_mul_epu32(high_step, column), 32);
-        let position = _mm256_add_epi64(_mm256_add_epi64(at, _mm256_mul_epu32(step, column)), high);
-        let position = _mm256_andnot_si256(_mm256_cmpgt_epi64(zero, position), position);
-        let position = _mm256_blendv_epi8(position, last, _mm256_cmpgt_epi64(position, last));
-        _mm256_srli_epi64(position, ROW_BITS as i32)
+        let column = _mm256_cvtepi32_pd(unsafe { _mm_loadu_si128(four.as_ptr().cast()) });
+        // Towards zero; what is above the first row counts as it.
+        _mm256_cvttpd_epi32(_mm256_add_pd(at, _mm256_mul_pd(step, column)))
     };
+    let (zero, last) = (_mm256_setzero_si256(), _mm256_set1_epi32(scale.last));
     let (factor, addend) = (_mm256_set1_epi32(scale.factor), _mm256_set1_epi32(scale.addend));
-    let frame_rows = |low: __m256i, high: __m256i| {
-        // Columns 0, 1, 4, 5, 2, 3, 6, 7.
-        let base = _mm256_castps_si256(_mm256_shuffle_ps(_mm256_castsi256_ps(low), _mm256_castsi256_ps(high), 0x88));
+    let frame_rows = |low: __m128i, high: __m128i| {
+        let base = _mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1);
+        let base = _mm256_min_epi32(_mm256_max_epi32(base, zero), last);
         _mm256_srli_epi32(_mm256_add_epi32(_mm256_mullo_epi32(base, factor), addend), RowScale::BITS as i32)
     };
-    let low = frame_rows(base_rows(&fours[0]), base_rows(&fours[1]));
-    let high = frame_rows(base_rows(&fours[2]), base_rows(&fours[3]));
-    // Pairs of columns now lie 0, 2, 4, 6, 1, 3, 5, 7.
-    let order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
-    _mm256_permutevar8x32_epi32(_mm256_packs_epi32(low, high), order)
+    // Packing works within halves of vectors: 0 and 1, then 2 and 3.
+    let even = frame_rows(base_rows(&fours[0]), base_rows(&fours[2]));
+    let odd = frame_rows(base_rows(&fours[1]), base_rows(&fours[3]));
+    _mm256_packs_epi32(even, odd)
 }
 
 /// The frame rows of an edge.

@@ -3,7 +3,7 @@
 use super::narrow::padded;
 
 /// For each frame column, the rows that nothing has covered yet.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Openings {
     /// Columns.
     width: usize,

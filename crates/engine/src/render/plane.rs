@@ -62,7 +62,7 @@ pub(super) struct Plane {
 }
 
 /// The planes of a frame.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Planes {
     list: Vec<Plane>,
     used: usize,

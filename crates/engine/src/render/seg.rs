@@ -3,12 +3,12 @@
 use super::fours;
 use super::light::Light;
 use super::look::Look;
-use super::narrow::{Columns, narrow};
+use super::narrow::{Narrowing, narrow};
 use super::plane::PlaneKey;
 use super::scene::{Face, NO_SECTOR, SceneSeg};
 use super::silhouette::Silhouette;
 use super::turned::TurnedLine;
-use super::walk::Walk;
+use super::walk::{Walk, WalkScratch};
 use super::wall::{END_BITS, Edge, SeenLine, WallShader};
 use crate::map::TextureId;
 use crate::math::Fixed;
@@ -193,36 +193,18 @@ impl Walk<'_> {
         }
     }
 
-    /// The plane takes the rows up to `edge`, the wall those from there to `wall`, and what is left stays open. Where the
-    /// plane has rows already, another one goes on.
+    /// The plane takes the rows up to `edge`, the wall those from there to `wall`, and what is left stays open.
+    #[inline]
     fn narrow<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
         &mut self,
         seen: &SeenSeg,
-        mut plane: u16,
+        plane: u16,
         edge: Edge,
         wall: Edge,
     ) -> bool {
-        let (first, end) = (seen.first, seen.end);
-        let (mut walled, mut done) = (false, 0);
-        while done < end - first {
-            let (top, bottom, open) = self.openings.from(first);
-            let mut columns = Columns {
-                count: end - first,
-                base: &self.view.columns[first..],
-                top,
-                bottom,
-                open,
-                wall: [&mut self.scratch.upper[first..], &mut self.scratch.lower[first..]],
-                plane: if PLANE { self.planes.columns(plane, first, end) } else { [&mut [], &mut []] },
-            };
-            let narrowed = narrow::<FLOOR, PLANE, WALL>(self.simd, &self.view.row_scale, [edge, wall], &mut columns, done);
-            walled |= narrowed.walled;
-            done = narrowed.done;
-            if done < end - first {
-                plane = self.planes.start_another(plane);
-            }
-        }
-        walled
+        let WalkScratch { upper, lower, .. } = &mut *self.scratch;
+        let mut lists = Narrowing { view: self.view, openings: self.openings, planes: self.planes, wall: [upper, lower] };
+        narrow::<FLOOR, PLANE, WALL>(self.simd, &mut lists, seen.first..seen.end, plane, [edge, wall])
     }
 
     /// The plane of a sector's ceiling, if the eye sees it.

@@ -109,6 +109,12 @@ impl SeenLine {
 }
 
 impl Edge {
+    /// Whether doubles hold its rows exactly in all columns, of which 11 bits tell: all do but those of walls at the eye.
+    #[inline]
+    pub fn is_exact(&self) -> bool {
+        (self.at.unsigned_abs() | self.step.unsigned_abs() << 11) >> (f64::MANTISSA_DIGITS - 1) == 0
+    }
+
     /// The base row at a base column, anywhere.
     #[inline(always)]
     pub fn base_row(&self, column: i64) -> i64 {
