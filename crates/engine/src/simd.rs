@@ -31,7 +31,7 @@ impl Simd {
         let mut all = vec![Simd::PLAIN];
         #[cfg(target_arch = "x86_64")]
         {
-            if is_x86_feature_detected!("avx2") {
+            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
                 all.push(Simd(Level::Avx2));
             }
             let wide = is_x86_feature_detected!("avx512f")

@@ -3,8 +3,6 @@
 #[cfg(target_arch = "x86_64")]
 use super::column_wide;
 #[cfg(target_arch = "x86_64")]
-use super::magnified_wide::LitTexels;
-#[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
 
@@ -23,31 +21,21 @@ pub(super) struct Column<'a> {
     pub step: u32,
 }
 
-/// What a column of a wall leaves to the next one.
-#[derive(Default)]
-pub(super) struct ColumnCache {
-    #[cfg(target_arch = "x86_64")]
-    pub lit: LitTexels,
-}
-
 impl Column<'_> {
     /// Draws the frame rows `top..bottom`; `rows` are the base rows. Both lists are padded.
     #[inline(always)]
-    pub fn draw(&self, simd: Simd, cache: &mut ColumnCache, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+    pub fn draw(&self, simd: Simd, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
         #[cfg(target_arch = "x86_64")]
         match (simd.level(), self.texels.len()) {
-            // SAFETY: whoever has this `Simd` has the instructions, here and in the arms below.
+            // SAFETY: whoever has this `Simd` has the instructions.
             (Level::Avx512, 128) => return unsafe { column_wide::avx512::<7>(self, pixels, rows, top, bottom) },
             // SAFETY: as above.
             (Level::Avx512, 64) => return unsafe { column_wide::avx512::<6>(self, pixels, rows, top, bottom) },
-            // SAFETY: as above.
-            (Level::Avx2, 128) => return unsafe { column_wide::avx2::<7>(self, cache, pixels, rows, top, bottom) },
-            // SAFETY: as above.
-            (Level::Avx2, 64) => return unsafe { column_wide::avx2::<6>(self, cache, pixels, rows, top, bottom) },
+            // With shorter vectors whole walls are worked out side by side, where they fit these.
             _ => {}
         }
         #[cfg(not(target_arch = "x86_64"))]
-        let _ = (simd, cache);
+        let _ = simd;
         self.draw_plainly(pixels, rows, top, bottom);
     }
 
@@ -77,7 +65,8 @@ mod tests {
             let before: Vec<u8> = (0..padded).map(|_| rng.byte() as u8).collect();
             let (at, step) = (rng.next_u64() as u32, rng.next_u64() as u32 >> rng.between(4, 12));
             // Neighbours, of which some show the same texels in the same light, from a little elsewhere on.
-            let mut caches: Vec<ColumnCache> = Simd::available().iter().map(|_| ColumnCache::default()).collect();
+            #[cfg(target_arch = "x86_64")]
+            let mut lit = super::super::magnified_wide::LitTexels::default();
             for _ in 0..6 {
                 let (a, b) = (rng.below(length as u32 + 1) as usize, rng.below(length as u32 + 1) as usize);
                 let column = Column {
@@ -88,9 +77,20 @@ mod tests {
                 };
                 let mut plain = before.clone();
                 column.draw_plainly(&mut plain, &rows, a.min(b), a.max(b));
-                for (simd, cache) in Simd::available().into_iter().zip(&mut caches) {
+                for simd in Simd::available() {
                     let mut pixels = before.clone();
-                    column.draw(simd, cache, &mut pixels, &rows, a.min(b), a.max(b));
+                    #[cfg(target_arch = "x86_64")]
+                    if simd.level() == Level::Avx2 {
+                        // SAFETY: the processor has the instructions.
+                        match height {
+                            64 => unsafe { column_wide::avx2::<6>(&column, &mut lit, &mut pixels, &rows, a.min(b), a.max(b)) },
+                            128 => unsafe { column_wide::avx2::<7>(&column, &mut lit, &mut pixels, &rows, a.min(b), a.max(b)) },
+                            _ => continue,
+                        }
+                        assert_eq!(pixels, plain, "rows {a} and {b} of {length}, texture of {height}");
+                        continue;
+                    }
+                    column.draw(simd, &mut pixels, &rows, a.min(b), a.max(b));
                     assert_eq!(pixels, plain, "{simd:?}, rows {a} and {b} of {length}, texture of {height}");
                 }
             }

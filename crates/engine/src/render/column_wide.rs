@@ -3,9 +3,9 @@
 //! With 64-byte vectors a column of the frame is one vector, the texture one or two, the light table four: nothing is
 //! fetched texel by texel. With 32-byte vectors only positions are computed eight at a time, but for walls at the eye (`magnified_wide`).
 
-use super::column::{Column, ColumnCache, ROW_BLOCK, ROW_GROUP};
+use super::column::{Column, ROW_BLOCK, ROW_GROUP};
 use super::convert_wide::{load, load_table, look_up_block};
-use super::magnified_wide;
+use super::magnified_wide::{self, LitTexels};
 use std::arch::x86_64::*;
 
 /// The highest byte of each of sixteen numbers, twice.
@@ -73,37 +73,38 @@ pub(super) fn highest_bytes(at: u32, step: u32, rows: &[u32; ROW_BLOCK]) -> __m5
 #[target_feature(enable = "avx2")]
 pub(super) fn avx2<const BITS: u32>(
     column: &Column,
-    cache: &mut ColumnCache,
+    lit: &mut LitTexels,
     pixels: &mut [u8],
     rows: &[u32],
     top: usize,
     bottom: usize,
 ) {
-    if magnified_wide::draw::<BITS>(column, &mut cache.lit, pixels, rows, top, bottom) {
+    if magnified_wide::draw::<BITS>(column, lit, pixels, rows, top, bottom) {
         return;
     }
     let texels = column.texels.first_chunk::<64>().expect("64 texels at least");
     let longer = column.texels.first_chunk::<128>();
     let (at, step) = (_mm256_set1_epi32(column.at as i32), _mm256_set1_epi32(column.step as i32));
     let shift = _mm_cvtsi32_si128(32 - BITS as i32);
-    let end = top + (bottom.saturating_sub(top)).next_multiple_of(ROW_GROUP);
     let behind: [u8; ROW_GROUP] = *pixels[bottom..].first_chunk().expect("columns are padded");
-    let (groups, _) = pixels[top..end].as_chunks_mut::<ROW_GROUP>();
-    let (rows, _) = rows[top..end].as_chunks::<ROW_GROUP>();
-    for (pixels, rows) in groups.iter_mut().zip(rows) {
+    let mut row = top;
+    while row < bottom {
+        let group: &mut [u8; ROW_GROUP] = pixels[row..].first_chunk_mut().expect("columns are padded");
+        let rows: &[u32; ROW_GROUP] = rows[row..].first_chunk().expect("rows are padded");
         // SAFETY: 32 bytes are readable behind the reference.
         let rows = unsafe { _mm256_loadu_si256(rows.as_ptr().cast()) };
         let position = _mm256_add_epi32(at, _mm256_mullo_epi32(step, rows));
         let mut indices = [0u32; ROW_GROUP];
         // SAFETY: 32 bytes are writable behind the reference.
         unsafe { _mm256_storeu_si256(indices.as_mut_ptr().cast(), _mm256_srl_epi32(position, shift)) };
-        for (pixel, index) in pixels.iter_mut().zip(indices) {
+        for (pixel, index) in group.iter_mut().zip(indices) {
             let texel = match longer {
                 Some(texels) if BITS == 7 => texels[index as usize & 127],
                 _ => texels[index as usize & 63],
             };
             *pixel = column.table[usize::from(texel)];
         }
+        row += ROW_GROUP;
     }
-    pixels[bottom..bottom + ROW_GROUP].copy_from_slice(&behind);
+    *pixels[bottom..].first_chunk_mut().expect("columns are padded") = behind;
 }

@@ -23,8 +23,8 @@ pub(super) struct LitTexels {
 
 impl LitTexels {
     /// Makes it the window from texel `start` on, a multiple of [`START`].
-    fn light(&mut self, column: &Column, texels: &[u8], start: usize) {
-        let of = (texels.as_ptr().addr(), column.table.as_ptr().addr(), start);
+    fn light(&mut self, texels: &[u8], table: &[u8; 256], start: usize) {
+        let of = (texels.as_ptr().addr(), table.as_ptr().addr(), start);
         if self.of == of {
             return;
         }
@@ -33,7 +33,7 @@ impl LitTexels {
         for (i, four) in self.texels.as_chunks_mut::<START>().0.iter_mut().enumerate() {
             let from: &[u8; START] = texels[(start + i * START) & (texels.len() - 1)..].first_chunk().expect("a whole four");
             for (lit, &texel) in four.iter_mut().zip(from) {
-                *lit = column.table[usize::from(texel)];
+                *lit = table[usize::from(texel)];
             }
         }
     }
@@ -61,7 +61,7 @@ pub(super) fn draw<const BITS: u32>(
     }
     let first = column.at.wrapping_add(column.step.wrapping_mul(rows[top])) >> (32 - BITS);
     let start = first as usize & !(START - 1);
-    lit.light(column, &column.texels[..1 << BITS], start);
+    lit.light(&column.texels[..1 << BITS], column.table, start);
     let (at, step) = (_mm256_set1_epi32(column.at as i32), _mm256_set1_epi32(column.step as i32));
     let (halves, _) = lit.texels.as_chunks::<16>();
     // SAFETY: 16 bytes are readable behind each reference.

@@ -75,6 +75,8 @@ mod view;
 mod walk;
 mod wall;
 #[cfg(target_arch = "x86_64")]
+mod wall_avx2;
+#[cfg(target_arch = "x86_64")]
 mod wall_list;
 #[cfg(target_arch = "x86_64")]
 mod wall_wide;

@@ -123,8 +123,9 @@ impl<const AVX512: bool> Rows for Wide<AVX512> {
 #[inline]
 #[target_feature(enable = "avx2")]
 fn rows_avx2(scale: &RowScale, edge: Edge, base: &[u32; BLOCK]) -> __m256i {
-    const ONE_ROW: f64 = (1 << ROW_BITS) as f64;
-    let (at, step) = (_mm256_set1_pd(edge.at as f64 / ONE_ROW), _mm256_set1_pd(edge.step as f64 / ONE_ROW));
+    const LAST_BIT: f64 = 1.0 / (1 << ROW_BITS) as f64;
+    let in_rows = |number: i64| _mm256_mul_pd(_mm256_set1_pd(number as f64), _mm256_set1_pd(LAST_BIT));
+    let (at, step) = (in_rows(edge.at), in_rows(edge.step));
     let (fours, _) = base.as_chunks::<4>();
     let base_rows = |four: &[u32; 4]| {
         // SAFETY: 16 bytes are readable behind the reference.

@@ -38,14 +38,13 @@ impl WallPicture {
     /// The texels of the column that holds the horizontal texture position `u`, 16.16.
     #[inline]
     pub fn column(&self, u: i64) -> &[u8] {
-        let start = self.column_start(u);
+        let start = self.column_start((u >> 16) as i32);
         &self.pixels[start..start + self.height as usize]
     }
 
-    /// Index of the first texel of that column.
+    /// Index of the first texel of the column that holds a whole texel of a tiled wall.
     #[inline]
-    pub fn column_start(&self, u: i64) -> usize {
-        let u = (u >> 16) as i32;
+    pub fn column_start(&self, u: i32) -> usize {
         let column = if self.column_mask != 0 { u as u32 & self.column_mask } else { u.rem_euclid(self.width as i32) as u32 };
         (column * self.height) as usize
     }

@@ -70,9 +70,12 @@ impl Reaches {
     /// `met`, which is padded; gives how many there are. Which ones do cannot be foretold: it is found without a branch.
     fn meet(&self, simd: Simd, [first, end]: [u32; 2], inverse: i64, met: &mut [u32]) -> usize {
         #[cfg(target_arch = "x86_64")]
-        if simd.level() == Level::Avx512 {
+        match simd.level() {
             // SAFETY: whoever has this `Simd` has the instructions.
-            return unsafe { silhouette_wide::meet(self, [first, end], inverse, met) };
+            Level::Avx512 => return unsafe { silhouette_wide::meet_avx512(self, [first, end], inverse, met) },
+            // SAFETY: as above.
+            Level::Avx2 => return unsafe { silhouette_wide::meet_avx2(self, [first, end], inverse, met) },
+            Level::Plain => {}
         }
         #[cfg(not(target_arch = "x86_64"))]
         let _ = simd;

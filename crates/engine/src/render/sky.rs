@@ -42,8 +42,8 @@ impl SkyShader<'_> {
         let range = plane.first..plane.end;
         for (start, &angle) in starts[range.clone()].iter_mut().zip(&self.view.column_angles[range.clone()]) {
             // 1024 texels around.
-            let u = i64::from((self.camera.angle + angle).0 >> 22);
-            *start = self.picture.column_start(u << 16) as u32;
+            let u = (self.camera.angle + angle).0 >> 22;
+            *start = self.picture.column_start(u as i32) as u32;
         }
         #[cfg(target_arch = "x86_64")]
         if simd.level() == Level::Avx512 && self.picture.height as usize <= sky_wide::MOST_TEXELS {

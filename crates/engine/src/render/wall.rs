@@ -2,13 +2,17 @@
 
 use super::View;
 use super::camera::Camera;
-use super::column::{Column, ColumnCache};
+use super::column::Column;
+#[cfg(target_arch = "x86_64")]
+use super::column_wide;
 use super::depth::Depths;
 use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
+#[cfg(target_arch = "x86_64")]
+use super::magnified_wide::LitTexels;
 use super::picture::WallPicture;
 #[cfg(target_arch = "x86_64")]
-use super::wall_wide;
+use super::{wall_avx2, wall_wide};
 use crate::math::divided_by_count;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
@@ -20,6 +24,8 @@ pub(super) const ROW_BITS: u32 = 24;
 pub(super) const INVERSE_BITS: u32 = 44;
 /// Fractional bits of the exact columns of a seg's ends.
 pub(super) const END_BITS: u32 = 18;
+/// Bits of a base column's number.
+pub(super) const COLUMN_BITS: u32 = 11;
 /// The inverse of a distance beyond all maps, which keeps divisions in range.
 pub(super) const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
 
@@ -109,10 +115,10 @@ impl SeenLine {
 }
 
 impl Edge {
-    /// Whether doubles hold its rows exactly in all columns, of which 11 bits tell: all do but those of walls at the eye.
+    /// Whether doubles hold its rows exactly in all columns: they do but for walls at the eye.
     #[inline]
     pub fn is_exact(&self) -> bool {
-        (self.at.unsigned_abs() | self.step.unsigned_abs() << 11) >> (f64::MANTISSA_DIGITS - 1) == 0
+        (self.at.unsigned_abs() | self.step.unsigned_abs() << COLUMN_BITS) >> (f64::MANTISSA_DIGITS - 1) == 0
     }
 
     /// The base row at a base column, anywhere.
@@ -195,14 +201,67 @@ impl WallShader<'_> {
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn draw_avx2<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
-        self.draw_columns::<DEPTH>(simd, frame, first, tops, bottoms);
+        match self.picture.height {
+            64 if wall_avx2::fits(self) => self.draw_blocks::<DEPTH, 6, 64>(frame, first, tops, bottoms),
+            128 if wall_avx2::fits(self) => self.draw_blocks::<DEPTH, 7, 128>(frame, first, tops, bottoms),
+            _ => self.draw_columns::<DEPTH>(simd, frame, first, tops, bottoms),
+        }
+    }
+
+    /// The columns of a picture `HEIGHT` texels high, two to the power of `BITS`, of a wall that fits.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn draw_blocks<const DEPTH: bool, const BITS: u32, const HEIGHT: usize>(
+        &self,
+        frame: &mut Columns,
+        first: usize,
+        tops: &[i16],
+        bottoms: &[i16],
+    ) {
+        let (slope, mut lit) = (self.slope(), LitTexels::default());
+        let blocks = tops.chunks(WALL_BLOCK).zip(bottoms.chunks(WALL_BLOCK));
+        for (first, (tops, bottoms)) in (first..).step_by(WALL_BLOCK).zip(blocks) {
+            let columns = self.view.columns[first..].first_chunk().expect("the list is padded");
+            let columns = wall_avx2::columns(self, &slope, columns);
+            self.draw_block::<BITS, HEIGHT>(&columns, &mut lit, frame, first, tops, bottoms);
+            if DEPTH {
+                for (x, ((&top, &bottom), distance)) in (first..).zip(tops.iter().zip(bottoms).zip(columns.distance)) {
+                    let depth = self.depths.wall(distance, self.picture.height);
+                    frame.depth_of(x)[top as usize..bottom.max(top) as usize].fill(depth);
+                }
+            }
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn draw_block<const BITS: u32, const HEIGHT: usize>(
+        &self,
+        columns: &wall_avx2::WallColumns,
+        lit: &mut LitTexels,
+        frame: &mut Columns,
+        first: usize,
+        tops: &[i16],
+        bottoms: &[i16],
+    ) {
+        for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate().take(WALL_BLOCK) {
+            if top >= bottom {
+                continue;
+            }
+            let texels = &self.picture.pixels[self.picture.column_start(columns.u[i] as i32)..];
+            let texels: &[u8; HEIGHT] = texels.first_chunk().expect("columns are whole");
+            let table = &self.tables[columns.table[i] as usize];
+            let column = Column { texels, table, at: columns.at[i], step: columns.step[i] };
+            let pixels = frame.colour_of(first + i);
+            column_wide::avx2::<BITS>(&column, lit, pixels, &self.view.rows, top as usize, bottom as usize);
+        }
     }
 
     #[inline(always)]
     fn draw_columns<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
-        let (slope, mut cache) = (self.slope(), ColumnCache::default());
+        let slope = self.slope();
         for from in (0..tops.len()).step_by(WALL_BLOCK) {
             #[cfg(target_arch = "x86_64")]
             let block = (simd.level() == Level::Avx512).then(|| {
@@ -222,7 +281,7 @@ impl WallShader<'_> {
                 };
                 #[cfg(not(target_arch = "x86_64"))]
                 let column = self.column(&slope, i64::from(self.view.columns[x]));
-                self.draw_column::<DEPTH>(simd, &mut cache, frame, x, [top as usize, bottom as usize], column);
+                self.draw_column::<DEPTH>(simd, frame, x, [top as usize, bottom as usize], column);
             }
         }
     }
@@ -253,14 +312,13 @@ impl WallShader<'_> {
     fn draw_column<const DEPTH: bool>(
         &self,
         simd: Simd,
-        cache: &mut ColumnCache,
         frame: &mut Columns,
         x: usize,
         [top, bottom]: [usize; 2],
         WallColumn { distance, u, table, at, step }: WallColumn,
     ) {
         let column = Column { texels: self.picture.column(u), table: &self.tables[table], at, step };
-        column.draw(simd, cache, frame.colour_of(x), &self.view.rows, top, bottom);
+        column.draw(simd, frame.colour_of(x), &self.view.rows, top, bottom);
         if DEPTH {
             let depth = self.depths.wall(distance, self.picture.height);
             frame.depth_of(x)[top..bottom].fill(depth);
@@ -291,14 +349,13 @@ mod tests {
 
     #[test]
     fn columns_side_by_side_are_those_one_by_one() {
-        if !Simd::available().iter().any(|simd| simd.level() == Level::Avx512) {
-            return;
-        }
+        let has = |level: Level| Simd::available().iter().any(|simd| simd.level() == level);
         let mut rng = Rng::new(12);
         let image =
             crate::assets::Image { width: 64, height: 96, offset_x: 0, offset_y: 0, pixels: Box::new([0; 64 * 96]), mask: None };
         let picture = WallPicture::new(&image);
         let view = View::new(FrameSize::LEARNER).unwrap();
+        let mut fitting = 0;
         for _ in 0..20_000 {
             let mut signed = |bits: u32| rng.next_u64() as i64 >> (63 - bits);
             // Inverses from those beyond all maps to those of a wall at the eye.
@@ -329,11 +386,26 @@ mod tests {
             };
             let slope = shader.slope();
             let columns: [u32; WALL_BLOCK] = *view.columns[rng.below(128) as usize..].first_chunk().unwrap();
-            // SAFETY: the processor has the instructions, see above.
-            let block = unsafe { wall_wide::columns(&shader, &slope, &columns) };
-            for (i, &column) in columns.iter().enumerate() {
-                assert_eq!(WallColumn::of_block(&block, i), shader.column(&slope, i64::from(column)), "{line:?} at {column}");
+            let plain = columns.map(|column| shader.column(&slope, i64::from(column)));
+            if has(Level::Avx512) {
+                // SAFETY: the processor has the instructions.
+                let block = unsafe { wall_wide::columns(&shader, &slope, &columns) };
+                for (i, plain) in plain.iter().enumerate() {
+                    assert_eq!(WallColumn::of_block(&block, i), *plain, "{line:?} at {}", columns[i]);
+                }
+            }
+            if has(Level::Avx2) && wall_avx2::fits(&shader) {
+                // SAFETY: the processor has the instructions.
+                let block = unsafe { wall_avx2::columns(&shader, &slope, &columns) };
+                for (i, plain) in plain.iter().enumerate() {
+                    let (distance, table) = (block.distance[i], block.table[i] as usize);
+                    assert_eq!((distance, table), (plain.distance, plain.table), "{line:?} at {}", columns[i]);
+                    let expected = ((plain.u >> 16) as u32, plain.at, plain.step);
+                    assert_eq!((block.u[i], block.at[i], block.step[i]), expected, "{line:?} at {}", columns[i]);
+                }
+                fitting += 1;
             }
         }
+        assert!(fitting > 15_000 || !has(Level::Avx2), "{fitting}");
     }
 }
