@@ -63,14 +63,16 @@ impl Looks {
     /// What is drawn of a sector in this frame.
     #[inline(always)]
     pub fn of(&mut self, world: &World, sector: u32) -> Look {
-        let look = self.list[sector as usize];
-        if look.frame == self.frame { look } else { self.look_at(world, sector) }
+        if self.list[sector as usize].frame != self.frame {
+            self.look_at(world, sector);
+        }
+        self.list[sector as usize]
     }
 
     #[inline(never)]
-    fn look_at(&mut self, world: &World, sector: u32) -> Look {
+    fn look_at(&mut self, world: &World, sector: u32) {
         let state = world.sector(SectorId(sector));
-        let look = Look {
+        self.list[sector as usize] = Look {
             floor: state.floor,
             ceiling: state.ceiling,
             floor_texture: state.floor_texture,
@@ -78,7 +80,5 @@ impl Looks {
             light: state.light,
             frame: self.frame,
         };
-        self.list[sector as usize] = look;
-        look
     }
 }

@@ -79,6 +79,12 @@ impl Openings {
         (self.first, self.end)
     }
 
+    /// How many columns are closed.
+    #[inline]
+    pub fn closed(&self) -> usize {
+        self.closed
+    }
+
     /// Whether so much within the open range is closed that it pays to ask what hides what.
     #[inline]
     pub fn has_holes(&self) -> bool {

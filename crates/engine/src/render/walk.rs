@@ -92,7 +92,7 @@ impl WedgeSide {
     /// Negative if a box lies wholly outside.
     #[inline]
     fn inside(&self, bounds: &[Fixed; 4]) -> i64 {
-        let (x, y) = (bounds[self.corner[0]].0, bounds[self.corner[1]].0);
+        let (x, y) = (bounds[self.corner[0] & 3].0, bounds[self.corner[1] & 3].0);
         i64::from(x) * self.normal[0] + i64::from(y) * self.normal[1] - self.offset
     }
 }
@@ -132,14 +132,17 @@ impl Walk<'_> {
         };
         loop {
             if child & Node::SUBSECTOR != 0 {
+                let closed = self.openings.closed();
                 self.subsector::<DEPTH>((child & !Node::SUBSECTOR) as usize);
-                let now_open = self.openings.range();
-                if now_open.0 >= now_open.1 {
-                    return;
-                }
-                if now_open != open {
-                    open = now_open;
-                    wedge = self.wedge(open);
+                if self.openings.closed() != closed {
+                    let now_open = self.openings.range();
+                    if now_open.0 >= now_open.1 {
+                        return;
+                    }
+                    if now_open != open {
+                        open = now_open;
+                        wedge = self.wedge(open);
+                    }
                 }
             } else {
                 let node = &scene.nodes[child as usize];
@@ -204,27 +207,29 @@ impl Walk<'_> {
     }
 
     fn subsector<const DEPTH: bool>(&mut self, index: usize) {
-        let scene = self.scene;
+        let Walk { scene, world, ref mut looks, .. } = *self;
         let [first, end, sector] = scene.subsectors[index];
         self.entered[sector as usize] = true;
-        let own = self.looks.of(self.world, sector);
+        let own = looks.of(world, sector);
+        let (segs, faces) = (&scene.segs[..], &scene.faces[..]);
+        let (x, y, facing) = (self.camera.x, self.camera.y, &mut self.scratch.facing[..]);
         // First those that face the eye, then those of them that matter, again without branches, then their drawing.
         let mut found = 0;
-        for (index, seg) in (first..end).zip(&scene.segs[first as usize..end as usize]) {
-            self.scratch.facing[found] = index;
-            found += usize::from(seg.away(self.camera.x, self.camera.y) > 0);
+        for (index, seg) in (first..end).zip(&segs[first as usize..end as usize]) {
+            facing[found] = index;
+            found += usize::from(seg.away(x, y) > 0);
         }
         let mut kept = 0;
         for i in 0..found {
-            let index = self.scratch.facing[i];
-            let seg = &scene.segs[index as usize];
+            let index = facing[i];
+            let seg = &segs[index as usize];
             // A one-sided line differs from whatever its sector is compared with.
             let one_sided = seg.back == NO_SECTOR;
-            let back = self.looks.of(self.world, if one_sided { sector } else { seg.back });
+            let back = looks.of(world, if one_sided { sector } else { seg.back });
             let differs = own.difference(&back) | u64::from(one_sided | seg.masked);
-            self.scratch.facing[kept] = index;
+            facing[kept] = index;
             // Of a map's many faces few are in the nearest cache, and they are needed late.
-            prefetch(&scene.faces[seg.face as usize]);
+            prefetch(&faces[seg.face as usize]);
             kept += usize::from(differs != 0);
         }
         for i in 0..kept {
