@@ -12,7 +12,7 @@ pub struct Simd(Level);
 pub(crate) enum Level {
     /// Whatever the compiler makes of plain code.
     Plain,
-    /// Vectors of 32 bytes.
+    /// Vectors of 32 bytes, and sums of products that are rounded once (Haswell and Zen onward).
     Avx2,
     /// Vectors of 64 bytes with masks, and look-ups of 64 bytes at once (Ice Lake and Zen 4 onward).
     Avx512,

@@ -3,13 +3,9 @@
 use super::View;
 use super::camera::Camera;
 use super::column::Column;
-#[cfg(target_arch = "x86_64")]
-use super::column_wide;
 use super::depth::Depths;
 use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
-#[cfg(target_arch = "x86_64")]
-use super::magnified_wide::LitTexels;
 use super::picture::WallPicture;
 #[cfg(target_arch = "x86_64")]
 use super::{wall_avx2, wall_wide};
@@ -188,8 +184,10 @@ impl WallShader<'_> {
             // SAFETY: whoever has this `Simd` has the instructions.
             Level::Avx512 => return unsafe { self.draw_avx512::<DEPTH>(simd, frame, first, tops, bottoms) },
             // SAFETY: as above.
-            Level::Avx2 => return unsafe { self.draw_avx2::<DEPTH>(simd, frame, first, tops, bottoms) },
-            Level::Plain => {}
+            Level::Avx2 if wall_avx2::fits(self) => {
+                return unsafe { wall_avx2::draw::<DEPTH>(self, frame, first, tops, bottoms) };
+            }
+            _ => {}
         }
         self.draw_columns::<DEPTH>(simd, frame, first, tops, bottoms);
     }
@@ -198,65 +196,6 @@ impl WallShader<'_> {
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
     fn draw_avx512<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
         self.draw_columns::<DEPTH>(simd, frame, first, tops, bottoms);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn draw_avx2<const DEPTH: bool>(&self, simd: Simd, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
-        match self.picture.height {
-            64 if wall_avx2::fits(self) => self.draw_blocks::<DEPTH, 6, 64>(frame, first, tops, bottoms),
-            128 if wall_avx2::fits(self) => self.draw_blocks::<DEPTH, 7, 128>(frame, first, tops, bottoms),
-            _ => self.draw_columns::<DEPTH>(simd, frame, first, tops, bottoms),
-        }
-    }
-
-    /// The columns of a picture `HEIGHT` texels high, two to the power of `BITS`, of a wall that fits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn draw_blocks<const DEPTH: bool, const BITS: u32, const HEIGHT: usize>(
-        &self,
-        frame: &mut Columns,
-        first: usize,
-        tops: &[i16],
-        bottoms: &[i16],
-    ) {
-        let (slope, mut lit) = (self.slope(), LitTexels::default());
-        let blocks = tops.chunks(WALL_BLOCK).zip(bottoms.chunks(WALL_BLOCK));
-        for (first, (tops, bottoms)) in (first..).step_by(WALL_BLOCK).zip(blocks) {
-            let columns = self.view.columns[first..].first_chunk().expect("the list is padded");
-            let columns = wall_avx2::columns(self, &slope, columns);
-            self.draw_block::<BITS, HEIGHT>(&columns, &mut lit, frame, first, tops, bottoms);
-            if DEPTH {
-                for (x, ((&top, &bottom), distance)) in (first..).zip(tops.iter().zip(bottoms).zip(columns.distance)) {
-                    let depth = self.depths.wall(distance, self.picture.height);
-                    frame.depth_of(x)[top as usize..bottom.max(top) as usize].fill(depth);
-                }
-            }
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn draw_block<const BITS: u32, const HEIGHT: usize>(
-        &self,
-        columns: &wall_avx2::WallColumns,
-        lit: &mut LitTexels,
-        frame: &mut Columns,
-        first: usize,
-        tops: &[i16],
-        bottoms: &[i16],
-    ) {
-        for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate().take(WALL_BLOCK) {
-            if top >= bottom {
-                continue;
-            }
-            let texels = &self.picture.pixels[self.picture.column_start(columns.u[i] as i32)..];
-            let texels: &[u8; HEIGHT] = texels.first_chunk().expect("columns are whole");
-            let table = &self.tables[columns.table[i] as usize];
-            let column = Column { texels, table, at: columns.at[i], step: columns.step[i] };
-            let pixels = frame.colour_of(first + i);
-            column_wide::avx2::<BITS>(&column, lit, pixels, &self.view.rows, top as usize, bottom as usize);
-        }
     }
 
     #[inline(always)]
@@ -344,6 +283,7 @@ impl WallColumn {
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::*;
+    use crate::assets::Image;
     use crate::math::Rng;
     use crate::render::FrameSize;
 
@@ -351,12 +291,13 @@ mod tests {
     fn columns_side_by_side_are_those_one_by_one() {
         let has = |level: Level| Simd::available().iter().any(|simd| simd.level() == level);
         let mut rng = Rng::new(12);
-        let image =
-            crate::assets::Image { width: 64, height: 96, offset_x: 0, offset_y: 0, pixels: Box::new([0; 64 * 96]), mask: None };
-        let picture = WallPicture::new(&image);
+        let pictures = [64, 96, 128].map(|height| {
+            let pixels = vec![0; 64 * usize::from(height)].into();
+            WallPicture::new(&Image { width: 64, height, offset_x: 0, offset_y: 0, pixels, mask: None })
+        });
         let view = View::new(FrameSize::LEARNER).unwrap();
         let mut fitting = 0;
-        for _ in 0..20_000 {
+        for round in 0..20_000 {
             let mut signed = |bits: u32| rng.next_u64() as i64 >> (63 - bits);
             // Inverses from those beyond all maps to those of a wall at the eye.
             let mut line = || {
@@ -380,7 +321,7 @@ mod tests {
                     last: signed(24).abs(),
                     offset: signed(24),
                 },
-                picture: &picture,
+                picture: &pictures[round % 3],
                 light: Light::new(&camera, signed(8) as i32),
                 hung_from: signed(28),
             };
@@ -406,6 +347,6 @@ mod tests {
                 fitting += 1;
             }
         }
-        assert!(fitting > 15_000 || !has(Level::Avx2), "{fitting}");
+        assert!(fitting > 10_000 || !has(Level::Avx2), "{fitting}");
     }
 }

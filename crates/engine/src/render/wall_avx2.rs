@@ -1,7 +1,11 @@
-//! What eight columns of a wall show, side by side, with vectors of 32 bytes; the plain twin is in `wall`, where a test compares
-//! them. These vectors have no 64-bit products and quotients: doubles, where they are exact, and products of halves stand in.
+//! Walls with vectors of 32 bytes: what eight columns show is worked out side by side; the plain twin is in `wall`, where a test
+//! compares them. These vectors have no 64-bit products and quotients: doubles, where they are exact, and products of halves stand in.
 
+use super::column::Column;
+use super::column_wide;
+use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::magnified_wide::LitTexels;
 use super::wall::{COLUMN_BITS, INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, WALL_BLOCK, WallShader, WallSlope};
 use std::arch::x86_64::*;
 
@@ -25,14 +29,58 @@ struct FourColumns {
     step: __m256i,
 }
 
-/// Whether the numbers of a wall fit the vectors: those of all walls do but of the ones that are seen from within a line's width.
+/// Whether a wall can be drawn so: its numbers fit the vectors, as those of all walls do but of the ones that the eye nearly lies in,
+/// and its texture is 64 or 128 texels high.
 #[inline]
 pub(super) fn fits(shader: &WallShader) -> bool {
     let bits = |line: &SeenLine| line.inverse.unsigned_abs() | line.inverse_step.unsigned_abs() << COLUMN_BITS;
     let doubles = (bits(shader.line) | bits(shader.ends)) >> (f64::MANTISSA_DIGITS - 1) == 0;
     // A distance has 33 bits; by both factors and without two times 24 bits it must stay positive.
     let factors = [shader.view.inverse_focal_y, shader.picture.inverse_height];
-    doubles && factors.iter().all(|&factor| factor < 1 << 32) && factors[0] < (1 << 54) / factors[1]
+    doubles && factors[0] < 1 << 32 && factors[0] < (1 << 54) / factors[1] && matches!(shader.picture.height, 64 | 128)
+}
+
+/// [`WallShader::draw`] of a wall that [fits].
+#[target_feature(enable = "avx2,fma")]
+pub(super) fn draw<const DEPTH: bool>(shader: &WallShader, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
+    let (slope, mut lit) = (shader.slope(), LitTexels::default());
+    let blocks = tops.chunks(WALL_BLOCK).zip(bottoms.chunks(WALL_BLOCK));
+    for (first, (tops, bottoms)) in (first..).step_by(WALL_BLOCK).zip(blocks) {
+        let columns = columns(shader, &slope, shader.view.columns[first..].first_chunk().expect("the list is padded"));
+        match shader.picture.height {
+            64 => draw_block::<6>(shader, &columns, &mut lit, frame, first, tops, bottoms),
+            _ => draw_block::<7>(shader, &columns, &mut lit, frame, first, tops, bottoms),
+        }
+        if DEPTH {
+            for (x, ((&top, &bottom), distance)) in (first..).zip(tops.iter().zip(bottoms).zip(columns.distance)) {
+                let depth = shader.depths.wall(distance, shader.picture.height);
+                frame.depth_of(x)[top as usize..bottom.max(top) as usize].fill(depth);
+            }
+        }
+    }
+}
+
+/// The colours of eight columns, or of as many as there are rows for, of a texture `2^BITS` texels high.
+#[target_feature(enable = "avx2,fma")]
+fn draw_block<const BITS: u32>(
+    shader: &WallShader,
+    columns: &WallColumns,
+    lit: &mut LitTexels,
+    frame: &mut Columns,
+    first: usize,
+    tops: &[i16],
+    bottoms: &[i16],
+) {
+    for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate().take(WALL_BLOCK) {
+        if top < bottom {
+            let start = shader.picture.column_start(columns.u[i] as i32);
+            let texels = &shader.picture.pixels[start..start + (1 << BITS)];
+            let table = &shader.tables[columns.table[i] as usize];
+            let column = Column { texels, table, at: columns.at[i], step: columns.step[i] };
+            let pixels = frame.colour_of(first + i);
+            column_wide::avx2::<BITS>(&column, lit, pixels, &shader.view.rows, top as usize, bottom as usize);
+        }
+    }
 }
 
 /// The eight base columns `columns` of a wall that [fits].
