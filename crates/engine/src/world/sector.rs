@@ -69,7 +69,7 @@ impl World {
 
     /// A sector as it is now: floors that swing and lights that change are computed when they are looked at.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn sector(&self, sector: SectorId) -> SectorState {
         SectorState { floor: self.floor_of(sector), light: self.light_of(sector), ..self.sectors[sector.0 as usize] }
     }
