@@ -3,7 +3,8 @@
 PART: `batch` (VectorEnv of 32 worlds beside `hasard bench`, one and two threads), `work` (the same by processor time on one thread, which programs beside
 disturb less), `single` (make(id) beside `hasard bench --envs 1`), `thread` (what a
 second Python thread keeps while worlds step), `import`, and `sb3`, `torchrl`, `rllib`: those libraries' own loops with random actions, beside the same
-loop of the published engine (packages vizdoom and hasard, the latter wherever HASARD_PUBLISHED says that it lies). Wants a machine that does nothing else.
+loop of the published engine (packages vizdoom and hasard, the latter wherever HASARD_PUBLISHED says that it lies), all on one core, as the published engine
+is a process that Python wakes with every step (see `beside_published_speed.py`). Wants a machine that does nothing else.
 """
 
 import itertools
@@ -256,7 +257,22 @@ def rllib(rounds):
     told("RLlib's SingleAgentEnvRunner with random actions, 8 worlds, beside the published engine's in SyncVectorEnv", [(ours(), theirs()) for _ in range(rounds)])
 
 
-PARTS = {"batch": batch, "work": work, "single": single, "thread": thread, "import": imported, "sb3": sb3, "torchrl": torchrl, "rllib": rllib}
+def on_one_core(part):
+    """A part, which this process and those that it starts do on a core that they share, where the system can have them do so."""
+
+    def run(rounds):
+        if not hasattr(os, "sched_setaffinity"):
+            return part(rounds)
+        cores = os.sched_getaffinity(0)
+        os.sched_setaffinity(0, {max(cores)})
+        part(rounds)
+        os.sched_setaffinity(0, cores)
+
+    return run
+
+
+PARTS = {"batch": batch, "work": work, "single": single, "thread": thread, "import": imported}
+PARTS |= {"sb3": on_one_core(sb3), "torchrl": on_one_core(torchrl), "rllib": on_one_core(rllib)}
 
 if __name__ == "__main__":
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5

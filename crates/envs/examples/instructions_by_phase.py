@@ -17,12 +17,12 @@ DEFAULT = ["VolcanicVentureLevel1-v0", "VolcanicVentureLevel3-v0", "PrecipicePlu
 DEFAULT += ["CollateralDamageLevel1-v0", "DetonatorsDilemmaLevel3-v0"]
 # The first that fits a function's name counts; what the compiler inlined counts to the function that it is in.
 PHASES = [
-    ("wall columns", r"render::(wall|column)"),
+    ("wall columns", r"render::(wall|column|magnified)"),
     ("colours", r"render::convert"),
     ("planes, sky", r"render::(plane|span_wide|row_|sky)"),
     ("narrowing", r"render::narrow"),
-    ("BSP walk, segs, silhouettes", r"render::(walk|seg|openings|silhouette|look)"),
-    ("sprites, weapon, fences", r"render::(sprite|stamp|masked|weapon|blend)"),
+    ("BSP walk, segs, silhouettes", r"render::(walk|seg|openings|silhouette|look|turned)"),
+    ("sprites, weapon, fences", r"render::(sprite|stamp|masked|fence|weapon|blend)"),
     ("columns to rows", r"render::turn"),
     ("status bar, rest of a frame", r"render::"),
     ("movers, riders", r"world::(mover|waggle|riders)"),
