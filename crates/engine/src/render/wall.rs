@@ -21,6 +21,7 @@ pub(super) const INVERSE_BITS: u32 = 44;
 /// Fractional bits of the exact columns of a seg's ends.
 pub(super) const END_BITS: u32 = 18;
 /// Bits of a base column's number.
+#[cfg(target_arch = "x86_64")]
 pub(super) const COLUMN_BITS: u32 = 11;
 /// The inverse of a distance beyond all maps, which keeps divisions in range.
 pub(super) const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
@@ -112,6 +113,7 @@ impl SeenLine {
 
 impl Edge {
     /// Whether doubles hold its rows exactly in all columns: they do but for walls at the eye.
+    #[cfg(target_arch = "x86_64")]
     #[inline]
     pub fn is_exact(&self) -> bool {
         (self.at.unsigned_abs() | self.step.unsigned_abs() << COLUMN_BITS) >> (f64::MANTISSA_DIGITS - 1) == 0
