@@ -5,13 +5,8 @@ use super::picture::MaskedPicture;
 use super::wall::SeenLine;
 use crate::assets::Image;
 
-/// Runs of texels without holes of a column: for each of its texels where its run starts and where it ends (the one past the last);
-/// 0 and 0 for holes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Runs<'a> {
-    pub starts: &'a [u16],
-    pub ends: &'a [u16],
-}
+/// A run of texels without holes of a column: the first, and the one past the last.
+pub(super) type Run = [u16; 2];
 
 /// A picture with the runs of its columns.
 #[derive(Clone, Debug)]
@@ -19,44 +14,42 @@ pub(super) struct Fence {
     pub picture: MaskedPicture,
     /// Last of the columns whose runs are kept: the first where there is no hole, as in most pictures of walls.
     last_runs: u32,
-    starts: Vec<u16>,
-    ends: Vec<u16>,
+    /// Where the runs of each of them begin in the list, and where the last one's end.
+    begins: Vec<u32>,
+    /// Column by column from top to bottom.
+    runs: Vec<Run>,
 }
 
 impl Fence {
     pub fn new(image: &Image) -> Fence {
         let picture = MaskedPicture::new(image);
-        let height = picture.height as usize;
         let has_holes = picture.texels.iter().any(|texel| texel & MaskedPicture::OPAQUE == 0);
         let kept = if has_holes { picture.width } else { 1 };
-        let (mut starts, mut ends) = (vec![0; kept as usize * height], vec![0; kept as usize * height]);
-        for (at, column) in picture.texels.chunks(height).take(kept as usize).enumerate() {
-            find_runs(column, &mut starts[at * height..], &mut ends[at * height..]);
+        let (mut begins, mut runs) = (vec![0], Vec::new());
+        for column in picture.texels.chunks(picture.height as usize).take(kept as usize) {
+            runs.extend(runs_of(column));
+            begins.push(runs.len() as u32);
         }
-        Fence { picture, last_runs: kept.saturating_sub(1), starts, ends }
+        Fence { picture, last_runs: kept.saturating_sub(1), begins, runs }
     }
 
     /// The texels of a column and their runs.
     #[inline]
-    pub fn column(&self, column: u32) -> (&[u16], Runs<'_>) {
-        let start = (column.min(self.last_runs) * self.picture.height) as usize;
-        let runs = start..start + self.picture.height as usize;
-        (self.picture.column(column), Runs { starts: &self.starts[runs.clone()], ends: &self.ends[runs] })
+    pub fn column(&self, column: u32) -> (&[u16], &[Run]) {
+        let kept = column.min(self.last_runs) as usize;
+        (self.picture.column(column), &self.runs[self.begins[kept] as usize..self.begins[kept + 1] as usize])
     }
 }
 
-/// Writes the runs of a column.
-pub(super) fn find_runs(texels: &[u16], starts: &mut [u16], ends: &mut [u16]) {
+/// The runs of a column from top to bottom.
+pub(super) fn runs_of(texels: &[u16]) -> impl Iterator<Item = Run> {
     let is_opaque = |texel: &u16| texel & MaskedPicture::OPAQUE != 0;
     let mut end = 0;
-    for run in texels.chunk_by(|one, next| is_opaque(one) == is_opaque(next)) {
+    texels.chunk_by(move |one, next| is_opaque(one) == is_opaque(next)).filter_map(move |run| {
         let start = end;
-        end += run.len();
-        if is_opaque(&run[0]) {
-            starts[start..end].fill(start as u16);
-            ends[start..end].fill(end as u16);
-        }
-    }
+        end += run.len() as u16;
+        is_opaque(&run[0]).then_some([start, end])
+    })
 }
 
 /// Rows a texel of the columns of a seg, 16.16, as the published engine has them where a run of texels without holes begins: even from the
@@ -101,10 +94,9 @@ impl Hung {
         [(self.horizon * 65536).wrapping_sub(self.eye.wrapping_mul(self.scale)), self.scale << 16]
     }
 
-    /// The first base row of the run of texels from `start` to `end`; none, as it were, if it is less than a row high between two rows,
-    /// as holes are, whose runs are empty.
+    /// The first base row of a run of texels; none, as it were, if it is less than a row high between two rows.
     #[inline]
-    pub fn first_row(&self, start: u16, end: u16) -> i64 {
+    pub fn first_row(&self, [start, end]: Run) -> i64 {
         let [at, change] = self.rows();
         let row = |texel: u16| at.wrapping_add(i64::from(texel).wrapping_mul(change)) >> 32;
         let first = row(start);
@@ -118,9 +110,9 @@ mod tests {
 
     #[test]
     fn runs_end_at_holes() {
-        let (mut starts, mut ends) = ([0; 5], [0; 5]);
-        find_runs(&[1, 0x101, 0x102, 2, 0x103], &mut starts, &mut ends);
-        assert_eq!((starts, ends), ([0, 1, 1, 0, 4], [0, 3, 3, 0, 5]));
+        let runs = |texels: &[u16]| runs_of(texels).collect::<Vec<Run>>();
+        assert_eq!(runs(&[1, 0x101, 0x102, 2, 0x103]), [[1, 3], [4, 5]]);
+        assert_eq!((runs(&[0x100, 0x1FF]), runs(&[7, 8]), runs(&[])), (vec![[0, 2]], vec![], vec![]));
     }
 
     #[test]
@@ -130,24 +122,23 @@ mod tests {
             Fence::new(&Image { width: 3, height: 2, offset_x: 0, offset_y: 0, pixels: [1, 2, 3, 4, 5, 6].into(), mask })
         };
         let shown = |fence: &Fence| {
-            let column = |column| {
-                let (texels, Runs { starts, ends }) = fence.column(column);
-                [0, 1].map(|row| (texels[row] as u8, starts[row], ends[row]))
-            };
-            [0, 1, 2].map(column)
+            [0, 1, 2].map(|column| {
+                let (texels, runs) = fence.column(column);
+                ([texels[0] as u8, texels[1] as u8], runs.to_vec())
+            })
         };
-        let whole = [[(1, 0, 2), (2, 0, 2)], [(3, 0, 2), (4, 0, 2)], [(5, 0, 2), (6, 0, 2)]];
-        assert_eq!((shown(&image(None)), image(None).starts.len()), (whole, 2));
-        let holes = [[(1, 0, 2), (2, 0, 2)], [(3, 0, 0), (4, 1, 2)], [(5, 0, 2), (6, 0, 2)]];
+        let whole = [([1, 2], vec![[0, 2]]), ([3, 4], vec![[0, 2]]), ([5, 6], vec![[0, 2]])];
+        assert_eq!((shown(&image(None)), image(None).runs.len()), (whole, 1));
+        let holes = [([1, 2], vec![[0, 2]]), ([3, 4], vec![[1, 2]]), ([5, 6], vec![[0, 2]])];
         let masked = image(Some([1, 1, 0, 1, 1, 1]));
-        assert_eq!((shown(&masked), masked.starts.len()), (holes, 6));
+        assert_eq!((shown(&masked), masked.runs.len()), (holes, 3));
     }
 
     #[test]
     fn runs_begin_where_the_even_scale_has_them() {
         // Half a row a texel, the eye at texel 10, the horizon in row 50: texel t's upper edge is at 50 - (10 - t) / 2.
         let hung = Hung { horizon: 50 << 16, eye: 10 << 16, scale: 1 << 15 };
-        let first = |start, end| hung.first_row(start, end);
+        let first = |start, end| hung.first_row([start, end]);
         assert_eq!([first(0, 4), first(1, 5), first(10, 12)], [45, 45, 50]);
         // From 45.0 to 45.5 and from 45.5 to 46.0: not a row high. From 45.5 to 46.5: ends above 46.
         assert_eq!([first(0, 1), first(1, 2), first(1, 3)], [i64::MAX, 45, 45]);

@@ -1,6 +1,6 @@
 //! One column of a texture with holes in an opening.
 
-use super::fence::{Hung, Runs};
+use super::fence::{Hung, Run};
 #[cfg(target_arch = "x86_64")]
 use super::masked_wide;
 #[cfg(target_arch = "x86_64")]
@@ -19,14 +19,16 @@ pub(super) struct MaskedColumn<'a> {
     /// Texture row at base row 0 and its change a base row, 32 fractional bits.
     pub at: i64,
     pub step: i64,
-    pub runs: Runs<'a>,
+    /// From top to bottom.
+    pub runs: &'a [Run],
     pub hung: Hung,
 }
 
 impl MaskedColumn<'_> {
     /// Start of the run that a base row shows.
     pub fn run_at(&self, base_row: u32) -> u16 {
-        self.runs.starts[self.texel_at(base_row)]
+        let texel = self.texel_at(base_row) as u16;
+        self.runs.iter().find(|[_, end]| texel < *end).map_or(0, |&[start, _]| start)
     }
 
     /// The texel of a base row.
@@ -58,14 +60,15 @@ impl MaskedColumn<'_> {
         }
         #[cfg(not(target_arch = "x86_64"))]
         let _ = simd;
-        let (mut run, mut first_row) = ((0, 0), i64::MAX);
+        // Further down there are no texels further up.
+        let (mut runs, mut run, mut first_row) = (self.runs.iter(), [0, 0], i64::MAX);
         for row in rows {
             let v = self.texel_at(base_rows[row]);
-            let own = (self.runs.starts[v], self.runs.ends[v]);
-            if own != run {
-                (run, first_row) = (own, self.hung.first_row(own.0, own.1));
+            while v >= usize::from(run[1]) {
+                let Some(&next) = runs.next() else { return };
+                (run, first_row) = (next, self.hung.first_row(next));
             }
-            if i64::from(base_rows[row]) >= first_row {
+            if v >= usize::from(run[0]) && i64::from(base_rows[row]) >= first_row {
                 put(row, self.table[usize::from(self.texels[v] as u8)]);
             }
         }
@@ -76,7 +79,8 @@ impl MaskedColumn<'_> {
 mod tests {
     use super::*;
     use crate::math::Rng;
-    use crate::render::fence::find_runs;
+    use crate::render::fence::runs_of;
+    use crate::render::picture::MaskedPicture;
 
     #[test]
     fn all_ways_show_the_same_rows() {
@@ -86,23 +90,32 @@ mod tests {
             let height = [128, 72, 64, 33, 1, 200][round % 6];
             let length = [60u32, 100, 403][round / 6 % 3];
             let texels: Vec<u16> = (0..height).map(|_| rng.below(512) as u16).collect();
-            let (mut starts, mut ends) = (vec![0; texels.len()], vec![0; texels.len()]);
-            find_runs(&texels, &mut starts, &mut ends);
-            let runs = Runs { starts: &starts, ends: &ends };
+            let runs: Vec<Run> = runs_of(&texels).collect();
             let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + 8).map(|row| row * 5 / 3).collect();
             let step = i64::from(rng.between(1, 1 << 30)) << rng.below(4);
             let at = i64::from(rng.between(-100, 100)) << 32;
             let hung =
                 Hung { horizon: i64::from(rng.between(-100, 200)) << 16, eye: at >> 16, scale: (1 << 32) / (step >> 16).max(3) };
-            let column = MaskedColumn { texels: &texels, table: &table, at, step, runs, hung };
+            let column = MaskedColumn { texels: &texels, table: &table, at, step, runs: &runs, hung };
             let (a, b) = (rng.below(length + 1) as usize, rng.below(length + 1) as usize);
             let shown = |simd: Simd| {
                 let mut list = Vec::new();
                 column.draw(simd, &base_rows, a.min(b)..a.max(b), |row, colour| list.push((row, colour)));
                 list
             };
-            let plain = shown(Simd::PLAIN);
-            Simd::available().into_iter().for_each(|simd| assert_eq!(shown(simd), plain, "{simd:?}"));
+            // Each row on its own: its texel, and from where to where there are no holes around it.
+            let is_opaque = |texel: &u16| texel & MaskedPicture::OPAQUE != 0;
+            let expected: Vec<(usize, u8)> = (a.min(b)..a.max(b))
+                .filter_map(|row| {
+                    let v = ((at + step * i64::from(base_rows[row])) >> 32).clamp(0, height as i64 - 1) as usize;
+                    let above = texels[..=v].iter().rev().take_while(|texel| is_opaque(texel)).count();
+                    let below = texels[v..].iter().take_while(|texel| is_opaque(texel)).count();
+                    let begun =
+                        || i64::from(base_rows[row]) >= hung.first_row([v + 1 - above, v + below].map(|texel| texel as u16));
+                    (above > 0 && begun()).then(|| (row, table[usize::from(texels[v] as u8)]))
+                })
+                .collect();
+            Simd::available().into_iter().for_each(|simd| assert_eq!(shown(simd), expected, "{simd:?}"));
         }
     }
 }

@@ -14,11 +14,11 @@ pub(super) fn block(column: &MaskedColumn, base_rows: &[u32; MASKED_BLOCK]) -> (
     let (halves, _) = base_rows.as_chunks::<32>();
     let rows = [texel_rows(column, &halves[0]), texel_rows(column, &halves[1])];
     let [low, high] = rows.map(|rows| look_up(column.texels, rows));
-    let begun = [begun(column, rows[0], &halves[0]), begun(column, rows[1], &halves[1])];
+    let shown = [shown(column, rows[0], words(&halves[0])), shown(column, rows[1], words(&halves[1]))];
     let indices = _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi16_epi8(low)), _mm512_cvtepi16_epi8(high), 1);
     let mut colours = [0; MASKED_BLOCK];
     store(&mut colours, look_up_block(load_table(column.table), indices));
-    (colours, begun[0] | begun[1] << 32)
+    (colours, u64::from(shown[0]) | u64::from(shown[1]) << 32)
 }
 
 /// The texture rows of 32 base rows, as words.
@@ -48,31 +48,25 @@ fn widened(base_rows: &[u32; 8]) -> __m512i {
     _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(base_rows.as_ptr().cast()) })
 }
 
-/// A bit for each of 32 base rows: whether its texel is in a run, not a hole, that begins there or above.
+/// A bit for each of 32 base rows: whether its texel is in a run that begins there or above.
 #[inline]
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn begun(column: &MaskedColumn, texel_rows: __m512i, base_rows: &[u32; 32]) -> u64 {
-    let (starts, ends) = (look_up(column.runs.starts, texel_rows), look_up(column.runs.ends, texel_rows));
-    let [at, change] = column.hung.rows().map(|number| _mm512_set1_epi64(number));
-    let row_of = |texels: __m128i| {
-        let moved = _mm512_mullo_epi64(_mm512_cvtepu16_epi64(texels), change);
-        _mm512_srai_epi64(_mm512_add_epi64(at, moved), 32)
-    };
-    let (eights, _) = base_rows.as_chunks::<8>();
-    let eight = |starts: __m128i, ends: __m128i, base_rows: &[u32; 8]| {
-        let first = row_of(starts);
-        u64::from(_mm512_cmple_epi64_mask(first, widened(base_rows)) & _mm512_cmplt_epi64_mask(first, row_of(ends)))
-    };
-    let part = |vector: __m512i| {
-        [
-            _mm512_castsi512_si128(vector),
-            _mm512_extracti32x4_epi32(vector, 1),
-            _mm512_extracti32x4_epi32(vector, 2),
-            _mm512_extracti32x4_epi32(vector, 3),
-        ]
-    };
-    let (starts, ends) = (part(starts), part(ends));
-    (0..4).fold(0, |bits, i| bits | eight(starts[i], ends[i], &eights[i]) << (8 * i))
+#[target_feature(enable = "avx512f,avx512bw")]
+fn shown(column: &MaskedColumn, texel_rows: __m512i, base_rows: __m512i) -> u32 {
+    let splat = |row: i64| _mm512_set1_epi16(row.clamp(0, i64::from(i16::MAX)) as i16);
+    column.runs.iter().fold(0, |shown, &run| {
+        let [start, end] = run.map(|texel| splat(i64::from(texel)));
+        let inside = _mm512_mask_cmplt_epi16_mask(_mm512_cmple_epi16_mask(start, texel_rows), texel_rows, end);
+        shown | _mm512_mask_cmple_epi16_mask(inside, splat(column.hung.first_row(run)), base_rows)
+    })
+}
+
+/// Base rows as words, none of which is the greatest.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn words(base_rows: &[u32; 32]) -> __m512i {
+    // SAFETY: 64 bytes are readable behind each reference.
+    let [low, high] = [0, 16].map(|from| unsafe { _mm512_loadu_si512(base_rows[from..].as_ptr().cast()) });
+    _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi32_epi16(low)), _mm512_cvtepi32_epi16(high), 1)
 }
 
 /// What a list of a column has for the texels of 32 rows.
