@@ -76,8 +76,8 @@ mod tests {
                     step: step + (rng.next_u64() as u32 >> 16),
                 };
                 let mut plain = before.clone();
-                column.draw_plainly(&mut plain, &rows, a.min(b), a.max(b));
                 let (top, bottom) = (a.min(b), a.max(b));
+                column.draw_plainly(&mut plain, &rows, top, bottom);
                 let compare = |draw: &mut dyn FnMut(&mut [u8]), name: &str| {
                     let mut pixels = before.clone();
                     draw(&mut pixels);

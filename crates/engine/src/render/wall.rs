@@ -22,9 +22,16 @@ pub(super) const INVERSE_BITS: u32 = 44;
 pub(super) const END_BITS: u32 = 18;
 /// Bits of a base column's number.
 #[cfg(target_arch = "x86_64")]
-pub(super) const COLUMN_BITS: u32 = 11;
+const COLUMN_BITS: u32 = 11;
 /// The inverse of a distance beyond all maps, which keeps divisions in range.
 pub(super) const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
+
+/// Whether doubles hold a number that changes by `step` a base column exactly in all columns.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+pub(super) fn fits_doubles(at: i64, step: i64) -> bool {
+    (at.unsigned_abs() | step.unsigned_abs() << COLUMN_BITS) >> (f64::MANTISSA_DIGITS - 1) == 0
+}
 
 /// The plane of a line as the camera sees it: all that depends on the line is linear in the base column, so that the
 /// pieces into which the BSP cut a line fit together exactly.
@@ -116,7 +123,7 @@ impl Edge {
     #[cfg(target_arch = "x86_64")]
     #[inline]
     pub fn is_exact(&self) -> bool {
-        (self.at.unsigned_abs() | self.step.unsigned_abs() << COLUMN_BITS) >> (f64::MANTISSA_DIGITS - 1) == 0
+        fits_doubles(self.at, self.step)
     }
 
     /// The base row at a base column, anywhere.

@@ -6,7 +6,7 @@ use super::column_wide;
 use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::magnified_wide::LitTexels;
-use super::wall::{COLUMN_BITS, INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, WALL_BLOCK, WallShader, WallSlope};
+use super::wall::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, WALL_BLOCK, WallShader, WallSlope, fits_doubles};
 use std::arch::x86_64::*;
 
 /// For each of eight columns what [`WallShader::column`] gives.
@@ -33,8 +33,7 @@ struct FourColumns {
 /// and its texture is 64 or 128 texels high.
 #[inline]
 pub(super) fn fits(shader: &WallShader) -> bool {
-    let bits = |line: &SeenLine| line.inverse.unsigned_abs() | line.inverse_step.unsigned_abs() << COLUMN_BITS;
-    let doubles = (bits(shader.line) | bits(shader.ends)) >> (f64::MANTISSA_DIGITS - 1) == 0;
+    let doubles = [shader.line, shader.ends].iter().all(|line| fits_doubles(line.inverse, line.inverse_step));
     // A distance has 33 bits; by both factors and without two times 24 bits it must stay positive.
     let factors = [shader.view.inverse_focal_y, shader.picture.inverse_height];
     doubles && factors[0] < 1 << 32 && factors[0] < (1 << 54) / factors[1] && matches!(shader.picture.height, 64 | 128)
