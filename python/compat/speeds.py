@@ -19,6 +19,8 @@ import time
 
 IDS = ("VolcanicVentureLevel1-v0", "RemedyRushLevel1-v0")
 SECONDS = 0.5
+# What speaks to the published engine lies there.
+EXAMPLES = str(pathlib.Path(__file__).parents[2] / "crates" / "envs" / "examples")
 
 
 def rust(env_id, envs, threads, seconds=SECONDS):
@@ -175,7 +177,6 @@ def published(level=1):
     import gymnasium
     import numpy as np
 
-    sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "crates" / "envs" / "examples"))
     from beside_published_speed import open_game, package
 
     maps = pathlib.Path(os.environ.get("HASARD_PUBLISHED") or package("hasard")) / "envs"
@@ -257,22 +258,21 @@ def rllib(rounds):
     told("RLlib's SingleAgentEnvRunner with random actions, 8 worlds, beside the published engine's in SyncVectorEnv", [(ours(), theirs()) for _ in range(rounds)])
 
 
-def on_one_core(part):
-    """A part, which this process and those that it starts do on a core that they share, where the system can have them do so."""
+def sharing_a_core(part):
+    """A part that compares with the published engine: all on one core."""
 
     def run(rounds):
-        if not hasattr(os, "sched_setaffinity"):
-            return part(rounds)
-        cores = os.sched_getaffinity(0)
-        os.sched_setaffinity(0, {max(cores)})
-        part(rounds)
-        os.sched_setaffinity(0, cores)
+        sys.path.insert(0, EXAMPLES)
+        from beside_published_speed import on_one_core
+
+        with on_one_core():
+            part(rounds)
 
     return run
 
 
 PARTS = {"batch": batch, "work": work, "single": single, "thread": thread, "import": imported}
-PARTS |= {"sb3": on_one_core(sb3), "torchrl": on_one_core(torchrl), "rllib": on_one_core(rllib)}
+PARTS |= {"sb3": sharing_a_core(sb3), "torchrl": sharing_a_core(torchrl), "rllib": sharing_a_core(rllib)}
 
 if __name__ == "__main__":
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5

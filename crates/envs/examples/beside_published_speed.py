@@ -15,6 +15,7 @@ to wake one another, as virtual machines do, it makes but half as many steps on 
 """
 
 import argparse
+import contextlib
 import importlib.util
 import os
 import pathlib
@@ -27,6 +28,19 @@ import time
 
 SCENARIOS = ["ArmamentBurden", "RemedyRush", "CollateralDamage", "VolcanicVenture", "PrecipicePlunge", "DetonatorsDilemma"]
 WIDTH, HEIGHT, FRAME_SKIP, LANES = 128, 72, 4, "32"
+
+
+@contextlib.contextmanager
+def on_one_core():
+    """This process, and those that it starts, on a core that they share, where the system can have them do so."""
+    cores = os.sched_getaffinity(0) if hasattr(os, "sched_setaffinity") else None
+    if cores:
+        os.sched_setaffinity(0, {max(cores)})
+    try:
+        yield
+    finally:
+        if cores:
+            os.sched_setaffinity(0, cores)
 
 
 def package(name):
@@ -103,8 +117,6 @@ def main():
     program = str(pathlib.Path(given.program).resolve())
     # The published engine leaves its settings where it runs.
     os.chdir(tempfile.mkdtemp(prefix="beside_published_speed_"))
-    if not given.all_cores and hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     if given.simd:
         os.environ["HASARD_SIMD"] = given.simd
     names = [(scenario, level) for scenario in SCENARIOS for level in (1, 2, 3)]
@@ -114,10 +126,12 @@ def main():
     medians = []
     for scenario, level in wanted:
         environment = f"{scenario}Level{level}-v0"
-        published = Published(scenario, level)
-        published.steps_per_second(0.2)
-        pairs = [(published.steps_per_second(given.seconds), ours(program, environment, given.seconds, given.maps)) for _ in range(given.rounds)]
-        published.game.close()
+        with contextlib.nullcontext() if given.all_cores else on_one_core():
+            published = Published(scenario, level)
+            published.steps_per_second(0.2)
+            turn = lambda: (published.steps_per_second(given.seconds), ours(program, environment, given.seconds, given.maps))
+            pairs = [turn() for _ in range(given.rounds)]
+            published.game.close()
         ratios = [mine / theirs for theirs, mine in pairs]
         medians.append(statistics.median(ratios))
         theirs, mine = (statistics.median(values) for values in zip(*pairs))
