@@ -11,6 +11,7 @@ OUT must lie outside the repository: nothing of the published files belongs ther
 
 import argparse
 import json
+import math
 import os
 import tempfile
 
@@ -30,6 +31,8 @@ VARIABLES = (
     + " ".join(f"AMMO{slot} WEAPON{slot}" for slot in range(2, 8))
 ).split()
 FRAME_SKIP = 4
+# Way of a rocket from its thrower's middle to where it begins its first tic, map units.
+MUZZLE = 10
 # Policy steps between moments, and before the episode begins anew.
 STRIDE, EPISODE = 13, 300
 # How often a button is thought about, and pressed then.
@@ -89,22 +92,46 @@ def open_game(args, folder, level, groups):
     return game
 
 
-def note_rockets(bursts, flights, state):
-    """Remembers where rockets have burst (they stand still then), and where they flew: place, velocity and tic when first seen."""
-    for thing in state.objects:
-        if thing.name != "Rocket":
-            continue
-        place = [thing.position_x, thing.position_y, thing.position_z]
-        velocity = [thing.velocity_x, thing.velocity_y, thing.velocity_z]
-        if any(velocity):
-            flights.setdefault(thing.id, {"tic": int(state.tic), "place": place, "velocity": velocity})
-        else:
-            bursts[thing.id] = [*place, thing.angle]
-            if thing.id in flights:
-                flights[thing.id]["burst"] = place
+class Rockets:
+    """Where rockets flew and burst since the episode began, from what is told of every fourth tic."""
+
+    def __init__(self):
+        self.bursts, self.flights, self.flying, self.burst = [], [], {}, set()
+
+    def note(self, state, eye):
+        burst, things = set(), [thing for thing in state.objects if thing.name == "Rocket"]
+        for lost in set(self.flying) - {thing.id for thing in things}:
+            flight = self.flying.pop(lost)
+            flight["tics"] = int(state.tic) - FRAME_SKIP + 1 - flight["tic"]
+        for thing in things:
+            place = [thing.position_x, thing.position_y, thing.position_z]
+            velocity = [thing.velocity_x, thing.velocity_y, thing.velocity_z]
+            if any(velocity):
+                if thing.id not in self.flying:
+                    tics = round((math.dist(place[:2], eye) - MUZZLE) / math.hypot(*velocity))
+                    first = [at - (tics - 1) * step for at, step in zip(place, velocity)]
+                    self.flying[thing.id] = {"tic": int(state.tic) + 1 - tics, "place": first, "velocity": velocity, "tics": None}
+                    self.flights.append(self.flying[thing.id])
+                continue
+            burst.add(thing.id)
+            if thing.id in self.flying:
+                flight = self.flying.pop(thing.id)
+                # It bursts part of a tic's way on from where it was last.
+                flight["tics"] = 1 + int(math.dist(place, flight["place"]) / math.hypot(*flight["velocity"]) + 0.01)
+                self.bursts.append([*place, thing.angle])
+            elif thing.id not in self.burst:
+                # Thrown since the last look, in the first tic after it, and burst at once.
+                self.flights.append({"tic": int(state.tic) + 1 - FRAME_SKIP, "place": place, "velocity": [0, 0, 0], "tics": 0})
+                self.bursts.append([*place, thing.angle])
+        self.burst = burst
 
 
-def told(number, state, bursts, flights):
+def chance(seed, episode):
+    """What the engine's own chance begins with in an episode: one number after the other of a Mersenne Twister with the game's seed."""
+    return int(np.random.RandomState(seed).randint(0, 2**32, size=episode + 1, dtype=np.uint32)[-1])
+
+
+def told(number, state, rockets, chance, episode):
     """What the engine tells of a moment."""
     return {
         "number": number,
@@ -112,8 +139,10 @@ def told(number, state, bursts, flights):
         "variables": dict(zip(VARIABLES, map(float, state.game_variables))),
         "floors": [float(sector.floor_height) for sector in state.sectors],
         "ceilings": [float(sector.ceiling_height) for sector in state.sectors],
-        "bursts": list(bursts.values()),
-        "flights": [dict(flight) for flight in flights.values()],
+        "chance": chance,
+        "episode": episode,
+        "bursts": list(rockets.bursts),
+        "flights": [dict(flight) for flight in rockets.flights],
         "labels": [
             {
                 "name": label.object_name, "value": int(label.value), "angle": label.object_angle,
@@ -129,18 +158,18 @@ def dump(args, scenario, level, out, trained=None):
     folder = os.path.join(packages, "hasard", "envs", scenario)
     game = open_game(args, folder, level, trained and trained.groups)
     buttons = [str(button).split(".")[-1] for button in game.get_available_buttons()]
-    player, scenes, bursts, flights, step = trained or Random(args.seed, buttons), [], {}, {}, 0
+    player, scenes, rockets, episode, step = trained or Random(args.seed, buttons), [], Rockets(), 0, 0
     os.makedirs(out, exist_ok=True)
     player.begin()
     while len(scenes) < args.moments:
         game.make_action(player.act(game.get_state().screen_buffer), FRAME_SKIP)
         step += 1
         if not game.is_episode_finished():
-            note_rockets(bursts, flights, game.get_state())
+            variables = game.get_state().game_variables
+            rockets.note(game.get_state(), [variables[VARIABLES.index(f"CAMERA_POSITION_{axis}")] for axis in "XY"])
         if game.is_episode_finished() or step % EPISODE == 0:
             game.new_episode()
-            bursts.clear()
-            flights.clear()
+            rockets, episode = Rockets(), episode + 1
             player.begin()
             game.make_action([0.0] * len(buttons), FRAME_SKIP)
         elif step % STRIDE == 0:
@@ -148,7 +177,7 @@ def dump(args, scenario, level, out, trained=None):
             pictures = {"rgb": state.screen_buffer[:, :, ::-1], "depth": state.depth_buffer, "labels": state.labels_buffer}
             for name, picture in pictures.items():
                 cv2.imwrite(os.path.join(out, f"{len(scenes):02}_{name}.png"), picture)
-            scenes.append(told(len(scenes), state, bursts, flights))
+            scenes.append(told(len(scenes), state, rockets, chance(args.seed, episode), episode))
     game.close()
     width, height = map(int, args.size.split("X"))
     head = {

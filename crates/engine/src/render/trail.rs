@@ -20,8 +20,9 @@ pub(super) const SHADES: [[u8; 3]; 3] = [[171; 3], [87; 3], [255, 255, 0]];
 /// Squares nearer than this, in 16.16 map units, are not drawn: the largest that were seen are as near.
 const NEAREST: i64 = 2 << 16;
 
-/// Fractional bits of the inverse of a distance in 16.16: few enough that all products fit.
-const NEAR_BITS: u32 = 44;
+/// What 16.16 has more than 4096ths, and 1 over a 4096th in 16.16.
+const FINE: u32 = 4;
+const INVERSE_UNIT: i64 = 1 << 28;
 
 /// Nearness brightens squares as if they were half as far away as they are.
 const ONE_TABLE: i64 = 2 * ONE_TABLE_DISTANCE;
@@ -93,7 +94,7 @@ impl SeenTrail {
         };
         let distance = forward(trail.begun);
         let step = forward(trail.begun + 1) - distance;
-        SeenTrail { trail: *trail, spots, distance, step, hidden: true }
+        SeenTrail { trail: trail.clone(), spots, distance, step, hidden: true }
     }
 
     /// Distance of the squares of a tic.
@@ -186,30 +187,29 @@ impl Masked<'_> {
     }
 }
 
-/// What a square covers if nothing hides it, and whether that is anything: whole columns from that of its left edge to that of its
-/// right one, one at least, and whole rows, that of its lower edge too.
+/// What a square covers if nothing hides it, and whether that is anything: whole columns from that of its left edge to that before
+/// its right one, and whole rows, that of its lower edge too.
 #[inline(always)]
 fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, tic: u32, square: &Square) -> (Spot, bool) {
     let [left, right] = camera.edges(i64::from(square.place[0].0), i64::from(square.place[1].0));
     let (away, across) = ((left + right) >> 1, (left - right) >> 1);
     let distance = away.max(NEAREST);
     let beside = across.abs() > distance + i64::from(square.half.0);
-    // Of whatever is at that distance, its part of the distance; 16.16.
-    let near = (1 << NEAR_BITS) / distance;
-    let part = |units: i64| (units * near) >> (NEAR_BITS - 16);
-    let half = part(i64::from(square.half.0));
+    // The published engine takes distances to 4096ths of a unit, and cuts their inverse to 65536ths: columns and rows of a unit follow
+    // from that, so that what is far away is drawn nearer to the middle.
+    let inverse = INVERSE_UNIT / (distance >> FINE);
     let width = i64::from(view.base_width);
-    let (column, half_width) = (((part(across) + (1 << 16)) * width) >> 1, (half * width) >> 1);
-    let first = (column - half_width) >> 16;
-    let end = ((column + half_width) >> 16).max(first + 1);
-    let columns = [first, end].map(|column| view.first_column[column.clamp(0, width) as usize]);
-    let above = part(i64::from(square.place[2].0) - camera.z);
-    let (row, half_height) = (camera.horizon - ((above * view.focal_y) >> 16), (half * view.focal_y) >> 16);
+    let half = i64::from(square.half.0);
+    let column = |edge: i64| (((width << 16) + (((edge >> FINE) * width * inverse) >> (16 - FINE))) >> 17).clamp(0, width);
+    let columns = [across - half, across + half].map(|edge| view.first_column[column(edge) as usize]);
+    let rows_a_unit = (view.focal_y * inverse) >> 16;
+    let above = i64::from(square.place[2].0) - camera.z;
+    let row = |edge: i64| (camera.horizon - ((edge * rows_a_unit) >> 16)) >> 16;
     let frame_row = |row: i64| view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize];
-    let rows = [frame_row((row - half_height) >> 16), frame_row(((row + half_height) >> 16) + 1)];
+    let rows = [frame_row(row(above + half)), frame_row(row(above - half) + 1)];
     // Learners' frames leave out every fifth column and two rows of five.
     let is_seen = (away >= NEAREST) & !beside & (columns[0] < columns[1]) & (rows[0] < rows[1]);
-    let table = light.table((ONE_TABLE * near) >> (NEAR_BITS - 32));
+    let table = light.table(ONE_TABLE * inverse);
     let colour = scene.assets.light_tables[table][usize::from(scene.shades[square.shade as usize])];
     (Spot { tic, columns, rows, height: square.place[2], colour, opacity: square.opacity }, is_seen)
 }
@@ -222,7 +222,7 @@ mod tests {
     use crate::math::Angle;
     use crate::render::{Buffers, FrameSize, Renderer, Scene, View};
     use crate::simd::Simd;
-    use crate::world::ActorKind;
+    use crate::world::{ActorKind, Chance};
     use std::sync::Arc;
 
     const SIZES: [FrameSize; 3] = [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 640, height: 480 }];
@@ -237,7 +237,7 @@ mod tests {
         let place = [Fixed::from_int(east), Fixed::from_int(-320), Fixed::from_int(36)];
         let velocity = [Fixed::ZERO, Fixed::from_int(20), Fixed::ZERO];
         let sector = world.map.sector_at(Fixed::ZERO, Fixed::ZERO);
-        world.trails.push(Trail::new(id, place, velocity, 18, sector, 5));
+        world.trails.push(Trail::new(id, place, velocity, 18, sector, Chance::Own(5)));
         world
     }
 
@@ -313,7 +313,7 @@ mod tests {
         let sector = world.map.sector_at(Fixed::ZERO, Fixed::ZERO);
         let trail = |start: i32, speed: i32| {
             let place = [start, 30, 36].map(Fixed::from_int);
-            Trail::new(world.players[0].actor, place, [speed, 0, 0].map(Fixed::from_int), 40, sector, 5)
+            Trail::new(world.players[0].actor, place, [speed, 0, 0].map(Fixed::from_int), 40, sector, Chance::Own(5))
         };
         let trails = [trail(40, 20), trail(240, -20)];
         for trail in trails {

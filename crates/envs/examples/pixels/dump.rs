@@ -32,10 +32,15 @@ pub struct Moment {
     /// Of each sector.
     pub floors: Vec<f64>,
     pub ceilings: Vec<f64>,
+    /// What the published engine's own chance began with in the episode, if it was noted, and the number of the episode.
+    #[serde(default)]
+    pub chance: Option<u32>,
+    #[serde(default)]
+    pub episode: u32,
     /// Where rockets have burst since the episode began, and the way that they flew, degrees.
     #[serde(default)]
     pub bursts: Vec<[f64; 4]>,
-    /// Where rockets have flown since the episode began.
+    /// How rockets have flown since the episode began, in the order in which they were thrown.
     #[serde(default)]
     pub flights: Vec<Flight>,
     /// The things in view.
@@ -45,12 +50,12 @@ pub struct Moment {
 /// How a rocket flew.
 #[derive(Deserialize)]
 pub struct Flight {
-    /// When it was first seen, where, and how fast.
+    /// Its first tic, and where it was then.
     pub tic: u32,
     pub place: [f64; 3],
     pub velocity: [f64; 3],
-    /// Where it burst, if it has.
-    pub burst: Option<[f64; 3]>,
+    /// Tics that it flew before the one in which it burst, if it has.
+    pub tics: Option<u32>,
 }
 
 /// A thing in view.

@@ -14,6 +14,7 @@
 //! Squares that rockets shed lie where chance has them there, and elsewhere here: they are left out here. With `--squares`, where BARE has the
 //! same moments without theirs (`--no-particles`), they are drawn, and what they change is counted on either side.
 
+mod chance;
 mod dump;
 mod pose;
 mod sheet;
@@ -23,7 +24,7 @@ mod untold;
 
 use dump::Level;
 use hasard_engine::render::{Buffers, class};
-use pose::Stage;
+use pose::{Stage, leave_trails};
 use std::path::{Path, PathBuf};
 use tally::{Kind, Tallies};
 
@@ -75,6 +76,9 @@ fn level(folder: &Path, out: Option<&Path>, list: bool) -> Any<Tallies> {
         let theirs = dump::Pictures::read(folder, moment.number)?;
         let mut posed = stage.pose(&level, moment);
         let guess = untold::find(&mut stage, &mut posed, &theirs, &level.scenario, moment);
+        if moment.chance.is_some() {
+            leave_trails(&mut posed.world, moment);
+        }
         stage.renderer.render(&posed.world, 0, Buffers { depth: true, labels: true });
         stage.renderer.write_rgb_hwc(&mut stage.rgb);
         let own = compare(&stage, &posed, &theirs, moment, &level.scenario);

@@ -1,13 +1,13 @@
 //! A world of ours as the published engine told a moment.
 
-use crate::Any;
-use crate::dump::{Flight, Level, Moment};
+use crate::dump::{Level, Moment};
+use crate::{Any, chance};
 use hasard_engine::assets::Assets;
 use hasard_engine::map::{Map, SectorId, udmf};
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::render::{FrameSize, RenderOptions, Renderer, Scene, View};
 use hasard_engine::wad::Wad;
-use hasard_engine::world::{ActorId, ActorKind, Trail, Weapon, World};
+use hasard_engine::world::{ActorId, ActorKind, Chance, Trail, Weapon, World};
 use hasard_envs::maps::pictures_beside;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -137,25 +137,18 @@ fn leave_soot(world: &mut World, [x, y, z, angle]: [f64; 4]) {
     }
 }
 
-/// Way of a rocket from its thrower's middle to where it begins its first tic, map units.
-const MUZZLE: f64 = 10.0;
-
-/// Leaves the trails of the rockets that have flown, whose squares are by our own chance: nothing tells of the published ones.
+/// Leaves the trails of the rockets that have flown, with the squares that chance gave them there.
 pub fn leave_trails(world: &mut World, moment: &Moment) {
-    let [x, y] = ["CAMERA_POSITION_X", "CAMERA_POSITION_Y"].map(|name| moment.value(name));
-    let tics_to = |flight: &Flight, place: &[f64; 3]| {
-        let length = |x: f64, y: f64| (x * x + y * y).sqrt();
-        let speed = length(flight.velocity[0], flight.velocity[1]);
-        ((length(place[0] - x, place[1] - y) - MUZZLE) / speed).max(0.0)
-    };
-    for (number, flight) in (0..).zip(&moment.flights) {
-        let flown = tics_to(flight, &flight.place).round();
-        let (now, velocity) = (world.tic, flight.velocity.map(fixed));
-        let after_a_tic = [0, 1, 2].map(|axis| fixed(flight.place[axis] - flight.velocity[axis] * (flown - 1.0)));
-        let Some(begun) = (now + flight.tic).checked_sub(moment.tic + flown as u32) else { continue };
-        let (id, sector) = (world.players[0].actor, world.map.sector_at(after_a_tic[0], after_a_tic[1]));
-        let mut trail = Trail::new(id, after_a_tic, velocity, begun, sector, u64::from(moment.tic) << 32 | number);
-        trail.ended = flight.burst.map_or(Trail::FLYING, |place| begun + tics_to(flight, &place) as u32);
+    let lots = moment.chance.map(|seed| chance::lots(seed, moment));
+    for (index, flight) in moment.flights.iter().enumerate() {
+        let [place, velocity] = [flight.place, flight.velocity].map(|vector| vector.map(fixed));
+        // Ours counts tics from nought; and the world's clock may be ahead, where textures are animated.
+        let begun = world.tic + flight.tic - 1 - moment.tic;
+        let (id, sector) = (world.players[0].actor, world.map.sector_at(place[0], place[1]));
+        let own = || Chance::Own(u64::from(moment.tic) << 32 | index as u64);
+        let chance = lots.as_ref().map_or_else(own, |lots| Chance::Told(lots[index].as_slice().into()));
+        let mut trail = Trail::new(id, place, velocity, begun, sector, chance);
+        trail.ended = flight.tics.map_or(Trail::FLYING, |tics| begun + tics);
         world.trails.push(trail);
     }
 }
