@@ -31,8 +31,8 @@ VARIABLES = (
     + " ".join(f"AMMO{slot} WEAPON{slot}" for slot in range(2, 8))
 ).split()
 FRAME_SKIP = 4
-# Way of a rocket from its thrower's middle to where it begins its first tic, map units.
-MUZZLE = 10
+# Way of a rocket from its thrower's middle to where it begins its first tic, map units, and units a tic.
+MUZZLE, ROCKET_SPEED = 10, 20
 # Policy steps between moments, and before the episode begins anew.
 STRIDE, EPISODE = 13, 300
 # How often a button is thought about, and pressed then.
@@ -92,13 +92,20 @@ def open_game(args, folder, level, groups):
     return game
 
 
+def whole_tics(way):
+    """Tics that a rocket flew the whole of; it bursts part of a tic's way on."""
+    return max(int(way / ROCKET_SPEED + 0.01), 0)
+
+
 class Rockets:
     """Where rockets flew and burst since the episode began, from what is told of every fourth tic."""
 
     def __init__(self):
-        self.bursts, self.flights, self.flying, self.burst = [], [], {}, set()
+        self.bursts, self.flights, self.flying, self.burst, self.eye = [], [], {}, set(), None
 
     def note(self, state, eye):
+        # They were thrown from where the thrower was at the look before.
+        thrower, self.eye = self.eye or eye, eye
         burst, things = set(), [thing for thing in state.objects if thing.name == "Rocket"]
         for lost in set(self.flying) - {thing.id for thing in things}:
             flight = self.flying.pop(lost)
@@ -108,7 +115,7 @@ class Rockets:
             velocity = [thing.velocity_x, thing.velocity_y, thing.velocity_z]
             if any(velocity):
                 if thing.id not in self.flying:
-                    tics = round((math.dist(place[:2], eye) - MUZZLE) / math.hypot(*velocity))
+                    tics = round((math.dist(place[:2], thrower) - MUZZLE) / ROCKET_SPEED)
                     first = [at - (tics - 1) * step for at, step in zip(place, velocity)]
                     self.flying[thing.id] = {"tic": int(state.tic) + 1 - tics, "place": first, "velocity": velocity, "tics": None}
                     self.flights.append(self.flying[thing.id])
@@ -116,12 +123,16 @@ class Rockets:
             burst.add(thing.id)
             if thing.id in self.flying:
                 flight = self.flying.pop(thing.id)
-                # It bursts part of a tic's way on from where it was last.
-                flight["tics"] = 1 + int(math.dist(place, flight["place"]) / math.hypot(*flight["velocity"]) + 0.01)
+                flight["tics"] = 1 + whole_tics(math.dist(place, flight["place"]))
                 self.bursts.append([*place, thing.angle])
             elif thing.id not in self.burst:
-                # Thrown since the last look, in the first tic after it, and burst at once.
-                self.flights.append({"tic": int(state.tic) + 1 - FRAME_SKIP, "place": place, "velocity": [0, 0, 0], "tics": 0})
+                # Thrown since the last look, in the first tic after it, and burst already.
+                way = [math.cos(math.radians(thing.angle)), math.sin(math.radians(thing.angle)), 0.0]
+                flown = math.dist(place[:2], thrower) - MUZZLE
+                first = [at + (ROCKET_SPEED - flown) * part for at, part in zip(place, way)]
+                velocity = [ROCKET_SPEED * part for part in way]
+                tics = whole_tics(flown)
+                self.flights.append({"tic": int(state.tic) + 1 - FRAME_SKIP, "place": first, "velocity": velocity, "tics": tics})
                 self.bursts.append([*place, thing.angle])
         self.burst = burst
 
