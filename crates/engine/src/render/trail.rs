@@ -1,7 +1,4 @@
-//! The squares of rockets' trails on the frame, between the sprites.
-//!
-//! The squares of one tic are drawn together: they lie within a tic's way of each other, and a rocket flies straight, so that a
-//! trail is sorted by distance as it is by time.
+//! The squares of rockets' trails on the frame, between the sprites: the farthest first.
 
 use super::camera::Camera;
 use super::light::{Light, ONE_TABLE_DISTANCE};
@@ -11,8 +8,7 @@ use super::sprite::Extent;
 use super::view::View;
 use super::wall::INVERSE_BITS;
 use crate::math::Fixed;
-use crate::world::{Shed, Square, Trail, World};
-use std::ops::Range;
+use crate::world::{Shed, Square, World};
 
 /// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's palette that the published engine shows.
 pub(super) const SHADES: [[u8; 3]; 3] = [[171; 3], [87; 3], [255, 255, 0]];
@@ -27,37 +23,36 @@ const INVERSE_UNIT: i64 = 1 << 28;
 /// Nearness brightens squares as if they were half as far away as they are.
 const ONE_TABLE: i64 = 2 * ONE_TABLE_DISTANCE;
 
-/// The trails of a frame.
+/// The squares of a frame.
 #[derive(Debug, Default)]
 pub(super) struct SeenTrails {
-    list: Vec<SeenTrail>,
-    /// What their squares cover, trail after trail and tic after tic.
+    /// What the squares that are still to be drawn cover, the nearest first.
     spots: Vec<Spot>,
+    trails: Vec<SeenTrail>,
     /// Scratch.
     left: Vec<Shed>,
 }
 
-/// A trail of which some squares are still to be drawn.
-#[derive(Clone, Debug)]
+/// A trail's squares together.
+#[derive(Clone, Copy, Debug)]
 struct SeenTrail {
-    trail: Trail,
-    /// The spots that are left.
-    spots: Range<usize>,
-    /// Distance of the middle of the trail's way in its first tic, and what a tic adds, 16.16.
+    /// Of their columns, the first and one past the last.
+    columns: [u16; 2],
+    /// Of the farthest.
     distance: i64,
-    step: i64,
-    /// Silhouettes may hide some of it.
+    /// Silhouettes may hide some of them.
     hidden: bool,
 }
 
 /// What a square covers of the frame.
 #[derive(Clone, Copy, Default, Debug)]
 struct Spot {
-    tic: u32,
+    distance: i64,
     columns: [u16; 2],
     rows: [i16; 2],
-    /// Of its middle.
-    height: Fixed,
+    /// Its middle, 16.16.
+    place: [Fixed; 3],
+    trail: u16,
     colour: u8,
     opacity: u8,
 }
@@ -65,120 +60,82 @@ struct Spot {
 impl SeenTrails {
     /// Works out what squares cover if nothing hides them.
     pub fn collect(&mut self, scene: &Scene, view: &View, camera: &Camera, world: &World) {
-        self.list.clear();
+        self.trails.clear();
         self.spots.clear();
         for trail in world.trails.iter().filter(|trail| !trail.tics(world.tic).is_empty()) {
             let light = Light::new(camera, i32::from(world.sector(trail.sector).light));
             self.left.clear();
             trail.list(world.tic, &mut self.left);
             let first = self.spots.len();
-            let mut end = first;
+            let (mut end, number) = (first, self.trails.len() as u16);
             self.spots.resize(first + self.left.len(), Spot::default());
             for shed in &self.left {
                 // Which are in view cannot be foretold: all are written, and those counted.
-                let (spot, is_seen) = spot(scene, view, camera, light, shed.tic, &trail.square(shed, world.tic));
-                self.spots[end] = spot;
+                let (spot, is_seen) = spot(scene, view, camera, light, &trail.square(shed, world.tic));
+                self.spots[end] = Spot { trail: number, ..spot };
                 end += usize::from(is_seen);
             }
             self.spots.truncate(end);
-            self.list.push(SeenTrail::new(camera, trail, first..end));
+            self.trails.push(SeenTrail::of(&self.spots[first..]));
         }
+        self.spots.sort_unstable_by_key(|spot| spot.distance);
     }
 }
 
 impl SeenTrail {
-    fn new(camera: &Camera, trail: &Trail, spots: Range<usize>) -> SeenTrail {
-        let forward = |tic: u32| {
-            let [x, y, _] = trail.middle(tic);
-            camera.edges(i64::from(x.0), i64::from(y.0)).iter().sum::<i64>() / 2
-        };
-        let distance = forward(trail.begun);
-        let step = forward(trail.begun + 1) - distance;
-        SeenTrail { trail: trail.clone(), spots, distance, step, hidden: true }
+    fn of(spots: &[Spot]) -> SeenTrail {
+        let nothing = SeenTrail { columns: [u16::MAX, 0], distance: 0, hidden: true };
+        spots.iter().fold(nothing, |all, spot| SeenTrail {
+            columns: [all.columns[0].min(spot.columns[0]), all.columns[1].max(spot.columns[1])],
+            distance: all.distance.max(spot.distance),
+            ..all
+        })
     }
+}
 
-    /// Distance of the squares of a tic.
-    fn away(&self, tic: u32) -> i64 {
-        self.distance + i64::from(tic - self.trail.begun) * self.step
-    }
+/// The inverse of a distance.
+fn inverse(distance: i64) -> i64 {
+    (1 << (INVERSE_BITS + 16)) / distance.max(NEAREST)
+}
 
-    /// The spots of the farthest tic that is left, if it is farther away than a distance; they are left no more.
-    fn next_beyond(&mut self, spots: &[Spot], distance: i64) -> Option<Range<usize>> {
-        let Range { start, end } = self.spots;
-        let (outwards, left) = (self.step > 0, &spots[start..end]);
-        let tic = if outwards { left.last()? } else { left.first()? }.tic;
-        if self.away(tic) <= distance {
-            return None;
-        }
-        let next = if outwards {
-            end - left.iter().rev().take_while(|spot| spot.tic == tic).count()..end
-        } else {
-            start..start + left.iter().take_while(|spot| spot.tic == tic).count()
-        };
-        self.spots = if outwards { start..next.start } else { next.end..end };
-        Some(next)
-    }
-
-    /// What decides what hides some spots that are as far away as those of a tic.
-    fn extent(&self, spots: &[Spot], tic: u32) -> Extent {
-        let [x, y, _] = self.trail.middle(tic).map(|part| i64::from(part.0));
-        let inverse = (1 << (INVERSE_BITS + 16)) / self.away(tic).max(NEAREST);
-        let bounds = spots.iter().fold((u16::MAX, 0, Fixed(i32::MIN), Fixed(i32::MAX)), |(first, end, top, bottom), spot| {
-            (first.min(spot.columns[0]), end.max(spot.columns[1]), top.max(spot.height), bottom.min(spot.height))
-        });
-        let (first, end, top, bottom) = bounds;
-        Extent { inverse, x, y, top, bottom, first: usize::from(first), end: usize::from(end) }
+impl Spot {
+    /// What decides what hides it.
+    fn extent(&self) -> Extent {
+        let ([x, y, height], [first, end]) = (self.place, self.columns.map(usize::from));
+        Extent { inverse: inverse(self.distance), x: i64::from(x.0), y: i64::from(y.0), top: height, bottom: height, first, end }
     }
 }
 
 impl Masked<'_> {
     /// Finds the trails of which silhouettes may hide something: nothing is before most.
     pub fn meet_trails(&mut self) {
-        let SeenTrails { list, spots, .. } = &mut *self.trails;
-        for seen in list {
-            let spots = &spots[seen.spots.clone()];
-            if let [first, .., last] = spots {
-                let farthest = if seen.step > 0 { last.tic } else { first.tic };
-                let extent = seen.extent(spots, farthest);
-                seen.hidden = self.silhouettes.meet(self.simd, extent.first, extent.end, extent.inverse) > 0;
-            }
+        for seen in self.trails.trails.iter_mut().filter(|seen| seen.distance > 0) {
+            let [first, end] = seen.columns.map(usize::from);
+            seen.hidden = self.silhouettes.meet(self.simd, first, end, inverse(seen.distance)) > 0;
         }
     }
 
     /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet. Depth and labels tell nothing of them.
     pub fn squares_beyond<const DEPTH: bool, const CLASS: bool>(&mut self, distance: i64) {
-        for index in 0..self.trails.list.len() {
-            while let Some(spots) = self.trails.list[index].next_beyond(&self.trails.spots, distance) {
-                self.squares::<DEPTH, CLASS>(index, spots);
+        while let Some(spot) = self.trails.spots.pop_if(|spot| spot.distance > distance) {
+            self.square::<DEPTH, CLASS>(&spot);
+        }
+    }
+
+    /// Mixes the colour of a spot into what is seen of each of its columns.
+    fn square<const DEPTH: bool, const CLASS: bool>(&mut self, spot: &Spot) {
+        let (width, hidden) = (self.frame.width, self.trails.trails[usize::from(spot.trail)].hidden);
+        let first = usize::from(spot.columns[0]);
+        if hidden {
+            let extent = spot.extent();
+            self.columns.open(0..self.view.view_rows as i16, (first..extent.end).map(|_| 0));
+            self.narrow::<DEPTH, CLASS>(&extent);
+        }
+        for column in first..usize::from(spot.columns[1]) {
+            let [mut top, mut bottom] = spot.rows;
+            if hidden {
+                (top, bottom) = (top.max(self.columns.tops[column - first]), bottom.min(self.columns.bottoms[column - first]));
             }
-        }
-    }
-
-    /// Draws the squares that a rocket shed in a tic.
-    fn squares<const DEPTH: bool, const CLASS: bool>(&mut self, index: usize, spots: Range<usize>) {
-        let seen = &self.trails.list[index];
-        if !seen.hidden {
-            spots.for_each(|spot| self.cover(spot, |_, rows| rows));
-            return;
-        }
-        let extent = seen.extent(&self.trails.spots[spots.clone()], self.trails.spots[spots.start].tic);
-        self.columns.open(0..self.view.view_rows as i16, (extent.first..extent.end).map(|_| 0));
-        self.narrow::<DEPTH, CLASS>(&extent);
-        let columns = std::mem::take(self.columns);
-        let open = |column: usize, [top, bottom]: [i16; 2]| {
-            let own = column - extent.first;
-            [top.max(columns.tops[own]), bottom.min(columns.bottoms[own])]
-        };
-        spots.for_each(|spot| self.cover(spot, open));
-        *self.columns = columns;
-    }
-
-    /// Mixes the colour of a spot into the rows that `open` leaves of each of its columns.
-    #[inline]
-    fn cover(&mut self, spot: usize, open: impl Fn(usize, [i16; 2]) -> [i16; 2]) {
-        let (width, spot) = (self.frame.width, self.trails.spots[spot]);
-        for column in usize::from(spot.columns[0])..usize::from(spot.columns[1]) {
-            let [top, bottom] = open(column, spot.rows);
             for row in top..bottom {
                 let pixel = &mut self.frame.colour[row as usize * width + column];
                 *pixel = self.scene.blend.over(spot.colour, *pixel, spot.opacity);
@@ -190,7 +147,7 @@ impl Masked<'_> {
 /// What a square covers if nothing hides it, and whether that is anything: whole columns from that of its left edge to that before
 /// its right one, and whole rows, that of its lower edge too.
 #[inline(always)]
-fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, tic: u32, square: &Square) -> (Spot, bool) {
+fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, square: &Square) -> (Spot, bool) {
     let [left, right] = camera.edges(i64::from(square.place[0].0), i64::from(square.place[1].0));
     let (away, across) = ((left + right) >> 1, (left - right) >> 1);
     let distance = away.max(NEAREST);
@@ -211,7 +168,8 @@ fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, tic: u32, squ
     let is_seen = (away >= NEAREST) & !beside & (columns[0] < columns[1]) & (rows[0] < rows[1]);
     let table = light.table(ONE_TABLE * inverse);
     let colour = scene.assets.light_tables[table][usize::from(scene.shades[square.shade as usize])];
-    (Spot { tic, columns, rows, height: square.place[2], colour, opacity: square.opacity }, is_seen)
+    let spot = Spot { distance, columns, rows, place: square.place, trail: 0, colour, opacity: square.opacity };
+    (spot, is_seen)
 }
 
 #[cfg(test)]
@@ -222,7 +180,7 @@ mod tests {
     use crate::math::Angle;
     use crate::render::{Buffers, FrameSize, Renderer, Scene, View};
     use crate::simd::Simd;
-    use crate::world::{ActorKind, Chance};
+    use crate::world::{ActorKind, Chance, Trail};
     use std::sync::Arc;
 
     const SIZES: [FrameSize; 3] = [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 640, height: 480 }];
@@ -272,10 +230,11 @@ mod tests {
         for size in SIZES {
             let (plain, bare) = (shoot(&world, size, Simd::PLAIN), shoot(&without_trails(&world), size, Simd::PLAIN));
             let pixels = changed(&plain, &bare);
-            // About 60 are in view, 0.75 units wide and high, and a row more.
-            let side = 0.75 * f64::from(size.width) / 2.0 / 128.0;
-            let expected =
-                if size.width < 640 { 20..140 } else { (40.0 * side * side) as usize..(160.0 * (side + 1.0).powi(2)) as usize };
+            // About 60 are in view, 0.75 units wide and high, and a row more; of a learner's frame's 160 columns and 120 rows fewer are kept.
+            let is_reduced = size == FrameSize::LEARNER;
+            let side = 0.75 * if is_reduced { 160.0 } else { f64::from(size.width) } / 2.0 / 128.0;
+            let mean = 60.0 * side * (1.2 * side + 1.0) * if is_reduced { 0.8 * 0.6 } else { 1.0 };
+            let expected = (mean / 2.0) as usize..(mean * 2.0) as usize;
             assert!(expected.contains(&pixels), "{pixels} pixels, not {expected:?}, at {size:?}");
             assert_eq!(plain.rest, bare.rest, "depth and labels tell nothing of squares");
             for simd in Simd::available() {
@@ -308,28 +267,24 @@ mod tests {
     }
 
     #[test]
-    fn what_flies_towards_the_eye_is_drawn_far_to_near_too() {
-        let world = world(128);
+    fn the_nearest_squares_are_drawn_last() {
+        let mut world = world(128);
         let sector = world.map.sector_at(Fixed::ZERO, Fixed::ZERO);
-        let trail = |start: i32, speed: i32| {
+        for (start, speed) in [(40, 20), (240, -20)] {
             let place = [start, 30, 36].map(Fixed::from_int);
-            Trail::new(world.players[0].actor, place, [speed, 0, 0].map(Fixed::from_int), 40, sector, Chance::Own(5))
-        };
-        let trails = [trail(40, 20), trail(240, -20)];
-        for trail in trails {
-            let mut left = Vec::new();
-            trail.list(world.tic, &mut left);
-            let spots: Vec<Spot> = left.iter().map(|shed| Spot { tic: shed.tic, ..Spot::default() }).collect();
-            let mut seen = SeenTrail::new(&Camera { forward: [1 << 16, 0], ..Camera::default() }, &trail, 0..spots.len());
-            let (mut last, mut tics, mut count) = (i64::MAX, 0, 0);
-            while let Some(next) = seen.next_beyond(&spots, i64::MIN) {
-                let tic = spots[next.start].tic;
-                assert!(spots[next.clone()].iter().all(|spot| spot.tic == tic));
-                let away = i64::from(trail.middle(tic)[0].0);
-                assert!(away < last);
-                (last, tics, count) = (away, tics + 1, count + next.len());
-            }
-            assert_eq!((tics, count), (10, spots.len()));
+            let velocity = [speed, 0, 0].map(Fixed::from_int);
+            world.trails.push(Trail::new(world.players[0].actor, place, velocity, 40, sector, Chance::Own(5)));
+        }
+        let scene = Scene::new(&world.map, Assets::embedded());
+        let (view, mut seen) = (View::new(SIZES[2]).unwrap(), SeenTrails::default());
+        let horizon = i64::from(view.base_view_rows) << 15;
+        let camera = Camera { forward: [1 << 16, 0], z: 41 << 16, horizon, ..Camera::default() };
+        seen.collect(&scene, &view, &camera, &world);
+        assert!(seen.spots.is_sorted_by_key(|spot| spot.distance) && seen.spots.len() > 100, "{}", seen.spots.len());
+        for number in 0..3 {
+            let own = || seen.spots.iter().filter(|spot| spot.trail == number);
+            assert_eq!(own().map(|spot| spot.distance).max(), Some(seen.trails[usize::from(number)].distance));
+            assert!(own().all(|spot| spot.distance == i64::from(spot.place[0].0)));
         }
     }
 }

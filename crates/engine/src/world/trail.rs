@@ -177,12 +177,6 @@ impl Trail {
         Trail { rocket, point, velocity, way, begun, ended: Trail::FLYING, sector, chance }
     }
 
-    /// The middle of the way on which the squares of a tic of flight appeared: east, north and up.
-    #[must_use]
-    pub fn middle(&self, tic: u32) -> [Fixed; 3] {
-        [0, 1, 2].map(|axis| self.point[axis] + Fixed(self.way_in(axis, (i64::from(tic - self.begun) << 8) - 128)))
-    }
-
     /// How far the rocket goes along an axis in so many 256ths of a tic.
     #[inline(always)]
     fn way_in(&self, axis: usize, parts: i64) -> i32 {
