@@ -86,6 +86,27 @@ impl Angle {
             (false, true) => 0u32.wrapping_sub(quadrant),
         })
     }
+
+    /// The direction of the vector `(dx, dy)` as the published engine tells it: by its slope from the nearest axis, cut to whole 2048ths,
+    /// and from some axes a unit short; `(0, 0)` is north.
+    #[must_use]
+    pub fn of_slope(dx: Fixed, dy: Fixed) -> Angle {
+        let (ax, ay) = (i64::from(dx.0).abs(), i64::from(dy.0).abs());
+        let (small, large) = if ax > ay { (ay, ax) } else { (ax, ay) };
+        let slope = ((small << 3) / (large >> 8).max(1)).min(2048) as i32;
+        let octant = Angle::of_vector(Fixed::from_int(2048), Fixed::from_int(slope)).0;
+        let quarter = 0x4000_0000_u32;
+        Angle(match (dx.0 < 0, dy.0 < 0, ax > ay) {
+            (false, false, true) => octant,
+            (false, false, false) => quarter - 1 - octant,
+            (true, false, false) => quarter + octant,
+            (true, false, true) => 2 * quarter - 1 - octant,
+            (true, true, true) => 2 * quarter + octant,
+            (true, true, false) => 3 * quarter - 1 - octant,
+            (false, true, false) => 3 * quarter + octant,
+            (false, true, true) => 0u32.wrapping_sub(octant),
+        })
+    }
 }
 
 /// `small * cos(i) - large * sin(i)`: positive while the table angle `i` is below the vector's.
@@ -228,5 +249,23 @@ mod tests {
             let error = (angle.to_degrees() - exact).abs();
             assert!(error.min(360.0 - error) < 0.002, "({dx}, {dy}): {angle:?} against {exact}");
         }
+    }
+
+    #[test]
+    fn directions_by_slope_are_at_most_a_2048th_short() {
+        let mut rng = crate::math::Rng::new(3);
+        let unit = 4_294_967_296.0 / std::f64::consts::TAU / 2048.0;
+        for _ in 0..10_000 {
+            let [dx, dy] = [(); 2].map(|()| Fixed(rng.between(-60 << 16, 60 << 16)));
+            let (by_slope, exact) = (Angle::of_slope(dx, dy).0, dy.to_f64().atan2(dx.to_f64()) * 2048.0 * unit);
+            let difference = f64::from(by_slope.wrapping_sub(exact as i64 as u32) as i32) / unit;
+            // Cut towards the nearest axis, which lies clockwise in every other octant. Short vectors' slopes are cut more coarsely.
+            let clockwise = (dx.0.abs() > dy.0.abs()) == ((dx.0 < 0) == (dy.0 < 0));
+            let off = if clockwise { -difference } else { difference };
+            let coarse = 2048.0 / f64::from(dx.0.abs().max(dy.0.abs()) >> 8);
+            assert!((-0.01 - coarse..1.01).contains(&off), "{off} for {dx:?} {dy:?}");
+        }
+        let north = Angle::of_slope(Fixed::ZERO, Fixed::ONE);
+        assert_eq!([north.0, Angle::of_slope(Fixed::ONE, Fixed::ZERO).0], [0x3FFF_FFFF, 0]);
     }
 }

@@ -171,7 +171,7 @@ impl Trail {
     /// `sector` is.
     #[must_use]
     pub fn new(rocket: ActorId, place: [Fixed; 3], velocity: [Fixed; 3], begun: u32, sector: SectorId, chance: Chance) -> Trail {
-        let ([x, y, z], way, kind) = (place, Angle::of_vector(velocity[0], velocity[1]), ActorKind::Rocket);
+        let ([x, y, z], way, kind) = (place, Angle::of_slope(velocity[0], velocity[1]), ActorKind::Rocket);
         let (way, behind) = ([way.cos(), way.sin()], kind.radius() * 2);
         let point = [x - behind * way[0], y - behind * way[1], z + kind.height().scale(2, 3)];
         Trail { rocket, point, velocity, way, begun, ended: Trail::FLYING, sector, chance }
