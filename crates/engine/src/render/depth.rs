@@ -29,7 +29,7 @@ impl Depths {
     #[inline]
     pub fn wall(self, distance: i64, height: u32) -> u8 {
         let Some(rows) = self.published else { return even(distance) };
-        let mut quarters = (distance * 5 + rows / 2) / rows;
+        let mut quarters = quarters(distance, rows);
         if height.is_power_of_two() {
             let whole = i64::from(height) << 18;
             quarters &= whole - 1;
@@ -45,10 +45,15 @@ impl Depths {
         scaled(((distance << 16) / focal_y - 500) * 255 / 319_500, rows)
     }
 
-    /// Depth of soot on a wall. The published engine tells none: 0 there in most places.
+    /// Depth of soot where it is told by itself.
     #[inline]
     pub fn stain(self, distance: i64) -> u8 {
         if self.published.is_some() { 0 } else { even(distance) }
+    }
+
+    /// Depth of soot where the published engine takes it from a column of the wall, of whose step it keeps the last bit alone.
+    pub fn stain_of_four(self, distance: i64) -> u8 {
+        self.published.map_or(0, |rows| scaled((quarters(distance, rows) & 1) << 7, rows))
     }
 
     /// Depth of a floor or ceiling, in every size the same.
@@ -64,6 +69,12 @@ impl Depths {
     pub fn farthest(self) -> u8 {
         self.published.map_or(255, |rows| scaled(255, rows))
     }
+}
+
+/// The step between the texels of neighbouring rows of a wall, in quarters of a 65536th of a texel.
+#[inline]
+fn quarters(distance: i64, rows: i64) -> i64 {
+    (distance * 5 + rows / 2) / rows
 }
 
 /// 7.3 map units a level.

@@ -4,15 +4,14 @@
 //! together, the others column by column. Of those others a piece that is a single row is told not its own depth but the last one told before
 //! the four.
 
-/// First and last row of a part of a column without holes.
-type Piece = [u16; 2];
+use super::fours::FourPieces;
 
 /// The four columns at hand, and what was told before them.
 #[derive(Debug, Default)]
 pub(super) struct FenceDepth {
     /// None at first: then single rows are told their own.
     last_told: Option<u8>,
-    pieces: [Vec<Piece>; 4],
+    pieces: FourPieces,
     /// Start of the run of texels that the last piece of each column shows: pieces of two runs may touch.
     runs: [u16; 4],
     depths: [u8; 4],
@@ -31,14 +30,15 @@ impl FenceDepth {
 
     /// Begins another four.
     pub fn begin(&mut self) {
-        self.pieces.iter_mut().for_each(Vec::clear);
+        self.pieces.clear();
     }
 
     /// Adds a row to a column of the four, below those that it has.
     pub fn add(&mut self, column: usize, row: u16, run: u16, depth: u8) {
-        match self.pieces[column].last_mut() {
+        let pieces = self.pieces.of(column);
+        match pieces.last_mut() {
             Some([_, last]) if *last + 1 == row && self.runs[column] == run => *last = row,
-            _ => self.pieces[column].push([row, row]),
+            _ => pieces.push([row, row]),
         }
         (self.runs[column], self.depths[column]) = (run, depth);
     }
@@ -46,41 +46,11 @@ impl FenceDepth {
     /// Ends the four: gives column, row and depth of the rows that are told another one than their own to `put`.
     pub fn end(&mut self, mut put: impl FnMut(usize, u16, u8)) {
         let told = self.last_told;
-        let mut alone = |column: usize, [first, last]: Piece| {
+        let last_column = self.pieces.draw(|column, [first, last]| {
             if let Some(told) = told.filter(|_| first == last) {
                 put(column, first, told);
             }
-            column
-        };
-        let (mut done, mut last_column) = ([0; 4], None);
-        loop {
-            let piece = |column: usize, after: usize| self.pieces[column].get(done[column] + after).copied();
-            let present: [Option<Piece>; 4] = std::array::from_fn(|column| piece(column, 0));
-            // Where the pieces after those at hand begin.
-            let next = (0..4).filter_map(|column| piece(column, 1)).map(|[first, _]| first).min().unwrap_or(u16::MAX);
-            let top = present.iter().flatten().map(|[first, _]| *first).max();
-            let bottom = present.iter().flatten().map(|[_, last]| *last).min();
-            let (Some(top), Some(bottom)) = (top, bottom) else { break };
-            let shared = top <= bottom && present.iter().all(Option::is_some);
-            // Above the rows that all have in common; where there are none, to where the next pieces begin, which may have some.
-            let end = if shared { top } else { next };
-            for (column, piece) in present.iter().enumerate() {
-                let Some([first, last]) = *piece else { continue };
-                if first < end {
-                    last_column = Some(alone(column, [first, last.min(end - 1)]));
-                }
-                let go_on = if shared { bottom + 1 } else { end };
-                if last < go_on {
-                    done[column] += 1;
-                } else {
-                    let rest = &mut self.pieces[column][done[column]][0];
-                    *rest = (*rest).max(go_on);
-                }
-            }
-            if shared {
-                last_column = Some(3);
-            }
-        }
+        });
         if let Some(column) = last_column {
             self.last_told = Some(self.depths[column]);
         }
@@ -90,6 +60,7 @@ impl FenceDepth {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::fours::Piece;
 
     /// What is told of four columns of pieces, each in a run of its own, of depth 10 to 13, after a depth of 7.
     fn told(columns: [&[Piece]; 4]) -> (Vec<(usize, u16)>, Option<u8>) {

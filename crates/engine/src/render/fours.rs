@@ -23,6 +23,60 @@ pub(super) fn draw_below(columns: &mut Columns, first: usize, tops: &[i16], bott
     }
 }
 
+/// First and last row of a part of a column without holes.
+pub(super) type Piece = [u16; 2];
+
+/// The parts of four columns, from the upper to the lower.
+#[derive(Debug, Default)]
+pub(super) struct FourPieces([Vec<Piece>; 4]);
+
+impl FourPieces {
+    /// Empties them.
+    pub fn clear(&mut self) {
+        self.0.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Those of a column.
+    pub fn of(&mut self, column: usize) -> &mut Vec<Piece> {
+        &mut self.0[column]
+    }
+
+    /// Draws them: gives column and rows of what is drawn by itself to `alone`, in the order in which it is, and tells the column that is
+    /// drawn last. Rows that all four have in common are drawn together. What is left is not to be drawn again.
+    pub fn draw(&mut self, mut alone: impl FnMut(usize, Piece)) -> Option<usize> {
+        let (mut done, mut last_column) = ([0; 4], None);
+        loop {
+            let piece = |column: usize, after: usize| self.0[column].get(done[column] + after).copied();
+            let present: [Option<Piece>; 4] = std::array::from_fn(|column| piece(column, 0));
+            // Where the pieces after those at hand begin.
+            let next = (0..4).filter_map(|column| piece(column, 1)).map(|[first, _]| first).min().unwrap_or(u16::MAX);
+            let top = present.iter().flatten().map(|[first, _]| *first).max();
+            let bottom = present.iter().flatten().map(|[_, last]| *last).min();
+            let (Some(top), Some(bottom)) = (top, bottom) else { return last_column };
+            let shared = top <= bottom && present.iter().all(Option::is_some);
+            // Above the rows that all have in common; where there are none, to where the next pieces begin, which may have some.
+            let end = if shared { top } else { next };
+            for (column, piece) in present.iter().enumerate() {
+                let Some([first, last]) = *piece else { continue };
+                if first < end {
+                    alone(column, [first, last.min(end - 1)]);
+                    last_column = Some(column);
+                }
+                let go_on = if shared { bottom + 1 } else { end };
+                if last < go_on {
+                    done[column] += 1;
+                } else {
+                    let rest = &mut self.0[column][done[column]][0];
+                    *rest = (*rest).max(go_on);
+                }
+            }
+            if shared {
+                last_column = Some(3);
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

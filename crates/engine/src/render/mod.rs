@@ -59,6 +59,7 @@ mod sky;
 #[cfg(target_arch = "x86_64")]
 mod sky_wide;
 mod soot;
+mod soot_depth;
 #[cfg(target_arch = "x86_64")]
 mod span_wide;
 mod sprite;

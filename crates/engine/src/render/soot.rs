@@ -11,6 +11,7 @@ use super::walk::Walk;
 use super::wall::INVERSE_BITS;
 use crate::assets::Stain;
 use crate::world::Soot;
+use std::ops::Range;
 
 /// Texels of a stain to a map unit.
 const TEXELS: i64 = 2;
@@ -48,10 +49,24 @@ impl Walk<'_> {
         self.draw_walls::<DEPTH>();
         self.list_sooty_columns(seen, light);
         let columns = std::mem::take(&mut self.scratch.sooty);
+        if DEPTH && self.depths.by_fours() {
+            self.begin_depth(seen, &columns);
+        }
         for mark in marks {
             self.stain::<DEPTH>(&columns, seen.face, stain, mark);
         }
         self.scratch.sooty = columns;
+    }
+
+    /// What the depth of soot follows from that the published engine tells.
+    fn begin_depth(&mut self, seen: &SeenSeg<'_>, columns: &[SootyColumn]) {
+        let Some(last) = columns.last() else { return };
+        let told = self.columns.depth_of(last.x)[last.rows[0]];
+        let from = seen.end / 4 * 4;
+        let distance = |x: usize| seen.line.distance_at(i64::from(self.view.columns[x]));
+        let depth = |column: usize| self.depths.stain_of_four(distance(from - 4 + column));
+        let last_four = (from >= seen.first + 4).then(|| [0, 1, 2, 3].map(depth));
+        self.scratch.soot_depth.begin(told, last_four);
     }
 
     /// What all marks of a wall need of its columns: a wall may bear dozens, most of which touch few of them.
@@ -86,7 +101,10 @@ impl Walk<'_> {
         let texel_column = |column: &SootyColumn| ((column.along - left) * TEXELS) >> 16;
         let first = columns.partition_point(|column| texel_column(column) < 0);
         let count = columns[first..].partition_point(|column| texel_column(column) < i64::from(stain.width));
-        for column in &columns[first..first + count] {
+        let columns = &columns[first..first + count];
+        let by_fours = DEPTH && self.depths.by_fours();
+        let covered = columns.first().map_or(0, |column| column.x)..columns.last().map_or(0, |column| column.x + 1);
+        for column in columns {
             let Some(texels) = stain.column(texel_column(column), mark.mirrored) else { continue };
             // By the lower edges of rows as all things are, but upside down by the upper ones.
             let from_edge = if mark.upturned { column.step } else { 0 };
@@ -95,6 +113,16 @@ impl Walk<'_> {
             let [top, bottom] = column.rows;
             let frame_row = |texel: usize| first_row(self.view, texel as u32, at, column.step.max(1)) as usize;
             let (first, end) = (frame_row(0).max(top), frame_row(texels.len()).min(bottom));
+            if by_fours {
+                let told = self.scratch.soot_depth.column(column.x, &covered);
+                for run in runs(texels, mark.upturned) {
+                    let rows = frame_row(run.start).max(top)..frame_row(run.end).min(bottom);
+                    self.scratch.soot_depth.add(column.x, &rows);
+                    if !rows.is_empty() {
+                        self.columns.depth_of(column.x)[rows].fill(told);
+                    }
+                }
+            }
             if first >= end {
                 continue;
             }
@@ -106,12 +134,24 @@ impl Walk<'_> {
             for (pixel, &row) in self.columns.colour_of(column.x)[first..end].iter_mut().zip(rows) {
                 *pixel = self.scene.blend.darkened(*pixel, hidden(row));
             }
-            if DEPTH {
+            if DEPTH && !by_fours {
                 let pixels = self.columns.depth_of(column.x)[first..end].iter_mut();
                 pixels.zip(rows).filter(|&(_, &row)| hidden(row) > 0).for_each(|(pixel, _)| *pixel = column.depth);
             }
         }
+        self.scratch.soot_depth.end();
     }
+}
+
+/// The runs of a column's texels that are not nothing, downwards as the picture hangs.
+fn runs(texels: &[u8], upturned: bool) -> impl Iterator<Item = Range<usize>> + '_ {
+    let (count, mut at) = (texels.len(), 0);
+    let shown = move |row: usize| texels[if upturned { count - 1 - row } else { row }] > 0;
+    std::iter::from_fn(move || {
+        let start = (at..count).find(|&row| shown(row))?;
+        at = (start..count).find(|&row| !shown(row)).unwrap_or(count);
+        Some(start..at)
+    })
 }
 
 /// Parts of [`WHOLE`] that a texel hides in the light of a table: in the dark there is less to hide.

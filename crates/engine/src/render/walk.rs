@@ -11,6 +11,7 @@ use super::plane::Planes;
 use super::scene::{NO_SECTOR, Scene};
 use super::silhouette::Silhouettes;
 use super::soot::SootyColumn;
+use super::soot_depth::SootDepth;
 #[cfg(target_arch = "x86_64")]
 use super::wall_list::WallList;
 use crate::map::Node;
@@ -54,6 +55,7 @@ pub(super) struct WalkScratch {
     pub lower: Vec<i16>,
     /// Its columns, where it bears soot.
     pub sooty: Vec<SootyColumn>,
+    pub soot_depth: SootDepth,
 }
 
 impl WalkScratch {
