@@ -83,8 +83,8 @@ mod tests {
         // Column 6 begins a row early, column 5 ends a row late: that is drawn after what all share.
         let rows = [2..8, 2..9, 1..8, 2..8, 2..8, 2..8, 2..8, 2..8, 3..7];
         assert_eq!(told(4, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 2, 2, 2, 2, 2]);
-        // Before the first four and after the last one columns are drawn one by one, and leave nothing.
-        assert_eq!(told(2, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 9, 9, 9, 9, 9]);
+        // Before the first four and after the last one columns are drawn one by one, and leave nothing: now column 4 begins early.
+        assert_eq!(told(2, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 9, 9, 1, 1, 1]);
         assert_eq!(told(4, &rows, None), [9; 9]);
     }
 }
