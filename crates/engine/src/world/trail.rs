@@ -209,8 +209,8 @@ impl Trail {
             // A stream of draws for each tic: the first number tells of every square how long it lives and its shade.
             let mut draws = Rng::from_state(key.wrapping_add(u64::from(tic).wrapping_mul(0xD1B5_4A32_D192_ED03)));
             let (first, age) = (draws.next_u64().to_le_bytes(), now - 1 - tic);
-            for index in 0..SQUARES as usize {
-                let shed = Shed { tic, is_yellow: index == 0, lots: Lots::of(first[index], draws.next_u64()) };
+            for (index, &lot) in first[..SQUARES as usize].iter().enumerate() {
+                let shed = Shed { tic, is_yellow: index == 0, lots: Lots::of(lot, draws.next_u64()) };
                 // Which are left cannot be foretold: all are written, and those counted.
                 left[count] = shed;
                 count += usize::from(age < shed.life());

@@ -47,9 +47,9 @@ pub fn lots(seed: u32, moment: &Moment) -> Vec<Vec<[Lots; SQUARES as usize]>> {
 fn is_angry(moment: &Moment, tic: u32) -> bool {
     let mut since = None;
     let mut last = 0;
-    for shot in moment.flights.iter().map(|flight| flight.tic).filter(|shot| shot - BEFORE_FLIGHT <= tic) {
+    for shot in moment.flights.iter().map(|flight| flight.tic).filter(|shot| shot.saturating_sub(BEFORE_FLIGHT) <= tic) {
         if since.is_none() || shot - last > BEFORE_FLIGHT + AFTER_FLIGHT {
-            since = Some(shot - BEFORE_FLIGHT);
+            since = Some(shot.saturating_sub(BEFORE_FLIGHT));
         }
         last = shot;
     }
@@ -103,7 +103,7 @@ impl Sfmt607 {
         (0..SIZE).for_each(|at| mix(at, None));
         let word = |at: usize| (0..4).rev().fold(0, |word, part| word << 32 | u128::from(words[4 * at + part]));
         let mut state = [0, 1, 2, 3, 4].map(word);
-        if (state[0] & PARITY).count_ones() % 2 == 0 {
+        if (state[0] & PARITY).count_ones().is_multiple_of(2) {
             state[0] ^= PARITY & PARITY.wrapping_neg();
         }
         Sfmt607 { state, taken: 4 * state.len() }
@@ -133,5 +133,62 @@ impl Sfmt607 {
                 ^ each(last, |part| part << SHIFTS_OF_32[0]);
         }
         self.taken = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dump::Flight;
+    use std::collections::BTreeMap;
+
+    /// What episodes of the seed 1 begin with: the first numbers of its Mersenne Twister.
+    const FIRST: u32 = 1_791_095_845;
+
+    #[test]
+    fn the_stream_is_what_squares_and_faces_told() {
+        let mut stream = Sfmt607::new(&[0, FIRST]);
+        let bytes: Vec<u8> = (0..150).map(|_| stream.next() as u8).collect();
+        // Where the face looked in tics 20, 40, 60 and 80 of Collateral Damage 1, after a first choice that nobody saw.
+        assert_eq!([1, 2, 3, 4].map(|choice| bytes[choice] % 3), [1, 0, 1, 1]);
+        // In a bare room without a status bar, what squares of a rocket's second tic lay back and above, as seen on the screen:
+        // the yellow one, and the grey ones.
+        let seen = [[125, 0], [177, 205], [126, 217], [235, 233], [86, 113], [47, 255], [211, 69]];
+        let mut draws = bytes[75..].iter().copied();
+        for (lots, [back, up]) in Lots::of_tic(|| draws.next().unwrap_or_default()).iter().zip(seen) {
+            assert!(lots.back.abs_diff(back) <= 2 && lots.up.abs_diff(up) <= 2, "{lots:?}, not {back} and {up}");
+        }
+        assert_eq!(draws.len(), 0);
+    }
+
+    #[test]
+    fn rockets_take_bytes_while_they_fly_and_the_face_takes_some_between() {
+        let flight = |tic, tics| Flight { tic, place: [0.0; 3], velocity: [20.0, 0.0, 0.0], tics };
+        let flights = vec![flight(85, Some(2)), flight(87, Some(0)), flight(89, None)];
+        let (variables, labels) = (BTreeMap::new(), Vec::new());
+        let (floors, ceilings, bursts) = (Vec::new(), Vec::new(), Vec::new());
+        let moment =
+            Moment { number: 0, tic: 92, variables, floors, ceilings, chance: Some(FIRST), episode: 0, bursts, flights, labels };
+        let told = lots(FIRST, &moment);
+        assert_eq!(told.iter().map(Vec::len).collect::<Vec<_>>(), [2, 0, 4]);
+        // Choices of the face in tics 1, 20, 40, 60 and 80 come first.
+        let mut stream = Sfmt607::new(&[0, FIRST]);
+        (0..5).for_each(|_| drop(stream.next()));
+        for tic in told.iter().flatten() {
+            assert_eq!(*tic, Lots::of_tic(|| stream.next() as u8));
+        }
+    }
+
+    #[test]
+    fn who_shoots_on_and_on_is_angry_from_70_tics_until_the_last_shot_is_over() {
+        let flights =
+            [1017, 1037, 1057, 1077, 1161].map(|tic| Flight { tic, place: [0.0; 3], velocity: [0.0; 3], tics: Some(0) });
+        let (variables, labels) = (BTreeMap::new(), Vec::new());
+        let (floors, ceilings, bursts) = (Vec::new(), Vec::new(), Vec::new());
+        let (flights, chance) = (flights.into(), None);
+        let moment = Moment { number: 0, tic: 0, variables, floors, ceilings, chance, episode: 0, bursts, flights, labels };
+        // As seen: in the frames of tics 1080, 1084 and 1088.
+        let angry: Vec<u32> = (1000..1300).step_by(4).filter(|&tic| is_angry(&moment, tic)).collect();
+        assert_eq!(angry, [1080, 1084, 1088]);
     }
 }

@@ -3,7 +3,6 @@
 //! ```sh
 //! python crates/envs/examples/dump_published_scenes.py SCENES --levels 1,2,3 --moments 40
 //! cargo run --release -p hasard-envs --example pixels -- SCENES/* [--out DIR] [--list]
-//! cargo run --release -p hasard-envs --example pixels -- SCENES/* --squares BARE [--out DIR]
 //! ```
 //!
 //! A folder of scenes holds `scenes.json` and the pictures of one level. Map and art are those that the published packages
@@ -11,14 +10,12 @@
 //! `--list` prints a line for every moment. Pixels are compared by what the published label says of them: 0 and 1 are the
 //! world, 255 the weapon, others things. What the published engine does not tell of a moment is found by trying.
 //!
-//! Squares that rockets shed lie where chance has them there, and elsewhere here: they are left out here. With `--squares`, where BARE has the
-//! same moments without theirs (`--no-particles`), they are drawn, and what they change is counted on either side.
+//! Squares that rockets shed lie where the published engine's chance has them, if the scenes tell what that began with.
 
 mod chance;
 mod dump;
 mod pose;
 mod sheet;
-mod squares;
 mod tally;
 mod untold;
 
@@ -32,13 +29,12 @@ use tally::{Kind, Tallies};
 type Any<T> = Result<T, Box<dyn std::error::Error>>;
 
 fn main() -> Any<()> {
-    let (mut folders, mut out, mut list, mut bare) = (Vec::new(), None, false, None);
+    let (mut folders, mut out, mut list) = (Vec::new(), None, false);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--out" => out = Some(PathBuf::from(arguments.next().ok_or("--out takes a folder")?)),
             "--list" => list = true,
-            "--squares" => bare = Some(PathBuf::from(arguments.next().ok_or("--squares takes a folder")?)),
             _ => folders.push(PathBuf::from(argument)),
         }
     }
@@ -47,9 +43,6 @@ fn main() -> Any<()> {
     }
     if let Some(out) = &out {
         std::fs::create_dir_all(out)?;
-    }
-    if let Some(bare) = bare {
-        return squares::run(&folders, &bare, out.as_deref());
     }
     println!("| level | pixels of | number | equal % | within 8 % | mean difference |\n|---|---|--:|--:|--:|--:|");
     let mut whole = Tallies::default();
@@ -76,9 +69,7 @@ fn level(folder: &Path, out: Option<&Path>, list: bool) -> Any<Tallies> {
         let theirs = dump::Pictures::read(folder, moment.number)?;
         let mut posed = stage.pose(&level, moment);
         let guess = untold::find(&mut stage, &mut posed, &theirs, &level.scenario, moment);
-        if moment.chance.is_some() {
-            leave_trails(&mut posed.world, moment);
-        }
+        leave_trails(&mut posed.world, moment);
         stage.renderer.render(&posed.world, 0, Buffers { depth: true, labels: true });
         stage.renderer.write_rgb_hwc(&mut stage.rgb);
         let own = compare(&stage, &posed, &theirs, moment, &level.scenario);

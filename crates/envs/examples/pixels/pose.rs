@@ -137,17 +137,15 @@ fn leave_soot(world: &mut World, [x, y, z, angle]: [f64; 4]) {
     }
 }
 
-/// Leaves the trails of the rockets that have flown, with the squares that chance gave them there.
+/// Leaves the trails of the rockets that have flown, with the squares that chance gave them there, if that was noted.
 pub fn leave_trails(world: &mut World, moment: &Moment) {
-    let lots = moment.chance.map(|seed| chance::lots(seed, moment));
-    for (index, flight) in moment.flights.iter().enumerate() {
+    let lots = moment.chance.map_or_else(Vec::new, |seed| chance::lots(seed, moment));
+    for (flight, lots) in moment.flights.iter().zip(lots) {
         let [place, velocity] = [flight.place, flight.velocity].map(|vector| vector.map(fixed));
         // Ours counts tics from nought; and the world's clock may be ahead, where textures are animated.
         let begun = world.tic + flight.tic - 1 - moment.tic;
         let (id, sector) = (world.players[0].actor, world.map.sector_at(place[0], place[1]));
-        let own = || Chance::Own(u64::from(moment.tic) << 32 | index as u64);
-        let chance = lots.as_ref().map_or_else(own, |lots| Chance::Told(lots[index].as_slice().into()));
-        let mut trail = Trail::new(id, place, velocity, begun, sector, chance);
+        let mut trail = Trail::new(id, place, velocity, begun, sector, Chance::Told(lots.into()));
         trail.ended = flight.tics.map_or(Trail::FLYING, |tics| begun + tics);
         world.trails.push(trail);
     }
