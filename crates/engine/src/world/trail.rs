@@ -68,7 +68,7 @@ pub enum Chance {
 /// What chance gives a square.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lots {
-    /// Tics that it is seen, less the fewest; below 32.
+    /// Tics that it is seen, less the fewest; its lowest five bits count.
     pub life: u8,
     /// A grey one is dark.
     pub dark: bool,
@@ -88,7 +88,7 @@ impl Lots {
     /// What a tic's squares get of the published engine's draws, which it makes in this order, the yellow square first.
     pub fn of_tic(mut draw: impl FnMut() -> u8) -> [Lots; SQUARES as usize] {
         std::array::from_fn(|index| {
-            let (is_grey, life) = (index > 0, draw() & 31);
+            let (is_grey, life) = (index > 0, draw());
             let [drift, pull] = [(); 2].map(|()| [(); 3].map(|()| draw()));
             let (back, up, aside) = (draw(), if is_grey { draw() } else { 0 }, draw());
             Lots { life, dark: is_grey && draw() & 7 == 0, drift, pull, back, up, aside }
@@ -100,7 +100,7 @@ impl Lots {
     fn of(lot: u8, draw: u64) -> Lots {
         let [east, north, height, back, up, aside, rise, pull] = draw.to_le_bytes();
         let pull = [pull << 4 | 8, pull & 0xF0 | 8, rise];
-        Lots { life: lot & 31, dark: lot >> 5 == 0, drift: [east, north, height], pull, back, up, aside }
+        Lots { life: lot, dark: lot >> 5 == 0, drift: [east, north, height], pull, back, up, aside }
     }
 }
 
@@ -250,7 +250,7 @@ impl Shed {
     /// Tics that it is seen.
     #[inline(always)]
     fn life(&self) -> u32 {
-        SHORTEST_LIFE + u32::from(self.lots.life)
+        SHORTEST_LIFE + u32::from(self.lots.life & 31)
     }
 
     #[inline(always)]
