@@ -3,9 +3,17 @@
 use hasard_fuzz::targets;
 use hasard_fuzz::verdict::{Verdict, try_input};
 use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Memory is counted for the whole process: one test at a time, lest an input is blamed for what another test holds.
+fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 #[test]
 fn hostile_files_do_no_harm() {
+    let _alone = alone();
     for target in targets::ALL {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("hostile").join(target.name);
         let mut files: Vec<_> = std::fs::read_dir(&folder).into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
@@ -19,6 +27,7 @@ fn hostile_files_do_no_harm() {
 
 #[test]
 fn valid_samples_are_accepted() {
+    let _alone = alone();
     for target in targets::ALL {
         for (index, sample) in (target.samples)().iter().enumerate() {
             assert_eq!(try_input(target, sample), Verdict::Accepted, "{} sample {index}", target.name);
