@@ -175,16 +175,15 @@ def dump(args, scenario, level, out, trained=None):
     while len(scenes) < args.moments:
         game.make_action(player.act(game.get_state().screen_buffer), FRAME_SKIP)
         step += 1
-        if not game.is_episode_finished():
-            variables = game.get_state().game_variables
-            rockets.note(game.get_state(), [variables[VARIABLES.index(f"CAMERA_POSITION_{axis}")] for axis in "XY"])
-        if game.is_episode_finished() or step % EPISODE == 0:
+        state = game.get_state()
+        if state:
+            rockets.note(state, [state.game_variables[VARIABLES.index(f"CAMERA_POSITION_{axis}")] for axis in "XY"])
+        if not state or step % EPISODE == 0:
             game.new_episode()
             rockets, episode = Rockets(), episode + 1
             player.begin()
             game.make_action([0.0] * len(buttons), FRAME_SKIP)
         elif step % STRIDE == 0:
-            state = game.get_state()
             pictures = {"rgb": state.screen_buffer[:, :, ::-1], "depth": state.depth_buffer, "labels": state.labels_buffer}
             for name, picture in pictures.items():
                 cv2.imwrite(os.path.join(out, f"{len(scenes):02}_{name}.png"), picture)

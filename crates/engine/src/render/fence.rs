@@ -27,7 +27,7 @@ impl Fence {
         let kept = if has_holes { picture.width } else { 1 };
         let (mut begins, mut runs) = (vec![0], Vec::new());
         for column in picture.texels.chunks(picture.height as usize).take(kept as usize) {
-            runs.extend(runs_of(column));
+            runs.extend(runs_of(column.iter().map(is_opaque)));
             begins.push(runs.len() as u32);
         }
         Fence { picture, last_runs: kept.saturating_sub(1), begins, runs }
@@ -41,14 +41,18 @@ impl Fence {
     }
 }
 
-/// The runs of a column from top to bottom.
-pub(super) fn runs_of(texels: &[u16]) -> impl Iterator<Item = Run> {
-    let is_opaque = |texel: &u16| texel & MaskedPicture::OPAQUE != 0;
-    let mut end = 0;
-    texels.chunk_by(move |one, next| is_opaque(one) == is_opaque(next)).filter_map(move |run| {
-        let start = end;
-        end += run.len() as u16;
-        is_opaque(&run[0]).then_some([start, end])
+/// Whether a texel is no hole.
+pub(super) fn is_opaque(texel: &u16) -> bool {
+    texel & MaskedPicture::OPAQUE != 0
+}
+
+/// The runs of a column of which it is known what is no hole, from top to bottom.
+pub(super) fn runs_of(shown: impl Iterator<Item = bool>) -> impl Iterator<Item = Run> {
+    let mut texels = (0..).zip(shown.chain([false]));
+    std::iter::from_fn(move || {
+        let (start, _) = texels.find(|&(_, is_shown)| is_shown)?;
+        let (end, _) = texels.find(|&(_, is_shown)| !is_shown)?;
+        Some([start, end])
     })
 }
 
@@ -110,7 +114,7 @@ mod tests {
 
     #[test]
     fn runs_end_at_holes() {
-        let runs = |texels: &[u16]| runs_of(texels).collect::<Vec<Run>>();
+        let runs = |texels: &[u16]| runs_of(texels.iter().map(is_opaque)).collect::<Vec<Run>>();
         assert_eq!(runs(&[1, 0x101, 0x102, 2, 0x103]), [[1, 3], [4, 5]]);
         assert_eq!((runs(&[0x100, 0x1FF]), runs(&[7, 8]), runs(&[])), (vec![[0, 2]], vec![], vec![]));
     }

@@ -79,8 +79,7 @@ impl MaskedColumn<'_> {
 mod tests {
     use super::*;
     use crate::math::Rng;
-    use crate::render::fence::runs_of;
-    use crate::render::picture::MaskedPicture;
+    use crate::render::fence::{is_opaque, runs_of};
 
     #[test]
     fn all_ways_show_the_same_rows() {
@@ -90,7 +89,7 @@ mod tests {
             let height = [128, 72, 64, 33, 1, 200][round % 6];
             let length = [60u32, 100, 403][round / 6 % 3];
             let texels: Vec<u16> = (0..height).map(|_| rng.below(512) as u16).collect();
-            let runs: Vec<Run> = runs_of(&texels).collect();
+            let runs: Vec<Run> = runs_of(texels.iter().map(is_opaque)).collect();
             let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + 8).map(|row| row * 5 / 3).collect();
             let step = i64::from(rng.between(1, 1 << 30)) << rng.below(4);
             let at = i64::from(rng.between(-100, 100)) << 32;
@@ -104,7 +103,6 @@ mod tests {
                 list
             };
             // Each row on its own: its texel, and from where to where there are no holes around it.
-            let is_opaque = |texel: &u16| texel & MaskedPicture::OPAQUE != 0;
             let expected: Vec<(usize, u8)> = (a.min(b)..a.max(b))
                 .filter_map(|row| {
                     let v = ((at + step * i64::from(base_rows[row])) >> 32).clamp(0, height as i64 - 1) as usize;

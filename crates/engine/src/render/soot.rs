@@ -3,6 +3,7 @@
 //! Fitted to moments of the published engine.
 
 use super::blend::WHOLE;
+use super::fence::runs_of;
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::scene::Face;
 use super::seg::SeenSeg;
@@ -11,7 +12,6 @@ use super::walk::Walk;
 use super::wall::INVERSE_BITS;
 use crate::assets::Stain;
 use crate::world::Soot;
-use std::ops::Range;
 
 /// Texels of a stain to a map unit.
 const TEXELS: i64 = 2;
@@ -115,8 +115,10 @@ impl Walk<'_> {
             let (first, end) = (frame_row(0).max(top), frame_row(texels.len()).min(bottom));
             if by_fours {
                 let told = self.scratch.soot_depth.column(column.x, &covered);
-                for run in runs(texels, mark.upturned) {
-                    let rows = frame_row(run.start).max(top)..frame_row(run.end).min(bottom);
+                let shown = |row: usize| texels[if mark.upturned { texels.len() - 1 - row } else { row }] > 0;
+                for run in runs_of((0..texels.len()).map(shown)) {
+                    let [start, end] = run.map(|texel| frame_row(texel.into()));
+                    let rows = start.max(top)..end.min(bottom);
                     self.scratch.soot_depth.add(column.x, &rows);
                     if !rows.is_empty() {
                         self.columns.depth_of(column.x)[rows].fill(told);
@@ -141,17 +143,6 @@ impl Walk<'_> {
         }
         self.scratch.soot_depth.end();
     }
-}
-
-/// The runs of a column's texels that are not nothing, downwards as the picture hangs.
-fn runs(texels: &[u8], upturned: bool) -> impl Iterator<Item = Range<usize>> + '_ {
-    let (count, mut at) = (texels.len(), 0);
-    let shown = move |row: usize| texels[if upturned { count - 1 - row } else { row }] > 0;
-    std::iter::from_fn(move || {
-        let start = (at..count).find(|&row| shown(row))?;
-        at = (start..count).find(|&row| !shown(row)).unwrap_or(count);
-        Some(start..at)
-    })
 }
 
 /// Parts of [`WHOLE`] that a texel hides in the light of a table: in the dark there is less to hide.

@@ -71,8 +71,8 @@ impl SeenTrails {
             self.spots.resize(first + self.left.len(), Spot::default());
             for shed in &self.left {
                 // Which are in view cannot be foretold: all are written, and those counted.
-                let (spot, is_seen) = spot(scene, view, camera, light, &trail.square(shed, world.tic));
-                self.spots[end] = Spot { trail: number, ..spot };
+                let (spot, is_seen) = spot(scene, view, camera, light, number, &trail.square(shed, world.tic));
+                self.spots[end] = spot;
                 end += usize::from(is_seen);
             }
             self.spots.truncate(end);
@@ -95,7 +95,7 @@ impl SeenTrail {
 
 /// The inverse of a distance.
 fn inverse(distance: i64) -> i64 {
-    (1 << (INVERSE_BITS + 16)) / distance.max(NEAREST)
+    (1 << (INVERSE_BITS + 16)) / distance
 }
 
 impl Spot {
@@ -147,7 +147,7 @@ impl Masked<'_> {
 /// What a square covers if nothing hides it, and whether that is anything: whole columns from that of its left edge to that before
 /// its right one, and whole rows, that of its lower edge too.
 #[inline(always)]
-fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, square: &Square) -> (Spot, bool) {
+fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, trail: u16, square: &Square) -> (Spot, bool) {
     let [left, right] = camera.edges(i64::from(square.place[0].0), i64::from(square.place[1].0));
     let (away, across) = ((left + right) >> 1, (left - right) >> 1);
     let distance = away.max(NEAREST);
@@ -168,7 +168,7 @@ fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, square: &Squa
     let is_seen = (away >= NEAREST) & !beside & (columns[0] < columns[1]) & (rows[0] < rows[1]);
     let table = light.table(ONE_TABLE * inverse);
     let colour = scene.assets.light_tables[table][usize::from(scene.shades[square.shade as usize])];
-    let spot = Spot { distance, columns, rows, place: square.place, trail: 0, colour, opacity: square.opacity };
+    let spot = Spot { distance, columns, rows, place: square.place, trail, colour, opacity: square.opacity };
     (spot, is_seen)
 }
 

@@ -194,7 +194,8 @@ impl Trail {
         match &self.chance {
             Chance::Own(key) => self.list_own(*key, now, left),
             Chance::Told(lots) => {
-                for (tic, lots) in self.tics(now).zip(lots.iter().skip((self.tics(now).start - self.begun) as usize)) {
+                let tics = self.tics(now);
+                for (tic, lots) in tics.clone().zip(lots.iter().skip((tics.start - self.begun) as usize)) {
                     let shed = (0..).zip(lots).map(|(index, &lots)| Shed { tic, is_yellow: index == 0, lots });
                     left.extend(shed.filter(|shed| now - 1 - tic < shed.life()));
                 }

@@ -145,6 +145,13 @@ mod tests {
     /// What episodes of the seed 1 begin with: the first numbers of its Mersenne Twister.
     const FIRST: u32 = 1_791_095_845;
 
+    /// A moment of the first episode in which nothing but these flights was seen.
+    fn moment(tic: u32, flights: Vec<Flight>) -> Moment {
+        let (variables, labels) = (BTreeMap::new(), Vec::new());
+        let (floors, ceilings, bursts) = (Vec::new(), Vec::new(), Vec::new());
+        Moment { number: 0, tic, variables, floors, ceilings, chance: Some(FIRST), episode: 0, bursts, flights, labels }
+    }
+
     #[test]
     fn the_stream_is_what_squares_and_faces_told() {
         let mut stream = Sfmt607::new(&[0, FIRST]);
@@ -165,11 +172,7 @@ mod tests {
     fn rockets_take_bytes_while_they_fly_and_the_face_takes_some_between() {
         let flight = |tic, tics| Flight { tic, place: [0.0; 3], velocity: [20.0, 0.0, 0.0], tics };
         let flights = vec![flight(85, Some(2)), flight(87, Some(0)), flight(89, None)];
-        let (variables, labels) = (BTreeMap::new(), Vec::new());
-        let (floors, ceilings, bursts) = (Vec::new(), Vec::new(), Vec::new());
-        let moment =
-            Moment { number: 0, tic: 92, variables, floors, ceilings, chance: Some(FIRST), episode: 0, bursts, flights, labels };
-        let told = lots(FIRST, &moment);
+        let told = lots(FIRST, &moment(92, flights));
         assert_eq!(told.iter().map(Vec::len).collect::<Vec<_>>(), [2, 0, 4]);
         // Choices of the face in tics 1, 20, 40, 60 and 80 come first.
         let mut stream = Sfmt607::new(&[0, FIRST]);
@@ -185,10 +188,7 @@ mod tests {
     fn who_shoots_on_and_on_is_angry_from_70_tics_until_the_last_shot_is_over() {
         let flights =
             [1017, 1037, 1057, 1077, 1161].map(|tic| Flight { tic, place: [0.0; 3], velocity: [0.0; 3], tics: Some(0) });
-        let (variables, labels) = (BTreeMap::new(), Vec::new());
-        let (floors, ceilings, bursts) = (Vec::new(), Vec::new(), Vec::new());
-        let (flights, chance) = (flights.into(), None);
-        let moment = Moment { number: 0, tic: 0, variables, floors, ceilings, chance, episode: 0, bursts, flights, labels };
+        let moment = moment(0, flights.into());
         // As seen: in the frames of tics 1080, 1084 and 1088.
         let angry: Vec<u32> = (1000..1300).step_by(4).filter(|&tic| is_angry(&moment, tic)).collect();
         assert_eq!(angry, [1080, 1084, 1088]);
