@@ -197,7 +197,7 @@ fn a_full_standard_output_is_told() {
 #[test]
 fn hostile_files_are_turned_away_at_the_door() {
     let den = Den::new("samples");
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let crates = Path::new("..").canonicalize().unwrap();
     let mut tried = 0;
     for (folder, command) in [
         ("engine/attacks", "render RemedyRushLevel1-v0 -o a.png --iwad"),

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::hash::Hasher;
 
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/goldens.txt");
+const FILE: &str = "tests/goldens.txt";
 const STEPS: u32 = 300;
 const PARTS: [&str; 4] = ["frames", "rewards", "costs", "state"];
 const HEAD: &str =
