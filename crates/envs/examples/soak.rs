@@ -1,12 +1,18 @@
-//! Do the worlds last? `cargo run --release -p hasard-envs --example soak -- [STEPS] [LANES] [THREADS]` (Linux; 1,000,000 steps in
-//! all, 8 worlds of each environment, 1 thread).
+//! Do the worlds last? `cargo run --release -p hasard-envs --example soak -- [STEPS] [LANES] [THREADS] [FILE]` (Linux; 1,000,000
+//! steps in all, 8 worlds of each environment, 1 thread).
 //!
 //! Steps batches of all 18 environments in turn with random actions, and prints ten times on the way the memory of the process and a
 //! fingerprint of what has come out: every reward, cost and flag, and every sixteenth observation. Runs that were given the
 //! same steps and lanes print the same fingerprints, whatever their threads, and their memory stays where it is.
+//! With a FILE where it stands is kept a hundred times on the way, and what finds such a file goes on from there: to the same
+//! fingerprints.
 
 use hasard_engine::math::Rng;
-use hasard_envs::{Batch, EnvId, EnvOptions, FrameSize, VecEnv, VecOptions};
+use hasard_envs::{Batch, EnvId, EnvOptions, FrameSize, LaneState, VecEnv, VecOptions};
+use std::path::Path;
+
+/// Anything that can go wrong here ends the program with a line.
+type Any<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Of so many observations one counts towards the fingerprint: telling takes longer than drawing.
 const TOLD: u64 = 16;
@@ -51,6 +57,51 @@ impl Worlds {
     }
 }
 
+const EARLY: &str = "the file ends early: remove it";
+
+/// Takes a word off the front of a kept file.
+fn word(rest: &mut &[u8]) -> Any<u64> {
+    let (word, after) = rest.split_first_chunk().ok_or(EARLY)?;
+    *rest = after;
+    Ok(u64::from_le_bytes(*word))
+}
+
+/// Where a soak stands, beside its worlds.
+struct Standing {
+    round: u64,
+    rng: Rng,
+    hash: u64,
+}
+
+impl Standing {
+    /// Three words, then for each environment the number of its bytes and the bytes of its lanes, little-endian.
+    fn keep(&self, all: &mut [Worlds], file: &Path) -> Any<()> {
+        let mut bytes = [self.round, self.rng.state(), self.hash].map(u64::to_le_bytes).concat();
+        for worlds in all {
+            let lanes = LaneState::to_bytes(&worlds.worlds.save()?);
+            bytes.extend((lanes.len() as u64).to_le_bytes());
+            bytes.extend(lanes);
+        }
+        let partial = file.with_extension("partial");
+        std::fs::write(&partial, bytes)?;
+        Ok(std::fs::rename(partial, file)?)
+    }
+
+    /// Brings worlds to where [`Standing::keep`] left them.
+    fn find(all: &mut [Worlds], file: &Path) -> Any<Standing> {
+        let bytes = std::fs::read(file)?;
+        let mut rest = &bytes[..];
+        let standing = Standing { round: word(&mut rest)?, rng: Rng::from_state(word(&mut rest)?), hash: word(&mut rest)? };
+        for worlds in all {
+            let length = usize::try_from(word(&mut rest)?)?;
+            let (lanes, after) = rest.split_at_checked(length).ok_or(EARLY)?;
+            worlds.worlds.restore(LaneState::from_bytes(lanes)?, &mut worlds.batch)?;
+            rest = after;
+        }
+        Ok(standing)
+    }
+}
+
 /// Mebibytes of memory that the process holds.
 fn memory() -> f64 {
     let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
@@ -58,20 +109,36 @@ fn memory() -> f64 {
     pages * 4096.0 / f64::from(1 << 20)
 }
 
-fn main() -> Result<(), hasard_envs::EnvError> {
-    let given: Vec<u64> = std::env::args().skip(1).map(|text| text.parse().expect("numbers: steps, lanes, threads")).collect();
-    let number = |at: usize, usual: u64| given.get(at).copied().unwrap_or(usual).max(1);
-    let (steps, lanes, threads) = (number(0, 1_000_000), number(1, 8) as usize, number(2, 1) as usize);
-    let mut all = EnvId::all().map(|id| Worlds::new(id, lanes, threads)).collect::<Result<Vec<_>, _>>()?;
-    let (mut rng, mut hash) = (Rng::new(0), 0xCBF2_9CE4_8422_2325);
-    let rounds = steps.div_ceil(all.len() as u64 * lanes as u64);
-    for round in 1..=rounds {
-        for worlds in &mut all {
-            hash = worlds.step(&mut rng, hash, round % TOLD == 0)?;
+fn main() -> Any<()> {
+    let mut given = std::env::args().skip(1);
+    let mut number = |usual: u64| match given.next().map(|text| text.parse::<u64>().map_err(|_| text)) {
+        None => Ok(usual),
+        Some(number) => {
+            number.map(|number| number.max(1)).map_err(|text| format!("{text} is no number of steps, lanes or threads"))
         }
-        if round * 10 / rounds != (round - 1) * 10 / rounds {
-            let done = round * all.len() as u64 * lanes as u64;
-            println!("{done} steps, fingerprint {hash:016x}, {:.1} MiB", memory());
+    };
+    let (steps, lanes, threads) = (number(1_000_000)?, number(8)? as usize, number(1)? as usize);
+    let file = given.next();
+    let file = file.as_ref().map(Path::new);
+    let mut all = EnvId::all().map(|id| Worlds::new(id, lanes, threads)).collect::<Result<Vec<_>, _>>()?;
+    let mut at = match file {
+        Some(file) if file.exists() => Standing::find(&mut all, file)?,
+        _ => Standing { round: 0, rng: Rng::new(0), hash: 0xCBF2_9CE4_8422_2325 },
+    };
+    let a_round = all.len() as u64 * lanes as u64;
+    let rounds = steps.div_ceil(a_round);
+    while at.round < rounds {
+        at.round += 1;
+        let ends_part_of = |parts: u64| at.round * parts / rounds != (at.round - 1) * parts / rounds;
+        let (tells, keeps) = (ends_part_of(10), ends_part_of(100));
+        for worlds in &mut all {
+            at.hash = worlds.step(&mut at.rng, at.hash, at.round % TOLD == 0)?;
+        }
+        if tells {
+            println!("{} steps, fingerprint {:016x}, {:.1} MiB", at.round * a_round, at.hash, memory());
+        }
+        if let Some(file) = file.filter(|_| keeps) {
+            at.keep(&mut all, file)?;
         }
     }
     Ok(())
