@@ -17,14 +17,16 @@ const RIDE_LIMIT: Fixed = Fixed::from_int(9);
 pub(crate) struct Movers {
     /// In the order of their start. Where nobody stands on them, entries of swinging floors may lag behind.
     pub(crate) list: Vec<Mover>,
+    /// How many of them have ended.
+    ended: usize,
+    /// The numbers of the planes among them, rising.
+    planes: Vec<u32>,
     /// How many of them have run in this tic.
     run: usize,
     /// Tics that they have run.
     tics: u32,
     /// Those from this number on have yet to run the tic at hand.
     waiting_from: usize,
-    /// Planes move: all movers run every tic.
-    planes: bool,
     /// Of `tics` the one in which the first swinging floor comes to rest.
     next_end: u32,
     /// The movers of sectors whose floors swing.
@@ -35,18 +37,20 @@ pub(crate) struct Movers {
 
 impl Default for Movers {
     fn default() -> Movers {
-        let (list, swings) = (Vec::new(), BySector::default());
-        Movers { list, run: 0, tics: 0, waiting_from: usize::MAX, planes: false, next_end: u32::MAX, swings, swings_made: 0 }
+        let (list, planes, swings) = (Vec::new(), Vec::new(), BySector::default());
+        let (waiting_from, next_end) = (usize::MAX, u32::MAX);
+        Movers { list, ended: 0, planes, run: 0, tics: 0, waiting_from, next_end, swings, swings_made: 0 }
     }
 }
 
 impl Movers {
     /// Copies without allocating where this list is large enough.
     pub(crate) fn copy_from(&mut self, source: &Movers) {
-        let Movers { list, run, tics, waiting_from, planes, next_end, swings, swings_made } = source;
+        let Movers { list, ended, planes, run, tics, waiting_from, next_end, swings, swings_made } = source;
         self.list.clone_from(list);
-        (self.run, self.tics, self.waiting_from) = (*run, *tics, *waiting_from);
-        (self.planes, self.next_end, self.swings_made) = (*planes, *next_end, *swings_made);
+        self.planes.clone_from(planes);
+        (self.ended, self.run, self.tics, self.waiting_from) = (*ended, *run, *tics, *waiting_from);
+        (self.next_end, self.swings_made) = (*next_end, *swings_made);
         self.swings.clone_from(swings);
     }
 
@@ -65,6 +69,12 @@ impl Movers {
         self.swings_made
     }
 
+    /// Has every mover run in the tic to come, wherever it is.
+    #[cfg(test)]
+    pub(crate) fn run_all_next(&mut self) {
+        self.next_end = 0;
+    }
+
     fn renew_swings(&mut self) {
         self.swings_made = self.swings_made.wrapping_add(1);
     }
@@ -76,45 +86,52 @@ impl Movers {
         self.note(self.list.len() - 1);
     }
 
-    /// Ends the movers of floors before their time, where `stopped` says so of their sector. What is noted of the others stays
-    /// true but for their numbers.
-    fn stop_floors(&mut self, stopped: impl Fn(SectorId) -> bool) {
-        self.renew_swings();
-        let mut kept = 0;
-        for index in 0..self.list.len() {
-            let mover = self.list[index];
-            if mover.floor().is_some_and(&stopped) {
-                self.run -= usize::from(kept < self.run);
-                if let Mover::Waggle(waggle) = mover {
-                    self.swings.clear(waggle.sector);
-                }
-                continue;
+    /// Ends the mover of a floor if it swings, before its time.
+    fn stop_swing(&mut self, sector: SectorId) -> bool {
+        let Some(index) = self.swings.get(sector) else { return false };
+        self.swings.clear(sector);
+        self.end(index);
+        true
+    }
+
+    /// Ends the planes that are floors of sectors of which `stopped` says so, before their time.
+    fn stop_planes(&mut self, stopped: impl Fn(SectorId) -> bool) {
+        for at in 0..self.planes.len() {
+            let index = self.planes[at] as usize;
+            if matches!(self.list[index], Mover::Plane(plane) if !plane.ceiling && stopped(plane.sector)) {
+                self.end(index);
             }
-            if kept < index {
-                self.list[kept] = mover;
-                if let Mover::Waggle(waggle) = mover {
-                    self.swings.set(waggle.sector, kept);
-                }
-            }
-            kept += 1;
         }
-        self.list.truncate(kept);
+        self.forget_ended_planes();
+    }
+
+    fn forget_ended_planes(&mut self) {
+        let Movers { list, planes, .. } = self;
+        planes.retain(|&index| list[index as usize] != Mover::Ended);
+    }
+
+    /// The mover of number `index` has ended. It stays in the list, lest the others get other numbers, until all of them are run.
+    fn end(&mut self, index: usize) {
+        self.renew_swings();
+        self.list[index] = Mover::Ended;
+        self.ended += 1;
     }
 
     /// Notes what follows from the mover of number `index`.
     fn note(&mut self, index: usize) {
         match &self.list[index] {
-            Mover::Plane(_) => self.planes = true,
+            Mover::Plane(_) => self.planes.push(index as u32),
             Mover::Waggle(waggle) => {
                 self.swings.set(waggle.sector, index);
                 self.next_end = self.next_end.min(waggle.as_of.saturating_add(waggle.tics_left()));
             }
+            Mover::Ended => {}
         }
     }
 
     /// Whether planes are on their way anywhere; if not, the sectors with movers are those whose floors swing.
     pub(crate) fn move_planes(&self) -> bool {
-        self.planes
+        !self.planes.is_empty()
     }
 
     /// The mover of a sector whose floor swings.
@@ -145,11 +162,12 @@ impl Movers {
 impl Hash for Movers {
     /// The movers as they are now.
     fn hash<H: Hasher>(&self, state: &mut H) {
-        state.write_usize(self.list.len());
-        for (index, mover) in self.list.iter().enumerate() {
+        let at_work = |movers: &[Mover]| movers.iter().filter(|&mover| *mover != Mover::Ended).count();
+        state.write_usize(at_work(&self.list));
+        for (index, mover) in self.list.iter().enumerate().filter(|&(_, mover)| *mover != Mover::Ended) {
             self.ahead(index).map_or(*mover, Mover::Waggle).hash(state);
         }
-        self.run.hash(state);
+        at_work(&self.list[..self.run]).hash(state);
     }
 }
 
@@ -160,16 +178,8 @@ pub(crate) enum Mover {
     Plane(PlaneMover),
     /// A floor that swings.
     Waggle(Waggle),
-}
-
-impl Mover {
-    /// The sector whose floor it moves.
-    fn floor(&self) -> Option<SectorId> {
-        match self {
-            Mover::Plane(plane) => (!plane.ceiling).then_some(plane.sector),
-            Mover::Waggle(waggle) => Some(waggle.sector),
-        }
-    }
+    /// What has arrived, come to rest or been stopped.
+    Ended,
 }
 
 /// A plane on its way to a height.
@@ -210,15 +220,17 @@ impl World {
     /// Ends whatever the floors of the sectors with a tag still do: they stay at the height that they have.
     pub fn stop_floors(&mut self, tag: i32) {
         let map = Arc::clone(&self.map);
-        let mut any = false;
+        let mut planes = false;
         for sector in map.tagged(tag) {
-            any |= std::mem::replace(&mut self.sector_mut(sector).floor_busy, false);
+            if std::mem::replace(&mut self.sector_mut(sector).floor_busy, false) {
+                planes |= !self.movers.stop_swing(sector);
+            }
         }
-        // In one pass over the movers: there may be as many as there are floors to stop.
-        if any {
+        // In one pass over the planes: there may be as many as there are floors to stop.
+        if planes {
             let sectors = &self.sectors;
             let stopped = |SectorId(sector)| !sectors[sector as usize].floor_busy && map.sectors[sector as usize].tag == tag;
-            self.movers.stop_floors(stopped);
+            self.movers.stop_planes(stopped);
         }
     }
 
@@ -236,8 +248,8 @@ impl World {
         }
     }
 
-    /// A tic of all movers; those that are done are dropped. Unless planes move or a swing ends, only floors that somebody
-    /// touches are run: the others follow when they are looked at.
+    /// A tic of all movers; those that are done are dropped. Of the swinging floors only those that somebody touches are run,
+    /// unless one comes to rest: the others follow when they are looked at.
     pub(crate) fn run_movers(&mut self) {
         if self.movers.list.is_empty() {
             self.movers.run = 0;
@@ -245,11 +257,11 @@ impl World {
         }
         self.list_riders();
         self.movers.tics += 1;
-        if self.movers.planes || self.movers.tics >= self.movers.next_end {
-            (self.movers.planes, self.movers.next_end) = (false, u32::MAX);
+        if self.movers.tics >= self.movers.next_end || 2 * self.movers.ended > self.movers.list.len() {
+            self.movers.next_end = u32::MAX;
             self.run_every_mover(0);
         } else {
-            self.run_ridden_floors();
+            self.run_planes_and_ridden_floors();
         }
     }
 
@@ -264,6 +276,8 @@ impl World {
     /// Runs the movers from number `first` on in their order, and drops those that are done.
     fn run_every_mover(&mut self, first: usize) {
         self.movers.renew_swings();
+        let first_plane = self.movers.planes.partition_point(|&index| (index as usize) < first);
+        self.movers.planes.truncate(first_plane);
         let mut kept = first;
         for index in first..self.movers.list.len() {
             self.movers.waiting_from = index + 1;
@@ -271,13 +285,17 @@ impl World {
             let goes_on = match mover {
                 Mover::Plane(plane) => self.run_plane(&plane),
                 Mover::Waggle(_) => self.run_waggle(index),
+                Mover::Ended => false,
             };
-            if goes_on {
-                self.movers.list[kept] = self.movers.list[index];
-                self.movers.note(kept);
-                kept += 1;
-            } else if let Mover::Waggle(waggle) = mover {
-                self.movers.swings.clear(waggle.sector);
+            match mover {
+                _ if goes_on => {
+                    self.movers.list[kept] = self.movers.list[index];
+                    self.movers.note(kept);
+                    kept += 1;
+                }
+                Mover::Plane(_) => {}
+                Mover::Waggle(waggle) => self.movers.swings.clear(waggle.sector),
+                Mover::Ended => self.movers.ended -= 1,
             }
         }
         self.movers.list.truncate(kept);
@@ -285,13 +303,26 @@ impl World {
         self.movers.waiting_from = usize::MAX;
     }
 
-    /// Runs the swinging floors that somebody touches, in the order of the movers.
-    fn run_ridden_floors(&mut self) {
-        let mut at = 0;
-        while let Some(index) = self.riders.ridden(at) {
+    /// Runs the planes and the swinging floors that somebody touches, in the order of the movers.
+    fn run_planes_and_ridden_floors(&mut self) {
+        let ended = self.movers.ended;
+        let (mut planes, mut swings) = (0, 0);
+        loop {
+            let plane = self.movers.planes.get(planes).map(|&index| index as usize);
+            let Some(index) = plane.into_iter().chain(self.riders.ridden(swings)).min() else { break };
             self.movers.waiting_from = index + 1;
-            self.run_waggle(index);
-            at += 1;
+            if let Mover::Plane(plane) = self.movers.list[index] {
+                planes += 1;
+                if !self.run_plane(&plane) {
+                    self.movers.end(index);
+                }
+            } else {
+                swings += 1;
+                self.run_waggle(index);
+            }
+        }
+        if self.movers.ended > ended {
+            self.movers.forget_ended_planes();
         }
         self.movers.run = self.movers.list.len();
         self.movers.waiting_from = usize::MAX;

@@ -287,27 +287,46 @@ mod tests {
         ((0..world.sectors.len() as u32).map(of_sector).collect(), world.riders.ridden.clone())
     }
 
+    /// A tic in which something or other may happen first.
+    fn disturb(world: &mut World, rng: &mut Rng, tic: u32) {
+        let (x, y) = (Fixed::from_int(rng.between(20, 360)), Fixed::from_int(rng.between(20, 230)));
+        match rng.below(60) {
+            0 => world.floor_waggle(rng.between(1, 24), 64, 64, rng.between(0, 63), rng.between(0, 2)),
+            1 => world.stop_floors(rng.between(1, 24)),
+            2 => world.floor_lower_by_value(rng.between(1, 24), rng.between(1, 64), rng.between(-8, 40)),
+            3..8 => _ = world.spawn(ActorKind::ArmorBonus, x, y, Fixed::ZERO),
+            8 => _ = world.set_position(world.players[0].actor, x, y, Fixed::from_int(40)),
+            9..14 => {
+                let any = world.living().map(|(id, _)| id).filter(|&id| id != world.players[0].actor).last();
+                any.into_iter().for_each(|id| world.remove(id));
+            }
+            _ => {}
+        }
+        let buttons = if tic % 40 < 20 { Buttons::MOVE_FORWARD | Buttons::SPEED } else { Buttons::TURN_LEFT };
+        world.run_thinkers(&[Command { buttons, ..Command::default() }]);
+        world.finish_tic();
+    }
+
+    #[test]
+    fn movers_run_when_needed_do_what_movers_run_always_do() {
+        let (mut world, mut always, mut rng) = (hall(), hall(), Rng::new(8));
+        let mut lagging = 0;
+        for tic in 0..4000 {
+            always.movers.run_all_next();
+            disturb(&mut always, &mut rng.clone(), tic);
+            disturb(&mut world, &mut rng, tic);
+            lagging += (0..world.movers.list.len()).filter(|&index| world.movers.ahead(index).is_some()).count();
+            assert_eq!(world.state_hash(), always.state_hash(), "tic {tic}");
+        }
+        assert!(lagging > 1000, "{lagging} floors lagged behind");
+    }
+
     #[test]
     fn lists_that_are_kept_are_those_made_anew() {
         let (mut world, mut rng) = (hall(), Rng::new(6));
         let mut kept = 0;
         for tic in 0..2000 {
-            let (x, y) = (Fixed::from_int(rng.between(20, 360)), Fixed::from_int(rng.between(20, 230)));
-            match rng.below(60) {
-                0 => world.floor_waggle(rng.between(1, 24), 64, 64, rng.between(0, 63), rng.between(0, 2)),
-                1 => world.stop_floors(rng.between(1, 24)),
-                2 => world.floor_lower_by_value(rng.between(1, 24), 64, rng.between(-8, 8)),
-                3..8 => _ = world.spawn(ActorKind::ArmorBonus, x, y, Fixed::ZERO),
-                8 => _ = world.set_position(world.players[0].actor, x, y, Fixed::from_int(40)),
-                9..14 => {
-                    let any = world.living().map(|(id, _)| id).filter(|&id| id != world.players[0].actor).last();
-                    any.into_iter().for_each(|id| world.remove(id));
-                }
-                _ => {}
-            }
-            let buttons = if tic % 40 < 20 { Buttons::MOVE_FORWARD | Buttons::SPEED } else { Buttons::TURN_LEFT };
-            world.run_thinkers(&[Command { buttons, ..Command::default() }]);
-            world.finish_tic();
+            disturb(&mut world, &mut rng, tic);
             kept += u32::from(world.riders.made_for == Some(world.movers.swings_made()));
             let mut anew = world.clone();
             world.list_riders();
