@@ -14,6 +14,8 @@ use std::ops::Range;
 
 /// Columns that are stamped at once at most: lists by column are that much longer than there are columns.
 pub(super) const STAMP_BLOCK: usize = 64;
+/// Rows from which on it pays to search for those of a column that show no air: in a learner's frame few sprites have so many.
+const SEARCHED_ROWS: usize = 32;
 /// Fractional bits of texture rows.
 pub(super) const TEXEL_BITS: u32 = 32;
 
@@ -131,10 +133,12 @@ impl Stamp<'_> {
     ) {
         let (x, width) = (self.first + i, frame.width);
         let texels = self.picture.column(self.columns.texels[i]);
-        // Half of a weapon's picture is air above it.
-        let extent = self.picture.extent(self.columns.texels[i]);
-        let before = |texel: usize| base_rows[open.clone()].partition_point(|&base_row| self.texel_row(base_row) < texel);
-        open = open.start + before(extent.start)..open.start + before(extent.end);
+        if open.len() > SEARCHED_ROWS {
+            // Half of a weapon's picture is air above it.
+            let extent = self.picture.extent(self.columns.texels[i]);
+            let before = |texel: usize| base_rows[open.clone()].partition_point(|&base_row| self.texel_row(base_row) < texel);
+            open = open.start + before(extent.start)..open.start + before(extent.end);
+        }
         let lines = frame.colour[open.start * width..].chunks_exact_mut(width).zip(&base_rows[open.clone()]);
         // Which texels are holes cannot be foretold.
         match self.blend {
