@@ -122,6 +122,9 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     let first = browser.script(&format!("return {seed}"));
     browser.script("document.getElementById('next').click()");
     browser.wait_long(&format!("{seed} == Number({first}) + 1 && {step} > 0"));
+    // What is asked while a show is only on its way is not lost.
+    browser.script("const size = [...document.querySelectorAll('select')].find((one) => one.value == '320x240'); size.value = '160x120'; size.dispatchEvent(new Event('change')); document.getElementById('next').click()");
+    browser.wait(&format!("{seed} == Number({first}) + 2 && {step} > 0"));
     let unreachable = |line: &String| line.contains("ERR_CONNECTION_REFUSED") || line.contains("WebSocket connection");
     assert_eq!(browser.errors().into_iter().filter(|line| !unreachable(line)).collect::<Vec<_>>(), Vec::<String>::new());
     std::fs::remove_dir_all(folder).unwrap();

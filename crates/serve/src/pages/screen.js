@@ -10,10 +10,15 @@ export class Screen {
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     let failed = false;
-    socket.onopen = () => this.onlink('');
+    // What is asked before the show is there is asked as soon as it is.
+    const waiting = this.waiting = [];
+    socket.onopen = () => {
+      this.onlink('');
+      waiting.splice(0).forEach((text) => socket.send(text));
+    };
     // In the order in which they were sent: decoding a picture takes its time, and words said after it must not come before.
     let turn = Promise.resolve();
-    const take = (data) => (socket === this.socket ? this.take(data) : null);
+    const take = (data) => (socket === this.socket && !this.ended ? this.take(data) : null);
     socket.onmessage = ({ data }) => {
       if (typeof data === 'string') failed ||= JSON.parse(data).kind === 'error';
       turn = turn.catch(() => {}).then(() => take(data));
@@ -40,6 +45,7 @@ export class Screen {
       at += bytes;
       return [view, await createImageBitmap(blob)];
     }));
+    if (this.ended) return;
     for (const [view, picture] of pictures) {
       const canvas = this.canvases[view];
       if (!canvas) continue;
@@ -52,7 +58,9 @@ export class Screen {
   }
 
   ask(message) {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    const text = JSON.stringify(message);
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(text);
+    else if (this.socket.readyState === WebSocket.CONNECTING) this.waiting.push(text);
   }
 
   again() {
