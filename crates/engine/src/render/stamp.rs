@@ -14,7 +14,7 @@ use std::ops::Range;
 
 /// Columns that are stamped at once at most: lists by column are that much longer than there are columns.
 pub(super) const STAMP_BLOCK: usize = 64;
-/// Rows from which on it pays to search for those of a column that show no air: in a learner's frame few sprites have so many.
+/// More rows than these are searched for those of a column that show no air: in a learner's frame few sprites have so many.
 const SEARCHED_ROWS: usize = 32;
 /// Fractional bits of texture rows.
 pub(super) const TEXEL_BITS: u32 = 32;

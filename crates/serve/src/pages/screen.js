@@ -10,12 +10,7 @@ export class Screen {
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     let failed = false;
-    // What is asked before the show is there is asked as soon as it is.
-    const waiting = this.waiting = [];
-    socket.onopen = () => {
-      this.onlink('');
-      waiting.splice(0).forEach((text) => socket.send(text));
-    };
+    socket.onopen = () => this.onlink('');
     // In the order in which they were sent: decoding a picture takes its time, and words said after it must not come before.
     let turn = Promise.resolve();
     const take = (data) => (socket === this.socket && !this.ended ? this.take(data) : null);
@@ -58,9 +53,11 @@ export class Screen {
   }
 
   ask(message) {
-    const text = JSON.stringify(message);
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(text);
-    else if (this.socket.readyState === WebSocket.CONNECTING) this.waiting.push(text);
+    const { socket } = this;
+    const send = () => socket.send(JSON.stringify(message));
+    if (socket.readyState === WebSocket.OPEN) send();
+    // Before the show is there: as soon as it is.
+    else if (socket.readyState === WebSocket.CONNECTING) socket.addEventListener('open', send);
   }
 
   again() {
