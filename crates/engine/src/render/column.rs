@@ -52,6 +52,30 @@ mod tests {
     use super::*;
     use crate::math::Rng;
 
+    /// With vectors of 32 bytes, which the processor has.
+    #[cfg(target_arch = "x86_64")]
+    fn draw_by_own_colours(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+        use super::super::own_colours::OwnColours;
+        use column_wide::{OwnColumn, avx2};
+        let own = OwnColours::new(column.texels, &[*column.table]);
+        macro_rules! draw {
+            ($texels:literal, $colours:literal) => {{
+                let (texels, lit) = (own.texels.first_chunk().unwrap(), own.lit(0).first_chunk().unwrap());
+                let column = OwnColumn::<$texels, $colours> { texels, lit, at: column.at, step: column.step };
+                // SAFETY: the processor has the instructions.
+                unsafe { avx2(&column, pixels, rows, top, bottom) }
+            }};
+        }
+        match (own.texels.len(), own.room) {
+            (64, 16) => draw!(64, 16),
+            (64, 64) => draw!(64, 64),
+            (64, _) => draw!(64, 256),
+            (_, 16) => draw!(128, 16),
+            (_, 64) => draw!(128, 64),
+            _ => draw!(128, 256),
+        }
+    }
+
     #[test]
     fn all_ways_draw_the_same_columns() {
         let mut rng = Rng::new(4);
@@ -60,13 +84,12 @@ mod tests {
             let height = [64, 128, 96][round % 3];
             let length = [60usize, 100, 403][round / 3 % 3];
             let padded = length.next_multiple_of(ROW_BLOCK) + ROW_GROUP;
-            let texels: Vec<u8> = (0..2 * height).map(|_| rng.byte() as u8).collect();
+            // Few colours, some, and many.
+            let colours = [15, 63, 255][round % 7 % 3];
+            let texels: Vec<u8> = (0..2 * height).map(|_| (rng.byte() as u8 & colours).wrapping_mul(3)).collect();
             let rows: Vec<u32> = (0..padded as u32).map(|row| row * 5 / 3).collect();
             let before: Vec<u8> = (0..padded).map(|_| rng.byte() as u8).collect();
             let (at, step) = (rng.next_u64() as u32, rng.next_u64() as u32 >> rng.between(4, 12));
-            // Neighbours, of which some show the same texels in the same light, from a little elsewhere on.
-            #[cfg(target_arch = "x86_64")]
-            let mut lit = super::super::magnified_wide::LitTexels::default();
             for _ in 0..6 {
                 let (a, b) = (rng.below(length as u32 + 1) as usize, rng.below(length as u32 + 1) as usize);
                 let column = Column {
@@ -87,9 +110,7 @@ mod tests {
                     compare(&mut |pixels| column.draw(simd, pixels, &rows, top, bottom), simd.name());
                     #[cfg(target_arch = "x86_64")]
                     if simd.level() == Level::Avx2 && height != 96 {
-                        let draw = if height == 64 { column_wide::avx2::<6> } else { column_wide::avx2::<7> };
-                        // SAFETY: the processor has the instructions.
-                        compare(&mut |pixels| unsafe { draw(&column, &mut lit, pixels, &rows, top, bottom) }, "of a block");
+                        compare(&mut |pixels| draw_by_own_colours(&column, pixels, &rows, top, bottom), "by own colours");
                     }
                 }
             }

@@ -1,11 +1,11 @@
 //! Columns of textures 64 or 128 texels high, many rows at a time; the plain twin is in `column`, where a test compares them.
 //!
 //! With 64-byte vectors a column of the frame is one vector, the texture one or two, the light table four: nothing is
-//! fetched texel by texel. With 32-byte vectors only positions are computed eight at a time, but for walls at the eye (`magnified_wide`).
+//! fetched texel by texel. With 32-byte vectors half a column is, and texels are numbers of the picture's own colours (`own_colours`): two small
+//! tables in place of one of 256 entries.
 
-use super::column::{Column, ROW_BLOCK, ROW_GROUP};
+use super::column::{Column, ROW_BLOCK};
 use super::convert_wide::{load, load_table, look_up_block};
-use super::magnified_wide::{self, LitTexels};
 use std::arch::x86_64::*;
 
 /// The highest byte of each of sixteen numbers, twice.
@@ -68,43 +68,125 @@ pub(super) fn highest_bytes(at: u32, step: u32, rows: &[u32; ROW_BLOCK]) -> __m5
     _mm512_mask_blend_epi8(0xFFFF_FFFF_0000_0000, low, high)
 }
 
-/// The same with vectors of 32 bytes: whole groups of eight rows are written, and what lies behind is put back.
+/// A column of a wall whose texels are numbers of its picture's own colours.
+pub(super) struct OwnColumn<'a, const TEXELS: usize, const COLOURS: usize> {
+    pub texels: &'a [u8; TEXELS],
+    /// These colours in the column's light.
+    pub lit: &'a [u8; COLOURS],
+    /// As in [`Column`].
+    pub at: u32,
+    pub step: u32,
+}
+
+/// Rows that are drawn at once with vectors of 32 bytes.
+const GROUP: usize = 32;
+
+/// Draws rows `top..bottom` with vectors of 32 bytes: texels and their colours are picked from tables in registers. `pixels` are whole groups.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(super) fn avx2<const BITS: u32>(
-    column: &Column,
-    lit: &mut LitTexels,
+pub(super) fn avx2<const TEXELS: usize, const COLOURS: usize>(
+    column: &OwnColumn<TEXELS, COLOURS>,
     pixels: &mut [u8],
     rows: &[u32],
     top: usize,
     bottom: usize,
 ) {
-    if magnified_wide::draw::<BITS>(column, lit, pixels, rows, top, bottom) {
-        return;
-    }
-    let texels = column.texels.first_chunk::<64>().expect("64 texels at least");
-    let longer = column.texels.first_chunk::<128>();
+    const { assert!(TEXELS == 64 || TEXELS == 128) }
     let (at, step) = (_mm256_set1_epi32(column.at as i32), _mm256_set1_epi32(column.step as i32));
-    let shift = _mm_cvtsi32_si128(32 - BITS as i32);
-    let behind: [u8; ROW_GROUP] = *pixels[bottom..].first_chunk().expect("columns are padded");
     let mut row = top;
     while row < bottom {
-        let group: &mut [u8; ROW_GROUP] = pixels[row..].first_chunk_mut().expect("columns are padded");
-        let rows: &[u32; ROW_GROUP] = rows[row..].first_chunk().expect("rows are padded");
-        // SAFETY: 32 bytes are readable behind the reference.
-        let rows = unsafe { _mm256_loadu_si256(rows.as_ptr().cast()) };
-        let position = _mm256_add_epi32(at, _mm256_mullo_epi32(step, rows));
-        let mut indices = [0u32; ROW_GROUP];
-        // SAFETY: 32 bytes are writable behind the reference.
-        unsafe { _mm256_storeu_si256(indices.as_mut_ptr().cast(), _mm256_srl_epi32(position, shift)) };
-        for (pixel, index) in group.iter_mut().zip(indices) {
-            let texel = match longer {
-                Some(texels) if BITS == 7 => texels[index as usize & 127],
-                _ => texels[index as usize & 63],
-            };
-            *pixel = column.table[usize::from(texel)];
+        let start = row.min(pixels.len() - GROUP);
+        let group: &[u32; GROUP] = rows[start..].first_chunk().expect("rows are padded");
+        let texels = look_up(column.texels, texel_numbers::<TEXELS>(at, step, group));
+        let lit = look_up(column.lit, texels);
+        let shown = _mm256_andnot_si256(first_bytes(top.saturating_sub(start)), first_bytes(bottom - start));
+        let pixels: &mut [u8; GROUP] = pixels[start..].first_chunk_mut().expect("a whole group");
+        // SAFETY: 32 bytes are readable and writable behind the reference.
+        unsafe {
+            let before = _mm256_loadu_si256(pixels.as_ptr().cast());
+            _mm256_storeu_si256(pixels.as_mut_ptr().cast(), _mm256_blendv_epi8(before, lit, shown));
         }
-        row += ROW_GROUP;
+        row = start + GROUP;
     }
-    *pixels[bottom..].first_chunk_mut().expect("columns are padded") = behind;
+}
+
+/// Which texels of a column 32 rows show.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn texel_numbers<const TEXELS: usize>(at: __m256i, step: __m256i, rows: &[u32; GROUP]) -> __m256i {
+    let (eights, _) = rows.as_chunks::<8>();
+    let low = _mm256_packs_epi32(numbers::<TEXELS>(at, step, &eights[0]), numbers::<TEXELS>(at, step, &eights[1]));
+    let high = _mm256_packs_epi32(numbers::<TEXELS>(at, step, &eights[2]), numbers::<TEXELS>(at, step, &eights[3]));
+    // Fours of rows now lie 0, 2, 4, 6, 1, 3, 5, 7.
+    _mm256_permutevar8x32_epi32(_mm256_packus_epi16(low, high), _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn numbers<const TEXELS: usize>(at: __m256i, step: __m256i, rows: &[u32; 8]) -> __m256i {
+    // SAFETY: 32 bytes are readable behind the reference.
+    let rows = unsafe { _mm256_loadu_si256(rows.as_ptr().cast()) };
+    let position = _mm256_add_epi32(at, _mm256_mullo_epi32(step, rows));
+    if TEXELS == 64 { _mm256_srli_epi32(position, 26) } else { _mm256_srli_epi32(position, 25) }
+}
+
+/// What a table has for 32 numbers, all of which it has something for.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn look_up<const SIZE: usize>(table: &[u8; SIZE], numbers: __m256i) -> __m256i {
+    const { assert!(SIZE == 16 || SIZE == 64 || SIZE == 128 || SIZE == 256) }
+    let (parts, _) = table.as_chunks::<16>();
+    match SIZE {
+        16 => sixteen(&parts[0], numbers),
+        64 => sixty_four(&parts[..4], numbers),
+        128 => half_table(&parts[..8], numbers),
+        _ => {
+            // What has the highest bit set would be looked up as nothing.
+            let within = _mm256_and_si256(numbers, _mm256_set1_epi8(127));
+            _mm256_blendv_epi8(half_table(&parts[..8], within), half_table(&parts[8..], within), numbers)
+        }
+    }
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn half_table(parts: &[[u8; 16]], numbers: __m256i) -> __m256i {
+    let (low, high) = (sixty_four(&parts[..4], numbers), sixty_four(&parts[4..], numbers));
+    // The highest bit of each byte chooses: here the seventh, below the sixth and the fifth.
+    _mm256_blendv_epi8(low, high, _mm256_slli_epi16(numbers, 1))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn sixty_four(parts: &[[u8; 16]], numbers: __m256i) -> __m256i {
+    let fifth = _mm256_slli_epi16(numbers, 3);
+    let low = _mm256_blendv_epi8(sixteen(&parts[0], numbers), sixteen(&parts[1], numbers), fifth);
+    let high = _mm256_blendv_epi8(sixteen(&parts[2], numbers), sixteen(&parts[3], numbers), fifth);
+    _mm256_blendv_epi8(low, high, _mm256_slli_epi16(numbers, 2))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn sixteen(part: &[u8; 16], numbers: __m256i) -> __m256i {
+    // SAFETY: 16 bytes are readable behind the reference.
+    let part = unsafe { _mm_loadu_si128(part.as_ptr().cast()) };
+    _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(part), numbers)
+}
+
+/// The first `count` of 32 bytes, of all if there are more.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn first_bytes(count: usize) -> __m256i {
+    static BYTES: [u8; 2 * GROUP] = {
+        let mut bytes = [0; 2 * GROUP];
+        let mut i = 0;
+        while i < GROUP {
+            bytes[i] = u8::MAX;
+            i += 1;
+        }
+        bytes
+    };
+    let bytes: &[u8; GROUP] = BYTES[GROUP - count.min(GROUP)..].first_chunk().expect("there are as many again");
+    // SAFETY: 32 bytes are readable behind the reference.
+    unsafe { _mm256_loadu_si256(bytes.as_ptr().cast()) }
 }

@@ -24,8 +24,6 @@ mod horizon;
 mod label;
 mod light;
 mod look;
-#[cfg(target_arch = "x86_64")]
-mod magnified_wide;
 mod masked;
 mod masked_column;
 mod masked_texture;
@@ -37,6 +35,7 @@ mod narrow;
 #[cfg(target_arch = "x86_64")]
 mod narrow_wide;
 mod openings;
+mod own_colours;
 mod palette;
 mod picture;
 mod plane;

@@ -1,6 +1,7 @@
 //! Textures prepared for drawing: sizes and reciprocals worked out, flats cut to powers of two.
 
 use super::fence::Fence;
+use super::own_colours::OwnColours;
 #[cfg(target_arch = "x86_64")]
 use super::wall_list::{MOST_TEXELS, WallList};
 use crate::assets::{Assets, Image, TextureEntry};
@@ -140,6 +141,8 @@ pub(super) struct Textures {
     pub list: Vec<Texture>,
     /// By frame.
     pub walls: Vec<WallPicture>,
+    /// The same by their own colours.
+    pub own: Vec<OwnColours>,
     /// By frame.
     pub flats: Vec<FlatPicture>,
     /// By frame.
@@ -166,6 +169,7 @@ impl Textures {
             let wall = WallPicture::new(image);
             #[cfg(target_arch = "x86_64")]
             self.list_texels(&wall);
+            self.own.push(OwnColours::new(&wall.pixels, &assets.light_tables[..]));
             self.walls.push(wall);
             self.flats.push(FlatPicture::new(image));
             self.fences.push(Fence::new(image));

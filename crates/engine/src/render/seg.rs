@@ -246,6 +246,7 @@ impl Walk<'_> {
             ends: &seen.ends,
             texture: seen.turned.texture(self.view, seen.face, seen.base_ends),
             picture: &self.scene.textures.walls[picture],
+            own: &self.scene.textures.own[picture],
             light,
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };

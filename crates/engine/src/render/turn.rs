@@ -70,6 +70,9 @@ fn turn_square(columns: [[u8; SQUARE]; SQUARE]) -> [[u8; SQUARE]; SQUARE] {
 mod wide {
     use std::arch::x86_64::*;
 
+    /// Rows that are turned at once; columns are padded to whole groups of as many.
+    const GROUP: usize = 32;
+
     /// Weaves the bytes of sixteen vectors: four times over, this turns 16 by 16 bytes in each half of the vectors.
     #[inline]
     #[target_feature(enable = "avx2")]
@@ -82,23 +85,33 @@ mod wide {
         woven
     }
 
-    /// Sixteen columns, 32 rows at a time; the columns are padded to whole blocks of as many.
+    /// Sixteen columns.
     #[inline]
     #[target_feature(enable = "avx2")]
     pub(super) fn strip(columns: &[u8], stride: usize, pixels: &mut [u8], width: usize, rows: usize) {
-        for first in (0..rows).step_by(32) {
+        let (groups, _) = columns.as_chunks::<GROUP>();
+        // How many groups a column has, which is how far apart its neighbours' lie.
+        let apart = stride / GROUP;
+        for first in (0..rows).step_by(GROUP) {
+            let groups = &groups[first / GROUP..];
             let mut v = [_mm256_setzero_si256(); 16];
-            for (v, column) in v.iter_mut().zip(columns.chunks_exact(stride)) {
-                let bytes: &[u8; 32] = column[first..].first_chunk().expect("columns are padded");
+            for (v, bytes) in v.iter_mut().zip(groups.iter().step_by(apart)) {
                 // SAFETY: 32 bytes are readable behind the reference.
                 *v = unsafe { _mm256_loadu_si256(bytes.as_ptr().cast()) };
             }
             let v = weave(&weave(&weave(&weave(&v))));
-            for (row, v) in (first..rows).zip(&v) {
-                store(pixels, row * width, _mm256_castsi256_si128(*v));
+            let count = GROUP.min(rows - first);
+            let pixels = &mut pixels[first * width..][..(count - 1) * width + 16];
+            let mut row = pixels.as_mut_ptr();
+            for v in &v[..count.min(16)] {
+                // SAFETY: of each of the `count` rows, which are `width` apart, 16 bytes are in the slice.
+                unsafe { _mm_storeu_si128(row.cast(), _mm256_castsi256_si128(*v)) }
+                row = row.wrapping_add(width);
             }
-            for (row, v) in (first + 16..rows).zip(&v) {
-                store(pixels, row * width, _mm256_extracti128_si256(*v, 1));
+            for v in &v[..count.max(16) - 16] {
+                // SAFETY: as above.
+                unsafe { _mm_storeu_si128(row.cast(), _mm256_extracti128_si256(*v, 1)) }
+                row = row.wrapping_add(width);
             }
         }
     }
@@ -107,14 +120,6 @@ mod wide {
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
     pub(super) fn strip_avx512(columns: &[u8], stride: usize, pixels: &mut [u8], width: usize, rows: usize) {
         strip(columns, stride, pixels, width, rows);
-    }
-
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn store(pixels: &mut [u8], at: usize, bytes: __m128i) {
-        let to: &mut [u8; 16] = pixels[at..].first_chunk_mut().expect("a strip is sixteen columns wide");
-        // SAFETY: 16 bytes are writable behind the reference.
-        unsafe { _mm_storeu_si128(to.as_mut_ptr().cast(), bytes) }
     }
 }
 

@@ -6,6 +6,7 @@ use super::column::Column;
 use super::depth::Depths;
 use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
+use super::own_colours::OwnColours;
 use super::picture::WallPicture;
 #[cfg(target_arch = "x86_64")]
 use super::{wall_avx2, wall_wide};
@@ -152,6 +153,7 @@ pub(super) struct WallShader<'a> {
     pub ends: &'a SeenLine,
     pub texture: TextureLine,
     pub picture: &'a WallPicture,
+    pub own: &'a OwnColours,
     pub light: Light,
     /// Height of the texture's top row, relative to the eye, 16.16.
     pub hung_from: i64,
@@ -304,6 +306,7 @@ mod tests {
             let pixels = vec![0; 64 * usize::from(height)].into();
             WallPicture::new(&Image { width: 64, height, offset_x: 0, offset_y: 0, pixels, mask: None })
         });
+        let own = OwnColours::new(&[], &[]);
         let view = View::new(FrameSize::LEARNER).unwrap();
         let mut fitting = 0;
         for round in 0..20_000 {
@@ -331,6 +334,7 @@ mod tests {
                     offset: signed(24),
                 },
                 picture: &pictures[round % 3],
+                own: &own,
                 light: Light::new(&camera, signed(8) as i32),
                 hung_from: signed(28),
             };

@@ -1,11 +1,9 @@
 //! Walls with vectors of 32 bytes: what eight columns show is worked out side by side; the plain twin is in `wall`, where a test
 //! compares them. These vectors have no 64-bit products and quotients: doubles, where they are exact, and products of halves stand in.
 
-use super::column::Column;
-use super::column_wide;
+use super::column_wide::{self, OwnColumn};
 use super::frame::Columns;
 use super::light::{Light, ONE_TABLE_DISTANCE};
-use super::magnified_wide::LitTexels;
 use super::wall::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, WALL_BLOCK, WallShader, WallSlope, fits_doubles};
 use std::arch::x86_64::*;
 
@@ -42,13 +40,17 @@ pub(super) fn fits(shader: &WallShader) -> bool {
 /// [`WallShader::draw`] of a wall that [fits].
 #[target_feature(enable = "avx2,fma")]
 pub(super) fn draw<const DEPTH: bool>(shader: &WallShader, frame: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16]) {
-    let (slope, mut lit) = (shader.slope(), LitTexels::default());
+    let slope = shader.slope();
     let blocks = tops.chunks(WALL_BLOCK).zip(bottoms.chunks(WALL_BLOCK));
     for (first, (tops, bottoms)) in (first..).step_by(WALL_BLOCK).zip(blocks) {
         let columns = columns(shader, &slope, shader.view.columns[first..].first_chunk().expect("the list is padded"));
-        match shader.picture.height {
-            64 => draw_block::<6>(shader, &columns, &mut lit, frame, first, tops, bottoms),
-            _ => draw_block::<7>(shader, &columns, &mut lit, frame, first, tops, bottoms),
+        match (shader.picture.height, shader.own.room) {
+            (64, 16) => draw_block::<64, 16>(shader, &columns, frame, first, tops, bottoms),
+            (64, 64) => draw_block::<64, 64>(shader, &columns, frame, first, tops, bottoms),
+            (64, _) => draw_block::<64, 256>(shader, &columns, frame, first, tops, bottoms),
+            (_, 16) => draw_block::<128, 16>(shader, &columns, frame, first, tops, bottoms),
+            (_, 64) => draw_block::<128, 64>(shader, &columns, frame, first, tops, bottoms),
+            _ => draw_block::<128, 256>(shader, &columns, frame, first, tops, bottoms),
         }
         if DEPTH {
             for (x, ((&top, &bottom), distance)) in (first..).zip(tops.iter().zip(bottoms).zip(columns.distance)) {
@@ -59,12 +61,11 @@ pub(super) fn draw<const DEPTH: bool>(shader: &WallShader, frame: &mut Columns, 
     }
 }
 
-/// The colours of eight columns, or of as many as there are rows for, of a texture `2^BITS` texels high.
+/// The colours of eight columns, or of as many as there are rows for.
 #[target_feature(enable = "avx2,fma")]
-fn draw_block<const BITS: u32>(
+fn draw_block<const TEXELS: usize, const COLOURS: usize>(
     shader: &WallShader,
     columns: &WallColumns,
-    lit: &mut LitTexels,
     frame: &mut Columns,
     first: usize,
     tops: &[i16],
@@ -73,11 +74,10 @@ fn draw_block<const BITS: u32>(
     for (i, (&top, &bottom)) in tops.iter().zip(bottoms).enumerate().take(WALL_BLOCK) {
         if top < bottom {
             let start = shader.picture.column_start(columns.u[i] as i32);
-            let texels = &shader.picture.pixels[start..start + (1 << BITS)];
-            let table = &shader.tables[columns.table[i] as usize];
-            let column = Column { texels, table, at: columns.at[i], step: columns.step[i] };
-            let pixels = frame.colour_of(first + i);
-            column_wide::avx2::<BITS>(&column, lit, pixels, &shader.view.rows, top as usize, bottom as usize);
+            let texels = shader.own.texels[start..].first_chunk().expect("a whole column");
+            let lit = shader.own.lit(columns.table[i] as usize).first_chunk().expect("as many as there is room for");
+            let column = OwnColumn::<TEXELS, COLOURS> { texels, lit, at: columns.at[i], step: columns.step[i] };
+            column_wide::avx2(&column, frame.colour_of(first + i), &shader.view.rows, top as usize, bottom as usize);
         }
     }
 }
