@@ -2,6 +2,7 @@
 
 use super::scene::nearest_colour;
 use crate::world::OPAQUE;
+use std::sync::OnceLock;
 
 /// Bits of a channel that tell apart what a mixture may become.
 const BITS: usize = 5;
@@ -14,15 +15,38 @@ pub(super) const WHOLE: u8 = OPAQUE / 2;
 /// Bits of a channel of which a part was taken: a quarter of a level each.
 const PART_BITS: usize = 10;
 
+/// What becomes of every two colours at one opacity of the upper one.
+#[derive(Debug)]
+pub(super) struct Mixture(Box<[u8]>);
+
+impl Mixture {
+    /// So many bytes may be read behind each entry.
+    const PADDING: usize = 3;
+
+    /// As [`Blend::over`].
+    #[inline(always)]
+    pub fn over(&self, upper: u8, lower: u8) -> u8 {
+        self.0[usize::from(upper) << 8 | usize::from(lower)]
+    }
+
+    /// An entry for each pair, by the upper colour times 256 plus the lower one, and more.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub fn entries(&self) -> &[u8; (1 << 16) + Mixture::PADDING] {
+        self.0.first_chunk().expect("all pairs are there")
+    }
+}
+
 /// The palette, ready for mixing.
 #[derive(Debug)]
 pub(super) struct Blend {
     /// So many parts of [`WHOLE`] of every colour, cut to a quarter of a level: red, green and blue of [`PART_BITS`] each in a
     /// number, so that the parts of two colours are added at once.
-    pub parts: Box<[[u32; 256]]>,
-    /// The nearest index of every colour reduced to [`BITS`] a channel: a mixture of any two needs no search, and none is
-    /// kept of all pairs and all shares. Padded, so that four bytes may be read at each.
-    pub nearest: Box<[u8]>,
+    parts: Box<[[u32; 256]]>,
+    /// The nearest index of every colour reduced to [`BITS`] a channel: a mixture of any two needs no search.
+    nearest: Box<[u8]>,
+    /// By opacity, once it was asked for.
+    mixtures: Box<[OnceLock<Mixture>; OPAQUE as usize + 1]>,
     /// Every colour under so many parts of [`WHOLE`] of black; under none it stays as it is.
     darkened: Box<[[u8; 256]; 1 << (WHOLE.ilog2() + 1)]>,
 }
@@ -32,7 +56,7 @@ impl Blend {
         // Eight bits of five by repeating the topmost.
         let widened = |channel: usize| (channel << 3 | channel >> 2) as u8;
         let colour = |i: usize| [2 * BITS, BITS, 0].map(|shift| widened(i >> shift & MOST));
-        let nearest = (0..1 << (3 * BITS)).map(|i| nearest_colour(palette, colour(i))).chain([0; 3]).collect();
+        let nearest = (0..1 << (3 * BITS)).map(|i| nearest_colour(palette, colour(i))).collect();
         let part = |share: u8, [red, green, blue]: [u8; 3]| {
             [red, green, blue]
                 .iter()
@@ -40,7 +64,8 @@ impl Blend {
         };
         let parts = (0..=WHOLE).map(|share| palette.map(|colour| part(share, colour))).collect();
         let as_it_is = Box::new(std::array::from_fn(|_| std::array::from_fn(|index| index as u8)));
-        let mut blend = Blend { parts, nearest, darkened: as_it_is };
+        let mixtures = Box::new([const { OnceLock::new() }; OPAQUE as usize + 1]);
+        let mut blend = Blend { parts, nearest, mixtures, darkened: as_it_is };
         let black = nearest_colour(palette, [0; 3]);
         for share in 1..=WHOLE {
             blend.darkened[usize::from(share)] = std::array::from_fn(|lower| blend.over(black, lower as u8, 2 * share));
@@ -62,6 +87,13 @@ impl Blend {
         let sum = self.parts[above][usize::from(upper)] + self.parts[below][usize::from(lower)];
         let [red, green, blue] = [2, 1, 0].map(|channel| (sum >> (channel * PART_BITS + PART_BITS - BITS)) as usize & MOST);
         self.nearest[red << (2 * BITS) | green << BITS | blue]
+    }
+
+    /// What becomes of every two colours where the upper one is so opaque: pictures have few opacities.
+    pub fn mixture(&self, opacity: u8) -> &Mixture {
+        let both = |i: usize| self.over((i >> 8) as u8, i as u8, opacity);
+        self.mixtures[usize::from(opacity.min(OPAQUE))]
+            .get_or_init(|| Mixture((0..1 << 16).map(both).chain([0; Mixture::PADDING]).collect()))
     }
 
     /// A palette index under black that hides so many parts of [`WHOLE`].
@@ -100,6 +132,7 @@ mod tests {
                     (five << 3 | five >> 2) as u8
                 });
                 assert_eq!(blend.over(upper, lower, opacity), nearest_colour(palette, colour));
+                assert_eq!(blend.mixture(opacity).over(upper, lower), blend.over(upper, lower, opacity));
             }
         }
     }

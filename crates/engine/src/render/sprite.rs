@@ -218,7 +218,7 @@ impl SeenSprite {
             rows: self.first_row as usize..self.end_row as usize,
             v: self.v,
             v_step: self.v_step,
-            blend: (self.opacity < OPAQUE).then_some((&scene.blend, self.opacity)),
+            mixture: (self.opacity < OPAQUE).then(|| scene.blend.mixture(self.opacity)),
             depth,
             class,
         }

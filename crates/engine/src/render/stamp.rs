@@ -1,7 +1,7 @@
 //! A picture with holes put on the frame as it is: what sprites and weapons come down to.
 
 use super::View;
-use super::blend::Blend;
+use super::blend::Mixture;
 use super::frame::Frame;
 use super::picture::MaskedPicture;
 use super::sprite_picture::SpritePicture;
@@ -86,8 +86,8 @@ pub(super) struct Stamp<'a> {
     /// Texture row at base row 0, and its change a base row.
     pub v: i64,
     pub v_step: i64,
-    /// For what is not opaque: the colours between two, and how much of it hides what is behind.
-    pub blend: Option<(&'a Blend, u8)>,
+    /// For what is not opaque: what becomes of it and what is behind.
+    pub mixture: Option<&'a Mixture>,
     pub depth: u8,
     pub class: u16,
 }
@@ -141,15 +141,15 @@ impl Stamp<'_> {
         }
         let lines = frame.colour[open.start * width..].chunks_exact_mut(width).zip(&base_rows[open.clone()]);
         // Which texels are holes cannot be foretold.
-        match self.blend {
+        match self.mixture {
             None => lines.for_each(|(line, &base_row)| {
                 let texel = texels[self.texel_row(base_row)];
                 let lit = self.table[usize::from(texel as u8)];
                 line[x] = if texel & MaskedPicture::OPAQUE != 0 { lit } else { line[x] };
             }),
-            Some((blend, opacity)) => lines.for_each(|(line, &base_row)| {
+            Some(mixture) => lines.for_each(|(line, &base_row)| {
                 let texel = texels[self.texel_row(base_row)];
-                let lit = blend.over(self.table[usize::from(texel as u8)], line[x], opacity);
+                let lit = mixture.over(self.table[usize::from(texel as u8)], line[x]);
                 line[x] = if texel & MaskedPicture::OPAQUE != 0 { lit } else { line[x] };
             }),
         }
@@ -178,6 +178,7 @@ impl Stamp<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::blend::Blend;
     use super::*;
     use crate::assets::{Assets, Image};
     use crate::math::Rng;
@@ -225,7 +226,7 @@ mod tests {
                 rows,
                 v,
                 v_step,
-                blend: (round % 3 == 0).then_some((&blend, opacity)),
+                mixture: (round % 3 == 0).then(|| blend.mixture(opacity)),
                 depth: 9,
                 class: 33,
             };
@@ -241,10 +242,10 @@ mod tests {
                     let shown = inside && image.mask.as_ref().is_none_or(|mask| mask[texel()] != 0);
                     let at = row * frame_width + x;
                     let own = || table[usize::from(image.pixels[texel()])];
-                    let colour = match (shown, stamp.blend) {
+                    let colour = match (shown, stamp.mixture) {
                         (false, _) => before.colour[at],
                         (true, None) => own(),
-                        (true, Some((blend, opacity))) => blend.over(own(), before.colour[at], opacity),
+                        (true, Some(_)) => blend.over(own(), before.colour[at], opacity),
                     };
                     assert_eq!((plain.colour[at], plain.class[at]), (colour, if shown { 33 } else { 7 }));
                 }

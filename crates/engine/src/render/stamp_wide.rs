@@ -1,7 +1,7 @@
 //! Stamps up to 256 texels wide, 64 columns at a time: a row of texels is one to four vectors, from which the columns pick.
 //! The plain twin is in `stamp`, where a test compares them.
 
-use super::blend::Blend;
+use super::blend::Mixture;
 use super::convert_wide::{load, load_table, look_up_block, store};
 use super::frame::Frame;
 use super::sprite_picture::TEXEL_BLOCK;
@@ -38,12 +38,12 @@ pub(super) fn draw<const DEPTH: bool, const CLASS: bool>(
             let at = row * frame.width + first;
             let end = at + (64 - mask.leading_zeros() as usize);
             let pixels = &mut frame.colour[at..end];
-            match stamp.blend {
+            match stamp.mixture {
                 None => {
                     // SAFETY: what the mask selects lies before `end`.
                     unsafe { _mm512_mask_storeu_epi8(pixels.as_mut_ptr().cast(), mask, lit) }
                 }
-                Some((blend, opacity)) => shine_through(blend, opacity, pixels, mask, lit),
+                Some(mixture) => shine_through(mixture, pixels, mask, lit),
             }
             if DEPTH {
                 let depth = _mm512_set1_epi8(stamp.depth as i8);
@@ -117,40 +117,28 @@ fn pick_bits(row: &[u64], columns: __m512i) -> u64 {
     _mm512_movepi8_mask(picked)
 }
 
-/// Mixes the pixels of a mask with what is there, sixteen at a time as [`Blend::over`] one.
+/// Mixes the pixels of a mask with what is there, sixteen at a time as [`Mixture::over`] one.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-fn shine_through(blend: &Blend, opacity: u8, pixels: &mut [u8], mask: u64, lit: __m512i) {
+fn shine_through(mixture: &Mixture, pixels: &mut [u8], mask: u64, lit: __m512i) {
     const LANES: usize = 16;
-    let [upper_parts, lower_parts] = Blend::shares(opacity).map(|share| blend.parts[share].as_ptr());
     let mut colours = [0; STAMP_BLOCK];
     store(&mut colours, lit);
     let colours = colours.as_chunks::<LANES>().0;
-    // Bits of red, green and blue at the places that they have in the index of a mixture.
-    let [red, green, blue] = [0b11111 << 10, 0b11111 << 5, 0b11111].map(|bits| _mm512_set1_epi32(bits));
     for (part, colours) in colours.iter().enumerate() {
         let mask = (mask >> (part * LANES)) as __mmask16;
         if mask == 0 {
             continue;
         }
         let at = pixels[part * LANES..].as_mut_ptr();
-        // SAFETY: what the mask selects lies in the slice; indices are bytes, or of 15 bits in a padded list.
+        // SAFETY: what the mask selects lies in the slice; pairs of bytes have entries in a list that is padded.
         unsafe {
             let lower = _mm512_cvtepu8_epi32(_mm_maskz_loadu_epi8(mask, at.cast()));
             let upper = _mm512_cvtepu8_epi32(_mm_loadu_si128(colours.as_ptr().cast()));
+            let pair = _mm512_or_si512(_mm512_slli_epi32::<8>(upper), lower);
             let zero = _mm512_setzero_si512();
-            let upper = _mm512_mask_i32gather_epi32::<4>(zero, mask, upper, upper_parts.cast());
-            let lower = _mm512_mask_i32gather_epi32::<4>(zero, mask, lower, lower_parts.cast());
-            let sum = _mm512_add_epi32(upper, lower);
-            let index = _mm512_or_si512(
-                _mm512_and_si512(_mm512_srli_epi32::<15>(sum), red),
-                _mm512_or_si512(
-                    _mm512_and_si512(_mm512_srli_epi32::<10>(sum), green),
-                    _mm512_and_si512(_mm512_srli_epi32::<5>(sum), blue),
-                ),
-            );
-            let mixed = _mm512_mask_i32gather_epi32::<1>(zero, mask, index, blend.nearest.as_ptr().cast());
-            _mm512_mask_cvtepi32_storeu_epi8(at.cast(), mask, mixed);
+            let mixed = _mm512_mask_i32gather_epi32::<1>(zero, mask, pair, mixture.entries().as_ptr().cast());
+            _mm_mask_storeu_epi8(at.cast(), mask, _mm512_cvtepi32_epi8(mixed));
         }
     }
 }

@@ -76,7 +76,7 @@ impl Canvas<'_> {
             rows: row(0)..row(picture.height),
             v,
             v_step,
-            blend: (!is_opaque).then_some((&scene.blend, opacity)),
+            mixture: (!is_opaque).then(|| scene.blend.mixture(opacity)),
             depth: 0,
             class: class::WEAPON,
         };
