@@ -8,8 +8,8 @@ use crate::simd::Simd;
 
 /// Rows that are drawn at once at most: columns are whole blocks of these.
 pub(super) const ROW_BLOCK: usize = 64;
-/// Rows that may be written behind a column's last one, and are put back: lists by row are that much longer than a column.
-pub(super) const ROW_GROUP: usize = 8;
+/// Rows that may be asked for behind a column's last one: lists by row are that much longer than a column.
+pub(super) const ROW_PADDING: usize = 32;
 
 /// A column of a wall on its way to the screen.
 pub(super) struct Column<'a> {
@@ -83,11 +83,11 @@ mod tests {
         for round in 0..1000 {
             let height = [64, 128, 96][round % 3];
             let length = [60usize, 100, 403][round / 3 % 3];
-            let padded = length.next_multiple_of(ROW_BLOCK) + ROW_GROUP;
+            let padded = length.next_multiple_of(ROW_BLOCK);
             // Few colours, some, and many.
             let colours = [15, 63, 255][round % 7 % 3];
             let texels: Vec<u8> = (0..2 * height).map(|_| (rng.byte() as u8 & colours).wrapping_mul(3)).collect();
-            let rows: Vec<u32> = (0..padded as u32).map(|row| row * 5 / 3).collect();
+            let rows: Vec<u32> = (0..(padded + ROW_PADDING) as u32).map(|row| row * 5 / 3).collect();
             let before: Vec<u8> = (0..padded).map(|_| rng.byte() as u8).collect();
             let (at, step) = (rng.next_u64() as u32, rng.next_u64() as u32 >> rng.between(4, 12));
             for _ in 0..6 {

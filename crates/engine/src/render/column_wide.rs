@@ -6,6 +6,7 @@
 
 use super::column::{Column, ROW_BLOCK};
 use super::convert_wide::{load, load_table, look_up_block};
+use super::own_wide::{GROUP, bytes_of, first_bytes, look_up};
 use std::arch::x86_64::*;
 
 /// The highest byte of each of sixteen numbers, twice.
@@ -78,9 +79,6 @@ pub(super) struct OwnColumn<'a, const TEXELS: usize, const COLOURS: usize> {
     pub step: u32,
 }
 
-/// Rows that are drawn at once with vectors of 32 bytes.
-const GROUP: usize = 32;
-
 /// Draws rows `top..bottom` with vectors of 32 bytes: texels and their colours are picked from tables in registers. `pixels` are whole groups.
 #[inline]
 #[target_feature(enable = "avx2")]
@@ -115,10 +113,8 @@ pub(super) fn avx2<const TEXELS: usize, const COLOURS: usize>(
 #[target_feature(enable = "avx2")]
 fn texel_numbers<const TEXELS: usize>(at: __m256i, step: __m256i, rows: &[u32; GROUP]) -> __m256i {
     let (eights, _) = rows.as_chunks::<8>();
-    let low = _mm256_packs_epi32(numbers::<TEXELS>(at, step, &eights[0]), numbers::<TEXELS>(at, step, &eights[1]));
-    let high = _mm256_packs_epi32(numbers::<TEXELS>(at, step, &eights[2]), numbers::<TEXELS>(at, step, &eights[3]));
-    // Fours of rows now lie 0, 2, 4, 6, 1, 3, 5, 7.
-    _mm256_permutevar8x32_epi32(_mm256_packus_epi16(low, high), _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7))
+    let four = |i: usize| numbers::<TEXELS>(at, step, &eights[i]);
+    bytes_of([four(0), four(1), four(2), four(3)])
 }
 
 #[inline]
@@ -128,65 +124,4 @@ fn numbers<const TEXELS: usize>(at: __m256i, step: __m256i, rows: &[u32; 8]) -> 
     let rows = unsafe { _mm256_loadu_si256(rows.as_ptr().cast()) };
     let position = _mm256_add_epi32(at, _mm256_mullo_epi32(step, rows));
     if TEXELS == 64 { _mm256_srli_epi32(position, 26) } else { _mm256_srli_epi32(position, 25) }
-}
-
-/// What a table has for 32 numbers, all of which it has something for.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn look_up<const SIZE: usize>(table: &[u8; SIZE], numbers: __m256i) -> __m256i {
-    const { assert!(SIZE == 16 || SIZE == 64 || SIZE == 128 || SIZE == 256) }
-    let (parts, _) = table.as_chunks::<16>();
-    match SIZE {
-        16 => sixteen(&parts[0], numbers),
-        64 => sixty_four(&parts[..4], numbers),
-        128 => half_table(&parts[..8], numbers),
-        _ => {
-            // What has the highest bit set would be looked up as nothing.
-            let within = _mm256_and_si256(numbers, _mm256_set1_epi8(127));
-            _mm256_blendv_epi8(half_table(&parts[..8], within), half_table(&parts[8..], within), numbers)
-        }
-    }
-}
-
-#[inline]
-#[target_feature(enable = "avx2")]
-fn half_table(parts: &[[u8; 16]], numbers: __m256i) -> __m256i {
-    let (low, high) = (sixty_four(&parts[..4], numbers), sixty_four(&parts[4..], numbers));
-    // The highest bit of each byte chooses: here the seventh, below the sixth and the fifth.
-    _mm256_blendv_epi8(low, high, _mm256_slli_epi16(numbers, 1))
-}
-
-#[inline]
-#[target_feature(enable = "avx2")]
-fn sixty_four(parts: &[[u8; 16]], numbers: __m256i) -> __m256i {
-    let fifth = _mm256_slli_epi16(numbers, 3);
-    let low = _mm256_blendv_epi8(sixteen(&parts[0], numbers), sixteen(&parts[1], numbers), fifth);
-    let high = _mm256_blendv_epi8(sixteen(&parts[2], numbers), sixteen(&parts[3], numbers), fifth);
-    _mm256_blendv_epi8(low, high, _mm256_slli_epi16(numbers, 2))
-}
-
-#[inline]
-#[target_feature(enable = "avx2")]
-fn sixteen(part: &[u8; 16], numbers: __m256i) -> __m256i {
-    // SAFETY: 16 bytes are readable behind the reference.
-    let part = unsafe { _mm_loadu_si128(part.as_ptr().cast()) };
-    _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(part), numbers)
-}
-
-/// The first `count` of 32 bytes, of all if there are more.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn first_bytes(count: usize) -> __m256i {
-    static BYTES: [u8; 2 * GROUP] = {
-        let mut bytes = [0; 2 * GROUP];
-        let mut i = 0;
-        while i < GROUP {
-            bytes[i] = u8::MAX;
-            i += 1;
-        }
-        bytes
-    };
-    let bytes: &[u8; GROUP] = BYTES[GROUP - count.min(GROUP)..].first_chunk().expect("there are as many again");
-    // SAFETY: 32 bytes are readable behind the reference.
-    unsafe { _mm256_loadu_si256(bytes.as_ptr().cast()) }
 }

@@ -1,7 +1,7 @@
 //! The buffers that are drawn into.
 
 use super::View;
-use super::column::{ROW_BLOCK, ROW_GROUP};
+use super::column::ROW_BLOCK;
 use super::depth::Depths;
 use super::plane::Span;
 use super::turn;
@@ -74,7 +74,7 @@ impl Columns {
     /// Has room for `width` columns of `rows` rows.
     pub fn fit(&mut self, width: usize, rows: usize) {
         self.stride = column_stride(rows);
-        self.colour.resize(width * self.stride + ROW_GROUP, 0);
+        self.colour.resize(width * self.stride, 0);
         self.depth.resize(width * self.stride, 0);
     }
 
@@ -86,10 +86,10 @@ impl Columns {
         }
     }
 
-    /// The palette indices of a column, and a group of the next one's.
+    /// The palette indices of a column.
     #[inline]
     pub fn colour_of(&mut self, x: usize) -> &mut [u8] {
-        &mut self.colour[x * self.stride..(x + 1) * self.stride + ROW_GROUP]
+        &mut self.colour[x * self.stride..(x + 1) * self.stride]
     }
 
     /// Whether each column is one block of rows.

@@ -4,18 +4,20 @@ use super::fence::{Hung, Run};
 #[cfg(target_arch = "x86_64")]
 use super::masked_wide;
 #[cfg(target_arch = "x86_64")]
+use super::own_wide::GROUP;
+#[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
 use std::ops::Range;
-
-/// Rows that are worked out at once at most.
-pub(super) const MASKED_BLOCK: usize = 64;
 
 /// A column on its way to the frame.
 pub(super) struct MaskedColumn<'a> {
     /// Palette indices in the low bytes.
     pub texels: &'a [u16],
     pub table: &'a [u8; 256],
+    /// The same by the picture's own colours, and these as they are lit.
+    pub own_texels: &'a [u8],
+    pub lit: &'a [u8],
     /// Texture row at base row 0 and its change a base row, 32 fractional bits.
     pub at: i64,
     pub step: i64,
@@ -42,19 +44,19 @@ impl MaskedColumn<'_> {
     #[inline(always)]
     pub fn draw(&self, simd: Simd, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {
         #[cfg(target_arch = "x86_64")]
-        if simd.level() == Level::Avx512 && self.texels.len() <= masked_wide::MOST_TEXELS {
-            for first in (rows.start / MASKED_BLOCK * MASKED_BLOCK..rows.end).step_by(MASKED_BLOCK) {
-                let base_rows = base_rows[first..].first_chunk().expect("lists by row are padded");
+        if simd.level() >= Level::Avx2 && !rows.is_empty() && masked_wide::fits(self, base_rows[rows.end - 1]) {
+            let mut row = rows.start;
+            while row < rows.end {
+                let base_rows = base_rows[row..].first_chunk().expect("lists by row are padded");
                 // SAFETY: whoever has this `Simd` has the instructions.
-                let (colours, shown) = unsafe { masked_wide::block(self, base_rows) };
-                let above = rows.start.saturating_sub(first);
-                let below = (first + MASKED_BLOCK).saturating_sub(rows.end);
-                let mut shown = shown & (u64::MAX << above) & (u64::MAX >> below);
+                let (colours, mut shown) = unsafe { masked_wide::block(self, base_rows) };
+                shown &= u32::MAX >> GROUP.saturating_sub(rows.end - row);
                 while shown != 0 {
                     let i = shown.trailing_zeros() as usize;
-                    put(first + i, colours[i]);
+                    put(row + i, colours[i]);
                     shown &= shown - 1;
                 }
+                row += GROUP;
             }
             return;
         }
@@ -80,6 +82,7 @@ mod tests {
     use super::*;
     use crate::math::Rng;
     use crate::render::fence::{is_opaque, runs_of};
+    use crate::render::own_colours::OwnColours;
 
     #[test]
     fn all_ways_show_the_same_rows() {
@@ -90,12 +93,16 @@ mod tests {
             let length = [60u32, 100, 403][round / 6 % 3];
             let texels: Vec<u16> = (0..height).map(|_| rng.below(512) as u16).collect();
             let runs: Vec<Run> = runs_of(texels.iter().map(is_opaque)).collect();
-            let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + 8).map(|row| row * 5 / 3).collect();
+            let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + GROUP as u32).map(|row| row * 5 / 3).collect();
             let step = i64::from(rng.between(1, 1 << 30)) << rng.below(4);
             let at = i64::from(rng.between(-100, 100)) << 32;
             let hung =
                 Hung { horizon: i64::from(rng.between(-100, 200)) << 16, eye: at >> 16, scale: (1 << 32) / (step >> 16).max(3) };
-            let column = MaskedColumn { texels: &texels, table: &table, at, step, runs: &runs, hung };
+            let pixels: Vec<u8> = texels.iter().map(|&texel| texel as u8 % [16, 64, 255][round / 18 % 3]).collect();
+            let texels: Vec<u16> = texels.iter().zip(&pixels).map(|(&texel, &pixel)| texel & 0x100 | u16::from(pixel)).collect();
+            let own = OwnColours::new(&pixels, &[table]);
+            let (own_texels, lit) = (&own.texels[..], own.lit(0));
+            let column = MaskedColumn { texels: &texels, table: &table, own_texels, lit, at, step, runs: &runs, hung };
             let (a, b) = (rng.below(length + 1) as usize, rng.below(length + 1) as usize);
             let shown = |simd: Simd| {
                 let mut list = Vec::new();

@@ -5,6 +5,7 @@ use super::frame::{Frame, class};
 use super::light::{Light, ONE_TABLE_DISTANCE};
 use super::masked::Masked;
 use super::masked_column::MaskedColumn;
+use super::own_colours::OwnColours;
 use super::silhouette::Silhouette;
 use super::turned::TurnedLine;
 use super::wall::{Edge, INVERSE_BITS, TextureLine};
@@ -16,6 +17,7 @@ use std::ops::Range;
 struct SeenTexture<'a> {
     silhouette: &'a Silhouette,
     fence: &'a Fence,
+    own: &'a OwnColours,
     /// Where what is within the opening begins and ends.
     edges: [Edge; 2],
     /// Height of the top row relative to the eye, 16.16.
@@ -70,7 +72,8 @@ impl Masked<'_> {
         let (scene, camera, view) = (self.scene, self.camera, self.view);
         let seg = &scene.segs[silhouette.seg as usize];
         let face = &scene.faces[seg.face as usize];
-        let fence = &scene.textures.fences[self.pictures[usize::from(face.middle?.0)] as usize];
+        let picture = self.pictures[usize::from(face.middle?.0)] as usize;
+        let fence = &scene.textures.fences[picture];
         let (front, back) = (self.world.sector(SectorId(seg.front)), self.world.sector(SectorId(seg.back)));
         let (floor, ceiling) = (front.floor.max(back.floor), front.ceiling.min(back.ceiling));
         let height = Fixed::from_int(fence.picture.height as i32);
@@ -80,6 +83,7 @@ impl Masked<'_> {
         Some(SeenTexture {
             silhouette,
             fence,
+            own: &scene.textures.own[picture],
             edges: [top, bottom].map(|height| silhouette.ends.edge(camera, view, height - camera.z)),
             hung_from: hung_from - camera.z,
             along: TurnedLine::of_face(camera, face).texture(view, face, silhouette.base_ends),
@@ -108,11 +112,15 @@ impl Masked<'_> {
         let distance = silhouette.line.distance_at(base_column);
         let nearness = (silhouette.ends.inverse_at(base_column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
         let u = seen.along.at(base_column, distance) >> 16;
-        let (texels, runs) = fence.column(u.rem_euclid(i64::from(fence.picture.width)) as u32);
+        let u = u.rem_euclid(i64::from(fence.picture.width)) as u32;
+        let (texels, runs) = fence.column(u);
+        let table = seen.light.table(nearness);
         let step = (distance * self.view.inverse_focal_y) >> 16;
         let shown = MaskedColumn {
             texels,
-            table: &self.scene.assets.light_tables[seen.light.table(nearness)],
+            table: &self.scene.assets.light_tables[table],
+            own_texels: &seen.own.texels[(u * fence.picture.height) as usize..][..texels.len()],
+            lit: seen.own.lit(table),
             at: (seen.hung_from << 16) - self.camera.to_horizon(step),
             step,
             runs,

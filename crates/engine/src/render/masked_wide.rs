@@ -1,92 +1,76 @@
-//! 64 rows of a column of a texture with holes, up to 128 texels high: the texels are two or four vectors of words. The
-//! plain twin is in `masked_column`, where a test compares them.
+//! 32 rows of a column of a texture with holes, 64 or 128 texels high, with vectors of 32 bytes; the plain twin is in `masked_column`, where a
+//! test compares them.
 
-use super::convert_wide::{load_table, look_up_block, store};
-use super::masked_column::{MASKED_BLOCK, MaskedColumn};
+use super::masked_column::MaskedColumn;
+use super::own_wide::{GROUP, bytes_of, look_up};
 use std::arch::x86_64::*;
 
-/// Most texels of a column.
-pub(super) const MOST_TEXELS: usize = 128;
+/// The last row and the last texel that bytes with a sign hold.
+const LAST: i64 = i8::MAX as i64;
 
-/// The colours of 64 base rows, and a bit for each that shows.
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(super) fn block(column: &MaskedColumn, base_rows: &[u32; MASKED_BLOCK]) -> ([u8; MASKED_BLOCK], u64) {
-    let (halves, _) = base_rows.as_chunks::<32>();
-    let rows = [texel_rows(column, &halves[0]), texel_rows(column, &halves[1])];
-    let [low, high] = rows.map(|rows| look_up(column.texels, rows));
-    let shown = [shown(column, rows[0], words(&halves[0])), shown(column, rows[1], words(&halves[1]))];
-    let indices = _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi16_epi8(low)), _mm512_cvtepi16_epi8(high), 1);
-    let mut colours = [0; MASKED_BLOCK];
-    store(&mut colours, look_up_block(load_table(column.table), indices));
-    (colours, u64::from(shown[0]) | u64::from(shown[1]) << 32)
+/// Whether all numbers of a column fit, of which base rows up to `last_row` are asked: doubles hold its texels' positions exactly.
+#[inline]
+pub(super) fn fits(column: &MaskedColumn, last_row: u32) -> bool {
+    let positions = (column.at.unsigned_abs() | column.step.unsigned_abs() << (LAST.ilog2() + 1)) >> (f64::MANTISSA_DIGITS - 1);
+    matches!(column.texels.len(), 64 | 128) && i64::from(last_row) <= LAST && positions == 0
 }
 
-/// The texture rows of 32 base rows, as words.
+/// The colours of 32 base rows, and a bit for each that shows.
 #[inline]
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn texel_rows(column: &MaskedColumn, base_rows: &[u32; 32]) -> __m512i {
+#[target_feature(enable = "avx2,fma")]
+pub(super) fn block(column: &MaskedColumn, base_rows: &[u32; GROUP]) -> ([u8; GROUP], u32) {
     let (eights, _) = base_rows.as_chunks::<8>();
-    let low = _mm256_inserti128_si256(_mm256_castsi128_si256(eight(column, &eights[0])), eight(column, &eights[1]), 1);
-    let high = _mm256_inserti128_si256(_mm256_castsi128_si256(eight(column, &eights[2])), eight(column, &eights[3]), 1);
-    _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1)
+    let rows = |i: usize| texel_rows(column, &eights[i]);
+    let texel_rows = bytes_of([rows(0), rows(1), rows(2), rows(3)]);
+    let texels = match column.own_texels.first_chunk::<128>() {
+        Some(texels) => look_up(texels, texel_rows),
+        None => look_up(column.own_texels.first_chunk::<64>().expect("64 or 128 texels"), texel_rows),
+    };
+    let lit = match column.lit.len() {
+        16 => look_up::<16>(column.lit.first_chunk().expect("as many"), texels),
+        64 => look_up::<64>(column.lit.first_chunk().expect("as many"), texels),
+        _ => look_up::<256>(column.lit.first_chunk().expect("as many"), texels),
+    };
+    // SAFETY: 32 bytes are readable behind each reference.
+    let base = |i: usize| unsafe { _mm256_loadu_si256(eights[i].as_ptr().cast()) };
+    let shown = shown(column, texel_rows, bytes_of([base(0), base(1), base(2), base(3)]));
+    let mut colours = [0; GROUP];
+    // SAFETY: 32 bytes are writable behind the reference.
+    unsafe { _mm256_storeu_si256(colours.as_mut_ptr().cast(), lit) }
+    (colours, shown)
 }
 
+/// The texture rows of eight base rows.
 #[inline]
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn eight(column: &MaskedColumn, base_rows: &[u32; 8]) -> __m128i {
-    let row = widened(base_rows);
-    let change = _mm512_mullo_epi64(_mm512_set1_epi64(column.step), row);
-    let v = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(column.at), change), 32);
-    let last = _mm512_set1_epi64(column.texels.len() as i64 - 1);
-    _mm512_cvtepi64_epi16(_mm512_max_epi64(_mm512_min_epi64(v, last), _mm512_setzero_si512()))
-}
-
-#[inline]
-#[target_feature(enable = "avx512f")]
-fn widened(base_rows: &[u32; 8]) -> __m512i {
-    // SAFETY: 32 bytes are readable behind the reference.
-    _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(base_rows.as_ptr().cast()) })
+#[target_feature(enable = "avx2,fma")]
+fn texel_rows(column: &MaskedColumn, base_rows: &[u32; 8]) -> __m256i {
+    let (fours, _) = base_rows.as_chunks::<4>();
+    let four = |i: usize| {
+        const WHOLE: f64 = 1.0 / (1u64 << 32) as f64;
+        let (at, step) = (_mm256_set1_pd(column.at as f64 * WHOLE), _mm256_set1_pd(column.step as f64 * WHOLE));
+        // SAFETY: 16 bytes are readable behind the reference.
+        let row = _mm256_cvtepi32_pd(unsafe { _mm_loadu_si128(fours[i].as_ptr().cast()) });
+        // Towards zero; what is above the first texel counts as it.
+        _mm256_cvttpd_epi32(_mm256_fmadd_pd(step, row, at))
+    };
+    let rows = _mm256_inserti128_si256(_mm256_castsi128_si256(four(0)), four(1), 1);
+    let last = _mm256_set1_epi32(column.texels.len() as i32 - 1);
+    _mm256_min_epi32(_mm256_max_epi32(rows, _mm256_setzero_si256()), last)
 }
 
 /// A bit for each of 32 base rows: whether its texel is in a run that begins there or above.
 #[inline]
-#[target_feature(enable = "avx512f,avx512bw")]
-fn shown(column: &MaskedColumn, texel_rows: __m512i, base_rows: __m512i) -> u32 {
-    let splat = |row: i64| _mm512_set1_epi16(row.clamp(0, i64::from(i16::MAX)) as i16);
-    column.runs.iter().fold(0, |shown, &run| {
-        let [start, end] = run.map(|texel| splat(i64::from(texel)));
-        let inside = _mm512_mask_cmplt_epi16_mask(_mm512_cmple_epi16_mask(start, texel_rows), texel_rows, end);
-        shown | _mm512_mask_cmple_epi16_mask(inside, splat(column.hung.first_row(run)), base_rows)
-    })
-}
-
-/// Base rows as words, none of which is the greatest.
-#[inline]
-#[target_feature(enable = "avx512f")]
-fn words(base_rows: &[u32; 32]) -> __m512i {
-    // SAFETY: 64 bytes are readable behind each reference.
-    let [low, high] = [0, 16].map(|from| unsafe { _mm512_loadu_si512(base_rows[from..].as_ptr().cast()) });
-    _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi32_epi16(low)), _mm512_cvtepi32_epi16(high), 1)
-}
-
-/// What a list of a column has for the texels of 32 rows.
-#[inline]
-#[target_feature(enable = "avx512f,avx512bw")]
-fn look_up(column: &[u16], rows: __m512i) -> __m512i {
-    let low = _mm512_permutex2var_epi16(part(column, 0), rows, part(column, 32));
-    if column.len() <= 64 {
-        return low;
+#[target_feature(enable = "avx2")]
+fn shown(column: &MaskedColumn, texel_rows: __m256i, base_rows: __m256i) -> u32 {
+    let splat = |row: i64| _mm256_set1_epi8(row.clamp(-1, LAST) as i8);
+    let mut shown = _mm256_setzero_si256();
+    for &run in column.runs {
+        let [before, last] = run.map(|texel| splat(i64::from(texel) - 1));
+        // A byte is as large as rows become: none is at `LAST` or below that begins beyond it.
+        let first_row = column.hung.first_row(run);
+        let inside = _mm256_andnot_si256(_mm256_cmpgt_epi8(texel_rows, last), _mm256_cmpgt_epi8(texel_rows, before));
+        let begun = _mm256_cmpgt_epi8(base_rows, splat(first_row.saturating_sub(1)));
+        shown = _mm256_or_si256(shown, _mm256_and_si256(inside, begun));
     }
-    let high = _mm512_permutex2var_epi16(part(column, 64), rows, part(column, 96));
-    _mm512_mask_blend_epi16(_mm512_test_epi16_mask(rows, _mm512_set1_epi16(64)), low, high)
-}
-
-/// The texels from `from` on, as many as there are.
-#[inline]
-#[target_feature(enable = "avx512f,avx512bw")]
-fn part(texels: &[u16], from: usize) -> __m512i {
-    let texels = &texels[from.min(texels.len())..];
-    let there = if texels.len() >= 32 { u32::MAX } else { (1 << texels.len()) - 1 };
-    // SAFETY: only the texels that are there are read.
-    unsafe { _mm512_maskz_loadu_epi16(there, texels.as_ptr().cast()) }
+    _mm256_movemask_epi8(shown) as u32
 }

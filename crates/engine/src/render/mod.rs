@@ -36,6 +36,8 @@ mod narrow;
 mod narrow_wide;
 mod openings;
 mod own_colours;
+#[cfg(target_arch = "x86_64")]
+mod own_wide;
 mod palette;
 mod picture;
 mod plane;

@@ -4,7 +4,7 @@
 //! grid. Usually the two are the same. At 128x72 the base is 160x120, of which every 1.25th column and 5/3rd row is
 //! drawn, so that the small frame equals the nearest-neighbour reduction of the large one by construction.
 
-use super::column::ROW_GROUP;
+use super::column::ROW_PADDING;
 use super::frame::column_stride;
 use super::narrow::padded;
 use super::turned::COLUMN_RAY_BITS;
@@ -39,7 +39,7 @@ pub struct View {
     pub(super) columns: Box<[u32]>,
     /// What the base column rises by over [`CHUNK`] frame columns.
     pub(super) chunk_stride: u32,
-    /// Base row of each frame row above the status bar, then zeros as far as columns are drawn.
+    /// Base row of each frame row above the status bar, then zeros as far as columns are drawn, and more.
     pub(super) rows: Box<[u32]>,
     /// For each base column 0..=width, the first frame column at or right of it.
     pub(super) first_column: Box<[u16]>,
@@ -80,7 +80,7 @@ impl View {
         let first_column = (0..=width).map(|c| columns.partition_point(|&column| column < c) as u16).collect();
         let first_row = (0..=base_view_rows).map(|r| rows.partition_point(|&row| row < r) as i16).collect();
 
-        rows.resize(column_stride(view_rows) + ROW_GROUP, 0);
+        rows.resize(column_stride(view_rows) + ROW_PADDING, 0);
 
         let focal_y = i64::from(width) * 6 * 65536 / 10;
         let tangents: Vec<i64> = (-FINE_45_DEGREES..=FINE_45_DEGREES).map(fine_tangent).collect();
