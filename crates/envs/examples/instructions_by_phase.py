@@ -17,7 +17,7 @@ DEFAULT = ["VolcanicVentureLevel1-v0", "VolcanicVentureLevel3-v0", "PrecipicePlu
 DEFAULT += ["CollateralDamageLevel1-v0", "DetonatorsDilemmaLevel3-v0"]
 # The first that fits a function's name counts; what the compiler inlined counts to the function that it is in.
 PHASES = [
-    ("wall columns", r"render::(wall|column|magnified)"),
+    ("wall columns", r"render::(wall|column|own_)"),
     ("colours", r"render::convert"),
     ("planes, sky", r"render::(plane|span_wide|row_|sky)"),
     ("narrowing", r"render::narrow"),
