@@ -47,7 +47,8 @@ fn texel_rows(column: &MaskedColumn, base_rows: &[u32; 8]) -> __m256i {
     let (fours, _) = base_rows.as_chunks::<4>();
     let four = |i: usize| {
         const WHOLE: f64 = 1.0 / (1u64 << 32) as f64;
-        let (at, step) = (_mm256_set1_pd(column.at as f64 * WHOLE), _mm256_set1_pd(column.step as f64 * WHOLE));
+        let in_texels = |number: i64| _mm256_mul_pd(_mm256_set1_pd(number as f64), _mm256_set1_pd(WHOLE));
+        let (at, step) = (in_texels(column.at), in_texels(column.step));
         // SAFETY: 16 bytes are readable behind the reference.
         let row = _mm256_cvtepi32_pd(unsafe { _mm_loadu_si128(fours[i].as_ptr().cast()) });
         // Towards zero; what is above the first texel counts as it.
