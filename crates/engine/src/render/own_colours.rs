@@ -1,6 +1,5 @@
 //! A picture by its own colours: it has few of them, which vectors look up where 256 would take too long.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// How many colours lists have room for: the smallest that does is taken.
@@ -20,14 +19,16 @@ pub(super) struct OwnColours {
 impl OwnColours {
     /// Of palette indices, in the light of some tables.
     pub fn new(pixels: &[u8], tables: &[[u8; 256]]) -> OwnColours {
-        let mut numbers: BTreeMap<u8, u8> = pixels.iter().map(|&pixel| (pixel, 0u8)).collect();
-        let room = ROOMS.into_iter().find(|&room| numbers.len() <= room).expect("there are 256 palette indices");
-        numbers.values_mut().zip(0..=u8::MAX).for_each(|(number, own)| *number = own);
-        let mut lit = vec![0; room * tables.len()];
-        for (lit, table) in lit.chunks_exact_mut(room).zip(tables) {
-            numbers.iter().for_each(|(&pixel, &number)| lit[usize::from(number)] = table[usize::from(pixel)]);
+        let mut is_there = [false; 256];
+        pixels.iter().for_each(|&pixel| is_there[usize::from(pixel)] = true);
+        let colours: Vec<usize> = (0..256).filter(|&colour| is_there[colour]).collect();
+        let room = ROOMS.into_iter().find(|&room| colours.len() <= room).expect("there are 256 palette indices");
+        let (mut numbers, mut lit) = ([0; 256], vec![0; room * tables.len()]);
+        for (number, &colour) in colours.iter().enumerate() {
+            numbers[colour] = number as u8;
+            lit.chunks_exact_mut(room).zip(tables).for_each(|(lit, table)| lit[number] = table[colour]);
         }
-        OwnColours { texels: pixels.iter().map(|pixel| numbers[pixel]).collect(), room, lit: lit.into() }
+        OwnColours { texels: pixels.iter().map(|&pixel| numbers[usize::from(pixel)]).collect(), room, lit: lit.into() }
     }
 
     /// The colours in the light of a table.
