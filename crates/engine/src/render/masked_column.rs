@@ -15,8 +15,11 @@ pub(super) struct MaskedColumn<'a> {
     /// Palette indices in the low bytes.
     pub texels: &'a [u16],
     pub table: &'a [u8; 256],
-    /// The same by the picture's own colours, and these as they are lit.
+    /// The same by the picture's own colours.
+    #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "wide code alone picks colours so"))]
     pub own_texels: &'a [u8],
+    /// These colours as they are lit.
+    #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "wide code alone picks colours so"))]
     pub lit: &'a [u8],
     /// Texture row at base row 0 and its change a base row, 32 fractional bits.
     pub at: i64,

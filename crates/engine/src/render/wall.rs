@@ -153,6 +153,7 @@ pub(super) struct WallShader<'a> {
     pub ends: &'a SeenLine,
     pub texture: TextureLine,
     pub picture: &'a WallPicture,
+    #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "wide code alone picks colours so"))]
     pub own: &'a OwnColours,
     pub light: Light,
     /// Height of the texture's top row, relative to the eye, 16.16.
