@@ -84,6 +84,7 @@ impl MaskedColumn<'_> {
 mod tests {
     use super::*;
     use crate::math::Rng;
+    use crate::render::column::ROW_PADDING;
     use crate::render::fence::{is_opaque, runs_of};
     use crate::render::own_colours::OwnColours;
 
@@ -96,7 +97,7 @@ mod tests {
             let length = [60u32, 100, 403][round / 6 % 3];
             let texels: Vec<u16> = (0..height).map(|_| rng.below(512) as u16).collect();
             let runs: Vec<Run> = runs_of(texels.iter().map(is_opaque)).collect();
-            let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + GROUP as u32).map(|row| row * 5 / 3).collect();
+            let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + ROW_PADDING as u32).map(|row| row * 5 / 3).collect();
             let step = i64::from(rng.between(1, 1 << 30)) << rng.below(4);
             let at = i64::from(rng.between(-100, 100)) << 32;
             let hung =
