@@ -33,9 +33,10 @@ pub struct Renderer {
     slopes: RowSlopes,
     labels: Labels,
     status_bar: StatusBar,
-    colours: Colours,
-    /// What tints `colours`.
+    /// What tints the palette.
     tint: Tint,
+    /// The palette as it was tinted last.
+    tinted: Option<Box<Colours>>,
     options: RenderOptions,
     simd: Simd,
 }
@@ -63,8 +64,8 @@ impl Renderer {
             slopes: RowSlopes::default(),
             labels: Labels::default(),
             status_bar: StatusBar::new(&scene.bar, &view),
-            colours: Colours::new(scene.assets.palette),
             tint: Tint::default(),
+            tinted: None,
             options: RenderOptions::default(),
             // Whoever makes renderers for users has told them of a wrong choice.
             simd: Simd::chosen().unwrap_or(Simd::widest()),
@@ -199,7 +200,13 @@ impl Renderer {
         let tint = Tint::of_player(player, self.options.green_goggles);
         if tint != self.tint {
             self.tint = tint;
-            self.colours = Colours::new(tint.apply(&scene.assets.palette));
+            if tint != Tint::default() {
+                let colours = Colours::new(tint.apply(&scene.assets.palette));
+                match &mut self.tinted {
+                    Some(tinted) => **tinted = colours,
+                    None => self.tinted = Some(Box::new(colours)),
+                }
+            }
         }
     }
 
@@ -245,6 +252,13 @@ impl Renderer {
         }
     }
 
+    /// The colours of palette indices in the last frame.
+    fn colours(&self) -> &Colours {
+        // Most frames have no tint: all worlds share a palette then, and their caches one copy.
+        let tinted = self.tinted.as_deref().filter(|_| self.tint != Tint::default());
+        tinted.unwrap_or(&self.scene.colours)
+    }
+
     /// The palette indices of the last frame, row by row.
     #[must_use]
     pub fn indices(&self) -> &[u8] {
@@ -254,7 +268,7 @@ impl Renderer {
     /// The colours of the palette indices, with the flashes of the last frame.
     #[must_use]
     pub fn palette(&self) -> &[[u8; 3]; 256] {
-        &self.colours.palette
+        &self.colours().palette
     }
 
     /// The depth of the last frame, if it was drawn: 0 near to 255 far, 7.3 map units a level; weapon and status bar 0.
@@ -288,7 +302,7 @@ impl Renderer {
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_rgb_hwc(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.colour.len() * 3, "a buffer of height * width * 3 bytes is needed");
-        convert::rgb_interleaved(self.simd, &self.colours, &self.frame.colour, out);
+        convert::rgb_interleaved(self.simd, self.colours(), &self.frame.colour, out);
     }
 
     /// Writes the last frame as a plane of red, one of green, one of blue.
@@ -297,7 +311,7 @@ impl Renderer {
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_rgb_chw(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.colour.len() * 3, "a buffer of 3 * height * width bytes is needed");
-        convert::rgb_planes(self.simd, &self.colours, &self.frame.colour, out);
+        convert::rgb_planes(self.simd, self.colours(), &self.frame.colour, out);
     }
 
     /// Writes the last frame's luminance.
@@ -306,7 +320,7 @@ impl Renderer {
     /// If `out` is not as long as a frame has pixels.
     pub fn write_grey(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.colour.len(), "a buffer of height * width bytes is needed");
-        convert::grey(self.simd, &self.colours, &self.frame.colour, out);
+        convert::grey(self.simd, self.colours(), &self.frame.colour, out);
     }
 
     /// Writes the last frame's depth, which must have been asked for.
@@ -324,7 +338,7 @@ impl Renderer {
     /// If `out` is not four times as long as a frame has pixels.
     pub fn write_rgb_depth_hwc(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.colour.len() * 4, "a buffer of height * width * 4 bytes is needed");
-        convert::rgb_depth_interleaved(self.simd, &self.colours, &self.frame.colour, &self.frame.depth, out);
+        convert::rgb_depth_interleaved(self.simd, self.colours(), &self.frame.colour, &self.frame.depth, out);
     }
 
     /// Writes the last frame with one colour per class, red, green and blue of each pixel in turn; labels must have been

@@ -1,6 +1,7 @@
 //! A map made ready for drawing with a set of pictures.
 
 use super::blend::Blend;
+use super::convert::Colours;
 use super::picture::Textures;
 use super::sprite_picture::SpritePicture;
 use super::status_bar::BarArt;
@@ -111,6 +112,8 @@ pub struct Scene {
     /// No other scene of the process has it.
     pub(super) serial: u64,
     pub(super) assets: Arc<Assets>,
+    /// The palette without a tint.
+    pub(super) colours: Colours,
     pub(super) segs: Vec<SceneSeg>,
     pub(super) faces: Vec<Face>,
     pub(super) nodes: Vec<Node>,
@@ -206,6 +209,7 @@ impl Scene {
             bar: BarArt::new(&assets),
             blend: Blend::new(&assets.palette),
             shades: trail::SHADES.map(|colour| nearest_colour(&assets.palette, colour)),
+            colours: Colours::new(assets.palette),
             assets,
         }
     }

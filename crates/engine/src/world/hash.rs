@@ -1,7 +1,7 @@
 //! Snapshots and fingerprints of a world.
 
-use super::World;
 use super::riders::Riders;
+use super::{Busy, SectorState, World};
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
@@ -10,6 +10,7 @@ impl Clone for World {
         World {
             map: Arc::clone(&self.map),
             sectors: self.sectors.clone(),
+            sector_damages: self.sector_damages.clone(),
             actors: self.actors.clone(),
             players: self.players.clone(),
             rng: self.rng.clone(),
@@ -39,6 +40,7 @@ impl Clone for World {
         let World {
             map,
             sectors,
+            sector_damages,
             actors,
             players,
             rng,
@@ -65,6 +67,7 @@ impl Clone for World {
             self.map = Arc::clone(map);
         }
         self.sectors.clone_from(sectors);
+        self.sector_damages.clone_from(sector_damages);
         self.actors.clone_from(actors);
         self.players.clone_from(players);
         self.rng.clone_from(rng);
@@ -92,7 +95,12 @@ impl Hash for World {
     /// now: what is computed when somebody looks hashes as if somebody had looked.
     fn hash<H: Hasher>(&self, state: &mut H) {
         state.write_usize(self.sectors.len());
-        self.sectors().for_each(|sector| sector.hash(state));
+        for (sector, damage) in self.sectors().zip(&self.sector_damages) {
+            let SectorState { floor, ceiling, floor_texture, ceiling_texture, light, busy } = sector;
+            (floor, ceiling, floor_texture, ceiling_texture, light).hash(state);
+            damage.hash(state);
+            [Busy::FLOOR, Busy::CEILING, Busy::LIGHT].iter().for_each(|&effect| busy.any(effect).hash(state));
+        }
         self.actors.hash(state);
         self.players.hash(state);
         self.rng.hash(state);

@@ -1,8 +1,8 @@
 //! Light that changes. Nothing but pictures shows it, so that it is computed when somebody looks: an effect knows its state
 //! of some tic, and what it is any number of tics later.
 
-use super::World;
 use super::by_sector::BySector;
+use super::{Busy, World};
 use crate::map::SectorId;
 use crate::simd::prefetch;
 use std::hash::{Hash, Hasher};
@@ -141,8 +141,7 @@ impl World {
     }
 
     pub(super) fn start_light(&mut self, sector: SectorId, effect: Effect) {
-        let busy = &mut self.sectors[sector.0 as usize].light_busy;
-        if !std::mem::replace(busy, true) {
+        if !self.sectors[sector.0 as usize].busy.begin(Busy::LIGHT) {
             self.lights.of_sector.set(sector, self.lights.list.len());
             self.lights.list.push(Light { sector, effect, as_of: self.lights.tics });
         }
@@ -168,7 +167,7 @@ impl World {
     pub(crate) fn light_of(&self, sector: SectorId) -> i16 {
         let state = &self.sectors[sector.0 as usize];
         // Of a map with a few lights most sectors have none: the list need not be read for them.
-        match state.light_busy.then(|| self.lights.of_sector.get(sector)).flatten() {
+        match state.busy.any(Busy::LIGHT).then(|| self.lights.of_sector.get(sector)).flatten() {
             None => state.light,
             Some(index) => self.lights.now(index, state.light).1,
         }

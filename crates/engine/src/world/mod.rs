@@ -56,7 +56,7 @@ pub use hash::Fingerprint;
 pub use inventory::{BLUE_SKULL, YELLOW_CARD};
 pub use patrol::Heading;
 pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
-pub use sector::{SectorDamage, SectorState};
+pub use sector::{Busy, SectorDamage, SectorState};
 pub use soot::Soot;
 pub use states::{Action, Animation, Frame, OPAQUE, Phase, Picture, Then, animation, is_timed};
 pub use trail::{Chance, Lots, SQUARES, Shade, Shed, Square, Trail};
@@ -79,6 +79,8 @@ pub struct World {
     /// What changes of each sector, by [`SectorId`](crate::map::SectorId): floors and lights as they were when they were last
     /// looked at, see [`World::sector`].
     sectors: Vec<SectorState>,
+    /// What each sector's floor does to players, by [`SectorId`](crate::map::SectorId).
+    sector_damages: Vec<SectorDamage>,
     /// Actor slots; removed actors leave a free slot ([`Actor::removed`]). Change actors by [`World::get_mut`].
     pub actors: Vec<Actor>,
     /// The players; each owns one actor.
@@ -135,6 +137,7 @@ impl World {
         let mut world = World {
             map: Arc::clone(&map),
             sectors,
+            sector_damages: map.sectors.iter().map(SectorDamage::new).collect(),
             actors: Vec::new(),
             players: Vec::new(),
             rng: Rng::new(seed),

@@ -2,7 +2,7 @@
 
 use super::by_sector::BySector;
 use super::waggle::Waggle;
-use super::{Actor, ActorFlags, World};
+use super::{Actor, ActorFlags, Busy, World};
 use crate::map::SectorId;
 use crate::math::Fixed;
 use crate::simd::prefetch;
@@ -222,14 +222,15 @@ impl World {
         let map = Arc::clone(&self.map);
         let mut planes = false;
         for sector in map.tagged(tag) {
-            if std::mem::replace(&mut self.sector_mut(sector).floor_busy, false) {
+            if self.sector_mut(sector).busy.end(Busy::FLOOR) {
                 planes |= !self.movers.stop_swing(sector);
             }
         }
         // In one pass over the planes: there may be as many as there are floors to stop.
         if planes {
             let sectors = &self.sectors;
-            let stopped = |SectorId(sector)| !sectors[sector as usize].floor_busy && map.sectors[sector as usize].tag == tag;
+            let stopped =
+                |SectorId(sector)| !sectors[sector as usize].busy.any(Busy::FLOOR) && map.sectors[sector as usize].tag == tag;
             self.movers.stop_planes(stopped);
         }
     }
@@ -238,8 +239,7 @@ impl World {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
             let state = &mut self.sectors[sector.0 as usize];
-            let busy = if ceiling { &mut state.ceiling_busy } else { &mut state.floor_busy };
-            if std::mem::replace(busy, true) {
+            if state.busy.begin(Busy::of_plane(ceiling)) {
                 continue;
             }
             let (down, target) = aim(if ceiling { state.ceiling } else { state.floor });
@@ -338,7 +338,7 @@ impl World {
         self.shift_plane(mover.sector, mover.ceiling, next);
         if arrives {
             let state = &mut self.sectors[mover.sector.0 as usize];
-            *(if mover.ceiling { &mut state.ceiling_busy } else { &mut state.floor_busy }) = false;
+            state.busy.end(Busy::of_plane(mover.ceiling));
         }
         !arrives
     }

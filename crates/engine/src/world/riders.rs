@@ -1,8 +1,8 @@
 //! Which actors touch which moving sector, so that a sector that moves under nobody costs nothing more.
 
-use super::World;
 use super::actor::{Actor, NO_BLOCK};
 use super::collision::for_each_line_across;
+use super::{Busy, World};
 use crate::map::{Map, SectorId};
 use crate::math::Fixed;
 
@@ -231,7 +231,7 @@ impl World {
         let planes = movers.move_planes();
         let mut add = |sector: usize| {
             let mover = movers.swing_of(SectorId(sector as u32));
-            if mover.is_some() || (planes && (sectors[sector].floor_busy || sectors[sector].ceiling_busy)) {
+            if mover.is_some() || (planes && sectors[sector].busy.any(Busy::PLANES)) {
                 riders.add(sector, slot as u16, mover);
             }
         };

@@ -16,8 +16,49 @@ pub struct SectorDamage {
     pub leak: i32,
 }
 
-/// The changing part of a sector.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+/// Which effects are at work in a sector: new ones of the same kind are ignored.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Busy(u8);
+
+impl Busy {
+    /// A floor mover or waggle.
+    pub const FLOOR: Busy = Busy(1);
+    /// A ceiling mover.
+    pub const CEILING: Busy = Busy(2);
+    /// Either of them.
+    pub const PLANES: Busy = Busy(3);
+    /// A light effect.
+    pub const LIGHT: Busy = Busy(4);
+
+    /// That which moves a floor, or a ceiling.
+    pub(crate) const fn of_plane(ceiling: bool) -> Busy {
+        if ceiling { Busy::CEILING } else { Busy::FLOOR }
+    }
+
+    /// Whether one of these is at work.
+    #[must_use]
+    pub const fn any(self, of: Busy) -> bool {
+        self.0 & of.0 != 0
+    }
+
+    /// One of these begins; whether one was at work already.
+    pub(crate) fn begin(&mut self, one: Busy) -> bool {
+        let was = self.any(one);
+        self.0 |= one.0;
+        was
+    }
+
+    /// One of these ends; whether one was at work.
+    pub(crate) fn end(&mut self, one: Busy) -> bool {
+        let was = self.any(one);
+        self.0 &= !one.0;
+        was
+    }
+}
+
+/// The changing part of a sector, but for the damage that its floor does. Four to a line of the cache: a frame looks at a hundred.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(align(16))]
 pub struct SectorState {
     /// Floor height.
     pub floor: Fixed,
@@ -29,33 +70,30 @@ pub struct SectorState {
     pub ceiling_texture: TextureId,
     /// Light; the renderer clamps.
     pub light: i16,
-    /// Damage to players who stand on its floor.
-    pub damage: SectorDamage,
-    /// A floor mover or waggle is at work: new ones are ignored.
-    pub floor_busy: bool,
-    /// A ceiling mover is at work.
-    pub ceiling_busy: bool,
-    /// A light effect is at work: new ones are ignored.
-    pub light_busy: bool,
+    /// What is at work in it.
+    pub busy: Busy,
+}
+
+impl SectorDamage {
+    /// What a sector's floor does as the map starts it. Lava hurts before any script: 8 points every 32 tics, through any suit.
+    pub(crate) fn new(sector: &Sector) -> SectorDamage {
+        match sector.special & 0xFF {
+            special::LAVA => SectorDamage { amount: 8, interval: 32, leak: 256 },
+            _ => SectorDamage::default(),
+        }
+    }
 }
 
 impl SectorState {
-    /// A sector as the map starts it. Lava hurts before any script: 8 points every 32 tics, through any suit.
+    /// A sector as the map starts it.
     pub(crate) fn new(sector: &Sector) -> SectorState {
-        let damage = match sector.special & 0xFF {
-            special::LAVA => SectorDamage { amount: 8, interval: 32, leak: 256 },
-            _ => SectorDamage::default(),
-        };
         SectorState {
             floor: sector.floor,
             ceiling: sector.ceiling,
             floor_texture: sector.floor_texture,
             ceiling_texture: sector.ceiling_texture,
             light: sector.light,
-            damage,
-            floor_busy: false,
-            ceiling_busy: false,
-            light_busy: false,
+            busy: Busy::default(),
         }
     }
 }
@@ -97,7 +135,7 @@ impl World {
         };
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
-            self.sectors[sector.0 as usize].damage = damage;
+            self.sector_damages[sector.0 as usize] = damage;
         }
     }
 
@@ -113,7 +151,7 @@ impl World {
     /// must be at the height of the floor under the centre.
     pub(crate) fn damage_by_sector(&mut self, index: usize, slot: usize) {
         let body = &self.actors[slot];
-        let damage = self.sectors[body.sector.0 as usize].damage;
+        let damage = self.sector_damages[body.sector.0 as usize];
         if damage.amount <= 0 || body.z != self.floor_of(body.sector) || !self.tic.is_multiple_of(damage.interval.max(1)) {
             return;
         }

@@ -1,7 +1,7 @@
 //! Floors that swing. One that nobody stands on is computed when somebody looks at it.
 
-use super::World;
 use super::mover::Mover;
+use super::{Busy, World};
 use crate::map::SectorId;
 use crate::math::{Angle, Fixed};
 use std::hash::{Hash, Hasher};
@@ -122,7 +122,7 @@ impl World {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
             let state = &mut self.sectors[sector.0 as usize];
-            if std::mem::replace(&mut state.floor_busy, true) {
+            if state.busy.begin(Busy::FLOOR) {
                 continue;
             }
             let full_scale = Fixed(amplitude << 10);
@@ -162,7 +162,9 @@ impl World {
         } else {
             self.shift_plane(sector, false, height);
         }
-        self.sectors[sector.0 as usize].floor_busy = goes_on;
+        if !goes_on {
+            self.sectors[sector.0 as usize].busy.end(Busy::FLOOR);
+        }
         goes_on
     }
 
