@@ -5,7 +5,7 @@ mod hall;
 use hall::{hall, run, units};
 use hasard_engine::map::SectorId;
 use hasard_engine::math::{Angle, Fixed, Rng};
-use hasard_engine::world::{ActorFlags, ActorKind, Buttons, Command, Event, World};
+use hasard_engine::world::{ActorFlags, ActorKind, Busy, Buttons, Command, Event, World};
 
 const NOTHING: Buttons = Buttons(0);
 
@@ -231,7 +231,7 @@ fn swinging_floors_have_the_scripts_amplitude_and_period() {
     assert_eq!(heights[120..130], heights[136..146]);
     // Full for 35 tics more, then it shrinks and ends at the height that it had.
     assert!(heights[265..].iter().all(|&h| h == 32.0));
-    assert!(!world.sector(sector(&world, 4)).floor_busy);
+    assert!(!world.sector(sector(&world, 4)).busy.any(Busy::FLOOR));
 }
 
 #[test]
@@ -256,7 +256,7 @@ fn floors_that_are_stopped_stay_and_the_others_swing_on() {
         }
         assert!(stopped.iter().all(|&(tag, height)| floor(&world, tag) == height), "{tic} tics later");
     }
-    assert!((1..=7).all(|tag| !world.sector(sector(&world, tag)).floor_busy));
+    assert!((1..=7).all(|tag| !world.sector(sector(&world, tag)).busy.any(Busy::FLOOR)));
     world.floor_waggle(5, 200, 256, 0, 1);
     run(&mut world, 60, NOTHING);
     assert_ne!(floor(&world, 5), stopped[1].1);

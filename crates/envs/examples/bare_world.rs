@@ -39,9 +39,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for index in 0..line()?.parse()? {
         let floor = numbers(line()?)?;
         let sector = if in_order { SectorId(index) } else { world.map.sector_at(fixed(floor[0]), fixed(floor[1])) };
-        let sector = world.sector_mut(sector);
-        (sector.floor, sector.ceiling) = (fixed(floor[2]), fixed(floor[3]));
-        sector.damage = Default::default();
+        let state = world.sector_mut(sector);
+        (state.floor, state.ceiling) = (fixed(floor[2]), fixed(floor[3]));
+        *world.sector_damage_mut(sector) = Default::default();
     }
     // What the original has left as well: the body, trees and lamps.
     let own = world.players[0].actor;

@@ -157,6 +157,26 @@ fn what_does_not_stay_is_drawn_as_what_does() {
 }
 
 #[test]
+fn flashes_come_and_go() {
+    let mut world = yard_world();
+    look(&mut world, Fixed::ZERO, Fixed::ZERO, Angle::EAST, 0);
+    let mut lasting = renderer(100, 48);
+    for (damage, bonus) in [(0, 0), (40, 0), (0, 0), (0, 5), (40, 5), (40, 0), (0, 0), (0, 5)] {
+        (world.players[0].damage_count, world.players[0].bonus_count) = (damage, bonus);
+        let mut afresh = renderer(100, 48);
+        let written = [&mut lasting, &mut afresh].map(|renderer| {
+            renderer.render(&world, 0, Buffers::default());
+            let mut out = vec![0; 100 * 48 * 3];
+            renderer.write_rgb_hwc(&mut out);
+            (out, *renderer.palette())
+        });
+        assert!(written[0] == written[1], "after others: damage {damage}, bonus {bonus}");
+        let untinted = written[0].1 == yard().1.assets.palette;
+        assert_eq!(untinted, (damage, bonus) == (0, 0), "damage {damage}, bonus {bonus}");
+    }
+}
+
+#[test]
 fn the_learners_frame_is_the_reduction_of_the_classic_one() {
     let (mut world, mut rng) = (yard_world(), Rng::new(21));
     let (mut small, mut large) = (renderer(128, 72), renderer(160, 120));

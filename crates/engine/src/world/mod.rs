@@ -79,7 +79,7 @@ pub struct World {
     /// What changes of each sector, by [`SectorId`](crate::map::SectorId): floors and lights as they were when they were last
     /// looked at, see [`World::sector`].
     sectors: Vec<SectorState>,
-    /// What each sector's floor does to players, by [`SectorId`](crate::map::SectorId).
+    /// What each sector's floor does to players who stand on it, by [`SectorId`](crate::map::SectorId).
     sector_damages: Vec<SectorDamage>,
     /// Actor slots; removed actors leave a free slot ([`Actor::removed`]). Change actors by [`World::get_mut`].
     pub actors: Vec<Actor>,

@@ -124,6 +124,11 @@ impl World {
         &mut self.sectors[sector.0 as usize]
     }
 
+    /// What a sector's floor does to players who stand on it, to change it by hand.
+    pub fn sector_damage_mut(&mut self, sector: SectorId) -> &mut SectorDamage {
+        &mut self.sector_damages[sector.0 as usize]
+    }
+
     /// The sectors with a tag get new damage. An interval of 0 or less takes the default of its amount: below 20
     /// points every 32 tics, below 50 every 32 tics leaking through suits, from 50 every tic whatever the suit.
     pub fn set_sector_damage(&mut self, tag: i32, amount: i32, interval: i32, leak: i32) {
