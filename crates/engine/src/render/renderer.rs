@@ -35,8 +35,9 @@ pub struct Renderer {
     status_bar: StatusBar,
     /// What tints the palette.
     tint: Tint,
-    /// The palette as it was tinted last.
-    tinted: Option<Box<Colours>>,
+    /// The palette as it was tinted last. Most frames have no tint: all worlds share the scene's palette then, and their caches
+    /// one copy.
+    tinted: Box<Colours>,
     options: RenderOptions,
     simd: Simd,
 }
@@ -65,7 +66,7 @@ impl Renderer {
             labels: Labels::default(),
             status_bar: StatusBar::new(&scene.bar, &view),
             tint: Tint::default(),
-            tinted: None,
+            tinted: Box::new(scene.colours.clone()),
             options: RenderOptions::default(),
             // Whoever makes renderers for users has told them of a wrong choice.
             simd: Simd::chosen().unwrap_or(Simd::widest()),
@@ -201,11 +202,7 @@ impl Renderer {
         if tint != self.tint {
             self.tint = tint;
             if tint != Tint::default() {
-                let colours = Colours::new(tint.apply(&scene.assets.palette));
-                match &mut self.tinted {
-                    Some(tinted) => **tinted = colours,
-                    None => self.tinted = Some(Box::new(colours)),
-                }
+                *self.tinted = Colours::new(tint.apply(&scene.assets.palette));
             }
         }
     }
@@ -254,9 +251,7 @@ impl Renderer {
 
     /// The colours of palette indices in the last frame.
     fn colours(&self) -> &Colours {
-        // Most frames have no tint: all worlds share a palette then, and their caches one copy.
-        let tinted = self.tinted.as_deref().filter(|_| self.tint != Tint::default());
-        tinted.unwrap_or(&self.scene.colours)
+        if self.tint == Tint::default() { &self.scene.colours } else { &self.tinted }
     }
 
     /// The palette indices of the last frame, row by row.

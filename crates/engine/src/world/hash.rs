@@ -95,6 +95,7 @@ impl Hash for World {
     /// now: what is computed when somebody looks hashes as if somebody had looked.
     fn hash<H: Hasher>(&self, state: &mut H) {
         state.write_usize(self.sectors.len());
+        // In this order, and what is at work as one truth each: fingerprints stay what they were.
         for (sector, damage) in self.sectors().zip(&self.sector_damages) {
             let SectorState { floor, ceiling, floor_texture, ceiling_texture, light, busy } = sector;
             (floor, ceiling, floor_texture, ceiling_texture, light).hash(state);

@@ -26,7 +26,7 @@ impl Busy {
     /// A ceiling mover.
     pub const CEILING: Busy = Busy(2);
     /// Either of them.
-    pub const PLANES: Busy = Busy(3);
+    pub const PLANES: Busy = Busy(Busy::FLOOR.0 | Busy::CEILING.0);
     /// A light effect.
     pub const LIGHT: Busy = Busy(4);
 
@@ -73,6 +73,8 @@ pub struct SectorState {
     /// What is at work in it.
     pub busy: Busy,
 }
+
+const _: () = assert!(size_of::<SectorState>() == 16);
 
 impl SectorDamage {
     /// What a sector's floor does as the map starts it. Lava hurts before any script: 8 points every 32 tics, through any suit.
