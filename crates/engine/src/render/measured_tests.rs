@@ -1,9 +1,9 @@
 //! Borders of what is drawn, as they were seen in the published engine (docs/results/pixels.md).
 
-use super::render_tests::{STYLE, assets};
 use super::*;
 use crate::map::{Map, MapBuilder, Mark, Style};
 use crate::math::{Angle, Fixed};
+use crate::render::render_tests::{STYLE, assets};
 use crate::world::World;
 use std::sync::Arc;
 

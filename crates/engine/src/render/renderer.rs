@@ -1,22 +1,26 @@
 //! The renderer: draws what one player of a world sees.
 
-use super::camera::Camera;
-use super::convert::Colours;
-use super::depth::Depths;
-use super::fours;
-use super::frame::{Frame, class};
-use super::horizon::RowSlopes;
-use super::label::{Label, Labels};
-use super::masked::Masked;
-use super::palette::Tint;
-use super::plane::PlaneShader;
-use super::scene::Scene;
-use super::sky::{self, SkyShader};
-use super::sprite;
-use super::status_bar::{BarState, StatusBar};
-use super::walk::Walk;
-use super::workspace::Workspace;
-use super::{Buffers, SegmentationColours, View, convert, weapon};
+use crate::render::buffers::frame::{Frame, class};
+use crate::render::buffers::labels::{Label, Labels};
+use crate::render::buffers::request::Buffers;
+use crate::render::colour::tint::Tint;
+use crate::render::output::convert;
+use crate::render::output::convert::Colours;
+use crate::render::output::segmentation::SegmentationColours;
+use crate::render::overlay::status_bar::{BarState, StatusBar};
+use crate::render::overlay::weapon;
+use crate::render::planes::plane::PlaneShader;
+use crate::render::planes::sky::{self, SkyShader};
+use crate::render::published_depth::quads;
+use crate::render::scene::prepared::Scene;
+use crate::render::scratch::Workspace;
+use crate::render::sprites::pass::Masked;
+use crate::render::sprites::sprite;
+use crate::render::view::camera::Camera;
+use crate::render::view::depth::Depths;
+use crate::render::view::horizon::RowSlopes;
+use crate::render::view::tables::View;
+use crate::render::walls::pass::Walk;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
@@ -217,7 +221,7 @@ impl Renderer {
             shader.draw(self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
             if DEPTH && self.frame.depths.by_fours() {
                 let (first, shown, farthest) = (plane.first, plane.first..plane.end, self.frame.depths.farthest());
-                fours::draw_below(&mut space.columns, first, &plane.top[shown.clone()], &plane.bottom[shown], |_| farthest);
+                quads::draw_below(&mut space.columns, first, &plane.top[shown.clone()], &plane.bottom[shown], |_| farthest);
             }
         }
     }

@@ -1,0 +1,4 @@
+//! The palette: what tints it, and what shines through something else.
+
+pub mod blend;
+pub mod tint;

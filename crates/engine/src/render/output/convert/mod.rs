@@ -1,0 +1,218 @@
+//! From palette indices to what callers want, written once into their own buffer.
+
+#[cfg(target_arch = "x86_64")]
+pub mod avx512;
+
+#[cfg(target_arch = "x86_64")]
+use crate::render::output::convert::avx512::Wide;
+use crate::simd::Simd;
+
+/// Weight of red, green and blue in luminance, in 256ths.
+const LUMINANCE: [u32; 3] = [77, 150, 29];
+
+/// The luminance of a colour.
+pub(crate) fn luminance(colour: [u8; 3]) -> u8 {
+    let sum: u32 = colour.iter().zip(LUMINANCE).map(|(&channel, weight)| u32::from(channel) * weight).sum();
+    (sum >> 8) as u8
+}
+
+/// A table of colours, in the forms that the ways of looking up want.
+#[derive(Clone, Debug)]
+pub(crate) struct Colours {
+    pub palette: [[u8; 3]; 256],
+    /// A table of each channel.
+    channels: [[u8; 256]; 3],
+    /// Red, green and blue from the lowest byte on.
+    words: [u32; 256],
+}
+
+impl Colours {
+    pub fn new(palette: [[u8; 3]; 256]) -> Colours {
+        let channels = std::array::from_fn(|channel| std::array::from_fn(|i| palette[i][channel]));
+        let words = palette.map(|[red, green, blue]| u32::from_le_bytes([red, green, blue, 0]));
+        Colours { palette, channels, words }
+    }
+}
+
+/// Looks every index up.
+fn look_up(simd: Simd, table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    let done = Wide::of(simd).map_or(0, |wide| wide.look_up(table, indices, out));
+    #[cfg(not(target_arch = "x86_64"))]
+    let (_, done) = (simd, 0);
+    for (to, &index) in out[done..].iter_mut().zip(&indices[done..]) {
+        *to = table[usize::from(index)];
+    }
+}
+
+/// Red, green, blue of each pixel in turn.
+pub(crate) fn rgb_interleaved(simd: Simd, colours: &Colours, indices: &[u8], out: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    let done = Wide::of(simd).map_or(0, |wide| wide.interleaved(&colours.channels, indices, out));
+    #[cfg(not(target_arch = "x86_64"))]
+    let (_, done) = (simd, 0);
+    rgb_interleaved_plainly(colours, &indices[done..], &mut out[done * 3..]);
+}
+
+/// Eight pixels at a time: pairs of them, whose stores overlap: each writes two bytes too many, which the next one mends.
+fn rgb_interleaved_plainly(colours: &Colours, indices: &[u8], out: &mut [u8]) {
+    let ((eights, rest), (triples, last)) = (indices.as_chunks::<8>(), out.as_chunks_mut::<24>());
+    for (to, from) in triples.iter_mut().zip(eights) {
+        // Not over a list of indices: the compiler makes calls of that.
+        let pair =
+            |one: u8, two: u8| u64::from(colours.words[usize::from(one)]) | u64::from(colours.words[usize::from(two)]) << 24;
+        let (a, b, c, d) = (pair(from[0], from[1]), pair(from[2], from[3]), pair(from[4], from[5]), pair(from[6], from[7]));
+        to[..8].copy_from_slice(&a.to_le_bytes());
+        to[6..14].copy_from_slice(&b.to_le_bytes());
+        to[12..20].copy_from_slice(&c.to_le_bytes());
+        to[16..].copy_from_slice(&(c >> 32 | d << 16).to_le_bytes());
+    }
+    for (to, &index) in last.chunks_exact_mut(3).zip(rest) {
+        to.copy_from_slice(&colours.palette[usize::from(index)]);
+    }
+}
+
+/// A plane of red, one of green, one of blue.
+pub(crate) fn rgb_planes(simd: Simd, colours: &Colours, indices: &[u8], out: &mut [u8]) {
+    for (table, plane) in colours.channels.iter().zip(out.chunks_exact_mut(indices.len())) {
+        look_up(simd, table, indices, plane);
+    }
+}
+
+/// Luminance.
+pub(crate) fn grey(simd: Simd, colours: &Colours, indices: &[u8], out: &mut [u8]) {
+    look_up(simd, &colours.palette.map(luminance), indices, out);
+}
+
+/// The colour of a class; those beyond the table share its last one.
+#[inline]
+fn colour_of<const N: usize>(colours: &[[u8; 3]; N], class: u16) -> [u8; 3] {
+    colours[usize::from(class).min(N - 1)]
+}
+
+/// The value of each class: 255 for `full`, 1 for `ones`, 0 for the others below 8, `values` for the rest; those beyond share its last one.
+///
+/// Most of a picture is surfaces and the weapon, which are told a block at a time.
+pub(crate) fn classes_one_byte<const N: usize>(values: &[u8; N], full: u16, ones: [u16; 2], classes: &[u16], out: &mut [u8]) {
+    const BLOCK: usize = 32;
+    for (to, classes) in out.chunks_mut(BLOCK).zip(classes.chunks(BLOCK)) {
+        if classes.iter().fold(0, |bits, &class| bits | class) < 8 {
+            let value = |class: u16| if class == full { 255 } else { u8::from(ones.contains(&class)) };
+            to.iter_mut().zip(classes).for_each(|(to, &class)| *to = value(class));
+        } else {
+            to.iter_mut().zip(classes).for_each(|(to, &class)| *to = values[usize::from(class).min(N - 1)]);
+        }
+    }
+}
+
+/// Pixels converted at a time where a step in between needs room.
+const STRETCH: usize = 1024;
+
+/// Red, green, blue of each pixel in turn, and its depth.
+pub(crate) fn rgb_depth_interleaved(simd: Simd, colours: &Colours, indices: &[u8], depth: &[u8], out: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    let done = Wide::of(simd).map_or(0, |wide| wide.with_depth(&colours.channels, indices, depth, out));
+    #[cfg(not(target_arch = "x86_64"))]
+    let (_, done) = (simd, 0);
+    let (pixels, _) = out[done * 4..].as_chunks_mut::<4>();
+    for ((to, &index), &depth) in pixels.iter_mut().zip(&indices[done..]).zip(&depth[done..]) {
+        *to = (colours.words[usize::from(index)] | u32::from(depth) << 24).to_le_bytes();
+    }
+}
+
+/// The colour of each class, pixel by pixel.
+pub(crate) fn classes_interleaved<const N: usize>(simd: Simd, colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
+    let mut palette = [[0; 3]; 256];
+    palette.iter_mut().zip(colours).for_each(|(to, &colour)| *to = colour);
+    let palette = Colours::new(palette);
+    let mut indices = [0; STRETCH];
+    for (to, classes) in out.chunks_mut(STRETCH * 3).zip(classes.chunks(STRETCH)) {
+        // Few pictures hold so many things that a class does not fit a byte.
+        if classes.iter().fold(0, |bits, &class| bits | class) < N.min(256) as u16 {
+            indices.iter_mut().zip(classes).for_each(|(index, &class)| *index = class as u8);
+            rgb_interleaved(simd, &palette, &indices[..classes.len()], to);
+        } else {
+            for (to, &class) in to.chunks_exact_mut(3).zip(classes) {
+                to.copy_from_slice(&colour_of(colours, class));
+            }
+        }
+    }
+}
+
+/// The colour of each class, as three planes.
+pub(crate) fn classes_planes<const N: usize>(colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
+    for (i, plane) in out.chunks_exact_mut(classes.len()).enumerate() {
+        plane.iter_mut().zip(classes).for_each(|(to, &class)| *to = colour_of(colours, class)[i]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    #[test]
+    fn blocks_of_surfaces_are_no_short_cut() {
+        let mut values = [0; 64];
+        (values[5], values[1], values[2]) = (255, 1, 1);
+        (8..64).for_each(|i| values[i] = i as u8 * 3);
+        for length in [0, 31, 32, 33, 100] {
+            for (at, class) in [(0, 5), (length / 2, 63), (length.max(1) - 1, 9), (3, 700), (7, 4)] {
+                let classes: Vec<u16> = (0..length).map(|i| if i == at { class } else { i as u16 % 5 }).collect();
+                let mut out = vec![1; length];
+                classes_one_byte(&values, 5, [1, 2], &classes, &mut out);
+                let plain: Vec<u8> = classes.iter().map(|&class| values[usize::from(class).min(63)]).collect();
+                assert_eq!(out, plain);
+            }
+        }
+    }
+
+    #[test]
+    fn depth_and_classes_stand_where_they_belong() {
+        let mut rng = Rng::new(5);
+        let palette: [[u8; 3]; 256] = std::array::from_fn(|_| [0; 3].map(|_| rng.byte() as u8));
+        let colours: [[u8; 3]; 1024] = std::array::from_fn(|_| [0; 3].map(|_| rng.byte() as u8));
+        for length in [0, 1, 65, 1023, 1024, 1025, 9216] {
+            let indices: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
+            let depth: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
+            let most = if length % 2 == 0 { 1100 } else { 60 };
+            let classes: Vec<u16> = (0..length).map(|_| (rng.byte() as u16 * 5) % most).collect();
+            for simd in Simd::available() {
+                let mut out = vec![0; length * 4];
+                rgb_depth_interleaved(simd, &Colours::new(palette), &indices, &depth, &mut out);
+                for (i, pixel) in out.chunks_exact(4).enumerate() {
+                    assert_eq!((&pixel[..3], pixel[3]), (&palette[usize::from(indices[i])][..], depth[i]));
+                }
+                let mut out = vec![0; length * 3];
+                classes_interleaved(simd, &colours, &classes, &mut out);
+                for (i, pixel) in out.chunks_exact(3).enumerate() {
+                    assert_eq!(pixel, colour_of(&colours, classes[i]));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn all_ways_of_looking_up_agree() {
+        let mut rng = Rng::new(3);
+        let palette: [[u8; 3]; 256] = std::array::from_fn(|_| [0; 3].map(|_| rng.byte() as u8));
+        let colours = Colours::new(palette);
+        for length in [0, 1, 3, 4, 63, 64, 65, 192, 1000, 9216] {
+            let indices: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
+            let pixels: Vec<[u8; 3]> = indices.iter().map(|&index| palette[usize::from(index)]).collect();
+            for simd in Simd::available() {
+                let mut out = vec![0; length * 3];
+                rgb_interleaved(simd, &colours, &indices, &mut out);
+                assert_eq!(out, pixels.concat(), "{simd:?}");
+                let mut out = vec![0; length];
+                grey(simd, &colours, &indices, &mut out);
+                assert!(out.iter().zip(&pixels).all(|(&grey, &pixel)| grey == luminance(pixel)), "{simd:?}");
+                let mut out = vec![0; length * 3];
+                if length > 0 {
+                    rgb_planes(simd, &colours, &indices, &mut out);
+                }
+                assert!((0..length * 3).all(|i| out[i] == pixels[i % length][i / length]), "{simd:?}");
+            }
+        }
+    }
+}

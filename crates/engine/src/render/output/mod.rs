@@ -1,0 +1,4 @@
+//! Frames as bytes for the caller.
+
+pub mod convert;
+pub mod segmentation;

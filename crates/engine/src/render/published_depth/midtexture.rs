@@ -1,0 +1,100 @@
+//! The depth of fences as the published engine tells it, by what it was seen to tell (`docs/results/pixels.md`).
+//!
+//! It draws four columns at once, one whose number divides by four and the three after it: the rows that the four have in common
+//! together, the others column by column. Of those others a piece that is a single row is told not its own depth but the last one told before
+//! the four.
+
+use crate::render::published_depth::quads::FourPieces;
+
+/// The four columns at hand, and what was told before them.
+#[derive(Debug, Default)]
+pub(crate) struct FenceDepth {
+    /// None at first: then single rows are told their own.
+    last_told: Option<u8>,
+    pieces: FourPieces,
+    /// Start of the run of texels that the last piece of each column shows: pieces of two runs may touch.
+    runs: [u16; 4],
+    depths: [u8; 4],
+}
+
+impl FenceDepth {
+    /// Begins a frame.
+    pub fn reset(&mut self) {
+        self.last_told = None;
+    }
+
+    /// Notes the depth of something that is drawn otherwise.
+    pub fn tell(&mut self, depth: u8) {
+        self.last_told = Some(depth);
+    }
+
+    /// Begins another four.
+    pub fn begin(&mut self) {
+        self.pieces.clear();
+    }
+
+    /// Adds a row to a column of the four, below those that it has.
+    pub fn add(&mut self, column: usize, row: u16, run: u16, depth: u8) {
+        let pieces = self.pieces.of(column);
+        match pieces.last_mut() {
+            Some([_, last]) if *last + 1 == row && self.runs[column] == run => *last = row,
+            _ => pieces.push([row, row]),
+        }
+        (self.runs[column], self.depths[column]) = (run, depth);
+    }
+
+    /// Ends the four: gives column, row and depth of the rows that are told another one than their own to `put`.
+    pub fn end(&mut self, mut put: impl FnMut(usize, u16, u8)) {
+        let told = self.last_told;
+        let last_column = self.pieces.draw(|column, [first, last]| {
+            if let Some(told) = told.filter(|_| first == last) {
+                put(column, first, told);
+            }
+        });
+        if let Some(column) = last_column {
+            self.last_told = Some(self.depths[column]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::published_depth::quads::Piece;
+
+    /// What is told of four columns of pieces, each in a run of its own, of depth 10 to 13, after a depth of 7.
+    fn told(columns: [&[Piece]; 4]) -> (Vec<(usize, u16)>, Option<u8>) {
+        let mut fences = FenceDepth::default();
+        fences.tell(7);
+        fences.begin();
+        for (column, pieces) in columns.iter().enumerate() {
+            for (run, &[first, last]) in pieces.iter().enumerate() {
+                (first..=last).for_each(|row| fences.add(column, row, run as u16, 10 + column as u8));
+            }
+        }
+        let mut list = Vec::new();
+        fences.end(|column, row, depth| {
+            assert_eq!(depth, 7);
+            list.push((column, row));
+        });
+        (list, fences.last_told)
+    }
+
+    #[test]
+    fn single_rows_that_not_all_columns_have_are_told_an_older_depth() {
+        // Rows 3 to 5 are common: of what is above, column 1 has one row and column 2 two; below, column 0 has one.
+        assert_eq!(told([&[[3, 6]], &[[2, 5]], &[[1, 5]], &[[3, 5]]]), (vec![(1, 2), (0, 6)], Some(10)));
+        // A common row is no single one, and is told last of the fourth column.
+        assert_eq!(told([&[[4, 4]], &[[4, 4]], &[[4, 4]], &[[4, 4]]]), (vec![], Some(13)));
+        // Without a common row: pieces of two rows keep their depth, though they touch pieces of other runs.
+        assert_eq!(told([&[[1, 1], [2, 2]], &[[5, 6]], &[], &[]]), (vec![(0, 1), (0, 2)], Some(11)));
+        assert_eq!(told([&[], &[], &[], &[]]), (vec![], Some(7)));
+    }
+
+    #[test]
+    fn pieces_without_a_common_row_end_where_the_next_ones_begin() {
+        // Column 1's first piece goes down into the rows of column 0's second, which all have in common.
+        let (list, _) = told([&[[1, 1], [4, 6]], &[[3, 6]], &[[4, 6]], &[[4, 6]]]);
+        assert_eq!(list, [(0, 1), (1, 3)]);
+    }
+}

@@ -1,0 +1,7 @@
+//! Sprites, particles and midtextures, far to near: the third pass of a frame.
+
+pub mod midcolumn;
+pub mod midtexture;
+pub mod particles;
+pub mod pass;
+pub mod sprite;

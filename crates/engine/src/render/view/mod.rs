@@ -1,0 +1,9 @@
+//! A frame size and an eye: the tables of the first, the rays, light and depth of the second.
+
+pub mod camera;
+pub mod depth;
+pub mod horizon;
+pub mod light;
+pub mod size;
+pub mod tables;
+pub mod view_space;

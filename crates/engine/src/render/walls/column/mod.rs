@@ -1,0 +1,120 @@
+//! One column of a wall, drawn into a frame that lies column by column.
+
+#[cfg(target_arch = "x86_64")]
+pub mod vector;
+
+#[cfg(target_arch = "x86_64")]
+use crate::simd::Level;
+use crate::simd::Simd;
+
+/// Rows that are drawn at once at most: columns are whole blocks of these.
+pub(crate) const ROW_BLOCK: usize = 64;
+/// Rows that may be asked for behind a column's last one: lists by row are that much longer than a column.
+pub(crate) const ROW_PADDING: usize = 32;
+
+/// A column of a wall on its way to the screen.
+pub(crate) struct Column<'a> {
+    pub texels: &'a [u8],
+    pub table: &'a [u8; 256],
+    /// Position in the texture at base row 0, as a fraction of its height.
+    pub at: u32,
+    /// Its change a base row.
+    pub step: u32,
+}
+
+impl Column<'_> {
+    /// Draws the frame rows `top..bottom`; `rows` are the base rows. Both lists are padded.
+    #[inline(always)]
+    pub fn draw(&self, simd: Simd, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+        #[cfg(target_arch = "x86_64")]
+        match (simd.level(), self.texels.len()) {
+            // SAFETY: whoever has this `Simd` has the instructions.
+            (Level::Avx512, 128) => return unsafe { vector::avx512::<7>(self, pixels, rows, top, bottom) },
+            // SAFETY: as above.
+            (Level::Avx512, 64) => return unsafe { vector::avx512::<6>(self, pixels, rows, top, bottom) },
+            // With shorter vectors whole walls are worked out side by side, where they fit these.
+            _ => {}
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = simd;
+        self.draw_plainly(pixels, rows, top, bottom);
+    }
+
+    fn draw_plainly(&self, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+        for (pixel, &row) in pixels[top..bottom].iter_mut().zip(&rows[top..bottom]) {
+            let texel = (u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64) >> 32;
+            *pixel = self.table[usize::from(self.texels[texel as usize])];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rng;
+
+    /// With vectors of 32 bytes, which the processor has.
+    #[cfg(target_arch = "x86_64")]
+    fn draw_by_own_colours(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+        use crate::render::textures::local_palette::OwnColours;
+        use vector::{OwnColumn, avx2};
+        let own = OwnColours::new(column.texels, &[*column.table]);
+        macro_rules! draw {
+            ($texels:literal, $colours:literal) => {{
+                let (texels, lit) = (own.texels.first_chunk().unwrap(), own.lit(0).first_chunk().unwrap());
+                let column = OwnColumn::<$texels, $colours> { texels, lit, at: column.at, step: column.step };
+                // SAFETY: the processor has the instructions.
+                unsafe { avx2(&column, pixels, rows, top, bottom) }
+            }};
+        }
+        match (own.texels.len(), own.room) {
+            (64, 16) => draw!(64, 16),
+            (64, 64) => draw!(64, 64),
+            (64, _) => draw!(64, 256),
+            (_, 16) => draw!(128, 16),
+            (_, 64) => draw!(128, 64),
+            _ => draw!(128, 256),
+        }
+    }
+
+    #[test]
+    fn all_ways_draw_the_same_columns() {
+        let mut rng = Rng::new(4);
+        let tables: [[u8; 256]; 2] = std::array::from_fn(|_| std::array::from_fn(|_| rng.byte() as u8));
+        for round in 0..1000 {
+            let height = [64, 128, 96][round % 3];
+            let length = [60usize, 100, 403][round / 3 % 3];
+            let padded = length.next_multiple_of(ROW_BLOCK);
+            // Few colours, some, and many.
+            let colours = [15, 63, 255][round % 7 % 3];
+            let texels: Vec<u8> = (0..2 * height).map(|_| (rng.byte() as u8 & colours).wrapping_mul(3)).collect();
+            let rows: Vec<u32> = (0..(padded + ROW_PADDING) as u32).map(|row| row * 5 / 3).collect();
+            let before: Vec<u8> = (0..padded).map(|_| rng.byte() as u8).collect();
+            let (at, step) = (rng.next_u64() as u32, rng.next_u64() as u32 >> rng.between(4, 12));
+            for _ in 0..6 {
+                let (a, b) = (rng.below(length as u32 + 1) as usize, rng.below(length as u32 + 1) as usize);
+                let column = Column {
+                    texels: &texels[[0, height][rng.below(2) as usize]..][..height],
+                    table: &tables[rng.below(2) as usize],
+                    at: at.wrapping_add(rng.next_u64() as u32 >> 7),
+                    step: step + (rng.next_u64() as u32 >> 16),
+                };
+                let mut plain = before.clone();
+                let (top, bottom) = (a.min(b), a.max(b));
+                column.draw_plainly(&mut plain, &rows, top, bottom);
+                let compare = |draw: &mut dyn FnMut(&mut [u8]), name: &str| {
+                    let mut pixels = before.clone();
+                    draw(&mut pixels);
+                    assert_eq!(pixels, plain, "{name}, rows {a} and {b} of {length}, texture of {height}");
+                };
+                for simd in Simd::available() {
+                    compare(&mut |pixels| column.draw(simd, pixels, &rows, top, bottom), simd.name());
+                    #[cfg(target_arch = "x86_64")]
+                    if simd.level() == Level::Avx2 && height != 96 {
+                        compare(&mut |pixels| draw_by_own_colours(&column, pixels, &rows, top, bottom), "by own colours");
+                    }
+                }
+            }
+        }
+    }
+}

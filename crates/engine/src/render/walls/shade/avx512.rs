@@ -1,0 +1,110 @@
+//! What eight columns of a wall show, side by side; the plain twin is in `wall`, where a test compares them.
+
+use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
+use crate::render::walls::shader::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, WALL_BLOCK, WallShader, WallSlope};
+use std::arch::x86_64::*;
+
+/// For each of eight columns what [`WallShader::column`] gives.
+#[derive(Clone, Copy)]
+pub(crate) struct WallVectors {
+    pub distance: __m512i,
+    /// Horizontal texture position.
+    pub u: __m512i,
+    pub table: __m512i,
+    pub at: __m512i,
+    pub step: __m512i,
+}
+
+/// The eight base columns `columns`.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+pub(crate) fn vectors(shader: &WallShader, slope: &WallSlope, columns: &[u32; WALL_BLOCK]) -> WallVectors {
+    // SAFETY: 32 bytes are readable behind the reference.
+    let column = _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(columns.as_ptr().cast()) });
+    let distance = quotients(inverse_at(shader.line, column));
+    let nearness = _mm512_mullo_epi64(inverse_at(shader.ends, column), _mm512_set1_epi64(ONE_TABLE_DISTANCE));
+    let nearness = _mm512_srai_epi64(nearness, INVERSE_BITS - 16);
+    let step = _mm512_srai_epi64(_mm512_mullo_epi64(distance, _mm512_set1_epi64(shader.view.inverse_focal_y)), 24);
+    let step = _mm512_srai_epi64(_mm512_mullo_epi64(step, _mm512_set1_epi64(shader.picture.inverse_height)), 24);
+    let whole = _mm512_mullo_epi64(step, _mm512_set1_epi64(slope.rows));
+    let part = _mm512_srai_epi64(_mm512_mullo_epi64(step, _mm512_set1_epi64(slope.fraction)), 16);
+    WallVectors {
+        distance,
+        u: texture_at(&shader.texture, column, distance),
+        table: tables(shader.light, nearness),
+        at: _mm512_sub_epi64(_mm512_add_epi64(_mm512_set1_epi64(slope.start), whole), part),
+        step,
+    }
+}
+
+/// The same as lists.
+pub(crate) struct WallColumns {
+    pub distance: [i64; WALL_BLOCK],
+    pub u: [i64; WALL_BLOCK],
+    pub table: [i64; WALL_BLOCK],
+    pub at: [i64; WALL_BLOCK],
+    pub step: [i64; WALL_BLOCK],
+}
+
+/// The same as lists.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+pub(crate) fn columns(shader: &WallShader, slope: &WallSlope, columns: &[u32; WALL_BLOCK]) -> WallColumns {
+    let WallVectors { distance, u, table, at, step } = vectors(shader, slope, columns);
+    WallColumns { distance: listed(distance), u: listed(u), table: listed(table), at: listed(at), step: listed(step) }
+}
+
+/// [`SeenLine::inverse_at`].
+#[inline]
+#[target_feature(enable = "avx512f,avx512dq")]
+fn inverse_at(line: &SeenLine, column: __m512i) -> __m512i {
+    let change = _mm512_mullo_epi64(_mm512_set1_epi64(line.inverse_step), column);
+    let inverse = _mm512_add_epi64(_mm512_set1_epi64(line.inverse), change);
+    _mm512_max_epi64(inverse, _mm512_set1_epi64(LEAST_INVERSE))
+}
+
+/// [`SeenLine::distance_at`]: `2^60` divided by each divisor, rounded down. The quotient of floating-point numbers is at
+/// most one off, as divisors are at least `2^27`; the rest tells.
+#[inline]
+#[target_feature(enable = "avx512f,avx512dq")]
+fn quotients(divisor: __m512i) -> __m512i {
+    const DIVIDEND: i64 = 1 << (INVERSE_BITS + 16);
+    let (dividend, one) = (_mm512_set1_epi64(DIVIDEND), _mm512_set1_epi64(1));
+    let estimate = _mm512_div_pd(_mm512_cvtepi64_pd(dividend), _mm512_cvtepi64_pd(divisor));
+    let quotient = _mm512_cvttpd_epi64(estimate);
+    let rest = _mm512_sub_epi64(dividend, _mm512_mullo_epi64(quotient, divisor));
+    let too_large = _mm512_movepi64_mask(rest);
+    let too_small = _mm512_cmpge_epi64_mask(rest, divisor);
+    let quotient = _mm512_mask_sub_epi64(quotient, too_large, quotient, one);
+    _mm512_mask_add_epi64(quotient, too_small, quotient, one)
+}
+
+/// [`TextureLine::at`].
+#[inline]
+#[target_feature(enable = "avx512f,avx512dq")]
+fn texture_at(line: &TextureLine, column: __m512i, distance: __m512i) -> __m512i {
+    let change = _mm512_mullo_epi64(_mm512_set1_epi64(line.gain_step), column);
+    let gain = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(line.gain), change), 32);
+    let gained = _mm512_mullo_epi64(distance, gain);
+    let along = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(line.along), gained), 28);
+    let along = _mm512_max_epi64(_mm512_min_epi64(along, _mm512_set1_epi64(line.last)), _mm512_set1_epi64(line.least));
+    _mm512_add_epi64(along, _mm512_set1_epi64(line.offset))
+}
+
+/// [`Light::table`].
+#[inline]
+#[target_feature(enable = "avx512f")]
+pub(crate) fn tables(light: Light, nearness: __m512i) -> __m512i {
+    let nearness = _mm512_min_epi64(nearness, _mm512_set1_epi64(light.most));
+    let table = _mm512_srai_epi64(_mm512_sub_epi64(_mm512_set1_epi64(light.base), nearness), 16);
+    _mm512_max_epi64(_mm512_min_epi64(table, _mm512_set1_epi64(31)), _mm512_setzero_si512())
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn listed(vector: __m512i) -> [i64; WALL_BLOCK] {
+    let mut list = [0; WALL_BLOCK];
+    // SAFETY: 64 bytes are writable behind the reference.
+    unsafe { _mm512_storeu_si512(list.as_mut_ptr().cast(), vector) }
+    list
+}
