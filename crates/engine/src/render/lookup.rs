@@ -1,7 +1,7 @@
 //! Tables as large as pictures have colours or columns texels, looked up in registers of 32 bytes. The plain twins are where they are used:
 //! in `column` and `masked_column`, where tests compare them.
 
-use crate::render::walls::column::ROW_PADDING;
+use crate::render::blocks::ROW_PADDING;
 use std::arch::x86_64::*;
 
 /// Rows that are drawn at once.

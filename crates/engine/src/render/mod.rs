@@ -8,6 +8,7 @@
 #![cfg_attr(not(test), deny(clippy::float_arithmetic))]
 
 mod automap;
+mod blocks;
 mod buffers;
 mod colour;
 #[cfg(target_arch = "x86_64")]

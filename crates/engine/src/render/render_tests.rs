@@ -387,7 +387,7 @@ fn conversions_agree_with_one_another() {
         let colour = renderer.palette()[usize::from(renderer.indices()[at])];
         assert_eq!(hwc[at * 3..at * 3 + 3], colour);
         assert_eq!([chw[at], chw[pixels + at], chw[2 * pixels + at]], colour);
-        assert_eq!(grey[at], output::convert::luminance(colour));
+        assert_eq!(grey[at], colour::palette::luminance(colour));
     }
     let colours = SegmentationColours::distinct();
     renderer.write_segmented_hwc(&colours, &mut hwc);

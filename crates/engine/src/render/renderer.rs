@@ -3,9 +3,9 @@
 use crate::render::buffers::frame::{Frame, class};
 use crate::render::buffers::labels::{Label, Labels};
 use crate::render::buffers::request::Buffers;
+use crate::render::colour::palette::Colours;
 use crate::render::colour::tint::Tint;
 use crate::render::output::convert;
-use crate::render::output::convert::Colours;
 use crate::render::output::segmentation::SegmentationColours;
 use crate::render::overlay::status_bar::{BarState, StatusBar};
 use crate::render::overlay::weapon;

@@ -1,6 +1,6 @@
 //! What of each column is still open while the world is drawn front to back.
 
-use crate::render::walls::clip::padded;
+use crate::render::blocks::padded;
 
 /// For each frame column, the rows that nothing has covered yet.
 #[derive(Clone, Debug, Default)]

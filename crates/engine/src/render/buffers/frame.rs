@@ -1,10 +1,11 @@
 //! The buffers that are drawn into.
 
+use crate::render::blocks::ROW_BLOCK;
+use crate::render::blocks::column_stride;
 use crate::render::buffers::transpose;
-use crate::render::planes::plane::Span;
+use crate::render::buffers::visplane::Span;
 use crate::render::view::depth::Depths;
 use crate::render::view::tables::View;
-use crate::render::walls::column::ROW_BLOCK;
 use crate::simd::Simd;
 
 /// What a pixel of the class buffer shows where it is no actor.
@@ -63,11 +64,6 @@ pub(crate) struct Columns {
     stride: usize,
     colour: Vec<u8>,
     depth: Vec<u8>,
-}
-
-/// From one column to the next: whole blocks of rows.
-pub(crate) fn column_stride(rows: usize) -> usize {
-    rows.next_multiple_of(ROW_BLOCK)
 }
 
 impl Columns {

@@ -7,3 +7,4 @@ pub mod labels;
 pub mod request;
 pub mod sectors;
 pub mod transpose;
+pub mod visplane;

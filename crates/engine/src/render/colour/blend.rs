@@ -1,6 +1,6 @@
 //! Colours between two: what shines through things that are not opaque.
 
-use crate::render::scene::prepared::nearest_colour;
+use crate::render::colour::palette::nearest_colour;
 use crate::world::OPAQUE;
 use std::sync::OnceLock;
 

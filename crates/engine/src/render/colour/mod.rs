@@ -1,4 +1,5 @@
 //! The palette: what tints it, and what shines through something else.
 
 pub mod blend;
+pub mod palette;
 pub mod tint;

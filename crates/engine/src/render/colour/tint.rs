@@ -88,7 +88,7 @@ fn damage_alpha(counter: u8) -> i64 {
 
 /// A colour as green goggles show it: its luminance in green, with a quarter of the other channels left.
 fn green(colour: [u8; 3]) -> [u8; 3] {
-    let luminance = crate::render::output::convert::luminance(colour);
+    let luminance = crate::render::colour::palette::luminance(colour);
     [colour[0] / 4, luminance.max(colour[1]), colour[2] / 4]
 }
 

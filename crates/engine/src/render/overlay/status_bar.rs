@@ -1,73 +1,12 @@
 //! The status bar. Its pixels stay in the frame from one picture to the next; a part is drawn again when what it
 //! shows has changed.
 
-use crate::assets::Assets;
-use crate::map::TextureName;
 use crate::render::buffers::frame::Frame;
+use crate::render::textures::hud::BarArt;
 use crate::render::textures::picture::MaskedPicture;
 use crate::render::view::tables::View;
 use crate::render::view::tables::{BAR_ART_HEIGHT, BAR_ART_WIDTH, bar_scale};
 use crate::world::{Face, Weapon, World};
-
-/// The pictures of the bar; what a set lacks is not drawn.
-#[derive(Clone, Debug)]
-pub(crate) struct BarArt {
-    bar: Option<MaskedPicture>,
-    arms: Option<MaskedPicture>,
-    big_digits: [Option<MaskedPicture>; 10],
-    percent: Option<MaskedPicture>,
-    grey_digits: [Option<MaskedPicture>; 10],
-    yellow_digits: [Option<MaskedPicture>; 10],
-    /// By band of health: three glances, outcry, grin, rage.
-    faces: [[Option<MaskedPicture>; 6]; FACE_BANDS],
-    dead_face: Option<MaskedPicture>,
-    /// Blue, yellow and red cards, then skulls.
-    keys: [Option<MaskedPicture>; 6],
-}
-
-/// Bands of health that the face tells apart.
-const FACE_BANDS: usize = 5;
-
-impl BarArt {
-    pub fn new(assets: &Assets) -> BarArt {
-        let find = |name: String| {
-            let index = *assets.graphics.get(&TextureName::new(&name))?;
-            Some(MaskedPicture::new(assets.images.get(index as usize)?))
-        };
-        let digits = |prefix: &str| std::array::from_fn(|digit| find(format!("{prefix}{digit}")));
-        BarArt {
-            bar: find("STBAR".into()),
-            arms: find("STARMS".into()),
-            big_digits: digits("STTNUM"),
-            percent: find("STTPRCNT".into()),
-            grey_digits: digits("STGNUM"),
-            yellow_digits: digits("STYSNUM"),
-            faces: std::array::from_fn(|band| {
-                std::array::from_fn(|mood| {
-                    find(match mood {
-                        0..=2 => format!("STFST{band}{mood}"),
-                        3 => format!("STFOUCH{band}"),
-                        4 => format!("STFEVL{band}"),
-                        _ => format!("STFKILL{band}"),
-                    })
-                })
-            }),
-            dead_face: find("STFDEAD0".into()),
-            keys: std::array::from_fn(|i| find(format!("STKEYS{i}"))),
-        }
-    }
-
-    fn face(&self, face: Face, band: usize) -> Option<&MaskedPicture> {
-        let moods = &self.faces[band.min(FACE_BANDS - 1)];
-        match face {
-            Face::Glance(direction) => moods[usize::from(direction.min(2))].as_ref(),
-            Face::Ouch => moods[3].as_ref(),
-            Face::Grin => moods[4].as_ref(),
-            Face::Rage => moods[5].as_ref(),
-            Face::Dead => self.dead_face.as_ref(),
-        }
-    }
-}
 
 /// Everything that the bar shows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -266,6 +205,7 @@ fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedPicture>, x: i32,
 
 #[cfg(test)]
 mod tests {
+    use crate::assets::Assets;
     use super::*;
 
     #[test]

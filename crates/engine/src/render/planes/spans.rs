@@ -1,7 +1,7 @@
 //! Spans of a plane row by row: which columns of a row belong to the plane is a mask of bits, 64 columns at a time. The
 //! plain twin, column by column, is in `plane`, where a test compares them.
 
-use crate::render::planes::plane::{Plane, SPAN_BLOCK, Span};
+use crate::render::buffers::visplane::{Plane, SPAN_BLOCK, Span};
 use std::arch::x86_64::*;
 use std::ops::Range;
 

@@ -3,8 +3,9 @@
 //! `plane`; a test in `render_tests` compares whole frames.
 
 use crate::render::buffers::frame::Frame;
+use crate::render::buffers::visplane::{Plane, SPAN_BLOCK};
 use crate::render::output::convert::avx512::{load, load_table, look_up_block};
-use crate::render::planes::plane::{Plane, PlaneShader, SPAN_BLOCK};
+use crate::render::planes::plane::PlaneShader;
 use crate::render::planes::row::RowWalk;
 use crate::render::planes::row::vector::{self, ROW_VECTOR};
 use crate::render::planes::spans::{load_avx512, next_run, rows};

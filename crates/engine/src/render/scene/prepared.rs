@@ -4,9 +4,9 @@ use crate::assets::{Assets, TextureEntry};
 use crate::map::{Map, Node, Seg, Side, TextureId, TextureName};
 use crate::math::Fixed;
 use crate::render::colour::blend::Blend;
-use crate::render::output::convert::Colours;
-use crate::render::overlay::status_bar::BarArt;
-use crate::render::sprites::particles;
+use crate::render::colour::palette::Colours;
+use crate::render::colour::palette::{self, mean, nearest_colour};
+use crate::render::textures::hud::BarArt;
 use crate::render::textures::picture::Textures;
 use crate::render::textures::sprite::SpritePicture;
 use std::sync::Arc;
@@ -208,7 +208,7 @@ impl Scene {
             missing_picture,
             bar: BarArt::new(&assets),
             blend: Blend::new(&assets.palette),
-            shades: particles::SHADES.map(|colour| nearest_colour(&assets.palette, colour)),
+            shades: palette::SHADES.map(|colour| nearest_colour(&assets.palette, colour)),
             colours: Colours::new(assets.palette),
             assets,
         }
@@ -286,22 +286,4 @@ fn sprite_pictures(assets: &Assets) -> Vec<Option<SpritePicture>> {
         }
     }
     pictures
-}
-
-/// The palette index nearest to a colour.
-pub(crate) fn nearest_colour(palette: &[[u8; 3]; 256], colour: [u8; 3]) -> u8 {
-    let distance =
-        |candidate: &[u8; 3]| -> i32 { candidate.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum() };
-    (0..256).min_by_key(|&i| distance(&palette[i])).unwrap_or(0) as u8
-}
-
-/// The mean of some palette entries, grey if there are none.
-fn mean(palette: &[[u8; 3]; 256], indices: impl Iterator<Item = u8>) -> [u8; 3] {
-    let (mut sums, mut count) = ([0u64; 3], 0u64);
-    for index in indices {
-        let colour = palette[usize::from(index)];
-        sums = std::array::from_fn(|i| sums[i] + u64::from(colour[i]));
-        count += 1;
-    }
-    if count == 0 { [128; 3] } else { sums.map(|sum| (sum / count) as u8) }
 }

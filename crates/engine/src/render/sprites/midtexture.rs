@@ -9,8 +9,8 @@ use crate::render::sprites::pass::Masked;
 use crate::render::textures::local_palette::OwnColours;
 use crate::render::textures::midtexture::{Fence, Hung, Scales};
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
+use crate::render::view::line::{Edge, INVERSE_BITS, TextureLine};
 use crate::render::view::view_space::TurnedLine;
-use crate::render::walls::shader::{Edge, INVERSE_BITS, TextureLine};
 use std::ops::Range;
 
 /// A masked texture as a frame sees it.

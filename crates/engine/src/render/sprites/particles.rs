@@ -6,12 +6,9 @@ use crate::render::sprites::pass::Masked;
 use crate::render::sprites::sprite::Extent;
 use crate::render::view::camera::Camera;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
+use crate::render::view::line::INVERSE_BITS;
 use crate::render::view::tables::View;
-use crate::render::walls::shader::INVERSE_BITS;
 use crate::world::{Shed, Square, World};
-
-/// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's palette that the published engine shows.
-pub(crate) const SHADES: [[u8; 3]; 3] = [[171; 3], [87; 3], [255, 255, 0]];
 
 /// Squares nearer than this, in 16.16 map units, are not drawn: the largest that were seen are as near.
 const NEAREST: i64 = 2 << 16;

@@ -6,8 +6,8 @@ use crate::render::scene::prepared::Scene;
 use crate::render::textures::sprite::SpritePicture;
 use crate::render::view::camera::Camera;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
+use crate::render::view::line::INVERSE_BITS;
 use crate::render::view::tables::View;
-use crate::render::walls::shader::INVERSE_BITS;
 use crate::world::{Actor, ActorKind, OPAQUE, World};
 
 /// Actors nearer than this, in 16.16 map units, are not drawn.

@@ -2,8 +2,8 @@
 
 use crate::assets::Image;
 use crate::render::textures::picture::MaskedPicture;
+use crate::render::view::line::SeenLine;
 use crate::render::view::tables::View;
-use crate::render::walls::shader::SeenLine;
 
 /// A run of texels without holes of a column: the first, and the one past the last.
 pub(crate) type Run = [u16; 2];

@@ -3,9 +3,11 @@
 use crate::assets::{Assets, Image, TextureEntry};
 use crate::render::textures::local_palette::OwnColours;
 use crate::render::textures::midtexture::Fence;
-#[cfg(target_arch = "x86_64")]
-use crate::render::walls::batch::{MOST_TEXELS, WallList};
 use std::sync::Arc;
+
+/// Most texels of a column of the pictures whose columns are drawn in batches: two vectors.
+#[cfg(target_arch = "x86_64")]
+pub(crate) const MOST_TEXELS: usize = 128;
 
 /// A texture on a wall: opaque, tiled both ways.
 #[derive(Clone, Debug)]
@@ -23,6 +25,12 @@ pub(crate) struct WallPicture {
 }
 
 impl WallPicture {
+    /// Whether the columns of a picture can be listed: they fill one or two vectors, and wrap as numbers do.
+    #[cfg(target_arch = "x86_64")]
+    pub fn fits_batch(&self) -> bool {
+        matches!(self.height, 64 | 128) && self.width.is_power_of_two()
+    }
+
     pub fn new(image: &Image) -> WallPicture {
         let (width, height) = (u32::from(image.width).max(1), u32::from(image.height).max(1));
         let mut pixels = image.pixels.to_vec();
@@ -181,7 +189,7 @@ impl Textures {
     #[cfg(target_arch = "x86_64")]
     fn list_texels(&mut self, wall: &WallPicture) {
         let end = self.listed.len().saturating_sub(MOST_TEXELS);
-        let takes = WallList::takes(wall.width, wall.height);
+        let takes = wall.fits_batch();
         if takes {
             self.listed.truncate(end);
             self.listed.extend_from_slice(&wall.pixels);

@@ -4,6 +4,7 @@ pub mod camera;
 pub mod depth;
 pub mod horizon;
 pub mod light;
+pub mod line;
 pub mod size;
 pub mod tables;
 pub mod view_space;

@@ -5,23 +5,23 @@
 //! drawn, so that the small frame equals the nearest-neighbour reduction of the large one by construction.
 
 use crate::math::{Angle, fine_tangent};
-use crate::render::buffers::frame::column_stride;
+use crate::render::blocks::CHUNK;
+use crate::render::blocks::ROW_PADDING;
+use crate::render::blocks::column_stride;
+use crate::render::blocks::padded;
 use crate::render::view::size::FrameSize;
 use crate::render::view::size::SizeError;
-use crate::render::view::view_space::COLUMN_RAY_BITS;
-use crate::render::walls::clip::padded;
-use crate::render::walls::column::ROW_PADDING;
 
 /// Height of the status bar's art, in its own pixels; its width is 320.
 pub(crate) const BAR_ART_HEIGHT: u32 = 32;
 /// Width of the status bar's art.
 pub(crate) const BAR_ART_WIDTH: u32 = 320;
 
+/// Fractional bits of [`View::column_ray`].
+pub(crate) const COLUMN_RAY_BITS: u32 = 40;
+
 /// Half the view, in the angles of which there are 8192 a turn.
 const FINE_45_DEGREES: i32 = 1024;
-
-/// Columns that rows are drawn in steps of: the base columns of a chunk repeat in the next one, a constant to the right.
-pub(crate) const CHUNK: usize = 8;
 
 /// The tables of one frame size. Immutable; shared by every renderer of that size.
 #[derive(Clone, Debug)]

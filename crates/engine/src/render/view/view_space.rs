@@ -3,13 +3,12 @@
 
 use crate::render::scene::prepared::Face;
 use crate::render::view::camera::Camera;
+use crate::render::view::line::{INVERSE_BITS, SeenLine, TextureLine};
+use crate::render::view::tables::COLUMN_RAY_BITS;
 use crate::render::view::tables::View;
-use crate::render::walls::shader::{INVERSE_BITS, SeenLine, TextureLine};
 
 /// Fractional bits of turned points.
 pub(crate) const TURNED_BITS: u32 = 12;
-/// Fractional bits of [`View::column_ray`].
-pub(crate) const COLUMN_RAY_BITS: u32 = 40;
 /// `1 / number` is an [`Inverse`]'s digits by two to the power of this and its shift.
 const DIGIT_BITS: i32 = 95;
 

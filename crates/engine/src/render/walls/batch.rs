@@ -4,19 +4,17 @@
 //!
 //! The plain twin is `column`, by which other walls are drawn; `render_tests` compares whole frames.
 
+use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
 use crate::render::output::convert::avx512::{load, load_table, look_up_block};
+use crate::render::textures::picture::MOST_TEXELS;
 use crate::render::textures::picture::WallPicture;
 use crate::render::view::depth::Depths;
-use crate::render::walls::column::ROW_BLOCK;
 use crate::render::walls::column::vector::highest_bytes;
 use crate::render::walls::shade::avx512::{self, WallVectors};
 use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
 use crate::simd::first_of_eight;
 use std::arch::x86_64::*;
-
-/// Most texels of a column: two vectors.
-pub(crate) const MOST_TEXELS: usize = 128;
 
 /// What is listed; a column is one entry in each list.
 #[derive(Debug, Default)]
@@ -38,11 +36,6 @@ pub(crate) struct WallList {
 }
 
 impl WallList {
-    /// Whether the columns of a picture can be listed: they fill one or two vectors, and wrap as numbers do.
-    pub fn takes(width: u32, height: u32) -> bool {
-        matches!(height, 64 | 128) && width.is_power_of_two()
-    }
-
     /// Forgets what was drawn.
     pub fn clear(&mut self) {
         self.count = 0;

@@ -8,9 +8,9 @@ use crate::render::patch::first_row;
 use crate::render::scene::prepared::Face;
 use crate::render::textures::midtexture::runs_of;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
+use crate::render::view::line::INVERSE_BITS;
 use crate::render::walls::pass::Walk;
 use crate::render::walls::seg::SeenSeg;
-use crate::render::walls::shader::INVERSE_BITS;
 use crate::world::Soot;
 
 /// Texels of a stain to a map unit.

@@ -2,11 +2,12 @@
 
 use crate::map::Node;
 use crate::math::Fixed;
+use crate::render::blocks::padded;
 use crate::render::buffers::clip::Openings;
 use crate::render::buffers::drawsegs::Silhouettes;
 use crate::render::buffers::frame::Columns;
 use crate::render::buffers::sectors::Looks;
-use crate::render::planes::plane::Planes;
+use crate::render::buffers::visplane::Planes;
 use crate::render::published_depth::decal::SootDepth;
 use crate::render::scene::prepared::{NO_SECTOR, Scene};
 use crate::render::view::camera::Camera;
@@ -14,7 +15,6 @@ use crate::render::view::depth::Depths;
 use crate::render::view::tables::View;
 #[cfg(target_arch = "x86_64")]
 use crate::render::walls::batch::WallList;
-use crate::render::walls::clip::padded;
 use crate::render::walls::decals::SootyColumn;
 use crate::simd::{Simd, prefetch, prefetch_lines};
 use crate::world::World;

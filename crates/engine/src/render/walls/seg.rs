@@ -4,14 +4,15 @@ use crate::map::TextureId;
 use crate::math::Fixed;
 use crate::render::buffers::drawsegs::Silhouette;
 use crate::render::buffers::sectors::Look;
-use crate::render::planes::plane::PlaneKey;
+use crate::render::buffers::visplane::PlaneKey;
 use crate::render::published_depth::quads;
 use crate::render::scene::prepared::{Face, NO_SECTOR, SceneSeg};
 use crate::render::view::light::Light;
+use crate::render::view::line::{END_BITS, Edge, SeenLine};
 use crate::render::view::view_space::TurnedLine;
 use crate::render::walls::clip::{Narrowing, narrow};
 use crate::render::walls::pass::{Walk, WalkScratch};
-use crate::render::walls::shader::{END_BITS, Edge, SeenLine, WallShader};
+use crate::render::walls::shader::WallShader;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 

@@ -4,8 +4,8 @@
 pub mod vector;
 
 use crate::math::Fixed;
-use crate::render::walls::clip::{BLOCK, padded};
-use crate::render::walls::shader::SeenLine;
+use crate::render::blocks::{COLUMN_BLOCK, padded};
+use crate::render::view::line::SeenLine;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
@@ -129,7 +129,7 @@ impl Silhouettes {
             self.tops.resize(2 * padded(self.used), 0);
             self.bottoms.resize(2 * padded(self.used), 0);
         }
-        for from in (0..count).step_by(BLOCK) {
+        for from in (0..count).step_by(COLUMN_BLOCK) {
             copy_block(&mut self.tops[rows + from..], &tops[from..]);
             copy_block(&mut self.bottoms[rows + from..], &bottoms[from..]);
         }
@@ -162,7 +162,7 @@ impl Silhouettes {
 
 #[inline(always)]
 fn copy_block(to: &mut [i16], from: &[i16]) {
-    let to: &mut [i16; BLOCK] = to.first_chunk_mut().expect("lists are padded");
+    let to: &mut [i16; COLUMN_BLOCK] = to.first_chunk_mut().expect("lists are padded");
     *to = *from.first_chunk().expect("lists are padded");
 }
 

@@ -3,36 +3,10 @@
 #[cfg(target_arch = "x86_64")]
 pub mod avx512;
 
+use crate::render::colour::palette::{Colours, luminance};
 #[cfg(target_arch = "x86_64")]
 use crate::render::output::convert::avx512::Wide;
 use crate::simd::Simd;
-
-/// Weight of red, green and blue in luminance, in 256ths.
-const LUMINANCE: [u32; 3] = [77, 150, 29];
-
-/// The luminance of a colour.
-pub(crate) fn luminance(colour: [u8; 3]) -> u8 {
-    let sum: u32 = colour.iter().zip(LUMINANCE).map(|(&channel, weight)| u32::from(channel) * weight).sum();
-    (sum >> 8) as u8
-}
-
-/// A table of colours, in the forms that the ways of looking up want.
-#[derive(Clone, Debug)]
-pub(crate) struct Colours {
-    pub palette: [[u8; 3]; 256],
-    /// A table of each channel.
-    channels: [[u8; 256]; 3],
-    /// Red, green and blue from the lowest byte on.
-    words: [u32; 256],
-}
-
-impl Colours {
-    pub fn new(palette: [[u8; 3]; 256]) -> Colours {
-        let channels = std::array::from_fn(|channel| std::array::from_fn(|i| palette[i][channel]));
-        let words = palette.map(|[red, green, blue]| u32::from_le_bytes([red, green, blue, 0]));
-        Colours { palette, channels, words }
-    }
-}
 
 /// Looks every index up.
 fn look_up(simd: Simd, table: &[u8; 256], indices: &[u8], out: &mut [u8]) {

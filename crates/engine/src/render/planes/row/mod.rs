@@ -7,7 +7,7 @@
 #[cfg(target_arch = "x86_64")]
 pub mod vector;
 
-use crate::render::view::tables::CHUNK;
+use crate::render::blocks::CHUNK;
 
 /// Texture positions along a row, as fractions of the texture's side with 32 bits: linear in the base column.
 #[derive(Clone, Copy, Debug)]

@@ -1,11 +1,11 @@
 //! Columns of the sky, 64 rows at a time: a column of texels is four vectors. The plain twin is in `sky`, where a test
 //! compares them.
 
+use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
+use crate::render::buffers::visplane::Plane;
 use crate::render::output::convert::avx512::{load, load_table, look_up_block};
-use crate::render::planes::plane::Plane;
 use crate::render::planes::sky::SkyShader;
-use crate::render::walls::column::ROW_BLOCK;
 use std::arch::x86_64::*;
 
 /// Highest picture: as many rows as a byte tells apart.

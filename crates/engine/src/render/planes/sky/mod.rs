@@ -4,7 +4,7 @@
 pub mod avx512;
 
 use crate::render::buffers::frame::Columns;
-use crate::render::planes::plane::Plane;
+use crate::render::buffers::visplane::Plane;
 use crate::render::textures::picture::WallPicture;
 use crate::render::view::camera::Camera;
 use crate::render::view::tables::View;
@@ -73,7 +73,7 @@ mod tests {
     use crate::assets::Image;
     use crate::map::TextureId;
     use crate::math::{Angle, Fixed, Rng};
-    use crate::render::planes::plane::{PlaneKey, Planes};
+    use crate::render::buffers::visplane::{PlaneKey, Planes};
     use crate::render::view::size::FrameSize;
 
     #[test]

@@ -85,9 +85,9 @@ impl MaskedColumn<'_> {
 mod tests {
     use super::*;
     use crate::math::Rng;
+    use crate::render::blocks::ROW_PADDING;
     use crate::render::textures::local_palette::OwnColours;
     use crate::render::textures::midtexture::{is_opaque, runs_of};
-    use crate::render::walls::column::ROW_PADDING;
 
     #[test]
     fn all_ways_show_the_same_rows() {

@@ -4,25 +4,16 @@
 pub mod vector;
 
 use crate::render::buffers::clip::Openings;
-use crate::render::planes::plane::Planes;
+use crate::render::buffers::visplane::Planes;
+use crate::render::view::line::Edge;
 use crate::render::view::tables::RowScale;
 use crate::render::view::tables::View;
 #[cfg(target_arch = "x86_64")]
 use crate::render::walls::clip::vector::{Avx2, Avx512};
-use crate::render::walls::shader::Edge;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
 use std::ops::Range;
-
-/// Most columns that are narrowed at once. Lists by column are that much longer than a frame is wide, so that the last
-/// columns of a seg need no other code: what lies beyond is read, and left as it is.
-pub(crate) const BLOCK: usize = 16;
-
-/// Length of a list by column.
-pub(crate) const fn padded(width: usize) -> usize {
-    width + BLOCK
-}
 
 /// What a seg narrows: lists by frame column, which are padded.
 pub(crate) struct Narrowing<'a> {
@@ -275,7 +266,8 @@ mod tests {
     use super::*;
     use crate::map::TextureId;
     use crate::math::{Fixed, Rng};
-    use crate::render::planes::plane::PlaneKey;
+    use crate::render::blocks::{COLUMN_BLOCK, padded};
+    use crate::render::buffers::visplane::PlaneKey;
     use crate::render::view::size::FrameSize;
 
     const KEY: PlaneKey = PlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
@@ -299,7 +291,7 @@ mod tests {
 
         /// All that is to be seen of them; `columns` are those of the wall.
         fn seen(&self, columns: &Range<usize>) -> impl PartialEq + std::fmt::Debug + use<> {
-            let width = self.wall[0].len() - BLOCK;
+            let width = self.wall[0].len() - COLUMN_BLOCK;
             let open: Vec<bool> = (0..width).map(|x| self.openings.any_open(x, x + 1)).collect();
             let rows = [self.openings.top.clone(), self.openings.bottom.clone()];
             let planes: Vec<_> = self.planes.used().iter().map(|plane| (plane.top.clone(), plane.bottom.clone())).collect();

@@ -4,9 +4,10 @@
 //! The functions may only be called where the instructions are; `narrow` does so in functions that are compiled for them.
 //! They are inlined there, which is why they are no `unsafe` functions of their own.
 
+use crate::render::blocks::COLUMN_BLOCK;
+use crate::render::view::line::{Edge, ROW_BITS};
 use crate::render::view::tables::RowScale;
-use crate::render::walls::clip::{BLOCK, Rows};
-use crate::render::walls::shader::{Edge, ROW_BITS};
+use crate::render::walls::clip::Rows;
 use std::arch::x86_64::*;
 
 /// Rows of sixteen columns; `AVX512` has wider vectors for positions.
@@ -19,10 +20,10 @@ pub(crate) type Avx2 = Wide<false>;
 pub(crate) type Avx512 = Wide<true>;
 
 /// Sixteen times yes, sixteen times no.
-static YES_NO: [i16; 2 * BLOCK] = {
-    let mut list = [0; 2 * BLOCK];
+static YES_NO: [i16; 2 * COLUMN_BLOCK] = {
+    let mut list = [0; 2 * COLUMN_BLOCK];
     let mut i = 0;
-    while i < BLOCK {
+    while i < COLUMN_BLOCK {
         list[i] = -1;
         i += 1;
     }
@@ -30,33 +31,33 @@ static YES_NO: [i16; 2 * BLOCK] = {
 };
 
 impl<const AVX512: bool> Rows for Wide<AVX512> {
-    const COUNT: usize = BLOCK;
-    type Block<T> = [T; BLOCK];
+    const COUNT: usize = COLUMN_BLOCK;
+    type Block<T> = [T; COLUMN_BLOCK];
 
     #[inline(always)]
-    fn blocks<T>(list: &[T]) -> &[[T; BLOCK]] {
+    fn blocks<T>(list: &[T]) -> &[[T; COLUMN_BLOCK]] {
         list.as_chunks().0
     }
 
     #[inline(always)]
-    fn blocks_mut<T>(list: &mut [T]) -> &mut [[T; BLOCK]] {
+    fn blocks_mut<T>(list: &mut [T]) -> &mut [[T; COLUMN_BLOCK]] {
         list.as_chunks_mut().0
     }
 
     #[inline(always)]
-    fn of_edge(scale: &RowScale, edge: Edge, base: &[u32; BLOCK]) -> Self {
+    fn of_edge(scale: &RowScale, edge: Edge, base: &[u32; COLUMN_BLOCK]) -> Self {
         // SAFETY: the instructions are there, see above.
         Wide(unsafe { if AVX512 { rows_avx512(scale, edge, base) } else { rows_avx2(scale, edge, base) } })
     }
 
     #[inline(always)]
-    fn load(block: &[i16; BLOCK]) -> Self {
+    fn load(block: &[i16; COLUMN_BLOCK]) -> Self {
         // SAFETY: 32 bytes are readable behind the reference; the instructions are there.
         Wide(unsafe { _mm256_loadu_si256(block.as_ptr().cast()) })
     }
 
     #[inline(always)]
-    fn store(self, block: &mut [i16; BLOCK]) {
+    fn store(self, block: &mut [i16; COLUMN_BLOCK]) {
         // SAFETY: 32 bytes are writable behind the reference; the instructions are there.
         unsafe { _mm256_storeu_si256(block.as_mut_ptr().cast(), self.0) }
     }
@@ -115,14 +116,14 @@ impl<const AVX512: bool> Rows for Wide<AVX512> {
 
     #[inline(always)]
     fn first(count: usize) -> Self {
-        Wide::load(YES_NO[BLOCK - count.min(BLOCK)..].first_chunk().expect("at most a block is left out"))
+        Wide::load(YES_NO[COLUMN_BLOCK - count.min(COLUMN_BLOCK)..].first_chunk().expect("at most a block is left out"))
     }
 }
 
 /// The frame rows of an edge that [is exact](Edge::is_exact): of doubles there is a product.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn rows_avx2(scale: &RowScale, edge: Edge, base: &[u32; BLOCK]) -> __m256i {
+fn rows_avx2(scale: &RowScale, edge: Edge, base: &[u32; COLUMN_BLOCK]) -> __m256i {
     const LAST_BIT: f64 = 1.0 / (1 << ROW_BITS) as f64;
     let in_rows = |number: i64| _mm256_mul_pd(_mm256_set1_pd(number as f64), _mm256_set1_pd(LAST_BIT));
     let (at, step) = (in_rows(edge.at), in_rows(edge.step));
@@ -149,7 +150,7 @@ fn rows_avx2(scale: &RowScale, edge: Edge, base: &[u32; BLOCK]) -> __m256i {
 /// The frame rows of an edge.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn rows_avx512(scale: &RowScale, edge: Edge, base: &[u32; BLOCK]) -> __m256i {
+fn rows_avx512(scale: &RowScale, edge: Edge, base: &[u32; COLUMN_BLOCK]) -> __m256i {
     let (at, step) = (_mm512_set1_epi64(edge.at), _mm512_set1_epi64(edge.step));
     let (zero, last) = (_mm512_setzero_si512(), _mm512_set1_epi64(i64::from(scale.last)));
     let (eights, _) = base.as_chunks::<8>();

@@ -3,14 +3,11 @@
 #[cfg(target_arch = "x86_64")]
 pub mod vector;
 
+#[cfg(test)]
+use crate::render::blocks::{ROW_BLOCK, ROW_PADDING};
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
-
-/// Rows that are drawn at once at most: columns are whole blocks of these.
-pub(crate) const ROW_BLOCK: usize = 64;
-/// Rows that may be asked for behind a column's last one: lists by row are that much longer than a column.
-pub(crate) const ROW_PADDING: usize = 32;
 
 /// A column of a wall on its way to the screen.
 pub(crate) struct Column<'a> {

@@ -4,9 +4,10 @@
 //! fetched texel by texel. With 32-byte vectors half a column is, and texels are numbers of the picture's own colours (`own_colours`): two small
 //! tables in place of one of 256 entries.
 
+use crate::render::blocks::ROW_BLOCK;
 use crate::render::lookup::{GROUP, bytes_of, first_bytes, look_up};
 use crate::render::output::convert::avx512::{load, load_table, look_up_block};
-use crate::render::walls::column::{Column, ROW_BLOCK};
+use crate::render::walls::column::Column;
 use std::arch::x86_64::*;
 
 /// The highest byte of each of sixteen numbers, twice.

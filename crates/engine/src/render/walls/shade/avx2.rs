@@ -3,10 +3,9 @@
 
 use crate::render::buffers::frame::Columns;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
+use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, fits_doubles};
 use crate::render::walls::column::vector::{self, OwnColumn};
-use crate::render::walls::shader::{
-    INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, WALL_BLOCK, WallShader, WallSlope, fits_doubles,
-};
+use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
 use std::arch::x86_64::*;
 
 /// For each of eight columns what [`WallShader::column`] gives.

@@ -1,7 +1,8 @@
 //! What eight columns of a wall show, side by side; the plain twin is in `wall`, where a test compares them.
 
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
-use crate::render::walls::shader::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, WALL_BLOCK, WallShader, WallSlope};
+use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine};
+use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
 use std::arch::x86_64::*;
 
 /// For each of eight columns what [`WallShader::column`] gives.
