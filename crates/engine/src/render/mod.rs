@@ -11,8 +11,6 @@ mod automap;
 mod blocks;
 mod buffers;
 mod colour;
-#[cfg(target_arch = "x86_64")]
-mod lookup;
 #[cfg(test)]
 mod measured_tests;
 mod output;

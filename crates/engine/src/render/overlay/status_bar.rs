@@ -205,8 +205,8 @@ fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedPicture>, x: i32,
 
 #[cfg(test)]
 mod tests {
-    use crate::assets::Assets;
     use super::*;
+    use crate::assets::Assets;
 
     #[test]
     fn the_embedded_bar_is_complete() {

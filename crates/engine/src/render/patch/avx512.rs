@@ -3,9 +3,9 @@
 
 use crate::render::buffers::frame::Frame;
 use crate::render::colour::blend::Mixture;
-use crate::render::output::convert::avx512::{load, load_table, look_up_block, store};
 use crate::render::patch::{Covered, STAMP_BLOCK, Stamp};
 use crate::render::textures::sprite::TEXEL_BLOCK;
+use crate::simd::lookup::avx512::{load, load_table, look_up_block, store};
 use std::arch::x86_64::*;
 use std::ops::Range;
 

@@ -4,7 +4,6 @@
 
 use crate::render::buffers::frame::Frame;
 use crate::render::buffers::visplane::{Plane, SPAN_BLOCK};
-use crate::render::output::convert::avx512::{load, load_table, look_up_block};
 use crate::render::planes::plane::PlaneShader;
 use crate::render::planes::row::RowWalk;
 use crate::render::planes::row::vector::{self, ROW_VECTOR};
@@ -12,6 +11,7 @@ use crate::render::planes::spans::{load_avx512, next_run, rows};
 use crate::render::textures::picture::FlatPicture;
 use crate::render::walls::shade::avx512::tables;
 use crate::simd::first_of_eight;
+use crate::simd::lookup::avx512::{load, load_table, look_up_block};
 use std::arch::x86_64::*;
 
 /// The last row that fits a byte.

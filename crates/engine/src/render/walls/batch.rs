@@ -6,14 +6,14 @@
 
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
-use crate::render::output::convert::avx512::{load, load_table, look_up_block};
 use crate::render::textures::picture::MOST_TEXELS;
 use crate::render::textures::picture::WallPicture;
 use crate::render::view::depth::Depths;
-use crate::render::walls::column::vector::highest_bytes;
+use crate::render::walls::column::avx512::highest_bytes;
 use crate::render::walls::shade::avx512::{self, WallVectors};
 use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
 use crate::simd::first_of_eight;
+use crate::simd::lookup::avx512::{load, load_table, look_up_block};
 use std::arch::x86_64::*;
 
 /// What is listed; a column is one entry in each list.

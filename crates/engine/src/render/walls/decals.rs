@@ -9,8 +9,8 @@ use crate::render::scene::prepared::Face;
 use crate::render::textures::midtexture::runs_of;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::INVERSE_BITS;
-use crate::render::walls::pass::Walk;
-use crate::render::walls::seg::SeenSeg;
+use crate::render::walls::pass::SeenSeg;
+use crate::render::walls::pass::{SootyColumn, Walk};
 use crate::world::Soot;
 
 /// Texels of a stain to a map unit.
@@ -18,24 +18,6 @@ const TEXELS: i64 = 2;
 
 /// How many light tables there are.
 const LIGHT_TABLES: usize = 32;
-
-/// A column of a wall that bears soot.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SootyColumn {
-    /// Frame column.
-    x: usize,
-    /// First frame row of the wall, and one past the last.
-    rows: [usize; 2],
-    /// Position along the line, 16.16.
-    along: i64,
-    /// Light table.
-    table: usize,
-    /// Change of the stain's texel row a base row, 32 fractional bits.
-    step: i64,
-    /// The same from the lower edge of base row 0 to the horizon.
-    to_horizon: i64,
-    depth: u8,
-}
 
 impl Walk<'_> {
     /// Darkens the part of a wall between the upper and the lower scratch where its side bears soot.

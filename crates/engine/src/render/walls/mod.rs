@@ -2,6 +2,7 @@
 
 #[cfg(target_arch = "x86_64")]
 pub mod batch;
+pub mod bsp;
 pub mod clip;
 pub mod column;
 pub mod decals;

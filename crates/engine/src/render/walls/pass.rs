@@ -1,7 +1,5 @@
-//! The walk through the BSP tree, front to back.
+//! What the pass over the walls reads and writes.
 
-use crate::map::Node;
-use crate::math::Fixed;
 use crate::render::blocks::padded;
 use crate::render::buffers::clip::Openings;
 use crate::render::buffers::drawsegs::Silhouettes;
@@ -9,14 +7,15 @@ use crate::render::buffers::frame::Columns;
 use crate::render::buffers::sectors::Looks;
 use crate::render::buffers::visplane::Planes;
 use crate::render::published_depth::decal::SootDepth;
-use crate::render::scene::prepared::{NO_SECTOR, Scene};
+use crate::render::scene::prepared::{Face, Scene, SceneSeg};
 use crate::render::view::camera::Camera;
 use crate::render::view::depth::Depths;
+use crate::render::view::line::SeenLine;
 use crate::render::view::tables::View;
+use crate::render::view::view_space::TurnedLine;
 #[cfg(target_arch = "x86_64")]
 use crate::render::walls::batch::WallList;
-use crate::render::walls::decals::SootyColumn;
-use crate::simd::{Simd, prefetch, prefetch_lines};
+use crate::simd::Simd;
 use crate::world::World;
 
 /// Everything that the walk reads and writes.
@@ -46,9 +45,9 @@ pub(crate) struct Walk<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct WalkScratch {
     /// Children to visit later: node index times two, plus the side.
-    stack: Vec<u32>,
+    pub stack: Vec<u32>,
     /// Segs of the subsector at hand that face the eye and matter.
-    facing: Vec<u32>,
+    pub facing: Vec<u32>,
     /// Rows of the upper end of the part of a wall that is being drawn.
     pub upper: Vec<i16>,
     /// Rows of its lower end.
@@ -68,174 +67,40 @@ impl WalkScratch {
     }
 }
 
-/// Base columns by which the view's wedge is wider than what is open.
-const WEDGE_MARGIN: i64 = 2;
-
-/// One side of the view's wedge, as a test for boxes.
-#[derive(Clone, Copy)]
-struct WedgeSide {
-    /// Points inwards.
-    normal: [i64; 2],
-    /// Where the eye lies along it.
-    offset: i64,
-    /// Which of (west, east) and (south, north) lies farthest inside.
-    corner: [usize; 2],
+/// A seg in view, on its way through the stages.
+pub(crate) struct SeenSeg<'a> {
+    pub index: u32,
+    pub seg: &'a SceneSeg,
+    pub face: &'a Face,
+    /// Its line before the eye.
+    pub turned: TurnedLine,
+    /// Its line.
+    pub line: SeenLine,
+    /// Its line as drawn between the whole columns of its ends.
+    pub ends: SeenLine,
+    /// Inverse distances of its farther and its nearer end.
+    pub inverses: [i64; 2],
+    /// Frame columns.
+    pub first: usize,
+    pub end: usize,
+    /// First base column and one past the last.
+    pub base_ends: [i64; 2],
 }
 
-impl WedgeSide {
-    fn new(camera: &Camera, normal: [i64; 2]) -> WedgeSide {
-        WedgeSide {
-            normal,
-            offset: camera.x * normal[0] + camera.y * normal[1],
-            corner: [usize::from(normal[0] > 0), 2 + usize::from(normal[1] > 0)],
-        }
-    }
-
-    /// Negative if a box lies wholly outside.
-    #[inline]
-    fn inside(&self, bounds: &[Fixed; 4]) -> i64 {
-        let (x, y) = (bounds[self.corner[0] & 3].0, bounds[self.corner[1] & 3].0);
-        i64::from(x) * self.normal[0] + i64::from(y) * self.normal[1] - self.offset
-    }
-}
-
-/// Asks for the memory that a visit to a child reads first, its node or the segs of its subsector: a map is larger than the
-/// nearest cache, and the way to it depends on what is found there.
-#[inline(always)]
-fn ask_for(scene: &Scene, child: u32) {
-    let (is_subsector, index) = (child & Node::SUBSECTOR != 0, (child & !Node::SUBSECTOR) as usize);
-    // Which of both it is cannot be foretold.
-    let [first_seg, ..] = scene.subsectors[if is_subsector { index } else { 0 }];
-    let segs = scene.segs.as_ptr().wrapping_add(first_seg as usize).cast::<u8>();
-    let node = scene.nodes.as_ptr().wrapping_add(index).cast::<u8>();
-    prefetch_lines(if is_subsector { segs } else { node }, 3);
-}
-
-impl Walk<'_> {
-    /// Draws all walls, and lists what else there is to draw.
-    pub fn run<const DEPTH: bool>(&mut self) {
-        self.visit::<DEPTH>();
-        self.draw_walls::<DEPTH>();
-    }
-
-    /// Walks until everything is covered.
-    ///
-    /// Which child is near and which one is in view cannot be foretold, so that all of it is arithmetic without
-    /// branches: children that are out of view are written to the stack too, but not counted.
-    fn visit<const DEPTH: bool>(&mut self) {
-        let scene = self.scene;
-        let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
-        let mut open = self.openings.range();
-        let mut wedge = self.wedge(open);
-        let mut stacked = 0;
-        let mut child = match scene.nodes.len() {
-            0 => Node::SUBSECTOR,
-            count => count as u32 - 1,
-        };
-        loop {
-            if child & Node::SUBSECTOR != 0 {
-                let closed = self.openings.closed();
-                self.subsector::<DEPTH>((child & !Node::SUBSECTOR) as usize);
-                if self.openings.closed() != closed {
-                    let now_open = self.openings.range();
-                    if now_open.0 >= now_open.1 {
-                        return;
-                    }
-                    if now_open != open {
-                        open = now_open;
-                        wedge = self.wedge(open);
-                    }
-                }
-            } else {
-                let node = &scene.nodes[child as usize];
-                let near = u32::from(node.is_left(x, y));
-                for side in [near ^ 1, near] {
-                    let bounds = &node.bounds[side as usize];
-                    let inside = wedge[0].inside(bounds) | wedge[1].inside(bounds);
-                    self.scratch.stack[stacked] = child * 2 + side;
-                    stacked += usize::from(inside >= 0);
-                    ask_for(scene, node.children[side as usize]);
-                }
-            }
-            // The next child that is not hidden.
-            child = loop {
-                if stacked == 0 {
-                    return;
-                }
-                stacked -= 1;
-                let entry = self.scratch.stack[stacked];
-                let (node, side) = (&scene.nodes[(entry / 2) as usize], (entry & 1) as usize);
-                let (child, bounds) = (node.children[side], &node.bounds[side]);
-                // For a single subsector the second question costs more than it saves.
-                let hidden = wedge[0].inside(bounds) | wedge[1].inside(bounds) < 0
-                    || (child & Node::SUBSECTOR == 0 && self.openings.has_holes() && !self.box_is_open(bounds));
-                if !hidden {
-                    break child;
-                }
-            };
-        }
-    }
-
-    /// The wedge between the outermost rays of a range of frame columns, and a little more: sprites stand out of their
-    /// sectors, so that those just out of view are entered too.
-    fn wedge(&self, (first, end): (usize, usize)) -> [WedgeSide; 2] {
-        let camera = self.camera;
-        let ray = |column: i64| [0, 1].map(|axis| (camera.ray[axis] + camera.ray_step[axis] * column) >> 16);
-        let left = ray(i64::from(self.view.columns[first]) - WEDGE_MARGIN);
-        let right = ray(i64::from(self.view.columns[end - 1]) + WEDGE_MARGIN + 1);
-        [WedgeSide::new(camera, [left[1], -left[0]]), WedgeSide::new(camera, [-right[1], right[0]])]
-    }
-
-    /// Whether an open column may show something of a box.
-    fn box_is_open(&self, bounds: &[Fixed; 4]) -> bool {
-        let width = self.view.base_width;
-        let (mut first, mut end) = (width, 0);
-        for corner in 0..4 {
-            let [left, right] = self.camera.edges(i64::from(bounds[corner & 1].0), i64::from(bounds[2 + corner / 2].0));
-            if left < 0 {
-                first = 0;
-            }
-            if right < 0 {
-                end = width;
-            }
-            if left >= 0 && right >= 0 {
-                let column = (left as u64 * u64::from(width) / (left + right).max(1) as u64) as u32;
-                first = first.min(column.saturating_sub(1));
-                end = end.max((column + 2).min(width));
-            }
-        }
-        let (first, end) = (self.view.first_column[first as usize], self.view.first_column[end as usize]);
-        first < end && self.openings.any_open(usize::from(first), usize::from(end))
-    }
-
-    fn subsector<const DEPTH: bool>(&mut self, index: usize) {
-        let Walk { scene, world, ref mut looks, .. } = *self;
-        let [first, end, sector] = scene.subsectors[index];
-        self.entered[sector as usize] = true;
-        let own = looks.of(world, sector);
-        let (segs, faces) = (&scene.segs[..], &scene.faces[..]);
-        let (x, y, facing) = (self.camera.x, self.camera.y, &mut self.scratch.facing[..]);
-        // First those that face the eye, then those of them that matter, again without branches, then their drawing.
-        let mut found = 0;
-        for (index, seg) in (first..end).zip(&segs[first as usize..end as usize]) {
-            facing[found] = index;
-            found += usize::from(seg.away(x, y) > 0);
-        }
-        let mut kept = 0;
-        for i in 0..found {
-            let index = facing[i];
-            let seg = &segs[index as usize];
-            // A one-sided line differs from whatever its sector is compared with.
-            let one_sided = seg.back == NO_SECTOR;
-            let back = looks.of(world, if one_sided { sector } else { seg.back });
-            let differs = own.difference(&back) | u64::from(one_sided | seg.masked);
-            facing[kept] = index;
-            // Of a map's many faces few are in the nearest cache, and they are needed late.
-            prefetch(&faces[seg.face as usize]);
-            kept += usize::from(differs != 0);
-        }
-        for i in 0..kept {
-            self.seg::<DEPTH>(self.scratch.facing[i]);
-        }
-    }
+/// A column of a wall that bears soot.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SootyColumn {
+    /// Frame column.
+    pub x: usize,
+    /// First frame row of the wall, and one past the last.
+    pub rows: [usize; 2],
+    /// Position along the line, 16.16.
+    pub along: i64,
+    /// Light table.
+    pub table: usize,
+    /// Change of the stain's texel row a base row, 32 fractional bits.
+    pub step: i64,
+    /// The same from the lower edge of base row 0 to the horizon.
+    pub to_horizon: i64,
+    pub depth: u8,
 }

@@ -6,35 +6,16 @@ use crate::render::buffers::drawsegs::Silhouette;
 use crate::render::buffers::sectors::Look;
 use crate::render::buffers::visplane::PlaneKey;
 use crate::render::published_depth::quads;
-use crate::render::scene::prepared::{Face, NO_SECTOR, SceneSeg};
+use crate::render::scene::prepared::{NO_SECTOR, SceneSeg};
 use crate::render::view::light::Light;
-use crate::render::view::line::{END_BITS, Edge, SeenLine};
+use crate::render::view::line::{END_BITS, Edge};
 use crate::render::view::view_space::TurnedLine;
 use crate::render::walls::clip::{Narrowing, narrow};
-use crate::render::walls::pass::{Walk, WalkScratch};
+use crate::render::walls::pass::{SeenSeg, Walk, WalkScratch};
+use crate::render::walls::shade;
 use crate::render::walls::shader::WallShader;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
-
-/// A seg in view, on its way through the stages.
-pub(crate) struct SeenSeg<'a> {
-    index: u32,
-    pub seg: &'a SceneSeg,
-    pub face: &'a Face,
-    /// Its line before the eye.
-    pub turned: TurnedLine,
-    /// Its line.
-    pub line: SeenLine,
-    /// Its line as drawn between the whole columns of its ends.
-    pub ends: SeenLine,
-    /// Inverse distances of its farther and its nearer end.
-    inverses: [i64; 2],
-    /// Frame columns.
-    pub first: usize,
-    pub end: usize,
-    /// First base column and one past the last.
-    pub base_ends: [i64; 2],
-}
 
 /// The columns of a seg that faces the eye.
 struct SeenColumns {
@@ -262,7 +243,7 @@ impl Walk<'_> {
         #[cfg(not(target_arch = "x86_64"))]
         let start: Option<u32> = None;
         if start.is_none() {
-            shader.draw::<DEPTH>(self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
+            shade::draw::<DEPTH>(&shader, self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
         }
         if DEPTH && self.depths.by_fours() {
             let depth =

@@ -1,83 +1,12 @@
-//! Palette look-ups with 512-bit vectors, for processors that look up 64 bytes of a 256-byte table at once (AVX-512
-//! VBMI: Ice Lake and Zen 4 onward).
-//!
-//! This file is `unsafe` because vector loads and stores take pointers, and because these functions must not run on a
-//! processor without the instructions. The first is confined to [`load`] and [`store`], which take references to whole
-//! 64-byte arrays; the second to [`Wide::of`], the only way to get a [`Wide`]. The plain twins are in `convert`,
-//! where a test compares them.
+//! Palette look-ups with vectors of 64 bytes.
 
-use crate::simd::{Level, Simd};
+use crate::simd::lookup::avx512::{LANES, load, load_table, look_up_block, store};
 use std::arch::x86_64::{
-    __m512i, _mm512_loadu_si512, _mm512_mask_blend_epi8, _mm512_mask_blend_epi16, _mm512_mask_permutexvar_epi8,
-    _mm512_movepi8_mask, _mm512_permutex2var_epi8, _mm512_storeu_si512,
+    __m512i, _mm512_mask_blend_epi16, _mm512_mask_permutexvar_epi8, _mm512_permutex2var_epi8,
 };
 
-/// Proof that the processor has the instructions.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Wide(());
-
-/// Bytes that are looked up at once.
-const LANES: usize = 64;
-
-impl Wide {
-    /// Whether these instructions are to be used; whoever has such a [`Simd`] asked the processor.
-    pub fn of(simd: Simd) -> Option<Wide> {
-        (simd.level() == Level::Avx512).then_some(Wide(()))
-    }
-
-    /// Looks up whole blocks of 64 indices; returns how many indices that were.
-    pub fn look_up(self, table: &[u8; 256], indices: &[u8], out: &mut [u8]) -> usize {
-        // SAFETY: a `Wide` exists only where the instructions do.
-        unsafe { look_up(table, indices, out) }
-    }
-
-    /// Looks up whole blocks of 64 indices in three tables and writes the results in turn; returns how many indices
-    /// that were.
-    pub fn interleaved(self, tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) -> usize {
-        // SAFETY: a `Wide` exists only where the instructions do.
-        unsafe { interleaved(tables, indices, out) }
-    }
-
-    /// The same with a fourth byte of its own a pixel.
-    pub fn with_depth(self, tables: &[[u8; 256]; 3], indices: &[u8], depth: &[u8], out: &mut [u8]) -> usize {
-        // SAFETY: a `Wide` exists only where the instructions do.
-        unsafe { with_depth(tables, indices, depth, out) }
-    }
-}
-
-#[inline]
-#[target_feature(enable = "avx512f")]
-pub(crate) fn load(bytes: &[u8; LANES]) -> __m512i {
-    // SAFETY: 64 bytes are readable behind a reference to 64 bytes; the load needs no alignment.
-    unsafe { _mm512_loadu_si512(bytes.as_ptr().cast()) }
-}
-
-#[inline]
-#[target_feature(enable = "avx512f")]
-pub(crate) fn store(bytes: &mut [u8; LANES], vector: __m512i) {
-    // SAFETY: 64 bytes are writable behind a reference to 64 bytes; the store needs no alignment.
-    unsafe { _mm512_storeu_si512(bytes.as_mut_ptr().cast(), vector) }
-}
-
-/// A table of 256 bytes in registers.
-#[inline]
-#[target_feature(enable = "avx512f")]
-pub(crate) fn load_table(table: &[u8; 256]) -> [__m512i; 4] {
-    let (blocks, _) = table.as_chunks::<LANES>();
-    [load(&blocks[0]), load(&blocks[1]), load(&blocks[2]), load(&blocks[3])]
-}
-
-#[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-pub(crate) fn look_up_block(table: [__m512i; 4], indices: __m512i) -> __m512i {
-    // Each permutation looks at the lower 7 bits and covers one half of the table; the highest bit chooses between them.
-    let low = _mm512_permutex2var_epi8(table[0], indices, table[1]);
-    let high = _mm512_permutex2var_epi8(table[2], indices, table[3]);
-    _mm512_mask_blend_epi8(_mm512_movepi8_mask(indices), low, high)
-}
-
-#[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) -> usize {
+pub(crate) fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) -> usize {
     let table = load_table(table);
     let (blocks, _) = indices.as_chunks::<LANES>();
     let (out_blocks, _) = out.as_chunks_mut::<LANES>();
@@ -121,7 +50,7 @@ const WEAVE: [([u8; LANES], u64, [u8; LANES]); 3] = {
 };
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-fn interleaved(tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) -> usize {
+pub(crate) fn interleaved(tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8]) -> usize {
     let tables = load_tables(tables);
     let (blocks, _) = indices.as_chunks::<LANES>();
     let (out_blocks, _) = out.as_chunks_mut::<LANES>();
@@ -149,7 +78,7 @@ const PAIRS: [[u8; LANES]; 4] = {
 };
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-fn with_depth(tables: &[[u8; 256]; 3], indices: &[u8], depth: &[u8], out: &mut [u8]) -> usize {
+pub(crate) fn with_depth(tables: &[[u8; 256]; 3], indices: &[u8], depth: &[u8], out: &mut [u8]) -> usize {
     let tables = load_tables(tables);
     let ((blocks, _), (depths, _)) = (indices.as_chunks::<LANES>(), depth.as_chunks::<LANES>());
     let (out_blocks, _) = out.as_chunks_mut::<LANES>();

@@ -1,19 +1,14 @@
 //! From palette indices to what callers want, written once into their own buffer.
 
-#[cfg(target_arch = "x86_64")]
-pub mod avx512;
+crate::simd::kernel_files!(avx512);
+mod scalar;
 
 use crate::render::colour::palette::{Colours, luminance};
-#[cfg(target_arch = "x86_64")]
-use crate::render::output::convert::avx512::Wide;
-use crate::simd::Simd;
+use crate::simd::{Simd, dispatch};
 
 /// Looks every index up.
 fn look_up(simd: Simd, table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
-    #[cfg(target_arch = "x86_64")]
-    let done = Wide::of(simd).map_or(0, |wide| wide.look_up(table, indices, out));
-    #[cfg(not(target_arch = "x86_64"))]
-    let (_, done) = (simd, 0);
+    let done = dispatch!(simd; avx512 => avx512::look_up(table, indices, out), scalar => 0);
     for (to, &index) in out[done..].iter_mut().zip(&indices[done..]) {
         *to = table[usize::from(index)];
     }
@@ -21,29 +16,8 @@ fn look_up(simd: Simd, table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
 
 /// Red, green, blue of each pixel in turn.
 pub(crate) fn rgb_interleaved(simd: Simd, colours: &Colours, indices: &[u8], out: &mut [u8]) {
-    #[cfg(target_arch = "x86_64")]
-    let done = Wide::of(simd).map_or(0, |wide| wide.interleaved(&colours.channels, indices, out));
-    #[cfg(not(target_arch = "x86_64"))]
-    let (_, done) = (simd, 0);
-    rgb_interleaved_plainly(colours, &indices[done..], &mut out[done * 3..]);
-}
-
-/// Eight pixels at a time: pairs of them, whose stores overlap: each writes two bytes too many, which the next one mends.
-fn rgb_interleaved_plainly(colours: &Colours, indices: &[u8], out: &mut [u8]) {
-    let ((eights, rest), (triples, last)) = (indices.as_chunks::<8>(), out.as_chunks_mut::<24>());
-    for (to, from) in triples.iter_mut().zip(eights) {
-        // Not over a list of indices: the compiler makes calls of that.
-        let pair =
-            |one: u8, two: u8| u64::from(colours.words[usize::from(one)]) | u64::from(colours.words[usize::from(two)]) << 24;
-        let (a, b, c, d) = (pair(from[0], from[1]), pair(from[2], from[3]), pair(from[4], from[5]), pair(from[6], from[7]));
-        to[..8].copy_from_slice(&a.to_le_bytes());
-        to[6..14].copy_from_slice(&b.to_le_bytes());
-        to[12..20].copy_from_slice(&c.to_le_bytes());
-        to[16..].copy_from_slice(&(c >> 32 | d << 16).to_le_bytes());
-    }
-    for (to, &index) in last.chunks_exact_mut(3).zip(rest) {
-        to.copy_from_slice(&colours.palette[usize::from(index)]);
-    }
+    let done = dispatch!(simd; avx512 => avx512::interleaved(&colours.channels, indices, out), scalar => 0);
+    scalar::rgb_interleaved(colours, &indices[done..], &mut out[done * 3..]);
 }
 
 /// A plane of red, one of green, one of blue.
@@ -84,10 +58,7 @@ const STRETCH: usize = 1024;
 
 /// Red, green, blue of each pixel in turn, and its depth.
 pub(crate) fn rgb_depth_interleaved(simd: Simd, colours: &Colours, indices: &[u8], depth: &[u8], out: &mut [u8]) {
-    #[cfg(target_arch = "x86_64")]
-    let done = Wide::of(simd).map_or(0, |wide| wide.with_depth(&colours.channels, indices, depth, out));
-    #[cfg(not(target_arch = "x86_64"))]
-    let (_, done) = (simd, 0);
+    let done = dispatch!(simd; avx512 => avx512::with_depth(&colours.channels, indices, depth, out), scalar => 0);
     let (pixels, _) = out[done * 4..].as_chunks_mut::<4>();
     for ((to, &index), &depth) in pixels.iter_mut().zip(&indices[done..]).zip(&depth[done..]) {
         *to = (colours.words[usize::from(index)] | u32::from(depth) << 24).to_le_bytes();

@@ -4,8 +4,8 @@
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
 use crate::render::buffers::visplane::Plane;
-use crate::render::output::convert::avx512::{load, load_table, look_up_block};
 use crate::render::planes::sky::SkyShader;
+use crate::simd::lookup::avx512::{load, load_table, look_up_block};
 use std::arch::x86_64::*;
 
 /// Highest picture: as many rows as a byte tells apart.

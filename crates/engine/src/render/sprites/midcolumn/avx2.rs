@@ -1,8 +1,8 @@
 //! 32 rows of a column of a texture with holes, 64 or 128 texels high, with vectors of 32 bytes; the plain twin is in `masked_column`, where a
 //! test compares them.
 
-use crate::render::lookup::{GROUP, bytes_of, look_up};
 use crate::render::sprites::midcolumn::MaskedColumn;
+use crate::simd::lookup::avx2::{GROUP, bytes_of, look_up};
 use std::arch::x86_64::*;
 
 /// The last row and the last texel that bytes with a sign hold.

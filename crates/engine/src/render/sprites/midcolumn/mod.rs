@@ -3,12 +3,12 @@
 #[cfg(target_arch = "x86_64")]
 pub mod avx2;
 
-#[cfg(target_arch = "x86_64")]
-use crate::render::lookup::GROUP;
 use crate::render::textures::midtexture::{Hung, Run};
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Level;
 use crate::simd::Simd;
+#[cfg(target_arch = "x86_64")]
+use crate::simd::lookup::avx2::GROUP;
 use std::ops::Range;
 
 /// A column on its way to the frame.

@@ -1,47 +1,27 @@
 //! One column of a wall, drawn into a frame that lies column by column.
 
 #[cfg(target_arch = "x86_64")]
-pub mod vector;
-
-#[cfg(test)]
-use crate::render::blocks::{ROW_BLOCK, ROW_PADDING};
+pub mod avx2;
 #[cfg(target_arch = "x86_64")]
-use crate::simd::Level;
-use crate::simd::Simd;
+pub mod avx512;
+pub mod data;
+mod scalar;
 
-/// A column of a wall on its way to the screen.
-pub(crate) struct Column<'a> {
-    pub texels: &'a [u8],
-    pub table: &'a [u8; 256],
-    /// Position in the texture at base row 0, as a fraction of its height.
-    pub at: u32,
-    /// Its change a base row.
-    pub step: u32,
-}
+use crate::simd::{Simd, dispatch};
+use data::Column;
 
-impl Column<'_> {
-    /// Draws the frame rows `top..bottom`; `rows` are the base rows. Both lists are padded.
-    #[inline(always)]
-    pub fn draw(&self, simd: Simd, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
-        #[cfg(target_arch = "x86_64")]
-        match (simd.level(), self.texels.len()) {
-            // SAFETY: whoever has this `Simd` has the instructions.
-            (Level::Avx512, 128) => return unsafe { vector::avx512::<7>(self, pixels, rows, top, bottom) },
-            // SAFETY: as above.
-            (Level::Avx512, 64) => return unsafe { vector::avx512::<6>(self, pixels, rows, top, bottom) },
-            // With shorter vectors whole walls are worked out side by side, where they fit these.
-            _ => {}
+/// Draws the frame rows `top..bottom` of a column; `rows` are the base rows. Both lists are padded. With vectors of 32 bytes whole
+/// walls are worked out side by side where they fit: `walls::shade` calls that variant.
+#[inline(always)]
+pub(crate) fn draw(column: &Column, simd: Simd, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+    match column.texels.len() {
+        128 => {
+            dispatch!(simd; avx512 => avx512::draw::<7>(column, pixels, rows, top, bottom), scalar => scalar::draw(column, pixels, rows, top, bottom))
         }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = simd;
-        self.draw_plainly(pixels, rows, top, bottom);
-    }
-
-    fn draw_plainly(&self, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
-        for (pixel, &row) in pixels[top..bottom].iter_mut().zip(&rows[top..bottom]) {
-            let texel = (u64::from(self.at.wrapping_add(self.step.wrapping_mul(row))) * self.texels.len() as u64) >> 32;
-            *pixel = self.table[usize::from(self.texels[texel as usize])];
+        64 => {
+            dispatch!(simd; avx512 => avx512::draw::<6>(column, pixels, rows, top, bottom), scalar => scalar::draw(column, pixels, rows, top, bottom))
         }
+        _ => scalar::draw(column, pixels, rows, top, bottom),
     }
 }
 
@@ -49,19 +29,22 @@ impl Column<'_> {
 mod tests {
     use super::*;
     use crate::math::Rng;
+    use crate::render::blocks::{ROW_BLOCK, ROW_PADDING};
+    #[cfg(target_arch = "x86_64")]
+    use crate::simd::Level;
 
     /// With vectors of 32 bytes, which the processor has.
     #[cfg(target_arch = "x86_64")]
     fn draw_by_own_colours(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+        use super::data::OwnColumn;
         use crate::render::textures::local_palette::OwnColours;
-        use vector::{OwnColumn, avx2};
         let own = OwnColours::new(column.texels, &[*column.table]);
         macro_rules! draw {
             ($texels:literal, $colours:literal) => {{
                 let (texels, lit) = (own.texels.first_chunk().unwrap(), own.lit(0).first_chunk().unwrap());
                 let column = OwnColumn::<$texels, $colours> { texels, lit, at: column.at, step: column.step };
                 // SAFETY: the processor has the instructions.
-                unsafe { avx2(&column, pixels, rows, top, bottom) }
+                unsafe { avx2::draw(&column, pixels, rows, top, bottom) }
             }};
         }
         match (own.texels.len(), own.room) {
@@ -98,14 +81,14 @@ mod tests {
                 };
                 let mut plain = before.clone();
                 let (top, bottom) = (a.min(b), a.max(b));
-                column.draw_plainly(&mut plain, &rows, top, bottom);
+                scalar::draw(&column, &mut plain, &rows, top, bottom);
                 let compare = |draw: &mut dyn FnMut(&mut [u8]), name: &str| {
                     let mut pixels = before.clone();
                     draw(&mut pixels);
                     assert_eq!(pixels, plain, "{name}, rows {a} and {b} of {length}, texture of {height}");
                 };
                 for simd in Simd::available() {
-                    compare(&mut |pixels| column.draw(simd, pixels, &rows, top, bottom), simd.name());
+                    compare(&mut |pixels| draw(&column, simd, pixels, &rows, top, bottom), simd.name());
                     #[cfg(target_arch = "x86_64")]
                     if simd.level() == Level::Avx2 && height != 96 {
                         compare(&mut |pixels| draw_by_own_colours(&column, pixels, &rows, top, bottom), "by own colours");

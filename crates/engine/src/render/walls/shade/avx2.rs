@@ -1,10 +1,10 @@
-//! Walls with vectors of 32 bytes: what eight columns show is worked out side by side; the plain twin is in `wall`, where a test
-//! compares them. These vectors have no 64-bit products and quotients: doubles, where they are exact, and products of halves stand in.
+//! What eight columns of a wall show, side by side, with vectors of 32 bytes. These have no 64-bit products and quotients: doubles, where
+//! they are exact, and products of halves stand in.
 
 use crate::render::buffers::frame::Columns;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, fits_doubles};
-use crate::render::walls::column::vector::{self, OwnColumn};
+use crate::render::walls::column::{avx2, data::OwnColumn};
 use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
 use std::arch::x86_64::*;
 
@@ -78,7 +78,7 @@ fn draw_block<const TEXELS: usize, const COLOURS: usize>(
             let texels = shader.own.texels[start..].first_chunk().expect("a whole column");
             let lit = shader.own.lit(columns.table[i] as usize).first_chunk().expect("as many as there is room for");
             let column = OwnColumn::<TEXELS, COLOURS> { texels, lit, at: columns.at[i], step: columns.step[i] };
-            vector::avx2(&column, frame.colour_of(first + i), &shader.view.rows, top as usize, bottom as usize);
+            avx2::draw(&column, frame.colour_of(first + i), &shader.view.rows, top as usize, bottom as usize);
         }
     }
 }

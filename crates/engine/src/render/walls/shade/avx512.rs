@@ -1,8 +1,11 @@
-//! What eight columns of a wall show, side by side; the plain twin is in `wall`, where a test compares them.
+//! What eight columns of a wall show, side by side, with vectors of 64 bytes.
 
+use crate::render::buffers::frame::Columns;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine};
-use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
+use crate::render::walls::shade::scalar;
+use crate::render::walls::shader::{WALL_BLOCK, WallColumn, WallShader, WallSlope};
+use crate::simd::Simd;
 use std::arch::x86_64::*;
 
 /// For each of eight columns what [`WallShader::column`] gives.
@@ -108,4 +111,41 @@ fn listed(vector: __m512i) -> [i64; WALL_BLOCK] {
     // SAFETY: 64 bytes are writable behind the reference.
     unsafe { _mm512_storeu_si512(list.as_mut_ptr().cast(), vector) }
     list
+}
+
+impl WallColumns {
+    /// What one of them shows.
+    #[inline(always)]
+    pub fn column(&self, i: usize) -> WallColumn {
+        WallColumn {
+            distance: self.distance[i],
+            u: self.u[i],
+            table: self.table[i] as usize,
+            at: self.at[i] as u32,
+            step: self.step[i] as u32,
+        }
+    }
+}
+
+/// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on: what eight columns show is worked out at once. The whole loop
+/// is compiled for these instructions, as what is done for a column is short: calls into functions for others would be much of it.
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+pub(crate) fn draw<const DEPTH: bool>(
+    shader: &WallShader,
+    simd: Simd,
+    frame: &mut Columns,
+    first: usize,
+    tops: &[i16],
+    bottoms: &[i16],
+) {
+    let slope = shader.slope();
+    for from in (0..tops.len()).step_by(WALL_BLOCK) {
+        let block = columns(shader, &slope, shader.view.columns[first + from..].first_chunk().expect("the list is padded"));
+        for i in from..(from + WALL_BLOCK).min(tops.len()) {
+            if tops[i] < bottoms[i] {
+                let rows = [tops[i] as usize, bottoms[i] as usize];
+                scalar::draw_column::<DEPTH>(shader, simd, frame, first + i, rows, block.column(i - from));
+            }
+        }
+    }
 }

@@ -1,5 +1,8 @@
 //! Which vector instructions are used. Every variant gives the same bits; the plain one reads like the formula.
 
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod lookup;
+
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -87,6 +90,50 @@ impl Simd {
         self.0
     }
 }
+
+/// Declares the files of a kernel, one for each family of vectors, where the processor's architecture has it. These two macros
+/// hold every `cfg` that a kernel needs: one for ARM would be `neon`, one more line in each.
+macro_rules! kernel_files {
+    ($($family:ident),+ $(,)?) => { $($crate::simd::kernel_files!(@ $family);)+ };
+    (@ avx2) => {
+        #[cfg(target_arch = "x86_64")]
+        mod avx2;
+    };
+    (@ avx512) => {
+        #[cfg(target_arch = "x86_64")]
+        mod avx512;
+    };
+    (@ neon) => {
+        #[cfg(target_arch = "aarch64")]
+        mod neon;
+    };
+}
+pub(crate) use kernel_files;
+
+/// Calls the widest variant of a kernel that a [`Simd`] allows and whose condition holds, else the scalar one: the families stand
+/// from wide to narrow. A variant is an `unsafe` call as its instructions must be there; the `Simd` proves that they are.
+macro_rules! dispatch {
+    ($simd:expr; $(avx512 $(if $fits_avx512:expr)? => $avx512:expr,)? $(avx2 $(if $fits_avx2:expr)? => $avx2:expr,)?
+     $(neon $(if $fits_neon:expr)? => $neon:expr,)? scalar => $scalar:expr $(,)?) => {'dispatched: {
+        #[cfg(target_arch = "x86_64")]
+        match $simd.level() {
+            // SAFETY: a `Simd` value proves that the processor has the instructions.
+            $($crate::simd::Level::Avx512 $(if $fits_avx512)? => break 'dispatched unsafe { $avx512 },)?
+            // SAFETY: as for the wider family.
+            $($crate::simd::Level::Avx2 $(if $fits_avx2)? => break 'dispatched unsafe { $avx2 },)?
+            _ => {}
+        }
+        $(#[cfg(target_arch = "aarch64")]
+        if true $(&& $fits_neon)? {
+            // SAFETY: every AArch64 has the instructions.
+            break 'dispatched unsafe { $neon };
+        })?
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = $simd;
+        $scalar
+    }};
+}
+pub(crate) use dispatch;
 
 /// Bytes that come to a cache together, mostly.
 const LINE: usize = 64;

@@ -1,14 +1,10 @@
 //! Tables as large as pictures have colours or columns texels, looked up in registers of 32 bytes. The plain twins are where they are used:
 //! in `column` and `masked_column`, where tests compare them.
 
-use crate::render::blocks::ROW_PADDING;
 use std::arch::x86_64::*;
 
 /// Rows that are drawn at once.
 pub(crate) const GROUP: usize = 32;
-
-// From any row on so many may be asked for.
-const _: () = assert!(GROUP <= ROW_PADDING);
 
 /// What a table has for 32 numbers, all of which it has something for.
 #[inline]
