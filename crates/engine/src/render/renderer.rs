@@ -9,8 +9,9 @@ use crate::render::output::convert;
 use crate::render::output::segmentation::SegmentationColours;
 use crate::render::overlay::status_bar::{BarState, StatusBar};
 use crate::render::overlay::weapon;
-use crate::render::planes::plane::PlaneShader;
-use crate::render::planes::sky::{self, SkyShader};
+use crate::render::planes::shader::PlaneShader;
+use crate::render::planes::sky::{self, shader::SkyShader};
+use crate::render::planes::{draw, spans, whole};
 use crate::render::published_depth::quads;
 use crate::render::scene::prepared::Scene;
 use crate::render::scratch::Workspace;
@@ -21,8 +22,6 @@ use crate::render::view::depth::Depths;
 use crate::render::view::horizon::RowSlopes;
 use crate::render::view::tables::View;
 use crate::render::walls::pass::Walk;
-#[cfg(target_arch = "x86_64")]
-use crate::simd::Level;
 use crate::simd::Simd;
 use crate::world::World;
 use std::sync::Arc;
@@ -147,7 +146,6 @@ impl Renderer {
             silhouettes: &mut space.silhouettes,
             entered: &mut space.entered,
             scratch: &mut space.walk,
-            #[cfg(target_arch = "x86_64")]
             walls: &mut space.walls,
             simd: self.simd,
         };
@@ -217,8 +215,8 @@ impl Renderer {
         // Whatever light there is, and by goggles too.
         let shader = SkyShader { camera, view: &self.view, table: &self.scene.assets.light_tables[0], picture };
         for plane in space.planes.used().iter().filter(|plane| plane.key.sky && !plane.is_empty()) {
-            let rows = self.slopes.sky_rows(|horizon| sky::texel_rows(&self.view, horizon, picture.height));
-            shader.draw(self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
+            let rows = self.slopes.sky_rows(|horizon| sky::shader::texel_rows(&self.view, horizon, picture.height));
+            sky::draw(&shader, self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
             if DEPTH && self.frame.depths.by_fours() {
                 let (first, shown, farthest) = (plane.first, plane.first..plane.end, self.frame.depths.farthest());
                 quads::draw_below(&mut space.columns, first, &plane.top[shown.clone()], &plane.bottom[shown], |_| farthest);
@@ -233,23 +231,18 @@ impl Renderer {
                 continue;
             }
             if plane.key.sky {
-                let count = plane.spans(self.simd, &mut space.span_starts, &mut space.spans);
+                let count = spans::list(plane, self.simd, &mut space.span_starts, &mut space.spans);
                 self.frame.classify(&space.spans[..count], class::SKY);
                 continue;
             }
             let picture = space.pictures[usize::from(plane.key.texture.0)] as usize;
             let (flat, square) = (&self.scene.textures.flats[picture], self.scene.textures.squares[picture]);
             let shader = PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key, square);
-            #[cfg(target_arch = "x86_64")]
-            if self.simd.level() == Level::Avx512 {
-                // SAFETY: whoever has this `Simd` has the instructions.
-                let drawn = unsafe { shader.draw_plane::<DEPTH, CLASS>(&mut self.frame, flat, plane) };
-                if drawn {
-                    continue;
-                }
+            if whole::draw::<DEPTH, CLASS>(&shader, self.simd, &mut self.frame, flat, plane) {
+                continue;
             }
-            let count = plane.spans(self.simd, &mut space.span_starts, &mut space.spans);
-            shader.draw::<DEPTH, CLASS>(self.simd, &mut self.frame, flat, &space.spans[..count]);
+            let count = spans::list(plane, self.simd, &mut space.span_starts, &mut space.spans);
+            draw::draw::<DEPTH, CLASS>(&shader, self.simd, &mut self.frame, flat, &space.spans[..count]);
         }
     }
 

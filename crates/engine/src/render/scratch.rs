@@ -4,19 +4,18 @@
 //! batch of 32 would not fit the second cache of a core, and every frame would begin with cold memory: 2 to 4 % of a step.
 
 use crate::render::buffers::clip::Openings;
-use crate::render::buffers::drawsegs::Silhouettes;
+use crate::render::buffers::drawsegs::list::Silhouettes;
 use crate::render::buffers::frame::{Columns, Frame};
 use crate::render::buffers::sectors::Looks;
 use crate::render::buffers::visplane::{Planes, Span};
 use crate::render::overlay::weapon_cache::WeaponCache;
-use crate::render::patch::StampColumns;
+use crate::render::patch::data::StampColumns;
 use crate::render::published_depth::midtexture::FenceDepth;
 use crate::render::scene::prepared::Scene;
 use crate::render::sprites::particles::SeenTrails;
 use crate::render::sprites::sprite::Sprites;
 use crate::render::view::tables::View;
-#[cfg(target_arch = "x86_64")]
-use crate::render::walls::batch::WallList;
+use crate::render::walls::batch::data::WallBatch;
 use crate::render::walls::pass::WalkScratch;
 use std::cell::RefCell;
 
@@ -35,8 +34,7 @@ pub(crate) struct Workspace {
     pub walk: WalkScratch,
     pub looks: Looks,
     /// Columns of walls that wait to be drawn.
-    #[cfg(target_arch = "x86_64")]
-    pub walls: WallList,
+    pub walls: WallBatch,
     /// What is drawn by columns.
     pub columns: Columns,
     /// Sectors that the frame entered.

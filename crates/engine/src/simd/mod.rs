@@ -97,15 +97,15 @@ macro_rules! kernel_files {
     ($($family:ident),+ $(,)?) => { $($crate::simd::kernel_files!(@ $family);)+ };
     (@ avx2) => {
         #[cfg(target_arch = "x86_64")]
-        mod avx2;
+        pub mod avx2;
     };
     (@ avx512) => {
         #[cfg(target_arch = "x86_64")]
-        mod avx512;
+        pub mod avx512;
     };
     (@ neon) => {
         #[cfg(target_arch = "aarch64")]
-        mod neon;
+        pub mod neon;
     };
 }
 pub(crate) use kernel_files;

@@ -3,7 +3,7 @@
 
 use crate::render::buffers::frame::Frame;
 use crate::render::textures::hud::BarArt;
-use crate::render::textures::picture::MaskedPicture;
+use crate::render::textures::masked::MaskedPicture;
 use crate::render::view::tables::View;
 use crate::render::view::tables::{BAR_ART_HEIGHT, BAR_ART_WIDTH, bar_scale};
 use crate::world::{Face, Weapon, World};

@@ -3,7 +3,8 @@
 use crate::render::buffers::frame::{Frame, class};
 use crate::render::colour::tint::power_shows;
 use crate::render::overlay::weapon_cache::{LayerKey, WeaponCache};
-use crate::render::patch::{Stamp, StampColumns, TEXEL_BITS, first_row};
+use crate::render::patch;
+use crate::render::patch::data::{Stamp, StampColumns, TEXEL_BITS, first_row};
 use crate::render::scene::prepared::Scene;
 use crate::render::view::camera::Camera;
 use crate::render::view::light::Light;
@@ -83,6 +84,6 @@ impl Canvas<'_> {
         if is_opaque {
             self.cache.note(key, &stamp, self.simd, view);
         }
-        stamp.draw::<DEPTH, CLASS>(self.simd, self.frame, &view.rows);
+        patch::draw::<DEPTH, CLASS>(&stamp, self.simd, self.frame, &view.rows);
     }
 }

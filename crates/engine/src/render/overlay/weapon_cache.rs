@@ -3,7 +3,8 @@
 
 use crate::math::Fixed;
 use crate::render::buffers::frame::{Frame, class};
-use crate::render::patch::Stamp;
+use crate::render::patch;
+use crate::render::patch::data::Stamp;
 use crate::render::view::size::FrameSize;
 use crate::render::view::tables::View;
 use crate::simd::Simd;
@@ -88,7 +89,7 @@ impl DrawnLayer {
     fn new(stamp: &Stamp, simd: Simd, view: &View) -> DrawnLayer {
         let mut frame = Frame::default();
         frame.fit(view, frame.depths);
-        stamp.draw::<false, true>(simd, &mut frame, &view.rows);
+        patch::draw::<false, true>(stamp, simd, &mut frame, &view.rows);
         let (mut runs, mut colours) = (Vec::new(), Vec::new());
         for (row, classes) in frame.class.chunks_exact(frame.width).enumerate() {
             let mut x = 0;

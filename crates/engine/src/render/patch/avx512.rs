@@ -1,9 +1,8 @@
-//! Stamps up to 256 texels wide, 64 columns at a time: a row of texels is one to four vectors, from which the columns pick.
-//! The plain twin is in `stamp`, where a test compares them.
+//! Patches up to 256 texels wide, 64 columns at a time: a row of texels is one to four vectors, from which the columns pick.
 
 use crate::render::buffers::frame::Frame;
 use crate::render::colour::blend::Mixture;
-use crate::render::patch::{Covered, STAMP_BLOCK, Stamp};
+use crate::render::patch::data::{Covered, STAMP_BLOCK, Stamp};
 use crate::render::textures::sprite::TEXEL_BLOCK;
 use crate::simd::lookup::avx512::{load, load_table, look_up_block, store};
 use std::arch::x86_64::*;

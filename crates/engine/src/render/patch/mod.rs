@@ -1,188 +1,38 @@
 //! A picture with holes put on the frame as it is: what sprites and weapons come down to.
 
-#[cfg(target_arch = "x86_64")]
-pub mod avx512;
+crate::simd::kernel_files!(avx512);
+pub mod data;
+mod scalar;
 
 use crate::render::buffers::frame::Frame;
-use crate::render::colour::blend::Mixture;
-use crate::render::textures::picture::MaskedPicture;
-use crate::render::textures::sprite::SpritePicture;
-use crate::render::view::tables::View;
-#[cfg(target_arch = "x86_64")]
-use crate::simd::Level;
-use crate::simd::Simd;
-use std::ops::Range;
+use crate::simd::{Simd, dispatch};
+use data::{Covered, Stamp};
 
-/// Columns that are stamped at once at most: lists by column are that much longer than there are columns.
-pub(crate) const STAMP_BLOCK: usize = 64;
-/// More rows than these are searched for those of a column that show no air: in a learner's frame few sprites have so many.
-const SEARCHED_ROWS: usize = 32;
-/// Fractional bits of texture rows.
-pub(crate) const TEXEL_BITS: u32 = 32;
-
-/// The first frame row whose lower edge is at a texture row or below it; `v` and `v_step` as in [`Stamp`].
-#[inline]
-pub(crate) fn first_row(view: &View, texel: u32, v: i64, v_step: i64) -> i16 {
-    let base = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
-    view.first_row[base.clamp(0, i64::from(view.base_view_rows)) as usize]
-}
-
-/// The part of a frame that was covered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Covered {
-    pub columns: [usize; 2],
-    pub rows: [usize; 2],
-}
-
-impl Covered {
-    pub const NOTHING: Covered = Covered { columns: [usize::MAX, 0], rows: [usize::MAX, 0] };
-
-    /// Adds a part with pixels in its outermost columns and rows.
-    #[inline(always)]
-    pub fn add(&mut self, columns: Range<usize>, rows: Range<usize>) {
-        self.columns = [self.columns[0].min(columns.start), self.columns[1].max(columns.end)];
-        self.rows = [self.rows[0].min(rows.start), self.rows[1].max(rows.end)];
-    }
-}
-
-/// What may be covered of each column of the picture at hand, and what it shows; memory that is reused.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct StampColumns {
-    /// First row; padded, as the others are.
-    pub tops: Vec<i16>,
-    /// One past the last row.
-    pub bottoms: Vec<i16>,
-    /// Column of the picture.
-    pub texels: Vec<u16>,
-}
-
-impl StampColumns {
-    /// Opens the rows `rows` of as many columns as `texels` gives columns of the picture.
-    pub fn open(&mut self, rows: Range<i16>, texels: impl Iterator<Item = u16>) {
-        self.texels.clear();
-        self.texels.extend(texels);
-        let padded = self.texels.len() + STAMP_BLOCK;
-        self.texels.resize(padded, 0);
-        self.tops.clear();
-        self.tops.resize(padded, rows.start);
-        self.bottoms.clear();
-        self.bottoms.resize(padded, rows.end);
-    }
-
-    /// How many columns there are.
-    pub fn count(&self) -> usize {
-        self.texels.len() - STAMP_BLOCK
-    }
-}
-
-/// A picture on its way to the frame.
-pub(crate) struct Stamp<'a> {
-    pub picture: &'a SpritePicture,
-    pub table: &'a [u8; 256],
-    /// First frame column.
-    pub first: usize,
-    pub columns: &'a StampColumns,
-    /// Frame rows that show the picture where its columns are open.
-    pub rows: Range<usize>,
-    /// Texture row at base row 0, and its change a base row.
-    pub v: i64,
-    pub v_step: i64,
-    /// For what is not opaque: what becomes of it and what is behind.
-    pub mixture: Option<&'a Mixture>,
-    pub depth: u8,
-    pub class: u16,
-}
-
-impl Stamp<'_> {
-    /// Draws it; `base_rows` are the base rows of the frame's.
-    pub fn draw<const DEPTH: bool, const CLASS: bool>(&self, simd: Simd, frame: &mut Frame, base_rows: &[u32]) -> Covered {
-        let count = self.columns.count();
-        let top = self.columns.tops[..count].iter().min().map_or(0, |&top| top.max(0) as usize);
-        let bottom = self.columns.bottoms[..count].iter().max().map_or(0, |&bottom| bottom.max(0) as usize);
-        let rows = self.rows.start.max(top)..self.rows.end.min(bottom);
-        #[cfg(target_arch = "x86_64")]
-        if simd.level() == Level::Avx512 && self.picture.stride <= avx512::MOST_TEXELS {
-            // SAFETY: whoever has this `Simd` has the instructions.
-            return unsafe { avx512::draw::<DEPTH, CLASS>(self, frame, base_rows, rows) };
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = simd;
-        let mut covered = Covered::NOTHING;
-        for i in 0..count {
-            let (top, bottom) = (self.columns.tops[i].max(0) as usize, self.columns.bottoms[i].max(0) as usize);
-            let open = rows.start.max(top)..rows.end.min(bottom);
-            if !open.is_empty() {
-                self.column_plainly::<DEPTH, CLASS>(frame, base_rows, i, open, &mut covered);
-            }
-        }
-        covered
-    }
-
-    /// Texture row that a base row shows.
-    #[inline(always)]
-    pub fn texel_row(&self, base_row: u32) -> usize {
-        ((self.v + self.v_step * i64::from(base_row)) >> TEXEL_BITS) as usize
-    }
-
-    fn column_plainly<const DEPTH: bool, const CLASS: bool>(
-        &self,
-        frame: &mut Frame,
-        base_rows: &[u32],
-        i: usize,
-        mut open: Range<usize>,
-        covered: &mut Covered,
-    ) {
-        let (x, width) = (self.first + i, frame.width);
-        let texels = self.picture.column(self.columns.texels[i]);
-        if open.len() > SEARCHED_ROWS {
-            // Half of a weapon's picture is air above it.
-            let extent = self.picture.extent(self.columns.texels[i]);
-            let before = |texel: usize| base_rows[open.clone()].partition_point(|&base_row| self.texel_row(base_row) < texel);
-            open = open.start + before(extent.start)..open.start + before(extent.end);
-        }
-        let lines = frame.colour[open.start * width..].chunks_exact_mut(width).zip(&base_rows[open.clone()]);
-        // Which texels are holes cannot be foretold.
-        match self.mixture {
-            None => lines.for_each(|(line, &base_row)| {
-                let texel = texels[self.texel_row(base_row)];
-                let lit = self.table[usize::from(texel as u8)];
-                line[x] = if texel & MaskedPicture::OPAQUE != 0 { lit } else { line[x] };
-            }),
-            Some(mixture) => lines.for_each(|(line, &base_row)| {
-                let texel = texels[self.texel_row(base_row)];
-                let lit = mixture.over(self.table[usize::from(texel as u8)], line[x]);
-                line[x] = if texel & MaskedPicture::OPAQUE != 0 { lit } else { line[x] };
-            }),
-        }
-        if !(DEPTH || CLASS) {
-            return;
-        }
-        let (mut first, mut end) = (usize::MAX, 0);
-        for row in open {
-            let (opaque, at) = (texels[self.texel_row(base_rows[row])] & MaskedPicture::OPAQUE != 0, row * width + x);
-            if DEPTH {
-                let pixel = &mut frame.depth[at];
-                *pixel = if opaque { self.depth } else { *pixel };
-            }
-            if CLASS {
-                let pixel = &mut frame.class[at];
-                *pixel = if opaque { self.class } else { *pixel };
-                first = if opaque { first.min(row) } else { first };
-                end = if opaque { row + 1 } else { end };
-            }
-        }
-        if first < end {
-            covered.add(x..x + 1, first..end);
-        }
-    }
+/// Draws it; `base_rows` are the base rows of the frame's.
+pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
+    stamp: &Stamp,
+    simd: Simd,
+    frame: &mut Frame,
+    base_rows: &[u32],
+) -> Covered {
+    let count = stamp.columns.count();
+    let top = stamp.columns.tops[..count].iter().min().map_or(0, |&top| top.max(0) as usize);
+    let bottom = stamp.columns.bottoms[..count].iter().max().map_or(0, |&bottom| bottom.max(0) as usize);
+    let rows = stamp.rows.start.max(top)..stamp.rows.end.min(bottom);
+    dispatch!(simd;
+        avx512 if stamp.picture.stride <= avx512::MOST_TEXELS => avx512::draw::<DEPTH, CLASS>(stamp, frame, base_rows, rows),
+        scalar => scalar::draw::<DEPTH, CLASS>(stamp, frame, base_rows, rows),
+    )
 }
 
 #[cfg(test)]
 mod tests {
+    use super::data::{StampColumns, TEXEL_BITS};
     use super::*;
     use crate::assets::{Assets, Image};
     use crate::math::Rng;
     use crate::render::colour::blend::Blend;
+    use crate::render::textures::sprite::SpritePicture;
     use crate::world::OPAQUE;
 
     #[test]
@@ -232,7 +82,7 @@ mod tests {
                 class: 33,
             };
             let mut plain = before.clone();
-            let covered = stamp.draw::<true, true>(Simd::PLAIN, &mut plain, &base_rows);
+            let covered = draw::<true, true>(&stamp, Simd::PLAIN, &mut plain, &base_rows);
             for row in 0..frame_rows {
                 for x in 0..frame_width {
                     let i = x.wrapping_sub(first);
@@ -253,10 +103,10 @@ mod tests {
             }
             for simd in Simd::available() {
                 let mut wide = before.clone();
-                assert_eq!(stamp.draw::<true, true>(simd, &mut wide, &base_rows), covered, "{simd:?}");
+                assert_eq!(draw::<true, true>(&stamp, simd, &mut wide, &base_rows), covered, "{simd:?}");
                 assert!(wide.colour == plain.colour && wide.depth == plain.depth && wide.class == plain.class, "{simd:?}");
                 let mut bare = before.clone();
-                stamp.draw::<false, false>(simd, &mut bare, &base_rows);
+                draw::<false, false>(&stamp, simd, &mut bare, &base_rows);
                 assert!(bare.colour == plain.colour && bare.depth == before.depth && bare.class == before.class, "{simd:?}");
             }
         }

@@ -1,9 +1,8 @@
 //! Floors, ceilings and the sky: the second pass of a frame.
 
-pub mod plane;
+pub mod draw;
 pub mod row;
+pub mod shader;
 pub mod sky;
-#[cfg(target_arch = "x86_64")]
 pub mod spans;
-#[cfg(target_arch = "x86_64")]
-pub mod whole_avx512;
+pub mod whole;

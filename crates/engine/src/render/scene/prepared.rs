@@ -7,7 +7,7 @@ use crate::render::colour::blend::Blend;
 use crate::render::colour::palette::Colours;
 use crate::render::colour::palette::{self, mean, nearest_colour};
 use crate::render::textures::hud::BarArt;
-use crate::render::textures::picture::Textures;
+use crate::render::textures::set::Textures;
 use crate::render::textures::sprite::SpritePicture;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -2,12 +2,13 @@
 
 use crate::map::SectorId;
 use crate::math::Fixed;
-use crate::render::buffers::drawsegs::Silhouette;
+use crate::render::buffers::drawsegs::list::Silhouette;
 use crate::render::buffers::frame::{Frame, class};
-use crate::render::sprites::midcolumn::MaskedColumn;
+use crate::render::sprites::midcolumn::{self, data::MaskedColumn};
 use crate::render::sprites::pass::Masked;
+use crate::render::sprites::posts::{Hung, Scales};
 use crate::render::textures::local_palette::OwnColours;
-use crate::render::textures::midtexture::{Fence, Hung, Scales};
+use crate::render::textures::midtexture::Fence;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::{Edge, INVERSE_BITS, TextureLine};
 use crate::render::view::view_space::TurnedLine;
@@ -134,7 +135,7 @@ impl Masked<'_> {
         if DEPTH && in_four.is_none() {
             self.fence_depth.tell(told);
         }
-        shown.draw(self.simd, &self.view.rows, rows, |row, lit| {
+        midcolumn::draw(&shown, self.simd, &self.view.rows, rows, |row, lit| {
             let pixel = row * *width + x;
             colour[pixel] = lit;
             if DEPTH {

@@ -2,7 +2,6 @@
 
 use crate::math::Fixed;
 use crate::render::scene::prepared::Scene;
-use crate::render::sprites::pass::Masked;
 use crate::render::sprites::sprite::Extent;
 use crate::render::view::camera::Camera;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
@@ -24,34 +23,34 @@ const ONE_TABLE: i64 = 2 * ONE_TABLE_DISTANCE;
 #[derive(Debug, Default)]
 pub(crate) struct SeenTrails {
     /// What the squares that are still to be drawn cover, the nearest first.
-    spots: Vec<Spot>,
-    trails: Vec<SeenTrail>,
+    pub spots: Vec<Spot>,
+    pub trails: Vec<SeenTrail>,
     /// Scratch.
     left: Vec<Shed>,
 }
 
 /// A trail's squares together.
 #[derive(Clone, Copy, Debug)]
-struct SeenTrail {
+pub(crate) struct SeenTrail {
     /// Of their columns, the first and one past the last.
-    columns: [u16; 2],
+    pub columns: [u16; 2],
     /// Of the farthest.
-    distance: i64,
+    pub distance: i64,
     /// Silhouettes may hide some of them.
-    hidden: bool,
+    pub hidden: bool,
 }
 
 /// What a square covers of the frame.
 #[derive(Clone, Copy, Default, Debug)]
-struct Spot {
-    distance: i64,
-    columns: [u16; 2],
-    rows: [i16; 2],
+pub(crate) struct Spot {
+    pub distance: i64,
+    pub columns: [u16; 2],
+    pub rows: [i16; 2],
     /// Its middle, 16.16.
-    place: [Fixed; 3],
-    trail: u16,
-    colour: u8,
-    opacity: u8,
+    pub place: [Fixed; 3],
+    pub trail: u16,
+    pub colour: u8,
+    pub opacity: u8,
 }
 
 impl SeenTrails {
@@ -91,53 +90,15 @@ impl SeenTrail {
 }
 
 /// The inverse of a distance.
-fn inverse(distance: i64) -> i64 {
+pub(crate) fn inverse(distance: i64) -> i64 {
     (1 << (INVERSE_BITS + 16)) / distance
 }
 
 impl Spot {
     /// What decides what hides it.
-    fn extent(&self) -> Extent {
+    pub fn extent(&self) -> Extent {
         let ([x, y, height], [first, end]) = (self.place, self.columns.map(usize::from));
         Extent { inverse: inverse(self.distance), x: i64::from(x.0), y: i64::from(y.0), top: height, bottom: height, first, end }
-    }
-}
-
-impl Masked<'_> {
-    /// Finds the trails of which silhouettes may hide something: nothing is before most.
-    pub fn meet_trails(&mut self) {
-        for seen in self.trails.trails.iter_mut().filter(|seen| seen.distance > 0) {
-            let [first, end] = seen.columns.map(usize::from);
-            seen.hidden = self.silhouettes.meet(self.simd, first, end, inverse(seen.distance)) > 0;
-        }
-    }
-
-    /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet. Depth and labels tell nothing of them.
-    pub fn squares_beyond<const DEPTH: bool, const CLASS: bool>(&mut self, distance: i64) {
-        while let Some(spot) = self.trails.spots.pop_if(|spot| spot.distance > distance) {
-            self.square::<DEPTH, CLASS>(&spot);
-        }
-    }
-
-    /// Mixes the colour of a spot into what is seen of each of its columns.
-    fn square<const DEPTH: bool, const CLASS: bool>(&mut self, spot: &Spot) {
-        let (width, hidden) = (self.frame.width, self.trails.trails[usize::from(spot.trail)].hidden);
-        let first = usize::from(spot.columns[0]);
-        if hidden {
-            let extent = spot.extent();
-            self.columns.open(0..self.view.view_rows as i16, (first..extent.end).map(|_| 0));
-            self.narrow::<DEPTH, CLASS>(&extent);
-        }
-        for column in first..usize::from(spot.columns[1]) {
-            let [mut top, mut bottom] = spot.rows;
-            if hidden {
-                (top, bottom) = (top.max(self.columns.tops[column - first]), bottom.min(self.columns.bottoms[column - first]));
-            }
-            for row in top..bottom {
-                let pixel = &mut self.frame.colour[row as usize * width + column];
-                *pixel = self.scene.blend.over(spot.colour, *pixel, spot.opacity);
-            }
-        }
     }
 }
 

@@ -1,9 +1,10 @@
 //! What has holes: sprites and the textures in openings, drawn far to near over walls and planes.
 
-use crate::render::buffers::drawsegs::{Silhouette, Silhouettes};
+use crate::render::buffers::drawsegs::list::{Silhouette, Silhouettes};
 use crate::render::buffers::frame::Frame;
 use crate::render::buffers::labels::{Label, Labels};
-use crate::render::patch::{Covered, StampColumns};
+use crate::render::patch;
+use crate::render::patch::data::{Covered, StampColumns};
 use crate::render::published_depth::midtexture::FenceDepth;
 use crate::render::scene::prepared::Scene;
 use crate::render::sprites::particles::SeenTrails;
@@ -98,7 +99,7 @@ impl Masked<'_> {
         let depth = self.frame.depths.sprite(sprite.distance, self.view.focal_y);
         self.fence_depth.tell(depth);
         let stamp = sprite.stamp(self.scene, picture, self.columns, depth, label);
-        let covered = stamp.draw::<DEPTH, CLASS>(self.simd, self.frame, &self.view.rows);
+        let covered = patch::draw::<DEPTH, CLASS>(&stamp, self.simd, self.frame, &self.view.rows);
         if CLASS && covered != Covered::NOTHING {
             let [[left, right], [top, bottom]] = [covered.columns, covered.rows];
             self.labels.list.push(Label {

@@ -1,7 +1,7 @@
 //! Sprites: which actors are in view, where, and their drawing.
 
 use crate::math::{Angle, Fixed};
-use crate::render::patch::{Stamp, StampColumns, TEXEL_BITS, first_row};
+use crate::render::patch::data::{Stamp, StampColumns, TEXEL_BITS, first_row};
 use crate::render::scene::prepared::Scene;
 use crate::render::textures::sprite::SpritePicture;
 use crate::render::view::camera::Camera;

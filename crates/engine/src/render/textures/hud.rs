@@ -2,7 +2,7 @@
 
 use crate::assets::Assets;
 use crate::map::TextureName;
-use crate::render::textures::picture::MaskedPicture;
+use crate::render::textures::masked::MaskedPicture;
 use crate::world::Face;
 
 /// The pictures of the bar; what a set lacks is not drawn.

@@ -2,7 +2,7 @@
 //! which the same row of texels shows.
 
 use crate::assets::Image;
-use crate::render::textures::picture::MaskedPicture;
+use crate::render::textures::masked::MaskedPicture;
 use std::ops::Range;
 use std::sync::Arc;
 

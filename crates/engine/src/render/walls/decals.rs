@@ -4,7 +4,7 @@
 
 use crate::assets::Stain;
 use crate::render::colour::blend::WHOLE;
-use crate::render::patch::first_row;
+use crate::render::patch::data::first_row;
 use crate::render::scene::prepared::Face;
 use crate::render::textures::midtexture::runs_of;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};

@@ -2,7 +2,7 @@
 
 use crate::render::blocks::padded;
 use crate::render::buffers::clip::Openings;
-use crate::render::buffers::drawsegs::Silhouettes;
+use crate::render::buffers::drawsegs::list::Silhouettes;
 use crate::render::buffers::frame::Columns;
 use crate::render::buffers::sectors::Looks;
 use crate::render::buffers::visplane::Planes;
@@ -13,8 +13,7 @@ use crate::render::view::depth::Depths;
 use crate::render::view::line::SeenLine;
 use crate::render::view::tables::View;
 use crate::render::view::view_space::TurnedLine;
-#[cfg(target_arch = "x86_64")]
-use crate::render::walls::batch::WallList;
+use crate::render::walls::batch::data::WallBatch;
 use crate::simd::Simd;
 use crate::world::World;
 
@@ -36,8 +35,7 @@ pub(crate) struct Walk<'a> {
     pub entered: &'a mut [bool],
     pub scratch: &'a mut WalkScratch,
     /// Columns of walls that wait to be drawn.
-    #[cfg(target_arch = "x86_64")]
-    pub walls: &'a mut WallList,
+    pub walls: &'a mut WallBatch,
     pub simd: Simd,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::map::TextureId;
 use crate::math::Fixed;
-use crate::render::buffers::drawsegs::Silhouette;
+use crate::render::buffers::drawsegs::list::Silhouette;
 use crate::render::buffers::sectors::Look;
 use crate::render::buffers::visplane::PlaneKey;
 use crate::render::published_depth::quads;
@@ -10,12 +10,11 @@ use crate::render::scene::prepared::{NO_SECTOR, SceneSeg};
 use crate::render::view::light::Light;
 use crate::render::view::line::{END_BITS, Edge};
 use crate::render::view::view_space::TurnedLine;
-use crate::render::walls::clip::{Narrowing, narrow};
+use crate::render::walls::batch;
+use crate::render::walls::clip::{narrow, pass::Narrowing};
 use crate::render::walls::pass::{SeenSeg, Walk, WalkScratch};
 use crate::render::walls::shade;
 use crate::render::walls::shader::WallShader;
-#[cfg(target_arch = "x86_64")]
-use crate::simd::Level;
 
 /// The columns of a seg that faces the eye.
 struct SeenColumns {
@@ -233,16 +232,10 @@ impl Walk<'_> {
             hung_from: i64::from(hung_from.0) - self.camera.z + seen.face.v_offset,
         };
         let (tops, bottoms) = (&self.scratch.upper[first..], &self.scratch.lower[first..]);
-        #[cfg(target_arch = "x86_64")]
-        let start = self.scene.textures.listed_from[picture].filter(|_| self.lists_walls());
-        #[cfg(target_arch = "x86_64")]
-        if let Some(start) = start {
-            // SAFETY: whoever has this `Simd` has the instructions.
-            unsafe { self.walls.add::<DEPTH>(&shader, start, first, end - first, tops, bottoms) }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        let start: Option<u32> = None;
-        if start.is_none() {
+        let listed_from = self.scene.textures.listed_from[picture].filter(|_| self.batches_walls());
+        if let Some(start) = listed_from {
+            batch::add::<DEPTH>(self.walls, self.simd, &shader, start, first, end - first, tops, bottoms);
+        } else {
             shade::draw::<DEPTH>(&shader, self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
         }
         if DEPTH && self.depths.by_fours() {
@@ -256,20 +249,16 @@ impl Walk<'_> {
     }
 
     /// Whether columns of walls are listed and drawn together.
-    #[cfg(target_arch = "x86_64")]
-    fn lists_walls(&self) -> bool {
-        self.simd.level() == Level::Avx512 && self.columns.are_blocks() && !self.depths.by_fours()
+    fn batches_walls(&self) -> bool {
+        batch::is_used(self.simd) && self.columns.are_blocks() && !self.depths.by_fours()
     }
 
     /// Draws the walls that wait for it.
     pub fn draw_walls<const DEPTH: bool>(&mut self) {
-        #[cfg(target_arch = "x86_64")]
-        if self.lists_walls() {
+        if self.batches_walls() {
             let (scene, rows) = (self.scene, self.view.rows.first_chunk().expect("the list is padded"));
-            let tables = &scene.assets.light_tables;
-            // SAFETY: whoever has this `Simd` has the instructions.
-            unsafe { self.walls.draw::<DEPTH>(self.columns, rows, &scene.textures.listed, tables, self.depths) }
-            self.walls.clear();
+            let (texels, tables) = (&scene.textures.listed, &scene.assets.light_tables);
+            batch::draw::<DEPTH>(self.walls, self.simd, self.columns, rows, texels, tables, self.depths);
         }
     }
 

@@ -1,7 +1,7 @@
 //! A part of a wall that one texture covers, and what one of its columns shows.
 
 use crate::render::textures::local_palette::OwnColours;
-use crate::render::textures::picture::WallPicture;
+use crate::render::textures::wall::WallPicture;
 use crate::render::view::camera::Camera;
 use crate::render::view::depth::Depths;
 use crate::render::view::light::Light;

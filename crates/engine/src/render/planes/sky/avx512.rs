@@ -1,15 +1,19 @@
-//! Columns of the sky, 64 rows at a time: a column of texels is four vectors. The plain twin is in `sky`, where a test
-//! compares them.
+//! Columns of the sky, 64 rows at a time: a column of texels is four vectors.
 
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
 use crate::render::buffers::visplane::Plane;
-use crate::render::planes::sky::SkyShader;
+use crate::render::planes::sky::shader::SkyShader;
 use crate::simd::lookup::avx512::{load, load_table, look_up_block};
 use std::arch::x86_64::*;
 
 /// Highest picture: as many rows as a byte tells apart.
-pub(crate) const MOST_TEXELS: usize = 256;
+const MOST_TEXELS: usize = 256;
+
+/// Whether the picture's columns fit a table.
+pub(crate) fn fits(shader: &SkyShader) -> bool {
+    shader.picture.height as usize <= MOST_TEXELS
+}
 
 /// Draws a plane of the sky. `starts` are where the texels of each column begin, `texel_rows` the texel of each row.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]

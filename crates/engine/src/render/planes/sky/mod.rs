@@ -1,80 +1,40 @@
-//! The sky: a cylinder at infinite distance. It is drawn by columns, as walls are.
+//! The sky, drawn by columns as walls are.
 
-#[cfg(target_arch = "x86_64")]
-pub mod avx512;
+crate::simd::kernel_files!(avx512);
+mod scalar;
+pub mod shader;
 
 use crate::render::buffers::frame::Columns;
 use crate::render::buffers::visplane::Plane;
-use crate::render::textures::picture::WallPicture;
-use crate::render::view::camera::Camera;
-use crate::render::view::tables::View;
-#[cfg(target_arch = "x86_64")]
-use crate::simd::Level;
-use crate::simd::Simd;
+use crate::simd::{Simd, dispatch};
+use shader::SkyShader;
 
-/// Height of the cylinder in units of 1/200 screen height, whatever the picture's: enough to look all the way up.
-const SKY_UNITS: i64 = 228;
-const UNITS_A_SCREEN: i64 = 200;
-/// Units of it above the horizon.
-const UNITS_ABOVE: i64 = 200;
-
-/// The texel that each frame row shows of a sky of `height` texels.
-pub(crate) fn texel_rows(view: &View, horizon: i64, height: u32) -> impl Iterator<Item = u16> {
-    let height = i64::from(height);
-    view.rows[..view.view_rows].iter().map(move |&row| {
-        // From the lower edge of the row.
-        let below = (i64::from(row + 1) << 16) - horizon;
-        let units = below * UNITS_A_SCREEN / i64::from(view.base_rows()) + (UNITS_ABOVE << 16);
-        ((units * height / SKY_UNITS) >> 16).rem_euclid(height) as u16
-    })
-}
-
-/// The sky as one frame sees it.
-pub(crate) struct SkyShader<'a> {
-    pub camera: &'a Camera,
-    pub view: &'a View,
-    pub table: &'a [u8; 256],
-    pub picture: &'a WallPicture,
-}
-
-impl SkyShader<'_> {
-    /// Draws a plane of the sky. `texel_rows` are those of the picture's height; `starts` is scratch of an entry for each column.
-    pub fn draw(&self, simd: Simd, columns: &mut Columns, plane: &Plane, starts: &mut [u32], texel_rows: &[u16]) {
-        let range = plane.first..plane.end;
-        for (start, &angle) in starts[range.clone()].iter_mut().zip(&self.view.column_angles[range.clone()]) {
-            // 1024 texels around.
-            let u = (self.camera.angle + angle).0 >> 22;
-            *start = self.picture.column_start(u as i32) as u32;
-        }
-        #[cfg(target_arch = "x86_64")]
-        if simd.level() == Level::Avx512 && self.picture.height as usize <= avx512::MOST_TEXELS {
-            // SAFETY: whoever has this `Simd` has the instructions.
-            return unsafe { avx512::draw(self, columns, plane, starts, texel_rows) };
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = simd;
-        for x in range {
-            let (top, bottom) = (plane.top[x], plane.bottom[x]);
-            if top >= bottom {
-                continue;
-            }
-            let texels = &self.picture.pixels[starts[x] as usize..];
-            let rows = top as usize..bottom as usize;
-            for (pixel, &row) in columns.colour_of(x)[rows.clone()].iter_mut().zip(&texel_rows[rows]) {
-                *pixel = self.table[usize::from(texels[usize::from(row)])];
-            }
-        }
+/// Draws a plane of the sky. `texel_rows` are those of the picture's height; `starts` is scratch of an entry for each column.
+pub(crate) fn draw(shader: &SkyShader, simd: Simd, columns: &mut Columns, plane: &Plane, starts: &mut [u32], texel_rows: &[u16]) {
+    let range = plane.first..plane.end;
+    for (start, &angle) in starts[range.clone()].iter_mut().zip(&shader.view.column_angles[range]) {
+        // 1024 texels around.
+        let u = (shader.camera.angle + angle).0 >> 22;
+        *start = shader.picture.column_start(u as i32) as u32;
     }
+    dispatch!(simd;
+        avx512 if avx512::fits(shader) => avx512::draw(shader, columns, plane, starts, texel_rows),
+        scalar => scalar::draw(shader, columns, plane, starts, texel_rows),
+    );
 }
 
 #[cfg(test)]
 mod tests {
+    use super::shader::texel_rows;
     use super::*;
     use crate::assets::Image;
     use crate::map::TextureId;
     use crate::math::{Angle, Fixed, Rng};
     use crate::render::buffers::visplane::{PlaneKey, Planes};
+    use crate::render::textures::wall::WallPicture;
+    use crate::render::view::camera::Camera;
     use crate::render::view::size::FrameSize;
+    use crate::render::view::tables::View;
 
     #[test]
     fn all_ways_draw_the_same_sky() {
@@ -103,7 +63,7 @@ mod tests {
             let drawn = |simd: Simd| {
                 let mut columns = Columns::default();
                 columns.fit(view.width(), view.view_rows);
-                shader.draw(simd, &mut columns, &planes.used()[0], &mut vec![0; view.width()], &texel_rows);
+                draw(&shader, simd, &mut columns, &planes.used()[0], &mut vec![0; view.width()], &texel_rows);
                 (0..view.width()).map(|x| columns.colour_of(x)[..view.view_rows].to_vec()).collect::<Vec<_>>()
             };
             let plain = drawn(Simd::PLAIN);

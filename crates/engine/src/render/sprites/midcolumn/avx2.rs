@@ -1,9 +1,9 @@
-//! 32 rows of a column of a texture with holes, 64 or 128 texels high, with vectors of 32 bytes; the plain twin is in `masked_column`, where a
-//! test compares them.
+//! 32 rows of a column of a midtexture 64 or 128 texels high, with vectors of 32 bytes.
 
-use crate::render::sprites::midcolumn::MaskedColumn;
+use crate::render::sprites::midcolumn::data::MaskedColumn;
 use crate::simd::lookup::avx2::{GROUP, bytes_of, look_up};
 use std::arch::x86_64::*;
+use std::ops::Range;
 
 /// The last row and the last texel that bytes with a sign hold.
 const LAST: i64 = i8::MAX as i64;
@@ -15,10 +15,27 @@ pub(crate) fn fits(column: &MaskedColumn, last_row: u32) -> bool {
     matches!(column.texels.len(), 64 | 128) && i64::from(last_row) <= LAST && positions == 0
 }
 
+/// Gives the frame rows of `rows` that show a texel and their colours to `put`.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+pub(crate) fn draw(column: &MaskedColumn, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {
+    let mut row = rows.start;
+    while row < rows.end {
+        let (colours, mut shown) = block(column, base_rows[row..].first_chunk().expect("lists by row are padded"));
+        shown &= u32::MAX >> GROUP.saturating_sub(rows.end - row);
+        while shown != 0 {
+            let i = shown.trailing_zeros() as usize;
+            put(row + i, colours[i]);
+            shown &= shown - 1;
+        }
+        row += GROUP;
+    }
+}
+
 /// The colours of 32 base rows, and a bit for each that shows.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-pub(crate) fn block(column: &MaskedColumn, base_rows: &[u32; GROUP]) -> ([u8; GROUP], u32) {
+fn block(column: &MaskedColumn, base_rows: &[u32; GROUP]) -> ([u8; GROUP], u32) {
     let (eights, _) = base_rows.as_chunks::<8>();
     let rows = |i: usize| texel_rows(column, &eights[i]);
     let texel_rows = bytes_of([rows(0), rows(1), rows(2), rows(3)]);

@@ -1,9 +1,6 @@
 //! One column of a wall, drawn into a frame that lies column by column.
 
-#[cfg(target_arch = "x86_64")]
-pub mod avx2;
-#[cfg(target_arch = "x86_64")]
-pub mod avx512;
+crate::simd::kernel_files!(avx2, avx512);
 pub mod data;
 mod scalar;
 

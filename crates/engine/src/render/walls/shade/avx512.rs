@@ -1,7 +1,8 @@
 //! What eight columns of a wall show, side by side, with vectors of 64 bytes.
 
 use crate::render::buffers::frame::Columns;
-use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
+use crate::render::view::light::ONE_TABLE_DISTANCE;
+use crate::render::view::light_avx512::tables;
 use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine};
 use crate::render::walls::shade::scalar;
 use crate::render::walls::shader::{WALL_BLOCK, WallColumn, WallShader, WallSlope};
@@ -93,15 +94,6 @@ fn texture_at(line: &TextureLine, column: __m512i, distance: __m512i) -> __m512i
     let along = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(line.along), gained), 28);
     let along = _mm512_max_epi64(_mm512_min_epi64(along, _mm512_set1_epi64(line.last)), _mm512_set1_epi64(line.least));
     _mm512_add_epi64(along, _mm512_set1_epi64(line.offset))
-}
-
-/// [`Light::table`].
-#[inline]
-#[target_feature(enable = "avx512f")]
-pub(crate) fn tables(light: Light, nearness: __m512i) -> __m512i {
-    let nearness = _mm512_min_epi64(nearness, _mm512_set1_epi64(light.most));
-    let table = _mm512_srai_epi64(_mm512_sub_epi64(_mm512_set1_epi64(light.base), nearness), 16);
-    _mm512_max_epi64(_mm512_min_epi64(table, _mm512_set1_epi64(31)), _mm512_setzero_si512())
 }
 
 #[inline]

@@ -1,9 +1,6 @@
 //! The drawing of a wall: what its columns show, and the columns themselves.
 
-#[cfg(target_arch = "x86_64")]
-mod avx2;
-#[cfg(target_arch = "x86_64")]
-pub mod avx512;
+crate::simd::kernel_files!(avx2, avx512);
 mod scalar;
 
 use crate::render::buffers::frame::Columns;
@@ -32,7 +29,7 @@ mod tests {
     use crate::assets::Image;
     use crate::math::Rng;
     use crate::render::textures::local_palette::OwnColours;
-    use crate::render::textures::picture::WallPicture;
+    use crate::render::textures::wall::WallPicture;
     use crate::render::view::camera::Camera;
     use crate::render::view::depth::Depths;
     use crate::render::view::light::Light;
