@@ -6,7 +6,7 @@ pub(crate) const ROW_BLOCK: usize = 64;
 /// Rows that may be asked for behind a column's last one: lists by row are that much longer than a column.
 pub(crate) const ROW_PADDING: usize = 32;
 
-/// Most columns that are narrowed at once. Lists by column are that much longer than a frame is wide, so that the last
+/// Most columns that are clipped at once. Lists by column are that much longer than a frame is wide, so that the last
 /// columns of a seg need no other code: what lies beyond is read, and left as it is.
 pub(crate) const COLUMN_BLOCK: usize = 16;
 

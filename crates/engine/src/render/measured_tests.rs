@@ -1,4 +1,4 @@
-//! Borders of what is drawn, as they were seen in the published engine (docs/results/pixels.md).
+//! Borders of what is drawn, as they were seen in ViZDoom (docs/results/pixels.md).
 
 use super::*;
 use crate::map::{Map, MapBuilder, Mark, Style};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 const YARD: Style = Style { ceiling: 300, ceiling_texture: "F_SKY1", ..STYLE };
 
-/// A world of what is built and one who looks east from (0, 0) at a height, and a renderer for 160x120.
+/// A world of what is built and one who surfaces east from (0, 0) at a height, and a renderer for 160x120.
 fn stand(builder: MapBuilder, view_z: i32) -> (World, Renderer, Arc<Scene>) {
     let map = Arc::new(Map::build(&builder.finish().unwrap(), "yard", &[]).unwrap());
     let scene = Arc::new(Scene::new(&map, assets()));

@@ -217,7 +217,7 @@ fn buffers_do_not_change_the_colours() {
     }
 }
 
-/// The published engine draws the sky under goggles as without; everything else is then of one light.
+/// ViZDoom draws the sky under goggles as without; everything else is then of one light.
 #[test]
 fn goggles_leave_the_sky_as_it_is() {
     let (mut world, mut renderer) = (yard_world(), renderer(160, 120));
@@ -313,7 +313,7 @@ fn published_depth_ends_early_except_on_floors() {
 #[test]
 fn no_pixel_of_a_closed_room_is_missed() {
     // A hole would show as a pixel that is not of the wall's, floor's or ceiling's class at its proper place; the
-    // buffers start as far wall, so depth tells: no wall of this room is farther than its diagonal.
+    // buffers start as far wall, so depth shows it: no wall of this room is farther than its diagonal.
     let (mut world, mut renderer) = room(300);
     let mut rng = Rng::new(31);
     for _ in 0..500 {

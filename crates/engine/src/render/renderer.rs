@@ -14,14 +14,14 @@ use crate::render::planes::sky::{self, shader::SkyShader};
 use crate::render::planes::{draw, spans, whole};
 use crate::render::published_depth::quads;
 use crate::render::scene::prepared::Scene;
-use crate::render::scratch::Workspace;
-use crate::render::sprites::pass::Masked;
+use crate::render::scratch::FrameScratch;
+use crate::render::sprites::pass::SpritePass;
 use crate::render::sprites::sprite;
 use crate::render::view::camera::Camera;
-use crate::render::view::depth::Depths;
-use crate::render::view::horizon::RowSlopes;
+use crate::render::view::depth::DepthEncoding;
+use crate::render::view::horizon::PlaneRows;
 use crate::render::view::tables::View;
-use crate::render::walls::pass::Walk;
+use crate::render::walls::pass::WallPass;
 use crate::simd::Simd;
 use crate::world::World;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ pub struct Renderer {
     scene: Arc<Scene>,
     view: Arc<View>,
     frame: Frame,
-    slopes: RowSlopes,
+    slopes: PlaneRows,
     labels: Labels,
     status_bar: StatusBar,
     /// What tints the palette.
@@ -45,16 +45,16 @@ pub struct Renderer {
     simd: Simd,
 }
 
-/// Values of the class buffer that are told apart: more actors than any frame shows.
+/// Values of the class buffer that are distinguished: more actors than any frame shows.
 const CLASSES: usize = 1024;
 
 /// What may be drawn otherwise.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct RenderOptions {
-    /// Light amplification (Infrared goggles) has a strong green hue, as the paper says; the published engine only
+    /// Light amplification (Infrared goggles) has a strong green hue, as the paper says; ViZDoom only
     /// brightens.
     pub green_goggles: bool,
-    /// Depth is what the published engine tells: by a formula each for walls, floors and sprites, and except on floors
+    /// Depth is what ViZDoom writes: by a formula each for walls, floors and sprites, and except on floors
     /// it ends at `255 * height / 480` in frames less than 480 rows high, at 63 in learners' frames.
     pub published_depth: bool,
 }
@@ -65,13 +65,13 @@ impl Renderer {
     pub fn new(scene: Arc<Scene>, view: Arc<View>) -> Renderer {
         Renderer {
             frame: Frame::default(),
-            slopes: RowSlopes::default(),
+            slopes: PlaneRows::default(),
             labels: Labels::default(),
             status_bar: StatusBar::new(&scene.bar, &view),
             tint: Tint::default(),
             tinted: Box::new(scene.colours.clone()),
             options: RenderOptions::default(),
-            // Whoever makes renderers for users has told them of a wrong choice.
+            // A wrong choice has been reported by what makes renderers for users.
             simd: Simd::chosen().unwrap_or(Simd::widest()),
             scene,
             view,
@@ -81,8 +81,8 @@ impl Renderer {
     /// Chooses what is drawn otherwise from the next frame on.
     pub fn set_options(&mut self, options: RenderOptions) {
         self.options = options;
-        let published = || Depths::published(self.view.base_rows(), self.view.is_reduced());
-        self.frame.depths = if options.published_depth { published() } else { Depths::default() };
+        let published = || DepthEncoding::published(self.view.base_rows(), self.view.is_reduced());
+        self.frame.depths = if options.published_depth { published() } else { DepthEncoding::default() };
     }
 
     /// Draws with these instructions, to compare them: the pixels are the same.
@@ -96,7 +96,7 @@ impl Renderer {
     /// If the world is of another map than the scene, or has no such player.
     pub fn render(&mut self, world: &World, player: usize, buffers: Buffers) {
         self.frame.fit(&self.view, self.frame.depths);
-        Workspace::with(|space| self.draw_buffers(space, world, player, buffers));
+        FrameScratch::with(|space| self.draw_buffers(space, world, player, buffers));
     }
 
     /// Draws what player `player` of `world` sees, and lets `write` read it; it does not stay. Renderers of a thread share the
@@ -105,7 +105,7 @@ impl Renderer {
     /// # Panics
     /// If the world is of another map than the scene, or has no such player; if `write` draws.
     pub fn render_then(&mut self, world: &World, player: usize, buffers: Buffers, write: impl FnOnce(&Renderer)) {
-        Workspace::with(|space| {
+        FrameScratch::with(|space| {
             let mut shared = std::mem::take(&mut space.frame);
             shared.fit(&self.view, self.frame.depths);
             std::mem::swap(&mut self.frame, &mut shared);
@@ -117,7 +117,7 @@ impl Renderer {
     }
 
     #[inline(never)]
-    fn draw_buffers(&mut self, space: &mut Workspace, world: &World, player: usize, buffers: Buffers) {
+    fn draw_buffers(&mut self, space: &mut FrameScratch, world: &World, player: usize, buffers: Buffers) {
         assert_eq!(world.sector_count(), self.scene.sector_count, "the world is of another map than the scene");
         match (buffers.depth, buffers.labels) {
             (false, false) => self.draw::<false, false>(space, world, player),
@@ -127,23 +127,23 @@ impl Renderer {
         }
     }
 
-    fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut Workspace, world: &World, player: usize) {
+    fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut FrameScratch, world: &World, player: usize) {
         space.begin(&self.scene, &self.view, world.tic);
         let camera = Camera::of_player(world, player, &self.view);
         self.slopes.update(&self.view, camera.horizon);
         space.columns.clear::<DEPTH>(self.frame.depths);
-        let mut walk = Walk {
+        let mut walk = WallPass {
             scene: &self.scene,
             view: &self.view,
             camera: &camera,
             world,
             depths: self.frame.depths,
-            looks: &mut space.looks,
+            surfaces: &mut space.surfaces,
             pictures: &space.pictures,
             columns: &mut space.columns,
-            openings: &mut space.openings,
+            clip: &mut space.clip,
             planes: &mut space.planes,
-            silhouettes: &mut space.silhouettes,
+            drawsegs: &mut space.drawsegs,
             entered: &mut space.entered,
             scratch: &mut space.walk,
             walls: &mut space.walls,
@@ -159,7 +159,7 @@ impl Renderer {
 
     fn draw_masked<const DEPTH: bool, const CLASS: bool>(
         &mut self,
-        space: &mut Workspace,
+        space: &mut FrameScratch,
         camera: &Camera,
         world: &World,
         player: usize,
@@ -167,18 +167,18 @@ impl Renderer {
         self.labels.list.clear();
         sprite::collect(&mut space.sprites, &self.scene, &self.view, camera, world, player, &space.entered);
         space.trails.collect(&self.scene, &self.view, camera, world);
-        let mut masked = Masked {
+        let mut masked = SpritePass {
             scene: &self.scene,
             view: &self.view,
             camera,
             world,
             pictures: &space.pictures,
             frame: &mut self.frame,
-            silhouettes: &mut space.silhouettes,
+            drawsegs: &mut space.drawsegs,
             labels: &mut self.labels,
             trails: &mut space.trails,
-            columns: &mut space.stamp_columns,
-            fence_depth: &mut space.fence_depth,
+            columns: &mut space.patch_columns,
+            midtexture_depth: &mut space.midtexture_depth,
             simd: self.simd,
         };
         masked.draw::<DEPTH, CLASS>(&space.sprites);
@@ -187,7 +187,7 @@ impl Renderer {
     /// What is drawn over the world: weapon, status bar, flashes.
     fn draw_overlay<const DEPTH: bool, const CLASS: bool>(
         &mut self,
-        space: &mut Workspace,
+        space: &mut FrameScratch,
         camera: &Camera,
         world: &World,
         player: usize,
@@ -196,7 +196,7 @@ impl Renderer {
         let state = BarState::of_player(world, player);
         let player = &world.players[player];
         let level = world.get(player.actor).map_or(0, |body| world.sector(body.sector).light);
-        let (columns, cache) = (&mut space.stamp_columns, &mut space.weapons);
+        let (columns, cache) = (&mut space.patch_columns, &mut space.weapons);
         let mut canvas = weapon::Canvas { frame: &mut self.frame, columns, cache, simd: self.simd, scene, view };
         canvas.weapon::<DEPTH, CLASS>(camera, player, i32::from(level));
         self.status_bar.update(&mut self.frame, &scene.bar, view, state);
@@ -210,21 +210,21 @@ impl Renderer {
     }
 
     /// Draws the sky, as far as its colours go, into the workspace's columns: its depth is what they were emptied to.
-    fn draw_sky<const DEPTH: bool>(&mut self, space: &mut Workspace, camera: &Camera) {
+    fn draw_sky<const DEPTH: bool>(&mut self, space: &mut FrameScratch, camera: &Camera) {
         let picture = &self.scene.textures.walls[self.scene.sky];
         // Whatever light there is, and by goggles too.
         let shader = SkyShader { camera, view: &self.view, table: &self.scene.assets.light_tables[0], picture };
         for plane in space.planes.used().iter().filter(|plane| plane.key.sky && !plane.is_empty()) {
             let rows = self.slopes.sky_rows(|horizon| sky::shader::texel_rows(&self.view, horizon, picture.height));
             sky::draw(&shader, self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
-            if DEPTH && self.frame.depths.by_fours() {
+            if DEPTH && self.frame.depths.by_quads() {
                 let (first, shown, farthest) = (plane.first, plane.first..plane.end, self.frame.depths.farthest());
                 quads::draw_below(&mut space.columns, first, &plane.top[shown.clone()], &plane.bottom[shown], |_| farthest);
             }
         }
     }
 
-    fn draw_planes<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut Workspace, camera: &Camera) {
+    fn draw_planes<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut FrameScratch, camera: &Camera) {
         let tables = &self.scene.assets.light_tables;
         for plane in space.planes.used() {
             if plane.is_empty() || (plane.key.sky && !CLASS) {
@@ -352,7 +352,7 @@ impl Renderer {
         convert::classes_planes(&self.class_colours(colours), &self.frame.class, out);
     }
 
-    /// Writes the last frame's labels as the published engine gives them: 1 for floors and ceilings with a picture of 64 by
+    /// Writes the last frame's labels as ViZDoom gives them: 1 for floors and ceilings with a picture of 64 by
     /// 64 texels, 0 for other surfaces, the `n`th of `N` actors `n * 255 / (N + 1)`, the weapon 255; labels must have been
     /// asked for.
     ///

@@ -4,7 +4,7 @@ use crate::render::blocks::padded;
 
 /// For each frame column, the rows that nothing has covered yet.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Openings {
+pub(crate) struct ColumnClip {
     /// Columns.
     width: usize,
     /// First open row; padded for blocks of columns.
@@ -21,7 +21,7 @@ pub(crate) struct Openings {
     end: usize,
 }
 
-impl Openings {
+impl ColumnClip {
     /// Opens every column.
     pub fn reset(&mut self, width: usize, rows: usize) {
         self.top.clear();
@@ -156,14 +156,14 @@ mod tests {
     fn bits_are_those_of_single_columns() {
         let mut rng = crate::math::Rng::new(20);
         for width in [128, 160, 100, 64, 1001] {
-            let mut openings = Openings::default();
-            openings.reset(width, 60);
+            let mut clip = ColumnClip::default();
+            clip.reset(width, 60);
             let mut open = vec![true; width];
             for _ in 0..200 {
                 let first = rng.below(width as u32) as usize;
                 let end = first + 1 + rng.below((width - first) as u32) as usize;
                 if rng.below(8) == 0 {
-                    openings.close(first, end);
+                    clip.close(first, end);
                     open[first..end].fill(false);
                 } else {
                     let count = (end - first).min(16);
@@ -171,36 +171,36 @@ mod tests {
                     let bits = chosen.fold(0, |bits, i| bits | 1 << i);
                     // Counted from a column further left.
                     let from = rng.below(first as u32 + 1) as usize;
-                    openings.from(from).2.close(first - from, bits);
+                    clip.from(from).2.close(first - from, bits);
                     (0..count).filter(|i| bits >> i & 1 != 0).for_each(|i| open[first + i] = false);
                 }
-                assert!((0..width).all(|x| openings.any_open(x, x + 1) == open[x]));
+                assert!((0..width).all(|x| clip.any_open(x, x + 1) == open[x]));
                 let range = open.iter().position(|&open| open).zip(open.iter().rposition(|&open| open));
-                let (first, end) = openings.range();
+                let (first, end) = clip.range();
                 assert_eq!(range.is_none(), first >= end);
                 assert!(range.is_none_or(|(one, last)| (one, last + 1) == (first, end)));
-                assert_eq!(openings.closed, open.iter().filter(|&&open| !open).count());
+                assert_eq!(clip.closed, open.iter().filter(|&&open| !open).count());
             }
         }
     }
 
     #[test]
     fn ranges_see_exactly_their_columns() {
-        let mut openings = Openings::default();
-        openings.reset(160, 100);
-        openings.close(0, 160);
-        let (first, end) = openings.range();
+        let mut clip = ColumnClip::default();
+        clip.reset(160, 100);
+        clip.close(0, 160);
+        let (first, end) = clip.range();
         assert!(first >= end);
         for column in 0..160 {
-            openings.reset(160, 100);
-            openings.close(0, column);
-            openings.close(column + 1, 160);
-            assert_eq!(openings.range(), (column, column + 1));
+            clip.reset(160, 100);
+            clip.close(0, column);
+            clip.close(column + 1, 160);
+            assert_eq!(clip.range(), (column, column + 1));
             for (first, end) in [(0, 160), (column, column + 1), (0, column + 1), (column, 160)] {
-                assert!(openings.any_open(first, end), "{column} in {first}..{end}");
+                assert!(clip.any_open(first, end), "{column} in {first}..{end}");
             }
-            assert!(column == 0 || !openings.any_open(0, column));
-            assert!(column == 159 || !openings.any_open(column + 1, 160));
+            assert!(column == 0 || !clip.any_open(0, column));
+            assert!(column == 159 || !clip.any_open(column + 1, 160));
         }
     }
 }

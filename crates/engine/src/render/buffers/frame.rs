@@ -4,7 +4,7 @@ use crate::render::blocks::ROW_BLOCK;
 use crate::render::blocks::column_stride;
 use crate::render::buffers::transpose;
 use crate::render::buffers::visplane::Span;
-use crate::render::view::depth::Depths;
+use crate::render::view::depth::DepthEncoding;
 use crate::render::view::tables::View;
 use crate::simd::Simd;
 
@@ -41,13 +41,13 @@ pub(crate) struct Frame {
     pub depth: Vec<u8>,
     /// Classes and actors.
     pub class: Vec<u16>,
-    /// How depth is told.
-    pub depths: Depths,
+    /// How depth is written.
+    pub depths: DepthEncoding,
 }
 
 impl Frame {
     /// Makes it one of a view; the status bar's rows keep their depth and class.
-    pub fn fit(&mut self, view: &View, depths: Depths) {
+    pub fn fit(&mut self, view: &View, depths: DepthEncoding) {
         let (width, pixels) = (view.width(), view.size().pixels());
         if (self.width, self.colour.len()) != (width, pixels) {
             let (depth, class) = (vec![0; pixels], vec![class::STATUS_BAR; pixels]);
@@ -75,7 +75,7 @@ impl Columns {
     }
 
     /// Empties them.
-    pub fn clear<const DEPTH: bool>(&mut self, depths: Depths) {
+    pub fn clear<const DEPTH: bool>(&mut self, depths: DepthEncoding) {
         self.colour.fill(0);
         if DEPTH {
             self.depth.fill(depths.farthest());

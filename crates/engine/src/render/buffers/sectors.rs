@@ -7,7 +7,7 @@ use crate::world::World;
 /// All that is drawn of a sector.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
-pub(crate) struct Look {
+pub(crate) struct SectorSurfaces {
     pub floor: Fixed,
     pub ceiling: Fixed,
     pub floor_texture: TextureId,
@@ -17,9 +17,9 @@ pub(crate) struct Look {
     frame: u16,
 }
 
-impl Look {
+impl SectorSurfaces {
     /// No frame's.
-    const NONE: Look = Look {
+    const NONE: SectorSurfaces = SectorSurfaces {
         floor: Fixed::ZERO,
         ceiling: Fixed::ZERO,
         floor_texture: TextureId(0),
@@ -28,10 +28,10 @@ impl Look {
         frame: 0,
     };
 
-    /// Not zero if two looks of one frame differ.
+    /// Not zero if two surfaces of one frame differ.
     #[inline(always)]
-    pub fn difference(&self, other: &Look) -> u64 {
-        let words = |look: &Look| {
+    pub fn difference(&self, other: &SectorSurfaces) -> u64 {
+        let words = |look: &SectorSurfaces| {
             let heights = u64::from(look.floor.0 as u32) | u64::from(look.ceiling.0 as u32) << 32;
             let textures = u64::from(look.floor_texture.0) | u64::from(look.ceiling_texture.0) << 16;
             [heights, textures | u64::from(look.light as u16) << 32 | u64::from(look.frame) << 48]
@@ -41,20 +41,20 @@ impl Look {
     }
 }
 
-/// The looks of a frame's sectors.
+/// The surfaces of a frame's sectors.
 #[derive(Debug, Default)]
-pub(crate) struct Looks {
-    list: Vec<Look>,
+pub(crate) struct SurfaceCache {
+    list: Vec<SectorSurfaces>,
     /// The frame at hand, from 1.
     frame: u16,
 }
 
-impl Looks {
+impl SurfaceCache {
     /// Forgets the last frame; the next one has this many sectors.
     pub fn reset(&mut self, sectors: usize) {
-        self.list.resize(sectors, Look::NONE);
+        self.list.resize(sectors, SectorSurfaces::NONE);
         if self.frame == u16::MAX {
-            self.list.fill(Look::NONE);
+            self.list.fill(SectorSurfaces::NONE);
             self.frame = 0;
         }
         self.frame += 1;
@@ -62,17 +62,17 @@ impl Looks {
 
     /// What is drawn of a sector in this frame.
     #[inline(always)]
-    pub fn of(&mut self, world: &World, sector: u32) -> Look {
+    pub fn of(&mut self, world: &World, sector: u32) -> SectorSurfaces {
         if self.list[sector as usize].frame != self.frame {
-            self.look_at(world, sector);
+            self.fetch(world, sector);
         }
         self.list[sector as usize]
     }
 
     #[inline(never)]
-    fn look_at(&mut self, world: &World, sector: u32) {
+    fn fetch(&mut self, world: &World, sector: u32) {
         let state = world.sector(SectorId(sector));
-        self.list[sector as usize] = Look {
+        self.list[sector as usize] = SectorSurfaces {
             floor: state.floor,
             ceiling: state.ceiling,
             floor_texture: state.floor_texture,

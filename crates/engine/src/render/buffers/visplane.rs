@@ -5,7 +5,7 @@ use crate::math::Fixed;
 
 /// What is the same all over a plane.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) struct PlaneKey {
+pub(crate) struct VisPlaneKey {
     /// Height; 0 for the sky, all of which is one plane.
     pub height: Fixed,
     /// Texture.
@@ -16,7 +16,7 @@ pub(crate) struct PlaneKey {
     pub sky: bool,
 }
 
-impl PlaneKey {
+impl VisPlaneKey {
     /// All of it in a word: what shows the sky's texture is the sky.
     fn packed(self) -> u64 {
         u64::from(self.height.0 as u32) | u64::from(self.texture.0) << 32 | u64::from(self.light as u16) << 48
@@ -37,8 +37,8 @@ pub(crate) const NO_ROW: i16 = -1;
 
 /// An area of one plane: at most one run of rows in each column.
 #[derive(Clone, Debug)]
-pub(crate) struct Plane {
-    pub key: PlaneKey,
+pub(crate) struct VisPlane {
+    pub key: VisPlaneKey,
     /// First column.
     pub first: usize,
     /// One past the last column.
@@ -51,8 +51,8 @@ pub(crate) struct Plane {
 
 /// The planes of a frame.
 #[derive(Clone, Debug)]
-pub(crate) struct Planes {
-    list: Vec<Plane>,
+pub(crate) struct VisPlanes {
+    list: Vec<VisPlane>,
     used: usize,
     /// Of each plane in use its packed key, and the next plane of the same bucket.
     keys: Vec<(u64, u16)>,
@@ -60,13 +60,13 @@ pub(crate) struct Planes {
     width: usize,
 }
 
-impl Default for Planes {
-    fn default() -> Planes {
-        Planes { list: Vec::new(), used: 0, keys: Vec::new(), buckets: [NONE; 1 << BUCKET_BITS], width: 0 }
+impl Default for VisPlanes {
+    fn default() -> VisPlanes {
+        VisPlanes { list: Vec::new(), used: 0, keys: Vec::new(), buckets: [NONE; 1 << BUCKET_BITS], width: 0 }
     }
 }
 
-impl Planes {
+impl VisPlanes {
     /// Forgets the last frame.
     pub fn reset(&mut self, width: usize) {
         self.used = 0;
@@ -76,12 +76,12 @@ impl Planes {
     }
 
     /// The planes in the order in which they were found.
-    pub fn used(&self) -> &[Plane] {
+    pub fn used(&self) -> &[VisPlane] {
         &self.list[..self.used]
     }
 
     /// The newest plane with a key.
-    pub fn find(&mut self, key: PlaneKey) -> u16 {
+    pub fn find(&mut self, key: VisPlaneKey) -> u16 {
         let packed = key.packed();
         let mut index = self.buckets[bucket(packed)];
         while index != NONE {
@@ -94,10 +94,10 @@ impl Planes {
         self.start(key)
     }
 
-    fn start(&mut self, key: PlaneKey) -> u16 {
+    fn start(&mut self, key: VisPlaneKey) -> u16 {
         if self.used == self.list.len() {
             let (top, bottom) = (vec![], vec![]);
-            self.list.push(Plane { key, first: 0, end: 0, top, bottom });
+            self.list.push(VisPlane { key, first: 0, end: 0, top, bottom });
         }
         let index = self.used;
         self.used += 1;
@@ -124,7 +124,7 @@ impl Planes {
 
     /// Another plane with the key of plane `index`, which has a run of rows already where another one is needed.
     #[cold]
-    pub fn start_another(&mut self, index: u16) -> u16 {
+    pub fn split(&mut self, index: u16) -> u16 {
         self.start(self.list[usize::from(index)].key)
     }
 }
@@ -143,7 +143,7 @@ pub(crate) struct Span {
     pub end: u16,
 }
 
-impl Plane {
+impl VisPlane {
     /// Whether the plane has any column.
     pub fn is_empty(&self) -> bool {
         self.first >= self.end

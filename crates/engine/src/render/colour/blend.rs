@@ -4,7 +4,7 @@ use crate::render::colour::palette::nearest_colour;
 use crate::world::OPAQUE;
 use std::sync::OnceLock;
 
-/// Bits of a channel that tell apart what a mixture may become.
+/// Bits of a channel that distinguish what a mixture may become.
 const BITS: usize = 5;
 /// The largest channel of so many bits.
 const MOST: usize = (1 << BITS) - 1;

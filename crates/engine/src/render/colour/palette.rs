@@ -45,5 +45,5 @@ pub(crate) fn mean(palette: &[[u8; 3]; 256], indices: impl Iterator<Item = u8>) 
     if count == 0 { [128; 3] } else { sums.map(|sum| (sum / count) as u8) }
 }
 
-/// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's palette that the published engine shows.
+/// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's palette that ViZDoom shows.
 pub(crate) const SHADES: [[u8; 3]; 3] = [[171; 3], [87; 3], [255, 255, 0]];

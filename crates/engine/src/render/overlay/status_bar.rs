@@ -3,7 +3,7 @@
 
 use crate::render::buffers::frame::Frame;
 use crate::render::textures::hud::BarArt;
-use crate::render::textures::masked::MaskedPicture;
+use crate::render::textures::masked::MaskedTexture;
 use crate::render::view::tables::View;
 use crate::render::view::tables::{BAR_ART_HEIGHT, BAR_ART_WIDTH, bar_scale};
 use crate::world::{Face, Weapon, World};
@@ -154,7 +154,7 @@ impl StatusBar {
 }
 
 /// Draws a number whose last digit ends left of art column `end`.
-fn number(pixels: &mut [u8], view: &View, digits: &[Option<MaskedPicture>; 10], value: i32, end: i32, y: i32) {
+fn number(pixels: &mut [u8], view: &View, digits: &[Option<MaskedTexture>; 10], value: i32, end: i32, y: i32) {
     let width = digits[0].as_ref().map_or(0, |digit| digit.width as i32);
     let (mut rest, mut x) = (value, end);
     loop {
@@ -179,7 +179,7 @@ fn frame_column(view: &View, base: i64) -> usize {
 
 /// Draws a picture with its anchor at an art position. Each picture is placed at whole pixels by itself, and takes the texels
 /// at the left and upper edges of pixels.
-fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedPicture>, x: i32, y: i32) {
+fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedTexture>, x: i32, y: i32) {
     let Some(picture) = picture else { return };
     let (left, top) = (x - picture.offset_x, y - picture.offset_y);
     let [first, end] = [left, left + picture.width as i32].map(|art| base_column(view, art));
@@ -195,7 +195,7 @@ fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedPicture>, x: i32,
         for (row, &base) in view.bar_rows.iter().enumerate().skip(first_row) {
             let v = ((i64::from(base) - top) * v_step) >> 16;
             match texels.get(v as usize) {
-                Some(&texel) if texel & MaskedPicture::OPAQUE != 0 => pixels[row * view.width() + column] = texel as u8,
+                Some(&texel) if texel & MaskedTexture::OPAQUE != 0 => pixels[row * view.width() + column] = texel as u8,
                 Some(_) => {}
                 None => break,
             }
@@ -213,6 +213,6 @@ mod tests {
         let art = BarArt::new(&Assets::embedded());
         let single = [&art.bar, &art.arms, &art.percent, &art.dead_face];
         let many = art.big_digits.iter().chain(&art.grey_digits).chain(&art.yellow_digits).chain(&art.keys);
-        assert!(single.into_iter().chain(many).chain(art.faces.iter().flatten()).all(Option::is_some));
+        assert!(single.into_iter().chain(many).chain(art.sidedefs.iter().flatten()).all(Option::is_some));
     }
 }

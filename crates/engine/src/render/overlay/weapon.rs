@@ -4,7 +4,7 @@ use crate::render::buffers::frame::{Frame, class};
 use crate::render::colour::tint::power_shows;
 use crate::render::overlay::weapon_cache::{LayerKey, WeaponCache};
 use crate::render::patch;
-use crate::render::patch::data::{Stamp, StampColumns, TEXEL_BITS, first_row};
+use crate::render::patch::data::{Patch, PatchColumns, TEXEL_BITS, first_row};
 use crate::render::scene::prepared::Scene;
 use crate::render::view::camera::Camera;
 use crate::render::view::light::Light;
@@ -21,7 +21,7 @@ pub(crate) struct Canvas<'a> {
     pub scene: &'a Scene,
     pub view: &'a View,
     /// Scratch: the columns of the layer at hand.
-    pub columns: &'a mut StampColumns,
+    pub columns: &'a mut PatchColumns,
     pub cache: &'a mut WeaponCache,
     pub simd: Simd,
 }
@@ -69,7 +69,7 @@ impl Canvas<'_> {
         let [first, end] = [first, end].map(|column| usize::from(view.first_column[column]));
         let texel = |&column: &u32| (((u + u_step * i64::from(column)) >> TEXEL_BITS) as u32).min(picture.width - 1) as u16;
         self.columns.open(0..view.view_rows as i16, view.columns[first..end.max(first)].iter().map(texel));
-        let stamp = Stamp {
+        let stamp = Patch {
             picture,
             table: &scene.assets.light_tables[table],
             first,

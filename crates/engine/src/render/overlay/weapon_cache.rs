@@ -4,7 +4,7 @@
 use crate::math::Fixed;
 use crate::render::buffers::frame::{Frame, class};
 use crate::render::patch;
-use crate::render::patch::data::Stamp;
+use crate::render::patch::data::Patch;
 use crate::render::view::size::FrameSize;
 use crate::render::view::tables::View;
 use crate::simd::Simd;
@@ -64,7 +64,7 @@ impl WeaponCache {
     }
 
     /// Takes note of an opaque layer that is drawn: the second time running that it is drawn of its slot's, of its pixels.
-    pub fn note(&mut self, key: LayerKey, stamp: &Stamp, simd: Simd, view: &View) {
+    pub fn note(&mut self, key: LayerKey, stamp: &Patch, simd: Simd, view: &View) {
         if view.size().pixels() > MOST_PIXELS {
             return;
         }
@@ -86,7 +86,7 @@ impl LayerKey {
 
 impl DrawnLayer {
     /// What a stamp covers of an empty frame.
-    fn new(stamp: &Stamp, simd: Simd, view: &View) -> DrawnLayer {
+    fn new(stamp: &Patch, simd: Simd, view: &View) -> DrawnLayer {
         let mut frame = Frame::default();
         frame.fit(view, frame.depths);
         patch::draw::<false, true>(stamp, simd, &mut frame, &view.rows);
@@ -144,7 +144,7 @@ mod tests {
     use crate::render::buffers::request::Buffers;
     use crate::render::renderer::Renderer;
     use crate::render::scene::prepared::Scene;
-    use crate::render::scratch::Workspace;
+    use crate::render::scratch::FrameScratch;
     use crate::world::{PlayerSprite, World};
     use std::sync::Arc;
 
@@ -186,7 +186,7 @@ mod tests {
             }
         }
         assert!(shown > 300, "{shown} of 600 frames show a weapon");
-        let known = Workspace::weapons_known();
+        let known = FrameScratch::weapons_known();
         assert!(known > 20, "the pixels of {known} layers are known");
     }
 }

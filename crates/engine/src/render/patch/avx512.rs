@@ -2,28 +2,28 @@
 
 use crate::render::buffers::frame::Frame;
 use crate::render::colour::blend::Mixture;
-use crate::render::patch::data::{Covered, STAMP_BLOCK, Stamp};
+use crate::render::patch::data::{DrawnBounds, PATCH_BLOCK, Patch};
 use crate::render::textures::sprite::TEXEL_BLOCK;
 use crate::simd::lookup::avx512::{load, load_table, look_up_block, store};
 use std::arch::x86_64::*;
 use std::ops::Range;
 
-/// Widest padded row of texels: as many as a byte tells apart.
+/// Widest padded row of texels: as many as a byte distinguishes.
 pub(crate) const MOST_TEXELS: usize = 256;
 
 /// Draws some rows of a stamp; `base_rows` are the base rows of the frame's.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
 pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
-    stamp: &Stamp,
+    stamp: &Patch,
     frame: &mut Frame,
     base_rows: &[u32],
     rows: Range<usize>,
-) -> Covered {
-    let (count, table, mut covered) = (stamp.columns.count(), load_table(stamp.table), Covered::NOTHING);
-    for from in (0..count).step_by(STAMP_BLOCK) {
-        let picked = narrowed(&stamp.columns.texels[from..]);
+) -> DrawnBounds {
+    let (count, table, mut covered) = (stamp.columns.count(), load_table(stamp.table), DrawnBounds::NOTHING);
+    for from in (0..count).step_by(PATCH_BLOCK) {
+        let picked = packed(&stamp.columns.texels[from..]);
         let [tops, bottoms] = [two_vectors(&stamp.columns.tops[from..]), two_vectors(&stamp.columns.bottoms[from..])];
-        let inside = u64::MAX >> STAMP_BLOCK.saturating_sub(count - from);
+        let inside = u64::MAX >> PATCH_BLOCK.saturating_sub(count - from);
         for row in rows.clone() {
             let (texels, opaque) = stamp.picture.row(stamp.texel_row(base_rows[row]));
             let (texels, _) = texels.as_chunks::<TEXEL_BLOCK>();
@@ -69,7 +69,7 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
 #[target_feature(enable = "avx512f")]
 fn two_vectors<T>(list: &[T]) -> [__m512i; 2] {
     const { assert!(size_of::<T>() == 2) }
-    let list: &[T; STAMP_BLOCK] = list.first_chunk().expect("lists are padded");
+    let list: &[T; PATCH_BLOCK] = list.first_chunk().expect("lists are padded");
     // SAFETY: 128 bytes are readable behind the reference.
     unsafe { [_mm512_loadu_si512(list.as_ptr().cast()), _mm512_loadu_si512(list.as_ptr().add(32).cast())] }
 }
@@ -77,7 +77,7 @@ fn two_vectors<T>(list: &[T]) -> [__m512i; 2] {
 /// The lower bytes of the first 64 numbers of a list.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw")]
-fn narrowed(list: &[u16]) -> __m512i {
+fn packed(list: &[u16]) -> __m512i {
     let [low, high] = two_vectors(list);
     _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi16_epi8(low)), _mm512_cvtepi16_epi8(high), 1)
 }
@@ -121,7 +121,7 @@ fn pick_bits(row: &[u64], columns: __m512i) -> u64 {
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 fn shine_through(mixture: &Mixture, pixels: &mut [u8], mask: u64, lit: __m512i) {
     const LANES: usize = 16;
-    let mut colours = [0; STAMP_BLOCK];
+    let mut colours = [0; PATCH_BLOCK];
     store(&mut colours, lit);
     let colours = colours.as_chunks::<LANES>().0;
     for (part, colours) in colours.iter().enumerate() {

@@ -6,15 +6,15 @@ mod scalar;
 
 use crate::render::buffers::frame::Frame;
 use crate::simd::{Simd, dispatch};
-use data::{Covered, Stamp};
+use data::{DrawnBounds, Patch};
 
 /// Draws it; `base_rows` are the base rows of the frame's.
 pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
-    stamp: &Stamp,
+    stamp: &Patch,
     simd: Simd,
     frame: &mut Frame,
     base_rows: &[u32],
-) -> Covered {
+) -> DrawnBounds {
     let count = stamp.columns.count();
     let top = stamp.columns.tops[..count].iter().min().map_or(0, |&top| top.max(0) as usize);
     let bottom = stamp.columns.bottoms[..count].iter().max().map_or(0, |&bottom| bottom.max(0) as usize);
@@ -27,12 +27,12 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
 
 #[cfg(test)]
 mod tests {
-    use super::data::{StampColumns, TEXEL_BITS};
+    use super::data::{PatchColumns, TEXEL_BITS};
     use super::*;
     use crate::assets::{Assets, Image};
     use crate::math::Rng;
     use crate::render::colour::blend::Blend;
-    use crate::render::textures::sprite::SpritePicture;
+    use crate::render::textures::sprite::SpriteTexture;
     use crate::world::OPAQUE;
 
     #[test]
@@ -46,7 +46,7 @@ mod tests {
             let mut bytes = |count: usize| -> Box<[u8]> { (0..count).map(|_| rng.byte() as u8).collect() };
             let mask = (round % 4 > 0).then(|| bytes(texels).iter().map(|byte| byte & 1).collect());
             let image = Image { width, height, offset_x: 0, offset_y: 0, pixels: bytes(texels), mask };
-            let picture = SpritePicture::new(&image);
+            let picture = SpriteTexture::new(&image);
             let (frame_width, frame_rows) = (160, 100usize);
             let pixels = frame_width * frame_rows;
             let before = Frame {
@@ -58,7 +58,7 @@ mod tests {
             };
             let first = rng.below(frame_width as u32) as usize;
             let count = rng.below((frame_width - first) as u32 + 1) as usize;
-            let mut columns = StampColumns::default();
+            let mut columns = PatchColumns::default();
             columns.open(0..frame_rows as i16, (0..count).map(|i| (i * usize::from(width) / count) as u16));
             for i in 0..count {
                 columns.tops[i] = rng.between(0, 60) as i16;
@@ -69,7 +69,7 @@ mod tests {
             // A little more than nothing at row 0, as much as the step loses in all rows by rounding.
             let (v, v_step) = (frame_rows as i64, (i64::from(height) << TEXEL_BITS) / frame_rows as i64);
             let opacity = rng.below(u32::from(OPAQUE) + 1) as u8;
-            let stamp = Stamp {
+            let stamp = Patch {
                 picture: &picture,
                 table: &table,
                 first,

@@ -1,8 +1,8 @@
 //! A patch column by column.
 
 use crate::render::buffers::frame::Frame;
-use crate::render::patch::data::{Covered, Stamp};
-use crate::render::textures::masked::MaskedPicture;
+use crate::render::patch::data::{DrawnBounds, Patch};
+use crate::render::textures::masked::MaskedTexture;
 use std::ops::Range;
 
 /// More rows than these are searched for those of a column that show no air: in a learner's frame few sprites have so many.
@@ -10,12 +10,12 @@ const SEARCHED_ROWS: usize = 32;
 
 /// Draws some rows of a patch; `base_rows` are the base rows of the frame's.
 pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
-    stamp: &Stamp,
+    stamp: &Patch,
     frame: &mut Frame,
     base_rows: &[u32],
     rows: Range<usize>,
-) -> Covered {
-    let mut covered = Covered::NOTHING;
+) -> DrawnBounds {
+    let mut covered = DrawnBounds::NOTHING;
     for i in 0..stamp.columns.count() {
         let (top, bottom) = (stamp.columns.tops[i].max(0) as usize, stamp.columns.bottoms[i].max(0) as usize);
         let open = rows.start.max(top)..rows.end.min(bottom);
@@ -28,12 +28,12 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
 
 /// Draws the rows `open` of column `i`.
 fn column<const DEPTH: bool, const CLASS: bool>(
-    stamp: &Stamp,
+    stamp: &Patch,
     frame: &mut Frame,
     base_rows: &[u32],
     i: usize,
     mut open: Range<usize>,
-    covered: &mut Covered,
+    covered: &mut DrawnBounds,
 ) {
     let (x, width) = (stamp.first + i, frame.width);
     let texels = stamp.picture.column(stamp.columns.texels[i]);
@@ -44,17 +44,17 @@ fn column<const DEPTH: bool, const CLASS: bool>(
         open = open.start + before(extent.start)..open.start + before(extent.end);
     }
     let lines = frame.colour[open.start * width..].chunks_exact_mut(width).zip(&base_rows[open.clone()]);
-    // Which texels are holes cannot be foretold.
+    // Which texels are holes is unpredictable.
     match stamp.mixture {
         None => lines.for_each(|(line, &base_row)| {
             let texel = texels[stamp.texel_row(base_row)];
             let lit = stamp.table[usize::from(texel as u8)];
-            line[x] = if texel & MaskedPicture::OPAQUE != 0 { lit } else { line[x] };
+            line[x] = if texel & MaskedTexture::OPAQUE != 0 { lit } else { line[x] };
         }),
         Some(mixture) => lines.for_each(|(line, &base_row)| {
             let texel = texels[stamp.texel_row(base_row)];
             let lit = mixture.over(stamp.table[usize::from(texel as u8)], line[x]);
-            line[x] = if texel & MaskedPicture::OPAQUE != 0 { lit } else { line[x] };
+            line[x] = if texel & MaskedTexture::OPAQUE != 0 { lit } else { line[x] };
         }),
     }
     if !(DEPTH || CLASS) {
@@ -62,7 +62,7 @@ fn column<const DEPTH: bool, const CLASS: bool>(
     }
     let (mut first, mut end) = (usize::MAX, 0);
     for row in open {
-        let (opaque, at) = (texels[stamp.texel_row(base_rows[row])] & MaskedPicture::OPAQUE != 0, row * width + x);
+        let (opaque, at) = (texels[stamp.texel_row(base_rows[row])] & MaskedTexture::OPAQUE != 0, row * width + x);
         if DEPTH {
             let pixel = &mut frame.depth[at];
             *pixel = if opaque { stamp.depth } else { *pixel };

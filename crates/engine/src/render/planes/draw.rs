@@ -4,7 +4,7 @@ use crate::render::buffers::frame::Frame;
 use crate::render::buffers::visplane::Span;
 use crate::render::planes::row;
 use crate::render::planes::shader::PlaneShader;
-use crate::render::textures::flat::FlatPicture;
+use crate::render::textures::flat::FlatTexture;
 use crate::simd::{Simd, dispatch};
 
 /// Draws runs of pixels.
@@ -12,12 +12,12 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
     shader: &PlaneShader,
     simd: Simd,
     frame: &mut Frame,
-    flat: &FlatPicture,
+    flat: &FlatTexture,
     spans: &[Span],
 ) {
     match flat {
-        FlatPicture::Small(texels) => draw_from::<DEPTH, CLASS, 6, { 64 * 64 }>(shader, simd, frame, texels, spans),
-        FlatPicture::Large(texels) => draw_from::<DEPTH, CLASS, 7, { 128 * 128 }>(shader, simd, frame, texels, spans),
+        FlatTexture::Small(texels) => draw_from::<DEPTH, CLASS, 6, { 64 * 64 }>(shader, simd, frame, texels, spans),
+        FlatTexture::Large(texels) => draw_from::<DEPTH, CLASS, 7, { 128 * 128 }>(shader, simd, frame, texels, spans),
     }
 }
 
@@ -53,7 +53,7 @@ fn draw_scalar<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXE
             shader.view.chunk_stride,
             fetch,
         );
-        shader.tell::<DEPTH, CLASS>(frame, distance, start + first..start + end);
+        shader.write::<DEPTH, CLASS>(frame, distance, start + first..start + end);
     }
 }
 
@@ -73,6 +73,6 @@ fn draw_avx2<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS
         let columns = shader.view.columns[first..].first_chunk().expect("the list is padded");
         let walk = shader.walk::<BITS>(distance);
         row::avx2::draw::<BITS, TEXELS>(&walk, pixels, end - first, columns, shader.view.chunk_stride, (texels, table));
-        shader.tell::<DEPTH, CLASS>(frame, distance, start + first..start + end);
+        shader.write::<DEPTH, CLASS>(frame, distance, start + first..start + end);
     }
 }

@@ -1,10 +1,10 @@
 //! What the rows of a floor or ceiling have in common: its shader.
 
 use crate::render::buffers::frame::{Frame, class};
-use crate::render::buffers::visplane::PlaneKey;
+use crate::render::buffers::visplane::VisPlaneKey;
 use crate::render::planes::row::data::RowWalk;
 use crate::render::view::camera::Camera;
-use crate::render::view::horizon::RowSlopes;
+use crate::render::view::horizon::PlaneRows;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::tables::View;
 use std::ops::Range;
@@ -16,7 +16,7 @@ pub(crate) struct PlaneShader<'a> {
     pub tables: &'a [[u8; 256]; 32],
     /// Distance of the plane from the eye's height, 16.16, positive.
     pub height: i64,
-    pub slopes: &'a RowSlopes,
+    pub slopes: &'a PlaneRows,
     pub light: Light,
     /// [`ONE_TABLE_DISTANCE`] over the distance in the first row from the horizon, 32 fractional bits.
     pub nearness: i64,
@@ -28,9 +28,9 @@ impl<'a> PlaneShader<'a> {
     pub fn new(
         camera: &'a Camera,
         view: &'a View,
-        slopes: &'a RowSlopes,
+        slopes: &'a PlaneRows,
         tables: &'a [[u8; 256]; 32],
-        key: PlaneKey,
+        key: VisPlaneKey,
         square: bool,
     ) -> PlaneShader<'a> {
         let above = i64::from(key.height.0) > camera.z;
@@ -63,7 +63,7 @@ impl<'a> PlaneShader<'a> {
     }
 
     #[inline(always)]
-    pub fn tell<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, distance: i64, pixels: Range<usize>) {
+    pub fn write<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, distance: i64, pixels: Range<usize>) {
         if DEPTH {
             let depth = frame.depths.plane(distance);
             frame.depth[pixels.clone()].fill(depth);

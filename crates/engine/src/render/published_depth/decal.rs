@@ -1,27 +1,27 @@
-//! The depth of soot as the published engine tells it (`docs/results/pixels.md`).
+//! The depth of soot as ViZDoom writes it (`docs/results/pixels.md`).
 //!
-//! It draws four columns at once, and none of what draws soot tells a depth of its own: all is told what was told last, at first the depth
-//! of the wall's last column. Only a column of a four that is drawn by itself leaves another one, for the fours to come: that of
+//! It draws four columns at once, and none of what draws soot writes a depth of its own: all is written what was written last, at first the depth
+//! of the wall's last column. Only a column of a four that is drawn by itself leaves another one, for the quads to come: that of
 //! the column as far into the last four of the wall.
 
-use crate::render::published_depth::quads::FourPieces;
+use crate::render::published_depth::quads::QuadPieces;
 use std::ops::Range;
 
-/// What is told of the soot on a wall.
+/// What is written of the soot on a wall.
 #[derive(Debug, Default)]
-pub(crate) struct SootDepth {
-    told: u8,
-    /// Depths that the columns of the wall's last four leave; none if there is no whole one.
-    last_four: Option<[u8; 4]>,
+pub(crate) struct DecalDepth {
+    written: u8,
+    /// DepthEncoding that the columns of the wall's last four leave; none if there is no whole one.
+    last_quad: Option<[u8; 4]>,
     /// The first column of the four at hand.
     from: Option<usize>,
-    pieces: FourPieces,
+    pieces: QuadPieces,
 }
 
-impl SootDepth {
-    /// Begins a wall, of whose last column `told` was told.
-    pub fn begin(&mut self, told: u8, last_four: Option<[u8; 4]>) {
-        (self.told, self.last_four) = (told, last_four);
+impl DecalDepth {
+    /// Begins a wall, of whose last column `written` was written.
+    pub fn begin(&mut self, written: u8, last_quad: Option<[u8; 4]>) {
+        (self.written, self.last_quad) = (written, last_quad);
     }
 
     /// The depth of a column of a mark that covers the columns `mark`, which come in their order.
@@ -32,7 +32,7 @@ impl SootDepth {
             self.end();
             self.from = four;
         }
-        self.told
+        self.written
     }
 
     /// Notes a run of rows of the column at hand.
@@ -48,8 +48,8 @@ impl SootDepth {
             let mut alone = None;
             self.pieces.draw(|column, _| alone = Some(column));
             self.pieces.clear();
-            if let (Some(column), Some(last_four)) = (alone, self.last_four) {
-                self.told = last_four[column];
+            if let (Some(column), Some(last_quad)) = (alone, self.last_quad) {
+                self.written = last_quad[column];
             }
         }
     }
@@ -59,32 +59,32 @@ impl SootDepth {
 mod tests {
     use super::*;
 
-    /// What is told of the columns of a mark with a run of rows each.
-    fn told(first: usize, rows: &[Range<usize>], last_four: Option<[u8; 4]>) -> Vec<u8> {
-        let mut depth = SootDepth::default();
-        depth.begin(9, last_four);
+    /// What is written of the columns of a mark with a run of rows each.
+    fn written(first: usize, rows: &[Range<usize>], last_quad: Option<[u8; 4]>) -> Vec<u8> {
+        let mut depth = DecalDepth::default();
+        depth.begin(9, last_quad);
         let mark = first..first + rows.len();
-        let told = mark.clone().zip(rows).map(|(x, rows)| {
-            let told = depth.column(x, &mark);
+        let written = mark.clone().zip(rows).map(|(x, rows)| {
+            let written = depth.column(x, &mark);
             depth.add(x, rows);
-            told
+            written
         });
-        told.collect()
+        written.collect()
     }
 
     #[test]
     fn fours_without_a_column_by_itself_go_on_as_before() {
-        assert_eq!(told(4, &[const { 2..8 }; 9], Some([1, 2, 3, 4])), [9; 9]);
-        assert_eq!(told(3, &[const { 0..0 }; 12], Some([1, 2, 3, 4])), [9; 12]);
+        assert_eq!(written(4, &[const { 2..8 }; 9], Some([1, 2, 3, 4])), [9; 9]);
+        assert_eq!(written(3, &[const { 0..0 }; 12], Some([1, 2, 3, 4])), [9; 12]);
     }
 
     #[test]
     fn the_last_column_by_itself_decides_about_what_comes_after_its_four() {
         // Column 6 begins a row early, column 5 ends a row late: that is drawn after what all share.
         let rows = [2..8, 2..9, 1..8, 2..8, 2..8, 2..8, 2..8, 2..8, 3..7];
-        assert_eq!(told(4, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 2, 2, 2, 2, 2]);
+        assert_eq!(written(4, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 2, 2, 2, 2, 2]);
         // Before the first four and after the last one columns are drawn one by one, and leave nothing: now column 4 begins early.
-        assert_eq!(told(2, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 9, 9, 1, 1, 1]);
-        assert_eq!(told(4, &rows, None), [9; 9]);
+        assert_eq!(written(2, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 9, 9, 1, 1, 1]);
+        assert_eq!(written(4, &rows, None), [9; 9]);
     }
 }

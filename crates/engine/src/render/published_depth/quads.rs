@@ -1,4 +1,4 @@
-//! Columns that the published engine draws four at once, one whose number divides by four and the three after it, as far as they share
+//! Columns that ViZDoom draws four at once, one whose number divides by four and the three after it, as far as they share
 //! rows. What its depth has of that shows with `published_depth` (`docs/results/pixels.md`).
 
 use crate::render::buffers::frame::Columns;
@@ -15,8 +15,8 @@ pub(crate) fn draw_below(columns: &mut Columns, first: usize, tops: &[i16], bott
         let all_shown = tops.iter().zip(bottoms).all(|(top, bottom)| top < bottom);
         if all_shown && tops.iter().all(|&top| top < end) {
             for x in from..from + 4 {
-                if let Some(told) = columns.depth_of(x).get_mut(end as usize) {
-                    *told = depth(x);
+                if let Some(written) = columns.depth_of(x).get_mut(end as usize) {
+                    *written = depth(x);
                 }
             }
         }
@@ -28,9 +28,9 @@ pub(crate) type Piece = [u16; 2];
 
 /// The parts of four columns, from the upper to the lower.
 #[derive(Debug, Default)]
-pub(crate) struct FourPieces([Vec<Piece>; 4]);
+pub(crate) struct QuadPieces([Vec<Piece>; 4]);
 
-impl FourPieces {
+impl QuadPieces {
     /// Empties them.
     pub fn clear(&mut self) {
         self.0.iter_mut().for_each(Vec::clear);
@@ -41,7 +41,7 @@ impl FourPieces {
         &mut self.0[column]
     }
 
-    /// Draws them: gives column and rows of what is drawn by itself to `alone`, in the order in which it is, and tells the column that is
+    /// Draws them: gives column and rows of what is drawn by itself to `alone`, in the order in which it is, and writes the column that is
     /// drawn last. Rows that all four have in common are drawn together. What is left is not to be drawn again.
     pub fn draw(&mut self, mut alone: impl FnMut(usize, Piece)) -> Option<usize> {
         let (mut done, mut last_column) = ([0; 4], None);
@@ -86,8 +86,8 @@ mod tests {
         let mut columns = Columns::default();
         columns.fit(24, 40);
         draw_below(&mut columns, first, tops, bottoms, |x| x as u8 + 1);
-        let told = |x: usize| columns.clone().depth_of(x).iter().position(|&depth| depth == x as u8 + 1).map(|row| (x, row));
-        (0..24).filter_map(told).collect()
+        let written = |x: usize| columns.clone().depth_of(x).iter().position(|&depth| depth == x as u8 + 1).map(|row| (x, row));
+        (0..24).filter_map(written).collect()
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::render::colour::palette::Colours;
 use crate::render::colour::palette::{self, mean, nearest_colour};
 use crate::render::textures::hud::BarArt;
 use crate::render::textures::set::Textures;
-use crate::render::textures::sprite::SpritePicture;
+use crate::render::textures::sprite::SpriteTexture;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -31,11 +31,11 @@ pub(crate) struct SceneSeg {
     pub normal: [i32; 2],
     /// Ends, left to right as seen from its sector; 16.16.
     pub ends: [[i32; 2]; 2],
-    /// Sector that it faces.
+    /// Sector that it sidedefs.
     pub front: u32,
     /// Sector behind, or [`NO_SECTOR`].
     pub back: u32,
-    /// Index into [`Scene::faces`].
+    /// Index into [`Scene::sidedefs`].
     pub face: u32,
     /// It has a masked texture in its opening.
     pub masked: bool,
@@ -53,7 +53,7 @@ impl SceneSeg {
 
 /// One side of a line: how its textures lie.
 #[derive(Clone, Debug)]
-pub(crate) struct Face {
+pub(crate) struct Sidedef {
     /// Ends of the line, left to right as seen from this side; 16.16.
     pub ends: [[i32; 2]; 2],
     /// Texels of the line.
@@ -76,7 +76,7 @@ pub(crate) struct Face {
     pub contrast: i32,
 }
 
-impl Face {
+impl Sidedef {
     /// Position along its line of a point on it, 16.16 texels from the line's start.
     pub fn position(&self, [x, y]: [Fixed; 2]) -> i64 {
         let [[from_x, from_y], [to_x, to_y]] = self.ends.map(|end| end.map(i64::from));
@@ -90,8 +90,8 @@ impl Face {
     }
 
     /// One without textures.
-    pub fn bare() -> Face {
-        Face {
+    pub fn bare() -> Sidedef {
+        Sidedef {
             ends: [[0; 2]; 2],
             texels: 1,
             u_offset: 0,
@@ -115,7 +115,7 @@ pub struct Scene {
     /// The palette without a tint.
     pub(crate) colours: Colours,
     pub(crate) segs: Vec<SceneSeg>,
-    pub(crate) faces: Vec<Face>,
+    pub(crate) sidedefs: Vec<Sidedef>,
     pub(crate) nodes: Vec<Node>,
     /// First seg, one past the last, sector.
     pub(crate) subsectors: Vec<[u32; 3]>,
@@ -128,7 +128,7 @@ pub struct Scene {
     /// Index of the sky's picture in `textures.walls`.
     pub(crate) sky: usize,
     /// The images that sprites use, by index into `Assets::images`.
-    pub(crate) sprite_pictures: Vec<Option<SpritePicture>>,
+    pub(crate) sprite_pictures: Vec<Option<SpriteTexture>>,
     /// No picture of these reaches farther to a side of its anchor, mirrored or not; texels.
     pub(crate) sprite_reach: i64,
     /// Index of the solid picture that fills what has no texture, in `textures.walls`.
@@ -161,7 +161,7 @@ impl Scene {
         textures.add(&assets, no_entry, missing);
 
         let sprite_pictures = sprite_pictures(&assets);
-        let mut faces = vec![None; map.sides.len()];
+        let mut sidedefs = vec![None; map.sides.len()];
         for line in &map.lines {
             let (dx, dy) = (i64::from(line.dx.0), i64::from(line.dy.0));
             let contrast = if dx == 0 {
@@ -176,7 +176,7 @@ impl Scene {
             let sides = [Some((line.front, ends)), line.back.map(|back| (back, [ends[1], ends[0]]))];
             for (id, ends) in sides.into_iter().flatten() {
                 let side: &Side = &map.sides[id.0 as usize];
-                faces[id.0 as usize] = Some(Face {
+                sidedefs[id.0 as usize] = Some(Sidedef {
                     ends,
                     texels,
                     u_offset: i64::from(side.offset_x.0),
@@ -195,14 +195,14 @@ impl Scene {
             serial: MADE.fetch_add(1, Ordering::Relaxed),
             segs: map.segs.iter().map(|seg| scene_seg(map, seg)).collect(),
             // A side that no line uses is never drawn.
-            faces: faces.into_iter().map(|face| face.unwrap_or_else(Face::bare)).collect(),
+            sidedefs: sidedefs.into_iter().map(|face| face.unwrap_or_else(Sidedef::bare)).collect(),
             nodes: map.nodes.clone(),
             subsectors: map.subsectors.iter().map(|s| [s.first_seg, s.first_seg + s.seg_count, s.sector.0]).collect(),
             most_segs: map.subsectors.iter().map(|subsector| subsector.seg_count as usize).max().unwrap_or(0),
             sector_count: map.sectors.len(),
             sky_flat: map.textures.iter().position(|&name| name == SKY_FLAT).map(|i| TextureId(i as u16)),
             sky,
-            sprite_reach: sprite_pictures.iter().flatten().map(SpritePicture::reach).max().unwrap_or(0),
+            sprite_reach: sprite_pictures.iter().flatten().map(SpriteTexture::reach).max().unwrap_or(0),
             sprite_pictures,
             textures,
             missing_picture,
@@ -278,11 +278,11 @@ fn texels_along(dx: i64, dy: i64) -> (i64, [i64; 2]) {
     (texels, [dx, dy].map(|d| (i128::from(d) * stretched / square as i128) as i64))
 }
 
-fn sprite_pictures(assets: &Assets) -> Vec<Option<SpritePicture>> {
+fn sprite_pictures(assets: &Assets) -> Vec<Option<SpriteTexture>> {
     let mut pictures = vec![None; assets.images.len()];
     for index in assets.sprites.iter().flat_map(|sprite| &sprite.frames).flat_map(|frame| frame.images) {
         if let Some(image) = assets.images.get(index as usize) {
-            pictures[index as usize] = Some(SpritePicture::new(image));
+            pictures[index as usize] = Some(SpriteTexture::new(image));
         }
     }
     pictures

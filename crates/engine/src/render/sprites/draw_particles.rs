@@ -1,18 +1,18 @@
 //! The squares of trails, drawn between the sprites: the farthest first.
 
-use crate::render::sprites::particles::{Spot, inverse};
-use crate::render::sprites::pass::Masked;
+use crate::render::sprites::particles::{Particle, inverse};
+use crate::render::sprites::pass::SpritePass;
 
-impl Masked<'_> {
-    /// Finds the trails of which silhouettes may hide something: nothing is before most.
-    pub fn meet_trails(&mut self) {
+impl SpritePass<'_> {
+    /// Finds the trails of which drawsegs may hide something: nothing is before most.
+    pub fn find_hidden_trails(&mut self) {
         for seen in self.trails.trails.iter_mut().filter(|seen| seen.distance > 0) {
             let [first, end] = seen.columns.map(usize::from);
-            seen.hidden = self.silhouettes.meet(self.simd, first, end, inverse(seen.distance)) > 0;
+            seen.hidden = self.drawsegs.meet(self.simd, first, end, inverse(seen.distance)) > 0;
         }
     }
 
-    /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet. Depth and labels tell nothing of them.
+    /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet. Depth and labels say nothing of them.
     pub fn squares_beyond<const DEPTH: bool, const CLASS: bool>(&mut self, distance: i64) {
         while let Some(spot) = self.trails.spots.pop_if(|spot| spot.distance > distance) {
             self.square::<DEPTH, CLASS>(&spot);
@@ -20,13 +20,13 @@ impl Masked<'_> {
     }
 
     /// Mixes the colour of a spot into what is seen of each of its columns.
-    fn square<const DEPTH: bool, const CLASS: bool>(&mut self, spot: &Spot) {
+    fn square<const DEPTH: bool, const CLASS: bool>(&mut self, spot: &Particle) {
         let (width, hidden) = (self.frame.width, self.trails.trails[usize::from(spot.trail)].hidden);
         let first = usize::from(spot.columns[0]);
         if hidden {
             let extent = spot.extent();
             self.columns.open(0..self.view.view_rows as i16, (first..extent.end).map(|_| 0));
-            self.narrow::<DEPTH, CLASS>(&extent);
+            self.occlude::<DEPTH, CLASS>(&extent);
         }
         for column in first..usize::from(spot.columns[1]) {
             let [mut top, mut bottom] = spot.rows;

@@ -1,32 +1,32 @@
-//! The textures in openings, which have holes: drawn column by column, where nothing nearer hides them.
+//! The textures in clip, which have holes: drawn column by column, where nothing nearer hides them.
 
 use crate::map::SectorId;
 use crate::math::Fixed;
-use crate::render::buffers::drawsegs::list::Silhouette;
+use crate::render::buffers::drawsegs::list::DrawSeg;
 use crate::render::buffers::frame::{Frame, class};
-use crate::render::sprites::midcolumn::{self, data::MaskedColumn};
-use crate::render::sprites::pass::Masked;
-use crate::render::sprites::posts::{Hung, Scales};
-use crate::render::textures::local_palette::OwnColours;
-use crate::render::textures::midtexture::Fence;
+use crate::render::sprites::midcolumn::{self, data::MidColumn};
+use crate::render::sprites::pass::SpritePass;
+use crate::render::sprites::posts::{PostProjection, PostScale};
+use crate::render::textures::local_palette::LocalPalette;
+use crate::render::textures::midtexture::Midtexture;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::{Edge, INVERSE_BITS, TextureLine};
-use crate::render::view::view_space::TurnedLine;
+use crate::render::view::view_space::ViewLine;
 use std::ops::Range;
 
 /// A masked texture as a frame sees it.
 struct SeenTexture<'a> {
-    silhouette: &'a Silhouette,
-    fence: &'a Fence,
-    own: &'a OwnColours,
+    drawseg: &'a DrawSeg,
+    fence: &'a Midtexture,
+    own: &'a LocalPalette,
     /// Where what is within the opening begins and ends.
     edges: [Edge; 2],
     /// Height of the top row relative to the eye, 16.16.
     hung_from: i64,
     along: TextureLine,
     light: Light,
-    scales: Scales,
-    /// The base columns that the published engine draws four at once; the depth of the others it tells as a sprite's.
+    scales: PostScale,
+    /// The base columns that ViZDoom draws four at once; the depth of the others it writes as a sprite's.
     fours: Range<u32>,
 }
 
@@ -39,42 +39,42 @@ struct Place {
     in_four: Option<usize>,
 }
 
-impl Masked<'_> {
+impl SpritePass<'_> {
     /// Draws the frame columns `first..end` of the masked texture of an opening, and marks them as drawn.
-    pub fn texture<const DEPTH: bool, const CLASS: bool>(&mut self, silhouette: &Silhouette, first: usize, end: usize) {
-        let Some(seen) = self.seen_texture(silhouette, first, end) else { return };
-        let by_fours = DEPTH && self.frame.depths.by_fours();
+    pub fn texture<const DEPTH: bool, const CLASS: bool>(&mut self, drawseg: &DrawSeg, first: usize, end: usize) {
+        let Some(seen) = self.seen_texture(drawseg, first, end) else { return };
+        let by_quads = DEPTH && self.frame.depths.by_quads();
         for x in first..end {
-            let row_index = silhouette.rows + x - silhouette.first;
-            let drawn = std::mem::replace(&mut self.silhouettes.drawn[row_index], true);
+            let row_index = drawseg.rows + x - drawseg.first;
+            let drawn = std::mem::replace(&mut self.drawsegs.drawn[row_index], true);
             let in_four = if DEPTH { self.in_four(&seen, x) } else { None };
-            if by_fours && in_four == Some(0) {
-                self.fence_depth.begin();
+            if by_quads && in_four == Some(0) {
+                self.midtexture_depth.begin();
             }
-            let open = [self.silhouettes.tops[row_index], self.silhouettes.bottoms[row_index]].map(i32::from);
+            let open = [self.drawsegs.tops[row_index], self.drawsegs.bottoms[row_index]].map(i32::from);
             let [top, bottom] = seen.edges.map(|edge| edge.row(&self.view.first_row, self.view.columns[x]));
             let rows = top.max(open[0])..bottom.min(open[1]);
             if !drawn && !rows.is_empty() {
                 let rows = rows.start as usize..rows.end as usize;
                 self.texture_column::<DEPTH, CLASS>(&seen, Place { x, rows, in_four });
             }
-            if by_fours && in_four == Some(3) {
+            if by_quads && in_four == Some(3) {
                 let Frame { width, depth, .. } = &mut *self.frame;
-                self.fence_depth.end(|column, row, told| depth[usize::from(row) * *width + x - 3 + column] = told);
+                self.midtexture_depth.end(|column, row, written| depth[usize::from(row) * *width + x - 3 + column] = written);
             }
         }
     }
 
     /// What the columns `first..end` have in common, if there is a texture.
-    fn seen_texture<'s>(&self, silhouette: &'s Silhouette, first: usize, end: usize) -> Option<SeenTexture<'s>>
+    fn seen_texture<'s>(&self, drawseg: &'s DrawSeg, first: usize, end: usize) -> Option<SeenTexture<'s>>
     where
         Self: 's,
     {
         let (scene, camera, view) = (self.scene, self.camera, self.view);
-        let seg = &scene.segs[silhouette.seg as usize];
-        let face = &scene.faces[seg.face as usize];
+        let seg = &scene.segs[drawseg.seg as usize];
+        let face = &scene.sidedefs[seg.face as usize];
         let picture = self.pictures[usize::from(face.middle?.0)] as usize;
-        let fence = &scene.textures.fences[picture];
+        let fence = &scene.textures.midtextures[picture];
         let (front, back) = (self.world.sector(SectorId(seg.front)), self.world.sector(SectorId(seg.back)));
         let (floor, ceiling) = (front.floor.max(back.floor), front.ceiling.min(back.ceiling));
         let height = Fixed::from_int(fence.picture.height as i32);
@@ -82,14 +82,14 @@ impl Masked<'_> {
         let top = hung_from.min(i64::from(ceiling.0));
         let bottom = (hung_from - i64::from(height.0)).max(i64::from(floor.0));
         Some(SeenTexture {
-            silhouette,
+            drawseg,
             fence,
             own: &scene.textures.own[picture],
-            edges: [top, bottom].map(|height| silhouette.ends.edge(camera, view, height - camera.z)),
+            edges: [top, bottom].map(|height| drawseg.ends.edge(camera, view, height - camera.z)),
             hung_from: hung_from - camera.z,
-            along: TurnedLine::of_face(camera, face).texture(view, face, silhouette.base_ends),
+            along: ViewLine::of_sidedef(camera, face).texture(view, face, drawseg.base_ends),
             light: Light::new(camera, i32::from(front.light) + face.contrast),
-            scales: Scales::new(view, &silhouette.line, silhouette.base_ends),
+            scales: PostScale::new(view, &drawseg.line, drawseg.base_ends),
             fours: (view.columns[first] + 3) & !3..(view.columns[end - 1] + 1) & !3,
         })
     }
@@ -100,52 +100,52 @@ impl Masked<'_> {
         let place = (column & 3) as usize;
         // Nor are they drawn at once where nearer walls without an opening hide one of them.
         let is_whole = || {
-            let four = seen.silhouette.rows + x - seen.silhouette.first - place;
-            self.silhouettes.bottoms[four..four + 4].iter().all(|&bottom| bottom > 0)
+            let four = seen.drawseg.rows + x - seen.drawseg.first - place;
+            self.drawsegs.bottoms[four..four + 4].iter().all(|&bottom| bottom > 0)
         };
-        (seen.fours.contains(&column) && (!self.frame.depths.by_fours() || is_whole())).then_some(place)
+        (seen.fours.contains(&column) && (!self.frame.depths.by_quads() || is_whole())).then_some(place)
     }
 
     #[inline]
     fn texture_column<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenTexture, place: Place) {
         let Place { x, rows, in_four } = place;
-        let (silhouette, fence, base_column) = (seen.silhouette, seen.fence, i64::from(self.view.columns[x]));
-        let distance = silhouette.line.distance_at(base_column);
-        let nearness = (silhouette.ends.inverse_at(base_column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+        let (drawseg, fence, base_column) = (seen.drawseg, seen.fence, i64::from(self.view.columns[x]));
+        let distance = drawseg.line.distance_at(base_column);
+        let nearness = (drawseg.ends.inverse_at(base_column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
         let u = seen.along.at(base_column, distance) >> 16;
         let u = u.rem_euclid(i64::from(fence.picture.width)) as u32;
         let (texels, runs) = fence.column(u);
         let table = seen.light.table(nearness);
         let step = (distance * self.view.inverse_focal_y) >> 16;
-        let shown = MaskedColumn {
+        let shown = MidColumn {
             texels,
             table: &self.scene.assets.light_tables[table],
-            own_texels: &seen.own.texels[(u * fence.picture.height) as usize..][..texels.len()],
+            local_texels: &seen.own.texels[(u * fence.picture.height) as usize..][..texels.len()],
             lit: seen.own.lit(table),
             at: (seen.hung_from << 16) - self.camera.to_horizon(step),
             step,
             runs,
-            hung: Hung { horizon: self.camera.horizon, eye: seen.hung_from, scale: seen.scales.at(base_column) },
+            hung: PostProjection { horizon: self.camera.horizon, eye: seen.hung_from, scale: seen.scales.at(base_column) },
         };
         let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
-        let told = match in_four {
+        let written = match in_four {
             Some(_) => depths.wall(distance, fence.picture.height),
             None => depths.sprite(distance, self.view.focal_y),
         };
         if DEPTH && in_four.is_none() {
-            self.fence_depth.tell(told);
+            self.midtexture_depth.note(written);
         }
         midcolumn::draw(&shown, self.simd, &self.view.rows, rows, |row, lit| {
             let pixel = row * *width + x;
             colour[pixel] = lit;
             if DEPTH {
-                depth[pixel] = told;
+                depth[pixel] = written;
             }
             if DEPTH
-                && depths.by_fours()
+                && depths.by_quads()
                 && let Some(column) = in_four
             {
-                self.fence_depth.add(column, row as u16, shown.run_at(self.view.rows[row]), told);
+                self.midtexture_depth.add(column, row as u16, shown.run_at(self.view.rows[row]), written);
             }
             if CLASS {
                 classes[pixel] = class::WALL;

@@ -21,28 +21,28 @@ const ONE_TABLE: i64 = 2 * ONE_TABLE_DISTANCE;
 
 /// The squares of a frame.
 #[derive(Debug, Default)]
-pub(crate) struct SeenTrails {
+pub(crate) struct Particles {
     /// What the squares that are still to be drawn cover, the nearest first.
-    pub spots: Vec<Spot>,
-    pub trails: Vec<SeenTrail>,
+    pub spots: Vec<Particle>,
+    pub trails: Vec<ParticleTrail>,
     /// Scratch.
     left: Vec<Shed>,
 }
 
 /// A trail's squares together.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SeenTrail {
+pub(crate) struct ParticleTrail {
     /// Of their columns, the first and one past the last.
     pub columns: [u16; 2],
     /// Of the farthest.
     pub distance: i64,
-    /// Silhouettes may hide some of them.
+    /// DrawSegs may hide some of them.
     pub hidden: bool,
 }
 
 /// What a square covers of the frame.
 #[derive(Clone, Copy, Default, Debug)]
-pub(crate) struct Spot {
+pub(crate) struct Particle {
     pub distance: i64,
     pub columns: [u16; 2],
     pub rows: [i16; 2],
@@ -53,7 +53,7 @@ pub(crate) struct Spot {
     pub opacity: u8,
 }
 
-impl SeenTrails {
+impl Particles {
     /// Works out what squares cover if nothing hides them.
     pub fn collect(&mut self, scene: &Scene, view: &View, camera: &Camera, world: &World) {
         self.trails.clear();
@@ -64,24 +64,24 @@ impl SeenTrails {
             trail.list(world.tic, &mut self.left);
             let first = self.spots.len();
             let (mut end, number) = (first, self.trails.len() as u16);
-            self.spots.resize(first + self.left.len(), Spot::default());
+            self.spots.resize(first + self.left.len(), Particle::default());
             for shed in &self.left {
-                // Which are in view cannot be foretold: all are written, and those counted.
+                // Which are in view is unpredictable: all are written, and those counted.
                 let (spot, is_seen) = spot(scene, view, camera, light, number, &trail.square(shed, world.tic));
                 self.spots[end] = spot;
                 end += usize::from(is_seen);
             }
             self.spots.truncate(end);
-            self.trails.push(SeenTrail::of(&self.spots[first..]));
+            self.trails.push(ParticleTrail::of(&self.spots[first..]));
         }
         self.spots.sort_unstable_by_key(|spot| spot.distance);
     }
 }
 
-impl SeenTrail {
-    fn of(spots: &[Spot]) -> SeenTrail {
-        let nothing = SeenTrail { columns: [u16::MAX, 0], distance: 0, hidden: true };
-        spots.iter().fold(nothing, |all, spot| SeenTrail {
+impl ParticleTrail {
+    fn of(spots: &[Particle]) -> ParticleTrail {
+        let nothing = ParticleTrail { columns: [u16::MAX, 0], distance: 0, hidden: true };
+        spots.iter().fold(nothing, |all, spot| ParticleTrail {
             columns: [all.columns[0].min(spot.columns[0]), all.columns[1].max(spot.columns[1])],
             distance: all.distance.max(spot.distance),
             ..all
@@ -94,7 +94,7 @@ pub(crate) fn inverse(distance: i64) -> i64 {
     (1 << (INVERSE_BITS + 16)) / distance
 }
 
-impl Spot {
+impl Particle {
     /// What decides what hides it.
     pub fn extent(&self) -> Extent {
         let ([x, y, height], [first, end]) = (self.place, self.columns.map(usize::from));
@@ -105,12 +105,12 @@ impl Spot {
 /// What a square covers if nothing hides it, and whether that is anything: whole columns from that of its left edge to that before
 /// its right one, and whole rows, that of its lower edge too.
 #[inline(always)]
-fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, trail: u16, square: &Square) -> (Spot, bool) {
+fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, trail: u16, square: &Square) -> (Particle, bool) {
     let [left, right] = camera.edges(i64::from(square.place[0].0), i64::from(square.place[1].0));
     let (away, across) = ((left + right) >> 1, (left - right) >> 1);
     let distance = away.max(NEAREST);
     let beside = across.abs() > distance + i64::from(square.half.0);
-    // The published engine takes distances to 4096ths of a unit, and cuts their inverse to 65536ths: columns and rows of a unit follow
+    // ViZDoom takes distances to 4096ths of a unit, and cuts their inverse to 65536ths: columns and rows of a unit follow
     // from that, so that what is far away is drawn nearer to the middle.
     let inverse = INVERSE_UNIT / (distance >> FINE);
     let width = i64::from(view.base_width);
@@ -126,7 +126,7 @@ fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, trail: u16, s
     let is_seen = (away >= NEAREST) & !beside & (columns[0] < columns[1]) & (rows[0] < rows[1]);
     let table = light.table(ONE_TABLE * inverse);
     let colour = scene.assets.light_tables[table][usize::from(scene.shades[square.shade as usize])];
-    let spot = Spot { distance, columns, rows, place: square.place, trail, colour, opacity: square.opacity };
+    let spot = Particle { distance, columns, rows, place: square.place, trail, colour, opacity: square.opacity };
     (spot, is_seen)
 }
 
@@ -147,7 +147,7 @@ mod tests {
 
     const SIZES: [FrameSize; 3] = [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 640, height: 480 }];
 
-    /// A room whose eastern wall the player faces, and a trail northwards at a distance; its squares are of all ages.
+    /// A room whose eastern wall the player sidedefs, and a trail northwards at a distance; its squares are of all ages.
     fn world(east: i32) -> World {
         let mut world = World::new(stone_room(255, [-64, -512, 256, 512], &[[0.0, 0.0]]), 1);
         let id = world.players[0].actor;
@@ -198,7 +198,7 @@ mod tests {
             let mean = 60.0 * side * (1.2 * side + 1.0) * if is_reduced { 0.8 * 0.6 } else { 1.0 };
             let expected = (mean / 2.0) as usize..(mean * 2.0) as usize;
             assert!(expected.contains(&pixels), "{pixels} pixels, not {expected:?}, at {size:?}");
-            assert_eq!(plain.rest, bare.rest, "depth and labels tell nothing of squares");
+            assert_eq!(plain.rest, bare.rest, "depth and labels say nothing of squares");
             for simd in Simd::available() {
                 assert!(shoot(&world, size, simd).rgb == plain.rgb, "{simd:?}");
             }
@@ -238,7 +238,7 @@ mod tests {
             world.trails.push(Trail::new(world.players[0].actor, place, velocity, 40, sector, Chance::Own(5)));
         }
         let scene = Scene::new(&world.map, Assets::embedded());
-        let (view, mut seen) = (View::new(SIZES[2]).unwrap(), SeenTrails::default());
+        let (view, mut seen) = (View::new(SIZES[2]).unwrap(), Particles::default());
         let horizon = i64::from(view.base_view_rows) << 15;
         let camera = Camera { forward: [1 << 16, 0], z: 41 << 16, horizon, ..Camera::default() };
         seen.collect(&scene, &view, &camera, &world);

@@ -1,9 +1,9 @@
 //! Sprites: which actors are in view, where, and their drawing.
 
 use crate::math::{Angle, Fixed};
-use crate::render::patch::data::{Stamp, StampColumns, TEXEL_BITS, first_row};
+use crate::render::patch::data::{Patch, PatchColumns, TEXEL_BITS, first_row};
 use crate::render::scene::prepared::Scene;
-use crate::render::textures::sprite::SpritePicture;
+use crate::render::textures::sprite::SpriteTexture;
 use crate::render::view::camera::Camera;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::INVERSE_BITS;
@@ -13,7 +13,7 @@ use crate::world::{Actor, ActorKind, OPAQUE, World};
 /// Actors nearer than this, in 16.16 map units, are not drawn.
 const NEAREST: i64 = 4 << 16;
 
-/// Where something flat that faces the eye is: what decides which walls hide it.
+/// Where something flat that sidedefs the eye is: what decides which walls hide it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
     /// Inverse distance, [`INVERSE_BITS`] fractional bits.
@@ -31,7 +31,7 @@ pub(crate) struct Extent {
 
 /// An actor in view.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SeenSprite {
+pub(crate) struct VisSprite {
     /// Its slot.
     pub slot: u16,
     /// What it is.
@@ -63,7 +63,7 @@ const FARTHEST: i64 = 1 << 40;
 /// The sprites of a frame.
 #[derive(Debug, Default)]
 pub(crate) struct Sprites {
-    list: Vec<SeenSprite>,
+    list: Vec<VisSprite>,
     /// Far to near: distance from the farthest possible one with the actor's slot below, and place in the list. Keys are sorted
     /// in place of sprites, which are large.
     order: Vec<(u64, u32)>,
@@ -71,7 +71,7 @@ pub(crate) struct Sprites {
 
 impl Sprites {
     /// Far to near.
-    pub fn far_to_near(&self) -> impl Iterator<Item = &SeenSprite> {
+    pub fn far_to_near(&self) -> impl Iterator<Item = &VisSprite> {
         self.order.iter().map(|&(_, place)| &self.list[place as usize])
     }
 }
@@ -97,7 +97,7 @@ pub(crate) fn collect(
         }
     }
     order.clear();
-    let key = |sprite: &SeenSprite| ((FARTHEST - sprite.distance) as u64) << 16 | u64::from(sprite.slot);
+    let key = |sprite: &VisSprite| ((FARTHEST - sprite.distance) as u64) << 16 | u64::from(sprite.slot);
     order.extend(seen.iter().map(key).zip(0..));
     order.sort_unstable();
 }
@@ -110,7 +110,7 @@ fn see(
     slot: u16,
     tic: u32,
     level: impl FnOnce() -> i32,
-) -> Option<SeenSprite> {
+) -> Option<VisSprite> {
     let (x, y) = (i64::from(actor.x.0), i64::from(actor.y.0));
     let [left, right] = camera.edges(x, y);
     let distance = (left + right) / 2;
@@ -136,7 +136,7 @@ fn see(
     let across = (left - right) / 2 - (if mirrored { texels - 1 - offset } else { offset } << 16);
     // The outermost rays are as far to the side as forward.
     let across = [across, across + (texels << 16)];
-    // Wholly beside the view: the divisions would only tell so.
+    // Wholly beside the view: the divisions would only show so.
     if across[0] >= distance || across[1] <= -distance {
         return None;
     }
@@ -160,7 +160,7 @@ fn see(
         (true, None) => 0,
         _ => Light::new(camera, level()).table(nearness),
     };
-    Some(SeenSprite {
+    Some(VisSprite {
         slot,
         kind: actor.kind,
         picture: index,
@@ -194,9 +194,9 @@ fn rotation(camera: &Camera, actor: &Actor, x: i64, y: i64) -> usize {
     ((towards - actor.angle + Angle(0x9000_0000)).0 >> 29) as usize
 }
 
-impl SeenSprite {
-    /// Opens its columns in rows down to `view_rows`; what stands before it narrows them.
-    pub fn open(&self, columns: &mut StampColumns, view: &View) {
+impl VisSprite {
+    /// Opens its columns in rows down to `view_rows`; what stands before it clips them.
+    pub fn open(&self, columns: &mut PatchColumns, view: &View) {
         let texel = |&column: &u32| ((self.u + self.u_step * i64::from(column)) >> 16) as u16;
         columns.open(0..view.view_rows as i16, view.columns[self.extent.first..self.extent.end].iter().map(texel));
     }
@@ -205,12 +205,12 @@ impl SeenSprite {
     pub fn stamp<'a>(
         &self,
         scene: &'a Scene,
-        picture: &'a SpritePicture,
-        columns: &'a StampColumns,
+        picture: &'a SpriteTexture,
+        columns: &'a PatchColumns,
         depth: u8,
         class: u16,
-    ) -> Stamp<'a> {
-        Stamp {
+    ) -> Patch<'a> {
+        Patch {
             picture,
             table: &scene.assets.light_tables[self.table],
             first: self.extent.first,

@@ -2,33 +2,33 @@
 
 use crate::assets::Assets;
 use crate::map::TextureName;
-use crate::render::textures::masked::MaskedPicture;
+use crate::render::textures::masked::MaskedTexture;
 use crate::world::Face;
 
 /// The pictures of the bar; what a set lacks is not drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct BarArt {
-    pub bar: Option<MaskedPicture>,
-    pub arms: Option<MaskedPicture>,
-    pub big_digits: [Option<MaskedPicture>; 10],
-    pub percent: Option<MaskedPicture>,
-    pub grey_digits: [Option<MaskedPicture>; 10],
-    pub yellow_digits: [Option<MaskedPicture>; 10],
+    pub bar: Option<MaskedTexture>,
+    pub arms: Option<MaskedTexture>,
+    pub big_digits: [Option<MaskedTexture>; 10],
+    pub percent: Option<MaskedTexture>,
+    pub grey_digits: [Option<MaskedTexture>; 10],
+    pub yellow_digits: [Option<MaskedTexture>; 10],
     /// By band of health: three glances, outcry, grin, rage.
-    pub faces: [[Option<MaskedPicture>; 6]; FACE_BANDS],
-    pub dead_face: Option<MaskedPicture>,
+    pub sidedefs: [[Option<MaskedTexture>; 6]; FACE_BANDS],
+    pub dead_face: Option<MaskedTexture>,
     /// Blue, yellow and red cards, then skulls.
-    pub keys: [Option<MaskedPicture>; 6],
+    pub keys: [Option<MaskedTexture>; 6],
 }
 
-/// Bands of health that the face tells apart.
+/// Bands of health that the face distinguishes.
 pub(crate) const FACE_BANDS: usize = 5;
 
 impl BarArt {
     pub fn new(assets: &Assets) -> BarArt {
         let find = |name: String| {
             let index = *assets.graphics.get(&TextureName::new(&name))?;
-            Some(MaskedPicture::new(assets.images.get(index as usize)?))
+            Some(MaskedTexture::new(assets.images.get(index as usize)?))
         };
         let digits = |prefix: &str| std::array::from_fn(|digit| find(format!("{prefix}{digit}")));
         BarArt {
@@ -38,7 +38,7 @@ impl BarArt {
             percent: find("STTPRCNT".into()),
             grey_digits: digits("STGNUM"),
             yellow_digits: digits("STYSNUM"),
-            faces: std::array::from_fn(|band| {
+            sidedefs: std::array::from_fn(|band| {
                 std::array::from_fn(|mood| {
                     find(match mood {
                         0..=2 => format!("STFST{band}{mood}"),
@@ -53,8 +53,8 @@ impl BarArt {
         }
     }
 
-    pub fn face(&self, face: Face, band: usize) -> Option<&MaskedPicture> {
-        let moods = &self.faces[band.min(FACE_BANDS - 1)];
+    pub fn face(&self, face: Face, band: usize) -> Option<&MaskedTexture> {
+        let moods = &self.sidedefs[band.min(FACE_BANDS - 1)];
         match face {
             Face::Glance(direction) => moods[usize::from(direction.min(2))].as_ref(),
             Face::Ouch => moods[3].as_ref(),

@@ -7,7 +7,7 @@ const ROOMS: [usize; 3] = [16, 64, 256];
 
 /// A picture whose texels are numbers of its own colours.
 #[derive(Clone, Debug)]
-pub(crate) struct OwnColours {
+pub(crate) struct LocalPalette {
     /// For each texel the number of its colour.
     pub texels: Arc<[u8]>,
     /// How many colours there is room for: 16, 64 or 256.
@@ -16,9 +16,9 @@ pub(crate) struct OwnColours {
     lit: Box<[u8]>,
 }
 
-impl OwnColours {
+impl LocalPalette {
     /// Of palette indices, in the light of some tables.
-    pub fn new(pixels: &[u8], tables: &[[u8; 256]]) -> OwnColours {
+    pub fn new(pixels: &[u8], tables: &[[u8; 256]]) -> LocalPalette {
         let mut is_there = [false; 256];
         pixels.iter().for_each(|&pixel| is_there[usize::from(pixel)] = true);
         let colours: Vec<usize> = (0..256).filter(|&colour| is_there[colour]).collect();
@@ -28,7 +28,7 @@ impl OwnColours {
             numbers[colour] = number as u8;
             lit.chunks_exact_mut(room).zip(tables).for_each(|(lit, table)| lit[number] = table[colour]);
         }
-        OwnColours { texels: pixels.iter().map(|&pixel| numbers[usize::from(pixel)]).collect(), room, lit: lit.into() }
+        LocalPalette { texels: pixels.iter().map(|&pixel| numbers[usize::from(pixel)]).collect(), room, lit: lit.into() }
     }
 
     /// The colours in the light of a table.
@@ -49,7 +49,7 @@ mod tests {
         let tables: [[u8; 256]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| rng.byte() as u8));
         for (colours, room) in [(1, 16), (16, 16), (17, 64), (64, 64), (65, 256), (256, 256)] {
             let pixels: Vec<u8> = (0..4096).map(|i| ((i % colours) * 37) as u8).collect();
-            let own = OwnColours::new(&pixels, &tables);
+            let own = LocalPalette::new(&pixels, &tables);
             assert_eq!(own.room, room, "{colours} colours");
             for (&pixel, &texel) in pixels.iter().zip(own.texels.iter()) {
                 for (number, table) in tables.iter().enumerate() {

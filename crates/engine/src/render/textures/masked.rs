@@ -3,9 +3,9 @@
 use crate::assets::Image;
 use std::sync::Arc;
 
-/// A picture with holes: sprites, fences, weapons, the status bar.
+/// A picture with holes: sprites, midtextures, weapons, the status bar.
 #[derive(Clone, Debug)]
-pub(crate) struct MaskedPicture {
+pub(crate) struct MaskedTexture {
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -14,26 +14,26 @@ pub(crate) struct MaskedPicture {
     pub offset_x: i32,
     /// Rows above the anchor.
     pub offset_y: i32,
-    /// Column by column: palette index, and [`MaskedPicture::OPAQUE`] where there is no hole.
+    /// Column by column: palette index, and [`MaskedTexture::OPAQUE`] where there is no hole.
     pub texels: Arc<[u16]>,
 }
 
-impl MaskedPicture {
+impl MaskedTexture {
     /// Set in opaque texels.
     pub const OPAQUE: u16 = 0x100;
 
-    pub fn new(image: &Image) -> MaskedPicture {
+    pub fn new(image: &Image) -> MaskedTexture {
         let opaque = |i: usize| image.mask.as_ref().is_none_or(|mask| mask.get(i).is_some_and(|&m| m != 0));
         let texels = image
             .pixels
             .iter()
             .enumerate()
-            .map(|(i, &pixel)| u16::from(pixel) | if opaque(i) { MaskedPicture::OPAQUE } else { 0 })
+            .map(|(i, &pixel)| u16::from(pixel) | if opaque(i) { MaskedTexture::OPAQUE } else { 0 })
             .collect::<Vec<u16>>();
         let (width, height) = (u32::from(image.width), u32::from(image.height));
         let mut texels = texels;
         texels.resize((width * height) as usize, 0);
-        MaskedPicture {
+        MaskedTexture {
             width,
             height,
             offset_x: i32::from(image.offset_x),

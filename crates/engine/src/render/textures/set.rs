@@ -1,10 +1,10 @@
 //! All textures of a map, by id, prepared for drawing in each form.
 
 use crate::assets::{Assets, Image, TextureEntry};
-use crate::render::textures::flat::FlatPicture;
-use crate::render::textures::local_palette::OwnColours;
-use crate::render::textures::midtexture::Fence;
-use crate::render::textures::wall::{MOST_TEXELS, WallPicture};
+use crate::render::textures::flat::FlatTexture;
+use crate::render::textures::local_palette::LocalPalette;
+use crate::render::textures::midtexture::Midtexture;
+use crate::render::textures::wall::{MOST_TEXELS, WallTexture};
 
 /// What the renderer needs of one texture name: every frame of its animation, in each form.
 #[derive(Clone, Debug)]
@@ -23,13 +23,13 @@ pub(crate) struct Textures {
     /// By texture id.
     pub list: Vec<Texture>,
     /// By frame.
-    pub walls: Vec<WallPicture>,
+    pub walls: Vec<WallTexture>,
     /// The same by their own colours.
-    pub own: Vec<OwnColours>,
+    pub own: Vec<LocalPalette>,
     /// By frame.
-    pub flats: Vec<FlatPicture>,
+    pub flats: Vec<FlatTexture>,
     /// By frame.
-    pub fences: Vec<Fence>,
+    pub midtextures: Vec<Midtexture>,
     /// By frame: whether it is a square of 64 texels.
     pub squares: Vec<bool>,
     /// The texels of all walls that can be drawn as a list of columns, and as many more as a column has.
@@ -47,18 +47,18 @@ impl Textures {
         for frame in 0..frames {
             let image = assets.images.get(entry.first.saturating_add(frame) as usize);
             let image = image.filter(|image| image.width > 0 && image.height > 0).unwrap_or(&solid);
-            let wall = WallPicture::new(image);
+            let wall = WallTexture::new(image);
             self.list_texels(&wall);
-            self.own.push(OwnColours::new(&wall.pixels, &assets.light_tables[..]));
+            self.own.push(LocalPalette::new(&wall.pixels, &assets.light_tables[..]));
             self.walls.push(wall);
-            self.flats.push(FlatPicture::new(image));
-            self.fences.push(Fence::new(image));
+            self.flats.push(FlatTexture::new(image));
+            self.midtextures.push(Midtexture::new(image));
             self.squares.push((image.width, image.height) == (64, 64));
         }
         self.list.push(Texture { first, frames, tics: u32::from(entry.tics).max(1) });
     }
 
-    fn list_texels(&mut self, wall: &WallPicture) {
+    fn list_texels(&mut self, wall: &WallTexture) {
         let end = self.listed.len().saturating_sub(MOST_TEXELS);
         let takes = wall.fits_batch();
         if takes {

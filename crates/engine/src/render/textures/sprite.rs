@@ -2,16 +2,16 @@
 //! which the same row of texels shows.
 
 use crate::assets::Image;
-use crate::render::textures::masked::MaskedPicture;
+use crate::render::textures::masked::MaskedTexture;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Texels that wide code loads at once; rows are padded to whole blocks of these.
 pub(crate) const TEXEL_BLOCK: usize = 64;
 
-/// A picture with holes that always faces the eye.
+/// A picture with holes that always sidedefs the eye.
 #[derive(Clone, Debug)]
-pub(crate) struct SpritePicture {
+pub(crate) struct SpriteTexture {
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -21,7 +21,7 @@ pub(crate) struct SpritePicture {
     /// Rows above the anchor.
     pub offset_y: i32,
     /// The same by columns.
-    columns: MaskedPicture,
+    columns: MaskedTexture,
     /// Of each column the first row without a hole, and one past the last.
     extents: Arc<[[u16; 2]]>,
     /// From one row to the next.
@@ -32,18 +32,18 @@ pub(crate) struct SpritePicture {
     opaque: Arc<[u64]>,
 }
 
-impl SpritePicture {
+impl SpriteTexture {
     /// How far it reaches to either side of its anchor at most, mirrored or not; texels.
     pub fn reach(&self) -> i64 {
         let (width, left) = (i64::from(self.width), i64::from(self.offset_x));
         left.abs().max((width - left).abs())
     }
 
-    pub fn new(image: &Image) -> SpritePicture {
+    pub fn new(image: &Image) -> SpriteTexture {
         let (width, height) = (usize::from(image.width), usize::from(image.height));
-        let (stride, columns) = (width.next_multiple_of(TEXEL_BLOCK), MaskedPicture::new(image));
+        let (stride, columns) = (width.next_multiple_of(TEXEL_BLOCK), MaskedTexture::new(image));
         let (mut texels, mut opaque) = (vec![0; stride * height], vec![0; stride * height / TEXEL_BLOCK]);
-        let is_opaque = |texel: &u16| texel & MaskedPicture::OPAQUE != 0;
+        let is_opaque = |texel: &u16| texel & MaskedTexture::OPAQUE != 0;
         let extents = (0..width).map(|column| {
             let texels = columns.column(column as u32);
             let ends = texels.iter().position(is_opaque).zip(texels.iter().rposition(is_opaque));
@@ -57,7 +57,7 @@ impl SpritePicture {
                 opaque[to / TEXEL_BLOCK] |= u64::from(is_opaque(&texel)) << (to % TEXEL_BLOCK);
             }
         }
-        SpritePicture {
+        SpriteTexture {
             width: width as u32,
             height: height as u32,
             offset_x: i32::from(image.offset_x),
@@ -77,7 +77,7 @@ impl SpritePicture {
         (&self.texels[start..end], &self.opaque[start / TEXEL_BLOCK..end / TEXEL_BLOCK])
     }
 
-    /// The texels of a column as [`MaskedPicture`] has them.
+    /// The texels of a column as [`MaskedTexture`] has them.
     #[inline(always)]
     pub fn column(&self, column: u16) -> &[u16] {
         self.columns.column(u32::from(column))
@@ -92,7 +92,7 @@ impl SpritePicture {
 
     /// The palette indices of all texels without a hole.
     pub fn opaque_texels(&self) -> impl Iterator<Item = u8> + '_ {
-        let opaque = self.columns.texels.iter().filter(|&&texel| texel & MaskedPicture::OPAQUE != 0);
+        let opaque = self.columns.texels.iter().filter(|&&texel| texel & MaskedTexture::OPAQUE != 0);
         opaque.map(|&texel| texel as u8)
     }
 }

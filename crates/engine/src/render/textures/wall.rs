@@ -8,7 +8,7 @@ pub(crate) const MOST_TEXELS: usize = 128;
 
 /// A texture on a wall: opaque, tiled both ways.
 #[derive(Clone, Debug)]
-pub(crate) struct WallPicture {
+pub(crate) struct WallTexture {
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -21,17 +21,17 @@ pub(crate) struct WallPicture {
     pub pixels: Arc<[u8]>,
 }
 
-impl WallPicture {
+impl WallTexture {
     /// Whether the columns of a picture can be listed: they fill one or two vectors, and wrap as numbers do.
     pub fn fits_batch(&self) -> bool {
         matches!(self.height, 64 | 128) && self.width.is_power_of_two()
     }
 
-    pub fn new(image: &Image) -> WallPicture {
+    pub fn new(image: &Image) -> WallTexture {
         let (width, height) = (u32::from(image.width).max(1), u32::from(image.height).max(1));
         let mut pixels = image.pixels.to_vec();
         pixels.resize((width * height) as usize, 0);
-        WallPicture {
+        WallTexture {
             width,
             height,
             inverse_height: ((1 << 32) + i64::from(height) - 1) / i64::from(height),

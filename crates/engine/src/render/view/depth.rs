@@ -1,30 +1,30 @@
 //! From a distance to a value of the depth buffer.
 
-/// How depth is told: evenly, or as the published engine tells it.
+/// How depth is written: evenly, or as ViZDoom writes it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Depths {
+pub(crate) struct DepthEncoding {
     /// Rows of the base grid where depth is as published.
     published: Option<i64>,
-    /// What shows of the published engine's drawing four columns at once.
-    by_fours: bool,
+    /// What shows of ViZDoom's drawing four columns at once.
+    by_quads: bool,
 }
 
 /// Height of the frames that the published depth is made for; the values of lower ones are smaller.
 const PUBLISHED_ROWS: i64 = 480;
 
-impl Depths {
-    /// As the published engine tells it in frames of `rows` rows, or in what is left of them in a reduced frame, which lacks columns and
-    /// rows that decide what is told of fours.
-    pub fn published(rows: u32, reduced: bool) -> Depths {
-        Depths { published: Some(i64::from(rows)), by_fours: !reduced }
+impl DepthEncoding {
+    /// As ViZDoom writes it in frames of `rows` rows, or in what is left of them in a reduced frame, which lacks columns and
+    /// rows that decide what is written of quads.
+    pub fn published(rows: u32, reduced: bool) -> DepthEncoding {
+        DepthEncoding { published: Some(i64::from(rows)), by_quads: !reduced }
     }
 
-    /// Whether it shows that the published engine draws four columns at once.
-    pub fn by_fours(self) -> bool {
-        self.by_fours
+    /// Whether it shows that ViZDoom draws four columns at once.
+    pub fn by_quads(self) -> bool {
+        self.by_quads
     }
 
-    /// Depth of a wall at a distance in 16.16 map units that shows a texture of `height` texels. The published engine takes it from
+    /// Depth of a wall at a distance in 16.16 map units that shows a texture of `height` texels. ViZDoom takes it from
     /// the step between the texels of neighbouring rows; where that is half the texture or more, from what is left to the whole of it.
     #[inline]
     pub fn wall(self, distance: i64, height: u32) -> u8 {
@@ -45,14 +45,14 @@ impl Depths {
         scaled(((distance << 16) / focal_y - 500) * 255 / 319_500, rows)
     }
 
-    /// Depth of soot where it is told by itself.
+    /// Depth of soot where it is written by itself.
     #[inline]
     pub fn stain(self, distance: i64) -> u8 {
         if self.published.is_some() { 0 } else { even(distance) }
     }
 
-    /// Depth of soot where the published engine takes it from a column of the wall, of whose step it keeps the last bit alone.
-    pub fn stain_of_four(self, distance: i64) -> u8 {
+    /// Depth of soot where ViZDoom takes it from a column of the wall, of whose step it keeps the last bit alone.
+    pub fn stain_of_quad(self, distance: i64) -> u8 {
         self.published.map_or(0, |rows| scaled((quarters(distance, rows) & 1) << 7, rows))
     }
 
@@ -97,12 +97,12 @@ mod tests {
 
     #[test]
     fn even_depth_is_the_same_for_everything() {
-        let depths = Depths::default();
+        let depths = DepthEncoding::default();
         for distance in [0, 72, 73, 730, 1860, 30_000].map(units) {
             let level = ((distance >> 16) * 10 / 73).min(255) as u8;
-            let told =
+            let written =
                 [depths.wall(distance, 128), depths.plane(distance), depths.sprite(distance, 96 << 16), depths.stain(distance)];
-            assert_eq!(told, [level; 4]);
+            assert_eq!(written, [level; 4]);
         }
         assert_eq!(depths.farthest(), 255);
     }
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn published_depth_is_as_measured_in_tall_frames() {
         // Measured at 480 rows: 56 units 6, 256 units 34, 756 units 104.
-        let depths = Depths::published(480, false);
+        let depths = DepthEncoding::published(480, false);
         assert_eq!([56, 256, 756].map(|distance| depths.wall(units(distance), 128)), [6, 34, 104]);
         assert_eq!([depths.wall(units(5000), 128), depths.farthest()], [255, 255]);
     }
@@ -119,15 +119,15 @@ mod tests {
     fn published_depth_of_low_textures_falls_again_from_half_a_texture_a_row_on() {
         // As measured at shutters of 16 texels in Remedy Rush, 1,131.7 and 1,302.1 units away in frames of 120 rows: 11.8 and 13.6
         // texels a row.
-        let depths = Depths::published(120, false);
-        let told = |tenths: i64, height: u32| depths.wall((tenths << 16) / 10, height);
-        assert_eq!([told(11317, 16), told(13021, 16)], [56, 32]);
-        assert_eq!([told(11317, 128), told(13021, 100)], [63, 63]);
+        let depths = DepthEncoding::published(120, false);
+        let written = |tenths: i64, height: u32| depths.wall((tenths << 16) / 10, height);
+        assert_eq!([written(11317, 16), written(13021, 16)], [56, 32]);
+        assert_eq!([written(11317, 128), written(13021, 100)], [63, 63]);
     }
 
     #[test]
     fn published_depth_of_soot_is_the_last_bit_of_a_walls_step() {
-        // Measured before a wall seen face on: its distance in 4096ths of a unit, and what was told of soot on it in frames of 480 rows.
+        // Measured before a wall seen face on: its distance in 4096ths of a unit, and what was written of soot on it in frames of 480 rows.
         let seen = [
             (1_074_260, 128),
             (1_248_605, 128),
@@ -147,15 +147,19 @@ mod tests {
         // And of 120 rows.
         let seen_low = [(1_074_260, 32), (1_165_132, 32), (491_970, 0), (432_126, 0), (500_456, 32), (544_002, 0)];
         for (rows, seen) in [(480, &seen[..]), (120, &seen_low)] {
-            for &(distance, told) in seen {
-                assert_eq!(Depths::published(rows, false).stain_of_four(distance << 4), told, "{distance} of {rows} rows");
+            for &(distance, written) in seen {
+                assert_eq!(
+                    DepthEncoding::published(rows, false).stain_of_quad(distance << 4),
+                    written,
+                    "{distance} of {rows} rows"
+                );
             }
         }
     }
 
     #[test]
     fn published_depth_ends_early_in_low_frames_except_on_floors() {
-        let depths = Depths::published(120, false);
+        let depths = DepthEncoding::published(120, false);
         assert_eq!([depths.wall(units(2000), 128), depths.sprite(units(2000), 96 << 16), depths.farthest()], [63; 3]);
         assert_eq!([depths.plane(units(1000)), depths.plane(units(1900)), depths.plane(units(5))], [138, 255, 0]);
     }

@@ -3,7 +3,7 @@
 use crate::math::{STEEPEST, fine_tangent};
 use crate::render::view::tables::View;
 
-/// The horizon in base rows, 16.16, at a pitch (negative looks up): a shear, so that verticals stay vertical.
+/// The horizon in base rows, 16.16, at a pitch (negative surfaces up): a shear, so that verticals stay vertical.
 pub(crate) fn at_pitch(view: &View, pitch: i32) -> i64 {
     // A quarter turn less the pitch, cut to fine angles.
     let fine = ((0x4000_0000 - i64::from(pitch)) >> 19) as i32 - 2048;
@@ -15,13 +15,13 @@ pub(crate) fn at_pitch(view: &View, pitch: i32) -> i64 {
 /// The part of a row, 16.16, that floors in the row of the horizon count as below it at least.
 const NEAREST: i64 = 64;
 
-/// How much longer the vertical focal length is for floors than the horizontal one, 16.16: 1.2, but cut as in the published engine, which
+/// How much longer the vertical focal length is for floors than the horizontal one, 16.16: 1.2, but cut as in ViZDoom, which
 /// moves distant floors by a thousandth of a texel.
 const FLOOR_ASPECT: i64 = 78_643;
 
 /// What the rows of a frame have in common for every floor and ceiling.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct RowSlopes {
+pub(crate) struct PlaneRows {
     /// The horizon that they are for.
     horizon: Option<i64>,
     /// By frame row: distance of a floor one unit below the eye, or of a ceiling one above; 16.16.
@@ -32,7 +32,7 @@ pub(crate) struct RowSlopes {
     sky: Vec<u16>,
 }
 
-impl RowSlopes {
+impl PlaneRows {
     /// The texel row of the sky in each frame row, which `compute` gives for a horizon when they are first asked for.
     pub fn sky_rows<Rows: Iterator<Item = u16>>(&mut self, compute: impl FnOnce(i64) -> Rows) -> &[u16] {
         if self.sky.is_empty() {
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn every_row_of_every_pitch_has_a_slope() {
-        let mut slopes = RowSlopes::default();
+        let mut slopes = PlaneRows::default();
         for (width, height) in [(64, 48), (1920, 1080), (64, 1080), (1920, 48), (128, 72)] {
             let view = view(width, height);
             for pitch in [i32::MIN, -(1 << 29), 0, 1 << 29, i32::MAX] {
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn slopes_are_those_of_the_rows_middles() {
-        let (view, mut slopes) = (view(160, 120), RowSlopes::default());
+        let (view, mut slopes) = (view(160, 120), PlaneRows::default());
         slopes.update(&view, 50 << 16);
         // The focal length is 96 rows.
         let at = |row: usize| slopes.distances[row] as f64 / 65536.0;

@@ -30,7 +30,7 @@ pub(crate) fn fits_doubles(at: i64, step: i64) -> bool {
 /// The plane of a line as the camera sees it: all that depends on the line is linear in the base column, so that the
 /// pieces into which the BSP cut a line fit together exactly.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SeenLine {
+pub(crate) struct ProjectedLine {
     /// Inverse of the distance at base column 0, [`INVERSE_BITS`] fractional bits.
     pub inverse: i64,
     /// Its change a column.
@@ -77,7 +77,7 @@ pub(crate) struct Edge {
     pub step: i64,
 }
 
-impl SeenLine {
+impl ProjectedLine {
     /// The inverse of the distance at a base column.
     #[inline]
     pub fn inverse_at(&self, column: i64) -> i64 {
@@ -93,14 +93,14 @@ impl SeenLine {
     /// The line of a seg whose ends lie on `self` at `positions`, base columns with [`END_BITS`] fractional bits, put at
     /// the whole columns `columns`: where light and the rows of edges are taken from.
     #[inline]
-    pub fn between(&self, positions: [i64; 2], columns: [i64; 2]) -> SeenLine {
+    pub fn between(&self, positions: [i64; 2], columns: [i64; 2]) -> ProjectedLine {
         let [first, end] = positions.map(|position| {
             let change = (i128::from(self.inverse_step) * i128::from(position)) >> END_BITS;
             (self.inverse + change as i64).max(LEAST_INVERSE)
         });
         // Every seg in view waits for this one.
         let inverse_step = divided_by_count(end - first, columns[1] - columns[0]);
-        SeenLine { inverse: first - inverse_step * columns[0], inverse_step }
+        ProjectedLine { inverse: first - inverse_step * columns[0], inverse_step }
     }
 
     /// Where a height, relative to the eye in 16.16, is seen.

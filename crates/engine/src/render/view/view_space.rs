@@ -1,66 +1,66 @@
-//! Lines as they lie before the eye. The published engine turns the ends of a line into view and keeps 4096ths of a unit of them;
+//! Lines as they lie before the eye. ViZDoom turns the ends of a line into view and keeps 4096ths of a unit of them;
 //! distances along its wall and the texels that it shows follow from the ends so cut, not from the line on the map.
 
-use crate::render::scene::prepared::Face;
+use crate::render::scene::prepared::Sidedef;
 use crate::render::view::camera::Camera;
-use crate::render::view::line::{INVERSE_BITS, SeenLine, TextureLine};
+use crate::render::view::line::{INVERSE_BITS, ProjectedLine, TextureLine};
 use crate::render::view::tables::COLUMN_RAY_BITS;
 use crate::render::view::tables::View;
 
 /// Fractional bits of turned points.
-pub(crate) const TURNED_BITS: u32 = 12;
+pub(crate) const VIEW_BITS: u32 = 12;
 /// `1 / number` is an [`Inverse`]'s digits by two to the power of this and its shift.
 const DIGIT_BITS: i32 = 95;
 
 /// How far a point is to the right of the eye, and how far ahead.
 pub(crate) type Turned = [i64; 2];
 
-/// The ends of a line that faces the eye, from left to right as seen from its side.
+/// The ends of a line that sidedefs the eye, from left to right as seen from its side.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TurnedLine(pub [Turned; 2]);
+pub(crate) struct ViewLine(pub [Turned; 2]);
 
 impl Camera {
-    /// A point of the map, 16.16, turned; the rest of its [`TURNED_BITS`] is cut.
+    /// A point of the map, 16.16, turned; the rest of its [`VIEW_BITS`] is cut.
     #[inline]
     pub fn turned(&self, [x, y]: [i32; 2]) -> Turned {
         let (dx, dy) = (i64::from(x) - self.x, i64::from(y) - self.y);
         let (cos, sin) = (self.forward[0], self.forward[1]);
-        [dx * sin - dy * cos, dx * cos + dy * sin].map(|part| part >> (32 - TURNED_BITS))
+        [dx * sin - dy * cos, dx * cos + dy * sin].map(|part| part >> (32 - VIEW_BITS))
     }
 }
 
-impl TurnedLine {
+impl ViewLine {
     /// The line of a side.
     #[inline]
-    pub fn of_face(camera: &Camera, face: &Face) -> TurnedLine {
-        TurnedLine(face.ends.map(|end| camera.turned(end)))
+    pub fn of_sidedef(camera: &Camera, face: &Sidedef) -> ViewLine {
+        ViewLine(face.ends.map(|end| camera.turned(end)))
     }
 
     /// How far away its plane is in each column: where the ray `(r, 1)` meets the line from `p` to `p + d`, `(r * d.ahead -
     /// d.right) / (p.ahead * d.right - p.right * d.ahead)` is the inverse of the distance.
     #[inline]
-    pub fn seen(&self, view: &View) -> SeenLine {
+    pub fn seen(&self, view: &View) -> ProjectedLine {
         let [[right, ahead], end] = self.0;
         let along = [end[0] - right, end[1] - ahead];
         // Nearer than 1/256 unit counts as that far.
-        let least = (along[0].abs() + along[1].abs()).max(1) << (TURNED_BITS - 8);
+        let least = (along[0].abs() + along[1].abs()).max(1) << (VIEW_BITS - 8);
         let Inverse { digits, shift } = Inverse::of((end[0] * ahead - right * end[1]).max(least));
-        let scaled = |part: i64| shifted(part, shift + DIGIT_BITS - (INVERSE_BITS + TURNED_BITS) as i32);
+        let scaled = |part: i64| shifted(part, shift + DIGIT_BITS - (INVERSE_BITS + VIEW_BITS) as i32);
         // The outermost ray is `(-1, 1)`.
         let step = (i128::from(-along[1] * digits) * i128::from(view.column_ray)) >> COLUMN_RAY_BITS;
-        SeenLine { inverse: scaled((along[0] + along[1]) * digits), inverse_step: scaled(step as i64) }
+        ProjectedLine { inverse: scaled((along[0] + along[1]) * digits), inverse_step: scaled(step as i64) }
     }
 
     /// The texture positions of the side whose line it is, of which a seg is seen in base columns: where a ray `(r, 1)` of some length
     /// ends, the line has run for `((r, 1) * length - p) . d / (d . d)` of itself.
-    pub fn texture(&self, view: &View, face: &Face, base_ends: [i64; 2]) -> TextureLine {
+    pub fn texture(&self, view: &View, face: &Sidedef, base_ends: [i64; 2]) -> TextureLine {
         let [start, end] = self.0;
         let along = [end[0] - start[0], end[1] - start[1]];
         let Inverse { digits, shift } = Inverse::of((along[0] * along[0] + along[1] * along[1]).max(1));
         let texels = i128::from(digits * face.texels);
         let scaled = |part: i64, bits: u32| shifted_wide(i128::from(part) * texels, shift + DIGIT_BITS - bits as i32);
         // What a unit to the right and a unit ahead gain.
-        let [right, ahead] = along.map(|part| scaled(part, TextureLine::GAIN_BITS + TURNED_BITS));
+        let [right, ahead] = along.map(|part| scaled(part, TextureLine::GAIN_BITS + VIEW_BITS));
         let before = -(start[0] * along[0] + start[1] * along[1]);
         let step = (i128::from(right) * i128::from(view.column_ray)) >> COLUMN_RAY_BITS;
         // To the nearest 65536th of a texel: what begins right between two columns begins there.
@@ -77,7 +77,7 @@ impl TurnedLine {
     /// The first position that is shown. The left edge of a line's first column may lie before the line: it shows the
     /// line's first texel. In the first column of the screen it shows the texel that would be there, or, of a seg that ends in that
     /// column too, the line's last one.
-    fn least_position(&self, face: &Face, base_ends: [i64; 2]) -> i64 {
+    fn least_position(&self, face: &Sidedef, base_ends: [i64; 2]) -> i64 {
         let [right, ahead] = self.0[0];
         match base_ends {
             [0, 1] if ahead + right > 0 => face.last_position(),
@@ -122,8 +122,8 @@ mod tests {
     use crate::render::view::size::FrameSize;
 
     /// A face of a line with these ends, 16.16, that is as many texels long.
-    fn face(ends: [[i32; 2]; 2], texels: i64) -> Face {
-        Face { ends, texels, ..Face::bare() }
+    fn face(ends: [[i32; 2]; 2], texels: i64) -> Sidedef {
+        Sidedef { ends, texels, ..Sidedef::bare() }
     }
 
     #[test]
@@ -143,7 +143,7 @@ mod tests {
             let [dx, dy] = [0, 1].map(|i| f64::from(ends[1][i] - ends[0][i]) / 65536.0);
             let texels = dx.hypot(dy).round().max(1.0) as i64;
             let face = face(ends, texels);
-            let turned = TurnedLine::of_face(&camera, &face);
+            let turned = ViewLine::of_sidedef(&camera, &face);
             let [[x1, y1], [x2, y2]] = turned.0.map(|point| point.map(|part| part as f64 / 4096.0));
             let (seen, texture) = (turned.seen(&view), turned.texture(&view, &face, [1, 160]));
             // Where the ray (r, 1) * distance meets p + s (q - p), by Cramer's rule; from one unit to the side of the eye on, and
@@ -178,7 +178,7 @@ mod tests {
         for distance in 20..2000 {
             let x = distance << 16;
             let face = face([[x, 32 << 16], [x, -32 << 16]], 64);
-            let turned = TurnedLine::of_face(&camera, &face);
+            let turned = ViewLine::of_sidedef(&camera, &face);
             let texel = turned.texture(&view, &face, [1, 160]).at(80, turned.seen(&view).distance_at(80)) >> 16;
             assert_eq!(texel, 32, "{distance} units away");
         }
@@ -188,7 +188,7 @@ mod tests {
     fn only_in_the_first_column_a_line_is_shown_from_before_its_start() {
         let view = View::new(FrameSize::CLASSIC).unwrap();
         // It begins a little to the right of the view's left edge, along which lines go away.
-        let turned = TurnedLine([[-100 << 12, 101 << 12], [-95 << 12, 113 << 12]]);
+        let turned = ViewLine([[-100 << 12, 101 << 12], [-95 << 12, 113 << 12]]);
         let face = face([[0; 2]; 2], 13);
         let shown = |base_ends: [i64; 2]| {
             let texture = turned.texture(&view, &face, base_ends);
@@ -199,7 +199,7 @@ mod tests {
         // Where all of the seg lies in that column it is the last texel, as measured.
         assert_eq!(shown([0, 1]), 12);
         // A line that comes from beside the view has no such column.
-        let beside = TurnedLine([[-100 << 12, 50 << 12], [-95 << 12, 113 << 12]]);
+        let beside = ViewLine([[-100 << 12, 50 << 12], [-95 << 12, 113 << 12]]);
         let position = beside.texture(&view, &face, [0, 1]).at(0, beside.seen(&view).distance_at(0)) >> 16;
         assert!((1..12).contains(&position), "{position}");
         assert_eq!([turned.least_position(&face, [1, 7]), beside.least_position(&face, [0, 1])], [0, i64::MIN]);

@@ -4,7 +4,7 @@ use crate::map::Node;
 use crate::math::Fixed;
 use crate::render::scene::prepared::{NO_SECTOR, Scene};
 use crate::render::view::camera::Camera;
-use crate::render::walls::pass::Walk;
+use crate::render::walls::pass::WallPass;
 use crate::simd::{prefetch, prefetch_lines};
 
 /// Base columns by which the view's wedge is wider than what is open.
@@ -43,14 +43,14 @@ impl WedgeSide {
 #[inline(always)]
 fn ask_for(scene: &Scene, child: u32) {
     let (is_subsector, index) = (child & Node::SUBSECTOR != 0, (child & !Node::SUBSECTOR) as usize);
-    // Which of both it is cannot be foretold.
+    // Which of both it is is unpredictable.
     let [first_seg, ..] = scene.subsectors[if is_subsector { index } else { 0 }];
     let segs = scene.segs.as_ptr().wrapping_add(first_seg as usize).cast::<u8>();
     let node = scene.nodes.as_ptr().wrapping_add(index).cast::<u8>();
     prefetch_lines(if is_subsector { segs } else { node }, 3);
 }
 
-impl Walk<'_> {
+impl WallPass<'_> {
     /// Draws all walls, and lists what else there is to draw.
     pub fn run<const DEPTH: bool>(&mut self) {
         self.visit::<DEPTH>();
@@ -59,12 +59,12 @@ impl Walk<'_> {
 
     /// Walks until everything is covered.
     ///
-    /// Which child is near and which one is in view cannot be foretold, so that all of it is arithmetic without
+    /// Which child is near and which one is in view is unpredictable, so that all of it is arithmetic without
     /// branches: children that are out of view are written to the stack too, but not counted.
     fn visit<const DEPTH: bool>(&mut self) {
         let scene = self.scene;
         let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
-        let mut open = self.openings.range();
+        let mut open = self.clip.range();
         let mut wedge = self.wedge(open);
         let mut stacked = 0;
         let mut child = match scene.nodes.len() {
@@ -73,10 +73,10 @@ impl Walk<'_> {
         };
         loop {
             if child & Node::SUBSECTOR != 0 {
-                let closed = self.openings.closed();
+                let closed = self.clip.closed();
                 self.subsector::<DEPTH>((child & !Node::SUBSECTOR) as usize);
-                if self.openings.closed() != closed {
-                    let now_open = self.openings.range();
+                if self.clip.closed() != closed {
+                    let now_open = self.clip.range();
                     if now_open.0 >= now_open.1 {
                         return;
                     }
@@ -107,7 +107,7 @@ impl Walk<'_> {
                 let (child, bounds) = (node.children[side], &node.bounds[side]);
                 // For a single subsector the second question costs more than it saves.
                 let hidden = wedge[0].inside(bounds) | wedge[1].inside(bounds) < 0
-                    || (child & Node::SUBSECTOR == 0 && self.openings.has_holes() && !self.box_is_open(bounds));
+                    || (child & Node::SUBSECTOR == 0 && self.clip.has_holes() && !self.box_is_open(bounds));
                 if !hidden {
                     break child;
                 }
@@ -144,15 +144,15 @@ impl Walk<'_> {
             }
         }
         let (first, end) = (self.view.first_column[first as usize], self.view.first_column[end as usize]);
-        first < end && self.openings.any_open(usize::from(first), usize::from(end))
+        first < end && self.clip.any_open(usize::from(first), usize::from(end))
     }
 
     fn subsector<const DEPTH: bool>(&mut self, index: usize) {
-        let Walk { scene, world, ref mut looks, .. } = *self;
+        let WallPass { scene, world, ref mut surfaces, .. } = *self;
         let [first, end, sector] = scene.subsectors[index];
         self.entered[sector as usize] = true;
-        let own = looks.of(world, sector);
-        let (segs, faces) = (&scene.segs[..], &scene.faces[..]);
+        let own = surfaces.of(world, sector);
+        let (segs, sidedefs) = (&scene.segs[..], &scene.sidedefs[..]);
         let (x, y, facing) = (self.camera.x, self.camera.y, &mut self.scratch.facing[..]);
         // First those that face the eye, then those of them that matter, again without branches, then their drawing.
         let mut found = 0;
@@ -166,11 +166,11 @@ impl Walk<'_> {
             let seg = &segs[index as usize];
             // A one-sided line differs from whatever its sector is compared with.
             let one_sided = seg.back == NO_SECTOR;
-            let back = looks.of(world, if one_sided { sector } else { seg.back });
+            let back = surfaces.of(world, if one_sided { sector } else { seg.back });
             let differs = own.difference(&back) | u64::from(one_sided | seg.masked);
             facing[kept] = index;
-            // Of a map's many faces few are in the nearest cache, and they are needed late.
-            prefetch(&faces[seg.face as usize]);
+            // Of a map's many sidedefs few are in the nearest cache, and they are needed late.
+            prefetch(&sidedefs[seg.face as usize]);
             kept += usize::from(differs != 0);
         }
         for i in 0..kept {

@@ -1,16 +1,16 @@
 //! Soot on walls: darkens what was just drawn of one.
 //!
-//! Fitted to moments of the published engine.
+//! Fitted to moments of ViZDoom.
 
 use crate::assets::Stain;
 use crate::render::colour::blend::WHOLE;
 use crate::render::patch::data::first_row;
-use crate::render::scene::prepared::Face;
-use crate::render::textures::midtexture::runs_of;
+use crate::render::scene::prepared::Sidedef;
+use crate::render::textures::midtexture::posts_of;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
 use crate::render::view::line::INVERSE_BITS;
 use crate::render::walls::pass::SeenSeg;
-use crate::render::walls::pass::{SootyColumn, Walk};
+use crate::render::walls::pass::{DecalColumn, WallPass};
 use crate::world::Soot;
 
 /// Texels of a stain to a map unit.
@@ -19,7 +19,7 @@ const TEXELS: i64 = 2;
 /// How many light tables there are.
 const LIGHT_TABLES: usize = 32;
 
-impl Walk<'_> {
+impl WallPass<'_> {
     /// Darkens the part of a wall between the upper and the lower scratch where its side bears soot.
     pub fn soot<const DEPTH: bool>(&mut self, seen: &SeenSeg<'_>, light: Light) {
         let Some(stain) = &self.scene.assets.soot else { return };
@@ -29,41 +29,41 @@ impl Walk<'_> {
             return;
         }
         self.draw_walls::<DEPTH>();
-        self.list_sooty_columns(seen, light);
-        let columns = std::mem::take(&mut self.scratch.sooty);
-        if DEPTH && self.depths.by_fours() {
+        self.list_decal_columns(seen, light);
+        let columns = std::mem::take(&mut self.scratch.decal_columns);
+        if DEPTH && self.depths.by_quads() {
             self.begin_depth(seen, &columns);
         }
         for mark in marks {
             self.stain::<DEPTH>(&columns, seen.face, stain, mark);
         }
-        self.scratch.sooty = columns;
+        self.scratch.decal_columns = columns;
     }
 
-    /// What the depth of soot follows from that the published engine tells.
-    fn begin_depth(&mut self, seen: &SeenSeg<'_>, columns: &[SootyColumn]) {
+    /// What the depth of soot follows from that ViZDoom writes.
+    fn begin_depth(&mut self, seen: &SeenSeg<'_>, columns: &[DecalColumn]) {
         let Some(last) = columns.last() else { return };
-        let told = self.columns.depth_of(last.x)[last.rows[0]];
+        let written = self.columns.depth_of(last.x)[last.rows[0]];
         let from = seen.end / 4 * 4;
         let distance = |x: usize| seen.line.distance_at(i64::from(self.view.columns[x]));
-        let depth = |column: usize| self.depths.stain_of_four(distance(from - 4 + column));
-        let last_four = (from >= seen.first + 4).then(|| [0, 1, 2, 3].map(depth));
-        self.scratch.soot_depth.begin(told, last_four);
+        let depth = |column: usize| self.depths.stain_of_quad(distance(from - 4 + column));
+        let last_quad = (from >= seen.first + 4).then(|| [0, 1, 2, 3].map(depth));
+        self.scratch.decal_depth.begin(written, last_quad);
     }
 
     /// What all marks of a wall need of its columns: a wall may bear dozens, most of which touch few of them.
-    fn list_sooty_columns(&mut self, seen: &SeenSeg<'_>, light: Light) {
+    fn list_decal_columns(&mut self, seen: &SeenSeg<'_>, light: Light) {
         let (camera, view) = (self.camera, self.view);
         let texture = seen.turned.texture(view, seen.face, seen.base_ends);
         let rows = self.scratch.upper.iter().zip(&self.scratch.lower).enumerate();
         let shown = rows.take(seen.end).skip(seen.first).filter(|(_, (top, bottom))| top < bottom);
-        self.scratch.sooty.clear();
-        self.scratch.sooty.extend(shown.map(|(x, (&top, &bottom))| {
+        self.scratch.decal_columns.clear();
+        self.scratch.decal_columns.extend(shown.map(|(x, (&top, &bottom))| {
             let column = i64::from(view.columns[x]);
             let distance = seen.line.distance_at(column);
             let nearness = (seen.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let step = ((distance * view.inverse_focal_y) >> 16) * TEXELS;
-            SootyColumn {
+            DecalColumn {
                 x,
                 rows: [top.max(0) as usize, bottom.max(0) as usize],
                 along: texture.at(column, distance) - seen.face.u_offset,
@@ -75,16 +75,16 @@ impl Walk<'_> {
         }));
     }
 
-    fn stain<const DEPTH: bool>(&mut self, columns: &[SootyColumn], face: &Face, stain: &Stain, mark: &Soot) {
+    fn stain<const DEPTH: bool>(&mut self, columns: &[DecalColumn], face: &Sidedef, stain: &Stain, mark: &Soot) {
         // Where its left and upper end lie: along the line, and above the eye.
         let left = face.position([mark.x, mark.y]) - (i64::from(stain.offset_x) << 16) / TEXELS;
         let above = i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - self.camera.z;
         // From column to column positions along the wall rise.
-        let texel_column = |column: &SootyColumn| ((column.along - left) * TEXELS) >> 16;
+        let texel_column = |column: &DecalColumn| ((column.along - left) * TEXELS) >> 16;
         let first = columns.partition_point(|column| texel_column(column) < 0);
         let count = columns[first..].partition_point(|column| texel_column(column) < i64::from(stain.width));
         let columns = &columns[first..first + count];
-        let by_fours = DEPTH && self.depths.by_fours();
+        let by_quads = DEPTH && self.depths.by_quads();
         let covered = columns.first().map_or(0, |column| column.x)..columns.last().map_or(0, |column| column.x + 1);
         for column in columns {
             let Some(texels) = stain.column(texel_column(column), mark.mirrored) else { continue };
@@ -95,15 +95,15 @@ impl Walk<'_> {
             let [top, bottom] = column.rows;
             let frame_row = |texel: usize| first_row(self.view, texel as u32, at, column.step.max(1)) as usize;
             let (first, end) = (frame_row(0).max(top), frame_row(texels.len()).min(bottom));
-            if by_fours {
-                let told = self.scratch.soot_depth.column(column.x, &covered);
+            if by_quads {
+                let written = self.scratch.decal_depth.column(column.x, &covered);
                 let shown = |row: usize| texels[if mark.upturned { texels.len() - 1 - row } else { row }] > 0;
-                for run in runs_of((0..texels.len()).map(shown)) {
+                for run in posts_of((0..texels.len()).map(shown)) {
                     let [start, end] = run.map(|texel| frame_row(texel.into()));
                     let rows = start.max(top)..end.min(bottom);
-                    self.scratch.soot_depth.add(column.x, &rows);
+                    self.scratch.decal_depth.add(column.x, &rows);
                     if !rows.is_empty() {
-                        self.columns.depth_of(column.x)[rows].fill(told);
+                        self.columns.depth_of(column.x)[rows].fill(written);
                     }
                 }
             }
@@ -118,12 +118,12 @@ impl Walk<'_> {
             for (pixel, &row) in self.columns.colour_of(column.x)[first..end].iter_mut().zip(rows) {
                 *pixel = self.scene.blend.darkened(*pixel, hidden(row));
             }
-            if DEPTH && !by_fours {
+            if DEPTH && !by_quads {
                 let pixels = self.columns.depth_of(column.x)[first..end].iter_mut();
                 pixels.zip(rows).filter(|&(_, &row)| hidden(row) > 0).for_each(|(pixel, _)| *pixel = column.depth);
             }
         }
-        self.scratch.soot_depth.end();
+        self.scratch.decal_depth.end();
     }
 }
 
@@ -148,7 +148,7 @@ mod tests {
     use crate::world::World;
     use std::sync::Arc;
 
-    /// A room whose eastern wall the player faces, and the pictures with a stain of 16 by 16 texels that hides all but its rim.
+    /// A room whose eastern wall the player sidedefs, and the pictures with a stain of 16 by 16 texels that hides all but its rim.
     fn room() -> (World, Arc<Scene>) {
         let map = stone_room(255, [-64, -64, 64, 64], &[[0.0, 0.0]]);
         let texels = (0..256).map(|at| if at % 16 % 15 == 0 || at / 16 % 15 == 0 { 0 } else { 255 }).collect();
@@ -182,9 +182,9 @@ mod tests {
             world.soot.clear();
             let clean = frame(&world, &scene, size);
             leave(&mut world, 0);
-            let sooty = frame(&world, &scene, size);
-            let dark: Vec<usize> = (0..clean.len()).filter(|&at| clean[at] != sooty[at]).collect();
-            let darkest: Vec<[u8; 3]> = dark.iter().map(|&at| sooty[at]).collect();
+            let decal_columns = frame(&world, &scene, size);
+            let dark: Vec<usize> = (0..clean.len()).filter(|&at| clean[at] != decal_columns[at]).collect();
+            let darkest: Vec<[u8; 3]> = dark.iter().map(|&at| decal_columns[at]).collect();
             assert!(darkest.iter().flatten().all(|&channel| channel < 16), "{darkest:?}");
             // 14 texels are 7 units, 64 away: seven 128ths of the width, and 1.2 times as many rows.
             let width = usize::from(size.width);

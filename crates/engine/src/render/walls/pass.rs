@@ -1,39 +1,39 @@
 //! What the pass over the walls reads and writes.
 
 use crate::render::blocks::padded;
-use crate::render::buffers::clip::Openings;
-use crate::render::buffers::drawsegs::list::Silhouettes;
+use crate::render::buffers::clip::ColumnClip;
+use crate::render::buffers::drawsegs::list::DrawSegs;
 use crate::render::buffers::frame::Columns;
-use crate::render::buffers::sectors::Looks;
-use crate::render::buffers::visplane::Planes;
-use crate::render::published_depth::decal::SootDepth;
-use crate::render::scene::prepared::{Face, Scene, SceneSeg};
+use crate::render::buffers::sectors::SurfaceCache;
+use crate::render::buffers::visplane::VisPlanes;
+use crate::render::published_depth::decal::DecalDepth;
+use crate::render::scene::prepared::{Scene, SceneSeg, Sidedef};
 use crate::render::view::camera::Camera;
-use crate::render::view::depth::Depths;
-use crate::render::view::line::SeenLine;
+use crate::render::view::depth::DepthEncoding;
+use crate::render::view::line::ProjectedLine;
 use crate::render::view::tables::View;
-use crate::render::view::view_space::TurnedLine;
+use crate::render::view::view_space::ViewLine;
 use crate::render::walls::batch::data::WallBatch;
 use crate::simd::Simd;
 use crate::world::World;
 
 /// Everything that the walk reads and writes.
-pub(crate) struct Walk<'a> {
+pub(crate) struct WallPass<'a> {
     pub scene: &'a Scene,
     pub view: &'a View,
     pub camera: &'a Camera,
     pub world: &'a World,
-    pub looks: &'a mut Looks,
+    pub surfaces: &'a mut SurfaceCache,
     /// Index of the picture that each texture shows now.
     pub pictures: &'a [u32],
-    pub depths: Depths,
+    pub depths: DepthEncoding,
     pub columns: &'a mut Columns,
-    pub openings: &'a mut Openings,
-    pub planes: &'a mut Planes,
-    pub silhouettes: &'a mut Silhouettes,
+    pub clip: &'a mut ColumnClip,
+    pub planes: &'a mut VisPlanes,
+    pub drawsegs: &'a mut DrawSegs,
     /// Sectors that were entered.
     pub entered: &'a mut [bool],
-    pub scratch: &'a mut WalkScratch,
+    pub scratch: &'a mut WallScratch,
     /// Columns of walls that wait to be drawn.
     pub walls: &'a mut WallBatch,
     pub simd: Simd,
@@ -41,7 +41,7 @@ pub(crate) struct Walk<'a> {
 
 /// Memory that the walk reuses.
 #[derive(Debug, Default)]
-pub(crate) struct WalkScratch {
+pub(crate) struct WallScratch {
     /// Children to visit later: node index times two, plus the side.
     pub stack: Vec<u32>,
     /// Segs of the subsector at hand that face the eye and matter.
@@ -51,11 +51,11 @@ pub(crate) struct WalkScratch {
     /// Rows of its lower end.
     pub lower: Vec<i16>,
     /// Its columns, where it bears soot.
-    pub sooty: Vec<SootyColumn>,
-    pub soot_depth: SootDepth,
+    pub decal_columns: Vec<DecalColumn>,
+    pub decal_depth: DecalDepth,
 }
 
-impl WalkScratch {
+impl WallScratch {
     /// Has room for frames of `width` columns of a scene.
     pub fn fit(&mut self, scene: &Scene, width: usize) {
         self.stack.resize(scene.nodes.len() + 2, 0);
@@ -69,13 +69,13 @@ impl WalkScratch {
 pub(crate) struct SeenSeg<'a> {
     pub index: u32,
     pub seg: &'a SceneSeg,
-    pub face: &'a Face,
+    pub face: &'a Sidedef,
     /// Its line before the eye.
-    pub turned: TurnedLine,
+    pub turned: ViewLine,
     /// Its line.
-    pub line: SeenLine,
+    pub line: ProjectedLine,
     /// Its line as drawn between the whole columns of its ends.
-    pub ends: SeenLine,
+    pub ends: ProjectedLine,
     /// Inverse distances of its farther and its nearer end.
     pub inverses: [i64; 2],
     /// Frame columns.
@@ -87,7 +87,7 @@ pub(crate) struct SeenSeg<'a> {
 
 /// A column of a wall that bears soot.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SootyColumn {
+pub(crate) struct DecalColumn {
     /// Frame column.
     pub x: usize,
     /// First frame row of the wall, and one past the last.

@@ -1,22 +1,22 @@
-//! What a seg does to the picture: it ends planes, has wall parts, and narrows or closes columns.
+//! What a seg does to the picture: it ends planes, has wall parts, and clips or closes columns.
 
 use crate::map::TextureId;
 use crate::math::Fixed;
-use crate::render::buffers::drawsegs::list::Silhouette;
-use crate::render::buffers::sectors::Look;
-use crate::render::buffers::visplane::PlaneKey;
+use crate::render::buffers::drawsegs::list::DrawSeg;
+use crate::render::buffers::sectors::SectorSurfaces;
+use crate::render::buffers::visplane::VisPlaneKey;
 use crate::render::published_depth::quads;
 use crate::render::scene::prepared::{NO_SECTOR, SceneSeg};
 use crate::render::view::light::Light;
 use crate::render::view::line::{END_BITS, Edge};
-use crate::render::view::view_space::TurnedLine;
+use crate::render::view::view_space::ViewLine;
 use crate::render::walls::batch;
-use crate::render::walls::clip::{narrow, pass::Narrowing};
-use crate::render::walls::pass::{SeenSeg, Walk, WalkScratch};
+use crate::render::walls::clip::{clip_columns, pass::ClipLists};
+use crate::render::walls::pass::{SeenSeg, WallPass, WallScratch};
 use crate::render::walls::shade;
 use crate::render::walls::shader::WallShader;
 
-/// The columns of a seg that faces the eye.
+/// The columns of a seg that sidedefs the eye.
 struct SeenColumns {
     /// Frame columns.
     first: usize,
@@ -26,12 +26,12 @@ struct SeenColumns {
     /// First base column and one past the last: what depends on these is the same in every reduction of a frame.
     base_ends: [i64; 2],
     /// Its ends.
-    turned: TurnedLine,
+    turned: ViewLine,
 }
 
 /// The part of a seg above or below its opening.
 #[derive(Clone, Copy)]
-struct Part {
+struct WallTier {
     /// The plane that ends at the seg, if the eye sees it.
     plane: Option<u16>,
     /// Where it ends.
@@ -40,29 +40,29 @@ struct Part {
     wall: Option<Edge>,
 }
 
-impl Walk<'_> {
-    /// Draws a seg that faces the eye, if any column shows it.
+impl WallPass<'_> {
+    /// Draws a seg that sidedefs the eye, if any column shows it.
     #[inline]
     pub fn seg<const DEPTH: bool>(&mut self, index: u32) {
         let seg = &self.scene.segs[index as usize];
         let Some(SeenColumns { first, end, positions, base_ends, turned }) = self.columns(seg) else { return };
-        let face = &self.scene.faces[seg.face as usize];
-        let turned = if seg.piece { TurnedLine::of_face(self.camera, face) } else { turned };
+        let face = &self.scene.sidedefs[seg.face as usize];
+        let turned = if seg.piece { ViewLine::of_sidedef(self.camera, face) } else { turned };
         let line = turned.seen(self.view);
         let ends = line.between(positions, base_ends);
         let [one, other] = base_ends.map(|column| ends.inverse_at(column));
         let inverses = [one.min(other), one.max(other)];
         let seen = SeenSeg { index, seg, face, turned, line, ends, inverses, first, end, base_ends };
-        let front = &self.looks.of(self.world, seg.front);
+        let front = &self.surfaces.of(self.world, seg.front);
         if seg.back == NO_SECTOR {
             self.solid::<DEPTH>(&seen, front);
         } else {
-            let back = &self.looks.of(self.world, seg.back);
+            let back = &self.surfaces.of(self.world, seg.back);
             self.opening::<DEPTH>(&seen, front, back);
         }
     }
 
-    /// The frame columns of a seg that faces the eye, if any of them is open.
+    /// The frame columns of a seg that sidedefs the eye, if any of them is open.
     #[inline]
     fn columns(&self, seg: &SceneSeg) -> Option<SeenColumns> {
         let (camera, view) = (self.camera, self.view);
@@ -92,16 +92,16 @@ impl Walk<'_> {
         }
         let first = usize::from(*view.first_column.get(base_ends[0] as usize)?);
         let end = usize::from(view.first_column[base_ends[1] as usize]);
-        let seen = first < end && self.openings.any_open(first, end);
-        seen.then_some(SeenColumns { first, end, positions, base_ends, turned: TurnedLine(turned) })
+        let seen = first < end && self.clip.any_open(first, end);
+        seen.then_some(SeenColumns { first, end, positions, base_ends, turned: ViewLine(turned) })
     }
 
     /// A wall without another side.
-    fn solid<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look) {
+    fn solid<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorSurfaces) {
         let (ceiling, floor) = (self.edge(seen, front.ceiling), self.edge(seen, front.floor));
         // As if there were an opening without height where the floor is.
-        let above = Part { plane: self.ceiling_plane(front), edge: ceiling, wall: Some(floor) };
-        let below = Part { plane: self.floor_plane(front), edge: floor, wall: None };
+        let above = WallTier { plane: self.ceiling_plane(front), edge: ceiling, wall: Some(floor) };
+        let below = WallTier { plane: self.floor_plane(front), edge: floor, wall: None };
         let hung_from = match seen.face.middle {
             Some(texture) if seen.face.lower_unpegged => front.floor + self.texture_height(texture),
             _ => front.ceiling,
@@ -110,12 +110,12 @@ impl Walk<'_> {
             self.wall::<DEPTH>(seen, front, seen.face.middle, hung_from);
         }
         self.below(seen, below);
-        self.openings.close(seen.first, seen.end);
-        self.silhouette(seen, None, None, true);
+        self.clip.close(seen.first, seen.end);
+        self.drawseg(seen, None, None, true);
     }
 
     /// A line with a sector on its other side.
-    fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, back: &Look) {
+    fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorSurfaces, back: &SectorSurfaces) {
         let face = seen.face;
         let shut = back.ceiling <= front.floor || back.floor >= front.ceiling || back.floor >= back.ceiling;
         // Between two skies there is no wall: the sky goes on, down to the floor at most.
@@ -125,7 +125,7 @@ impl Walk<'_> {
         let other_texture = front.ceiling_texture != back.ceiling_texture;
         if shut || ceiling != back.ceiling || other_texture || (other_light && !both_sky) {
             let wall = (back.ceiling < ceiling && !both_sky).then(|| self.edge(seen, back.ceiling));
-            let part = Part { plane: self.ceiling_plane(front), edge: self.edge(seen, ceiling), wall };
+            let part = WallTier { plane: self.ceiling_plane(front), edge: self.edge(seen, ceiling), wall };
             if self.above(seen, part) {
                 let hung_from = match face.top {
                     Some(texture) if !face.upper_unpegged => back.ceiling + self.texture_height(texture),
@@ -136,7 +136,7 @@ impl Walk<'_> {
         }
         if shut || front.floor != back.floor || front.floor_texture != back.floor_texture || other_light {
             let wall = (back.floor > front.floor).then(|| self.edge(seen, back.floor));
-            let part = Part { plane: self.floor_plane(front), edge: self.edge(seen, front.floor), wall };
+            let part = WallTier { plane: self.floor_plane(front), edge: self.edge(seen, front.floor), wall };
             if self.below(seen, part) {
                 let hung_from = if face.lower_unpegged { front.ceiling.max(back.ceiling) } else { back.floor };
                 self.wall::<DEPTH>(seen, front, face.bottom, hung_from);
@@ -146,68 +146,68 @@ impl Walk<'_> {
         let below = if front.floor > back.floor { Some(front.floor) } else { (back.floor > eye).then_some(Fixed::MAX) };
         let above = if ceiling < back.ceiling { Some(ceiling) } else { (back.ceiling < eye && !both_sky).then_some(Fixed::MIN) };
         if shut {
-            self.openings.close(seen.first, seen.end);
+            self.clip.close(seen.first, seen.end);
         }
         if shut || below.is_some() || above.is_some() || seen.seg.masked {
-            self.silhouette(seen, below, above, shut);
+            self.drawseg(seen, below, above, shut);
         }
     }
 
-    /// Ends the ceiling at the seg and narrows the columns from above. Returns whether any of the part's wall is to be
+    /// Ends the ceiling at the seg and clips the columns from above. Returns whether any of the part's wall is to be
     /// seen; its rows are then in the scratch.
-    fn above(&mut self, seen: &SeenSeg, part: Part) -> bool {
+    fn above(&mut self, seen: &SeenSeg, part: WallTier) -> bool {
         match (part.plane, part.wall) {
-            (Some(plane), None) => self.narrow::<false, true, false>(seen, plane, part.edge, part.edge),
-            (Some(plane), Some(wall)) => self.narrow::<false, true, true>(seen, plane, part.edge, wall),
-            (None, Some(wall)) => self.narrow::<false, false, true>(seen, 0, part.edge, wall),
+            (Some(plane), None) => self.clip_columns::<false, true, false>(seen, plane, part.edge, part.edge),
+            (Some(plane), Some(wall)) => self.clip_columns::<false, true, true>(seen, plane, part.edge, wall),
+            (None, Some(wall)) => self.clip_columns::<false, false, true>(seen, 0, part.edge, wall),
             (None, None) => false,
         }
     }
 
-    /// Ends the floor at the seg and narrows the columns from below, as [`Walk::above`] does.
-    fn below(&mut self, seen: &SeenSeg, part: Part) -> bool {
+    /// Ends the floor at the seg and clips the columns from below, as [`WallPass::above`] does.
+    fn below(&mut self, seen: &SeenSeg, part: WallTier) -> bool {
         match (part.plane, part.wall) {
-            (Some(plane), None) => self.narrow::<true, true, false>(seen, plane, part.edge, part.edge),
-            (Some(plane), Some(wall)) => self.narrow::<true, true, true>(seen, plane, part.edge, wall),
-            (None, Some(wall)) => self.narrow::<true, false, true>(seen, 0, part.edge, wall),
+            (Some(plane), None) => self.clip_columns::<true, true, false>(seen, plane, part.edge, part.edge),
+            (Some(plane), Some(wall)) => self.clip_columns::<true, true, true>(seen, plane, part.edge, wall),
+            (None, Some(wall)) => self.clip_columns::<true, false, true>(seen, 0, part.edge, wall),
             (None, None) => false,
         }
     }
 
     /// The plane takes the rows up to `edge`, the wall those from there to `wall`, and what is left stays open.
     #[inline]
-    fn narrow<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+    fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
         &mut self,
         seen: &SeenSeg,
         plane: u16,
         edge: Edge,
         wall: Edge,
     ) -> bool {
-        let WalkScratch { upper, lower, .. } = &mut *self.scratch;
-        let mut lists = Narrowing { view: self.view, openings: self.openings, planes: self.planes, wall: [upper, lower] };
-        narrow::<FLOOR, PLANE, WALL>(self.simd, &mut lists, seen.first..seen.end, plane, [edge, wall])
+        let WallScratch { upper, lower, .. } = &mut *self.scratch;
+        let mut lists = ClipLists { view: self.view, clip: self.clip, planes: self.planes, wall: [upper, lower] };
+        clip_columns::<FLOOR, PLANE, WALL>(self.simd, &mut lists, seen.first..seen.end, plane, [edge, wall])
     }
 
     /// The plane of a sector's ceiling, if the eye sees it.
-    fn ceiling_plane(&mut self, sector: &Look) -> Option<u16> {
+    fn ceiling_plane(&mut self, sector: &SectorSurfaces) -> Option<u16> {
         if self.is_sky(sector.ceiling_texture) {
             return Some(self.sky_plane(sector.ceiling_texture));
         }
-        let key = PlaneKey { height: sector.ceiling, texture: sector.ceiling_texture, light: sector.light, sky: false };
+        let key = VisPlaneKey { height: sector.ceiling, texture: sector.ceiling_texture, light: sector.light, sky: false };
         (i64::from(sector.ceiling.0) > self.camera.z).then(|| self.planes.find(key))
     }
 
     /// The plane of a sector's floor, if the eye sees it.
-    fn floor_plane(&mut self, sector: &Look) -> Option<u16> {
+    fn floor_plane(&mut self, sector: &SectorSurfaces) -> Option<u16> {
         if self.is_sky(sector.floor_texture) {
             return Some(self.sky_plane(sector.floor_texture));
         }
-        let key = PlaneKey { height: sector.floor, texture: sector.floor_texture, light: sector.light, sky: false };
+        let key = VisPlaneKey { height: sector.floor, texture: sector.floor_texture, light: sector.light, sky: false };
         (i64::from(sector.floor.0) < self.camera.z).then(|| self.planes.find(key))
     }
 
     fn sky_plane(&mut self, texture: TextureId) -> u16 {
-        self.planes.find(PlaneKey { height: Fixed::ZERO, texture, light: 0, sky: true })
+        self.planes.find(VisPlaneKey { height: Fixed::ZERO, texture, light: 0, sky: true })
     }
 
     fn edge(&self, seen: &SeenSeg, height: Fixed) -> Edge {
@@ -215,7 +215,7 @@ impl Walk<'_> {
     }
 
     /// Draws the wall between the upper and the lower scratch.
-    fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &Look, texture: Option<TextureId>, hung_from: Fixed) {
+    fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorSurfaces, texture: Option<TextureId>, hung_from: Fixed) {
         let (first, end, picture) = (seen.first, seen.end, self.picture(texture));
         let light = Light::new(self.camera, i32::from(front.light) + seen.face.contrast);
         let shader = WallShader {
@@ -238,7 +238,7 @@ impl Walk<'_> {
         } else {
             shade::draw::<DEPTH>(&shader, self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
         }
-        if DEPTH && self.depths.by_fours() {
+        if DEPTH && self.depths.by_quads() {
             let depth =
                 |x: usize| shader.depths.wall(seen.line.distance_at(i64::from(self.view.columns[x])), shader.picture.height);
             quads::draw_below(self.columns, first, &tops[..end - first], &bottoms[..end - first], depth);
@@ -250,7 +250,7 @@ impl Walk<'_> {
 
     /// Whether columns of walls are listed and drawn together.
     fn batches_walls(&self) -> bool {
-        batch::is_used(self.simd) && self.columns.are_blocks() && !self.depths.by_fours()
+        batch::is_used(self.simd) && self.columns.are_blocks() && !self.depths.by_quads()
     }
 
     /// Draws the walls that wait for it.
@@ -262,8 +262,8 @@ impl Walk<'_> {
         }
     }
 
-    fn silhouette(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {
-        let silhouette = Silhouette {
+    fn drawseg(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {
+        let drawseg = DrawSeg {
             first: seen.first,
             end: seen.end,
             base_ends: seen.base_ends,
@@ -277,7 +277,7 @@ impl Walk<'_> {
             masked: !solid && seen.seg.masked,
             rows: 0,
         };
-        self.silhouettes.add(silhouette, &self.openings.top[seen.first..], &self.openings.bottom[seen.first..]);
+        self.drawsegs.add(drawseg, &self.clip.top[seen.first..], &self.clip.bottom[seen.first..]);
     }
 
     fn is_sky(&self, texture: TextureId) -> bool {

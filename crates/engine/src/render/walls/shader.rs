@@ -1,26 +1,26 @@
 //! A part of a wall that one texture covers, and what one of its columns shows.
 
-use crate::render::textures::local_palette::OwnColours;
-use crate::render::textures::wall::WallPicture;
+use crate::render::textures::local_palette::LocalPalette;
+use crate::render::textures::wall::WallTexture;
 use crate::render::view::camera::Camera;
-use crate::render::view::depth::Depths;
+use crate::render::view::depth::DepthEncoding;
 use crate::render::view::light::Light;
-use crate::render::view::line::{SeenLine, TextureLine};
+use crate::render::view::line::{ProjectedLine, TextureLine};
 use crate::render::view::tables::View;
 
 /// A part of a wall that one texture covers.
 pub(crate) struct WallShader<'a> {
     pub camera: &'a Camera,
     pub view: &'a View,
-    pub depths: Depths,
+    pub depths: DepthEncoding,
     pub tables: &'a [[u8; 256]; 32],
     /// For texture positions.
-    pub line: &'a SeenLine,
+    pub line: &'a ProjectedLine,
     /// For the light.
-    pub ends: &'a SeenLine,
+    pub ends: &'a ProjectedLine,
     pub texture: TextureLine,
-    pub picture: &'a WallPicture,
-    pub own: &'a OwnColours,
+    pub picture: &'a WallTexture,
+    pub own: &'a LocalPalette,
     pub light: Light,
     /// Height of the texture's top row, relative to the eye, 16.16.
     pub hung_from: i64,

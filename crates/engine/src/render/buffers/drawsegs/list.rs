@@ -2,13 +2,13 @@
 
 use crate::math::Fixed;
 use crate::render::blocks::{COLUMN_BLOCK, padded};
-use crate::render::buffers::drawsegs::overlap::{self, reaches::Reaches};
-use crate::render::view::line::SeenLine;
+use crate::render::buffers::drawsegs::overlap::{self, reaches::DrawSegBounds};
+use crate::render::view::line::ProjectedLine;
 use crate::simd::Simd;
 
 /// A seg that hides part of what is behind it, or that has a masked texture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Silhouette {
+pub(crate) struct DrawSeg {
     /// First frame column.
     pub first: usize,
     /// One past the last.
@@ -16,9 +16,9 @@ pub(crate) struct Silhouette {
     /// First base column and one past the last of the whole seg.
     pub base_ends: [i64; 2],
     /// Its line on the screen.
-    pub line: SeenLine,
+    pub line: ProjectedLine,
     /// The same as drawn between the whole columns of its ends.
-    pub ends: SeenLine,
+    pub ends: ProjectedLine,
     /// Index of the seg.
     pub seg: u32,
     /// Inverse distances of the farther and the nearer end.
@@ -35,27 +35,27 @@ pub(crate) struct Silhouette {
     pub rows: usize,
 }
 
-/// The silhouettes of a frame, near to far as the walk found them.
+/// The drawsegs of a frame, near to far as the walk found them.
 #[derive(Debug, Default)]
-pub(crate) struct Silhouettes {
-    pub list: Vec<Silhouette>,
+pub(crate) struct DrawSegs {
+    pub list: Vec<DrawSeg>,
     /// As many.
-    reaches: Reaches,
-    /// Those that the sprite at hand has to do with; see [`Silhouettes::meet`].
+    reaches: DrawSegBounds,
+    /// Those that the sprite at hand has to do with; see [`DrawSegs::meet`].
     met: Vec<u32>,
     /// Those with a masked texture.
     masked: Vec<u32>,
-    /// First open rows, all silhouettes one after another; there is room for more than are used.
+    /// First open rows, all drawsegs one after another; there is room for more than are used.
     pub tops: Vec<i16>,
     /// One past the last open rows.
     pub bottoms: Vec<i16>,
     /// How many rows are used.
     used: usize,
-    /// Columns whose masked texture has been drawn, as far as the last masked silhouette.
+    /// Columns whose masked texture has been drawn, as far as the last masked drawseg.
     pub drawn: Vec<bool>,
 }
 
-impl Silhouettes {
+impl DrawSegs {
     /// Forgets the last frame.
     pub fn reset(&mut self) {
         self.list.clear();
@@ -65,11 +65,11 @@ impl Silhouettes {
         self.drawn.clear();
     }
 
-    /// Adds a silhouette with the rows that are open in its columns: `tops` and `bottoms` begin there and are padded, so
+    /// Adds a drawseg with the rows that are open in its columns: `tops` and `bottoms` begin there and are padded, so
     /// that few columns are copied without a call.
-    pub fn add(&mut self, mut silhouette: Silhouette, tops: &[i16], bottoms: &[i16]) {
-        let (rows, count) = (self.used, silhouette.end - silhouette.first);
-        silhouette.rows = rows;
+    pub fn add(&mut self, mut drawseg: DrawSeg, tops: &[i16], bottoms: &[i16]) {
+        let (rows, count) = (self.used, drawseg.end - drawseg.first);
+        drawseg.rows = rows;
         self.used += count;
         if self.tops.len() < padded(self.used) {
             self.tops.resize(2 * padded(self.used), 0);
@@ -79,28 +79,28 @@ impl Silhouettes {
             copy_block(&mut self.tops[rows + from..], &tops[from..]);
             copy_block(&mut self.bottoms[rows + from..], &bottoms[from..]);
         }
-        if silhouette.masked {
+        if drawseg.masked {
             self.drawn.resize(self.used, false);
             self.masked.push(self.list.len() as u32);
         }
-        let near = if silhouette.masked { i64::MAX } else { silhouette.inverses[1] };
-        self.reaches.push(silhouette.first, silhouette.end, near);
-        self.list.push(silhouette);
+        let near = if drawseg.masked { i64::MAX } else { drawseg.inverses[1] };
+        self.reaches.push(drawseg.first, drawseg.end, near);
+        self.list.push(drawseg);
     }
 
-    /// Lists the silhouettes that share a column with a sprite of the columns `first..end`, and stand before it in part or have a
-    /// masked texture; `inverse` is its inverse distance. Gives how many there are; they are [`Silhouettes::met`].
+    /// Lists the drawsegs that share a column with a sprite of the columns `first..end`, and stand before it in part or have a
+    /// masked texture; `inverse` is its inverse distance. Gives how many there are; they are [`DrawSegs::met`].
     pub fn meet(&mut self, simd: Simd, first: usize, end: usize, inverse: i64) -> usize {
         self.met.resize(self.reaches.nears.len(), 0);
         overlap::list(&self.reaches, simd, [first as u32, end as u32], inverse, &mut self.met)
     }
 
-    /// Indices of the silhouettes with a masked texture, near to far.
+    /// Indices of the drawsegs with a masked texture, near to far.
     pub fn masked(&self) -> &[u32] {
         &self.masked
     }
 
-    /// Index of the silhouette that was met at place `at`, near to far.
+    /// Index of the drawseg that was met at place `at`, near to far.
     pub fn met(&self, at: usize) -> usize {
         self.met[at] as usize
     }

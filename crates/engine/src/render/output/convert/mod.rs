@@ -6,7 +6,7 @@ mod scalar;
 use crate::render::colour::palette::{Colours, luminance};
 use crate::simd::{Simd, dispatch};
 
-/// Looks every index up.
+/// SurfaceCache every index up.
 fn look_up(simd: Simd, table: &[u8; 256], indices: &[u8], out: &mut [u8]) {
     let done = dispatch!(simd; avx512 => avx512::look_up(table, indices, out), scalar => 0);
     for (to, &index) in out[done..].iter_mut().zip(&indices[done..]) {
@@ -40,7 +40,7 @@ fn colour_of<const N: usize>(colours: &[[u8; 3]; N], class: u16) -> [u8; 3] {
 
 /// The value of each class: 255 for `full`, 1 for `ones`, 0 for the others below 8, `values` for the rest; those beyond share its last one.
 ///
-/// Most of a picture is surfaces and the weapon, which are told a block at a time.
+/// Most of a picture is surfaces and the weapon, which are converted a block at a time.
 pub(crate) fn classes_one_byte<const N: usize>(values: &[u8; N], full: u16, ones: [u16; 2], classes: &[u16], out: &mut [u8]) {
     const BLOCK: usize = 32;
     for (to, classes) in out.chunks_mut(BLOCK).zip(classes.chunks(BLOCK)) {

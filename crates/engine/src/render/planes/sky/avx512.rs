@@ -2,12 +2,12 @@
 
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
-use crate::render::buffers::visplane::Plane;
+use crate::render::buffers::visplane::VisPlane;
 use crate::render::planes::sky::shader::SkyShader;
 use crate::simd::lookup::avx512::{load, load_table, look_up_block};
 use std::arch::x86_64::*;
 
-/// Highest picture: as many rows as a byte tells apart.
+/// Highest picture: as many rows as a byte distinguishes.
 const MOST_TEXELS: usize = 256;
 
 /// Whether the picture's columns fit a table.
@@ -17,7 +17,7 @@ pub(crate) fn fits(shader: &SkyShader) -> bool {
 
 /// Draws a plane of the sky. `starts` are where the texels of each column begin, `texel_rows` the texel of each row.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw(shader: &SkyShader, columns: &mut Columns, plane: &Plane, starts: &[u32], texel_rows: &[u16]) {
+pub(crate) fn draw(shader: &SkyShader, columns: &mut Columns, plane: &VisPlane, starts: &[u32], texel_rows: &[u16]) {
     let table = load_table(shader.table);
     for (block, texel_rows) in texel_rows.chunks(ROW_BLOCK).enumerate() {
         let mut bytes = [0; ROW_BLOCK];

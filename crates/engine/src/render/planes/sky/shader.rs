@@ -1,6 +1,6 @@
 //! The sky as one frame sees it: a cylinder at infinite distance.
 
-use crate::render::textures::wall::WallPicture;
+use crate::render::textures::wall::WallTexture;
 use crate::render::view::camera::Camera;
 use crate::render::view::tables::View;
 
@@ -26,5 +26,5 @@ pub(crate) struct SkyShader<'a> {
     pub camera: &'a Camera,
     pub view: &'a View,
     pub table: &'a [u8; 256],
-    pub picture: &'a WallPicture,
+    pub picture: &'a WallTexture,
 }

@@ -1,12 +1,12 @@
 //! Spans row by row with vectors of 32 bytes.
 
-use crate::render::buffers::visplane::{Plane, SPAN_BLOCK, Span};
+use crate::render::buffers::visplane::{VisPlane, SPAN_BLOCK, Span};
 use crate::render::planes::spans::rows::{RowSpans, block};
 use std::arch::x86_64::*;
 
 /// With vectors of 32 bytes.
 #[target_feature(enable = "avx2")]
-pub(crate) fn list(plane: &Plane, spans: &mut Vec<Span>) -> usize {
+pub(crate) fn list(plane: &VisPlane, spans: &mut Vec<Span>) -> usize {
     let (first_row, end_row) = rows(plane);
     let mut list = RowSpans { spans, count: 0, row_start: 0, row: 0 };
     for row in first_row..end_row {
@@ -55,7 +55,7 @@ unsafe fn load_avx2(list: *const i16) -> (__m256i, __m256i) {
 /// The first row of a plane, and one past the last; not below the first where the plane has no row.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(crate) fn rows(plane: &Plane) -> (i16, i16) {
+pub(crate) fn rows(plane: &VisPlane) -> (i16, i16) {
     let none = _mm256_set1_epi16(i16::MAX);
     let (mut first, mut end) = (none, _mm256_setzero_si256());
     let lists = plane.top[plane.first..].chunks_exact(16).zip(plane.bottom[plane.first..].chunks_exact(16));

@@ -1,13 +1,13 @@
 //! Spans row by row with vectors of 64 bytes: which of 64 columns have a row is one mask.
 
-use crate::render::buffers::visplane::{Plane, SPAN_BLOCK, Span};
+use crate::render::buffers::visplane::{VisPlane, SPAN_BLOCK, Span};
 use crate::render::planes::spans::avx2::rows;
 use crate::render::planes::spans::rows::{RowSpans, block};
 use std::arch::x86_64::*;
 
 /// With vectors of 64 bytes.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-pub(crate) fn list(plane: &Plane, spans: &mut Vec<Span>) -> usize {
+pub(crate) fn list(plane: &VisPlane, spans: &mut Vec<Span>) -> usize {
     let (first_row, end_row) = rows(plane);
     let mut list = RowSpans { spans, count: 0, row_start: 0, row: 0 };
     for row in first_row..end_row {

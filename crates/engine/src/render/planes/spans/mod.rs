@@ -4,12 +4,12 @@ crate::simd::kernel_files!(avx2, avx512);
 pub mod rows;
 mod scalar;
 
-use crate::render::buffers::visplane::{Plane, Span};
+use crate::render::buffers::visplane::{Span, VisPlane};
 use crate::simd::{Simd, dispatch};
 
 /// Lists every run of pixels of the plane in `spans`, in any order, and returns how many there are. `starts` is scratch of one entry
 /// more than the frame has rows.
-pub(crate) fn list(plane: &Plane, simd: Simd, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
+pub(crate) fn list(plane: &VisPlane, simd: Simd, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
     dispatch!(simd;
         avx512 => avx512::list(plane, spans),
         avx2 => avx2::list(plane, spans),
@@ -22,13 +22,13 @@ mod tests {
     use super::*;
     use crate::map::TextureId;
     use crate::math::Fixed;
-    use crate::render::buffers::visplane::PlaneKey;
-    use crate::render::buffers::visplane::Planes;
+    use crate::render::buffers::visplane::VisPlaneKey;
+    use crate::render::buffers::visplane::VisPlanes;
 
-    const KEY: PlaneKey = PlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
+    const KEY: VisPlaneKey = VisPlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
 
     fn covered(simd: Simd, columns: &[(i16, i16)]) -> Vec<u8> {
-        let mut planes = Planes::default();
+        let mut planes = VisPlanes::default();
         planes.reset(columns.len());
         let index = planes.find(KEY);
         let of_plane = |&(top, bottom): &(i16, i16)| top <= bottom;
@@ -70,12 +70,12 @@ mod tests {
 
     #[test]
     fn the_newest_plane_of_a_key_is_found() {
-        let mut planes = Planes::default();
+        let mut planes = VisPlanes::default();
         planes.reset(4);
         let first = planes.find(KEY);
-        let second = planes.start_another(first);
+        let second = planes.split(first);
         assert_ne!(first, second);
         assert_eq!(planes.find(KEY), second);
-        assert_ne!(planes.find(PlaneKey { light: 1, ..KEY }), second);
+        assert_ne!(planes.find(VisPlaneKey { light: 1, ..KEY }), second);
     }
 }

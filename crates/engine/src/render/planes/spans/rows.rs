@@ -1,11 +1,11 @@
 //! Spans as vector code finds them: row by row, the columns of a row as a mask of bits.
 
-use crate::render::buffers::visplane::{Plane, SPAN_BLOCK, Span};
+use crate::render::buffers::visplane::{SPAN_BLOCK, Span, VisPlane};
 use std::ops::Range;
 
 /// The rows of a block of columns.
 #[inline(always)]
-pub(crate) fn block(plane: &Plane, from: usize) -> (&[i16; SPAN_BLOCK], &[i16; SPAN_BLOCK]) {
+pub(crate) fn block(plane: &VisPlane, from: usize) -> (&[i16; SPAN_BLOCK], &[i16; SPAN_BLOCK]) {
     let [top, bottom] = [&plane.top, &plane.bottom].map(|list| list[from..].first_chunk().expect("lists are padded"));
     (top, bottom)
 }
@@ -31,7 +31,7 @@ pub(crate) struct RowSpans<'a> {
 
 impl RowSpans<'_> {
     #[inline(always)]
-    pub fn begin(&mut self, row: i16, plane: &Plane) {
+    pub fn begin(&mut self, row: i16, plane: &VisPlane) {
         (self.row, self.row_start) = (row as u16, self.count);
         // Every second column may be a span of its own.
         let most = self.count + (plane.end - plane.first + SPAN_BLOCK) / 2 + 1;

@@ -1,10 +1,10 @@
 //! Spans column by column.
 
-use crate::render::buffers::visplane::{NO_ROW, Plane, Span};
+use crate::render::buffers::visplane::{NO_ROW, Span, VisPlane};
 
-/// From column to column an end of the run of rows stays or moves by one, and which cannot be foretold: the first
+/// From column to column an end of the run of rows stays or moves by one, and which is unpredictable: the first
 /// row that comes or goes is handled without a branch, by writing it in any case, and more of them by loops.
-pub(crate) fn list(plane: &Plane, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
+pub(crate) fn list(plane: &VisPlane, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
     let nowhere = starts.len() - 1;
     let mut count = 0;
     // The column behind the last one has no rows, which ends the last spans.

@@ -2,14 +2,14 @@
 //! mask or two, and what is the same all along a row is worked out for eight rows side by side.
 
 use crate::render::buffers::frame::Frame;
-use crate::render::buffers::visplane::{Plane, SPAN_BLOCK};
+use crate::render::buffers::visplane::{VisPlane, SPAN_BLOCK};
 use crate::render::planes::shader::PlaneShader;
 use crate::render::planes::row::data::RowWalk;
 use crate::render::planes::row::avx512::{self, ROW_VECTOR};
 use crate::render::planes::spans::avx2::rows;
 use crate::render::planes::spans::avx512::load_avx512;
 use crate::render::planes::spans::rows::next_run;
-use crate::render::textures::flat::FlatPicture;
+use crate::render::textures::flat::FlatTexture;
 use crate::render::view::light_avx512::tables;
 use crate::simd::first_of_eight;
 use crate::simd::lookup::avx512::{load, load_table, look_up_block};
@@ -29,23 +29,23 @@ struct EightRows {
 
 /// Draws a plane, if it is small enough; returns whether it was.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(shader: &PlaneShader, frame: &mut Frame, flat: &FlatPicture, plane: &Plane) -> bool {
+pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(shader: &PlaneShader, frame: &mut Frame, flat: &FlatTexture, plane: &VisPlane) -> bool {
     let (first, end) = rows(plane);
     let blocks = (plane.end - plane.first).div_ceil(SPAN_BLOCK);
     if end > LAST_BYTE || blocks > 2 {
         return false;
     }
     match (flat, blocks) {
-        (FlatPicture::Small(texels), 1) => {
+        (FlatTexture::Small(texels), 1) => {
             draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 1>(shader, frame, texels, plane, first, end)
         }
-        (FlatPicture::Small(texels), _) => {
+        (FlatTexture::Small(texels), _) => {
             draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 2>(shader, frame, texels, plane, first, end)
         }
-        (FlatPicture::Large(texels), 1) => {
+        (FlatTexture::Large(texels), 1) => {
             draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 1>(shader, frame, texels, plane, first, end)
         }
-        (FlatPicture::Large(texels), _) => {
+        (FlatTexture::Large(texels), _) => {
             draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 2>(shader, frame, texels, plane, first, end)
         }
     }
@@ -58,7 +58,7 @@ fn draw_rows<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS
     shader: &PlaneShader,
     frame: &mut Frame,
     texels: &[u8; TEXELS],
-    plane: &Plane,
+    plane: &VisPlane,
     first: i16,
     end: i16,
 ) {
@@ -83,7 +83,7 @@ fn draw_rows<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS
                 let mut mask = _mm512_mask_cmpgt_epu8_mask(_mm512_cmple_epu8_mask(*top, here), *bottom, here);
                 *whole = mask;
                 while mask != 0 {
-                    // Whole vectors, runs or not: how many runs there are and how long they are cannot be foretold.
+                    // Whole vectors, runs or not: how many runs there are and how long they are is unpredictable.
                     let first = mask.trailing_zeros() as usize;
                     let columns = from_left[block * SPAN_BLOCK + first..].first_chunk().expect("the list is padded");
                     let unlit = unlit[first..].first_chunk_mut().expect("a block and a vector");
@@ -94,7 +94,7 @@ fn draw_rows<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS
                     let (mut mask, left) = (*whole, (from + i) * frame.width + plane.first + block * SPAN_BLOCK);
                     while mask != 0 {
                         let run = next_run(&mut mask);
-                        shader.tell::<DEPTH, CLASS>(frame, eight.distances[i], left + run.start..left + run.end);
+                        shader.write::<DEPTH, CLASS>(frame, eight.distances[i], left + run.start..left + run.end);
                     }
                 }
             }

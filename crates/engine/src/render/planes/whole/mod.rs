@@ -2,9 +2,9 @@
 
 crate::simd::kernel_files!(avx512);
 use crate::render::buffers::frame::Frame;
-use crate::render::buffers::visplane::Plane;
+use crate::render::buffers::visplane::VisPlane;
 use crate::render::planes::shader::PlaneShader;
-use crate::render::textures::flat::FlatPicture;
+use crate::render::textures::flat::FlatTexture;
 use crate::simd::{Simd, dispatch};
 
 /// Draws a plane, if it can be drawn as a whole; returns whether it was. What is left is drawn span by span.
@@ -12,8 +12,8 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
     shader: &PlaneShader,
     simd: Simd,
     frame: &mut Frame,
-    flat: &FlatPicture,
-    plane: &Plane,
+    flat: &FlatTexture,
+    plane: &VisPlane,
 ) -> bool {
     dispatch!(simd; avx512 => avx512::draw::<DEPTH, CLASS>(shader, frame, flat, plane), scalar => {
         let _ = (shader, frame, flat, plane);

@@ -1,6 +1,6 @@
 //! 32 rows of a column of a midtexture 64 or 128 texels high, with vectors of 32 bytes.
 
-use crate::render::sprites::midcolumn::data::MaskedColumn;
+use crate::render::sprites::midcolumn::data::MidColumn;
 use crate::simd::lookup::avx2::{GROUP, bytes_of, look_up};
 use std::arch::x86_64::*;
 use std::ops::Range;
@@ -10,7 +10,7 @@ const LAST: i64 = i8::MAX as i64;
 
 /// Whether all numbers of a column fit, of which base rows up to `last_row` are asked: doubles hold its texels' positions exactly.
 #[inline]
-pub(crate) fn fits(column: &MaskedColumn, last_row: u32) -> bool {
+pub(crate) fn fits(column: &MidColumn, last_row: u32) -> bool {
     let positions = (column.at.unsigned_abs() | column.step.unsigned_abs() << (LAST.ilog2() + 1)) >> (f64::MANTISSA_DIGITS - 1);
     matches!(column.texels.len(), 64 | 128) && i64::from(last_row) <= LAST && positions == 0
 }
@@ -18,7 +18,7 @@ pub(crate) fn fits(column: &MaskedColumn, last_row: u32) -> bool {
 /// Gives the frame rows of `rows` that show a texel and their colours to `put`.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-pub(crate) fn draw(column: &MaskedColumn, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {
+pub(crate) fn draw(column: &MidColumn, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {
     let mut row = rows.start;
     while row < rows.end {
         let (colours, mut shown) = block(column, base_rows[row..].first_chunk().expect("lists by row are padded"));
@@ -35,13 +35,13 @@ pub(crate) fn draw(column: &MaskedColumn, base_rows: &[u32], rows: Range<usize>,
 /// The colours of 32 base rows, and a bit for each that shows.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-fn block(column: &MaskedColumn, base_rows: &[u32; GROUP]) -> ([u8; GROUP], u32) {
+fn block(column: &MidColumn, base_rows: &[u32; GROUP]) -> ([u8; GROUP], u32) {
     let (eights, _) = base_rows.as_chunks::<8>();
     let rows = |i: usize| texel_rows(column, &eights[i]);
     let texel_rows = bytes_of([rows(0), rows(1), rows(2), rows(3)]);
-    let texels = match column.own_texels.first_chunk::<128>() {
+    let texels = match column.local_texels.first_chunk::<128>() {
         Some(texels) => look_up(texels, texel_rows),
-        None => look_up(column.own_texels.first_chunk::<64>().expect("64 or 128 texels"), texel_rows),
+        None => look_up(column.local_texels.first_chunk::<64>().expect("64 or 128 texels"), texel_rows),
     };
     let lit = match column.lit.len() {
         16 => look_up::<16>(column.lit.first_chunk().expect("as many"), texels),
@@ -60,7 +60,7 @@ fn block(column: &MaskedColumn, base_rows: &[u32; GROUP]) -> ([u8; GROUP], u32) 
 /// The texture rows of eight base rows.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-fn texel_rows(column: &MaskedColumn, base_rows: &[u32; 8]) -> __m256i {
+fn texel_rows(column: &MidColumn, base_rows: &[u32; 8]) -> __m256i {
     let (fours, _) = base_rows.as_chunks::<4>();
     let four = |i: usize| {
         const WHOLE: f64 = 1.0 / (1u64 << 32) as f64;
@@ -79,7 +79,7 @@ fn texel_rows(column: &MaskedColumn, base_rows: &[u32; 8]) -> __m256i {
 /// A bit for each of 32 base rows: whether its texel is in a run that begins there or above.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn shown(column: &MaskedColumn, texel_rows: __m256i, base_rows: __m256i) -> u32 {
+fn shown(column: &MidColumn, texel_rows: __m256i, base_rows: __m256i) -> u32 {
     let splat = |row: i64| _mm256_set1_epi8(row.clamp(-1, LAST) as i8);
     let mut shown = _mm256_setzero_si256();
     for &run in column.runs {

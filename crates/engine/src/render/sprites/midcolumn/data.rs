@@ -1,26 +1,26 @@
 //! A column of a midtexture on its way to the frame.
 
-use crate::render::sprites::posts::Hung;
-use crate::render::textures::midtexture::Run;
+use crate::render::sprites::posts::PostProjection;
+use crate::render::textures::midtexture::Post;
 
 /// A column on its way to the frame.
-pub(crate) struct MaskedColumn<'a> {
+pub(crate) struct MidColumn<'a> {
     /// Palette indices in the low bytes.
     pub texels: &'a [u16],
     pub table: &'a [u8; 256],
     /// The same by the picture's own colours.
-    pub own_texels: &'a [u8],
+    pub local_texels: &'a [u8],
     /// These colours as they are lit.
     pub lit: &'a [u8],
     /// Texture row at base row 0 and its change a base row, 32 fractional bits.
     pub at: i64,
     pub step: i64,
     /// From top to bottom.
-    pub runs: &'a [Run],
-    pub hung: Hung,
+    pub runs: &'a [Post],
+    pub hung: PostProjection,
 }
 
-impl MaskedColumn<'_> {
+impl MidColumn<'_> {
     /// Start of the run that a base row shows.
     pub fn run_at(&self, base_row: u32) -> u16 {
         let texel = self.texel_at(base_row) as u16;

@@ -5,12 +5,12 @@ pub mod data;
 mod scalar;
 
 use crate::simd::{Simd, dispatch};
-use data::MaskedColumn;
+use data::MidColumn;
 use std::ops::Range;
 
 /// Gives the frame rows of `rows` that show a texel and their colours to `put`; `base_rows` are the base rows, padded.
 #[inline(always)]
-pub(crate) fn draw(column: &MaskedColumn, simd: Simd, base_rows: &[u32], rows: Range<usize>, put: impl FnMut(usize, u8)) {
+pub(crate) fn draw(column: &MidColumn, simd: Simd, base_rows: &[u32], rows: Range<usize>, put: impl FnMut(usize, u8)) {
     dispatch!(simd;
         avx512 if !rows.is_empty() && avx2::fits(column, base_rows[rows.end - 1]) => avx2::draw(column, base_rows, rows, put),
         avx2 if !rows.is_empty() && avx2::fits(column, base_rows[rows.end - 1]) => avx2::draw(column, base_rows, rows, put),
@@ -23,10 +23,10 @@ mod tests {
     use super::*;
     use crate::math::Rng;
     use crate::render::blocks::ROW_PADDING;
-    use crate::render::sprites::posts::Hung;
-    use crate::render::textures::local_palette::OwnColours;
-    use crate::render::textures::midtexture::Run;
-    use crate::render::textures::midtexture::{is_opaque, runs_of};
+    use crate::render::sprites::posts::PostProjection;
+    use crate::render::textures::local_palette::LocalPalette;
+    use crate::render::textures::midtexture::Post;
+    use crate::render::textures::midtexture::{is_opaque, posts_of};
 
     #[test]
     fn all_ways_show_the_same_rows() {
@@ -36,17 +36,20 @@ mod tests {
             let height = [128, 72, 64, 33, 1, 200][round % 6];
             let length = [60u32, 100, 403][round / 6 % 3];
             let texels: Vec<u16> = (0..height).map(|_| rng.below(512) as u16).collect();
-            let runs: Vec<Run> = runs_of(texels.iter().map(is_opaque)).collect();
+            let runs: Vec<Post> = posts_of(texels.iter().map(is_opaque)).collect();
             let base_rows: Vec<u32> = (0..length.next_multiple_of(64) + ROW_PADDING as u32).map(|row| row * 5 / 3).collect();
             let step = i64::from(rng.between(1, 1 << 30)) << rng.below(4);
             let at = i64::from(rng.between(-100, 100)) << 32;
-            let hung =
-                Hung { horizon: i64::from(rng.between(-100, 200)) << 16, eye: at >> 16, scale: (1 << 32) / (step >> 16).max(3) };
+            let hung = PostProjection {
+                horizon: i64::from(rng.between(-100, 200)) << 16,
+                eye: at >> 16,
+                scale: (1 << 32) / (step >> 16).max(3),
+            };
             let pixels: Vec<u8> = texels.iter().map(|&texel| texel as u8 % [16, 64, 255][round / 18 % 3]).collect();
             let texels: Vec<u16> = texels.iter().zip(&pixels).map(|(&texel, &pixel)| texel & 0x100 | u16::from(pixel)).collect();
-            let own = OwnColours::new(&pixels, &[table]);
-            let (own_texels, lit) = (&own.texels[..], own.lit(0));
-            let column = MaskedColumn { texels: &texels, table: &table, own_texels, lit, at, step, runs: &runs, hung };
+            let own = LocalPalette::new(&pixels, &[table]);
+            let (local_texels, lit) = (&own.texels[..], own.lit(0));
+            let column = MidColumn { texels: &texels, table: &table, local_texels, lit, at, step, runs: &runs, hung };
             let (a, b) = (rng.below(length + 1) as usize, rng.below(length + 1) as usize);
             let shown = |simd: Simd| {
                 let mut list = Vec::new();

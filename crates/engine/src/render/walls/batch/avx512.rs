@@ -3,8 +3,8 @@
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
 use crate::render::textures::wall::MOST_TEXELS;
-use crate::render::textures::wall::WallPicture;
-use crate::render::view::depth::Depths;
+use crate::render::textures::wall::WallTexture;
+use crate::render::view::depth::DepthEncoding;
 use crate::render::walls::column::avx512::highest_bytes;
 use crate::render::walls::shade::avx512::{self, WallVectors};
 use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
@@ -47,7 +47,7 @@ fn add_block<const DEPTH: bool>(
 ) {
     let columns = shader.view.columns[first..].first_chunk().expect("the list is padded");
     let WallVectors { distance, u, table, at, step } = avx512::vectors(shader, slope, columns);
-    let WallPicture { width, height, .. } = *shader.picture;
+    let WallTexture { width, height, .. } = *shader.picture;
     let column = _mm256_and_si256(_mm512_cvtepi64_epi32(_mm512_srai_epi64(u, 16)), splat(width - 1));
     let texels = _mm256_add_epi32(splat(start), _mm256_mullo_epi32(column, splat(height)));
     let x = _mm256_add_epi32(splat(first as u32), _mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0));
@@ -75,7 +75,7 @@ pub(crate) fn draw<const DEPTH: bool>(
     rows: &[u32; ROW_BLOCK],
     texels: &[u8],
     tables: &[[u8; 256]; 32],
-    depths: Depths,
+    depths: DepthEncoding,
 ) {
     let count = batch.count;
     let (starts, lasts) = (&batch.texels[..count], &batch.last_texels[..count]);

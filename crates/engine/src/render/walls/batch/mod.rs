@@ -7,7 +7,7 @@ pub mod data;
 
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
-use crate::render::view::depth::Depths;
+use crate::render::view::depth::DepthEncoding;
 use crate::render::walls::shader::WallShader;
 use crate::simd::{Level, Simd, dispatch};
 use data::WallBatch;
@@ -44,7 +44,7 @@ pub(crate) fn draw<const DEPTH: bool>(
     rows: &[u32; ROW_BLOCK],
     texels: &[u8],
     tables: &[[u8; 256]; 32],
-    depths: Depths,
+    depths: DepthEncoding,
 ) {
     dispatch!(simd;
         avx512 => avx512::draw::<DEPTH>(batch, frame, rows, texels, tables, depths),

@@ -9,24 +9,24 @@ mod sixteen;
 
 use crate::render::view::line::Edge;
 use crate::simd::{Simd, dispatch};
-use pass::Narrowing;
+use pass::ClipLists;
 use std::ops::Range;
 
 /// In some columns the plane takes the rows up to the first edge, the wall those from there to the second one, and what is left
 /// stays open: from below if `FLOOR`, else from above. Where the plane has rows already, another one goes on. Returns whether any
 /// of the wall is to be seen.
 #[inline]
-pub(crate) fn narrow<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+pub(crate) fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
     simd: Simd,
-    lists: &mut Narrowing,
+    lists: &mut ClipLists,
     columns: Range<usize>,
     plane: u16,
     edges: [Edge; 2],
 ) -> bool {
     dispatch!(simd;
-        avx512 => sixteen::narrow_avx512::<FLOOR, PLANE, WALL>(lists, columns, plane, edges),
-        avx2 if edges.iter().all(Edge::is_exact) => sixteen::narrow_avx2::<FLOOR, PLANE, WALL>(lists, columns, plane, edges),
-        scalar => pass::narrow_by::<i16, FLOOR, PLANE, WALL>(lists, columns, plane, edges),
+        avx512 => sixteen::clip_avx512::<FLOOR, PLANE, WALL>(lists, columns, plane, edges),
+        avx2 if edges.iter().all(Edge::is_exact) => sixteen::clip_avx2::<FLOOR, PLANE, WALL>(lists, columns, plane, edges),
+        scalar => pass::clip_by::<i16, FLOOR, PLANE, WALL>(lists, columns, plane, edges),
     )
 }
 
@@ -36,26 +36,26 @@ mod tests {
     use crate::map::TextureId;
     use crate::math::{Fixed, Rng};
     use crate::render::blocks::{COLUMN_BLOCK, padded};
-    use crate::render::buffers::clip::Openings;
-    use crate::render::buffers::visplane::PlaneKey;
-    use crate::render::buffers::visplane::Planes;
+    use crate::render::buffers::clip::ColumnClip;
+    use crate::render::buffers::visplane::VisPlaneKey;
+    use crate::render::buffers::visplane::VisPlanes;
     use crate::render::view::size::FrameSize;
     use crate::render::view::tables::View;
 
-    const KEY: PlaneKey = PlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
+    const KEY: VisPlaneKey = VisPlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
 
-    /// What a frame's segs narrow, and the rows of a wall.
+    /// What a frame's segs clip_columns, and the rows of a wall.
     #[derive(Clone)]
     struct Lists {
-        openings: Openings,
-        planes: Planes,
+        clip: ColumnClip,
+        planes: VisPlanes,
         wall: [Vec<i16>; 2],
     }
 
     impl Lists {
         fn new(view: &View) -> Lists {
-            let mut lists = Lists { openings: Openings::default(), planes: Planes::default(), wall: [const { vec![] }; 2] };
-            lists.openings.reset(view.width(), view.view_rows);
+            let mut lists = Lists { clip: ColumnClip::default(), planes: VisPlanes::default(), wall: [const { vec![] }; 2] };
+            lists.clip.reset(view.width(), view.view_rows);
             lists.planes.reset(view.width());
             lists.wall = [const { vec![] }; 2].map(|_: Vec<i16>| vec![0; padded(view.width())]);
             lists
@@ -64,13 +64,13 @@ mod tests {
         /// All that is to be seen of them; `columns` are those of the wall.
         fn seen(&self, columns: &Range<usize>) -> impl PartialEq + std::fmt::Debug + use<> {
             let width = self.wall[0].len() - COLUMN_BLOCK;
-            let open: Vec<bool> = (0..width).map(|x| self.openings.any_open(x, x + 1)).collect();
-            let rows = [self.openings.top.clone(), self.openings.bottom.clone()];
+            let open: Vec<bool> = (0..width).map(|x| self.clip.any_open(x, x + 1)).collect();
+            let rows = [self.clip.top.clone(), self.clip.bottom.clone()];
             let planes: Vec<_> = self.planes.used().iter().map(|plane| (plane.top.clone(), plane.bottom.clone())).collect();
             (rows, open, self.wall.clone().map(|list| list[columns.clone()].to_vec()), planes)
         }
 
-        fn narrow<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+        fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
             &mut self,
             simd: Simd,
             view: &View,
@@ -79,8 +79,8 @@ mod tests {
         ) -> bool {
             let plane = if PLANE { self.planes.find(KEY) } else { 0 };
             let wall = self.wall.each_mut().map(|list| &mut list[..]);
-            let mut lists = Narrowing { view, openings: &mut self.openings, planes: &mut self.planes, wall };
-            narrow::<FLOOR, PLANE, WALL>(simd, &mut lists, columns, plane, edges)
+            let mut lists = ClipLists { view, clip: &mut self.clip, planes: &mut self.planes, wall };
+            clip_columns::<FLOOR, PLANE, WALL>(simd, &mut lists, columns, plane, edges)
         }
 
         /// What it means, a column at a time, where the plane has no rows yet.
@@ -90,7 +90,7 @@ mod tests {
             columns: Range<usize>,
             [edge, wall]: [Edge; 2],
         ) -> bool {
-            let (Openings { top: tops, bottom: bottoms, .. }, [uppers, lowers]) = (&mut self.openings, &mut self.wall);
+            let (ColumnClip { top: tops, bottom: bottoms, .. }, [uppers, lowers]) = (&mut self.clip, &mut self.wall);
             let (mut walled, mut closed) = (false, vec![]);
             for x in columns {
                 let frame_row = |edge: Edge| {
@@ -115,7 +115,7 @@ mod tests {
                     closed.push(x);
                 }
             }
-            closed.into_iter().for_each(|x| self.openings.close(x, x + 1));
+            closed.into_iter().for_each(|x| self.clip.close(x, x + 1));
             walled
         }
     }
@@ -125,10 +125,10 @@ mod tests {
         let mut lists = Lists::new(view);
         for x in 0..width {
             let (top, bottom) = (rng.between(0, rows / 2) as i16, rng.between(0, rows) as i16);
-            (lists.openings.top[x], lists.openings.bottom[x]) = (top, bottom);
+            (lists.clip.top[x], lists.clip.bottom[x]) = (top, bottom);
             // What is closed has no rows.
             if top >= bottom {
-                lists.openings.close(x, x + 1);
+                lists.clip.close(x, x + 1);
             }
         }
         let first = rng.below(width as u32) as usize;
@@ -144,7 +144,7 @@ mod tests {
         let walled = plain.narrow_plainly::<FLOOR, PLANE, WALL>(view, columns.clone(), edges);
         for simd in Simd::available() {
             let mut lists = lists.clone();
-            assert_eq!(lists.narrow::<FLOOR, PLANE, WALL>(simd, view, columns.clone(), edges), walled, "{simd:?}");
+            assert_eq!(lists.clip_columns::<FLOOR, PLANE, WALL>(simd, view, columns.clone(), edges), walled, "{simd:?}");
             assert_eq!(lists.seen(&columns), plain.seen(&columns), "{simd:?}");
         }
     }
@@ -174,10 +174,10 @@ mod tests {
             let plane = lists.planes.find(KEY);
             let [plane_top, plane_bottom] = lists.planes.columns(plane, 40, 41);
             (plane_top[0], plane_bottom[0]) = (3, 4);
-            assert!(!lists.narrow::<false, true, false>(simd, &view, 0..64, edges));
+            assert!(!lists.clip_columns::<false, true, false>(simd, &view, 0..64, edges));
             let [first, other] = lists.planes.used() else { panic!("{} planes", lists.planes.used().len()) };
             // Each column's rows are in one of both: the first one's as far as whole blocks go.
-            let row = lists.openings.top[0];
+            let row = lists.clip.top[0];
             let split = (0..=40).rev().find(|&x| x == 0 || first.bottom[x - 1] == row).unwrap();
             assert!((32..=40).contains(&split), "{split}");
             for x in 0..64 {

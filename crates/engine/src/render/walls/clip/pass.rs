@@ -1,26 +1,26 @@
 //! The pass over the columns of a seg that most of a frame's geometry comes down to.
 
-use crate::render::buffers::clip::Openings;
-use crate::render::buffers::visplane::Planes;
+use crate::render::buffers::clip::ColumnClip;
+use crate::render::buffers::visplane::VisPlanes;
 use crate::render::view::line::Edge;
 use crate::render::view::tables::View;
 use crate::render::walls::clip::rows::Rows;
 use std::ops::Range;
 
-/// What a seg narrows: lists by frame column, which are padded.
-pub(crate) struct Narrowing<'a> {
+/// What a seg clips: lists by frame column, which are padded.
+pub(crate) struct ClipLists<'a> {
     pub view: &'a View,
     /// What is open.
-    pub openings: &'a mut Openings,
+    pub clip: &'a mut ColumnClip,
     /// The planes, one of which ends at the seg.
-    pub planes: &'a mut Planes,
+    pub planes: &'a mut VisPlanes,
     /// Where the rows of a wall go: first, and one past the last.
     pub wall: [&'a mut [i16]; 2],
 }
 
 /// What came of a pass.
 #[derive(Clone, Copy)]
-struct Narrowed {
+struct Clipped {
     /// Where it ended: before the last column where the plane has other rows in one of the next already.
     done: usize,
     /// Some of the wall is to be seen.
@@ -28,37 +28,37 @@ struct Narrowed {
 }
 
 #[inline(always)]
-pub(crate) fn narrow_by<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
-    lists: &mut Narrowing,
+pub(crate) fn clip_by<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+    lists: &mut ClipLists,
     mut columns: Range<usize>,
     mut plane: u16,
     edges: [Edge; 2],
 ) -> bool {
     let mut walled = false;
     loop {
-        let narrowed = pass::<R, FLOOR, PLANE, WALL>(lists, columns.clone(), plane, edges);
-        walled |= narrowed.walled;
-        if narrowed.done >= columns.end {
+        let clipped = pass::<R, FLOOR, PLANE, WALL>(lists, columns.clone(), plane, edges);
+        walled |= clipped.walled;
+        if clipped.done >= columns.end {
             return walled;
         }
-        columns.start = narrowed.done;
-        plane = lists.planes.start_another(plane);
+        columns.start = clipped.done;
+        plane = lists.planes.split(plane);
     }
 }
 
-/// As [`narrow`], until the plane has rows already.
+/// As [`clip_columns`], until the plane has rows already.
 #[inline(always)]
 fn pass<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
-    lists: &mut Narrowing,
+    lists: &mut ClipLists,
     columns: Range<usize>,
     plane: u16,
     [edge, wall]: [Edge; 2],
-) -> Narrowed {
+) -> Clipped {
     let first = columns.start;
     // All lists are cut to the same number of blocks once, so that no place in them is in doubt later.
     let blocks = columns.len().div_ceil(R::COUNT);
     let of = |used: bool| ..if used { blocks } else { 0 };
-    let (tops, bottoms, mut open_columns) = lists.openings.from(first);
+    let (tops, bottoms, mut open_columns) = lists.clip.from(first);
     let (tops, bottoms) = (&mut R::blocks_mut(tops)[of(true)], &mut R::blocks_mut(bottoms)[of(true)]);
     let (base, scale) = (&R::blocks(&lists.view.columns[first..])[of(true)], &lists.view.row_scale);
     let [uppers, lowers] = lists.wall.each_mut().map(|list| &mut R::blocks_mut(&mut list[first..])[of(WALL)]);
@@ -75,7 +75,7 @@ fn pass<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
             let (plane_top, plane_bottom) = (R::load(&plane_tops[i]), R::load(&plane_bottoms[i]));
             let taken = plane_top.is_less(plane_bottom);
             if inside.and(taken).and(from.is_less(to)).any() {
-                return Narrowed { done: first + at, walled: walled.any() };
+                return Clipped { done: first + at, walled: walled.any() };
             }
             let free = inside.and_not(taken);
             free.choose(from, plane_top).store(&mut plane_tops[i]);
@@ -86,7 +86,7 @@ fn pass<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
             let far = R::of_edge(scale, wall, &base[i]);
             open = if FLOOR { far.at_least(top).at_most(row) } else { far.at_least(row).at_most(bottom) };
             let (upper, lower) = if FLOOR { (open, row) } else { (row, open) };
-            // Who reads these looks at no column beyond the seg's.
+            // Who reads these surfaces at no column beyond the seg's.
             upper.store(&mut uppers[i]);
             lower.store(&mut lowers[i]);
             walled = inside.and(upper.is_less(lower)).choose(inside, walled);
@@ -97,5 +97,5 @@ fn pass<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
         inside.choose(open_bottom, bottom).and_not(closed).store(&mut bottoms[i]);
         open_columns.close(at, closed.bits());
     }
-    Narrowed { done: columns.end, walled: walled.any() }
+    Clipped { done: columns.end, walled: walled.any() }
 }

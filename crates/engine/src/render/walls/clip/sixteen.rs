@@ -7,7 +7,7 @@
 use crate::render::blocks::COLUMN_BLOCK;
 use crate::render::view::line::Edge;
 use crate::render::view::tables::RowScale;
-use crate::render::walls::clip::pass::{Narrowing, narrow_by};
+use crate::render::walls::clip::pass::{ClipLists, clip_by};
 use crate::render::walls::clip::rows::Rows;
 use crate::render::walls::clip::{avx2, avx512};
 use std::arch::x86_64::*;
@@ -124,24 +124,24 @@ pub(crate) type Avx2 = Wide<false>;
 /// With vectors of 64 bytes.
 pub(crate) type Avx512 = Wide<true>;
 
-/// [`narrow_by`] compiled for vectors of 32 bytes.
+/// [`clip_by`] compiled for vectors of 32 bytes.
 #[target_feature(enable = "avx2")]
-pub(crate) fn narrow_avx2<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
-    lists: &mut Narrowing,
+pub(crate) fn clip_avx2<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+    lists: &mut ClipLists,
     columns: Range<usize>,
     plane: u16,
     edges: [Edge; 2],
 ) -> bool {
-    narrow_by::<Avx2, FLOOR, PLANE, WALL>(lists, columns, plane, edges)
+    clip_by::<Avx2, FLOOR, PLANE, WALL>(lists, columns, plane, edges)
 }
 
-/// [`narrow_by`] compiled for vectors of 64 bytes.
+/// [`clip_by`] compiled for vectors of 64 bytes.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-pub(crate) fn narrow_avx512<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
-    lists: &mut Narrowing,
+pub(crate) fn clip_avx512<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
+    lists: &mut ClipLists,
     columns: Range<usize>,
     plane: u16,
     edges: [Edge; 2],
 ) -> bool {
-    narrow_by::<Avx512, FLOOR, PLANE, WALL>(lists, columns, plane, edges)
+    clip_by::<Avx512, FLOOR, PLANE, WALL>(lists, columns, plane, edges)
 }

@@ -1,7 +1,7 @@
 //! Columns of textures 64 or 128 texels high, 32 rows at a time: texels are numbers of the picture's own colours, so that two small tables
 //! stand in for one of 256 entries.
 
-use crate::render::walls::column::data::OwnColumn;
+use crate::render::walls::column::data::IndexedColumn;
 use crate::simd::lookup::avx2::{GROUP, bytes_of, first_bytes, look_up};
 use std::arch::x86_64::*;
 
@@ -9,7 +9,7 @@ use std::arch::x86_64::*;
 #[inline]
 #[target_feature(enable = "avx2")]
 pub(crate) fn draw<const TEXELS: usize, const COLOURS: usize>(
-    column: &OwnColumn<TEXELS, COLOURS>,
+    column: &IndexedColumn<TEXELS, COLOURS>,
     pixels: &mut [u8],
     rows: &[u32],
     top: usize,

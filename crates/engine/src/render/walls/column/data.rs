@@ -11,7 +11,7 @@ pub(crate) struct Column<'a> {
 }
 
 /// A column of a wall whose texels are numbers of its picture's own colours.
-pub(crate) struct OwnColumn<'a, const TEXELS: usize, const COLOURS: usize> {
+pub(crate) struct IndexedColumn<'a, const TEXELS: usize, const COLOURS: usize> {
     pub texels: &'a [u8; TEXELS],
     /// These colours in the column's light.
     pub lit: &'a [u8; COLOURS],

@@ -33,13 +33,13 @@ mod tests {
     /// With vectors of 32 bytes, which the processor has.
     #[cfg(target_arch = "x86_64")]
     fn draw_by_own_colours(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
-        use super::data::OwnColumn;
-        use crate::render::textures::local_palette::OwnColours;
-        let own = OwnColours::new(column.texels, &[*column.table]);
+        use super::data::IndexedColumn;
+        use crate::render::textures::local_palette::LocalPalette;
+        let own = LocalPalette::new(column.texels, &[*column.table]);
         macro_rules! draw {
             ($texels:literal, $colours:literal) => {{
                 let (texels, lit) = (own.texels.first_chunk().unwrap(), own.lit(0).first_chunk().unwrap());
-                let column = OwnColumn::<$texels, $colours> { texels, lit, at: column.at, step: column.step };
+                let column = IndexedColumn::<$texels, $colours> { texels, lit, at: column.at, step: column.step };
                 // SAFETY: the processor has the instructions.
                 unsafe { avx2::draw(&column, pixels, rows, top, bottom) }
             }};

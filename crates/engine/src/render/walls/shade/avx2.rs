@@ -3,8 +3,8 @@
 
 use crate::render::buffers::frame::Columns;
 use crate::render::view::light::{Light, ONE_TABLE_DISTANCE};
-use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine, fits_doubles};
-use crate::render::walls::column::{avx2, data::OwnColumn};
+use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, ProjectedLine, TextureLine, fits_doubles};
+use crate::render::walls::column::{avx2, data::IndexedColumn};
 use crate::render::walls::shader::{WALL_BLOCK, WallShader, WallSlope};
 use std::arch::x86_64::*;
 
@@ -77,7 +77,7 @@ fn draw_block<const TEXELS: usize, const COLOURS: usize>(
             let start = shader.picture.column_start(columns.u[i] as i32);
             let texels = shader.own.texels[start..].first_chunk().expect("a whole column");
             let lit = shader.own.lit(columns.table[i] as usize).first_chunk().expect("as many as there is room for");
-            let column = OwnColumn::<TEXELS, COLOURS> { texels, lit, at: columns.at[i], step: columns.step[i] };
+            let column = IndexedColumn::<TEXELS, COLOURS> { texels, lit, at: columns.at[i], step: columns.step[i] };
             avx2::draw(&column, frame.colour_of(first + i), &shader.view.rows, top as usize, bottom as usize);
         }
     }
@@ -123,15 +123,15 @@ fn four_columns(shader: &WallShader, slope: &WallSlope, columns: &[u32; 4]) -> F
     }
 }
 
-/// [`SeenLine::inverse_at`].
+/// [`ProjectedLine::inverse_at`].
 #[inline]
 #[target_feature(enable = "avx2")]
-fn inverse_at(line: &SeenLine, column: __m256d) -> __m256d {
+fn inverse_at(line: &ProjectedLine, column: __m256d) -> __m256d {
     let change = _mm256_mul_pd(_mm256_set1_pd(line.inverse_step as f64), column);
     _mm256_max_pd(_mm256_add_pd(_mm256_set1_pd(line.inverse as f64), change), _mm256_set1_pd(LEAST_INVERSE as f64))
 }
 
-/// [`SeenLine::distance_at`]: a quotient just below a whole number may have been rounded up to it, which the rest tells; products
+/// [`ProjectedLine::distance_at`]: a quotient just below a whole number may have been rounded up to it, which the rest shows; products
 /// that are not rounded before they are added (`fma`) have an exact one.
 #[inline]
 #[target_feature(enable = "avx2,fma")]

@@ -3,7 +3,7 @@
 use crate::render::buffers::frame::Columns;
 use crate::render::view::light::ONE_TABLE_DISTANCE;
 use crate::render::view::light_avx512::tables;
-use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, SeenLine, TextureLine};
+use crate::render::view::line::{INVERSE_BITS, LEAST_INVERSE, ProjectedLine, TextureLine};
 use crate::render::walls::shade::scalar;
 use crate::render::walls::shader::{WALL_BLOCK, WallColumn, WallShader, WallSlope};
 use crate::simd::Simd;
@@ -59,17 +59,17 @@ pub(crate) fn columns(shader: &WallShader, slope: &WallSlope, columns: &[u32; WA
     WallColumns { distance: listed(distance), u: listed(u), table: listed(table), at: listed(at), step: listed(step) }
 }
 
-/// [`SeenLine::inverse_at`].
+/// [`ProjectedLine::inverse_at`].
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq")]
-fn inverse_at(line: &SeenLine, column: __m512i) -> __m512i {
+fn inverse_at(line: &ProjectedLine, column: __m512i) -> __m512i {
     let change = _mm512_mullo_epi64(_mm512_set1_epi64(line.inverse_step), column);
     let inverse = _mm512_add_epi64(_mm512_set1_epi64(line.inverse), change);
     _mm512_max_epi64(inverse, _mm512_set1_epi64(LEAST_INVERSE))
 }
 
-/// [`SeenLine::distance_at`]: `2^60` divided by each divisor, rounded down. The quotient of floating-point numbers is at
-/// most one off, as divisors are at least `2^27`; the rest tells.
+/// [`ProjectedLine::distance_at`]: `2^60` divided by each divisor, rounded down. The quotient of floating-point numbers is at
+/// most one off, as divisors are at least `2^27`; the rest shows.
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq")]
 fn quotients(divisor: __m512i) -> __m512i {

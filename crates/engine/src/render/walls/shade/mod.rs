@@ -28,12 +28,12 @@ mod tests {
     use super::*;
     use crate::assets::Image;
     use crate::math::Rng;
-    use crate::render::textures::local_palette::OwnColours;
-    use crate::render::textures::wall::WallPicture;
+    use crate::render::textures::local_palette::LocalPalette;
+    use crate::render::textures::wall::WallTexture;
     use crate::render::view::camera::Camera;
-    use crate::render::view::depth::Depths;
+    use crate::render::view::depth::DepthEncoding;
     use crate::render::view::light::Light;
-    use crate::render::view::line::{SeenLine, TextureLine};
+    use crate::render::view::line::{ProjectedLine, TextureLine};
     use crate::render::view::size::FrameSize;
     use crate::render::view::tables::View;
     use crate::render::walls::shader::WALL_BLOCK;
@@ -45,9 +45,9 @@ mod tests {
         let mut rng = Rng::new(12);
         let pictures = [64, 96, 128].map(|height| {
             let pixels = vec![0; 64 * usize::from(height)].into();
-            WallPicture::new(&Image { width: 64, height, offset_x: 0, offset_y: 0, pixels, mask: None })
+            WallTexture::new(&Image { width: 64, height, offset_x: 0, offset_y: 0, pixels, mask: None })
         });
-        let own = OwnColours::new(&[], &[]);
+        let own = LocalPalette::new(&[], &[]);
         let view = View::new(FrameSize::LEARNER).unwrap();
         let mut fitting = 0;
         for round in 0..20_000 {
@@ -55,14 +55,14 @@ mod tests {
             // Inverses from those beyond all maps to those of a wall at the eye.
             let mut line = || {
                 let bits = 24 + signed(5).unsigned_abs() as u32 % 29;
-                SeenLine { inverse: signed(bits), inverse_step: signed(bits - 8) }
+                ProjectedLine { inverse: signed(bits), inverse_step: signed(bits - 8) }
             };
             let (line, ends) = (line(), line());
             let camera = Camera { horizon: signed(24), extra_light: (signed(1) & 1) as i32, ..Camera::default() };
             let shader = WallShader {
                 camera: &camera,
                 view: &view,
-                depths: Depths::default(),
+                depths: DepthEncoding::default(),
                 tables: &[[0; 256]; 32],
                 line: &line,
                 ends: &ends,

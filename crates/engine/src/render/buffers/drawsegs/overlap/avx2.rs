@@ -1,12 +1,12 @@
 //! Asks eight drawsegs at once with vectors of 32 bytes.
 
-use crate::render::buffers::drawsegs::overlap::reaches::{MEET_BLOCK, Reaches};
+use crate::render::buffers::drawsegs::overlap::reaches::{MEET_BLOCK, DrawSegBounds};
 use crate::simd::first_of_eight;
 use std::arch::x86_64::*;
 
 /// [`list`](super::list), eight at once.
 #[target_feature(enable = "avx2")]
-pub(crate) fn list(reaches: &Reaches, [first, end]: [u32; 2], inverse: i64, met: &mut [u32]) -> usize {
+pub(crate) fn list(reaches: &DrawSegBounds, [first, end]: [u32; 2], inverse: i64, met: &mut [u32]) -> usize {
     let [first, end] = [first, end].map(|column| _mm256_set1_epi32(column as i32));
     let inverse = _mm256_set1_epi64x(inverse);
     let blocks = reaches.firsts.as_chunks::<MEET_BLOCK>().0.iter().zip(reaches.ends.as_chunks::<MEET_BLOCK>().0);

@@ -5,11 +5,11 @@ pub mod reaches;
 mod scalar;
 
 use crate::simd::{Simd, dispatch};
-use reaches::Reaches;
+use reaches::DrawSegBounds;
 
 /// Writes the indices of those that share a column with the columns `first..end` and have `near` at `inverse` or above it to `met`, which
 /// is padded; gives how many there are. Which ones do is unpredictable: it is found without a branch.
-pub(crate) fn list(reaches: &Reaches, simd: Simd, columns: [u32; 2], inverse: i64, met: &mut [u32]) -> usize {
+pub(crate) fn list(reaches: &DrawSegBounds, simd: Simd, columns: [u32; 2], inverse: i64, met: &mut [u32]) -> usize {
     dispatch!(simd;
         avx512 => avx512::list(reaches, columns, inverse, met),
         avx2 => avx2::list(reaches, columns, inverse, met),
@@ -27,7 +27,7 @@ mod tests {
     fn all_ways_meet_the_same() {
         let mut rng = Rng::new(31);
         for count in 0..60 {
-            let mut reaches = Reaches::default();
+            let mut reaches = DrawSegBounds::default();
             for _ in 0..count {
                 let first = rng.below(120) as usize;
                 reaches.push(first, first + 1 + rng.below(40) as usize, rng.next_u64() as i64 >> 20);

@@ -1,9 +1,9 @@
 //! What decides whether a drawseg and a sprite overlap.
 
-/// What decides in most cases that a silhouette and a sprite have nothing to do with each other, on its own: a frame has
-/// dozens of silhouettes, and each sprite asks all of them. Lists of `count`, padded to whole blocks.
+/// What decides in most cases that a drawseg and a sprite have nothing to do with each other, on its own: a frame has
+/// dozens of drawsegs, and each sprite asks all of them. Lists of `count`, padded to whole blocks.
 #[derive(Debug, Default)]
-pub(crate) struct Reaches {
+pub(crate) struct DrawSegBounds {
     pub count: usize,
     /// First columns.
     pub firsts: Vec<u32>,
@@ -13,10 +13,10 @@ pub(crate) struct Reaches {
     pub nears: Vec<i64>,
 }
 
-/// Silhouettes that are asked at once at most.
+/// DrawSegs that are asked at once at most.
 pub(crate) const MEET_BLOCK: usize = 8;
 
-impl Reaches {
+impl DrawSegBounds {
     pub fn push(&mut self, first: usize, end: usize, near: i64) {
         if self.count + MEET_BLOCK > self.nears.len() {
             let length = 2 * (self.count + MEET_BLOCK);
