@@ -32,7 +32,7 @@ mod walls;
 
 pub use automap::TopDown;
 pub use buffers::frame::class;
-pub use buffers::labels::Label;
+pub use buffers::labels::{InView, Label};
 pub use buffers::request::Buffers;
 pub use output::segmentation::SegmentationColours;
 pub use renderer::{RenderOptions, Renderer};

@@ -1,7 +1,7 @@
 //! The renderer: draws what one player of a world sees.
 
 use crate::render::buffers::frame::{Frame, class};
-use crate::render::buffers::labels::{Label, Labels};
+use crate::render::buffers::labels::{self, InView, Label, Labels};
 use crate::render::buffers::request::Buffers;
 use crate::render::colour::palette::Colours;
 use crate::render::colour::tint::Tint;
@@ -276,10 +276,17 @@ impl Renderer {
         &self.frame.class
     }
 
-    /// The actors of which the last frame drew a pixel, if labels were drawn, far to near.
+    /// The actors of which the last frame drew a pixel, if labels were drawn, far to near; what came later may have hidden some.
     #[must_use]
     pub fn labels(&self) -> &[Label] {
         &self.labels.list
+    }
+
+    /// The actors of which the last frame shows a pixel, if labels were drawn, far to near: those of [`Renderer::labels`] that
+    /// nothing nearer, no weapon and no status bar hides altogether.
+    #[must_use]
+    pub fn in_view(&self) -> Vec<InView> {
+        labels::in_view(&self.labels.list, &self.frame.class, self.view.width())
     }
 
     /// Size of the frames.
@@ -360,14 +367,12 @@ impl Renderer {
     /// If `out` is not as long as a frame has pixels.
     pub fn write_labels(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.class.len(), "a buffer of height * width bytes is needed");
-        let count = self.labels.list.len() + 1;
+        let count = self.labels.list.len();
         let mut values = [0; CLASSES];
         values[usize::from(class::WEAPON)] = 255;
-        let ones = [class::FLOOR, class::CEILING];
-        ones.iter().for_each(|&class| values[usize::from(class)] = 1);
         let actors = &mut values[usize::from(class::FIRST_ACTOR)..];
-        actors.iter_mut().take(count - 1).enumerate().for_each(|(index, value)| *value = ((index + 1) * 255 / count) as u8);
-        convert::classes_one_byte(&values, class::WEAPON, ones, &self.frame.class, out);
+        actors.iter_mut().take(count).enumerate().for_each(|(index, value)| *value = labels::value(index, count));
+        convert::classes_one_byte(&values, class::WEAPON, &self.frame.class, out);
     }
 
     /// The colour of each value of the class buffer.
