@@ -1,9 +1,7 @@
 //! Palette look-ups with vectors of 64 bytes.
 
 use crate::simd::lookup::avx512::{LANES, load, load_table, look_up_block, store};
-use std::arch::x86_64::{
-    __m512i, _mm512_mask_blend_epi16, _mm512_mask_permutexvar_epi8, _mm512_permutex2var_epi8,
-};
+use std::arch::x86_64::{__m512i, _mm512_mask_blend_epi16, _mm512_mask_permutexvar_epi8, _mm512_permutex2var_epi8};
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
 pub(crate) fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) -> usize {

@@ -1,6 +1,6 @@
 //! Spans row by row with vectors of 64 bytes: which of 64 columns have a row is one mask.
 
-use crate::render::buffers::visplane::{VisPlane, SPAN_BLOCK, Span};
+use crate::render::buffers::visplane::{SPAN_BLOCK, Span, VisPlane};
 use crate::render::planes::spans::avx2::rows;
 use crate::render::planes::spans::rows::{RowSpans, block};
 use std::arch::x86_64::*;

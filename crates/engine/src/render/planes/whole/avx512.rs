@@ -2,10 +2,10 @@
 //! mask or two, and what is the same all along a row is worked out for eight rows side by side.
 
 use crate::render::buffers::frame::Frame;
-use crate::render::buffers::visplane::{VisPlane, SPAN_BLOCK};
-use crate::render::planes::shader::PlaneShader;
-use crate::render::planes::row::data::RowWalk;
+use crate::render::buffers::visplane::{SPAN_BLOCK, VisPlane};
 use crate::render::planes::row::avx512::{self, ROW_VECTOR};
+use crate::render::planes::row::data::RowWalk;
+use crate::render::planes::shader::PlaneShader;
 use crate::render::planes::spans::avx2::rows;
 use crate::render::planes::spans::avx512::load_avx512;
 use crate::render::planes::spans::rows::next_run;
@@ -29,19 +29,20 @@ struct EightRows {
 
 /// Draws a plane, if it is small enough; returns whether it was.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(shader: &PlaneShader, frame: &mut Frame, flat: &FlatTexture, plane: &VisPlane) -> bool {
+pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
+    shader: &PlaneShader,
+    frame: &mut Frame,
+    flat: &FlatTexture,
+    plane: &VisPlane,
+) -> bool {
     let (first, end) = rows(plane);
     let blocks = (plane.end - plane.first).div_ceil(SPAN_BLOCK);
     if end > LAST_BYTE || blocks > 2 {
         return false;
     }
     match (flat, blocks) {
-        (FlatTexture::Small(texels), 1) => {
-            draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 1>(shader, frame, texels, plane, first, end)
-        }
-        (FlatTexture::Small(texels), _) => {
-            draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 2>(shader, frame, texels, plane, first, end)
-        }
+        (FlatTexture::Small(texels), 1) => draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 1>(shader, frame, texels, plane, first, end),
+        (FlatTexture::Small(texels), _) => draw_rows::<DEPTH, CLASS, 6, { 64 * 64 }, 2>(shader, frame, texels, plane, first, end),
         (FlatTexture::Large(texels), 1) => {
             draw_rows::<DEPTH, CLASS, 7, { 128 * 128 }, 1>(shader, frame, texels, plane, first, end)
         }

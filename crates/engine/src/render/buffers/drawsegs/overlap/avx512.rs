@@ -1,6 +1,6 @@
 //! Asks eight drawsegs at once with vectors of 64 bytes.
 
-use crate::render::buffers::drawsegs::overlap::reaches::{MEET_BLOCK, DrawSegBounds};
+use crate::render::buffers::drawsegs::overlap::reaches::{DrawSegBounds, MEET_BLOCK};
 use crate::simd::first_of_eight;
 use std::arch::x86_64::*;
 
