@@ -52,9 +52,9 @@ pub fn experiments_csv(groups: &[Group]) -> String {
         fields.extend([
             optional(group.final_estimate("length_mean").map(|e| e.mean)),
             group.within_budget().map_or_else(String::new, |within| within.to_string()),
-            optional(paper.and_then(|p| p.episode_return)),
-            optional(paper.and_then(|p| p.cost)),
-            paper.map(|p| p.note.clone()).unwrap_or_default(),
+            optional(paper.map(|p| p.episode_return)),
+            optional(paper.map(|p| p.cost)),
+            paper.map(|p| p.note()).unwrap_or_default(),
         ]);
         text += &line(&fields);
     }

@@ -67,6 +67,25 @@ impl Curve {
         Curve { mean, seeds }
     }
 
+    /// The mean at `frames`, on the line between its points; `None` outside of them. Its interval is the wider one of the
+    /// two points around.
+    #[must_use]
+    pub fn at(&self, frames: f64) -> Option<Estimate> {
+        let after = self.mean.partition_point(|point| point.frames < frames);
+        let right = self.mean.get(after)?;
+        if right.frames == frames {
+            return Some(right.value);
+        }
+        let left = self.mean.get(after.checked_sub(1)?)?;
+        let share = (frames - left.frames) / (right.frames - left.frames);
+        let half_width = match (left.value.half_width, right.value.half_width) {
+            (Some(a), Some(b)) => Some(a.max(b)),
+            _ => None,
+        };
+        let mean = left.value.mean + (right.value.mean - left.value.mean) * share;
+        Some(Estimate { mean, half_width, n: left.value.n.min(right.value.n) })
+    }
+
     /// The largest value that is worth showing: of the means and their bands, but a band of few seeds does not squash
     /// the rest, so it counts at most twice its mean's height.
     #[must_use]

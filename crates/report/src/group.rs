@@ -137,7 +137,7 @@ pub const SCENARIOS: [(&str, &str); 6] = [
 ];
 
 /// The algorithms in the order of the paper's tables, then those beyond it.
-const ALGORITHMS: [&str; 13] =
+pub(crate) const ALGORITHMS: [&str; 13] =
     ["PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O", "TRPO", "TRPOLag", "TRPOPID", "CPO", "FOCOPS", "CUP", "IPO"];
 
 /// Place of a scenario in tables; unknown ones come last.

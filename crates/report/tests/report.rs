@@ -293,3 +293,26 @@ fn a_persons_budget_follows_the_episodes_options() {
     assert!(line("strict").ends_with("| 0 % |") && line("strict").contains("hard true"), "{}", line("strict"));
     assert!(line("short").ends_with("| 0 % |") && line("short").contains("frame-skip 1"), "{}", line("short"));
 }
+
+/// The paper's tables ran rules of their own: beside a run under others the report says so, and shows no published value.
+#[test]
+fn published_values_stand_beside_the_tables_rules_alone() {
+    let folder = Folder::new("rules");
+    for rules in ["tables", "paper"] {
+        let run = folder.0.join(format!("runs-{rules}/one"));
+        let end = (45.0, 50.0, 10.0);
+        let env = "VolcanicVentureLevel1-v0";
+        Synthetic { env, algo: "PPOPID", seed: 1, frames: 12e6, reports: 60, options: "", end }.write(&run);
+        let config = run.join("config.json");
+        let text = std::fs::read_to_string(&config).unwrap();
+        std::fs::write(&config, text.replace("\"rules\":\"tables\"", &format!("\"rules\":\"{rules}\""))).unwrap();
+        let out = folder.0.join(format!("out-{rules}"));
+        write_report(&[folder.0.join(format!("runs-{rules}"))], &out, "Rules").unwrap();
+        let text = std::fs::read_to_string(out.join("report.md")).unwrap();
+        let tables = rules == "tables";
+        assert_eq!(text.contains("45.23"), tables, "{text}");
+        assert_eq!(text.contains("ran under other rules (paper) than the paper's tables"), !tables, "{text}");
+        // At 10 million frames the paper's curve stands at 17.61 @ 50.59.
+        assert_eq!(text.contains("17.61 @ 50.59"), tables, "{text}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, draw_vertical_axis, short, ticks};
 use super::{Anchor, Drawing, Hover, HoverCurve, Ink, Shape};
-use crate::curve::Curve;
+use crate::curve::{Curve, Point};
 
 /// A curve on a panel.
 #[derive(Clone, Debug)]
@@ -13,6 +13,21 @@ pub struct Series {
     pub ink: Ink,
     /// Its points.
     pub curve: Curve,
+    /// Published, drawn behind ours: a thin dashed line in a faint band, as far as ours go.
+    pub paper: bool,
+}
+
+impl Series {
+    /// The same, a published curve cut where ours end.
+    fn up_to(&self, frames: f64) -> Series {
+        let mut cut = self.clone();
+        if self.paper {
+            let end = self.curve.at(frames);
+            cut.curve.mean.retain(|point| point.frames < frames);
+            cut.curve.mean.extend(end.map(|value| Point { frames, value }));
+        }
+        cut
+    }
 }
 
 /// What a panel of curves shows.
@@ -43,12 +58,16 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         bold: true,
         text: panel.title.clone(),
     });
-    let curves = || panel.series.iter().map(|series| &series.curve);
-    let most_frames = curves().flat_map(|c| &c.seeds).filter_map(|(_, points)| points.last()).map(|p| p.0).fold(0.0, f64::max);
+    let ours = || panel.series.iter().filter(|series| !series.paper).map(|series| &series.curve);
+    let most_frames = ours().flat_map(|c| &c.seeds).filter_map(|(_, points)| points.last()).map(|p| p.0).fold(0.0, f64::max);
     if most_frames <= 0.0 {
         drawing.text(((left + right) / 2.0, (top + bottom) / 2.0), Anchor::Middle, Ink::Muted, "no report yet");
         return drawing;
     }
+    let cut: Vec<Series> = panel.series.iter().map(|series| series.up_to(most_frames)).collect();
+    // What the paper has is drawn first, behind ours.
+    let in_order = || cut.iter().filter(|series| series.paper).chain(cut.iter().filter(|series| !series.paper));
+    let curves = || cut.iter().map(|series| &series.curve);
     let high = curves().map(Curve::top).fold(panel.budget.unwrap_or(0.0) * 1.15, f64::max);
     let low = curves().map(Curve::bottom).fold(0.0, f64::min);
     let values = ticks(low, if high > low { high } else { low + 1.0 }, 4);
@@ -61,7 +80,7 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         drawing.text((horizontal.place(frames), bottom + 15.0), anchor, Ink::Muted, short(frames));
     }
     // Thin seeds below, then bands, then means, so that means stay readable.
-    for series in &panel.series {
+    for series in &cut {
         if series.curve.seeds.len() > 1 || series.curve.mean.is_empty() {
             for (_, points) in &series.curve.seeds {
                 drawing.shapes.push(Shape::Line {
@@ -74,22 +93,23 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
             }
         }
     }
-    for series in &panel.series {
+    for series in in_order() {
         let banded: Vec<_> = series.curve.mean.iter().filter(|point| point.value.half_width.is_some()).collect();
         let upper = banded.iter().map(|p| (horizontal.place(p.frames), vertical.place(p.value.high())));
         let lower = banded.iter().rev().map(|p| (horizontal.place(p.frames), vertical.place(p.value.low())));
         let points: Vec<_> = upper.chain(lower).collect();
         if points.len() > 3 {
-            drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: 0.16 });
+            drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: if series.paper { 0.08 } else { 0.16 } });
         }
     }
-    for series in &panel.series {
+    for series in in_order() {
         let points: Vec<_> =
             series.curve.mean.iter().map(|p| (horizontal.place(p.frames), vertical.place(p.value.mean))).collect();
         if let [only] = points[..] {
             drawing.shapes.push(Shape::Dot { at: only, radius: 2.5, ink: series.ink, title: series.name.clone() });
         }
-        drawing.shapes.push(Shape::Line { points, ink: series.ink, width: 1.8, dashed: false, opacity: 1.0 });
+        let (width, opacity) = if series.paper { (1.1, 0.75) } else { (1.8, 1.0) };
+        drawing.shapes.push(Shape::Line { points, ink: series.ink, width, dashed: series.paper, opacity });
     }
     if let Some(budget) = panel.budget {
         let y = vertical.place(budget);
@@ -105,8 +125,7 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
     drawing.hovers.push(Hover {
         place: [left, top, right - left, bottom - top],
         horizontal: (0.0, most_frames),
-        curves: panel
-            .series
+        curves: cut
             .iter()
             .map(|series| HoverCurve {
                 name: series.name.clone(),

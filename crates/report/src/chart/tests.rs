@@ -15,7 +15,8 @@ fn some_curve(slope: f64) -> Curve {
 }
 
 fn panel() -> Drawing {
-    let series = |name: &str, index, slope| Series { name: name.into(), ink: Ink::Series(index), curve: some_curve(slope) };
+    let series =
+        |name: &str, index, slope| Series { name: name.into(), ink: Ink::Series(index), curve: some_curve(slope), paper: false };
     line_panel(&LinePanel {
         title: "cost & <more>".into(),
         series: vec![series("PPO", 0, 1.5), series("PPO\"Lag", 2, 0.8)],

@@ -3,13 +3,19 @@
 use super::setting;
 use crate::document::{Block, Cell, Section, Table, frames};
 use crate::group::{Group, scenario_name};
-use crate::published::published;
+use crate::published::{published, withheld};
+use std::collections::BTreeMap;
 
 pub(super) fn section(groups: &[Group]) -> Section {
     let mut rows = Vec::new();
+    let mut notes: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for group in groups {
         let Some(paper) = published(group.config()) else { continue };
         let config = group.config();
+        for note in &paper.notes {
+            let cell = format!("{} {} {}", scenario_name(&config.scenario), config.level, paper.algorithm);
+            notes.entry(note).or_default().push(cell);
+        }
         let (return_estimate, cost_estimate) = (group.final_estimate("return_mean"), group.final_estimate("cost_mean"));
         let ratio = |ours: Option<f64>, theirs: Option<f64>| match (ours, theirs) {
             (Some(ours), Some(theirs)) if theirs != 0.0 => {
@@ -17,9 +23,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
             }
             _ => Cell::text("-"),
         };
-        let theirs = |value: Option<f64>| {
-            value.map_or_else(|| Cell::text("-"), |v| Cell { title: paper.note.clone(), pale: true, ..Cell::number(v) })
-        };
+        let theirs = |value: f64| Cell { title: paper.note(), pale: true, ..Cell::number(value) };
         let (_, reached) = group.frames_span();
         rows.push(vec![
             Cell::text(scenario_name(&config.scenario)),
@@ -29,23 +33,31 @@ pub(super) fn section(groups: &[Group]) -> Section {
             Cell::number(reached).with_text(frames(reached)),
             Cell::estimate(return_estimate, &group.final_samples("return_mean")),
             theirs(paper.episode_return),
-            ratio(return_estimate.map(|e| e.mean), paper.episode_return),
+            ratio(return_estimate.map(|e| e.mean), Some(paper.episode_return)),
             Cell::estimate(cost_estimate, &group.final_samples("cost_mean")),
             theirs(paper.cost),
-            ratio(cost_estimate.map(|e| e.mean), paper.cost),
+            ratio(cost_estimate.map(|e| e.mean), Some(paper.cost)),
         ]);
     }
     let heads = ["scenario", "level", "algorithm", "options", "frames", "return", "paper", "ratio", "cost", "paper", "ratio"];
     let table = Table { caption: String::new(), spans: Vec::new(), heads: heads.map(String::from).to_vec(), rows };
+    let mut text = Vec::new();
+    if !table.rows.is_empty() {
+        text.push(
+            "The paper trained for 500M frames (hard constraint and curriculum: 300M). A run of fewer frames can only be held against \
+             the early part of its curves, in the section on training curves."
+                .to_owned(),
+        );
+    }
+    for (note, cells) in notes {
+        let which = if cells.len() > 6 { format!("{} rows", cells.len()) } else { cells.join(", ") };
+        text.push(format!("Published: {note} ({which})."));
+    }
+    text.extend(withheld(groups));
     Section {
         slug: "paper".into(),
         title: "Beside the paper".into(),
-        text: vec![
-            "The paper trained for 500M frames (curriculum: 300M). A run of fewer frames can only be held against the early part of its \
-             curves: constrained algorithms first overshoot the budget and come back to it within 50M to 100M frames, and PPO earns \
-             most of its final return within 100M to 150M."
-                .into(),
-        ],
+        text,
         blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] },
     }
 }

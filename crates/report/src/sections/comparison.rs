@@ -115,9 +115,9 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
                 Cell::number(reached).with_text(frames(reached)),
                 Cell::number(group.config().safety_budget).with_text(group.config().safety_budget.to_string()),
                 return_cell,
-                theirs(paper.and_then(|p| p.episode_return)),
+                theirs(paper.map(|p| p.episode_return)),
                 cost_cell,
-                theirs(paper.and_then(|p| p.cost)),
+                theirs(paper.map(|p| p.cost)),
             ]);
         }
         let name = format!("{} level {} {}", scenario_name(&config.scenario), config.level, config.algo);
@@ -128,8 +128,7 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
                     let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
                     bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink: Ink::Series(index), pale: false });
                 }
-                let paper =
-                    published_in(group.config(), key).and_then(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                let paper = published_in(group.config(), key).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
                 bars.extend(paper.map(|value| Bar {
                     name: "paper".into(),
                     value,

@@ -4,7 +4,6 @@ use super::{distinct, main_groups};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Section, Table, number, slug};
 use crate::group::{Group, algorithm_order};
-use crate::published::published_main;
 use crate::statistics::{Interquartile, RESAMPLES, stratified_interquartile};
 
 pub(super) fn section(groups: &[Group]) -> Section {
@@ -21,6 +20,10 @@ pub(super) fn section(groups: &[Group]) -> Section {
                     .copied()
                     .filter(|group| group.config().level == level && group.config().algo == algo)
                     .collect();
+                let relative_returns = |group: &Group| match ppo_return(members, group) {
+                    Some(ppo) => group.final_samples("return_mean").iter().map(|value| value / ppo).collect(),
+                    None => Vec::new(),
+                };
                 let returns = stratified_interquartile(&strata(&here, relative_returns));
                 let costs = stratified_interquartile(&strata(&here, relative_costs));
                 if returns.is_none() && costs.is_none() {
@@ -51,7 +54,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
         if rows.is_empty() {
             continue;
         }
-        let heads = ["level", "algorithm", "return / paper's PPO", "cost / budget", "environments"].map(String::from).to_vec();
+        let heads = ["level", "algorithm", "return / PPO's here", "cost / budget", "environments"].map(String::from).to_vec();
         blocks.push(Block::Table(Table { caption: setting.clone(), spans: Vec::new(), heads, rows }));
         let [returns, costs] = panels;
         let mut legend: Vec<(String, Ink)> =
@@ -61,7 +64,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
                 .collect();
         legend.push(("budget".into(), Ink::Budget));
         let drawings =
-            vec![bar_panel("return / paper's PPO", &returns, (390.0, 220.0)), bar_panel("cost / budget", &costs, (390.0, 220.0))];
+            vec![bar_panel("return / PPO's here", &returns, (390.0, 220.0)), bar_panel("cost / budget", &costs, (390.0, 220.0))];
         let file = if settings.len() > 1 { slug(&format!("interquartile {setting}")) } else { "interquartile".into() };
         blocks.push(Block::Figure(Figure { slug: file, caption: setting.clone(), drawing: figure("", drawings, 2, &legend) }));
     }
@@ -69,7 +72,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
         slug: "interquartile".into(),
         title: "Inter-quartile means over environments".into(),
         text: vec![format!(
-            "Each seed's final return divided by what PPO reaches on the same environment in the paper, and its final cost divided by the \
+            "Each seed's final return divided by what PPO reaches here on the same environment, and its final cost divided by the \
              budget; then the mean of the middle half over all seeds and environments of a level. Intervals: 95 % of {RESAMPLES} bootstrap \
              samples that draw seeds within each environment (stratified), from a fixed random stream. Without an environment with two \
              seeds there is no interval."
@@ -78,16 +81,14 @@ pub(super) fn section(groups: &[Group]) -> Section {
     }
 }
 
-fn strata(groups: &[&Group], samples: fn(&Group) -> Vec<f64>) -> Vec<Vec<f64>> {
+fn strata(groups: &[&Group], samples: impl Fn(&Group) -> Vec<f64>) -> Vec<Vec<f64>> {
     groups.iter().map(|group| samples(group)).filter(|samples| !samples.is_empty()).collect()
 }
 
-fn relative_returns(group: &Group) -> Vec<f64> {
-    let config = group.config();
-    match published_main("PPO", &config.scenario, config.level).and_then(|cell| cell.episode_return) {
-        Some(ppo) => group.final_samples("return_mean").iter().map(|value| value / ppo).collect(),
-        None => Vec::new(),
-    }
+/// Mean return of PPO here, on the same environment and under the same settings.
+fn ppo_return(members: &[&Group], group: &Group) -> Option<f64> {
+    let same = |other: &&&Group| other.config().env == group.config().env && other.config().algo.eq_ignore_ascii_case("PPO");
+    members.iter().find(same)?.final_estimate("return_mean").map(|estimate| estimate.mean).filter(|mean| *mean != 0.0)
 }
 
 fn relative_costs(group: &Group) -> Vec<f64> {

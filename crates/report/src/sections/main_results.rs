@@ -99,8 +99,8 @@ fn table(members: &[&Group], level: u32, setting: &str) -> Table {
             .iter()
             .zip(&papers)
             .map(|(group, paper)| {
-                let cost = paper.and_then(|p| p.cost);
-                (paper.and_then(|p| p.episode_return), cost, cost.is_some_and(|cost| cost <= group.config().safety_budget))
+                let cost = paper.map(|p| p.cost);
+                (paper.map(|p| p.episode_return), cost, cost.is_some_and(|cost| cost <= group.config().safety_budget))
             })
             .collect();
         let paper_marks = marks(&paper_values);
@@ -109,7 +109,7 @@ fn table(members: &[&Group], level: u32, setting: &str) -> Table {
             let (mut ours, mut theirs) = ((missing(), missing()), (missing(), missing()));
             if let Some(at) = of(algo) {
                 ours = cells[at].clone();
-                let note = papers[at].map(|paper| paper.note.clone()).unwrap_or_default();
+                let note = papers[at].map(|paper| paper.note()).unwrap_or_default();
                 let cell = |value: Option<f64>, mark| {
                     value.map_or_else(missing, |v| Cell { pale: true, mark, title: note.clone(), ..Cell::number(v) })
                 };
@@ -157,7 +157,7 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool) -
                         let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
                         bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink, pale: false });
                     }
-                    let paper = published(group.config()).and_then(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                    let paper = published(group.config()).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
                     bars.extend(paper.map(|value| Bar { name: "paper".into(), value, interval: None, ink, pale: true }));
                     let budget = group.config().budget().filter(|_| metric == "cost");
                     BarGroup { name: group.config().algo.clone(), bars, budget }

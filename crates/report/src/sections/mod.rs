@@ -4,6 +4,7 @@ mod beside_paper;
 mod comparison;
 mod constraints;
 mod curves;
+mod equal_frames;
 mod handed_out;
 mod heatmaps;
 mod interquartile;
@@ -31,7 +32,7 @@ pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec
     sections.push(runs::experiments(groups));
     sections.push(runs::runs(groups));
     sections.push(runs::warnings(warnings));
-    sections.retain(|section: &Section| !section.blocks.is_empty());
+    sections.retain(|section: &Section| !section.blocks.is_empty() || section.slug == "paper" && !section.text.is_empty());
     sections.push(method());
     Document {
         title: title.to_owned(),
@@ -53,8 +54,8 @@ fn method() -> Section {
             "Curves show the mean over seeds (line), its 95 % interval (band) and each seed (thin lines). Means end where the shortest run \
              ends, and no curve is stretched or smoothed; reports within one 240th of the axis are averaged.",
             "Returns and costs are always those of the environment, never reshaped by an algorithm.",
-            "The paper's values are means over five seeds after 500 million frames; its intervals were not printed. Where the paper's \
-             scripts added back the wrong multiple of the cost, the corrected return is given.",
+            "The paper's values stand only beside runs under `--rules tables`, the rules that its tables were made under. Where the paper's \
+             scripts added back the wrong multiple of the cost, the corrected return is given; its tables print no intervals.",
         ]
         .map(String::from)
         .to_vec(),

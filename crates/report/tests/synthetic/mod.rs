@@ -42,7 +42,7 @@ impl Synthetic<'_> {
     pub fn write(&self, folder: &Path) {
         std::fs::create_dir_all(folder).unwrap();
         let config = format!(
-            "{{\"env\":\"{}\",\"algo\":\"{}\",\"seed\":{},\"frames\":{},\"rules\":\"paper\",\"preset\":\"paper\",\"out\":\"{}\"{}}}",
+            "{{\"env\":\"{}\",\"algo\":\"{}\",\"seed\":{},\"frames\":{},\"rules\":\"tables\",\"preset\":\"paper\",\"out\":\"{}\"{}}}",
             self.env,
             self.algo,
             self.seed,
