@@ -1,8 +1,9 @@
 //! The report as one HTML page that asks nothing of a network: styles, script, figures and pictures are inside.
 
 use crate::chart::{INK_STYLE, inline_svg};
-use crate::document::{Block, Cell, Document, Mark, Section, Table};
+use crate::document::{Block, Cell, Document, Section, Table};
 use crate::escape::escape;
+use crate::run::Kept;
 use std::fmt::Write;
 
 const STYLE: &str = include_str!("page.css");
@@ -99,8 +100,9 @@ fn write_cell(cell: &Cell, html: &mut String) {
     // A word may carry a number to be sorted by; it is still read from the left.
     let numeric = cell.text.starts_with(|c: char| c.is_ascii_digit() || c == '-');
     classes.extend((numeric && (cell.sort.is_some() || cell.text == "-")).then_some("number"));
-    classes.extend(matches!(cell.mark, Mark::Within | Mark::WithinBest).then_some("within"));
-    classes.extend(matches!(cell.mark, Mark::Best | Mark::WithinBest).then_some("best"));
+    classes.extend((cell.mark.kept == Kept::Surely).then_some("within"));
+    classes.extend((cell.mark.kept == Kept::ByMean).then_some("nearly"));
+    classes.extend(cell.mark.bold.then_some("best"));
     html.push_str("<td");
     if !classes.is_empty() {
         let _ = write!(html, " class=\"{}\"", classes.join(" "));

@@ -15,13 +15,9 @@ pub fn run(args: &ReportArgs) -> Outcome {
         let page = written.page.display().to_string();
         say!("{}", json!({ "page": page, "files": files, "runs": written.runs, "experiments": written.experiments }));
     } else {
-        say!(
-            "{}: {} runs, {} experiments, {} files",
-            written.page.display(),
-            written.runs,
-            written.experiments,
-            written.files.len()
-        );
+        let count = |number: usize, noun: &str| format!("{number} {noun}{}", if number == 1 { "" } else { "s" });
+        let (runs, experiments) = (count(written.runs, "run"), count(written.experiments, "experiment"));
+        say!("{}: {runs}, {experiments}, {}", written.page.display(), count(written.files.len(), "file"));
     }
     Ok(())
 }

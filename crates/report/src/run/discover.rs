@@ -87,6 +87,8 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     episode_return: outcome.episode_return,
                     cost: outcome.cost,
                     costs: Vec::new(),
+                    stats: Vec::new(),
+                    rules: header.options.get("rules").cloned(),
                     length: Some(f64::from(header.steps)),
                 };
                 let usual =

@@ -2,7 +2,7 @@
 
 use super::setting;
 use crate::document::{Block, Cell, Section, Table, frames};
-use crate::group::{Group, scenario_name};
+use crate::group::{Group, Source, scenario_name};
 use crate::published::{published, withheld};
 use std::collections::BTreeMap;
 
@@ -16,7 +16,8 @@ pub(super) fn section(groups: &[Group]) -> Section {
             let cell = format!("{} {} {}", scenario_name(&config.scenario), config.level, paper.algorithm);
             notes.entry(note).or_default().push(cell);
         }
-        let (return_estimate, cost_estimate) = (group.final_estimate("return_mean"), group.final_estimate("cost_mean"));
+        let source = group.headline();
+        let (return_estimate, cost_estimate) = (group.estimate(source, "return_mean"), group.estimate(source, "cost_mean"));
         let ratio = |ours: Option<f64>, theirs: Option<f64>| match (ours, theirs) {
             (Some(ours), Some(theirs)) if theirs != 0.0 => {
                 Cell { text: format!("{:.2}", ours / theirs), ..Cell::number(ours / theirs) }
@@ -31,15 +32,17 @@ pub(super) fn section(groups: &[Group]) -> Section {
             Cell::text(&config.algo),
             Cell::text(setting(group)),
             Cell::number(reached).with_text(frames(reached)),
-            Cell::estimate(return_estimate, &group.final_samples("return_mean")),
+            Cell::text(if source == Source::Evaluation { "evaluation" } else { "training" }),
+            Cell::estimate(return_estimate, &group.samples(source, "return_mean")),
             theirs(paper.episode_return),
             ratio(return_estimate.map(|e| e.mean), Some(paper.episode_return)),
-            Cell::estimate(cost_estimate, &group.final_samples("cost_mean")),
+            Cell::estimate(cost_estimate, &group.samples(source, "cost_mean")),
             theirs(paper.cost),
             ratio(cost_estimate.map(|e| e.mean), Some(paper.cost)),
         ]);
     }
-    let heads = ["scenario", "level", "algorithm", "options", "frames", "return", "paper", "ratio", "cost", "paper", "ratio"];
+    let heads =
+        ["scenario", "level", "algorithm", "options", "frames", "by", "return", "paper", "ratio", "cost", "paper", "ratio"];
     let table = Table { caption: String::new(), spans: Vec::new(), heads: heads.map(String::from).to_vec(), rows };
     let mut text = Vec::new();
     if !table.rows.is_empty() {

@@ -1,7 +1,7 @@
 //! Experiments that differ in one option: budgets, cost scales, action spaces, observations, curricula, hard constraint.
 
 use super::curves::curve_figure;
-use super::main_results::marked_cells;
+use super::main_results::{budget_label, marked_cells, source_of};
 use super::{VARIED, distinct};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Section, Table, frames, slug};
@@ -101,7 +101,8 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
             Some(asked) if repeated(group) => format!("{}, {} frames", value_of(group.config(), key), frames(asked)),
             _ => value_of(group.config(), key),
         };
-        let cells = marked_cells(members);
+        let source = source_of(members);
+        let cells = marked_cells(members, source);
         for (group, (return_cell, cost_cell)) in members.iter().zip(cells) {
             let paper = published_in(group.config(), key);
             let theirs = |value: Option<f64>| value.map_or_else(|| Cell::text("-"), |v| Cell { pale: true, ..Cell::number(v) });
@@ -113,7 +114,7 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
                 Cell::text(label(group)),
                 Cell::text(&rest),
                 Cell::number(reached).with_text(frames(reached)),
-                Cell::number(group.config().safety_budget).with_text(group.config().safety_budget.to_string()),
+                Cell::number(group.config().safety_budget).with_text(budget_label(group)),
                 return_cell,
                 theirs(paper.map(|p| p.episode_return)),
                 cost_cell,
@@ -124,7 +125,7 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
         for metric in ["return", "cost"] {
             let bars = |(index, group): (usize, &&Group)| {
                 let mut bars = Vec::new();
-                if let Some(estimate) = group.final_estimate(&format!("{metric}_mean")) {
+                if let Some(estimate) = group.estimate(source, &format!("{metric}_mean")) {
                     let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
                     bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink: Ink::Series(index), pale: false });
                 }

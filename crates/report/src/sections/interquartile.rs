@@ -4,7 +4,7 @@ use super::{distinct, main_groups};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Section, Table, number, slug};
 use crate::group::{Group, algorithm_order};
-use crate::statistics::{Interquartile, RESAMPLES, stratified_interquartile};
+use crate::statistics::{Aggregate, RESAMPLES, aggregate, interquartile_mean};
 
 pub(super) fn section(groups: &[Group]) -> Section {
     let settings = main_groups(groups);
@@ -24,15 +24,15 @@ pub(super) fn section(groups: &[Group]) -> Section {
                     Some(ppo) => group.final_samples("return_mean").iter().map(|value| value / ppo).collect(),
                     None => Vec::new(),
                 };
-                let returns = stratified_interquartile(&strata(&here, relative_returns));
-                let costs = stratified_interquartile(&strata(&here, relative_costs));
+                let returns = aggregate(&strata(&here, relative_returns), interquartile_mean);
+                let costs = aggregate(&strata(&here, relative_costs), interquartile_mean);
                 if returns.is_none() && costs.is_none() {
                     continue;
                 }
                 for (bars, estimate) in bars.iter_mut().zip([returns, costs]) {
                     bars.extend(estimate.map(|e| Bar {
                         name: algo.clone(),
-                        value: e.mean,
+                        value: e.value,
                         interval: e.interval,
                         ink: Ink::Series(order),
                         pale: false,
@@ -96,13 +96,13 @@ fn relative_costs(group: &Group) -> Vec<f64> {
     if budget > 0.0 { group.final_samples("cost_mean").iter().map(|value| value / budget).collect() } else { Vec::new() }
 }
 
-fn cell(estimate: Option<Interquartile>) -> Cell {
+fn cell(estimate: Option<Aggregate>) -> Cell {
     let Some(estimate) = estimate else { return Cell::text("-") };
     let interval = estimate.interval.map_or_else(String::new, |(low, high)| format!(" [{}, {}]", number(low), number(high)));
     Cell {
-        text: format!("{}{interval}", number(estimate.mean)),
+        text: format!("{}{interval}", number(estimate.value)),
         note: format!("n={}", estimate.n),
-        sort: Some(estimate.mean),
+        sort: Some(estimate.value),
         ..Cell::default()
     }
 }

@@ -5,14 +5,14 @@ mod comparison;
 mod constraints;
 mod curves;
 mod equal_frames;
-mod handed_out;
 mod heatmaps;
 mod interquartile;
 mod main_results;
 mod players;
 mod runs;
+mod selected;
 
-use crate::document::{Document, Section};
+use crate::document::{Document, Section, count};
 use crate::group::Group;
 use crate::run::{Found, Warning};
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec
     let frames: f64 = groups.iter().flat_map(|group| &group.runs).map(crate::run::Run::frames).sum();
     let run_count: usize = groups.iter().map(|group| group.runs.len()).sum();
     let mut sections =
-        vec![main_results::section(groups), handed_out::section(groups), beside_paper::section(groups), curves::section(groups)];
+        vec![main_results::section(groups), selected::section(groups), beside_paper::section(groups), curves::section(groups)];
     sections.push(constraints::section(groups));
     sections.extend(comparison::sections(groups));
     sections.push(interquartile::section(groups));
@@ -36,7 +36,12 @@ pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec
     sections.push(method());
     Document {
         title: title.to_owned(),
-        subtitle: format!("{run_count} runs of {} experiments, {} frames in all", groups.len(), crate::document::frames(frames)),
+        subtitle: format!(
+            "{} of {}, {} frames in all",
+            count(run_count, "run"),
+            count(groups.len(), "experiment"),
+            crate::document::frames(frames)
+        ),
         sections,
     }
 }
@@ -50,7 +55,9 @@ fn method() -> Section {
             "A table's value is, for each seed, the mean over the last ten of five hundred points at equal distances in frames (each \
              the mean over recently finished training episodes, on the line between the reports around it), then the mean over seeds. ± is half the 95 % interval of Student's t distribution with n - 1 in the deviation's denominator; \
              n is the number of seeds. With one seed there is no interval.",
-            "Green: the mean cost is within the budget; with several constraints, each within its own. Bold: the best return among those within the budget; if none is, the least cost.",
+            "Green ground: the upper end of the cost's 95 % interval over seeds is within the budget (of a single evaluated seed, over its \
+             episodes); green letters: the mean is. With several constraints, each within its own. Bold: the best return among those \
+             within the budget and all that cannot be distinguished from it; if none is within, the least cost.",
             "Curves show the mean over seeds (line), its 95 % interval (band) and each seed (thin lines). Means end where the shortest run \
              ends, and no curve is stretched or smoothed; reports within one 240th of the axis are averaged.",
             "Returns and costs are always those of the environment, never reshaped by an algorithm.",

@@ -45,15 +45,13 @@ fn row(player: &str, env: &str, options: &str, constraints: &[Constraint], episo
     let keeps =
         |episode: &&EpisodeResult| constraints.iter().all(|one| episode.cost_of(one).is_some_and(|cost| cost <= one.budget));
     let within = episodes.iter().filter(keeps).count() as f64 / episodes.len().max(1) as f64;
-    let mean_within = |one: &Constraint| {
+    let kept = |one: &Constraint| {
         let costs: Option<Vec<f64>> = episodes.iter().map(|episode| episode.cost_of(one)).collect();
-        costs.and_then(|costs| Estimate::of(&costs)).is_some_and(|cost| cost.mean <= one.budget)
+        one.kept_by(costs.and_then(|costs| Estimate::of(&costs)))
     };
     let plain = |samples: &[f64]| Cell { title: String::new(), ..Cell::estimate(Estimate::of(samples), samples) };
     let mut cost = plain(&costs);
-    if constraints.iter().all(mean_within) {
-        cost.mark = Mark::Within;
-    }
+    cost.mark = Mark::of(constraints.iter().map(kept).min().unwrap_or_default());
     let cells = vec![
         Cell::text(player),
         Cell::text(scenario_name(&scenario)),
