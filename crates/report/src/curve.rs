@@ -6,7 +6,7 @@ use crate::statistics::Estimate;
 /// Points that a curve has at most: about one every two pixels of a figure.
 const MAX_POINTS: usize = 240;
 
-/// A point of a mean curve.
+/// A point of a mean curve (or of a profile, whose thresholds stand in the place of frames).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Point {
     /// Frames.

@@ -79,6 +79,16 @@ fn write_experiments(root: &Path) {
         file.set_outcome(outcome);
         file.write(&root.join(format!("human/{episode}.episode"))).unwrap();
     }
+    let random: String = ENVS
+        .iter()
+        .map(|(scenario, best, budget)| {
+            let (episode_return, cost) = (best * 0.1, budget * 2.0);
+            format!(
+                "{{\"env\":\"{scenario}Level1-v0\",\"rules\":\"tables\",\"return\":{episode_return},\"cost\":{cost},\"length\":525}}\n"
+            )
+        })
+        .collect();
+    std::fs::write(root.join("random.jsonl"), random).unwrap();
     // What a killed trainer and a full disk leave behind.
     let cut = root.join("main/RemedyRushLevel1-v0/PPO/seed3/metrics.jsonl");
     let text = std::fs::read_to_string(&cut).unwrap();
@@ -104,10 +114,23 @@ fn a_report_on_many_experiments() {
     for forbidden in ["src=\"http", "href=\"http", "url(", "@import", "<link", "src=\"/", "fetch("] {
         assert!(!page.contains(forbidden), "{forbidden}");
     }
-    for section in ["main", "paper", "curves", "safety-budget", "cost-scale", "full-actions", "curriculum", "hard"] {
+    for section in ["main", "paper", "curves", "safety-bounds", "cost-scale", "full-actions", "curriculum", "hard"] {
         assert!(page.contains(&format!("<section id=\"{section}\">")), "{section}");
     }
-    for section in ["interquartile", "players", "heatmaps", "experiments", "runs", "warnings", "method"] {
+    for section in [
+        "aggregates",
+        "safety",
+        "pareto",
+        "efficiency",
+        "human",
+        "missing",
+        "players",
+        "heatmaps",
+        "experiments",
+        "runs",
+        "warnings",
+        "method",
+    ] {
         assert!(page.contains(&format!("<section id=\"{section}\">")), "{section}");
     }
     assert_balanced(&page);
@@ -141,6 +164,19 @@ fn a_report_on_many_experiments() {
     let headline = text.split("**Level 1, evaluation of the selected").nth(1).unwrap();
     let first = headline.lines().find(|line| line.starts_with("| PPOPID |")).unwrap();
     assert!(first.contains("32.00") && first.contains("5.50") && headline.contains("**Level 1, end of training"), "{first}");
+
+    // Volcanic Venture: random returns 5, so P3O's score is (R - 5) / (PPO - 5) of the same report's own means. Its
+    // costs end at four fifths of the budget; nothing was evaluated, so that the means decide.
+    let mean_of = |algo: &str, seed: u32| last_ten(&runs.join(format!("main/VolcanicVentureLevel1-v0/{algo}/seed{seed}")));
+    let ppo = (1..=3).map(|seed| mean_of("PPO", seed)).sum::<f64>() / 3.0;
+    let score = (1..=3).map(|seed| (mean_of("P3O", seed) - 5.0) / (ppo - 5.0)).sum::<f64>() / 3.0;
+    let safety = text.split("## Safety").nth(1).unwrap();
+    let row = safety.lines().find(|line| line.starts_with("| Volcanic Venture | 1 | P3O |")).unwrap();
+    let cells: Vec<&str> = row.split(" | ").collect();
+    assert!(cells[4].starts_with(&format!("{score:.2}")) && cells[6].starts_with(&format!("{score:.2}")), "{score}: {row}");
+    assert_eq!((cells[7], cells[10], cells[11]), ("end of training", "40k", "10k"), "{row}");
+    let ppo_row = safety.lines().find(|line| line.starts_with("| Volcanic Venture | 1 | PPO |")).unwrap();
+    assert!(ppo_row.contains("| 0.00 ± 0.00 | 0.20"), "PPO is five times above the budget: {ppo_row}");
 
     // Same runs, same bytes.
     let again = folder.0.join("again");

@@ -1,6 +1,6 @@
 //! Curves with bands.
 
-use super::axis::{Axis, draw_vertical_axis, short, ticks};
+use super::axis::{Axis, axis_title, draw_vertical_axis, short, ticks};
 use super::{Anchor, Drawing, Hover, HoverCurve, Ink, Shape};
 use crate::curve::{Curve, Point};
 
@@ -35,6 +35,8 @@ impl Series {
 pub struct LinePanel {
     /// Its title.
     pub title: String,
+    /// What is counted along the horizontal axis; frames if empty.
+    pub axis: String,
     /// The curves.
     pub series: Vec<Series>,
     /// The budget: a dashed line across.
@@ -49,7 +51,8 @@ pub struct LinePanel {
 pub fn line_panel(panel: &LinePanel) -> Drawing {
     let (width, height) = panel.size;
     let mut drawing = Drawing::new(width, height);
-    let (left, top, right, bottom) = (46.0, 26.0, width - 8.0, height - 22.0);
+    let (left, top, right, bottom) = (46.0, 26.0, width - 8.0, height - 36.0);
+    let axis = if panel.axis.is_empty() { "frames" } else { &panel.axis };
     drawing.shapes.push(Shape::Text {
         at: (left, 14.0),
         anchor: Anchor::Start,
@@ -74,6 +77,7 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
     let vertical = Axis { from: values[0], to: values[values.len() - 1], start: bottom, end: top };
     let horizontal = Axis { from: 0.0, to: most_frames, start: left, end: right };
     draw_vertical_axis(&mut drawing, &vertical, &values, left, right);
+    axis_title(&mut drawing, axis, (left, right), height - 4.0);
     let frame_ticks = ticks(0.0, most_frames, 4);
     for &frames in frame_ticks.iter().filter(|frames| **frames <= most_frames * 1.001) {
         let anchor = if frames > most_frames * 0.97 { Anchor::End } else { Anchor::Middle };
@@ -125,6 +129,7 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
     drawing.hovers.push(Hover {
         place: [left, top, right - left, bottom - top],
         horizontal: (0.0, most_frames),
+        axis: axis.to_owned(),
         curves: cut
             .iter()
             .map(|series| HoverCurve {

@@ -19,6 +19,7 @@ fn panel() -> Drawing {
         |name: &str, index, slope| Series { name: name.into(), ink: Ink::Series(index), curve: some_curve(slope), paper: false };
     line_panel(&LinePanel {
         title: "cost & <more>".into(),
+        axis: String::new(),
         series: vec![series("PPO", 0, 1.5), series("PPO\"Lag", 2, 0.8)],
         budget: Some(50.0),
         size: (380.0, 230.0),

@@ -7,11 +7,12 @@ mod episodes;
 mod evaluated;
 mod heatmap;
 mod metrics;
+mod safety;
 mod selected;
 
 pub use config::{Config, TOLD, default_budget, scenario_and_level};
 pub use constraint::{Constraint, Kept};
-pub use discover::{Found, discover};
+pub use discover::{Found, PlayerKey, discover};
 pub use episodes::{EpisodeResult, read_episode_lines};
 pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};

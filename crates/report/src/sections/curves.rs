@@ -64,9 +64,12 @@ pub(super) fn curve_figure(title: &str, file: &str, caption: &str, members: &[(S
             Some(Series { name: format!("{name} (paper)"), ink: *ink, curve, paper: true })
         });
         let series = series.into_iter().chain(paper).collect();
-        LinePanel { title: heading.to_owned(), series, budget, size: (400.0, 220.0) }
+        LinePanel { title: heading.to_owned(), axis: String::new(), series, budget, size: (400.0, 234.0) }
     };
-    let mut panels = vec![line_panel(&panel("return", "return_mean", None)), line_panel(&panel("cost", "cost_mean", one_budget))];
+    let mut panels = vec![
+        line_panel(&panel("return an episode", "return_mean", None)),
+        line_panel(&panel("cost an episode", "cost_mean", one_budget)),
+    ];
     for constraint in distinct_terms(members) {
         let drawn = panel(&format!("cost: {constraint}"), &format!("cost/{constraint}"), one_budget_of(Some(&constraint)));
         panels.push(line_panel(&drawn));

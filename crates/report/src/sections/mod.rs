@@ -1,20 +1,28 @@
 //! The sections of the report, each made from all experiments.
 
+mod aggregates;
+mod baselines;
+mod behaviour;
 mod beside_paper;
 mod comparison;
 mod constraints;
 mod curves;
+mod efficiency;
 mod equal_frames;
 mod heatmaps;
-mod interquartile;
 mod main_results;
+mod missing;
+mod pareto;
 mod players;
 mod runs;
+mod safety;
 mod selected;
+mod witness;
 
 use crate::document::{Document, Section, count};
 use crate::group::Group;
 use crate::run::{Found, Warning};
+use baselines::Baselines;
 use std::collections::BTreeMap;
 
 /// Makes the report of what was found. `warnings` grows by what is noticed on the way.
@@ -22,15 +30,27 @@ use std::collections::BTreeMap;
 pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec<Warning>) -> Document {
     let frames: f64 = groups.iter().flat_map(|group| &group.runs).map(crate::run::Run::frames).sum();
     let run_count: usize = groups.iter().map(|group| group.runs.len()).sum();
-    let mut sections =
-        vec![main_results::section(groups), selected::section(groups), beside_paper::section(groups), curves::section(groups)];
-    sections.push(constraints::section(groups));
+    let baselines = Baselines::new(found, groups);
+    let mut sections = vec![
+        main_results::section(groups),
+        selected::section(groups),
+        safety::section(groups, &baselines),
+        beside_paper::section(groups),
+        aggregates::section(groups, &baselines),
+        pareto::section(groups),
+        curves::section(groups),
+        constraints::section(groups),
+    ];
     sections.extend(comparison::sections(groups));
-    sections.push(interquartile::section(groups));
-    sections.push(players::section(found, groups));
     sections.push(heatmaps::section(groups, warnings));
+    sections.push(efficiency::section(groups));
+    sections.push(players::human(found));
+    sections.push(behaviour::section(found, groups));
+    sections.push(witness::section(found));
+    sections.push(players::section(found, groups));
     sections.push(runs::experiments(groups));
     sections.push(runs::runs(groups));
+    sections.push(missing::section(&sections));
     sections.push(runs::warnings(warnings));
     sections.retain(|section: &Section| !section.blocks.is_empty() || section.slug == "paper" && !section.text.is_empty());
     sections.push(method());

@@ -8,11 +8,13 @@
 
 mod aggregate;
 mod bootstrap;
+mod feasible;
 
 pub use aggregate::{
     conditional_value_at_risk, interquartile_mean, optimality_gap, performance_profile, probability_of_improvement,
 };
 pub use bootstrap::{Aggregate, RESAMPLES, aggregate, aggregate_pair};
+pub use feasible::{excess, feasible_scores, normalised};
 
 /// A mean with what it rests on.
 #[derive(Clone, Copy, PartialEq, Debug)]

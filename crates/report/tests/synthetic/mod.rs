@@ -68,9 +68,11 @@ impl Synthetic<'_> {
                 if self.algo.ends_with("Lag") { format!(",\"multipliers\":[{}]", 0.4 * rise) } else { String::new() };
             let _ = writeln!(
                 text,
-                "{{\"frames\":{frames},\"updates\":{k},\"wall_s\":{},\"fps\":4000,\"return_mean\":{episode_return},\"cost_mean\":{cost},\"length_mean\":{}{multiplier}}}",
+                "{{\"frames\":{frames},\"updates\":{k},\"wall_s\":{},\"fps\":4000,\"return_mean\":{episode_return},\"cost_mean\":{cost},\"length_mean\":{},\"cost_total\":{},\"violation_total\":{}{multiplier}}}",
                 frames / 4000.0,
-                500.0 + wave
+                500.0 + wave,
+                frames / 100.0,
+                frames / 400.0
             );
         }
         text
