@@ -106,7 +106,8 @@ mod tests {
 
     fn learned(algorithm: &mut dyn Algorithm, config: &TrainConfig, episode_cost: f64) -> Learner {
         let (mut learner, rollout) = small::learner(config);
-        let signals = |_: &[f64]| vec![Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0, done: 0.0 }];
+        let signals =
+            |_: &[f64]| vec![Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0, mean_steps: 525.0, done: 0.0 }];
         for number in 0..3 {
             let prepared = learner.prepare(&rollout);
             let passes = Passes::new(config, number, small::LANES);

@@ -224,7 +224,7 @@ fn config(algorithm: AlgorithmKind, preset: Preset) -> TrainConfig {
 }
 
 fn signal(episode_cost: f64) -> Signal {
-    Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0, done: 0.0 }
+    Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0, mean_steps: 525.0, done: 0.0 }
 }
 
 /// PPO's equations 7 (the clipped surrogate; 1 - epsilon is 1 / (1 + epsilon) here, as in the benchmark's code) and 9 (with the

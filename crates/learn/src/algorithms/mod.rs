@@ -40,6 +40,8 @@ pub struct Signal {
     pub episode_budget: f64,
     /// Steps of the longest episode.
     pub episode_steps: f64,
+    /// Mean steps of the episodes that the cost is the mean of.
+    pub mean_steps: f64,
     /// Share of the training that is over, 0 to 1.
     pub done: f64,
 }

@@ -150,7 +150,7 @@ mod tests {
     use crate::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
 
     fn signal(step_cost: f64) -> Signal {
-        Signal { episode_cost: step_cost * 525.0, episode_budget: 50.0, episode_steps: 525.0, done: 0.0 }
+        Signal { episode_cost: step_cost * 525.0, episode_budget: 50.0, episode_steps: 525.0, mean_steps: 525.0, done: 0.0 }
     }
 
     fn settings() -> AlgorithmConfig {
@@ -221,8 +221,13 @@ mod tests {
             for update in 0..12_000 {
                 let wanted = budget * (1.0 - (multiplier.values()[0] / (0.3 * scale)).max(0.05).ln());
                 cost += (wanted - cost) / 146.0;
-                let signal =
-                    Signal { episode_cost: cost, episode_budget: budget, episode_steps: 525.0, done: f64::from(update) / 12e3 };
+                let signal = Signal {
+                    episode_cost: cost,
+                    episode_budget: budget,
+                    episode_steps: 525.0,
+                    mean_steps: 525.0,
+                    done: f64::from(update) / 12e3,
+                };
                 multiplier.update(&[signal]);
             }
             (cost / budget - 1.0).abs()
@@ -242,7 +247,13 @@ mod tests {
         let moved = |budget: f64, done: f64| {
             let settings = AlgorithmConfig { multiplier_rate: 1.0, multiplier_reference_budget: Some(45.0), ..settings() };
             let mut multiplier = Lagrange::all(&settings, 1);
-            multiplier.update(&[Signal { episode_cost: budget + 5.0, episode_budget: budget, episode_steps: 100.0, done }]);
+            multiplier.update(&[Signal {
+                episode_cost: budget + 5.0,
+                episode_budget: budget,
+                episode_steps: 100.0,
+                mean_steps: 100.0,
+                done,
+            }]);
             multiplier.values()[0]
         };
         for (budget, done, expected) in [(5.0, 0.0, 0.05), (5.0, 0.5, 0.1), (5.0, 1.0, 0.45), (45.0, 1.0, 0.05), (0.0, 1.0, 2.25)]

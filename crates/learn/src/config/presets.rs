@@ -110,7 +110,7 @@ impl TrainConfig {
                 saute_horizon: f64::from(if released { EPISODE_TICS } else { episode_steps }),
                 trust_radius: 0.01,
                 conjugate_iterations: 10,
-                fisher_fraction: 0.1,
+                fisher_fraction: if released { 1.0 } else { 0.1 },
                 fisher_damping: 0.1,
                 line_search_steps: 5,
                 line_search_factor: 0.5,
@@ -184,6 +184,8 @@ mod tests {
         assert_eq!(paper.constraints[0].budget, 50.0);
         assert_eq!(make(AlgorithmKind::PpoCost, Preset::Released).algorithm_settings.penalty_scale, 0.1);
         assert_eq!(make(AlgorithmKind::Trpo, Preset::Released).learning.adam_epsilon, 1e-8);
+        // A6: the released code takes its Fisher products over the whole minibatch.
+        assert_eq!(make(AlgorithmKind::Trpo, Preset::Released).algorithm_settings.fisher_fraction, 1.0);
         let quick = make(AlgorithmKind::PpoLag, Preset::Quick);
         assert_eq!((paper.budget_share, quick.budget_share), (1.0, 0.9));
         for plain in [&paper, &released] {

@@ -99,23 +99,27 @@ impl Watch {
     #[must_use]
     pub fn signals(&self, config: &TrainConfig, done: f64, minibatch_costs: &[f64]) -> Vec<Signal> {
         let episode_steps = f64::from(config.episode_steps);
-        let signal = |index: usize, episode_cost: f64| Signal {
+        let signal = |index: usize, episode_cost: f64, mean_steps: f64| Signal {
             episode_cost,
             episode_budget: config.constraints[index].budget * config.budget_share,
             episode_steps,
+            mean_steps,
             done,
         };
         match config.constraint_statistic {
-            ConstraintStatistic::StepMean => {
-                minibatch_costs.iter().enumerate().map(|(index, cost)| signal(index, cost * episode_steps)).collect()
-            }
+            ConstraintStatistic::StepMean => minibatch_costs
+                .iter()
+                .enumerate()
+                .map(|(index, cost)| signal(index, cost * episode_steps, episode_steps))
+                .collect(),
             ConstraintStatistic::EpisodeMean => {
                 let latest: Vec<_> = self.recent.iter().rev().take(self.constraint_window).collect();
                 if latest.is_empty() {
                     return Vec::new();
                 }
-                let mean = |index: usize| latest.iter().map(|one| one.constrained[index]).sum::<f64>() / latest.len() as f64;
-                (0..config.constraints.len()).map(|index| signal(index, mean(index))).collect()
+                let mean = |of: &dyn Fn(&Finished) -> f64| latest.iter().map(|one| of(one)).sum::<f64>() / latest.len() as f64;
+                let steps = mean(&|one| one.length).max(1.0);
+                (0..config.constraints.len()).map(|index| signal(index, mean(&|one| one.constrained[index]), steps)).collect()
             }
         }
     }
