@@ -2,7 +2,7 @@
 
 mod tiny;
 
-use hasard_learn::config::{AlgorithmKind, TrainConfig};
+use hasard_learn::config::{AlgorithmKind, CriticInput, TrainConfig};
 use hasard_learn::runs::report::Report;
 use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Start, train_together};
@@ -83,6 +83,11 @@ fn short(algorithm: AlgorithmKind) -> TrainConfig {
     let mut config = config(algorithm);
     config.learning.epochs = 1;
     config.frames = 512 * 10;
+    if algorithm == AlgorithmKind::TrpoLag {
+        // Rollouts in two trajectories each, and critics that see more than the policy.
+        config.learning.recurrence = Some(8);
+        config.learning.critic_inputs = CriticInput::ALL.to_vec();
+    }
     config
 }
 

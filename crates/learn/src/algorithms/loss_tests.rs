@@ -68,7 +68,7 @@ impl Case {
             targets: self.targets[index].clone(),
         };
         Minibatch {
-            batch: ModelSequences { sequences: empty, initial_state: vec![], recorded: vec![] },
+            batch: ModelSequences { sequences: empty, initial_state: vec![], recorded: vec![], privileged: vec![] },
             taken: Taken { actions: self.actions.clone(), deltas: self.deltas.clone() },
             old_log_probability: self.old_log.iter().map(|&log| f64::from(log)).collect(),
             old_policy: Policy::new(&self.shape, &self.old_outputs, self.shape.parameters()),
@@ -80,7 +80,7 @@ impl Case {
 
     /// Value and gradient of a loss.
     fn found(&self, loss: impl Fn(&Heads, &Minibatch<'_>, &mut Means) -> Loss) -> (f64, Vec<f64>) {
-        let shape = ModelShape { networks: vec![], action: self.shape.clone(), cost_critics: 1 };
+        let shape = ModelShape { networks: vec![], action: self.shape.clone(), cost_critics: 1, critic_inputs: 0 };
         let minibatch = self.minibatch();
         let heads = Heads::new(&shape, &self.outputs, shape.outputs(), &minibatch);
         let loss = loss(&heads, &minibatch, &mut Means::default());

@@ -15,7 +15,7 @@ mod ppo;
 mod ppo_lag;
 mod ppo_pid;
 #[cfg(test)]
-mod small;
+pub(crate) mod small;
 mod surrogate;
 mod trpo;
 mod trpo_lag;

@@ -67,6 +67,11 @@ const fn a_tenth() -> f64 {
     0.1
 }
 
+/// What files of before say nothing of.
+const fn one_step() -> usize {
+    1
+}
+
 /// Numbers of single algorithms.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct AlgorithmConfig {
@@ -114,6 +119,12 @@ pub struct AlgorithmConfig {
     pub fisher_fraction: f64,
     /// Second-order algorithms: multiple of the identity added to the Fisher matrix.
     pub fisher_damping: f64,
+    /// Second-order algorithms: steps of Adam that the critics make in each update of the policy.
+    #[serde(default = "one_step")]
+    pub critic_steps: usize,
+    /// Second-order algorithms: samples of each of these steps, dealt out of the rollout; `null` for all of it.
+    #[serde(default)]
+    pub critic_batch: Option<usize>,
     /// Second-order algorithms: tries of the line search.
     pub line_search_steps: usize,
     /// Second-order algorithms: factor between the tries.

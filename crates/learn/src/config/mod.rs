@@ -11,13 +11,14 @@ mod network;
 mod presets;
 mod reporting;
 mod sampling;
+mod second_order;
 pub mod settings;
 
 pub use algorithm::{AlgorithmConfig, AlgorithmKind};
 pub use constraint::{Constraint, ConstraintStatistic};
 pub use environment::EnvConfig;
 pub use evaluation::EvaluationConfig;
-pub use learning::{Exploration, LearningConfig};
+pub use learning::{CriticInput, Exploration, LearningConfig, ReturnNormaliser};
 pub use network::{Convolution, Initialisation, NetworkConfig, RecurrentCell};
 pub use reporting::ReportingConfig;
 pub use sampling::SamplingConfig;
@@ -130,11 +131,18 @@ impl TrainConfig {
             ("the steps of the longest episode", self.episode_steps as usize, 100_000),
             ("the delay of the PID controller", self.algorithm_settings.pid_delay, 100_000),
             ("the conjugate-gradient iterations", self.algorithm_settings.conjugate_iterations, 1000),
+            ("the steps of the critics", self.algorithm_settings.critic_steps, 100_000),
+            ("the samples of a critic's step", self.algorithm_settings.critic_batch.unwrap_or(1), 1 << 24),
+            ("the recurrence", learning.recurrence.unwrap_or(1), 4096),
             ("the tries of the line search", self.algorithm_settings.line_search_steps, 1000),
         ] {
             if !(1..=most).contains(&given) {
                 return refuse(name, &given, &format!("1 to {most}"));
             }
+        }
+        if !sampling.rollout.is_multiple_of(self.trajectory_steps()) {
+            let allowed = format!("a multiple of the recurrence ({})", self.trajectory_steps());
+            return refuse("the rollout length", &sampling.rollout, &allowed);
         }
         if sampling.world_threads > 256 {
             return refuse("the number of world threads", &sampling.world_threads, "0 to 256");
@@ -151,6 +159,7 @@ impl TrainConfig {
             ("the final learning rate", learning.final_rate.unwrap_or(0.0), 0.0, 10.0),
             ("the target divergence", learning.target_kl.unwrap_or(0.0), 0.0, f64::MAX),
             ("the learning rate of the critics", learning.critic_rate.unwrap_or(0.0), 0.0, 10.0),
+            ("the samples that PopArt remembers", learning.normaliser_horizon, 1.0, f64::MAX),
             ("gamma of the costs", learning.cost_gamma.unwrap_or(0.0), 0.0, 1.0),
             ("the final exploration coefficient", learning.final_exploration_coefficient.unwrap_or(0.0), 0.0, 1e3),
             ("the largest multiplier", self.algorithm_settings.multiplier_limit.unwrap_or(0.0), 0.0, f64::MAX),
@@ -186,6 +195,14 @@ impl TrainConfig {
         if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
             return refuse("the learning rate of the critics", &rate, "null unless network.separate is on");
         }
+        if learning.normaliser == ReturnNormaliser::PopArt && !sampling.synchronous {
+            let allowed = "running unless sampling.synchronous is on: actors beside the learner have heads of another scale";
+            return refuse("the normaliser of returns", &learning.normaliser, allowed);
+        }
+        let seen = &learning.critic_inputs;
+        if let Some(twice) = (1..seen.len()).find(|&index| seen[..index].contains(&seen[index])) {
+            return refuse("an input of the critics", &format!("'{}' twice", seen[twice]), "named once");
+        }
         if self.frames == 0 {
             return refuse("the number of frames", &self.frames, "at least 1");
         }
@@ -210,6 +227,12 @@ impl TrainConfig {
             return refuse("the budget of PPOSaute", &0, "above 0, for what is left of it is measured in its units");
         }
         Ok(())
+    }
+
+    /// Steps of the trajectories that are learned from.
+    #[must_use]
+    pub fn trajectory_steps(&self) -> usize {
+        self.learning.recurrence.unwrap_or(usize::MAX).min(self.sampling.rollout)
     }
 
     /// Frames of one rollout of all worlds.
@@ -237,6 +260,13 @@ mod tests {
         refuse(|c| c.learning.rate = f64::NAN, "learning rate");
         refuse(|c| c.constraints[0].budget = -1.0, "budget");
         refuse(|c| c.frames = 0, "frames");
+        refuse(
+            |c| (c.learning.normaliser, c.sampling.synchronous) = (ReturnNormaliser::PopArt, false),
+            "normaliser of returns cannot be popart",
+        );
+        refuse(|c| c.learning.critic_inputs = vec![CriticInput::TimeLeft; 2], "'time-left' twice");
+        refuse(|c| (c.sampling.rollout, c.learning.recurrence) = (48, Some(32)), "multiple of the recurrence (32)");
+        refuse(|c| c.algorithm_settings.critic_steps = 0, "steps of the critics");
         for algorithm in [AlgorithmKind::PpoSaute, AlgorithmKind::PpoCost] {
             let mut config = TrainConfig { algorithm, ..good.clone() };
             config.constraints.push(config.constraints[0].clone());

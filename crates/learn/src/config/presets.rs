@@ -3,9 +3,9 @@
 
 use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig, Exploration, LearningConfig,
-    NetworkConfig, Preset, ReportingConfig, SamplingConfig, TrainConfig,
+    NetworkConfig, Preset, ReportingConfig, ReturnNormaliser, SamplingConfig, TrainConfig,
 };
-use crate::config::{Convolution, Initialisation, RecurrentCell};
+use crate::config::{Convolution, Initialisation, RecurrentCell, second_order};
 use hasard_envs::Scenario;
 
 /// Tics of the longest episode.
@@ -64,6 +64,7 @@ impl TrainConfig {
             learning: LearningConfig {
                 epochs: if repeats { 10 } else { 1 },
                 minibatches: if repeats { 16 } else { 1 },
+                recurrence: None,
                 gamma: 0.99,
                 gae_lambda: 0.95,
                 rate: 1e-4,
@@ -81,7 +82,11 @@ impl TrainConfig {
                 exploration: Exploration::SymmetricKl,
                 exploration_coefficient: 0.001,
                 final_exploration_coefficient: None,
+                normaliser: ReturnNormaliser::Running,
+                normaliser_horizon: 100_000.0,
                 bootstrap_time_outs: !released,
+                bootstrap_cost_time_outs: None,
+                critic_inputs: vec![],
                 reuse_forward: true,
                 threads: cores,
                 portable: false,
@@ -112,6 +117,8 @@ impl TrainConfig {
                 conjugate_iterations: 10,
                 fisher_fraction: if released { 1.0 } else { 0.1 },
                 fisher_damping: 0.1,
+                critic_steps: 1,
+                critic_batch: None,
                 line_search_steps: 5,
                 line_search_factor: 0.5,
                 trpo_consistent: !released,
@@ -128,6 +135,9 @@ impl TrainConfig {
         };
         if preset == Preset::Quick {
             quicken(&mut config);
+        }
+        if separate && !released {
+            second_order::gather_more(&mut config);
         }
         config
     }

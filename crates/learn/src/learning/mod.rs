@@ -10,3 +10,4 @@ pub mod normaliser;
 pub mod optimiser;
 pub mod passes;
 pub mod policy;
+pub mod popart;

@@ -50,6 +50,9 @@ pub struct Progress {
     pub watch: Watch,
     /// Steps that each sampler's lanes have made, and their safety states.
     pub samplers: Vec<(u64, Vec<f64>)>,
+    /// What each sampler's lanes have cost in their episodes so far, where critics see it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spent: Vec<Vec<f64>>,
     /// Frames that the pixel statistics have seen.
     pub pixel_count: f64,
 }
@@ -365,7 +368,11 @@ impl Loaded {
                 worlds.push(LaneState { seeds: lane[0], seed: lane[1], actions: own.to_vec(), deltas: own_deltas.to_vec() });
                 (actions, deltas) = (rest, rest_deltas);
             }
-            samplers.push(SamplerState { worlds, state, safety: safety.clone(), steps: *steps });
+            let spent = progress.spent.get(index).cloned().unwrap_or_default();
+            if !spent.is_empty() && (lanes == 0 || !spent.len().is_multiple_of(lanes)) {
+                return Err(format!("the costs so far of sampler {index} are not those of {lanes} worlds"));
+            }
+            samplers.push(SamplerState { worlds, state, safety: safety.clone(), spent, steps: *steps });
         }
         Ok(samplers)
     }

@@ -304,6 +304,7 @@ impl<'a> Trainer<'a> {
             algorithm: self.session.algorithm.save(),
             watch: self.session.watch.clone(),
             samplers: samplers.iter().map(|sampler| (sampler.steps, sampler.safety.clone())).collect(),
+            spent: samplers.iter().map(|sampler| sampler.spent.clone()).filter(|spent| !spent.is_empty()).collect(),
             pixel_count: self.session.learner.pixels.count,
         };
         Checkpoint::take(&self.session.learner, &samplers, progress)

@@ -63,7 +63,7 @@ impl Sent {
 }
 
 /// What a sampler is sent as.
-type SentSampler = (Vec<u8>, Vec<Vec<f32>>, Vec<f64>, u64);
+type SentSampler = (Vec<u8>, Vec<Vec<f32>>, Vec<f64>, Vec<f64>, u64);
 
 fn misfit() -> LearnError {
     LearnError::Team("a worker plays other worlds; start all workers from one version of hasard".into())
@@ -87,7 +87,7 @@ pub fn complete(team: &Team, shape: &ModelShape, names: &[&'static str], own: Ro
         for (mut part, episodes) in parts.into_iter().zip(episodes) {
             let named = episodes.into_iter().map(|sent| sent.episode(names)).collect::<Option<_>>();
             part.episodes = named.ok_or_else(misfit)?;
-            part.initial_state = shape.zero_state(part.lanes);
+            part.initial_state = shape.zero_state(part.lanes * part.trajectories());
             // As many as the parts here have, so that those of a lane are found by its number.
             part.recordings = vec![Recording::default(); shape.networks.len()];
             whole.parts.push(part);
@@ -104,15 +104,16 @@ pub fn all_states(team: &Team, own: Vec<SamplerState>) -> Result<Vec<SamplerStat
     if team.is_alone() {
         return Ok(own);
     }
-    let pack = |one: SamplerState| -> SentSampler { (LaneState::to_bytes(&one.worlds), one.state, one.safety, one.steps) };
+    let pack =
+        |one: SamplerState| -> SentSampler { (LaneState::to_bytes(&one.worlds), one.state, one.safety, one.spent, one.steps) };
     let sent: Vec<SentSampler> = own.into_iter().map(pack).collect();
     let bytes = postcard::to_allocvec(&sent).map_err(|_| misfit())?;
     let mut states = Vec::new();
     for bytes in team.gather(bytes)? {
         let sent: Vec<SentSampler> = postcard::from_bytes(&bytes).map_err(|_| misfit())?;
-        for (worlds, state, safety, steps) in sent {
+        for (worlds, state, safety, spent, steps) in sent {
             let worlds = LaneState::from_bytes(&worlds).map_err(|_| misfit())?;
-            states.push(SamplerState { worlds, state, safety, steps });
+            states.push(SamplerState { worlds, state, safety, spent, steps });
         }
     }
     Ok(states)
