@@ -198,6 +198,8 @@ pub fn config(algorithm: AlgorithmKind) -> TrainConfig {
     config.evaluation.every = Some(0);
     config.learning.epochs = 2;
     config.learning.minibatches = 2;
+    // Rollouts are short here: as many steps as the preset's would be eighty passes.
+    (config.algorithm_settings.critic_steps, config.algorithm_settings.critic_batch) = (2, None);
     config.learning.gamma = 0.9;
     config.reporting.report_seconds = 0.0;
     config.reporting.checkpoint_seconds = 1e9;
