@@ -102,10 +102,11 @@ pub fn agent_of(policy: &str) -> Result<Option<PathBuf>, Failure> {
     Ok(policy.strip_prefix("run:").map(PathBuf::from))
 }
 
-/// What the agent of a run is to see: as it was trained, under the rules and constraint of `task`.
+/// What the agent of a run is to see: as it was trained, under the rules and constraint of `task`, with the buttons that it knows.
 pub fn agent_options(run: &Path, task: &EnvOptions) -> Result<EnvOptions, Failure> {
     let trained = settings::trained_options(&run_config(run).map_err(Failure::bad)?.env)?;
-    Ok(EnvOptions { rules: task.rules, hard: task.hard, ..trained })
+    let actions_of = Some((trained.rules, trained.hard));
+    Ok(EnvOptions { rules: task.rules, early_creatures: task.early_creatures, hard: task.hard, actions_of, ..trained })
 }
 
 /// The action that presses exactly these buttons, if the space has it.

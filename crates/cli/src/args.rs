@@ -54,9 +54,12 @@ pub enum Command {
 #[derive(Args, Debug, Clone)]
 #[command(next_help_heading = "Environment")]
 pub struct EnvArgs {
-    /// Constants of the paper, or of the published package
+    /// Constants of the paper, of the published package, or of the code behind the paper's tables
     #[arg(long, value_enum, default_value_t = Rules::Paper)]
     pub rules: Rules,
+    /// Detonator's Dilemma 1 under `--rules tables`: the creatures of the first runs (PPO, PPOCost, PPOLag), not of the later
+    #[arg(long)]
+    pub early_creatures: bool,
     /// Hard constraint: harm ends the episode
     #[arg(long)]
     pub hard: bool,
@@ -82,7 +85,7 @@ pub struct EnvArgs {
 impl EnvArgs {
     /// Whether the task differs from the usual one; size and pictures do not matter.
     pub fn changes_task(&self) -> bool {
-        self.rules != Rules::Paper || self.maps.is_some() || self.hard || self.full_actions || self.frame_skip != 4
+        self.rules != Rules::Paper || self.early_creatures || self.maps.is_some() || self.hard || self.full_actions || self.frame_skip != 4
     }
 }
 
@@ -119,6 +122,8 @@ pub enum Rules {
     Paper,
     /// What the published package does
     Released,
+    /// What the code did when the paper's tables were made
+    Tables,
 }
 
 /// `--observation`.

@@ -12,6 +12,7 @@ impl From<Rules> for RuleSet {
         match rules {
             Rules::Paper => RuleSet::Paper,
             Rules::Released => RuleSet::Released,
+            Rules::Tables => RuleSet::Tables,
         }
     }
 }
@@ -25,6 +26,7 @@ pub fn env_id(text: &str) -> Result<EnvId, Failure> {
 pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Failure> {
     Ok(EnvOptions {
         rules: args.rules.into(),
+        early_creatures: args.early_creatures,
         hard: args.hard,
         full_actions: args.full_actions,
         frame_skip: args.frame_skip,
@@ -94,11 +96,8 @@ pub fn trained_options(env: &EnvConfig) -> Result<EnvOptions, Failure> {
 /// The environment of a training run from flags, in the words of its `config.json`.
 pub fn env_config(id: &str, args: &EnvArgs, observation: &ObservationArgs) -> EnvConfig {
     let mut env = EnvConfig::new(id);
-    env.rules = match args.rules {
-        Rules::Paper => "paper",
-        Rules::Released => "released",
-    }
-    .into();
+    env.rules = RuleSet::from(args.rules).name().into();
+    env.early_creatures = args.early_creatures;
     env.observation = match observation.observation {
         Observation::Rgb => "rgb",
         Observation::RgbDepth => "rgb+depth",

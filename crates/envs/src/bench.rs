@@ -1,6 +1,6 @@
 //! How fast a batch of worlds runs.
 
-use crate::env::EPISODE_TICS;
+use crate::scenarios::EPISODE_TICS;
 use crate::policy::draw_action;
 use crate::{EnvError, EnvOptions, VecEnv, VecOptions};
 use hasard_engine::math::Rng;

@@ -31,9 +31,6 @@ pub(crate) struct Blueprint {
     view: Arc<View>,
 }
 
-/// Length of an episode, in tics after its first observation.
-pub(crate) const EPISODE_TICS: u32 = 2100;
-
 impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
         let id: EnvId = id.parse()?;
@@ -52,7 +49,7 @@ impl Blueprint {
         let name = file.as_ref().map_or_else(|| id.to_string(), |file| file.name.clone());
         let map = Map::build(given.unwrap_or(&built_in), &name, textures)
             .map_err(|error| EnvError::Map { why: format!("map {name}: {error}") })?;
-        let rules = Rules::new(id, options.rules, options.hard, &map)?;
+        let rules = Rules::new(id, options, &map)?;
         let own_assets = file.as_ref().and_then(|file| file.assets.clone());
         let as_published = own_assets.is_some();
         let scene = Scene::new(&map, own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded));
@@ -62,15 +59,13 @@ impl Blueprint {
         if world.players.is_empty() {
             return Err(EnvError::Map { why: format!("the map of {id} has no player start; add a thing of type 1") });
         }
-        // Collateral Damage shows itself late, once the weapon is nearly up, and ends by the clock of the level.
-        let (start_tic, end_tic) = match id.scenario {
-            Scenario::CollateralDamage => (16, EPISODE_TICS),
-            _ => (1, 1 + EPISODE_TICS),
-        };
+        rules.prepare(&mut world);
+        let (start_tic, end_tic) = scenarios::clock(id, options.rules, options.hard);
+        let (whose_rules, whose_constraint) = options.actions_of();
         Ok(Blueprint {
             id,
             options: options.clone(),
-            space: ActionSpace::of(id.scenario, options.full_actions),
+            space: ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions),
             cost_terms: scenarios::cost_terms(id.scenario),
             start_tic,
             end_tic,
@@ -235,11 +230,12 @@ impl Env {
                 break;
             }
         }
-        game.rules.end_step(&game.world, &mut game.outcome);
+        let over = game.over();
+        game.rules.end_step(&game.world, over, &mut game.outcome);
         let limit = self.blueprint.options.max_episode_steps;
         let time_out = game.world.tic >= self.blueprint.end_tic || limit.is_some_and(|limit| self.totals.steps + 1 >= limit);
         // What the rules finish in the last tic is no time-out, though no tic follows in which the episode would be left.
-        let terminated = game.over() || (time_out && game.outcome.finished);
+        let terminated = over || (time_out && game.outcome.finished);
         let truncated = time_out && !terminated;
         self.last_costs = game.outcome.costs;
         let terms = self.blueprint.cost_terms.iter().zip(&self.last_costs);

@@ -50,7 +50,7 @@ pub mod scenarios;
 mod snapshot;
 mod vec_env;
 
-pub use action::{ActionGroup, ActionSpace, BUTTONS, DELTA_DEGREES, DeltaButton, parse_command};
+pub use action::{ActionGroup, ActionSpace, BUTTONS, Controls, DELTA_DEGREES, DeltaButton, parse_command};
 pub use batch::{Batch, Episode};
 pub use bench::{BenchReport, bench};
 pub use buffer::{Buffer, Memory};

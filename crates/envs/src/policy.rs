@@ -114,7 +114,7 @@ pub(crate) fn draw_action(rng: &mut Rng, sizes: &[usize], actions: &mut [u8], de
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Scenario;
+    use crate::RuleSet;
     use hasard_engine::world::Buttons;
 
     #[test]
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn random_is_uniform_and_sticky_holds() {
-        let space = ActionSpace::of(Scenario::PrecipicePlunge, true);
+        let space = ActionSpace::of("PrecipicePlungeLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true);
         let mut counts = vec![[0u32; 3]; space.groups.len()];
         let mut run = PolicyRun::new("random".parse().unwrap(), &space, 1);
         let mut sum = 0.0;
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn hold_after_waits() {
-        let space = ActionSpace::of(Scenario::CollateralDamage, false);
+        let space = ActionSpace::of("CollateralDamageLevel1-v0".parse().unwrap(), RuleSet::Paper, false, false);
         let mut run = PolicyRun::new("hold-after:2:ATTACK".parse().unwrap(), &space, 1);
         let held: Vec<bool> =
             (0..4).map(|_| matches!(run.next_move(), Move::Buttons(c) if c.buttons == Buttons::ATTACK)).collect();

@@ -28,6 +28,7 @@ const DECIDES: [(&str, &[&str]); 25] = [
     ("envs", &["/sampling/lanes"]),
     ("seed", &["/seed"]),
     ("rules", &["/env/rules"]),
+    ("early_creatures", &["/env/early_creatures"]),
     ("hard", &["/env/hard"]),
     ("full_actions", &["/env/full_actions"]),
     ("frame_skip", &["/env/frame_skip"]),

@@ -1,6 +1,6 @@
 //! A world for tests of batches.
 
-use hasard_envs::{ActionSpace, CostTerm, Environment, Episode, Scenario, Step};
+use hasard_envs::{ActionSpace, CostTerm, Environment, Episode, RuleSet, Step};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A world that is nothing but a hash of its seed and actions; its episodes end after 3 to 18 steps in one of two ways.
@@ -16,7 +16,7 @@ pub struct Echo {
 
 impl Echo {
     pub fn new(panics_at: u32) -> Echo {
-        Echo::in_space(ActionSpace::of(Scenario::VolcanicVenture, true), panics_at)
+        Echo::in_space(ActionSpace::of("VolcanicVentureLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true), panics_at)
     }
     pub fn in_space(space: ActionSpace, panics_at: u32) -> Echo {
         Echo { space, seed: 0, state: 0, length: 0, last: Step::default(), panics_at }

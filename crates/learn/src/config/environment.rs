@@ -10,8 +10,11 @@ use crate::error::LearnError;
 pub struct EnvConfig {
     /// Its id, such as `VolcanicVentureLevel1-v0`.
     pub id: String,
-    /// `paper` or `released`.
+    /// `paper`, `released` or `tables`.
     pub rules: String,
+    /// Detonator's Dilemma 1 under `tables` with the creatures of the first runs.
+    #[serde(default, skip_serializing_if = "is_off")]
+    pub early_creatures: bool,
     /// Hard constraint.
     pub hard: bool,
     /// Full action space.
@@ -51,6 +54,7 @@ impl EnvConfig {
         EnvConfig {
             id: id.to_string(),
             rules: "paper".into(),
+            early_creatures: false,
             hard: false,
             full_actions: false,
             frame_skip: 4,
@@ -78,6 +82,7 @@ impl EnvConfig {
         };
         Ok(EnvOptions {
             rules: self.rule_set()?,
+            early_creatures: self.early_creatures,
             hard: self.hard,
             full_actions: self.full_actions,
             frame_skip: self.frame_skip,
@@ -92,11 +97,8 @@ impl EnvConfig {
     }
 
     pub(super) fn rule_set(&self) -> Result<RuleSet, LearnError> {
-        match self.rules.as_str() {
-            "paper" => Ok(RuleSet::Paper),
-            "released" => Ok(RuleSet::Released),
-            other => Err(LearnError::Config(format!("rules '{other}' are unknown; use one of paper, released"))),
-        }
+        let unknown = |_| LearnError::Config(format!("rules '{}' are unknown; use one of {}", self.rules, RuleSet::names()));
+        self.rules.parse().map_err(unknown)
     }
 
     pub(crate) fn scenario(&self) -> Option<Scenario> {

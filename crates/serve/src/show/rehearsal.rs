@@ -53,7 +53,8 @@ impl Rehearsal {
             Performer::Agent { run, .. } => {
                 let (trained, options) = shared.agents.options(run)?;
                 let id = if query.env.is_empty() { trained } else { query.env.clone() };
-                (id, EnvOptions { hard: query.hard || options.hard, ..options }, query.seed)
+                let (hard, trained_with) = (query.hard || options.hard, (options.rules, options.hard));
+                (id, EnvOptions { hard, actions_of: Some(trained_with), ..options }, query.seed)
             }
             Performer::Recorded(path) => {
                 let file = EpisodeFile::read(path).map_err(|error| error.to_string())?;
