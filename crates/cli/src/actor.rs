@@ -34,7 +34,7 @@ impl Performance {
         let policy = settings::policy(policy)?;
         let mut stage = Stage::new(id, looks).map_err(Failure::bad)?;
         stage.reset(seed);
-        let actor = Actor::Fixed(Box::new(PolicyRun::new(policy, stage.env().action_space(), seed)));
+        let actor = Actor::Fixed(Box::new(PolicyRun::new(policy, stage.env(), seed).map_err(Failure::bad)?));
         Ok(Performance { stage, actor })
     }
 
@@ -71,7 +71,7 @@ impl Performance {
     fn choose(&mut self, recorder: Option<&mut Recorder>) -> Result<(), Failure> {
         let stage = &mut self.stage;
         let (actions, deltas) = match &mut self.actor {
-            Actor::Fixed(policy) => match policy.next_move() {
+            Actor::Fixed(policy) => match policy.next_move(stage.env()) {
                 Move::Action(actions, deltas) => (actions.to_vec(), deltas.to_vec()),
                 Move::Buttons(command) => {
                     stage.press(command);

@@ -85,7 +85,12 @@ pub struct EnvArgs {
 impl EnvArgs {
     /// Whether the task differs from the usual one; size and pictures do not matter.
     pub fn changes_task(&self) -> bool {
-        self.rules != Rules::Paper || self.early_creatures || self.maps.is_some() || self.hard || self.full_actions || self.frame_skip != 4
+        self.rules != Rules::Paper
+            || self.early_creatures
+            || self.maps.is_some()
+            || self.hard
+            || self.full_actions
+            || self.frame_skip != 4
     }
 }
 

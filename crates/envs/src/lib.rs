@@ -36,6 +36,7 @@ mod action;
 mod batch;
 mod bench;
 mod buffer;
+mod carrier;
 mod env;
 mod environment;
 mod error;

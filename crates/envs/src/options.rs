@@ -47,8 +47,11 @@ impl std::str::FromStr for RuleSet {
     type Err = crate::EnvError;
 
     fn from_str(text: &str) -> Result<RuleSet, crate::EnvError> {
-        let wrong =
-            || crate::EnvError::Option { option: "rules", given: crate::error::excerpt(text), allowed: format!("one of {}", RuleSet::names()) };
+        let wrong = || crate::EnvError::Option {
+            option: "rules",
+            given: crate::error::excerpt(text),
+            allowed: format!("one of {}", RuleSet::names()),
+        };
         RuleSet::ALL.into_iter().find(|rules| rules.name() == text).ok_or_else(wrong)
     }
 }

@@ -220,9 +220,12 @@ fn the_dead_stay_lying() {
 
 #[test]
 fn collateral_damage_lasts_525_steps() {
-    for (rules, hard, steps) in
-        [(RuleSet::Released, false, 521), (RuleSet::Released, true, 521), (RuleSet::Tables, false, 525), (RuleSet::Tables, true, 525)]
-    {
+    for (rules, hard, steps) in [
+        (RuleSet::Released, false, 521),
+        (RuleSet::Released, true, 521),
+        (RuleSet::Tables, false, 525),
+        (RuleSet::Tables, true, 525),
+    ] {
         let mut env = Env::new("CollateralDamageLevel2-v0", &EnvOptions { rules, hard, ..options() }).unwrap();
         env.reset(1);
         assert_eq!(env.episode_steps(), steps);

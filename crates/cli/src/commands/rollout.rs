@@ -22,7 +22,7 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     let policy = settings::policy(&args.policy)?;
     let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
     for i in 0..args.episodes {
-        let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i)));
+        let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i))).map_err(Failure::bad)?;
         lines.episode(&env.id().to_string(), u64::from(i), episode)?;
     }
     lines.summary(false)

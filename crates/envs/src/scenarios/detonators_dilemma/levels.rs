@@ -134,6 +134,7 @@ pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
 /// The creatures that the first runs of the paper's tables met, where they were others: a LostSoul, a ChaingunGuy and a Revenant.
 #[must_use]
 pub const fn early_creatures(rules: RuleSet, hard: bool, index: usize) -> Option<u8> {
-    const EARLY: [[[Option<u8>; 3]; 2]; 3] = [[[None; 3]; 2], [[None; 3]; 2], [[Some(of_kinds(&[0, 3, 6])), None, None], [None; 3]]];
+    const EARLY: [[[Option<u8>; 3]; 2]; 3] =
+        [[[None; 3]; 2], [[None; 3]; 2], [[Some(of_kinds(&[0, 3, 6])), None, None], [None; 3]]];
     EARLY[rules as usize][hard as usize][index]
 }

@@ -53,8 +53,7 @@ pub struct Level {
 const SOFT_HARMFUL: [ActorKind; 4] = [ActorKind::Shell, ActorKind::Cell, ActorKind::ArmorBonus, ActorKind::RocketAmmo];
 const PUBLISHED_HARD_HARMFUL: [ActorKind; 4] = [ActorKind::Shell, ActorKind::Cell, ActorKind::YellowCard, ActorKind::BlueSkull];
 
-const CONTROLS: Controls =
-    Controls { simplified: &[TURN, FORWARD, &["SPEED"], &["JUMP"]], full_moves: true, full_speed: true };
+const CONTROLS: Controls = Controls { simplified: &[TURN, FORWARD, &["SPEED"], &["JUMP"]], full_moves: true, full_speed: true };
 
 const PAPER_1: Level = Level {
     controls: CONTROLS,

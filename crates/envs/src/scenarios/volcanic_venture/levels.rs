@@ -76,8 +76,7 @@ pub struct Level {
     pub overkill_counts: bool,
 }
 
-const CONTROLS: Controls =
-    Controls { simplified: &[TURN, FORWARD, &["JUMP"], &["SPEED"]], full_moves: true, full_speed: true };
+const CONTROLS: Controls = Controls { simplified: &[TURN, FORWARD, &["JUMP"], &["SPEED"]], full_moves: true, full_speed: true };
 
 const PAPER_1: Level = Level {
     controls: CONTROLS,
