@@ -140,7 +140,7 @@ class Agent:
         env = self.config["env"]
         told = {name: env[name] for name in ("rules", "full_actions", "frame_skip", "observation", "frame_stack")}
         told |= {"hard_constraint": env["hard"], "resolution": tuple(env["size"])}
-        return told | {name: env[name] for name in ("published_depth", "published_colours", "maps", "iwad") if name in env}
+        return told | {name: env[name] for name in ("early_creatures", "published_depth", "published_colours", "maps", "iwad") if name in env}
 
     def make(self, **arguments: Any) -> Any:
         """Returns a single environment like the one that the agent was trained in; `arguments` (see `help(hasard_rs.Env)`) come before its own."""
