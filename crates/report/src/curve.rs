@@ -13,6 +13,16 @@ pub struct Point {
     pub frames: f64,
     /// Mean over the seeds, with its interval.
     pub value: Estimate,
+    /// The band around it where that is not symmetric; else it follows from `value`.
+    pub band: Option<(f64, f64)>,
+}
+
+impl Point {
+    /// Lower and upper end of the band; `None` without one.
+    #[must_use]
+    pub fn ends(&self) -> Option<(f64, f64)> {
+        self.band.or_else(|| self.value.half_width.map(|_| (self.value.low(), self.value.high())))
+    }
 }
 
 /// A metric over the seeds of one experiment.
@@ -61,7 +71,7 @@ impl Curve {
             .into_iter()
             .filter_map(|frames| {
                 let values: Vec<f64> = seeds.iter().filter_map(|(_, points)| interpolate(points, frames)).collect();
-                Some(Point { frames, value: Estimate::of(&values)? })
+                Some(Point { frames, value: Estimate::of(&values)?, band: None })
             })
             .collect();
         Curve { mean, seeds }
@@ -90,7 +100,8 @@ impl Curve {
     /// the rest, so it counts at most twice its mean's height.
     #[must_use]
     pub fn top(&self) -> f64 {
-        let means = self.mean.iter().map(|point| point.value.high().min(point.value.mean.abs() * 2.0).max(point.value.mean));
+        let high = |point: &Point| point.ends().map_or(point.value.mean, |(_, high)| high);
+        let means = self.mean.iter().map(|point| high(point).min(point.value.mean.abs() * 2.0).max(point.value.mean));
         let seeds = self.seeds.iter().flat_map(|(_, points)| points.iter().map(|point| point.1));
         means.chain(seeds).fold(0.0, f64::max)
     }

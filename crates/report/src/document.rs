@@ -77,6 +77,38 @@ pub struct Table {
     pub rows: Vec<Vec<Cell>>,
 }
 
+impl Table {
+    /// The same without those of the named columns in which all rows say the same: the caption says it once.
+    #[must_use]
+    pub fn folded(mut self, heads: &[&str]) -> Table {
+        for head in heads {
+            let Some(column) = self.heads.iter().position(|own| own == head) else { continue };
+            let all_the_same = self.rows.windows(2).all(|pair| pair[0][column].text == pair[1][column].text);
+            if self.rows.len() < 2 || !all_the_same {
+                continue;
+            }
+            let said = match &self.rows[0][column].text {
+                text if *head == "level" => format!("level {text}"),
+                text => text.clone(),
+            };
+            if !said.is_empty() && said != "-" {
+                self.caption = if self.caption.is_empty() { said } else { format!("{}; {said}", self.caption) };
+            }
+            self.heads.remove(column);
+            self.rows.iter_mut().for_each(|row| drop(row.remove(column)));
+            let mut before = 0;
+            for span in &mut self.spans {
+                before += span.1;
+                if column < before {
+                    span.1 -= 1;
+                    break;
+                }
+            }
+        }
+        self
+    }
+}
+
 /// How a cell is marked.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Mark {
@@ -199,6 +231,20 @@ pub fn slug(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_all_rows_say_is_said_once() {
+        let row = |cells: [&str; 3]| cells.map(Cell::text).to_vec();
+        let table = Table {
+            spans: vec![(String::new(), 2), ("x".into(), 1)],
+            heads: ["level", "algorithm", "options"].map(String::from).to_vec(),
+            rows: vec![row(["1", "PPO", "rules tables"]), row(["1", "P3O", "rules tables"])],
+            ..Table::default()
+        };
+        let folded = table.folded(&["level", "algorithm", "options"]);
+        assert_eq!((folded.caption.as_str(), folded.heads.len()), ("level 1; rules tables", 1));
+        assert_eq!((folded.rows[1][0].text.as_str(), folded.spans[0].1, folded.spans[1].1), ("P3O", 1, 0));
+    }
 
     #[test]
     fn numbers_and_names_read_well() {

@@ -23,22 +23,22 @@ pub enum Source {
 }
 
 impl Group {
-    /// Sorts runs into experiments, in the order scenario, level, algorithm, options. Of several runs with equal
+    /// Sorts runs into experiments, in the order scenario, level, algorithm, frames (most first), options. Of several runs with equal
     /// configuration and seed the one that got furthest is kept.
     pub fn sort(found: &Found, warnings: &mut Vec<Warning>) -> Vec<Group> {
         let mut groups: BTreeMap<String, Vec<Run>> = BTreeMap::new();
         for run in &found.runs {
             let config = &run.config;
             let place = scenario_order(&config.scenario);
+            let frames = u64::MAX - config.frames.unwrap_or(0.0).max(0.0) as u64;
             let key = format!(
-                "{place:02} {} {} {:02} {} {:?} {:?} {:?}",
+                "{place:02} {} {} {:02} {} {frames:020} {:?} {:?}",
                 config.scenario,
                 config.level,
                 algorithm_order(&config.algo),
                 config.algo.to_ascii_lowercase(),
                 config.options,
-                config.safety_budget,
-                config.frames
+                config.safety_budget
             );
             groups.entry(key).or_default().push(run.clone());
         }

@@ -24,7 +24,7 @@ impl Series {
         if self.paper {
             let end = self.curve.at(frames);
             cut.curve.mean.retain(|point| point.frames < frames);
-            cut.curve.mean.extend(end.map(|value| Point { frames, value }));
+            cut.curve.mean.extend(end.map(|value| Point { frames, value, band: None }));
         }
         cut
     }
@@ -98,9 +98,10 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         }
     }
     for series in in_order() {
-        let banded: Vec<_> = series.curve.mean.iter().filter(|point| point.value.half_width.is_some()).collect();
-        let upper = banded.iter().map(|p| (horizontal.place(p.frames), vertical.place(p.value.high())));
-        let lower = banded.iter().rev().map(|p| (horizontal.place(p.frames), vertical.place(p.value.low())));
+        let banded: Vec<(f64, (f64, f64))> =
+            series.curve.mean.iter().filter_map(|point| Some((horizontal.place(point.frames), point.ends()?))).collect();
+        let upper = banded.iter().map(|(x, (_, high))| (*x, vertical.place(*high)));
+        let lower = banded.iter().rev().map(|(x, (low, _))| (*x, vertical.place(*low)));
         let points: Vec<_> = upper.chain(lower).collect();
         if points.len() > 3 {
             drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: if series.paper { 0.08 } else { 0.16 } });

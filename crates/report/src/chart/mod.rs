@@ -10,7 +10,7 @@ mod svg;
 pub use bars::{Bar, BarGroup, bar_panel};
 pub use lines::{LinePanel, Series, line_panel};
 pub use raster::rasterise;
-pub use scatter::{Spot, scatter_panel};
+pub use scatter::{Spot, SpotKind, scatter_panel};
 pub use svg::{INK_STYLE, inline_svg, standalone_svg};
 
 /// What a shape is drawn with. Pages give each a light and a dark colour.

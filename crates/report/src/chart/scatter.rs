@@ -14,8 +14,19 @@ pub struct Spot {
     pub at: (f64, f64),
     /// Lower and upper ends of its intervals, along x and y.
     pub intervals: [Option<(f64, f64)>; 2],
-    /// Small: a single seed behind its mean.
-    pub small: bool,
+    /// What it stands for.
+    pub kind: SpotKind,
+}
+
+/// What a point stands for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum SpotKind {
+    /// A mean over seeds: large.
+    Mean,
+    /// A single seed: small.
+    Seed,
+    /// A published value: a pale square.
+    Paper,
 }
 
 /// Draws points, the budget as a dashed vertical line, and the front: a thin line through the points that no other beats in
@@ -46,7 +57,7 @@ pub fn scatter_panel(title: &str, axes: (&str, &str), spots: &[Spot], budget: Op
         let x = horizontal.place(budget);
         drawing.shapes.push(line(vec![(x, top), (x, bottom)], Ink::Budget, 1.4, true, 1.0));
     }
-    let means: Vec<(f64, f64)> = spots.iter().filter(|spot| !spot.small).map(|spot| spot.at).collect();
+    let means: Vec<(f64, f64)> = spots.iter().filter(|spot| spot.kind == SpotKind::Mean).map(|spot| spot.at).collect();
     let points = front(&means).into_iter().map(|(x, y)| (horizontal.place(x), vertical.place(y))).collect();
     drawing.shapes.push(line(points, Ink::Muted, 1.0, false, 0.6));
     for spot in spots {
@@ -58,8 +69,12 @@ pub fn scatter_panel(title: &str, axes: (&str, &str), spots: &[Spot], budget: Op
         if let [_, Some((low, high))] = spot.intervals {
             drawing.shapes.push(line(vec![(x, vertical.place(low)), (x, vertical.place(high))], spot.ink, 1.2, false, 0.6));
         }
-        let radius = if spot.small { 1.8 } else { 4.5 };
-        drawing.shapes.push(Shape::Dot { at: (x, y), radius, ink: spot.ink, title: spot.name.clone() });
+        let (ink, title) = (spot.ink, spot.name.clone());
+        drawing.shapes.push(match spot.kind {
+            SpotKind::Mean => Shape::Dot { at: (x, y), radius: 4.5, ink, title },
+            SpotKind::Seed => Shape::Dot { at: (x, y), radius: 1.8, ink, title },
+            SpotKind::Paper => Shape::Box { place: [x - 4.0, y - 4.0, 8.0, 8.0], ink, opacity: 0.45, title },
+        });
     }
     drawing
 }

@@ -7,7 +7,7 @@ fn some_curve(slope: f64) -> Curve {
     let mean = (0..50)
         .map(|k| {
             let frames = f64::from(k) * 1e5;
-            Point { frames, value: Estimate { mean: slope * f64::from(k), half_width: Some(5.0), n: 3 } }
+            Point { frames, value: Estimate { mean: slope * f64::from(k), half_width: Some(5.0), n: 3 }, band: None }
         })
         .collect();
     let seed = |s: f64| (0..60).map(|k| (f64::from(k) * 1e5, slope * f64::from(k) + s)).collect();

@@ -82,7 +82,8 @@ pub fn published_curve(config: &Config, metric: &str) -> Option<Curve> {
         }
         let n = seeds(table);
         let value = |mean, half| Estimate { mean, half_width: (n > 1).then_some(half), n };
-        let mean = points.into_iter().map(|(frames, mean, half)| Point { frames, value: value(mean, half) }).collect();
+        let mean =
+            points.into_iter().map(|(frames, mean, half)| Point { frames, value: value(mean, half), band: None }).collect();
         Some(Curve { mean, seeds: Vec::new() })
     })
 }

@@ -33,6 +33,12 @@ pub struct Published {
 }
 
 impl Published {
+    /// Frames that it was trained for.
+    #[must_use]
+    pub fn frames(&self) -> f64 {
+        if ["hard", "curriculum"].contains(&self.table.as_str()) { 3e8 } else { 5e8 }
+    }
+
     /// Its notes in one line.
     #[must_use]
     pub fn note(&self) -> String {

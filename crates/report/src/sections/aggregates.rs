@@ -130,8 +130,8 @@ fn profile(strata: &Strata) -> Curve {
     for step in 0..=THRESHOLDS {
         let threshold = 1.2 * step as f64 / THRESHOLDS as f64;
         if let Some(share) = aggregate(strata, |samples| performance_profile(samples, threshold)) {
-            let half_width = share.interval.map(|(low, high)| (high - low) / 2.0);
-            mean.push(Point { frames: threshold, value: Estimate { mean: share.value, half_width, n: share.n } });
+            let value = Estimate { mean: share.value, half_width: None, n: share.n };
+            mean.push(Point { frames: threshold, value, band: share.interval });
         }
     }
     let points = mean.iter().map(|point| (point.frames, point.value.mean)).collect();

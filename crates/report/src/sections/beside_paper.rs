@@ -52,15 +52,23 @@ pub(super) fn section(groups: &[Group]) -> Section {
                 .to_owned(),
         );
     }
-    for (note, cells) in notes {
-        let which = if cells.len() > 6 { format!("{} rows", cells.len()) } else { cells.join(", ") };
-        text.push(format!("Published: {note} ({which})."));
-    }
     text.extend(withheld(groups));
     Section {
         slug: "paper".into(),
         title: "Beside the paper".into(),
         text,
-        blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] },
+        blocks: if table.rows.is_empty() {
+            Vec::new()
+        } else {
+            vec![Block::Table(table.folded(&["level", "options", "by"])), Block::Table(notes_table(notes))]
+        },
     }
+}
+
+/// What to know about the published values, with the cells that it is about.
+fn notes_table(notes: BTreeMap<&str, Vec<String>>) -> Table {
+    let which = |cells: Vec<String>| if cells.len() > 6 { format!("{} rows", cells.len()) } else { cells.join(", ") };
+    let rows = notes.into_iter().map(|(note, cells)| vec![Cell::text(note), Cell::text(which(cells))]).collect();
+    let heads = ["note", "on"].map(String::from).to_vec();
+    Table { caption: "Notes on the published values".into(), heads, rows, ..Table::default() }
 }

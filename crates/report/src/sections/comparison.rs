@@ -6,7 +6,7 @@ use super::{VARIED, distinct};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Section, Table, frames, slug};
 use crate::group::{Group, scenario_name};
-use crate::published::{published_figure, published_in};
+use crate::published::{Published, published_figure, published_in};
 use crate::run::Config;
 use std::collections::BTreeMap;
 
@@ -113,6 +113,11 @@ fn order_of(config: &Config, key: &str) -> (u64, String) {
     (number.max(0.0).to_bits(), value_of(config, key))
 }
 
+/// As [`super::main_results::comparable_end`], by the paper's table of this comparison.
+fn comparable_end_in(group: &Group, key: &str) -> Option<&'static Published> {
+    published_in(group.config(), key).filter(|paper| group.frames_span().1 >= 0.5 * paper.frames())
+}
+
 /// What is compared with what.
 struct Comparison<'a> {
     /// The paper's name for it.
@@ -186,7 +191,7 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
                     let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
                     bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink: Ink::Series(index), pale: false });
                 }
-                let paper = published_in(group.config(), key).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                let paper = comparable_end_in(group, key).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
                 bars.extend(paper.map(|value| Bar {
                     name: "paper".into(),
                     value,
@@ -208,14 +213,13 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
     if !rows.is_empty() {
         let heads =
             ["scenario", "level", "algorithm", "varied", "other options", "frames", "budget", "return", "paper", "cost", "paper"];
-        blocks.push(Block::Table(Table {
-            caption: String::new(),
-            spans: Vec::new(),
-            heads: heads.map(String::from).to_vec(),
-            rows,
-        }));
-        let paper = groups.iter().any(|group| counts(group.config()) && published_in(group.config(), key).is_some());
-        let caption = format!("{}Dashed: the budget.", if paper { "Full colour: here; pale: the paper. " } else { "" });
+        let table = Table { heads: heads.map(String::from).to_vec(), rows, ..Table::default() };
+        blocks.push(Block::Table(table.folded(&["level", "algorithm", "other options", "budget"])));
+        let paper = groups.iter().any(|group| counts(group.config()) && comparable_end_in(group, key).is_some());
+        let budgets = groups.iter().any(|group| counts(group.config()) && group.config().budget().is_some());
+        let (paper, budgets) =
+            (if paper { "Full colour: here; pale: the paper. " } else { "" }, if budgets { "Dashed: the budget." } else { "" });
+        let caption = format!("{paper}{budgets}");
         blocks.push(Block::Figure(Figure {
             slug: format!("{} bars", comparison.slug).replace(' ', "-"),
             caption,

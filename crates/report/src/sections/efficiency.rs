@@ -65,6 +65,6 @@ pub(super) fn section(groups: &[Group]) -> Section {
              figures are of two hours on 72 cores with a graphics card."
                 .into(),
         ],
-        blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] },
+        blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table.folded(&["machine", "level"]))] },
     }
 }

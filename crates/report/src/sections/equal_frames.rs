@@ -47,7 +47,7 @@ pub(super) fn table(groups: &[Group]) -> Option<Table> {
     let mut heads = ["scenario", "level", "algorithm", "options"].map(String::from).to_vec();
     heads.extend(moments.iter().flat_map(|_| ["here".to_owned(), "paper".to_owned()]));
     let caption = "At equal frames: return @ cost, means over recent training episodes and seeds".to_owned();
-    Some(Table { caption, spans, heads, rows: rows.collect() })
+    Some(Table { caption, spans, heads, rows: rows.collect() }.folded(&["level", "options"]))
 }
 
 /// A curve's value; a run's (and the paper's) last point counts where it ends within a hundredth of the moment.

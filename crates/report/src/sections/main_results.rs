@@ -4,7 +4,7 @@ use super::{distinct, main_groups};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Mark, Section, Table, slug};
 use crate::group::{Group, Source, algorithm_order, scenario_name, scenario_order};
-use crate::published::published;
+use crate::published::{Published, published};
 use crate::run::{Constraint, Kept};
 use crate::statistics::{Estimate, differ, mean};
 
@@ -16,7 +16,12 @@ pub(super) fn section(groups: &[Group]) -> Section {
         for level in distinct(members, |group| group.config().level) {
             let members: Vec<&Group> = members.iter().copied().filter(|group| group.config().level == level).collect();
             let source = source_of(&members);
-            blocks.push(Block::Table(table(&members, level, setting, source)));
+            // A table of evaluations has no rows for what was not evaluated.
+            let has = |source| -> Vec<&Group> {
+                let own = members.iter().copied().filter(|group| !group.samples(source, "return_mean").is_empty());
+                own.collect()
+            };
+            blocks.push(Block::Table(table(&has(source), level, setting, source)));
             // Bars of a few evaluated ones among many would hide the others.
             let all_evaluated = members.iter().all(|group| group.headline() == Source::Evaluation);
             let drawn = if all_evaluated { Source::Evaluation } else { Source::Training };
@@ -190,6 +195,12 @@ pub(super) fn budget_label(group: &Group) -> String {
     group.config().constraints.iter().map(Constraint::label).collect::<Vec<_>>().join(", ")
 }
 
+/// The published cell of an experiment that went at least half as far: beside a bar of a short run the paper's bar of 500
+/// million frames would mislead.
+pub(super) fn comparable_end(group: &Group) -> Option<&'static Published> {
+    published(group.config()).filter(|paper| group.frames_span().1 >= 0.5 * paper.frames())
+}
+
 fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool, source: Source) -> Figure {
     let scenarios = distinct(members, |group| (scenario_order(&group.config().scenario), group.config().scenario.clone()));
     let mut panels = Vec::new();
@@ -205,7 +216,7 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool, s
                         let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
                         bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink, pale: false });
                     }
-                    let paper = published(group.config()).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                    let paper = comparable_end(group).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
                     bars.extend(paper.map(|value| Bar { name: "paper".into(), value, interval: None, ink, pale: true }));
                     let budget = group.config().budget().filter(|_| metric == "cost");
                     BarGroup { name: group.config().algo.clone(), bars, budget }
@@ -218,9 +229,10 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool, s
     Figure {
         slug: slug(&name),
         caption: {
-            let paper = members.iter().any(|group| published(group.config()).is_some());
+            let paper = members.iter().any(|group| comparable_end(group).is_some());
             let paper = if paper { " Full colour: here; pale: the paper after 500M frames." } else { "" };
-            format!("Level {level}, {}; {setting}.{paper} Dashed: the budget.", source_name(source))
+            let budget = if members.iter().any(|group| group.config().budget().is_some()) { " Dashed: the budget." } else { "" };
+            format!("Level {level}, {}; {setting}.{paper}{budget}", source_name(source))
         },
         drawing: figure("", panels, 4, &[]),
     }

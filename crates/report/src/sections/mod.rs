@@ -93,14 +93,18 @@ fn method() -> Section {
 /// Options that an experiment of the paper varies: they have sections of their own and stay out of the main tables.
 pub(crate) const VARIED: [&str; 6] = ["safety_budget", "cost_scale", "full_actions", "observation", "curriculum", "hard"];
 
-/// The experiments without any varied option, by what else they were run under.
-fn main_groups(groups: &[Group]) -> BTreeMap<String, Vec<&Group>> {
+/// The experiments without any varied option, by what else they were run under, those with the longest runs first: what was
+/// only tried for a moment comes last.
+fn main_groups(groups: &[Group]) -> Vec<(String, Vec<&Group>)> {
     let mut settings: BTreeMap<String, Vec<&Group>> = BTreeMap::new();
     for group in groups {
         if !VARIED.iter().any(|key| group.config().options.contains_key(*key)) {
             settings.entry(setting(group)).or_default().push(group);
         }
     }
+    let mut settings: Vec<_> = settings.into_iter().collect();
+    let longest = |members: &[&Group]| members.iter().map(|group| group.frames_span().1).fold(0.0, f64::max);
+    settings.sort_by(|a, b| longest(&b.1).total_cmp(&longest(&a.1)));
     settings
 }
 

@@ -1,11 +1,10 @@
 //! Return against cost: what each algorithm trades.
 
-use super::main_results::source_of;
+use super::main_results::comparable_end;
 use super::{distinct, main_groups};
-use crate::chart::{Ink, Spot, figure, scatter_panel};
+use crate::chart::{Ink, Spot, SpotKind as Kind, figure, scatter_panel};
 use crate::document::{Block, Figure, Section, number, slug};
-use crate::group::{Group, algorithm_order, scenario_name, scenario_order};
-use crate::published::published;
+use crate::group::{Group, Source, algorithm_order, scenario_name, scenario_order};
 use crate::statistics::Estimate;
 
 /// A panel for each environment on which several experiments can be compared.
@@ -23,7 +22,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
                     (own.len() > 1).then(|| {
                         let budget = own[0].config().budget();
                         let axes = ("cost an episode", "return an episode");
-                        scatter_panel(&scenario_name(scenario), axes, &spots(&own), budget, (306.0, 250.0))
+                        scatter_panel(&scenario_name(scenario), axes, &spots(&own), budget, (410.0, 290.0))
                     })
                 })
                 .collect();
@@ -41,7 +40,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
             blocks.push(Block::Figure(Figure {
                 slug: slug(&name),
                 caption: format!("Level {level}; {setting}"),
-                drawing: figure("", panels, 4, &legend),
+                drawing: figure("", panels, 3, &legend),
             }));
         }
     }
@@ -49,7 +48,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
         slug: "pareto".into(),
         title: "Return against cost".into(),
         text: vec![
-            "Large dots: means over seeds with 95 % intervals both ways; small dots: the seeds. Right of the dashed line is above the \
+            "Large dots: means over seeds with 95 % intervals both ways; small dots: the seeds; pale squares: the paper's after 500M frames, beside runs that went at least half as far. Right of the dashed line is above the \
              budget. The thin line joins what no other beats in both return and cost."
                 .into(),
         ],
@@ -58,7 +57,9 @@ pub(super) fn section(groups: &[Group]) -> Section {
 }
 
 fn spots(groups: &[&Group]) -> Vec<Spot> {
-    let source = source_of(groups);
+    // Evaluations where all have one: points from two sources do not compare.
+    let evaluated = groups.iter().all(|group| group.headline() == Source::Evaluation);
+    let source = if evaluated { Source::Evaluation } else { Source::Training };
     let mut spots = Vec::new();
     for group in groups {
         let ink = Ink::Series(algorithm_order(&group.config().algo));
@@ -72,16 +73,16 @@ fn spots(groups: &[&Group]) -> Vec<Spot> {
                 ink,
                 at: (*x, *y),
                 intervals: [None, None],
-                small: true,
+                kind: Kind::Seed,
             });
             spots.extend(seeds);
         }
         let intervals = [interval(cost), interval(episode_return)];
-        spots.push(Spot { name, ink, at: (cost.mean, episode_return.mean), intervals, small: false });
-        if let Some(paper) = published(group.config()) {
+        spots.push(Spot { name, ink, at: (cost.mean, episode_return.mean), intervals, kind: Kind::Mean });
+        if let Some(paper) = comparable_end(group) {
             let name =
                 format!("{} (paper): return {}, cost {}", paper.algorithm, number(paper.episode_return), number(paper.cost));
-            spots.push(Spot { name, ink, at: (paper.cost, paper.episode_return), intervals: [None, None], small: true });
+            spots.push(Spot { name, ink, at: (paper.cost, paper.episode_return), intervals: [None, None], kind: Kind::Paper });
         }
     }
     spots

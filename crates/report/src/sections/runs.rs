@@ -118,6 +118,7 @@ pub(super) fn warnings(warnings: &[Warning]) -> Section {
 fn section(slug: &str, title: &str, heads: &[&str], rows: Vec<Vec<Cell>>) -> Section {
     let table =
         Table { caption: String::new(), spans: Vec::new(), heads: heads.iter().map(|head| (*head).to_owned()).collect(), rows };
+    let table = table.folded(&["level", "options", "by", "state"]);
     let blocks = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
     Section { slug: slug.into(), title: title.into(), text: Vec::new(), blocks }
 }

@@ -50,7 +50,11 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
         let more = if rest.is_empty() { String::new() } else { format!(" (and {} more like it)", rest.len()) };
         text.push(format!("Scores need both ends of their scale. Missing here: {first}{more}."));
     }
-    let blocks = if rows.is_empty() { Vec::new() } else { vec![Block::Table(Table { heads, rows, ..Table::default() })] };
+    let blocks = if rows.is_empty() {
+        Vec::new()
+    } else {
+        vec![Block::Table(Table { heads, rows, ..Table::default() }.folded(&["level", "options", "judged by"]))]
+    };
     Section { slug: "safety".into(), title: "Safety".into(), text, blocks }
 }
 

@@ -42,7 +42,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
              mean cost of the costliest tenth of episodes. In the rows of means ± is over seeds."
                 .into(),
         ],
-        blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] },
+        blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table.folded(&["level", "frames"]))] },
     }
 }
 
