@@ -1,5 +1,6 @@
 //! The single environment.
 
+use crate::batch::episode_costs;
 use crate::eye::Eye;
 use crate::game::Game;
 use crate::scenarios::outcome::MOST_TERMS;
@@ -342,14 +343,12 @@ impl Env {
     /// The episode so far, as it would be reported if it ended now.
     #[must_use]
     pub fn episode(&self) -> Episode {
-        let terms = self.blueprint.cost_terms.iter().zip(self.totals.costs);
-        let costs = terms.filter(|(term, _)| term.counted).map(|(term, cost)| (term.name, cost)).collect();
         Episode {
             lane: 0,
             seed: self.seed,
             episode_return: self.totals.episode_return,
             cost: self.totals.cost,
-            costs,
+            costs: episode_costs(self.blueprint.cost_terms, &self.totals.costs),
             length: self.totals.steps,
             terminated: self.last.terminated,
             truncated: self.last.truncated,

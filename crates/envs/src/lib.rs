@@ -52,7 +52,7 @@ mod snapshot;
 mod vec_env;
 
 pub use action::{ActionGroup, ActionSpace, BUTTONS, Controls, DELTA_DEGREES, DeltaButton, parse_command};
-pub use batch::{Batch, Episode};
+pub use batch::{Batch, Episode, EpisodeCost, episode_costs};
 pub use bench::{BenchReport, bench};
 pub use buffer::{Buffer, Memory};
 pub use env::Env;

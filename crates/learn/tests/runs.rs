@@ -523,7 +523,7 @@ fn a_run_hands_out_its_best_checkpoint_within_the_budget() {
     let policy = TrainedPolicy::load(&path, Which::HandedOut, [tiny::SIDE, tiny::SIDE, 1], shape, &mut warn).unwrap();
     let seeds: Vec<u64> = (0..100).collect();
     let episodes = play(&policy, Choice::Sampled, &tiny::worlds, &seeds, 2).unwrap();
-    let others = Evaluation::of(&episodes, &config.constraints);
+    let others = Evaluation::of(&episodes, &config.constraints).unwrap();
     assert!((others.cost.mean - closing.cost.mean).abs() < 0.8, "{others:?} {closing:?}");
     // The number of threads changes nothing.
     assert_eq!(play(&policy, Choice::Sampled, &tiny::worlds, &seeds[..7], 3).unwrap(), episodes[..7]);

@@ -133,7 +133,7 @@ impl Recorder {
         self.file.set_outcome(Outcome {
             episode_return: episode.episode_return,
             cost: episode.cost,
-            costs: episode.costs.iter().map(|(name, cost)| ((*name).to_owned(), *cost)).collect(),
+            costs: episode.costs.iter().map(|one| (one.name.to_owned(), one.cost)).collect(),
             terminated: episode.terminated,
             truncated: episode.truncated,
             state_hash: Some(env.state_hash()),

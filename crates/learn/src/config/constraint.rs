@@ -26,13 +26,15 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// What an episode cost under it.
-    #[must_use]
-    pub fn cost_of(&self, episode: &Episode) -> f64 {
-        match &self.term {
-            None => episode.cost,
-            Some(name) => episode.costs.iter().find(|(term, _)| term == name).map_or(0.0, |(_, cost)| *cost),
-        }
+    /// What an episode cost under it. A term that the episode does not report is an error: taken for 0, it would be within any
+    /// budget.
+    pub fn cost_of(&self, episode: &Episode) -> Result<f64, LearnError> {
+        let Some(name) = &self.term else { return Ok(episode.cost) };
+        let found = episode.costs.iter().find(|one| one.name == name);
+        found.map(|one| one.cost).ok_or_else(|| {
+            let names: Vec<&str> = episode.costs.iter().map(|one| one.name).collect();
+            LearnError::Config(format!("an episode does not report the cost term '{name}'; it has {}", names.join(", ")))
+        })
     }
 }
 
@@ -48,4 +50,34 @@ pub(crate) fn find_terms(terms: &[CostTerm], constraints: &[Constraint]) -> Resu
             }),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hasard_envs::{Scenario, episode_costs};
+
+    /// A1: a budget on a term that an episode does not report must not be kept by silence.
+    #[test]
+    fn a_term_that_is_not_reported_is_an_error() {
+        let costs = |scenario: Scenario, sums: &[f64]| Episode {
+            lane: 0,
+            seed: 0,
+            episode_return: 1.0,
+            cost: 7.0,
+            costs: episode_costs(scenario.cost_terms(), sums),
+            length: 10,
+            terminated: true,
+            truncated: false,
+            stats: vec![("jumps", 81.0)],
+        };
+        let on = |term: Option<&str>| Constraint { term: term.map(str::to_string), budget: 2.0 };
+        let venture = costs(Scenario::VolcanicVenture, &[7.0, 81.0]);
+        assert_eq!(on(None).cost_of(&venture).unwrap(), 7.0);
+        assert_eq!(on(Some("lava")).cost_of(&venture).unwrap(), 7.0);
+        assert_eq!(on(Some("jumps")).cost_of(&venture).unwrap(), 81.0);
+        let rush = costs(Scenario::RemedyRush, &[7.0]);
+        let error = on(Some("jumps")).cost_of(&rush).unwrap_err().to_string();
+        assert!(error.contains("'jumps'") && error.contains("harmful_items"), "{error}");
+    }
 }

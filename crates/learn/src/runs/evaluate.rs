@@ -144,21 +144,19 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Judges episodes.
-    #[must_use]
-    pub fn of(episodes: &[Episode], constraints: &[Constraint]) -> Evaluation {
-        let judge = |one: &Constraint| Judgement {
-            term: one.term.clone(),
-            budget: one.budget,
-            cost: Estimate::of(episodes.iter().map(|episode| one.cost_of(episode))),
+    /// Judges episodes; those that do not report a constraint's term are an error.
+    pub fn of(episodes: &[Episode], constraints: &[Constraint]) -> Result<Evaluation, LearnError> {
+        let judge = |one: &Constraint| {
+            let costs: Vec<f64> = episodes.iter().map(|episode| one.cost_of(episode)).collect::<Result<_, _>>()?;
+            Ok(Judgement { term: one.term.clone(), budget: one.budget, cost: Estimate::of(costs) })
         };
-        Evaluation {
+        Ok(Evaluation {
             episodes: episodes.len(),
             episode_return: Estimate::of(episodes.iter().map(|episode| episode.episode_return)),
             cost: Estimate::of(episodes.iter().map(|episode| episode.cost)),
             length: Estimate::of(episodes.iter().map(|episode| f64::from(episode.length))),
-            constraints: constraints.iter().map(judge).collect(),
-        }
+            constraints: constraints.iter().map(judge).collect::<Result<_, LearnError>>()?,
+        })
     }
 
     /// Whether every mean cost is within its budget.
@@ -184,6 +182,7 @@ impl Evaluation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hasard_envs::{Scenario, episode_costs};
 
     fn episode(cost: f64, jumps: f64) -> Episode {
         Episode {
@@ -191,7 +190,7 @@ mod tests {
             seed: 0,
             episode_return: 1.0,
             cost,
-            costs: vec![("lava", cost), ("jumps", jumps)],
+            costs: episode_costs(Scenario::VolcanicVenture.cost_terms(), &[cost, jumps]),
             length: 10,
             terminated: true,
             truncated: false,
@@ -202,15 +201,15 @@ mod tests {
     #[test]
     fn each_constraint_is_judged_by_its_own_term_and_budget() {
         let constraints = [Constraint { term: None, budget: 50.0 }, Constraint { term: Some("jumps".into()), budget: 4.0 }];
-        let judged = Evaluation::of(&[episode(20.0, 6.0), episode(40.0, 4.0)], &constraints);
+        let judged = Evaluation::of(&[episode(20.0, 6.0), episode(40.0, 4.0)], &constraints).unwrap();
         assert_eq!((judged.cost.mean, judged.constraints[0].cost.mean, judged.constraints[1].cost.mean), (30.0, 30.0, 5.0));
         assert!(judged.constraints[0].within() && !judged.constraints[1].within() && !judged.within());
         assert!((judged.excess() - 0.25).abs() < 1e-12);
         // Half the interval of 20 and 40: 1.96 * 14.142 / sqrt(2) = 19.6.
         assert!((judged.cost.half_width - 19.6).abs() < 1e-9);
-        let judged = Evaluation::of(&[episode(20.0, 1.0), episode(40.0, 1.0)], &constraints);
+        let judged = Evaluation::of(&[episode(20.0, 1.0), episode(40.0, 1.0)], &constraints).unwrap();
         assert!(judged.within() && judged.surely_within());
-        let wide = Evaluation::of(&[episode(30.0, 1.0), episode(60.0, 1.0)], &constraints);
+        let wide = Evaluation::of(&[episode(30.0, 1.0), episode(60.0, 1.0)], &constraints).unwrap();
         assert!(wide.within() && !wide.surely_within());
     }
 }

@@ -142,7 +142,7 @@ impl<'a> Examiner<'a> {
         };
         let seeds: Vec<u64> = (0..episodes).map(seed).collect();
         let played = play(policy, Choice::Sampled, self.make_worlds, &seeds, config.learning.threads)?;
-        Ok(Evaluation::of(&played, &config.constraints))
+        Evaluation::of(&played, &config.constraints)
     }
 }
 

@@ -47,6 +47,10 @@ pub fn line(report: &Report) -> String {
         None => text.push_str("  no episode has ended yet"),
     }
     if let Some(budget) = report.budgets.first() {
+        if let Some(Some(term)) = report.terms.first() {
+            let cost = report.constraint_costs.first();
+            text.push_str(&format!("  {term} {}", cost.map_or("-".into(), |cost| format!("{cost:.1}"))));
+        }
         text.push_str(&format!("  budget {budget}"));
     }
     if let Some(multiplier) = report.multipliers.first() {

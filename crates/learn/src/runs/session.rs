@@ -253,7 +253,7 @@ impl Session {
     /// Everything that is learned from a rollout.
     fn learn(&mut self, rollout: &Rollout, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
         for episode in rollout.episodes() {
-            self.watch.add(episode, &self.config.constraints);
+            self.watch.add(episode, &self.config.constraints)?;
         }
         let lag = self.learner.version.saturating_sub(rollout.oldest_version());
         self.means.add("policy_lag", lag as f64);

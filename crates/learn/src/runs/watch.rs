@@ -59,21 +59,23 @@ impl Watch {
         Ok(Watch { recent: self.recent.clone(), episodes: self.episodes, ..Watch::new(config) })
     }
 
-    /// Notes an episode.
-    pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) {
-        let costs = episode.costs.iter().map(|(name, value)| (format!("cost/{name}"), *value));
+    /// Notes an episode; one that does not report a constraint's term is an error.
+    pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) -> Result<(), LearnError> {
+        let constrained = constraints.iter().map(|one| one.cost_of(episode)).collect::<Result<_, _>>()?;
+        let costs = episode.costs.iter().map(|one| (format!("cost/{}", one.name), one.cost));
         let stats = episode.stats.iter().map(|(name, value)| (format!("stats/{name}"), *value));
         self.recent.push_back(Finished {
             episode_return: episode.episode_return,
             cost: episode.cost,
             length: f64::from(episode.length),
-            constrained: constraints.iter().map(|one| one.cost_of(episode)).collect(),
+            constrained,
             details: costs.chain(stats).collect(),
         });
         self.episodes += 1;
         while self.recent.len() > self.window {
             self.recent.pop_front();
         }
+        Ok(())
     }
 
     /// Mean over the latest episodes, if there are any.
@@ -129,6 +131,7 @@ impl Watch {
 mod tests {
     use super::*;
     use crate::config::{AlgorithmKind, EnvConfig, Preset};
+    use hasard_envs::{Scenario, episode_costs};
 
     fn episode(cost: f64, jumps: f64) -> Episode {
         Episode {
@@ -136,7 +139,7 @@ mod tests {
             seed: 0,
             episode_return: 1.0,
             cost,
-            costs: vec![("lava", cost), ("jumps", jumps)],
+            costs: episode_costs(Scenario::VolcanicVenture.cost_terms(), &[cost, jumps]),
             length: 10,
             terminated: true,
             truncated: false,
@@ -153,7 +156,7 @@ mod tests {
         let mut watch = Watch::new(&config);
         assert!(watch.signals(&config, 0.0, &[0.1, 0.2]).is_empty());
         for (cost, jumps) in [(1000.0, 50.0), (60.0, 4.0), (80.0, 8.0)] {
-            watch.add(&episode(cost, jumps), &config.constraints);
+            watch.add(&episode(cost, jumps), &config.constraints).unwrap();
         }
         let signals = watch.signals(&config, 0.0, &[0.1, 0.2]);
         assert_eq!(signals[0].episode_excess(), 20.0);

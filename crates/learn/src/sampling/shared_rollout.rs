@@ -1,6 +1,6 @@
 //! Rollouts of several workers: every worker gets what the others' samplers brought, but for the pixels.
 
-use hasard_envs::{Episode, LaneState};
+use hasard_envs::{Episode, EpisodeCost, LaneState};
 use serde::{Deserialize, Serialize};
 
 use crate::error::LearnError;
@@ -17,7 +17,7 @@ struct Sent {
     seed: u64,
     episode_return: f64,
     cost: f64,
-    costs: Vec<(String, f64)>,
+    costs: Vec<(String, bool, f64)>,
     length: u32,
     terminated: bool,
     truncated: bool,
@@ -35,7 +35,7 @@ impl Sent {
             seed: episode.seed,
             episode_return: episode.episode_return,
             cost: episode.cost,
-            costs: named(&episode.costs),
+            costs: episode.costs.iter().map(|one| (one.name.to_string(), one.counted, one.cost)).collect(),
             length: episode.length,
             terminated: episode.terminated,
             truncated: episode.truncated,
@@ -44,15 +44,17 @@ impl Sent {
     }
 
     fn episode(self, names: &[&'static str]) -> Option<(usize, Episode)> {
+        let known = |name: String| names.iter().find(|own| **own == name).copied();
         let named = |values: Vec<(String, f64)>| -> Option<Named> {
-            values.into_iter().map(|(name, value)| Some((*names.iter().find(|own| **own == name)?, value))).collect()
+            values.into_iter().map(|(name, value)| Some((known(name)?, value))).collect()
         };
+        let cost = |(name, counted, cost)| Some(EpisodeCost { name: known(name)?, counted, cost });
         let episode = Episode {
             lane: self.lane,
             seed: self.seed,
             episode_return: self.episode_return,
             cost: self.cost,
-            costs: named(self.costs)?,
+            costs: self.costs.into_iter().map(cost).collect::<Option<_>>()?,
             length: self.length,
             terminated: self.terminated,
             truncated: self.truncated,

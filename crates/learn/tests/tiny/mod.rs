@@ -3,7 +3,7 @@
 #![allow(dead_code)] // Each test file uses its own part of this.
 
 use hasard_engine::math::Rng;
-use hasard_envs::{ActionGroup, ActionSpace, BUTTONS, CostTerm, Environment, Episode, Step, VecEnv, VecOptions};
+use hasard_envs::{ActionGroup, ActionSpace, BUTTONS, CostTerm, Environment, Episode, Step, VecEnv, VecOptions, episode_costs};
 use hasard_learn::config::Convolution;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::report::Report;
@@ -118,7 +118,7 @@ impl Environment for Risk {
             seed: self.seed,
             episode_return: self.sums.0,
             cost: self.sums.1[0],
-            costs: vec![("risk", self.sums.1[0]), ("second", self.sums.1[1])],
+            costs: episode_costs(self.cost_terms(), &self.sums.1),
             length: self.steps,
             terminated: self.ended() && !self.times_out,
             truncated: self.ended() && self.times_out,
