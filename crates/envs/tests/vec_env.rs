@@ -244,8 +244,12 @@ fn a_panicking_environment_is_reported_and_does_not_hang() {
 fn an_episode_that_does_not_report_every_cost_term_is_an_error() {
     for threads in [0, 2] {
         let options = VecOptions { lanes: 2, threads, ..VecOptions::default() };
-        let silent = || Echo { reports_costs: false, ..Echo::new(u32::MAX) };
-        let mut worlds = VecEnv::from_fn(options, |_| Ok(Box::new(silent()))).unwrap();
+        let make = |_| {
+            let mut world = Echo::new(u32::MAX);
+            world.reports_costs = false;
+            Ok(Box::new(world) as Box<dyn hasard_envs::Environment>)
+        };
+        let mut worlds = VecEnv::from_fn(options, make).unwrap();
         let mut batch = worlds.whole_batch();
         worlds.reset(&mut batch).unwrap();
         // Its episodes have 18 steps at most.
