@@ -202,7 +202,7 @@ mod tests {
                     truncated: length == 525,
                     stats: vec![],
                 };
-                watch.add(&episode, &config.constraints);
+                watch.add(&episode, &config.constraints).unwrap();
             }
             let excess = surrogate_excess(&watch.signals(&config, 0.0, &[p])[0]);
             // The mean over steps of ratio * advantage moves by p(1 - p) a unit of the logit, and so does p.
