@@ -32,6 +32,9 @@
 //! # Ok::<(), hasard_envs::EnvError>(())
 //! ```
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 mod action;
 mod batch;
 mod bench;

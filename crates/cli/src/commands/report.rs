@@ -8,7 +8,7 @@ use serde_json::json;
 pub fn run(args: &ReportArgs) -> Outcome {
     let written = hasard_report::write_report(&args.runs, &args.out, &args.title).map_err(Failure::bad)?;
     for warning in &written.warnings {
-        eprintln!("hasard: {warning}");
+        note!("hasard: {warning}");
     }
     if args.json {
         let files: Vec<String> = written.files.iter().map(|file| file.display().to_string()).collect();

@@ -1,5 +1,7 @@
 //! The environment of a run, in words that a file can hold.
 
+use std::path::PathBuf;
+
 use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, Scenario};
 use serde::{Deserialize, Serialize};
 
@@ -34,11 +36,11 @@ pub struct EnvConfig {
     #[serde(default, skip_serializing_if = "is_off")]
     pub published_colours: bool,
     /// The file of the pictures that worlds are drawn with; `null` for the embedded set. Whoever makes the worlds reads it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub iwad: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "super::place")]
+    pub iwad: Option<PathBuf>,
     /// Where the maps come from; `null` for the built-in ones. Whoever makes the worlds reads them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub maps: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "super::place")]
+    pub maps: Option<PathBuf>,
 }
 
 /// Options that are seldom on are written only then.

@@ -8,6 +8,7 @@ mod evaluation;
 mod learning;
 mod names;
 mod network;
+pub mod place;
 mod presets;
 mod reporting;
 mod sampling;
@@ -50,6 +51,9 @@ names! {
 /// A run.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct TrainConfig {
+    /// Version of the program that began the run; empty where that did not say.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub version: String,
     /// The algorithm.
     pub algorithm: AlgorithmKind,
     /// The preset that these settings began as.

@@ -23,6 +23,7 @@ impl TrainConfig {
         // As their papers have it: ten passes over minibatches of 64 steps. The benchmark's own algorithms pass once over all.
         let repeats = matches!(algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup | AlgorithmKind::Ipo);
         let mut config = TrainConfig {
+            version: env!("CARGO_PKG_VERSION").into(),
             algorithm,
             preset,
             seed: 1,

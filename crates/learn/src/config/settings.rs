@@ -7,7 +7,8 @@ use super::TrainConfig;
 use crate::error::LearnError;
 
 /// Settings that others hang on, and what to use instead: it brings those along.
-const OTHERS_HANG_ON: [(&str, &str); 8] = [
+const OTHERS_HANG_ON: [(&str, &str); 9] = [
+    ("version", "the program of that version"),
     ("algorithm", "--algo"),
     ("preset", "--preset"),
     ("env.id", "the environment's id"),
@@ -19,9 +20,13 @@ const OTHERS_HANG_ON: [(&str, &str); 8] = [
 ];
 
 /// Settings, or groups of them, that a run may be resumed with another value of: what was learned so far stays of use.
-const MAY_CHANGE: [&str; 12] = [
+const MAY_CHANGE: [&str; 15] = [
     "frames",
     "seed",
+    "device",
+    // The same files at another place.
+    "env.maps",
+    "env.iwad",
     "learning.rate",
     "learning.final_rate",
     "learning.max_gradient_norm",
@@ -112,6 +117,12 @@ impl TrainConfig {
     /// As [`TrainConfig::with_all`], and when a setting cannot change within a run.
     pub fn resumed_with(&self, settings: &[String], frames: u64) -> Result<TrainConfig, LearnError> {
         let mut config = self.with_all(settings)?;
+        if config.frames != self.frames && config.frames < frames {
+            return Err(LearnError::Config(format!(
+                "frames = {} is less than the {frames} that the run has made; give more to go on, or leave it out",
+                config.frames
+            )));
+        }
         let (before, after) = (serde_json::to_value(self).map_err(wrong)?, serde_json::to_value(&config).map_err(wrong)?);
         let mut changes = Vec::new();
         differences("", &before, &after, &mut changes);
@@ -230,6 +241,9 @@ mod tests {
         assert_eq!(again.changes.len(), 4);
         assert!(again.changes.iter().all(|one| one.frames == 2048));
         assert!(changed.resumed_with(&all(&["learning.threads=3", "reporting.keep=5"]), 9000).unwrap().changes.len() == 4);
+        let message = changed.resumed_with(&all(&["frames=4096"]), 8192).unwrap_err().to_string();
+        assert!(message.contains("4096") && message.contains("8192"), "{message}");
+        assert!(changed.resumed_with(&all(&["frames=5000000"]), 5_001_216).is_ok(), "it ended with its last rollout");
         let message = config.resumed_with(&all(&["learning.gamma=0.9"]), 0).unwrap_err().to_string();
         assert!(message.contains("learning.gamma") && message.contains("--init-from"), "{message}");
     }

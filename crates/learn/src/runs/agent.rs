@@ -14,7 +14,7 @@ use crate::networks::{Actor, ImageShape, ModelShape, Published};
 use crate::random::{Purpose, Stream};
 use crate::runs::agent_file::AgentFile;
 use crate::runs::checkpoint::{Loaded, Store};
-use crate::runs::run_directory::read_config;
+use crate::runs::run_directory::{go_on, read_config};
 use crate::sampling::privileged::Privileged;
 use crate::sampling::shaping::Shaping;
 
@@ -140,8 +140,10 @@ impl TrainedPolicy {
             (Which::HandedOut, Some(best)) => Some(Loaded::read(&best)?),
             _ => store.newest(warn)?,
         };
-        let missing = "no checkpoint was written yet; let the run go on with `hasard train --resume`";
-        let loaded = loaded.ok_or_else(|| LearnError::content(directory, missing))?;
+        let loaded = loaded.ok_or_else(|| {
+            let command = go_on(&config, directory);
+            LearnError::content(directory, format!("no checkpoint was written yet; let the run go on: {command}"))
+        })?;
         TrainedPolicy::restored(
             &config,
             observation,

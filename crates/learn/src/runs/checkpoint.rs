@@ -40,6 +40,9 @@ pub struct Progress {
     /// The best evaluated checkpoint so far.
     #[serde(default)]
     pub hand_out: Option<HandOut>,
+    /// The run was stopped in the midst of this moment's evaluation, which is still to be made.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub owes_evaluation: bool,
     /// Statistics of each critic's returns.
     pub returns: Vec<Moments>,
     /// Steps of each optimiser.
@@ -64,6 +67,17 @@ struct StateFile {
     weights_checksum: u32,
     training_checksum: u32,
     progress: Progress,
+}
+
+impl StateFile {
+    fn read(path: &Path) -> Result<StateFile, LearnError> {
+        let text = fs::read(path).map_err(LearnError::file(path, "read"))?;
+        serde_json::from_slice(&text).map_err(|error| LearnError::content(path, format!("damaged: {error}")))
+    }
+
+    fn text(&self) -> Result<Vec<u8>, LearnError> {
+        serde_json::to_vec_pretty(self).map_err(|error| LearnError::Config(format!("the run's state cannot be written: {error}")))
+    }
 }
 
 const FORMAT: u32 = 1;
@@ -194,9 +208,8 @@ impl Checkpoint {
             weights_checksum: crc32c(&self.weights),
             training_checksum: crc32c(&self.training),
             progress: self.progress.clone(),
-        };
-        let state = serde_json::to_vec_pretty(&state)
-            .map_err(|error| LearnError::Config(format!("the run's state cannot be written: {error}")))?;
+        }
+        .text()?;
         let written = [(WEIGHTS, &self.weights), (TRAINING, &self.training), (STATE, &state)]
             .into_iter()
             .try_for_each(|(name, bytes)| write_through(&temporary.join(name), bytes));
@@ -257,9 +270,7 @@ impl Loaded {
     /// Reads a checkpoint and verifies its checksums.
     pub fn read(directory: &Path) -> Result<Loaded, LearnError> {
         let path = directory.join(STATE);
-        let text = fs::read(&path).map_err(LearnError::file(&path, "read"))?;
-        let state: StateFile =
-            serde_json::from_slice(&text).map_err(|error| LearnError::content(&path, format!("damaged: {error}")))?;
+        let state = StateFile::read(&path)?;
         if state.format != FORMAT {
             let problem = format!("checkpoint format {}; this program reads format {FORMAT}", state.format);
             return Err(LearnError::content(&path, problem));
@@ -277,6 +288,12 @@ impl Loaded {
             training: read(TRAINING, state.training_checksum)?,
             progress: state.progress,
         })
+    }
+
+    /// The same, ready to be written again with other counters.
+    #[must_use]
+    pub fn with(&self, progress: Progress) -> Checkpoint {
+        Checkpoint { weights: self.weights.clone(), training: self.training.clone(), progress }
     }
 
     /// The networks' parameters and the statistics of pixels, by name.
@@ -432,6 +449,15 @@ impl Store {
     /// Writes the checkpoint that is the best so far.
     pub fn write_best(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
         checkpoint.write(&self.best_of(checkpoint.progress.frames))
+    }
+
+    /// Replaces what the checkpoint of so many frames says of itself, all at once; weights and states stay as they are.
+    pub fn amend(&self, progress: &Progress) -> Result<(), LearnError> {
+        let path = self.directory.join(format!("frames_{:012}", progress.frames)).join(STATE);
+        let state = StateFile { progress: progress.clone(), ..StateFile::read(&path)? };
+        let temporary = path.with_extension("partial");
+        write_through(&temporary, &state.text()?)?;
+        fs::rename(&temporary, &path).map_err(LearnError::file(&path, "write"))
     }
 
     /// Where the best checkpoint of so many frames is.

@@ -1,5 +1,7 @@
 //! Episodes of a trained policy, and what they say about return and budgets.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use hasard_envs::{Autoreset, Episode, LaneState, VecEnv, VecOptions};
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +25,20 @@ pub fn play(
     seeds: &[u64],
     threads: usize,
 ) -> Result<Vec<Episode>, LearnError> {
+    play_unless(&AtomicBool::new(false), policy, choice, make_worlds, seeds, threads).map(Option::unwrap_or_default)
+}
+
+/// As [`play`], but gives up when `stop` is raised meanwhile: then there are no episodes at all.
+pub fn play_unless(
+    stop: &AtomicBool,
+    policy: &TrainedPolicy,
+    choice: Choice,
+    make_worlds: &MakeWorlds<'_>,
+    seeds: &[u64],
+    threads: usize,
+) -> Result<Option<Vec<Episode>>, LearnError> {
     if seeds.is_empty() {
-        return Ok(Vec::new());
+        return Ok(Some(Vec::new()));
     }
     let mut parts = Vec::new();
     for own in seeds.chunks(seeds.len().div_ceil(threads.max(1))) {
@@ -34,19 +48,19 @@ pub fn play(
         let worlds = make_worlds(&policy.config().env, options).map_err(|error| LearnError::Worlds(error.to_string()))?;
         parts.push((worlds, policy.agent(choice, lanes), own));
     }
-    let mut episodes = Vec::with_capacity(seeds.len());
+    let mut episodes = Vec::new();
     std::thread::scope(|scope| {
         let running: Vec<_> =
-            parts.into_iter().map(|(worlds, agent, own)| scope.spawn(move || play_all(worlds, agent, own))).collect();
+            parts.into_iter().map(|(worlds, agent, own)| scope.spawn(move || play_all(stop, worlds, agent, own))).collect();
         for thread in running {
             let played = thread.join().map_err(|panic| LearnError::Panic(panic_text("an evaluation", &*panic)))?;
-            episodes.extend(played?);
+            episodes.push(played?);
         }
-        Ok(episodes)
+        Ok(episodes.into_iter().collect::<Option<Vec<_>>>().map(|parts| parts.concat()))
     })
 }
 
-fn play_all(mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Vec<Episode>, LearnError> {
+fn play_all(stop: &AtomicBool, mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Option<Vec<Episode>>, LearnError> {
     let world_error = |error: hasard_envs::EnvError| LearnError::Worlds(error.to_string());
     let (lanes, terms) = (worlds.lanes(), worlds.cost_terms().len());
     let mut batch = worlds.whole_batch();
@@ -59,6 +73,9 @@ fn play_all(mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Vec<E
         (0..lanes).for_each(|lane| agent.reset(lane, seed_of(lane)));
         let mut ended: Vec<Option<Episode>> = vec![None; lanes];
         while ended.iter().any(Option::is_none) {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
             let (actions, deltas) = (&mut batch.actions[..], &mut batch.deltas[..]);
             let (count, continuous) = (actions.len() / lanes, deltas.len() / lanes);
             for (lane, action) in agent.act(&batch.observations).into_iter().enumerate() {
@@ -78,7 +95,7 @@ fn play_all(mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Vec<E
         }
         all.extend(ended.into_iter().flatten().take(turn.len()));
     }
-    Ok(all)
+    Ok(Some(all))
 }
 
 /// A mean and half the width of its 95 % confidence interval (normal approximation, sample variance; none for one value).
