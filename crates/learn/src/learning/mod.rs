@@ -6,6 +6,7 @@ pub mod dual;
 pub mod learner;
 pub mod loss;
 pub mod metrics;
+pub mod minibatch;
 pub mod normaliser;
 pub mod optimiser;
 pub mod passes;
