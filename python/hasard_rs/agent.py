@@ -34,7 +34,7 @@ class Run:
 
 def train(
     env_id: str,
-    algorithm: str = "PPOLag",
+    algorithm: str = "PPOPID",
     *,
     preset: str | None = None,
     out: str | os.PathLike[str] | None = None,
@@ -49,7 +49,7 @@ def train(
     Args:
         env_id: one of `ids()`, with or without `hasard/`.
         algorithm: PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP or IPO.
-        preset: "paper", "released" or "quick"; None: the program's.
+        preset: "quick", "paper", "released" or "tables"; None: the program's, "quick".
         out: the run's directory; None: one under runs/.
         callback: is called with every report, a dict by name (frames, fps, return_mean, cost_mean, ...); where it returns True the run ends, with
             a checkpoint. What it raises, and Ctrl-C, end the run the same way and are raised again.

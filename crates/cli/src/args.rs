@@ -397,10 +397,11 @@ pub struct TrainArgs {
     /// Environment id
     pub env: String,
     /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
-    #[arg(long, default_value = "PPOLag")]
+    #[arg(long, default_value = "PPOPID")]
     pub algo: String,
-    /// paper, released, or quick: settings that learn within minutes on a CPU
-    #[arg(long, default_value = "paper")]
+    /// quick: settings that learn within minutes on a CPU; paper, released, tables: 500 million frames with the settings of the
+    /// paper's text, of the published code, or of the code that made the paper's tables
+    #[arg(long, default_value = "quick")]
     pub preset: String,
     /// Length of the run in frames (tics): policy steps times frame skip; the preset's if absent
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
@@ -426,6 +427,10 @@ pub struct TrainArgs {
     /// Cost that an episode may have; TERM=COST for one named cost term, several times for several constraints
     #[arg(long, value_name = "COST")]
     pub safety_budget: Vec<String>,
+    /// What budgets are held against: episode-mean, step-mean, or cvar:SHARE for the mean of the worst share of the latest episodes,
+    /// such as cvar:0.1 for the worst tenth (algorithms with multipliers); the preset's if absent
+    #[arg(long, value_name = "STATISTIC")]
+    pub constraint_statistic: Option<String>,
     /// PPOCost: factor of the cost in the reward
     #[arg(long, value_name = "FACTOR")]
     pub cost_scale: Option<f64>,

@@ -35,8 +35,12 @@ fn the_papers_experiments_have_their_sizes() {
     let mut curriculum = paper::experiment("curriculum").unwrap();
     curriculum.scale_frames(0.01);
     let lines: Vec<String> = curriculum.jobs().unwrap().iter().map(|job| job.command_line("hasard")).collect();
-    assert!(lines[0].contains("--frames 3000000 --seed 1 --curriculum 1,2,3"), "{}", lines[0]);
-    assert!(lines.iter().any(|line| line.ends_with("--seed 1 --out runs/RemedyRushLevel3-v0/PPOPID/seed1")));
+    assert!(lines[0].contains("--frames 3000000 --seed 1 --curriculum 1,2,3 --preset paper"), "{}", lines[0]);
+    assert!(
+        lines
+            .iter()
+            .any(|line| line.ends_with("--seed 1 --preset paper --out runs/RemedyRushLevel3-v0/PPOPID/preset=paper/seed1"))
+    );
     let error = paper::experiment("mian").unwrap_err();
     assert!(error.contains("`mian`") && error.contains("main, safety-bounds"), "{error}");
 }
@@ -48,12 +52,12 @@ fn a_file_may_change_an_experiment_of_the_paper() {
             .unwrap();
     let jobs = sweep.jobs().unwrap();
     assert_eq!(jobs.len(), 36);
-    assert!(jobs[0].command_line("h").contains("--frames 2000000 --seed 1 --rules released"));
+    assert!(jobs[0].command_line("h").contains("--frames 2000000 --seed 1 --preset paper --rules released"));
     sweep.set_option("rules", &OptionValue::Text("paper".into()));
     sweep.set_option("device", &OptionValue::Text("cpu".into()));
     let job = &sweep.jobs().unwrap()[0];
-    assert!(job.command_line("h").contains("--device cpu --rules paper"));
-    assert!(job.directory.ends_with("ArmamentBurdenLevel1-v0/PPO/rules=paper/seed1"), "{}", job.directory.display());
+    assert!(job.command_line("h").contains("--device cpu --preset paper --rules paper"));
+    assert!(job.directory.ends_with("ArmamentBurdenLevel1-v0/PPO/preset=paper,rules=paper/seed1"), "{}", job.directory.display());
 }
 
 #[test]

@@ -19,6 +19,7 @@ const DECIDES: [(&str, &[&str]); 26] = [
     ("preset", &["/preset"]),
     ("curriculum", &["/curriculum"]),
     ("safety_budget", &["/constraints"]),
+    ("constraint_statistic", &["/constraint_statistic"]),
     ("cost_scale", &["/algorithm_settings/penalty_scale"]),
     ("device", &["/device"]),
     ("sync", &["/sampling/synchronous"]),

@@ -237,6 +237,9 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     if let Some(scale) = args.cost_scale {
         config.algorithm_settings.penalty_scale = scale;
     }
+    if let Some(text) = &args.constraint_statistic {
+        config.constraint_statistic = text.parse().map_err(|error| Failure::bad(format!("--constraint-statistic: {error}")))?;
+    }
     if !args.safety_budget.is_empty() {
         config.constraints = args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
     }

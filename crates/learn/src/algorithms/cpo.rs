@@ -31,7 +31,7 @@ impl Cpo {
 /// equation 10, is on discounted costs, whose surrogate is scaled by 1 / (1 - gamma), the steps that discounting leaves of an
 /// endless episode; the budgets here are on sums that are not discounted.)
 fn surrogate_excess(signal: &Signal) -> f64 {
-    signal.episode_excess() / signal.mean_steps
+    signal.surrogate_excess()
 }
 
 /// The step's problem in the plane of the two gradients g (of what is minimised) and b (of the cost), all products by the
@@ -166,9 +166,7 @@ mod tests {
             let fisher = p * (1.0 - p);
             // The reward is 1 with the action of cost 1: the best step goes to the edge of the budget.
             let (g, b) = (-fisher, fisher);
-            let signal =
-                Signal { episode_cost: cost, episode_budget: budget, episode_steps: steps, mean_steps: steps, done: 0.0 };
-            let excess = surrogate_excess(&signal);
+            let excess = surrogate_excess(&Signal::steady(cost, budget, steps));
             let weights = Plane { q: g * g / fisher, r: g * b / fisher, s: b * b / fisher, excess, radius: 0.05 }.solve();
             let step = -(weights.reward * g + weights.cost * b) / fisher;
             let after = steps / (1.0 + libm::exp(-(theta + step)));

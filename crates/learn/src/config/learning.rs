@@ -61,14 +61,18 @@ pub struct LearningConfig {
     pub gae_lambda: f64,
     /// Learning rate.
     pub rate: f64,
-    /// Learning rate at the end of the run, reached linearly; `null` for a constant one.
+    /// Learning rate at the end of the schedule, reached linearly; `null` for a constant one.
     pub final_rate: Option<f64>,
+    /// Frames after which the schedules of rates and exploration, and of the PID's reference budget, are over; `null` for the length
+    /// that the run is begun with, which a run then writes down here: it keeps its schedule when it is extended.
+    #[serde(default)]
+    pub schedule_frames: Option<u64>,
     /// Adam's decays.
     pub adam_betas: (f64, f64),
     /// Adam's epsilon.
     pub adam_epsilon: f64,
-    /// Divergence of the policy from the one that acted, mean over a pass, after which a rollout is learned from no further;
-    /// `null` for all passes in any case.
+    /// Divergence of the policy from the one that acted, mean over the rollout after a pass, beyond which the rollout is learned from
+    /// no further; `null` for all passes in any case.
     #[serde(default)]
     pub target_kl: Option<f64>,
     /// Learning rate of critics that are networks of their own; `null` for that of the policy. It follows the same schedule.
@@ -77,6 +81,10 @@ pub struct LearningConfig {
     /// Discount of costs; `null` for that of rewards.
     #[serde(default)]
     pub cost_gamma: Option<f64>,
+    /// Returns of costs are normalised by the moments of the reward's returns, which they move too, and values of costs are used as the
+    /// network says them: a fault of the code that made PPOLag's tables, to be had on request.
+    #[serde(default)]
+    pub cost_uses_reward_normaliser: bool,
     /// Norm that gradients are cut down to; 0 for none.
     pub max_gradient_norm: f64,
     /// Clipping of the probability ratio: 1/(1+clip) to 1+clip.
@@ -89,7 +97,7 @@ pub struct LearningConfig {
     pub exploration: Exploration,
     /// Its weight.
     pub exploration_coefficient: f64,
-    /// Its weight at the end of the run, reached linearly; `null` for a constant one.
+    /// Its weight at the end of the schedule, reached linearly; `null` for a constant one.
     #[serde(default)]
     pub final_exploration_coefficient: Option<f64>,
     /// What brings returns to one scale for the critics.
@@ -128,7 +136,7 @@ impl LearningConfig {
         if costs { self.bootstrap_cost_time_outs.unwrap_or(known) } else { self.bootstrap_time_outs }
     }
 
-    /// The learning rate after a share of the run, from 0 to 1.
+    /// The learning rate after a share of the schedule, from 0 to 1.
     #[must_use]
     pub fn rate_after(&self, share: f64) -> f64 {
         self.rate + (self.final_rate.unwrap_or(self.rate) - self.rate) * share.min(1.0)

@@ -5,6 +5,7 @@ pub mod constraint;
 pub mod curriculum;
 mod environment;
 mod evaluation;
+mod former;
 mod learning;
 mod names;
 mod network;
@@ -15,7 +16,7 @@ mod sampling;
 mod second_order;
 pub mod settings;
 
-pub use algorithm::{AlgorithmConfig, AlgorithmKind};
+pub use algorithm::{AlgorithmConfig, AlgorithmKind, MultiplierUpdate};
 pub use constraint::{Constraint, ConstraintStatistic};
 pub use environment::EnvConfig;
 pub use evaluation::EvaluationConfig;
@@ -43,6 +44,8 @@ names! {
         Paper = "paper",
         /// What the released code does.
         Released = "released",
+        /// What the code did that made the paper's tables.
+        Tables = "tables",
         /// The paper's algorithms with settings that learn within minutes on a processor, for first steps.
         Quick = "quick",
     }
@@ -50,6 +53,8 @@ names! {
 
 /// A run.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+// Read by `former`, which knows what older versions wrote.
+#[serde(remote = "Self")]
 pub struct TrainConfig {
     /// Version of the program that began the run; empty where that did not say.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -73,8 +78,8 @@ pub struct TrainConfig {
     pub episode_steps: u32,
     /// Constraints, each with its budget.
     pub constraints: Vec<Constraint>,
-    /// Share of each budget that learning aims at: a policy that swings about it still keeps a budget that is a little above.
-    /// Evaluations hold costs against the whole budget.
+    /// Share of each budget that learning aims at, whatever the algorithm: a policy that swings about it still keeps a budget that is a
+    /// little above. Evaluations hold costs against the whole budget.
     #[serde(default = "whole")]
     pub budget_share: f64,
     /// What they are held against.
@@ -174,15 +179,13 @@ impl TrainConfig {
             ("the exploration coefficient", learning.exploration_coefficient, 0.0, 1e3),
             ("the seconds between reports", self.reporting.report_seconds, 0.0, f64::MAX),
             ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
-            ("the share of the budget", self.budget_share, 0.0, 1.0),
+            ("the share of the budget", self.budget_share, 0.0, 2.0),
             ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
-            (
-                "the reference budget of the multiplier",
-                self.algorithm_settings.multiplier_reference_budget.unwrap_or(0.0),
-                0.0,
-                f64::MAX,
-            ),
-            ("the damping of the multiplier", self.algorithm_settings.multiplier_damping, 0.0, f64::MAX),
+            ("the reference budget of the PID", self.algorithm_settings.pid_reference_budget.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the decay of the PID's averages", self.algorithm_settings.pid_decay, 0.0, 1.0),
+            ("the weight of P3O's penalty", self.algorithm_settings.p3o_kappa, 0.0, f64::MAX),
+            ("the weight of IPO's barrier", self.algorithm_settings.ipo_kappa, 0.0, f64::MAX),
+            ("IPO's largest penalty", self.algorithm_settings.ipo_limit, 0.0, f64::MAX),
             ("the penalty scale", self.algorithm_settings.penalty_scale, 0.0, f64::MAX),
         ] {
             if !(low..=high).contains(&given) {
@@ -203,12 +206,27 @@ impl TrainConfig {
             let allowed = "running unless sampling.synchronous is on: actors beside the learner have heads of another scale";
             return refuse("the normaliser of returns", &learning.normaliser, allowed);
         }
+        if learning.normaliser == ReturnNormaliser::PopArt && learning.cost_uses_reward_normaliser {
+            return refuse("the normaliser of returns", &learning.normaliser, "running where costs use that of the rewards");
+        }
         let seen = &learning.critic_inputs;
         if let Some(twice) = (1..seen.len()).find(|&index| seen[..index].contains(&seen[index])) {
             return refuse("an input of the critics", &format!("'{}' twice", seen[twice]), "named once");
         }
         if self.frames == 0 {
             return refuse("the number of frames", &self.frames, "at least 1");
+        }
+        if learning.schedule_frames == Some(0) {
+            return refuse("the length of the schedules", &0, "at least 1 frame, or null for that of the run");
+        }
+        if let ConstraintStatistic::Cvar(share) = self.constraint_statistic {
+            if !(share > 0.0 && share <= 1.0) {
+                return refuse("the share of the CVaR", &share, "above 0 and at most 1, such as cvar:0.1");
+            }
+            if !self.algorithm.has_multipliers() {
+                let allowed = format!("episode-mean or step-mean for {}, which has no multiplier to move", self.algorithm);
+                return refuse("the constraint statistic", &self.constraint_statistic, &allowed);
+            }
         }
         if self.constraints.is_empty() || self.constraints.len() > 8 {
             return refuse("the number of constraints", &self.constraints.len(), "1 to 8");
@@ -237,6 +255,32 @@ impl TrainConfig {
     #[must_use]
     pub fn trajectory_steps(&self) -> usize {
         self.learning.recurrence.unwrap_or(usize::MAX).min(self.sampling.rollout)
+    }
+
+    /// Cost of an episode that learning aims at, for one of the constraints: the same for every algorithm.
+    #[must_use]
+    pub fn aim(&self, constraint: usize) -> f64 {
+        self.constraints[constraint].budget * self.budget_share
+    }
+
+    /// Share of the schedules that is over after so many frames, 0 to 1.
+    #[must_use]
+    pub fn progress(&self, frames: u64) -> f64 {
+        (frames as f64 / self.learning.schedule_frames.unwrap_or(self.frames) as f64).min(1.0)
+    }
+
+    /// Writes down how long the schedules of a run are that begins: as long as the run, unless they were given a length.
+    #[must_use]
+    pub fn begun(mut self) -> TrainConfig {
+        self.learning.schedule_frames.get_or_insert(self.frames);
+        self
+    }
+
+    /// Frames that a run was begun with, if it was given more when it was resumed.
+    #[must_use]
+    pub fn extended_from(&self) -> Option<u64> {
+        let first = self.changes.iter().find(|change| change.setting == "frames")?.from.as_u64()?;
+        (self.frames > first).then_some(first)
     }
 
     /// Frames of one rollout of all worlds.

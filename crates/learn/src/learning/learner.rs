@@ -8,7 +8,7 @@ use crate::learning::advantage::{Lane, generalised_advantages};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 pub use crate::learning::minibatch::{Critic, Minibatch};
-use crate::learning::normaliser::{Moments, PixelNormaliser, PixelSums};
+use crate::learning::normaliser::{CLIP, Moments, PixelNormaliser, PixelSums};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::{Policy, Taken};
 use crate::learning::popart::preserve_outputs;
@@ -186,9 +186,15 @@ impl Learner {
             mean_costs: vec![0.0; constraints],
         };
         let popart = settings.normaliser == ReturnNormaliser::PopArt;
-        let raw = |moments: &Moments, value: f32| if popart { moments.scale_up(value) } else { moments.denormalise(value) };
+        let shared = settings.cost_uses_reward_normaliser;
         let mut moved = Vec::new();
-        for (critic, moments) in self.returns.iter_mut().enumerate() {
+        for critic in 0..self.returns.len() {
+            let moments = &mut self.returns[if shared { 0 } else { critic }];
+            let raw = |moments: &Moments, value: f32| match () {
+                () if shared && critic > 0 => value.clamp(-CLIP, CLIP),
+                () if popart => moments.scale_up(value),
+                () => moments.denormalise(value),
+            };
             let mut advantages = vec![0.0; steps * lanes];
             let mut returns = vec![0.0; steps * lanes];
             let mut old_values = vec![0.0; steps * lanes];
@@ -403,6 +409,14 @@ impl Learner {
         Policy::new(&self.shape.action, &outputs, width)
     }
 
+    /// Mean divergence, over all of a rollout, of the policy at present from another, or else from the one that acted.
+    pub fn divergence(&mut self, rollout: &Prepared<'_>, from: Option<&Policy>) -> f64 {
+        let all: Vec<usize> = (0..rollout.rollout.trajectories()).collect();
+        let mut minibatch = self.minibatch(rollout, &all);
+        let present = self.policy(&mut minibatch);
+        from.unwrap_or(&minibatch.old_policy).divergence(&present).mean()
+    }
+
     /// The policy network's parameters. Only for models of separate networks, as all that follows.
     #[must_use]
     pub fn policy_parameters(&self) -> Vec<f32> {
@@ -484,4 +498,49 @@ fn mean_costs(rollout: &Rollout, trajectories: &[usize], constraints: usize) -> 
     }
     let count = (trajectories.len() * steps) as f64;
     sums.iter().map(|sum| sum / count).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algorithms::small;
+    use crate::config::AlgorithmKind;
+
+    /// As the code of PPOLag's tables had it: values of costs as the network says them, within +-5; their returns normalised by the
+    /// moments of the reward's returns, which have taken both in; moments of their own never moved. Returns by the recursion of GAE
+    /// (Schulman et al. 2016), here with gamma and lambda 1, where they are plain sums up to the value after the last step.
+    #[test]
+    fn costs_may_use_the_rewards_normaliser() {
+        let mut config = small::config(AlgorithmKind::PpoLag);
+        (config.learning.gamma, config.learning.gae_lambda) = (1.0, 1.0);
+        let make = |shared: bool| {
+            let mut config = config.clone();
+            config.learning.cost_uses_reward_normaliser = shared;
+            let (mut learner, rollout) = small::learner(&config);
+            learner.returns[0] = Moments { count: 50.0, mean: 2.0, variance: 9.0 };
+            let prepared = learner.prepare(&rollout);
+            let (targets, moments) = (prepared.targets.clone(), learner.returns.clone());
+            let part = &rollout.parts[0];
+            let width = part.outputs.len() / ((small::STEPS + 1) * small::LANES);
+            let mut sums = Vec::new();
+            for lane in 0..small::LANES {
+                for step in 0..small::STEPS {
+                    let costs: f32 = (step..small::STEPS).map(|later| part.costs[later * small::LANES + lane]).sum();
+                    let last = part.outputs[(small::STEPS * small::LANES + lane) * width + width - 1];
+                    sums.push(costs + last.clamp(-5.0, 5.0));
+                }
+            }
+            (targets, moments, sums)
+        };
+        let (targets, moments, sums) = make(true);
+        let (_, plain, _) = make(false);
+        let mut both = plain[0];
+        both.update(&sums);
+        assert!((moments[0].mean - both.mean).abs() < 1e-5 && (moments[0].variance - both.variance).abs() < 1e-5);
+        assert_eq!((moments[0].count, moments[1]), (both.count, Moments::default()));
+        assert_ne!(plain[1], Moments::default());
+        for (target, sum) in targets[1].iter().zip(&sums) {
+            assert!((target - both.normalise(*sum)).abs() < 1e-5, "{target} against {}", both.normalise(*sum));
+        }
+    }
 }

@@ -262,7 +262,7 @@ impl Session {
             return Ok(());
         }
         let learning = self.config.learning.clone();
-        let done = (self.frames as f64 / self.config.frames as f64).min(1.0);
+        let done = self.config.progress(self.frames);
         self.learner.rate = learning.rate_after(done);
         self.means.add("learning_rate", self.learner.rate);
         let last = learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
@@ -278,6 +278,7 @@ impl Session {
         let passes = Passes::new(&self.config, self.rollouts, rollout.trajectories());
         let signals = |costs: &[f64]| self.watch.signals(&self.config, done, costs);
         self.algorithm.learn(&mut self.learner, &prepared, &passes, &signals, &mut self.means)?;
+        self.watch.learned();
         if learning.reuse_forward {
             self.learner.absorb(rollout)?;
         }

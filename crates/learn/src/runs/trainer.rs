@@ -142,11 +142,13 @@ fn begin(start: Start<'_>, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Be
     };
     match start {
         Start::Fresh(config) => {
+            let config = config.begun();
             config.check()?;
             ComputeDevice::of(&config)?;
             new(config, Beginning::Nothing)
         }
         Start::From(config, other) => {
+            let config = config.begun();
             config.check()?;
             ComputeDevice::of(&config)?;
             let loaded = Store::new(other, 1).newest(hooks.warn)?;

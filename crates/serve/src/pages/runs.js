@@ -141,7 +141,7 @@ export function runs(main, query) {
     card.hidden = known.size === 0;
     if (!hint.hidden && !hint.childElementCount) {
       hint.append(make('h1', {}, 'No runs yet'), make('p', {}, `This page looks below ${news.folders.join(', ')} and shows every run as soon as it begins. Begin one:`),
-        make('pre', {}, 'hasard train VolcanicVentureLevel1-v0 --preset quick --out runs/first'),
+        make('pre', {}, 'hasard train VolcanicVentureLevel1-v0 --out runs/first'),
         make('p', {}, 'Meanwhile: ', make('a', { href: '#watch' }, 'watch an environment'), ' or ', make('a', { href: '#play' }, 'play it yourself'), '.'));
     }
   }
