@@ -209,8 +209,9 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
     assert!(Command::new("kill").args(["-INT", "--", &group]).status().unwrap().success());
     shell.wait(Duration::from_secs(30));
     assert!(!folder.0.join("loop2").exists(), "the loop went on");
-    let code = Command::new("bash").args(["-c", &format!("{line} --out coded & sleep 2; kill -TERM $!; wait $!; echo $?")]);
-    let code = { code }.current_dir(&folder.0).stderr(Stdio::null()).output().unwrap();
+    let script = format!("{line} --out coded & sleep 2; kill -TERM $!; wait $!; echo $?");
+    let mut shell = Command::new("bash");
+    let code = shell.args(["-c", &script]).current_dir(&folder.0).stderr(Stdio::null()).output().unwrap();
     assert_eq!(String::from_utf8_lossy(&code.stdout).trim(), "143");
 }
 

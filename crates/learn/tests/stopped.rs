@@ -17,6 +17,8 @@ fn config() -> TrainConfig {
     config.frames = 6 * config.frames_per_rollout();
     config.evaluation.every = Some(2 * config.frames_per_rollout());
     (config.evaluation.episodes, config.evaluation.confirming_episodes) = (40, 40);
+    // Kept from the beginning: candidates are confirmed.
+    config.constraints[0].budget = 100.0;
     config
 }
 
