@@ -321,7 +321,7 @@ pub enum View {
     Depth,
     /// One colour for each class of things, and for walls, floor, ceiling and sky
     Segmented,
-    /// Raw labels: 0 for surfaces, n * 255 / (N + 1) for the n-th of N things in view, 255 for the weapon
+    /// Raw labels: 0 for surfaces, n * 255 / (N + 1) for the n-th of N things drawn, 255 for the weapon
     Labels,
     /// Luminance
     #[value(alias = "gray")]

@@ -60,6 +60,13 @@ pub enum WadError {
         /// Its name.
         name: TextureName,
     },
+    /// The map is in a binary format.
+    Binary {
+        /// The map.
+        name: String,
+        /// Whose format it is.
+        format: &'static str,
+    },
     /// There is no such lump or map.
     NotFound {
         /// What was looked for.
@@ -79,6 +86,11 @@ impl fmt::Display for WadError {
             WadError::LumpOutside { index, name } => {
                 write!(f, "broken WAD: lump {index} ({name:?}) lies outside the file; fetch the file again")
             }
+            WadError::Binary { name, format } => write!(
+                f,
+                "its {name} is binary, in {format}'s format, and must be UDMF; \
+                 open it in an editor such as Ultimate Doom Builder or SLADE and save it as UDMF"
+            ),
             WadError::NotFound { name } => write!(f, "the WAD has no {name}; give one that has"),
         }
     }
@@ -136,8 +148,37 @@ impl<'a> Wad<'a> {
     pub fn map_text(&self, name: &str) -> Result<&'a [u8], WadError> {
         let (marker, text) = (TextureName::new(name), TextureName::new("TEXTMAP"));
         let found = self.lumps.windows(2).rev().find(|pair| pair[0].name == marker && pair[1].name == text);
-        found.map(|pair| pair[1].bytes).ok_or_else(|| WadError::NotFound { name: format!("UDMF map {name}") })
+        found.map(|pair| pair[1].bytes).ok_or_else(|| match self.binary_format(name) {
+            Some(format) => WadError::Binary { name: name.to_ascii_uppercase(), format },
+            None => WadError::NotFound { name: format!("UDMF map {name}{}", self.other_maps()) },
+        })
     }
+
+    /// The format of a binary map: its lumps follow its name, and only Hexen's has `BEHAVIOR` among them.
+    fn binary_format(&self, name: &str) -> Option<&'static str> {
+        let marker = TextureName::new(name);
+        let maps = self.lumps.iter().enumerate().rev().filter(|(_, lump)| lump.name == marker);
+        let lumps = maps.map(|(at, _)| &self.lumps[at + 1..]).find(|lumps| lumps.first().is_some_and(is_binary))?;
+        let behaviour = TextureName::new("BEHAVIOR");
+        let hexen = lumps.iter().take_while(|lump| is_binary(lump)).any(|lump| lump.name == behaviour);
+        Some(if hexen { "Hexen" } else { "Doom" })
+    }
+
+    /// Which maps the file has, in brackets; nothing if none.
+    fn other_maps(&self) -> String {
+        let text = TextureName::new("TEXTMAP");
+        let maps = self.lumps.windows(2).filter(|pair| pair[1].name == text || is_binary(&pair[1]) && !is_binary(&pair[0]));
+        let names: Vec<String> = maps.take(8).map(|pair| format!("{:?}", pair[0].name)).collect();
+        if names.is_empty() { String::new() } else { format!(" (it has {})", names.join(", ")) }
+    }
+}
+
+/// Whether a lump is one of those that a binary map consists of.
+fn is_binary(lump: &Lump<'_>) -> bool {
+    const LUMPS: [&str; 11] = [
+        "THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SEGS", "SSECTORS", "NODES", "SECTORS", "REJECT", "BLOCKMAP", "BEHAVIOR",
+    ];
+    LUMPS.iter().any(|&name| lump.name == TextureName::new(name))
 }
 
 /// The bytes of a WAD with the given lumps.
@@ -235,6 +276,23 @@ mod tests {
         let bytes = write_map("MAP01", &udmf::read(text).unwrap());
         let definitions = std::str::from_utf8(Wad::read(&bytes).unwrap().find("TEXTURES").unwrap()).unwrap();
         assert_eq!(definitions, "Texture TILES6, 64, 64\n{\n\tPatch FLAT5_7, 0, 0\n}\n");
+    }
+
+    #[test]
+    fn a_binary_map_is_said_to_be_one() {
+        let why = |names: &[&str]| {
+            let lumps: Vec<Lump<'_>> = names.iter().map(|name| lump(name, b"x")).collect();
+            Wad::read(&write(WadKind::Pwad, &lumps)).unwrap().map_text("MAP01").unwrap_err().to_string()
+        };
+        let doom = ["MAP01", "THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SECTORS"];
+        let error = why(&doom);
+        assert!(error.starts_with("its MAP01 is binary, in Doom's format, and must be UDMF"), "{error}");
+        assert!(why(&[&doom[..], &["BEHAVIOR"]].concat()).contains("in Hexen's format"));
+        // Another map's BEHAVIOR says nothing of this one.
+        assert!(why(&[&doom[..], &["MAP02", "THINGS", "BEHAVIOR"]].concat()).contains("in Doom's format"));
+        let other = why(&["E1M1", "TEXTMAP", "ENDMAP", "MAP02", "THINGS", "LINEDEFS"]);
+        assert!(other.contains("no UDMF map MAP01 (it has E1M1, MAP02)"), "{other}");
+        assert_eq!(why(&["PICTURE"]), "the WAD has no UDMF map MAP01; give one that has");
     }
 
     #[test]

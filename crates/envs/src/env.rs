@@ -58,7 +58,8 @@ impl Blueprint {
         // Only this scenario's published settings draw them. Worlds of our own leave them out: they cost a third of a step.
         world.rockets_shed = id.scenario == Scenario::CollateralDamage && as_published;
         if world.players.is_empty() {
-            return Err(EnvError::Map { why: format!("the map of {id} has no player start; add a thing of type 1") });
+            let why = format!("map {}: no player start; add a thing of type 1", world.map.name);
+            return Err(EnvError::Map { why });
         }
         rules.prepare(&mut world);
         let (start_tic, end_tic) = scenarios::clock(id, options.rules, options.hard);

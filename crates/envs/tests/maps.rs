@@ -187,3 +187,53 @@ fn what_cannot_be_played_is_named_in_one_line() {
         assert!(error.contains(expected) && error.contains("[1m.wad") && !error.contains(char::is_control), "{error}");
     }
 }
+
+/// A WAD with one map of this text.
+fn text_wad(text: &str) -> Vec<u8> {
+    let lump = |name, bytes| Lump { name: TextureName::new(name), bytes };
+    wad::write(WadKind::Pwad, &[lump("MAP01", b"".as_slice()), lump("TEXTMAP", text.as_bytes())])
+}
+
+#[test]
+fn fields_that_are_not_played_are_reported_with_the_file() {
+    let folder = Folder::new("fields");
+    let (source, _) = scenarios::map_source("CollateralDamageLevel1-v0".parse().unwrap(), RuleSet::Paper, false);
+    let text = hasard_engine::map::udmf::write(&source).replacen("heightceiling", "damageamount = 20;\nmoreids = \"5\";\nheightceiling", 1);
+    let path = folder.put("fields.wad", &text_wad(&text));
+    let left_out = Env::new("CollateralDamageLevel1-v0", &options(Some(&path))).unwrap().left_out().unwrap();
+    let expected = format!("{}: left out: sector field damageamount (1), sector field moreids (1)", path.display());
+    assert_eq!(left_out, expected);
+}
+
+/// Whatever a map lacks, the message names its file.
+#[test]
+fn every_message_of_a_map_names_its_file() {
+    let folder = Folder::new("named");
+    let lump = |name, bytes| Lump { name: TextureName::new(name), bytes };
+    let binary = wad::write(WadKind::Pwad, &[lump("MAP01", b"".as_slice()), lump("THINGS", b"x"), lump("LINEDEFS", b"x")]);
+    let path = folder.put("binary.wad", &binary);
+    let error = Env::new("RemedyRushLevel1-v0", &options(Some(&path))).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("its MAP01 is binary") && error.contains("must be UDMF"), "{error}");
+    let spoils: [fn(&mut MapSource); 5] = [
+        |source| source.things.clear(),
+        // Starts of deathmatches are none for a single agent.
+        |source| source.things.iter_mut().for_each(|thing| thing.kind = 11),
+        |source| source.lines.truncate(3),
+        |source| source.vertices[0].x = 1e6,
+        |source| source.sides[0].sector = 100_000,
+    ];
+    for id in EnvId::all() {
+        for (number, spoil) in spoils.into_iter().enumerate() {
+            let error = one_map(&folder, &id.to_string(), spoil).map(|_| ()).unwrap_err();
+            assert!(error.contains("one.wad") && !error.contains('\n'), "{id}, fault {number}: {error}");
+        }
+        // A bare room: what the scenario's rules look for is not there. Where they look for nothing, it is played.
+        let bare = one_map(&folder, &id.to_string(), |source| {
+            source.sectors.iter_mut().for_each(|sector| sector.tag = 0);
+            source.things.retain(|thing| thing.kind == 1);
+        });
+        if let Err(error) = bare {
+            assert!(error.contains("one.wad") && !error.contains('\n'), "{id}: {error}");
+        }
+    }
+}

@@ -4,6 +4,7 @@ use crate::actor::Performance;
 use crate::args::{RenderArgs, Size, View};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
+use hasard_engine::render::InView;
 use hasard_play::Views;
 use serde_json::{Value, json};
 
@@ -34,18 +35,18 @@ pub fn run(args: &RenderArgs) -> Outcome {
     Ok(())
 }
 
-/// The things in view, far to near: what each is, its value in the picture of labels, and the box of its pixels.
+/// The things in view, far to near: what each is, its value in the picture of labels, its pixels and the box around them.
 fn labels(views: &Views) -> Value {
-    let list = views.renderer().labels();
-    let label = |(index, label): (usize, &hasard_engine::render::Label)| {
+    let thing = |InView { label, value, pixels }: InView| {
         json!({
             "name": format!("{:?}", label.kind),
-            "value": (index + 1) * 255 / (list.len() + 1),
+            "value": value,
             "x": label.x,
             "y": label.y,
             "width": label.width,
             "height": label.height,
+            "pixels": pixels,
         })
     };
-    list.iter().enumerate().map(label).collect()
+    views.renderer().in_view().into_iter().map(thing).collect()
 }

@@ -31,10 +31,10 @@ impl Map {
             .map(|(i, v)| Ok(Vertex { x: coordinate("vertex", i, "x", v.x)?, y: coordinate("vertex", i, "y", v.y)? }))
             .collect::<Result<Vec<_>, MapError>>()?;
         let mut names = Names::default();
-        let sides = build_sides(source, &mut names)?;
-        let lines = build_lines(source, &vertices, &sides)?;
+        let mut sides = build_sides(source, &mut names)?;
+        let lines = build_lines(source, &vertices, &mut sides)?;
         let mut sectors = build_sectors(source, &mut names)?;
-        join_sectors_and_lines(&mut sectors, &lines)?;
+        join_sectors_and_lines(&mut sectors, &lines);
         check_closed(source, sectors.len())?;
         let things = build_things(source)?;
         for name in extra_texture_names {
@@ -44,7 +44,8 @@ impl Map {
         let mut tags: Vec<(i32, SectorId)> = sectors
             .iter()
             .enumerate()
-            .filter(|(_, sector)| sector.tag != 0)
+            // A sector that no line faces has no place where rules could act.
+            .filter(|(_, sector)| sector.tag != 0 && !sector.lines.is_empty())
             .map(|(i, sector)| (sector.tag, SectorId(i as u32)))
             .collect();
         tags.sort_unstable();
@@ -162,22 +163,27 @@ fn build_sides(source: &MapSource, names: &mut Names) -> Result<Vec<Side>, MapEr
     source.sides.iter().enumerate().map(convert).collect()
 }
 
-fn build_lines(source: &MapSource, vertices: &[Vertex], sides: &[Side]) -> Result<Vec<Line>, MapError> {
+/// The lines that have a length: those of none are left away, as other loaders do. Lines that share a side get one each, as the
+/// world may change it for one of them alone.
+fn build_lines(source: &MapSource, vertices: &[Vertex], sides: &mut Vec<Side>) -> Result<Vec<Line>, MapError> {
     let mut side_used = vec![false; sides.len()];
     let mut lines = Vec::with_capacity(source.lines.len());
     for (i, line) in source.lines.iter().enumerate() {
         let v1 = vertices[reference("linedef", i, "v1", line.v1, vertices.len())?];
         let v2 = vertices[reference("linedef", i, "v2", line.v2, vertices.len())?];
+        let front = reference("linedef", i, "sidefront", line.front, source.sides.len())?;
+        let back = line.back.map(|back| reference("linedef", i, "sideback", back, source.sides.len())).transpose()?;
         if v1 == v2 {
-            return Err(MapError::ZeroLength { line: i });
+            continue;
         }
-        let front = reference("linedef", i, "sidefront", line.front, sides.len())?;
-        let back = line.back.map(|back| reference("linedef", i, "sideback", back, sides.len())).transpose()?;
-        for side in [Some(front), back].into_iter().flatten() {
-            if std::mem::replace(&mut side_used[side], true) {
-                return Err(MapError::SharedSide { line: i, side });
+        let mut own = |side: usize| {
+            if !std::mem::replace(&mut side_used[side], true) {
+                return side;
             }
-        }
+            sides.push(sides[side]);
+            sides.len() - 1
+        };
+        let (front, back) = (own(front), back.map(own));
         lines.push(Line {
             v1,
             v2,
@@ -186,6 +192,7 @@ fn build_lines(source: &MapSource, vertices: &[Vertex], sides: &[Side]) -> Resul
             bounds: [v1.x.min(v2.x), v1.x.max(v2.x), v1.y.min(v2.y), v1.y.max(v2.y)],
             flags: LineFlags {
                 blocking: line.blocking,
+                blocks: line.blocks,
                 upper_unpegged: line.upper_unpegged,
                 lower_unpegged: line.lower_unpegged,
             },
@@ -197,6 +204,9 @@ fn build_lines(source: &MapSource, vertices: &[Vertex], sides: &[Side]) -> Resul
             special: line.special,
             args: line.args,
         });
+    }
+    if lines.is_empty() {
+        return Err(MapError::Missing { what: "linedef with a length" });
     }
     Ok(lines)
 }
@@ -220,7 +230,7 @@ fn build_sectors(source: &MapSource, names: &mut Names) -> Result<Vec<Sector>, M
     source.sectors.iter().enumerate().map(convert).collect()
 }
 
-fn join_sectors_and_lines(sectors: &mut [Sector], lines: &[Line]) -> Result<(), MapError> {
+fn join_sectors_and_lines(sectors: &mut [Sector], lines: &[Line]) {
     for (i, line) in lines.iter().enumerate() {
         let back = line.back_sector.filter(|&back| back != line.front_sector);
         for id in [Some(line.front_sector), back].into_iter().flatten() {
@@ -234,10 +244,8 @@ fn join_sectors_and_lines(sectors: &mut [Sector], lines: &[Line]) -> Result<(), 
             ];
         }
     }
-    match sectors.iter().position(|sector| sector.lines.is_empty()) {
-        Some(sector) => Err(MapError::EmptySector { sector }),
-        None => Ok(()),
-    }
+    // One that no line faces lies nowhere.
+    sectors.iter_mut().filter(|sector| sector.lines.is_empty()).for_each(|sector| sector.bounds = [Fixed::ZERO; 4]);
 }
 
 /// Every vertex must end as many of a sector's outlines as it begins: walking with the sector on the right,

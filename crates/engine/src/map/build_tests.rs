@@ -1,6 +1,6 @@
 //! The built map held against its definition: brute force over the lines instead of tree and blockmap.
 
-use super::{Line, Map, MapBuilder, MapError, MapSource, Node, SectorId, Style, Subsector, Vertex};
+use super::{Line, Map, MapBuilder, MapError, MapSource, Node, SectorId, SourceLine, SourceSector, Style, Subsector, Vertex};
 use crate::math::{Fixed, Rng};
 
 const ROOM: Style = Style {
@@ -275,9 +275,8 @@ fn faults_are_named() {
     assert!(matches!(fault(&|m| m.lines.clear()), MapError::Missing { what: "linedefs" }));
     assert!(matches!(fault(&|m| m.lines[2].v2 = 9), MapError::Index { element: "linedef", index: 2, field: "v2", .. }));
     assert!(matches!(fault(&|m| m.sides[1].sector = 7), MapError::Index { element: "sidedef", index: 1, .. }));
-    assert!(matches!(fault(&|m| m.lines[1].v2 = m.lines[1].v1), MapError::ZeroLength { line: 1 }));
-    assert!(matches!(fault(&|m| m.lines[3].front = 0), MapError::SharedSide { line: 3, side: 0 }));
-    assert!(matches!(fault(&|m| m.sectors.push(m.sectors[0].clone())), MapError::EmptySector { sector: 1 }));
+    let dots = fault(&|m| m.lines.iter_mut().for_each(|line| line.v2 = line.v1));
+    assert!(matches!(dots, MapError::Missing { what: "linedef with a length" }));
     assert!(matches!(fault(&|m| m.lines.truncate(3)), MapError::Unclosed { sector: 0, .. }));
     assert!(matches!(fault(&|m| m.vertices[0].x = f64::NAN), MapError::Range { element: "vertex", field: "x", .. }));
     assert!(matches!(fault(&|m| m.vertices[0].y = -1e300), MapError::Range { .. }));
@@ -286,6 +285,30 @@ fn faults_are_named() {
     assert!(matches!(fault(&|m| m.things[0].x = 20_000.0), MapError::Range { element: "thing", .. }));
     let crowd = fault(&|m| m.things = vec![m.things[0]; 70_000]);
     assert!(matches!(crowd, MapError::TooMany { what: "things", .. }));
+}
+
+/// What editors and packers leave behind, and other loaders take.
+#[test]
+fn untidy_maps_are_built_as_if_they_were_tidy() {
+    let plain = Map::build(&square(), "plain", &[]).unwrap();
+    let mut source = square();
+    source.lines.iter_mut().for_each(|line| line.front = 0);
+    let shared = Map::build(&source, "shared", &[]).unwrap();
+    let fronts: std::collections::BTreeSet<u32> = shared.lines.iter().map(|line| line.front.0).collect();
+    assert_eq!(fronts.len(), shared.lines.len(), "every line has a side of its own");
+    assert!(shared.lines.iter().all(|line| shared.sides[line.front.0 as usize].middle == plain.sides[0].middle));
+    check_tree(&shared);
+
+    let mut source = square();
+    source.lines.insert(2, SourceLine { v1: 1, v2: 1, front: 0, ..SourceLine::default() });
+    source.sectors.push(SourceSector { tag: 9, ..source.sectors[0].clone() });
+    source.sides.push(source.sides[0].clone());
+    source.vertices.push(source.vertices[0]);
+    let map = Map::build(&source, "left-overs", &[]).unwrap();
+    assert_eq!((map.lines.len(), map.segs.len()), (plain.lines.len(), plain.segs.len()));
+    assert_eq!(map.tagged(9).count(), 0, "a sector that no line faces has no place");
+    assert!(map.sectors[1].lines.is_empty());
+    check_tree(&map);
 }
 
 #[test]

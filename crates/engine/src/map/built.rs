@@ -1,6 +1,6 @@
 //! The built map: cross-referenced lists in fixed point, the BSP tree and the blockmap. Immutable once built.
 
-use super::{Locator, TextureName};
+use super::{Blocks, Locator, TextureName};
 use crate::math::{Angle, Fixed};
 
 /// Index into [`Map::textures`].
@@ -29,6 +29,8 @@ pub struct Vertex {
 pub struct LineFlags {
     /// Blocks every walker even where the opening is large enough.
     pub blocking: bool,
+    /// What else it stops.
+    pub blocks: Blocks,
     /// Upper texture starts at the higher ceiling.
     pub upper_unpegged: bool,
     /// Lower texture hangs from the higher ceiling; a one-sided texture stands on the floor.

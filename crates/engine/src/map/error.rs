@@ -46,23 +46,6 @@ pub enum MapError {
         /// The largest magnitude allowed.
         limit: i32,
     },
-    /// Both ends of a line are the same point.
-    ZeroLength {
-        /// Index of the line.
-        line: usize,
-    },
-    /// Two lines share a sidedef, so that scripts and offsets of one would change the other.
-    SharedSide {
-        /// Index of the second line that uses it.
-        line: usize,
-        /// Index of the sidedef.
-        side: usize,
-    },
-    /// No line faces a sector, so that it has no place in the world.
-    EmptySector {
-        /// Index of the sector.
-        sector: usize,
-    },
     /// The lines of a sector do not close.
     Unclosed {
         /// Index of the sector.
@@ -89,15 +72,6 @@ impl fmt::Display for MapError {
             }
             MapError::Range { element, index, field, value, limit } => {
                 write!(f, "{element} {index}: {field} is {value}, outside -{limit}..={limit}; move it into that range")
-            }
-            MapError::ZeroLength { line } => {
-                write!(f, "linedef {line}: both ends are the same point; remove it or move an end")
-            }
-            MapError::SharedSide { line, side } => {
-                write!(f, "linedef {line}: sidedef {side} is used already; give every line sides of its own")
-            }
-            MapError::EmptySector { sector } => {
-                write!(f, "sector {sector}: no line faces it; remove it or draw its outline")
             }
             MapError::Unclosed { sector, vertex } => {
                 write!(f, "sector {sector}: its outline is open at vertex {vertex}; close it")

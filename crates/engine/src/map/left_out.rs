@@ -36,7 +36,8 @@ impl MapSource {
             let list: Vec<String> = counts.iter().take(24).map(|(number, times)| format!("{number} ({times})")).collect();
             (!list.is_empty()).then(|| format!("{what} {}", list.join(" ")))
         };
-        lists.into_iter().filter_map(phrase).collect()
+        let fields = self.unplayed.iter().map(|(what, times)| format!("{what} ({times})"));
+        lists.into_iter().filter_map(phrase).chain(fields).collect()
     }
 
     /// Every texture that the map names.

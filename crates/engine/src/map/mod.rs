@@ -2,6 +2,7 @@
 
 mod arrangement;
 mod blockmap;
+mod blocks;
 mod bsp;
 mod build;
 #[cfg(test)]
@@ -20,6 +21,7 @@ mod stone_room;
 mod tile_grid;
 pub mod udmf;
 
+pub use blocks::Blocks;
 pub use builder::{BuilderError, MapBuilder, Mark, Style};
 pub use built::{
     Blockmap, Line, LineFlags, Map, MapThing, Node, Sector, SectorId, Seg, Side, SideId, Subsector, TextureId, Vertex,

@@ -1,5 +1,8 @@
 //! The editable form of a map: what UDMF text says, field by field.
 
+use super::Blocks;
+use std::collections::BTreeMap;
+
 /// A texture, flat or lump name: up to 8 upper-case ASCII characters, padded with zeros; all zero means none (`-`).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct TextureName(pub [u8; 8]);
@@ -60,6 +63,8 @@ pub struct MapSource {
     pub sectors: Vec<SourceSector>,
     /// Things.
     pub things: Vec<SourceThing>,
+    /// What the text asks for beside all this, a phrase each with how often. It is reported, and not written.
+    pub unplayed: BTreeMap<String, usize>,
 }
 
 impl MapSource {
@@ -104,6 +109,8 @@ pub struct SourceLine {
     pub back: Option<usize>,
     /// Blocks every walker (`blocking`).
     pub blocking: bool,
+    /// What else it stops (`blockplayers`, ...).
+    pub blocks: Blocks,
     /// Upper texture pegged to the higher ceiling (`dontpegtop`).
     pub upper_unpegged: bool,
     /// Lower texture pegged to the ceiling, or middle texture to the floor (`dontpegbottom`).

@@ -87,15 +87,14 @@ fn colour_of<const N: usize>(colours: &[[u8; 3]; N], class: u16) -> [u8; 3] {
     colours[usize::from(class).min(N - 1)]
 }
 
-/// The value of each class: 255 for `full`, 1 for `ones`, 0 for the others below 8, `values` for the rest; those beyond share its last one.
+/// The value of each class: 255 for `full`, 0 for the others below 8, `values` for the rest; those beyond share its last one.
 ///
 /// Most of a picture is surfaces and the weapon, which are told a block at a time.
-pub(super) fn classes_one_byte<const N: usize>(values: &[u8; N], full: u16, ones: [u16; 2], classes: &[u16], out: &mut [u8]) {
+pub(super) fn classes_one_byte<const N: usize>(values: &[u8; N], full: u16, classes: &[u16], out: &mut [u8]) {
     const BLOCK: usize = 32;
     for (to, classes) in out.chunks_mut(BLOCK).zip(classes.chunks(BLOCK)) {
         if classes.iter().fold(0, |bits, &class| bits | class) < 8 {
-            let value = |class: u16| if class == full { 255 } else { u8::from(ones.contains(&class)) };
-            to.iter_mut().zip(classes).for_each(|(to, &class)| *to = value(class));
+            to.iter_mut().zip(classes).for_each(|(to, &class)| *to = if class == full { 255 } else { 0 });
         } else {
             to.iter_mut().zip(classes).for_each(|(to, &class)| *to = values[usize::from(class).min(N - 1)]);
         }
@@ -151,13 +150,13 @@ mod tests {
     #[test]
     fn blocks_of_surfaces_are_no_short_cut() {
         let mut values = [0; 64];
-        (values[5], values[1], values[2]) = (255, 1, 1);
+        values[5] = 255;
         (8..64).for_each(|i| values[i] = i as u8 * 3);
         for length in [0, 31, 32, 33, 100] {
             for (at, class) in [(0, 5), (length / 2, 63), (length.max(1) - 1, 9), (3, 700), (7, 4)] {
                 let classes: Vec<u16> = (0..length).map(|i| if i == at { class } else { i as u16 % 5 }).collect();
                 let mut out = vec![1; length];
-                classes_one_byte(&values, 5, [1, 2], &classes, &mut out);
+                classes_one_byte(&values, 5, &classes, &mut out);
                 let plain: Vec<u8> = classes.iter().map(|&class| values[usize::from(class).min(63)]).collect();
                 assert_eq!(out, plain);
             }

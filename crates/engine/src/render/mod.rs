@@ -87,7 +87,7 @@ mod weapon_cache;
 mod workspace;
 
 pub use frame::class;
-pub use label::Label;
+pub use label::{InView, Label};
 pub use renderer::{RenderOptions, Renderer};
 pub use scene::Scene;
 pub use segmentation::SegmentationColours;

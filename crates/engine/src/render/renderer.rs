@@ -6,7 +6,7 @@ use super::depth::Depths;
 use super::fours;
 use super::frame::{Frame, class};
 use super::horizon::RowSlopes;
-use super::label::{Label, Labels};
+use super::label::{self, InView, Label, Labels};
 use super::masked::Masked;
 use super::palette::Tint;
 use super::plane::PlaneShader;
@@ -279,10 +279,17 @@ impl Renderer {
         &self.frame.class
     }
 
-    /// The actors of which the last frame drew a pixel, if labels were drawn, far to near.
+    /// The actors of which the last frame drew a pixel, if labels were drawn, far to near; what came later may have hidden some.
     #[must_use]
     pub fn labels(&self) -> &[Label] {
         &self.labels.list
+    }
+
+    /// The actors of which the last frame shows a pixel, if labels were drawn, far to near: those of [`Renderer::labels`] that
+    /// nothing nearer, no weapon and no status bar hides altogether.
+    #[must_use]
+    pub fn in_view(&self) -> Vec<InView> {
+        label::in_view(&self.labels.list, &self.frame.class, self.view.width())
     }
 
     /// Size of the frames.
@@ -355,22 +362,20 @@ impl Renderer {
         convert::classes_planes(&self.class_colours(colours), &self.frame.class, out);
     }
 
-    /// Writes the last frame's labels as the published engine gives them: 1 for floors and ceilings with a picture of 64 by
-    /// 64 texels, 0 for other surfaces, the `n`th of `N` actors `n * 255 / (N + 1)`, the weapon 255; labels must have been
-    /// asked for.
+    /// Writes the last frame's labels: 0 for surfaces, `n * 255 / (N + 1)` for the `n`th of `N` actors that were drawn, 255 for the
+    /// weapon; labels must have been asked for. (The published engine has 1 for floors and ceilings with a picture of 64 by 64
+    /// texels. That is no actor, so that it is left out here; [`Renderer::classes`] has what each surface is.)
     ///
     /// # Panics
     /// If `out` is not as long as a frame has pixels.
     pub fn write_labels(&self, out: &mut [u8]) {
         assert_eq!(out.len(), self.frame.class.len(), "a buffer of height * width bytes is needed");
-        let count = self.labels.list.len() + 1;
+        let count = self.labels.list.len();
         let mut values = [0; CLASSES];
         values[usize::from(class::WEAPON)] = 255;
-        let ones = [class::FLOOR, class::CEILING];
-        ones.iter().for_each(|&class| values[usize::from(class)] = 1);
         let actors = &mut values[usize::from(class::FIRST_ACTOR)..];
-        actors.iter_mut().take(count - 1).enumerate().for_each(|(index, value)| *value = ((index + 1) * 255 / count) as u8);
-        convert::classes_one_byte(&values, class::WEAPON, ones, &self.frame.class, out);
+        actors.iter_mut().take(count).enumerate().for_each(|(index, value)| *value = label::value(index, count));
+        convert::classes_one_byte(&values, class::WEAPON, &self.frame.class, out);
     }
 
     /// The colour of each value of the class buffer.

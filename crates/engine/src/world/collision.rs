@@ -4,7 +4,7 @@
 //! difference.
 
 use super::{Actor, ActorFlags, World};
-use crate::map::{Line, Map, SectorId};
+use crate::map::{Blocks, Line, LineFlags, Map, SectorId};
 use crate::math::Fixed;
 
 /// Most items that one test of a position remembers; the recorded scenarios never have this many overlapping.
@@ -94,6 +94,20 @@ pub(crate) fn for_each_line_across(map: &Map, x: Fixed, y: Fixed, radius: Fixed,
             }
         }
     }
+}
+
+/// Whether a line stops an actor although its opening is large enough.
+pub(super) fn stops(flags: LineFlags, actor: &Actor) -> bool {
+    let LineFlags { blocking, blocks, .. } = flags;
+    let missile = actor.flags.any(ActorFlags::MISSILE);
+    if blocks.is_empty() || blocks.any(Blocks::EVERYTHING) {
+        return !blocks.is_empty() || blocking && !missile;
+    }
+    if missile {
+        return blocks.any(Blocks::PROJECTILES);
+    }
+    let kind = if actor.player_index().is_some() { Blocks::PLAYERS } else { Blocks::MONSTERS };
+    blocking || blocks.any(kind) || actor.flags.any(ActorFlags::FLOAT) && blocks.any(Blocks::FLOATERS)
 }
 
 impl World {
@@ -231,14 +245,13 @@ impl World {
 
     /// Narrows the opening by every line that cuts the footprint, and notes one that blocks.
     fn check_lines(&self, actor: &Actor, x: Fixed, y: Fixed, position: &mut Position) {
-        let missile = actor.flags.any(ActorFlags::MISSILE);
         for_each_line_across(&self.map, x, y, actor.radius, |index, line| {
             let Some(back) = line.back_sector else {
                 position.free = false;
                 position.blocking_line = Some(index);
                 return;
             };
-            if line.flags.blocking && !missile {
+            if stops(line.flags, actor) {
                 position.free = false;
                 position.blocking_line = Some(index);
                 return;

@@ -3,7 +3,7 @@
 use super::sight::{Crossed, Path, WHOLE_PATH};
 use super::weapon::Spread;
 use super::{ActorFlags, ActorId, ActorKind, DamageKind, World};
-use crate::map::SectorId;
+use crate::map::{Blocks, SectorId};
 use crate::math::{Angle, Fixed};
 
 /// Within this distance weapons look for something to aim at, map units.
@@ -72,7 +72,7 @@ impl World {
                     let line = &self.map.lines[index as usize];
                     let Some(back) = line.back_sector else { break };
                     let opening = self.opening(line.front_sector, back);
-                    if opening.bottom >= opening.top {
+                    if opening.bottom >= opening.top || line.flags.blocks.any(Blocks::EVERYTHING) {
                         break;
                     }
                     let (front, back) = (self.sector(line.front_sector), self.sector(back));
@@ -170,7 +170,8 @@ impl World {
             match crossing.what {
                 Crossed::Line(index) => {
                     let line = &self.map.lines[index as usize];
-                    let Some(back) = line.back_sector else {
+                    let stops = line.flags.blocks.any(Blocks::EVERYTHING.with(Blocks::HITSCAN));
+                    let Some(back) = line.back_sector.filter(|_| !stops) else {
                         impact = Some(Impact::Surface { at });
                         break;
                     };

@@ -1,7 +1,7 @@
 //! Which actors touch which moving sector, so that a sector that moves under nobody costs nothing more.
 
 use super::actor::{Actor, NO_BLOCK};
-use super::collision::for_each_line_across;
+use super::collision::{for_each_line_across, stops};
 use super::{Busy, World};
 use crate::map::{Map, SectorId};
 use crate::math::Fixed;
@@ -44,6 +44,7 @@ fn for_each_sector_under(map: &Map, actor: &Actor, mut visit: impl FnMut(SectorI
     for_each_line_across(map, x, y, radius, |_, line| {
         if let Some(back) = line.back_sector
             && !line.flags.blocking
+            && !stops(line.flags, actor)
         {
             visit(line.front_sector);
             visit(back);

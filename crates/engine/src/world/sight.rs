@@ -1,7 +1,7 @@
 //! Lines through the map: what a straight path crosses, and whether one actor can see another.
 
 use super::{ActorFlags, World};
-use crate::map::{Line, TextureId, TextureName};
+use crate::map::{Blocks, Line, TextureId, TextureName};
 use crate::math::Fixed;
 
 /// Length of a path in units of [`Crossing::at`].
@@ -136,7 +136,7 @@ impl World {
                 break;
             };
             let opening = self.opening(line.front_sector, back);
-            if opening.bottom >= opening.top {
+            if opening.bottom >= opening.top || line.flags.blocks.any(Blocks::EVERYTHING.with(Blocks::SIGHT)) {
                 clear = false;
                 break;
             }

@@ -1,7 +1,7 @@
 //! Sliding along walls: what is left of a player's move when a wall is in the way.
 
 use super::World;
-use super::collision::behind;
+use super::collision::{behind, stops};
 use crate::map::Line;
 use crate::math::Fixed;
 
@@ -154,7 +154,7 @@ impl World {
     fn walls_off(&self, slot: usize, line: &Line) -> bool {
         let actor = &self.actors[slot];
         let Some(back) = line.back_sector else { return !behind(line, actor.x, actor.y) };
-        if line.flags.blocking {
+        if stops(line.flags, actor) {
             return true;
         }
         let opening = self.opening(line.front_sector, back);

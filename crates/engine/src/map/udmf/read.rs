@@ -2,7 +2,9 @@
 
 use super::error::{UdmfError, UdmfFault};
 use super::lexer::{Lexer, TokenKind};
-use crate::map::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+use super::unplayed::unplayed;
+use crate::map::{Blocks, MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+use std::collections::BTreeMap;
 
 /// Fields of a line by which somebody can set off its special.
 const TRIGGERS: [&str; 10] = [
@@ -17,6 +19,21 @@ const TRIGGERS: [&str; 10] = [
     "impact",
     "anycross",
 ];
+
+/// Editor numbers of players' starts.
+const STARTS: std::ops::RangeInclusive<i32> = 1..=4;
+
+/// What a thing needs to appear to one player, at the skill that the published package plays at.
+const ALONE: &str = "single";
+const SKILL: &str = "skill3";
+
+/// How things without these are reported.
+const ABSENT: &str = "thing without single or skill3";
+
+/// What a field of a line stops.
+fn blocks(name: &str) -> Option<Blocks> {
+    Blocks::FIELDS.iter().find(|(field, _)| *field == name).map(|&(_, flag)| flag)
+}
 
 /// Reads UDMF text. Indices are not checked here; [`Map::build`](crate::map::Map::build) does.
 ///
@@ -110,13 +127,46 @@ impl<'a> Reader<'a> {
     fn take(&self, kind: &str, offset: usize, source: &mut MapSource) -> Result<(), UdmfError> {
         match kind {
             "vertex" => source.vertices.push(self.vertex(offset)?),
-            "linedef" => source.lines.push(self.line(offset)?),
+            "linedef" => {
+                let line = self.line(offset)?;
+                if line.back.is_some() && !self.flag("twosided")? {
+                    *source.unplayed.entry("linedef sideback without twosided".to_owned()).or_default() += 1;
+                }
+                source.lines.push(line);
+            }
             "sidedef" => source.sides.push(self.side(offset)?),
             "sector" => source.sectors.push(self.sector(offset)?),
-            "thing" => source.things.push(self.thing(offset)?),
+            "thing" => {
+                let thing = self.thing(offset)?;
+                if !self.appears(&thing)? {
+                    *source.unplayed.entry(ABSENT.to_owned()).or_default() += 1;
+                    return Ok(());
+                }
+                source.things.push(thing);
+            }
             _ => {}
         }
+        self.count_unplayed(kind, source);
         Ok(())
+    }
+
+    /// Counts the fields of the block that are played elsewhere and not here; of a field that comes twice, the last counts.
+    fn count_unplayed(&self, kind: &str, source: &mut MapSource) {
+        let mut last: BTreeMap<&str, &Field<'_>> = BTreeMap::new();
+        self.fields.iter().for_each(|field| _ = last.insert(&field.name, field));
+        for field in last.into_values().filter_map(|field| unplayed(kind, &field.name, &field.value)) {
+            *source.unplayed.entry(format!("{kind} field {field}")).or_default() += 1;
+        }
+    }
+
+    /// Whether a thing is there in a game of one player on the package's skill; starts always are.
+    fn appears(&self, thing: &SourceThing) -> Result<bool, UdmfError> {
+        Ok(STARTS.contains(&thing.kind) || self.flag(ALONE)? && self.flag(SKILL)?)
+    }
+
+    /// A flag of the block, false if it is absent.
+    fn flag(&self, name: &str) -> Result<bool, UdmfError> {
+        self.fields.iter().rfind(|field| field.name == name).map_or(Ok(false), |field| self.truth(field))
     }
 
     fn vertex(&self, offset: usize) -> Result<SourceVertex, UdmfError> {
@@ -147,7 +197,10 @@ impl<'a> Reader<'a> {
                 "id" => line.id = self.whole(field)?,
                 "special" => line.special = self.whole(field)?,
                 name if TRIGGERS.contains(&name) => line.triggered |= self.truth(field)?,
-                name => self.argument(name, field, &mut line.args)?,
+                name => match blocks(name) {
+                    Some(flag) => line.blocks.set(flag, self.truth(field)?),
+                    None => self.argument(name, field, &mut line.args)?,
+                },
             }
         }
         let need = |value: Option<usize>, field| value.ok_or_else(|| self.missing(offset, "linedef", field));

@@ -1,5 +1,5 @@
 use super::{UdmfFault, read, write};
-use crate::map::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+use crate::map::{Blocks, MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
 use crate::math::Rng;
 
 /// Every field filled at random with anything that the format can hold.
@@ -30,6 +30,7 @@ fn random_source(rng: &mut Rng) -> MapSource {
             front: index(rng),
             back: (rng.below(2) == 0).then(|| index(rng)),
             blocking: rng.below(2) == 0,
+            blocks: Blocks::FIELDS.iter().filter(|_| rng.below(2) == 0).fold(Blocks::default(), |all, (_, flag)| all.with(*flag)),
             upper_unpegged: rng.below(2) == 0,
             lower_unpegged: rng.below(2) == 0,
             id: any(rng),

@@ -1,6 +1,6 @@
 //! [`MapSource`] to UDMF text.
 
-use crate::map::{MapSource, TextureName};
+use crate::map::{Blocks, MapSource, TextureName};
 use std::fmt::{Display, Write};
 
 /// Writes a map as UDMF text that [`read`](super::read) gives back equal and that engines of the ZDoom family load.
@@ -46,6 +46,9 @@ pub fn write(source: &MapSource) -> String {
             block.field("twosided", true);
         }
         block.flag("blocking", line.blocking);
+        for (name, flag) in Blocks::FIELDS {
+            block.flag(name, line.blocks.any(flag));
+        }
         block.flag("dontpegtop", line.upper_unpegged);
         block.flag("dontpegbottom", line.lower_unpegged);
         block.whole("id", line.id, 0);
