@@ -175,9 +175,8 @@ impl<'a> Wad<'a> {
 
 /// Whether a lump is one of those that a binary map consists of.
 fn is_binary(lump: &Lump<'_>) -> bool {
-    const LUMPS: [&str; 11] = [
-        "THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SEGS", "SSECTORS", "NODES", "SECTORS", "REJECT", "BLOCKMAP", "BEHAVIOR",
-    ];
+    const LUMPS: [&str; 11] =
+        ["THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SEGS", "SSECTORS", "NODES", "SECTORS", "REJECT", "BLOCKMAP", "BEHAVIOR"];
     LUMPS.iter().any(|&name| lump.name == TextureName::new(name))
 }
 

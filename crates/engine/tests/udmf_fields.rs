@@ -77,7 +77,10 @@ fn every_field_does_what_the_page_says() {
 #[test]
 fn defaults_are_not_reported_and_the_last_value_of_a_field_counts() {
     let silent = [
-        ("sector", "gravity = 1.0; damageamount = 0; lightcolor = 0xFFFFFF; moreids = \"\"; rotationfloor = 0.0; xscalefloor = 1.0;"),
+        (
+            "sector",
+            "gravity = 1.0; damageamount = 0; lightcolor = 0xFFFFFF; moreids = \"\"; rotationfloor = 0.0; xscalefloor = 1.0;",
+        ),
         ("sector", "gravity = 0.5; gravity = 1;"),
         ("linedef", "jumpover = false; alpha = 1.0; renderstyle = \"Translucent\";"),
         ("thing", "ambush = false; special = 0; health = 1; user_mood = 3;"),

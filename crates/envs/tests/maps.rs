@@ -198,7 +198,11 @@ fn text_wad(text: &str) -> Vec<u8> {
 fn fields_that_are_not_played_are_reported_with_the_file() {
     let folder = Folder::new("fields");
     let (source, _) = scenarios::map_source("CollateralDamageLevel1-v0".parse().unwrap(), RuleSet::Paper, false);
-    let text = hasard_engine::map::udmf::write(&source).replacen("heightceiling", "damageamount = 20;\nmoreids = \"5\";\nheightceiling", 1);
+    let text = hasard_engine::map::udmf::write(&source).replacen(
+        "heightceiling",
+        "damageamount = 20;\nmoreids = \"5\";\nheightceiling",
+        1,
+    );
     let path = folder.put("fields.wad", &text_wad(&text));
     let left_out = Env::new("CollateralDamageLevel1-v0", &options(Some(&path))).unwrap().left_out().unwrap();
     let expected = format!("{}: left out: sector field damageamount (1), sector field moreids (1)", path.display());
