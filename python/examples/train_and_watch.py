@@ -1,4 +1,4 @@
-"""Our own trainer from Python: PPOLag for a while, every report in a callback, then the agent at work."""
+"""Our own trainer from Python: PPOPID for a while, every report in a callback, then the agent at work."""
 
 import sys
 from pathlib import Path
@@ -14,7 +14,7 @@ def callback(report: dict) -> bool:
     return report["frames"] >= frames
 
 
-run = hasard_rs.train("hasard/VolcanicVentureLevel1-v0", "PPOLag", preset="quick", out=out, callback=callback)
+run = hasard_rs.train("hasard/VolcanicVentureLevel1-v0", "PPOPID", preset="quick", out=out, callback=callback)
 agent = hasard_rs.Agent.load(run.directory)
 envs = agent.make_vec(8)
 observations, infos = envs.reset(seed=0)

@@ -34,7 +34,7 @@ class Run:
 
 def train(
     env_id: str,
-    algorithm: str = "PPOLag",
+    algorithm: str = "PPOPID",
     *,
     preset: str | None = None,
     out: str | os.PathLike[str] | None = None,
@@ -49,7 +49,7 @@ def train(
     Args:
         env_id: one of `ids()`, with or without `hasard/`.
         algorithm: PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP or IPO.
-        preset: "paper", "released" or "quick"; None: the program's.
+        preset: "quick", "paper", "released" or "tables"; None: the program's, "quick".
         out: the run's directory; None: one under runs/.
         callback: is called with every report, a dict by name (frames, fps, return_mean, cost_mean, ...); where it returns True the run ends, with
             a checkpoint. What it raises, and Ctrl-C, end the run the same way and are raised again.
@@ -140,7 +140,7 @@ class Agent:
         env = self.config["env"]
         told = {name: env[name] for name in ("rules", "full_actions", "frame_skip", "observation", "frame_stack")}
         told |= {"hard_constraint": env["hard"], "resolution": tuple(env["size"])}
-        return told | {name: env[name] for name in ("published_depth", "published_colours", "maps", "iwad") if name in env}
+        return told | {name: env[name] for name in ("early_creatures", "published_depth", "published_colours", "maps", "iwad") if name in env}
 
     def make(self, **arguments: Any) -> Any:
         """Returns a single environment like the one that the agent was trained in; `arguments` (see `help(hasard_rs.Env)`) come before its own."""

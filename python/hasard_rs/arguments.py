@@ -11,7 +11,7 @@ from hasard_rs import _core
 from hasard_rs.errors import InvalidOption
 
 _WORLD = (
-    "rules hard_constraint hard full_actions frame_skip resolution size observation layout frame_stack max_episode_steps "
+    "rules early_creatures hard_constraint hard full_actions frame_skip resolution size observation layout frame_stack max_episode_steps "
     "safety_budget iwad maps map published_depth published_colours"
 ).split()
 _UPSTREAM = "record_every render_boxes render_segmented".split()

@@ -25,7 +25,8 @@ class Env(gymnasium.Env[np.ndarray, Any]):
     Args:
         arguments: all keyword-only, the same for `VectorEnv` and (but for those of actions, rendering and infos) `Worlds`.
             scenario, level: bound by the id.
-            rules ("paper"): or "released", those of the published package.
+            rules ("paper"): or "released", those of the published package, or "tables", those of the code behind the paper's tables.
+            early_creatures (False): in Detonator's Dilemma 1 under "tables", the creatures that the first of the paper's runs met.
             hard_constraint, or hard (False): harm ends the episode.
             full_actions (False): all buttons, and two continuous axes.
             frame_skip (4): tics of 1/35 s that an action is held, 1 to 35.

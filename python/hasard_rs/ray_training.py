@@ -127,7 +127,7 @@ class Worker:
 
 def train(
     env_id: str,
-    algorithm: str = "PPOLag",
+    algorithm: str = "PPOPID",
     *,
     workers: int,
     address: str | None = None,

@@ -2,11 +2,14 @@
 
 use crate::commands::eval::Player;
 use crate::failure::Failure;
-use crate::settings;
+use crate::settings::{self, Elsewhere};
+use crate::zoo;
 use hasard_engine::world::Command;
 use hasard_envs::{ActionSpace, EnvOptions, Move, PolicyRun, Step};
+use hasard_learn::config::EnvConfig;
 use hasard_learn::runs::agent::{Agent, Choice, Which, run_config};
 use hasard_play::{Recorder, Stage};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// A source of actions.
@@ -27,21 +30,27 @@ pub struct Performance {
 impl Performance {
     /// An environment and a policy by its text: `run:DIR` or one that looks at nothing. `looks` is the task and what the
     /// audience sees of it; an agent sees what it was trained to see.
-    pub fn new(id: &str, policy: &str, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
+    pub fn new(
+        id: &str,
+        policy: &OsStr,
+        looks: &EnvOptions,
+        elsewhere: Elsewhere<'_>,
+        seed: u64,
+    ) -> Result<Performance, Failure> {
         if let Some(run) = agent_of(policy)? {
-            return Performance::of_agent(id, &run, &agent_options(&run, looks)?, looks, seed);
+            return Performance::of_agent(id, &run, &agent_options(&run, looks, elsewhere)?, looks, seed);
         }
         let policy = settings::policy(policy)?;
         let mut stage = Stage::new(id, looks).map_err(Failure::bad)?;
         stage.reset(seed);
-        let actor = Actor::Fixed(Box::new(PolicyRun::new(policy, stage.env().action_space(), seed)));
+        let actor = Actor::Fixed(Box::new(PolicyRun::new(policy, stage.env(), seed).map_err(Failure::bad)?));
         Ok(Performance { stage, actor })
     }
 
     /// The agent of a run in the environment that it was trained in.
-    pub fn of_run(run: &Path, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
+    pub fn of_run(run: &Path, looks: &EnvOptions, elsewhere: Elsewhere<'_>, seed: u64) -> Result<Performance, Failure> {
         let config = run_config(run).map_err(Failure::bad)?;
-        let options = settings::trained_options(&config.env)?;
+        let options = settings::trained_options(&config.env, pictures_kept(elsewhere, &config.env))?;
         Performance::of_agent(&config.env.id, run, &options, looks, seed)
     }
 
@@ -71,7 +80,7 @@ impl Performance {
     fn choose(&mut self, recorder: Option<&mut Recorder>) -> Result<(), Failure> {
         let stage = &mut self.stage;
         let (actions, deltas) = match &mut self.actor {
-            Actor::Fixed(policy) => match policy.next_move() {
+            Actor::Fixed(policy) => match policy.next_move(stage.env()) {
                 Move::Action(actions, deltas) => (actions.to_vec(), deltas.to_vec()),
                 Move::Buttons(command) => {
                     stage.press(command);
@@ -95,17 +104,25 @@ impl Performance {
 }
 
 /// The run directory or file of the agent that a policy's text names: `run:DIR`, `run:FILE.agent` or `zoo:NAME`.
-pub fn agent_of(policy: &str) -> Result<Option<PathBuf>, Failure> {
-    if policy.starts_with("zoo:") {
-        return crate::zoo::find(policy).map(Some);
+pub fn agent_of(policy: &OsStr) -> Result<Option<PathBuf>, Failure> {
+    if zoo::after(policy, "zoo:").is_some() {
+        return zoo::find(policy).map(Some);
     }
-    Ok(policy.strip_prefix("run:").map(PathBuf::from))
+    Ok(zoo::after(policy, "run:"))
 }
 
-/// What the agent of a run is to see: as it was trained, under the rules and constraint of `task`.
-pub fn agent_options(run: &Path, task: &EnvOptions) -> Result<EnvOptions, Failure> {
-    let trained = settings::trained_options(&run_config(run).map_err(Failure::bad)?.env)?;
-    Ok(EnvOptions { rules: task.rules, hard: task.hard, ..trained })
+/// What a command that films says of places: its maps are those that are played in, but its pictures are the audience's, and the
+/// agent's only where its own are lost.
+fn pictures_kept<'a>(elsewhere: Elsewhere<'a>, env: &EnvConfig) -> Elsewhere<'a> {
+    Elsewhere { maps: elsewhere.maps, ..elsewhere.where_missing(env) }
+}
+
+/// What the agent of a run is to see: as it was trained, under the rules and constraint of `task`, with the buttons that it knows.
+pub fn agent_options(run: &Path, task: &EnvOptions, elsewhere: Elsewhere<'_>) -> Result<EnvOptions, Failure> {
+    let env = run_config(run).map_err(Failure::bad)?.env;
+    let trained = settings::trained_options(&env, pictures_kept(elsewhere, &env))?;
+    let actions_of = Some((trained.rules, trained.hard));
+    Ok(EnvOptions { rules: task.rules, early_creatures: task.early_creatures, hard: task.hard, actions_of, ..trained })
 }
 
 /// The action that presses exactly these buttons, if the space has it.

@@ -1,12 +1,16 @@
 //! The raw flags: each declared once, feeding `--help`, parsing and the tests.
 
+use crate::settings::Elsewhere;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// HASARD: vision-based safe reinforcement learning in Doom-like 3D worlds.
 #[derive(Parser, Debug)]
 #[command(name = "hasard", version, about, propagate_version = true, arg_required_else_help = true)]
-#[command(after_help = "Exit code: 0 fine, 1 a negative result, 2 bad input (one line names it and the remedy).")]
+#[command(
+    after_help = "Exit code: 0 fine, 1 a negative result, 2 bad input (one line names it and the remedy); 130 after Ctrl-C, 143 after SIGTERM."
+)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -54,9 +58,12 @@ pub enum Command {
 #[derive(Args, Debug, Clone)]
 #[command(next_help_heading = "Environment")]
 pub struct EnvArgs {
-    /// Constants of the paper, or of the published package
+    /// Constants of the paper, of the published package, or of the code behind the paper's tables
     #[arg(long, value_enum, default_value_t = Rules::Paper)]
     pub rules: Rules,
+    /// Detonator's Dilemma 1 under `--rules tables`: the creatures of the first runs (PPO, PPOCost, PPOLag), not of the later
+    #[arg(long)]
+    pub early_creatures: bool,
     /// Hard constraint: harm ends the episode
     #[arg(long)]
     pub hard: bool,
@@ -80,9 +87,32 @@ pub struct EnvArgs {
 }
 
 impl EnvArgs {
-    /// Whether the task differs from the usual one; size and pictures do not matter.
-    pub fn changes_task(&self) -> bool {
-        self.rules != Rules::Paper || self.maps.is_some() || self.hard || self.full_actions || self.frame_skip != 4
+    /// Whether rules or actions differ from the usual ones; size, pictures and maps are another matter.
+    pub fn changes_rules(&self) -> bool {
+        self.rules != Rules::Paper || self.early_creatures || self.hard || self.full_actions || self.frame_skip != 4
+    }
+
+    /// Where the maps and pictures of an agent's run are.
+    pub fn elsewhere(&self) -> Elsewhere<'_> {
+        Elsewhere { maps: self.maps.as_deref(), iwad: self.iwad.as_deref() }
+    }
+}
+
+/// Where a run's files are now.
+#[derive(Args, Debug, Clone, Default)]
+pub struct PlaceArgs {
+    /// Where the run's maps are now, if elsewhere than when it was trained; or other maps to play in
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
+    /// Where the IWAD of the run's pictures is now
+    #[arg(long, value_name = "FILE")]
+    pub iwad: Option<PathBuf>,
+}
+
+impl PlaceArgs {
+    /// The same for those who make worlds.
+    pub fn elsewhere(&self) -> Elsewhere<'_> {
+        Elsewhere { maps: self.maps.as_deref(), iwad: self.iwad.as_deref() }
     }
 }
 
@@ -119,6 +149,8 @@ pub enum Rules {
     Paper,
     /// What the published package does
     Released,
+    /// What the code did when the paper's tables were made
+    Tables,
 }
 
 /// `--observation`.
@@ -189,7 +221,7 @@ pub struct RolloutArgs {
     pub env: String,
     /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME; `hasard envs --json` lists the buttons
     #[arg(long, default_value = "random")]
-    pub policy: String,
+    pub policy: OsString,
     /// Number of episodes
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     pub episodes: u32,
@@ -341,7 +373,7 @@ pub struct RenderArgs {
     pub beside: Vec<View>,
     /// Who acts before the picture: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME
     #[arg(long, default_value = "random")]
-    pub policy: String,
+    pub policy: OsString,
     /// Policy steps before the picture
     #[arg(long, default_value_t = 0)]
     pub step: u32,
@@ -365,10 +397,11 @@ pub struct TrainArgs {
     /// Environment id
     pub env: String,
     /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
-    #[arg(long, default_value = "PPOLag")]
+    #[arg(long, default_value = "PPOPID")]
     pub algo: String,
-    /// paper, released, or quick: settings that learn within minutes on a CPU
-    #[arg(long, default_value = "paper")]
+    /// quick: settings that learn within minutes on a CPU; paper, released, tables: 500 million frames with the settings of the
+    /// paper's text, of the published code, or of the code that made the paper's tables
+    #[arg(long, default_value = "quick")]
     pub preset: String,
     /// Length of the run in frames (tics): policy steps times frame skip; the preset's if absent
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
@@ -394,6 +427,10 @@ pub struct TrainArgs {
     /// Cost that an episode may have; TERM=COST for one named cost term, several times for several constraints
     #[arg(long, value_name = "COST")]
     pub safety_budget: Vec<String>,
+    /// What budgets are held against: episode-mean, step-mean, or cvar:SHARE for the mean of the worst share of the latest episodes,
+    /// such as cvar:0.1 for the worst tenth (algorithms with multipliers); the preset's if absent
+    #[arg(long, value_name = "STATISTIC")]
+    pub constraint_statistic: Option<String>,
     /// PPOCost: factor of the cost in the reward
     #[arg(long, value_name = "FACTOR")]
     pub cost_scale: Option<f64>,
@@ -442,7 +479,7 @@ pub struct TrainArgs {
 pub struct EvalArgs {
     /// Run directory, agent file, or zoo:NAME for an agent that comes with the program
     #[arg(value_name = "RUN|FILE|zoo:NAME")]
-    pub run: String,
+    pub run: OsString,
     /// Number of episodes
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     pub episodes: u32,
@@ -458,6 +495,9 @@ pub struct EvalArgs {
     /// One JSON object an episode, then one with "summary"
     #[arg(long)]
     pub json: bool,
+    /// Where its maps and pictures are
+    #[command(flatten)]
+    pub places: PlaceArgs,
 }
 
 /// What a video shows.
@@ -480,13 +520,13 @@ pub struct FilmArgs {
 pub struct RecordArgs {
     /// Environment id, run directory, agent file or zoo:NAME (the agent acts), or .episode file
     #[arg(value_name = "ENV|RUN|zoo:NAME|FILE")]
-    pub what: String,
+    pub what: OsString,
     /// File to write: .mp4, .gif or .episode
     #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
     pub out: PathBuf,
     /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME  [default: random]
     #[arg(long)]
-    pub policy: Option<String>,
+    pub policy: Option<OsString>,
     /// Most policy steps that are taken; to the episode's end if absent
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub steps: Option<u32>,
@@ -574,6 +614,12 @@ pub struct ServeArgs {
     /// Open the page in the browser
     #[arg(long)]
     pub open: bool,
+    /// Where maps are now that runs were trained in and that are no longer there
+    #[arg(long, value_name = "DIR")]
+    pub maps: Option<PathBuf>,
+    /// Where the IWAD is now that runs were trained with and that is no longer there
+    #[arg(long, value_name = "FILE")]
+    pub iwad: Option<PathBuf>,
 }
 
 /// `hasard sweep`.
@@ -581,7 +627,7 @@ pub struct ServeArgs {
 pub struct SweepArgs {
     /// TOML file, or an experiment of the paper: main, safety-bounds, cost-scale, curriculum, hard, full-actions, depth,
     /// segmentation, trpo; or quick, quick-all, quick-algorithms: the quick preset
-    pub what: String,
+    pub what: OsString,
     /// Folder of the runs
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,

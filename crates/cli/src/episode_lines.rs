@@ -1,6 +1,6 @@
 //! How episodes are printed: a JSON object each, or a row of a table and the mean at its end.
 
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use hasard_envs::Episode;
 use hasard_learn::config::Constraint;
 use hasard_learn::runs::evaluate::{Evaluation, Judgement};
@@ -35,11 +35,12 @@ impl EpisodeLines {
                 "seed": episode.seed,
                 "return": episode.episode_return,
                 "cost": episode.cost,
-                "costs": named(&episode.costs),
+                "costs": named(episode.costs.iter().map(|one| (one.name, one.cost))),
+                "uncounted": episode.costs.iter().filter(|one| !one.counted).map(|one| one.name).collect::<Vec<_>>(),
                 "length": episode.length,
                 "terminated": episode.terminated,
                 "truncated": episode.truncated,
-                "stats": named(&episode.stats),
+                "stats": named(episode.stats.iter().copied()),
             });
             writeln!(out, "{object}")?;
         } else {
@@ -61,8 +62,8 @@ impl EpisodeLines {
 
     /// Prints means and their 95 % confidence half-widths: always for people; as an object with `"summary"` if asked.
     pub fn summary(&self, as_json: bool) -> Outcome {
+        let all = Evaluation::of(&self.episodes, &self.constraints).map_err(Failure::bad)?;
         let mut out = std::io::stdout().lock();
-        let all = Evaluation::of(&self.episodes, &self.constraints);
         if self.json {
             if as_json {
                 let constraints: Vec<Value> = all.constraints.iter().map(judgement).collect();
@@ -116,6 +117,6 @@ pub fn judgement(one: &Judgement) -> Value {
     })
 }
 
-fn named(values: &[(&'static str, f64)]) -> Value {
-    Value::Object(values.iter().map(|&(name, value)| (name.to_string(), json!(value))).collect::<Map<_, _>>())
+fn named(values: impl Iterator<Item = (&'static str, f64)>) -> Value {
+    Value::Object(values.map(|(name, value)| (name.to_string(), json!(value))).collect::<Map<_, _>>())
 }

@@ -3,6 +3,12 @@
 use std::ffi::OsString;
 use std::io;
 
+/// Prints a line on standard error. Where that cannot be written (a full disk, a terminal that is gone) the line is lost and the
+/// work goes on: unlike `eprintln!`, no panic.
+macro_rules! note {
+    ($($argument:tt)*) => { $crate::failure::write_note(format!($($argument)*)) };
+}
+
 /// Why a command did not end well; decides the exit code.
 #[derive(Debug)]
 pub enum Failure {
@@ -12,6 +18,8 @@ pub enum Failure {
     BadInput(String),
     /// Standard output was closed by its reader.
     OutputClosed,
+    /// A signal of this number asked for the end.
+    Interrupted(i32),
 }
 
 impl Failure {
@@ -20,6 +28,40 @@ impl Failure {
     pub fn bad(message: impl std::fmt::Display) -> Failure {
         Failure::BadInput(presentable(&message.to_string()))
     }
+}
+
+impl Failure {
+    /// Says so, and gives the exit code; ends the process where a signal asked for it.
+    pub fn report(self) -> u8 {
+        match self {
+            Failure::Negative(message) => {
+                note!("hasard: {message}");
+                1
+            }
+            Failure::BadInput(message) => {
+                note!("hasard: {message}");
+                2
+            }
+            // The reader of our output went away (`hasard ... | head`): nothing is wrong.
+            Failure::OutputClosed => 0,
+            Failure::Interrupted(signal) => crate::interrupt::end_by(signal),
+        }
+    }
+
+    /// The line alone.
+    pub fn line(self) -> String {
+        match self {
+            Failure::Negative(text) | Failure::BadInput(text) => text,
+            Failure::OutputClosed => "standard output was closed".to_string(),
+            Failure::Interrupted(signal) => format!("ended by signal {signal}"),
+        }
+    }
+}
+
+/// See [`note!`].
+pub fn write_note(mut line: String) {
+    line.push('\n');
+    let _ = std::io::Write::write_all(&mut std::io::stderr().lock(), line.as_bytes());
 }
 
 fn presentable(text: &str) -> String {
@@ -33,7 +75,7 @@ impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Failure {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Failure::OutputClosed,
-            _ => Failure::BadInput(format!("standard output: {error}")),
+            _ => Failure::BadInput(format!("standard output cannot be written: {error}; make room, or send it elsewhere")),
         }
     }
 }
@@ -42,10 +84,13 @@ impl From<io::Error> for Failure {
 /// the program's name is one; gives the exit code.
 pub fn report_usage(error: &clap::Error, first: Option<&OsString>) -> u8 {
     if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        let _ = error.print();
-        return if error.use_stderr() { 2 } else { 0 };
+        return match error.print() {
+            Ok(()) if !error.use_stderr() => 0,
+            Err(problem) if !error.use_stderr() => Failure::from(problem).report(),
+            _ => 2,
+        };
     }
-    eprintln!("hasard: {} (see `{} --help`)", usage_line(error), command(first));
+    note!("hasard: {} (see `{} --help`)", usage_line(error), command(first));
     2
 }
 

@@ -1,5 +1,8 @@
 //! The program `hasard` as a library: glue between the command line and the libraries. `main.rs` and the Python package run it.
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 #[macro_use]
 mod failure;
 
@@ -9,6 +12,8 @@ mod automap;
 mod commands;
 mod contact_sheet;
 mod episode_lines;
+mod interrupt;
+mod progress;
 mod settings;
 mod sources;
 mod zoo;
@@ -20,6 +25,8 @@ use hasard_envs::{EnvOptions, VecEnv};
 use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Summary};
 use hasard_learn::team::Team;
+use interrupt::Manner;
+use settings::Elsewhere;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -37,6 +44,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
     };
     // Which of a command's flags were typed, and which have their default.
     let typed = matches.subcommand().map_or(&matches, |(_, typed): (_, &ArgMatches)| typed);
+    interrupt::behave(Manner::AtOnce);
     let outcome = match cli.command {
         Command::Envs(args) => commands::envs::run(&args),
         Command::Play(args) => commands::play::run(&args),
@@ -55,19 +63,9 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::ExportWad(args) => commands::export_wad::run(&args),
         Command::ContactSheet(args) => commands::contact_sheet::run(&args),
     };
-    match outcome {
-        Ok(()) => 0,
-        Err(Failure::Negative(message)) => {
-            eprintln!("hasard: {message}");
-            1
-        }
-        Err(Failure::BadInput(message)) => {
-            eprintln!("hasard: {message}");
-            2
-        }
-        // The reader of our output went away (`hasard ... | head`): nothing is wrong.
-        Err(Failure::OutputClosed) => 0,
-    }
+    let code = outcome.map_or_else(Failure::report, |()| 0);
+    interrupt::behave(Manner::Idle);
+    code
 }
 
 /// Trains as `hasard train` with these words does, but tells the caller and not the terminal; as the first of a team whose others
@@ -84,7 +82,9 @@ pub fn train(
     let (cli, matches) = parse(program.into_iter().chain(words)).map_err(|error| failure::usage_line(&error))?;
     let typed = matches.subcommand().map_or(&matches, |(_, typed)| typed);
     match cli.command {
-        Command::Train(args) => commands::train::begin(&args, typed).and_then(|begun| begun.train(team, hooks)).map_err(line),
+        Command::Train(args) => {
+            commands::train::begin(&args, typed).and_then(|begun| begun.train(team, hooks)).map_err(Failure::line)
+        }
         _ => Err("these words are another command's".to_string()),
     }
 }
@@ -95,7 +95,7 @@ pub fn train(
 /// One line that names the input and the remedy.
 pub fn follow(team: Team, warn: &mut dyn FnMut(String)) -> Result<(), String> {
     let invitation = Invitation::hear(team).map_err(|error| error.to_string())?;
-    let options = settings::trained_options(&invitation.config.env).map_err(line)?;
+    let options = settings::trained_options(&invitation.config.env, Elsewhere::default()).map_err(Failure::line)?;
     invitation.follow(&|env, worlds| VecEnv::new(&env.id, &options, worlds), warn).map_err(|error| error.to_string())
 }
 
@@ -104,8 +104,8 @@ pub fn follow(team: Team, warn: &mut dyn FnMut(String)) -> Result<(), String> {
 /// # Errors
 /// One line that names the file and the remedy.
 pub fn environment_of_run(directory: &Path) -> Result<(String, EnvOptions), String> {
-    let config = hasard_learn::runs::evaluate::run_config(directory).map_err(Failure::bad).map_err(line)?;
-    Ok((config.env.id.clone(), settings::trained_options(&config.env).map_err(line)?))
+    let config = hasard_learn::runs::evaluate::run_config(directory).map_err(|error| Failure::bad(error).line())?;
+    Ok((config.env.id.clone(), settings::trained_options(&config.env, Elsewhere::default()).map_err(Failure::line)?))
 }
 
 /// Otherwise usual options with maps and pictures as `--maps` and `--iwad` name them; `tell` hears what of a map is left out.
@@ -113,12 +113,5 @@ pub fn environment_of_run(directory: &Path) -> Result<(String, EnvOptions), Stri
 /// # Errors
 /// One line that names the input and the remedy.
 pub fn looks(maps: Option<&Path>, iwad: Option<&Path>, tell: fn(&str)) -> Result<EnvOptions, String> {
-    sources::looks_telling(maps, iwad, tell).map_err(line)
-}
-
-fn line(failure: Failure) -> String {
-    match failure {
-        Failure::Negative(text) | Failure::BadInput(text) => text,
-        Failure::OutputClosed => "standard output was closed".to_string(),
-    }
+    sources::looks_telling(maps, iwad, tell).map_err(Failure::line)
 }

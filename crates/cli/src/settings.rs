@@ -4,7 +4,9 @@ use crate::args::{EnvArgs, LooksArgs, Observation, ObservationArgs, Rules, Size,
 use crate::failure::Failure;
 use hasard_envs::{EnvError, EnvId, EnvOptions, FrameSize, ObservationKind, Policy, RuleSet};
 use hasard_learn::config::EnvConfig;
+use hasard_learn::config::place::kept;
 use hasard_play::ViewKind;
+use std::ffi::OsStr;
 use std::path::Path;
 
 impl From<Rules> for RuleSet {
@@ -12,6 +14,7 @@ impl From<Rules> for RuleSet {
         match rules {
             Rules::Paper => RuleSet::Paper,
             Rules::Released => RuleSet::Released,
+            Rules::Tables => RuleSet::Tables,
         }
     }
 }
@@ -25,6 +28,7 @@ pub fn env_id(text: &str) -> Result<EnvId, Failure> {
 pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Failure> {
     Ok(EnvOptions {
         rules: args.rules.into(),
+        early_creatures: args.early_creatures,
         hard: args.hard,
         full_actions: args.full_actions,
         frame_skip: args.frame_skip,
@@ -34,7 +38,8 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
 }
 
 /// A policy that looks at nothing, by its text.
-pub fn policy(text: &str) -> Result<Policy, Failure> {
+pub fn policy(text: &OsStr) -> Result<Policy, Failure> {
+    let text = text.to_string_lossy();
     let beside = "; run:DIR is the agent of a training run, zoo:NAME one that comes with the program";
     text.parse().map_err(|error: EnvError| Failure::bad(format!("{error}{beside}")))
 }
@@ -80,10 +85,45 @@ pub fn views(first: View, beside: &[View]) -> Vec<ViewKind> {
     std::iter::once(first).chain(beside.iter().copied()).map(ViewKind::from).collect()
 }
 
+/// Where the maps and the pictures of a run are now, if elsewhere than its settings say.
+#[derive(Clone, Copy, Default)]
+pub struct Elsewhere<'a> {
+    /// The maps; of a run in the built-in maps, others to play in.
+    pub maps: Option<&'a Path>,
+    /// The IWAD.
+    pub iwad: Option<&'a Path>,
+}
+
+impl<'a> Elsewhere<'a> {
+    /// The same only for what is no longer where the run's settings say.
+    #[must_use]
+    pub fn where_missing(self, env: &EnvConfig) -> Elsewhere<'a> {
+        let lost = |kept: Option<&Path>| kept.is_some_and(|kept| !is_there(kept));
+        Elsewhere { maps: self.maps.filter(|_| lost(env.maps.as_deref())), iwad: self.iwad.filter(|_| lost(env.iwad.as_deref())) }
+    }
+}
+
+fn is_there(path: &Path) -> bool {
+    path == Path::new("auto") || path.exists()
+}
+
+/// The place of a run's maps or pictures, or the line that says how to name where they are now.
+fn place<'a>(kept: Option<&'a Path>, elsewhere: Option<&'a Path>, flag: &str) -> Result<Option<&'a Path>, Failure> {
+    match (elsewhere, kept) {
+        (None, Some(kept)) if !is_there(kept) => Err(Failure::bad(format!(
+            "{}: the run was trained with this, and it is not there; name where it is now with {flag}",
+            kept.display()
+        ))),
+        _ => Ok(elsewhere.or(kept)),
+    }
+}
+
 /// The options of the environment that a run was trained in, its maps and pictures among them.
-pub fn trained_options(env: &EnvConfig) -> Result<EnvOptions, Failure> {
+pub fn trained_options(env: &EnvConfig, elsewhere: Elsewhere<'_>) -> Result<EnvOptions, Failure> {
     let options = env.options().map_err(Failure::bad)?;
-    let sources = crate::sources::looks(env.maps.as_deref().map(Path::new), env.iwad.as_deref().map(Path::new))?;
+    let maps = place(env.maps.as_deref(), elsewhere.maps, "--maps")?;
+    let iwad = place(env.iwad.as_deref(), elsewhere.iwad, "--iwad")?;
+    let sources = crate::sources::looks(maps, iwad)?;
     // A map that cannot be read stops a run before it is announced.
     if let (Some(maps), Ok(id)) = (&sources.maps, env_id(&env.id)) {
         maps.level(id, options.rules, options.hard).map_err(Failure::bad)?;
@@ -94,11 +134,8 @@ pub fn trained_options(env: &EnvConfig) -> Result<EnvOptions, Failure> {
 /// The environment of a training run from flags, in the words of its `config.json`.
 pub fn env_config(id: &str, args: &EnvArgs, observation: &ObservationArgs) -> EnvConfig {
     let mut env = EnvConfig::new(id);
-    env.rules = match args.rules {
-        Rules::Paper => "paper",
-        Rules::Released => "released",
-    }
-    .into();
+    env.rules = RuleSet::from(args.rules).name().into();
+    env.early_creatures = args.early_creatures;
     env.observation = match observation.observation {
         Observation::Rgb => "rgb",
         Observation::RgbDepth => "rgb+depth",
@@ -110,8 +147,8 @@ pub fn env_config(id: &str, args: &EnvArgs, observation: &ObservationArgs) -> En
     env.frame_stack = usize::from(observation.frame_stack);
     let looks = &observation.looks;
     (env.published_depth, env.published_colours) = (looks.published_depth, looks.published_colours);
-    env.iwad = args.iwad.as_ref().map(|path| path.display().to_string());
-    env.maps = args.maps.as_ref().map(|path| path.display().to_string());
+    env.iwad = args.iwad.as_deref().map(kept);
+    env.maps = args.maps.as_deref().map(kept);
     if let Some(size) = args.size {
         env.size = (size.width, size.height);
     }

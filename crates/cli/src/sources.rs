@@ -13,7 +13,7 @@ const LARGEST_IWAD: u64 = 256 << 20;
 /// Otherwise usual options with the maps of `--maps` and the pictures of `--iwad`; without them the built-in ones. What of a map is
 /// left out is told on the terminal.
 pub fn looks(maps: Option<&Path>, iwad: Option<&Path>) -> Result<EnvOptions, Failure> {
-    looks_telling(maps, iwad, |left_out| eprintln!("hasard: {left_out}"))
+    looks_telling(maps, iwad, |left_out| note!("hasard: {left_out}"))
 }
 
 /// The same, telling the caller what of a map is left out.

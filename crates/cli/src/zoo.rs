@@ -1,6 +1,7 @@
 //! The zoo: trained agents that come with the program, as files in the folder `zoo` of its repository.
 
 use crate::failure::Failure;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Ending of an agent's file.
@@ -14,9 +15,10 @@ fn folders() -> Vec<PathBuf> {
 }
 
 /// The run directory or agent file that a text names: a path, or `zoo:NAME`.
-pub fn find(text: &str) -> Result<PathBuf, Failure> {
-    let Some(name) = text.strip_prefix("zoo:") else { return Ok(PathBuf::from(text)) };
-    let wanted = name.strip_suffix("-v0").unwrap_or(name);
+pub fn find(text: &OsStr) -> Result<PathBuf, Failure> {
+    let Some(name) = after(text, "zoo:") else { return Ok(PathBuf::from(text)) };
+    let (name, text) = (name.to_string_lossy(), text.to_string_lossy());
+    let wanted = name.strip_suffix("-v0").unwrap_or(&name);
     let all = agents();
     let found = all.iter().find(|(known, _)| known.eq_ignore_ascii_case(wanted));
     found.map(|(_, path)| path.clone()).ok_or_else(|| {
@@ -30,8 +32,21 @@ pub fn find(text: &str) -> Result<PathBuf, Failure> {
 }
 
 /// Whether a text names an agent's file rather than a run directory or an environment.
-pub fn is_agent(text: &str) -> bool {
-    text.starts_with("zoo:") || Path::new(text).extension().is_some_and(|ending| ending == ENDING)
+pub fn is_agent(text: &OsStr) -> bool {
+    after(text, "zoo:").is_some() || Path::new(text).extension().is_some_and(|ending| ending == ENDING)
+}
+
+/// What follows a beginning such as `run:`; names of files are not always text.
+#[cfg(unix)]
+pub fn after(text: &OsStr, beginning: &str) -> Option<PathBuf> {
+    use std::os::unix::ffi::OsStrExt;
+    text.as_bytes().strip_prefix(beginning.as_bytes()).map(|rest| PathBuf::from(OsStr::from_bytes(rest)))
+}
+
+/// What follows a beginning such as `run:`.
+#[cfg(not(unix))]
+pub fn after(text: &OsStr, beginning: &str) -> Option<PathBuf> {
+    text.to_str()?.strip_prefix(beginning).map(PathBuf::from)
 }
 
 /// Names and files of all agents, those of earlier folders first.

@@ -235,6 +235,36 @@ fn a_curriculum_leaves_automaps_an_agent_and_a_report() {
     assert!(Path::new(&folder.0.join("report/index.html")).is_file());
 }
 
+/// A1: a budget on a term that the scalar cost does not count binds, is reported, and is judged by what was measured.
+#[test]
+fn a_budget_on_an_uncounted_term_binds_and_is_judged() {
+    let folder = Folder::new("uncounted");
+    let small = "--preset quick --algo PPOLag --envs 4 --threads 1 --set network.dense=[32] --set network.recurrent=32 \
+                 --observation grey --size 64x48 --frames 12000 --json";
+    for (id, budget, term, most) in [
+        ("VolcanicVentureLevel1-v0", "jumps=2", "jumps", 2.0),
+        // An agent that has learned nothing comes by the zone now and then.
+        ("ArmamentBurdenLevel1-v0", "zone_visits=0.01", "zone_visits", 0.01),
+    ] {
+        let told = folder.ok(&format!("train {id} --safety-budget {budget} --out {term} {small}"));
+        let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
+        let measured = last["constraint_costs"][0].as_f64().unwrap();
+        assert!(measured > most, "{last}");
+        assert_eq!(last[format!("cost/{term}")].as_f64().unwrap(), measured, "{last}");
+        assert!(last["multiplier"].as_f64().unwrap() > 0.0, "{last}");
+        let told = folder.ok(&format!("eval {term} --episodes 12 --json"));
+        let lines: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(lines[0]["uncounted"], serde_json::json!([term]), "{told}");
+        let costs = lines.iter().filter_map(|line| line["costs"][term].as_f64());
+        let (count, sum) = costs.fold((0.0, 0.0), |(count, sum), cost| (count + 1.0, sum + cost));
+        let judged = &lines[12]["summary"]["constraints"][0];
+        assert_eq!(judged["term"], term);
+        assert!((judged["cost_mean"].as_f64().unwrap() - sum / count).abs() < 1e-9 && sum / count > most, "{told}");
+        assert_eq!((&judged["within_budget"], &lines[12]["summary"]["within_budget"]), (&false.into(), &false.into()), "{told}");
+    }
+    assert!(folder.refused("train RemedyRushLevel1-v0 --safety-budget jumps=2").contains("harmful_items"));
+}
+
 /// A small run from its evaluations to its agent in a file: what is handed out, judged by each constraint's own budget.
 #[test]
 fn a_run_hands_out_an_agent_that_fits_in_a_file() {
@@ -274,7 +304,8 @@ fn a_run_hands_out_an_agent_that_fits_in_a_file() {
     folder.ok(&format!("train RemedyRushLevel1-v0 --resume --out {run} --frames 512 --seed 9 --set learning.rate=1e-5 --quiet"));
     let config: Value = serde_json::from_slice(&folder.read(&format!("{run}/config.json"))).unwrap();
     assert_eq!((&config["frames"], &config["seed"]), (&Value::from(512), &Value::from(9)));
-    assert_eq!(config["changes"].as_array().unwrap().len(), 3, "{config}");
+    // A learning rate of its own is a constant one: its end changes too.
+    assert_eq!(config["changes"].as_array().unwrap().len(), 4, "{config}");
 }
 
 #[test]

@@ -75,7 +75,7 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     assert!(training.0.wait().unwrap().success());
     assert_eq!(browser.script(&format!("return ({progress}) >= 60000")), json!(true));
     browser.script("document.querySelector('tbody a').click()");
-    browser.wait("document.querySelector('h1').innerText.includes('tiny: PPOLag in VolcanicVentureLevel1-v0')");
+    browser.wait("document.querySelector('h1').innerText.includes('tiny: PPOPID in VolcanicVentureLevel1-v0')");
     browser.wait("document.querySelector('.told').innerText.includes('frames')");
     browser.photograph("serve_run_trained");
 

@@ -12,6 +12,8 @@
 //!
 //! The engine knows no reward, no scenario, no thread and no file system.
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 #![cfg_attr(test, allow(clippy::disallowed_methods, clippy::disallowed_types, reason = "tests compare with the exact functions"))]
 
 pub mod assets;

@@ -40,6 +40,8 @@ fn reaches(line: &str, kind: ActorKind, weapon: Weapon) -> f64 {
     let mut world = room(line);
     world.give_weapon(0, weapon, false);
     world.players[0].ammo[weapon.ammo_type()] = 50;
+    // The weapon comes up before it fires.
+    run(&mut world, 50, Buttons::default());
     let mut farthest = f64::MIN;
     for _ in 0..120 {
         run(&mut world, 1, Buttons::ATTACK);

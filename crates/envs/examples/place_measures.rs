@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let episodes: u64 = episodes.parse()?;
         let (mut returns, mut costs) = (Mean::default(), Mean::default());
         for seed in 0..episodes {
-            let episode = rollout(&mut env, &policy_at, 1000 + seed);
+            let episode = rollout(&mut env, &policy_at, 1000 + seed)?;
             returns.add(episode.episode_return);
             costs.add(episode.cost);
         }

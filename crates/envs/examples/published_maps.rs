@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             (0..20).for_each(|seed| env.reset(seed));
             let reset = started.elapsed().as_micros() / 20;
             let policy: Policy = "random".parse()?;
-            let played: Vec<_> = (1..=episodes).map(|seed| rollout(&mut env, &policy, seed)).collect();
+            let played: Vec<_> = (1..=episodes).map(|seed| rollout(&mut env, &policy, seed)).collect::<Result<_, _>>()?;
             let mean = |of: &dyn Fn(&hasard_envs::Episode) -> f64| played.iter().map(of).sum::<f64>() / played.len() as f64;
             let (reward, cost) = (mean(&|episode| episode.episode_return), mean(&|episode| episode.cost));
             let left_out = env.left_out().unwrap_or_default();

@@ -1,11 +1,12 @@
-//! Plays the fixed policies of the published measurements under the published rules, and prints both side by side.
+//! Plays the fixed policies of the published measurements under the rules that were measured, and prints both side by side.
 //!
-//! `cargo run --release -p hasard-envs --example published_table -- [EPISODES] [START-OF-ID]`; 200 episodes of every
-//! environment by default. Deviations are in standard errors of both measurements together.
+//! `cargo run --release -p hasard-envs --example published_table -- [EPISODES] [START-OF-ID] [RULES]`; 200 episodes of every
+//! environment under `released` by default; the other measured rules are `tables`. Deviations are in standard errors of both measurements together.
 
 #[path = "../tests/published_figures/mod.rs"]
 mod published_figures;
 
+use hasard_envs::RuleSet;
 use published_figures::{COLUMNS, allowed, ours, published, standard_error};
 
 fn main() {
@@ -19,10 +20,17 @@ fn main() {
         }
     };
     let wanted = arguments.next().unwrap_or_default();
+    let rules = match arguments.next().map_or(Ok(RuleSet::Released), |name| name.parse()) {
+        Ok(rules) => rules,
+        Err(error) => {
+            eprintln!("{error}");
+            std::process::exit(2);
+        }
+    };
     println!("| environment | policy | figure | published | ours | deviation | within |");
     println!("|---|---|---|--:|--:|--:|---|");
     let (mut compared, mut outside) = (0, 0);
-    for row in published().into_iter().filter(|row| row.id.starts_with(&wanted)) {
+    for row in published(rules).into_iter().filter(|row| row.id.starts_with(&wanted)) {
         let measured = ours(&row, episodes);
         for (column, name) in COLUMNS.into_iter().enumerate() {
             let (theirs, mine) = (row.columns[column], measured[column]);
@@ -36,7 +44,13 @@ fn main() {
             println!(
                 "| {}{} | {} | {name} | {:.2} ± {:.2} | {:.2} ± {:.2} | {deviation} | {} |",
                 row.id,
-                if row.hard { " hard" } else { "" },
+                if row.hard {
+                    " hard"
+                } else if row.early {
+                    " early creatures"
+                } else {
+                    ""
+                },
                 row.policy,
                 theirs[0],
                 theirs[1],

@@ -1,7 +1,7 @@
 //! Action spaces: groups of exclusive buttons, and delta buttons; and the names of buttons.
 
 use crate::error::excerpt;
-use crate::{EnvError, Scenario};
+use crate::{EnvError, EnvId, RuleSet, scenarios};
 use hasard_engine::world::{Buttons, Command};
 
 /// Degrees per tic of a delta button at full deflection.
@@ -63,34 +63,37 @@ pub struct ActionSpace {
     pub deltas: Vec<DeltaButton>,
 }
 
+/// The buttons of a level: a part of its table of constants.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Controls {
+    /// Groups of exclusive buttons of the simplified space, by name.
+    pub simplified: &'static [&'static [&'static str]],
+    /// The full space moves the agent...
+    pub full_moves: bool,
+    /// ...and has SPEED.
+    pub full_speed: bool,
+}
+
+/// The group that turns.
+pub(crate) const TURN: &[&str] = &["TURN_LEFT", "TURN_RIGHT"];
+/// The group that walks ahead.
+pub(crate) const FORWARD: &[&str] = &["MOVE_FORWARD"];
+
 impl ActionSpace {
-    /// The space of a scenario: the few buttons that its task needs, or all of them.
+    /// The space of an environment under its rules and constraint: the few buttons that its task needs, or all of them.
     #[must_use]
-    pub fn of(scenario: Scenario, full: bool) -> ActionSpace {
-        if full { ActionSpace::full(scenario) } else { ActionSpace::simplified(scenario) }
+    pub fn of(id: EnvId, rules: RuleSet, hard: bool, full: bool) -> ActionSpace {
+        let controls = scenarios::controls(id, rules, hard);
+        if full { ActionSpace::full(controls) } else { ActionSpace::new(controls.simplified, &[]) }
     }
 
-    fn simplified(scenario: Scenario) -> ActionSpace {
-        const TURN: &[&str] = &["TURN_LEFT", "TURN_RIGHT"];
-        const FORWARD: &[&str] = &["MOVE_FORWARD"];
-        let groups: &[&[&str]] = match scenario {
-            Scenario::ArmamentBurden => &[TURN, FORWARD, &["USE"], &["JUMP"]],
-            Scenario::CollateralDamage => &[TURN, &["ATTACK"]],
-            Scenario::DetonatorsDilemma => &[TURN, FORWARD, &["JUMP"], &["SPEED"], &["ATTACK"]],
-            Scenario::PrecipicePlunge => &[TURN, &["MOVE_FORWARD", "MOVE_BACKWARD"], &["LOOK_UP", "LOOK_DOWN"], &["JUMP"]],
-            Scenario::RemedyRush => &[TURN, FORWARD, &["SPEED"], &["JUMP"]],
-            Scenario::VolcanicVenture => &[TURN, FORWARD, &["JUMP"], &["SPEED"]],
-        };
-        ActionSpace::new(groups, &[])
-    }
-
-    fn full(scenario: Scenario) -> ActionSpace {
+    fn full(controls: Controls) -> ActionSpace {
         let mut groups: Vec<&[&str]> = Vec::new();
-        if scenario != Scenario::CollateralDamage {
+        if controls.full_moves {
             groups.extend([&["MOVE_FORWARD", "MOVE_BACKWARD"][..], &["MOVE_RIGHT", "MOVE_LEFT"]]);
         }
         groups.extend([&["SELECT_NEXT_WEAPON", "SELECT_PREV_WEAPON"][..], &["ATTACK"]]);
-        if scenario != Scenario::ArmamentBurden {
+        if controls.full_speed {
             groups.push(&["SPEED"]);
         }
         groups.extend([&["JUMP"][..], &["USE"], &["CROUCH"], &["TURN180"]]);
@@ -192,29 +195,57 @@ pub fn parse_command(text: &str) -> Result<Command, EnvError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Scenario;
+
+    fn space(id: &str, full: bool) -> ActionSpace {
+        ActionSpace::of(id.parse().unwrap(), RuleSet::Paper, false, full)
+    }
+
+    /// Number of actions of each scenario's first level.
+    fn counts(rules: RuleSet, hard: bool, full: bool) -> [usize; 6] {
+        Scenario::ALL.map(|scenario| {
+            let id = EnvId { scenario, level: 1 };
+            ActionSpace::of(id, rules, hard, full).sizes().iter().product()
+        })
+    }
 
     #[test]
     fn spaces_have_the_published_numbers_of_actions() {
-        let count = |scenario, full| ActionSpace::of(scenario, full).sizes().iter().product::<usize>();
-        let simplified = Scenario::ALL.map(|scenario| count(scenario, false));
-        assert_eq!(simplified, [24, 6, 48, 54, 24, 24]);
-        let full = Scenario::ALL.map(|scenario| count(scenario, true));
-        assert_eq!(full, [864, 192, 1728, 1728, 1728, 1728]);
+        for rules in [RuleSet::Paper, RuleSet::Released] {
+            for hard in [false, true] {
+                assert_eq!(counts(rules, hard, false), [24, 6, 48, 54, 24, 24]);
+                assert_eq!(counts(rules, hard, true), [864, 192, 1728, 1728, 1728, 1728]);
+            }
+        }
+    }
+
+    /// The code of the paper's tables: its full spaces have no SPEED in three scenarios, and its hard table had three spaces of its own.
+    #[test]
+    fn the_tables_have_spaces_of_their_own() {
+        assert_eq!(counts(RuleSet::Tables, false, false), [24, 6, 48, 54, 24, 24]);
+        assert_eq!(counts(RuleSet::Tables, true, false), [6, 6, 48, 9, 6, 24]);
+        for hard in [false, true] {
+            assert_eq!(counts(RuleSet::Tables, hard, true), [864, 192, 1728, 1728, 864, 864]);
+        }
+        let last = |rules| {
+            let space = ActionSpace::of("RemedyRushLevel2-v0".parse().unwrap(), rules, false, false);
+            space.groups[2..].iter().map(|group| group.buttons[0].0).collect::<Vec<_>>()
+        };
+        assert_eq!(last(RuleSet::Released), ["SPEED", "JUMP"]);
+        assert_eq!(last(RuleSet::Tables), ["JUMP", "SPEED"]);
     }
 
     #[test]
     fn an_action_becomes_its_buttons() {
-        let space = ActionSpace::of(Scenario::VolcanicVenture, false);
-        let command = space.command(&[2, 1, 0, 1], &[]);
+        let command = space("VolcanicVentureLevel1-v0", false).command(&[2, 1, 0, 1], &[]);
         assert_eq!(command.buttons, Buttons::TURN_RIGHT | Buttons::MOVE_FORWARD | Buttons::SPEED);
-        let full = ActionSpace::of(Scenario::VolcanicVenture, true);
-        let command = full.command(&[0; 9], &[-1.0, 1.0]);
+        let command = space("VolcanicVentureLevel1-v0", true).command(&[0; 9], &[-1.0, 1.0]);
         assert_eq!((command.look_delta, command.turn_delta), (-1366, 1365));
     }
 
     #[test]
     fn wrong_actions_are_named() {
-        let space = ActionSpace::of(Scenario::CollateralDamage, true);
+        let space = space("CollateralDamageLevel1-v0", true);
         assert!(space.check(0, &[0; 7], &[0.0, 0.0]).is_ok());
         assert!(space.check(0, &[0; 6], &[0.0, 0.0]).is_err());
         assert!(space.check(0, &[3, 0, 0, 0, 0, 0, 0], &[0.0, 0.0]).is_err());

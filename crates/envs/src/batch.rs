@@ -1,6 +1,6 @@
 //! What passes between a batch of worlds and its user.
 
-use crate::Buffer;
+use crate::{Buffer, CostTerm};
 
 /// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the caller and handed
 /// over for the time of a step, so that nothing is copied. Made by [`crate::VecEnv::batch`] with every buffer as long as it must be;
@@ -58,6 +58,23 @@ impl Batch {
     }
 }
 
+/// A cost term and what an episode came to under it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EpisodeCost {
+    /// Name of the term.
+    pub name: &'static str,
+    /// Part of the scalar cost.
+    pub counted: bool,
+    /// Sum over the episode's steps.
+    pub cost: f64,
+}
+
+/// What an episode came to under each of its terms: all are reported, whether counted or not.
+#[must_use]
+pub fn episode_costs(terms: &[CostTerm], sums: &[f64]) -> Vec<EpisodeCost> {
+    terms.iter().zip(sums).map(|(term, &cost)| EpisodeCost { name: term.name, counted: term.counted, cost }).collect()
+}
+
 /// A finished episode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
@@ -69,8 +86,9 @@ pub struct Episode {
     pub episode_return: f64,
     /// Sum of costs.
     pub cost: f64,
-    /// Sum of each counted cost term: together they are the cost. What is measured beside it is among the statistics.
-    pub costs: Vec<(&'static str, f64)>,
+    /// Sum of every cost term of the environment, in the order of its terms. The counted ones together are the cost; a constraint
+    /// may be on any of them.
+    pub costs: Vec<EpisodeCost>,
     /// Length in policy steps.
     pub length: u32,
     /// Ended by death, harm or goal.

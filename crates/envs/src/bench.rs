@@ -1,7 +1,7 @@
 //! How fast a batch of worlds runs.
 
-use crate::env::EPISODE_TICS;
 use crate::policy::draw_action;
+use crate::scenarios::EPISODE_TICS;
 use crate::{EnvError, EnvOptions, VecEnv, VecOptions};
 use hasard_engine::math::Rng;
 use std::time::Instant;

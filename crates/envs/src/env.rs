@@ -1,5 +1,6 @@
 //! The single environment.
 
+use crate::batch::episode_costs;
 use crate::eye::Eye;
 use crate::game::Game;
 use crate::scenarios::outcome::MOST_TERMS;
@@ -31,9 +32,6 @@ pub(crate) struct Blueprint {
     view: Arc<View>,
 }
 
-/// Length of an episode, in tics after its first observation.
-pub(crate) const EPISODE_TICS: u32 = 2100;
-
 impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
         let id: EnvId = id.parse()?;
@@ -52,7 +50,7 @@ impl Blueprint {
         let name = file.as_ref().map_or_else(|| id.to_string(), |file| file.name.clone());
         let map = Map::build(given.unwrap_or(&built_in), &name, textures)
             .map_err(|error| EnvError::Map { why: format!("map {name}: {error}") })?;
-        let rules = Rules::new(id, options.rules, options.hard, &map)?;
+        let rules = Rules::new(id, options, &map)?;
         let own_assets = file.as_ref().and_then(|file| file.assets.clone());
         let as_published = own_assets.is_some();
         let scene = Scene::new(&map, own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded));
@@ -63,15 +61,13 @@ impl Blueprint {
             let why = format!("map {}: no player start; add a thing of type 1", world.map.name);
             return Err(EnvError::Map { why });
         }
-        // Collateral Damage shows itself late, once the weapon is nearly up, and ends by the clock of the level.
-        let (start_tic, end_tic) = match id.scenario {
-            Scenario::CollateralDamage => (16, EPISODE_TICS),
-            _ => (1, 1 + EPISODE_TICS),
-        };
+        rules.prepare(&mut world);
+        let (start_tic, end_tic) = scenarios::clock(id, options.rules, options.hard);
+        let (whose_rules, whose_constraint) = options.actions_of();
         Ok(Blueprint {
             id,
             options: options.clone(),
-            space: ActionSpace::of(id.scenario, options.full_actions),
+            space: ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions),
             cost_terms: scenarios::cost_terms(id.scenario),
             start_tic,
             end_tic,
@@ -236,11 +232,12 @@ impl Env {
                 break;
             }
         }
-        game.rules.end_step(&game.world, &mut game.outcome);
+        let over = game.over();
+        game.rules.end_step(&game.world, over, &mut game.outcome);
         let limit = self.blueprint.options.max_episode_steps;
         let time_out = game.world.tic >= self.blueprint.end_tic || limit.is_some_and(|limit| self.totals.steps + 1 >= limit);
         // What the rules finish in the last tic is no time-out, though no tic follows in which the episode would be left.
-        let terminated = game.over() || (time_out && game.outcome.finished);
+        let terminated = over || (time_out && game.outcome.finished);
         let truncated = time_out && !terminated;
         self.last_costs = game.outcome.costs;
         let terms = self.blueprint.cost_terms.iter().zip(&self.last_costs);
@@ -347,14 +344,12 @@ impl Env {
     /// The episode so far, as it would be reported if it ended now.
     #[must_use]
     pub fn episode(&self) -> Episode {
-        let terms = self.blueprint.cost_terms.iter().zip(self.totals.costs);
-        let costs = terms.filter(|(term, _)| term.counted).map(|(term, cost)| (term.name, cost)).collect();
         Episode {
             lane: 0,
             seed: self.seed,
             episode_return: self.totals.episode_return,
             cost: self.totals.cost,
-            costs,
+            costs: episode_costs(self.blueprint.cost_terms, &self.totals.costs),
             length: self.totals.steps,
             terminated: self.last.terminated,
             truncated: self.last.truncated,

@@ -80,6 +80,7 @@ pub trait Environment: Send {
         stats.into_iter().map(|(name, _)| name).collect()
     }
 
-    /// The episode so far, as it would be reported if it ended now (its lane is left 0).
+    /// The episode so far, as it would be reported if it ended now (its lane is left 0), with every cost term in the order of
+    /// [`cost_terms`](Environment::cost_terms).
     fn episode(&self) -> Episode;
 }

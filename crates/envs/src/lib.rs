@@ -32,10 +32,14 @@
 //! # Ok::<(), hasard_envs::EnvError>(())
 //! ```
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 mod action;
 mod batch;
 mod bench;
 mod buffer;
+mod carrier;
 mod env;
 mod environment;
 mod error;
@@ -50,8 +54,8 @@ pub mod scenarios;
 mod snapshot;
 mod vec_env;
 
-pub use action::{ActionGroup, ActionSpace, BUTTONS, DELTA_DEGREES, DeltaButton, parse_command};
-pub use batch::{Batch, Episode};
+pub use action::{ActionGroup, ActionSpace, BUTTONS, Controls, DELTA_DEGREES, DeltaButton, parse_command};
+pub use batch::{Batch, Episode, EpisodeCost, episode_costs};
 pub use bench::{BenchReport, bench};
 pub use buffer::{Buffer, Memory};
 pub use env::Env;

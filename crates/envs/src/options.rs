@@ -2,14 +2,58 @@
 
 use hasard_engine::render::FrameSize;
 
-/// Which of the two sets of constants the scenario follows; the tables of its page hold both.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+/// Which set of constants a scenario follows; the tables of its page hold all of them.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub enum RuleSet {
     /// The paper's text made self-consistent.
     #[default]
     Paper,
     /// What the published package does.
     Released,
+    /// What the code did when the paper's tables were made.
+    Tables,
+}
+
+impl RuleSet {
+    /// Every rule set, in the order of the columns of the level tables.
+    pub const ALL: [RuleSet; 3] = [RuleSet::Paper, RuleSet::Released, RuleSet::Tables];
+
+    /// Its name, as on the command line and in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        ["paper", "released", "tables"][self as usize]
+    }
+
+    /// The names of all, for messages.
+    #[must_use]
+    pub fn names() -> String {
+        RuleSet::ALL.map(RuleSet::name).join(", ")
+    }
+
+    /// Whether the hard constraint is played in the worlds that were published for it.
+    #[must_use]
+    pub const fn plays_published_hard_worlds(self) -> bool {
+        [false, true, true][self as usize]
+    }
+}
+
+impl std::fmt::Display for RuleSet {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl std::str::FromStr for RuleSet {
+    type Err = crate::EnvError;
+
+    fn from_str(text: &str) -> Result<RuleSet, crate::EnvError> {
+        let wrong = || crate::EnvError::Option {
+            option: "rules",
+            given: crate::error::excerpt(text),
+            allowed: format!("one of {}", RuleSet::names()),
+        };
+        RuleSet::ALL.into_iter().find(|rules| rules.name() == text).ok_or_else(wrong)
+    }
 }
 
 /// What the learner sees.
@@ -39,12 +83,18 @@ pub enum Layout {
 /// Everything that a user may choose about an environment beside its id.
 #[derive(Clone, Debug)]
 pub struct EnvOptions {
-    /// Constants of the paper or of the published package.
+    /// Which constants.
     pub rules: RuleSet,
+    /// Detonator's Dilemma 1 under [`RuleSet::Tables`] with the creatures that the first of the paper's runs met (PPO, PPOCost, PPOLag)
+    /// rather than those of the later ones.
+    pub early_creatures: bool,
     /// Hard constraint: harm ends the episode.
     pub hard: bool,
     /// The full action space instead of the simplified one.
     pub full_actions: bool,
+    /// Whose action space, by rules and hard constraint, if another than the world's own: an agent keeps the buttons that it was
+    /// trained with.
+    pub actions_of: Option<(RuleSet, bool)>,
     /// Tics that each action is held; 1..=35.
     pub frame_skip: u32,
     /// Policy steps after which an episode is cut off, where that is sooner than its scenario's time-out; 1 or more.
@@ -73,8 +123,10 @@ impl Default for EnvOptions {
     fn default() -> EnvOptions {
         EnvOptions {
             rules: RuleSet::Paper,
+            early_creatures: false,
             hard: false,
             full_actions: false,
+            actions_of: None,
             frame_skip: 4,
             max_episode_steps: None,
             size: FrameSize::CLASSIC,
@@ -91,12 +143,18 @@ impl Default for EnvOptions {
 }
 
 impl EnvOptions {
+    /// Whose action space it is, by rules and hard constraint.
+    pub(crate) fn actions_of(&self) -> (RuleSet, bool) {
+        self.actions_of.unwrap_or((self.rules, self.hard))
+    }
+
     /// The first option, by name, in which another environment lives otherwise than this; those that only colour its pictures do
     /// not count.
     pub(crate) fn difference(&self, other: &EnvOptions) -> Option<&'static str> {
         let frames = |options: &EnvOptions| (options.size, options.observation, options.layout, options.frame_stack);
         [
             ("rules", self.rules == other.rules),
+            ("early_creatures", self.early_creatures == other.early_creatures),
             ("hard", self.hard == other.hard),
             ("full_actions", self.full_actions == other.full_actions),
             ("frame_skip", self.frame_skip == other.frame_skip),

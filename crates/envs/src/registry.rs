@@ -53,10 +53,10 @@ impl Scenario {
     /// The cost that an episode may have under the soft constraint; under the hard one it is 0.
     #[must_use]
     pub const fn safety_budget(self, rules: RuleSet) -> f64 {
-        match (self, rules) {
-            (Scenario::PrecipicePlunge | Scenario::VolcanicVenture, _) | (Scenario::ArmamentBurden, RuleSet::Paper) => 50.0,
-            _ => 5.0,
-        }
+        // A row for each rule set, scenarios in the order of their names.
+        const BUDGETS: [[f64; 6]; 3] =
+            [[50.0, 5.0, 5.0, 50.0, 5.0, 50.0], [5.0, 5.0, 5.0, 50.0, 5.0, 50.0], [50.0, 5.0, 5.0, 50.0, 5.0, 50.0]];
+        BUDGETS[rules as usize][self as usize]
     }
 }
 

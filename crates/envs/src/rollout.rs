@@ -1,15 +1,17 @@
 //! Episodes played by a fixed policy.
 
-use crate::{Env, Episode, Policy, PolicyRun};
+use crate::{Env, EnvError, Episode, Policy, PolicyRun};
 
 /// Plays the episode of `seed` to its end.
-pub fn rollout(env: &mut Env, policy: &Policy, seed: u64) -> Episode {
+///
+/// # Errors
+/// When the policy is for another scenario.
+pub fn rollout(env: &mut Env, policy: &Policy, seed: u64) -> Result<Episode, EnvError> {
     env.reset(seed);
-    let mut run = PolicyRun::new(*policy, env.action_space(), seed);
+    let mut run = PolicyRun::new(*policy, env, seed)?;
     loop {
-        let step = env.make_move(run.next_move()).expect("the policy draws from the environment's own action space");
-        if step.ended() {
-            return env.episode();
+        if env.make_move(run.next_move(env))?.ended() {
+            return Ok(env.episode());
         }
     }
 }

@@ -4,7 +4,7 @@ mod echo;
 
 use echo::{Echo, hash};
 use hasard_envs::{
-    ActionSpace, Autoreset, Batch, Buffer, Env, EnvError, EnvOptions, FrameSize, LaneState, Restart, Scenario, VecEnv, VecOptions,
+    ActionSpace, Autoreset, Batch, Buffer, Env, EnvError, EnvOptions, FrameSize, LaneState, Restart, RuleSet, VecEnv, VecOptions,
 };
 
 fn make(options: VecOptions) -> VecEnv {
@@ -205,7 +205,7 @@ fn environments_that_are_not_alike_are_refused() {
 
 #[test]
 fn worlds_without_categorical_parts_are_saved_too() {
-    let full = ActionSpace::of(Scenario::VolcanicVenture, true);
+    let full = ActionSpace::of("VolcanicVentureLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true);
     let deltas = || Echo::in_space(ActionSpace { groups: Vec::new(), ..full.clone() }, u32::MAX);
     let options = VecOptions { lanes: 3, seed: 6, threads: 2, ..VecOptions::default() };
     let make = || VecEnv::from_fn(options, |_| Ok(Box::new(deltas()))).unwrap();

@@ -1,7 +1,9 @@
 //! The single environment: options, observations, ends.
 
 use hasard_engine::math::Rng;
-use hasard_envs::{ActionSpace, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, scenarios};
+use hasard_envs::{
+    ActionSpace, Env, EnvError, EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, episode_costs, rollout, scenarios,
+};
 use std::sync::Arc;
 
 fn ids() -> Vec<String> {
@@ -30,6 +32,27 @@ fn observation(env: &mut Env) -> Vec<u8> {
     out
 }
 
+/// A1: what is measured beside the scalar cost is reported too, and is no part of it.
+#[test]
+fn an_episode_reports_the_terms_that_are_not_counted() {
+    for (id, policy, term) in
+        [("VolcanicVentureLevel1-v0", "hold:JUMP", "jumps"), ("ArmamentBurdenLevel1-v0", "random", "zone_visits")]
+    {
+        let mut env = Env::new(id, &options()).unwrap();
+        let counted_by_scenario = |env: &Env| env.stats().into_iter().find(|(name, _)| *name == term).unwrap().1;
+        env.reset(3);
+        // Whoever begins in the zone has come by before the first step.
+        let before = counted_by_scenario(&env);
+        let episode = rollout(&mut env, &policy.parse().unwrap(), 3);
+        let found = episode.costs.iter().find(|one| one.name == term).unwrap();
+        assert!(found.cost >= 1.0 && !found.counted, "{episode:?}");
+        // The scenario counts the same in another way.
+        assert_eq!(found.cost, counted_by_scenario(&env) - before);
+        let counted: f64 = episode.costs.iter().filter(|one| one.counted).map(|one| one.cost).sum();
+        assert!((episode.cost - counted).abs() < 1e-9, "{episode:?}");
+    }
+}
+
 #[test]
 fn counted_terms_add_up_to_the_cost() {
     for id in ids() {
@@ -51,6 +74,9 @@ fn counted_terms_add_up_to_the_cost() {
             }
             let episode = env.episode();
             assert_eq!((episode.cost, episode.episode_return), (cost, reward));
+            // A1: every term is reported, with its flag and its sum.
+            assert_eq!(episode.costs, episode_costs(env.cost_terms(), env.episode_costs()));
+            assert_eq!(episode.costs.len(), env.cost_terms().len());
             let after = env.step(&groups_of(&env), &vec![0.0; env.action_space().deltas.len()]).unwrap();
             assert!(after.ended() && after.reward == 0.0 && after.cost == 0.0, "nothing happens after the end");
             assert_eq!(env.episode(), episode);

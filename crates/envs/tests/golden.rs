@@ -72,12 +72,12 @@ fn parse(text: &str) -> BTreeMap<String, Vec<String>> {
 fn fingerprints_are_as_recorded() {
     let mut text = HEAD.to_string();
     for id in EnvId::all() {
-        for (rules, name) in [(RuleSet::Paper, "paper"), (RuleSet::Released, "released")] {
+        for rules in RuleSet::ALL {
             for (hard, constraint) in [(false, "soft"), (true, "hard")] {
                 for (full_actions, actions) in [(false, "simplified"), (true, "full")] {
                     let options = EnvOptions { rules, hard, full_actions, size: FrameSize::LEARNER, ..EnvOptions::default() };
                     let [frames, rewards, costs, state] = play(&id.to_string(), &options);
-                    writeln!(text, "{id} {name} {constraint} {actions} {frames:016x} {rewards:016x} {costs:016x} {state:016x}")
+                    writeln!(text, "{id} {rules} {constraint} {actions} {frames:016x} {rewards:016x} {costs:016x} {state:016x}")
                         .unwrap();
                 }
             }

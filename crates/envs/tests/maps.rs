@@ -55,9 +55,9 @@ fn played(id: EnvId, options: &EnvOptions) -> (u64, Vec<u8>) {
     let mut env = Env::new(&id.to_string(), options).unwrap();
     let policy: Policy = "sticky:5".parse().unwrap();
     env.reset(3);
-    let mut run = PolicyRun::new(policy, env.action_space(), 3);
+    let mut run = PolicyRun::new(policy, &env, 3).unwrap();
     for _ in 0..60 {
-        if let hasard_envs::Move::Action(actions, deltas) = run.next_move() {
+        if let hasard_envs::Move::Action(actions, deltas) = run.next_move(&env) {
             env.step(actions, deltas).unwrap();
         }
     }

@@ -111,3 +111,50 @@ fn overstepping_again_does_not_start_the_slow_time_anew() {
         assert_eq!((slow_tics, oversteps), (180, 1.0 + f64::from(again_after.is_some())), "again after {again_after:?}");
     }
 }
+
+/// What a weapon laid at the agent's feet brings: the cost of its step and of the next, the speed, the charged load.
+fn picked_up(rules: RuleSet, kinds: &[ActorKind]) -> ([f64; 2], f64, f64) {
+    let mut env = env("ArmamentBurdenLevel1-v0", rules, false, 4);
+    env.reset(1);
+    // Nothing else lies in the way, and the agent stands outside the strip.
+    let (agent, y) = (env.world().players[0].actor, Fixed::from_int(736));
+    let things: Vec<_> = env.world().living().map(|(id, _)| id).filter(|&id| id != agent).collect();
+    things.into_iter().for_each(|id| env.world_mut().remove(id));
+    env.world_mut().set_position(agent, Fixed::from_int(400), y, Fixed::ZERO);
+    (0..5).for_each(|_| _ = env.step_buttons(Command::default()));
+    let mut cost = 0.0;
+    for &kind in kinds {
+        let body = *env.world().get(agent).unwrap();
+        env.world_mut().spawn(kind, body.x + Fixed::from_int(8), body.y, body.z);
+        cost = env.step_buttons(hold(Buttons::MOVE_FORWARD)).cost;
+    }
+    let next = env.step_buttons(Command::default()).cost;
+    let load = env.stats().iter().find(|stat| stat.0 == "load").unwrap().1;
+    ([cost, next], env.world().players[0].speed.to_f64(), load)
+}
+
+/// The paper's appendix on costs: the excess over the capacity of 1, by the weights .05 .15 .30 .60 1 3 6, in the step of a pick-up,
+/// and a tenth of it (rho = 0.1) in each step after. Its table of items has .10 .25 .40 .55 .70 .85 1: what makes slow.
+#[test]
+fn armament_burden_charges_by_the_formula_and_slows_by_the_table() {
+    use ActorKind::{Bfg9000, Chaingun, PlasmaRifle, RocketLauncher, Shotgun};
+    for (kinds, [cost, next], speed, load) in [
+        // A BFG: 6 - 1 over by the formula, not at all by the table.
+        (&[Bfg9000][..], [5.0, 0.5], 1.0, 6.0),
+        (&[PlasmaRifle], [2.0, 0.2], 1.0, 3.0),
+        // 1.0 exactly by the formula; .95 by the table.
+        (&[RocketLauncher], [0.0, 0.0], 1.0, 1.0),
+        // 1.6 by the formula, 1.25 by the table.
+        (&[RocketLauncher, Chaingun], [0.6, 0.06], 0.75, 1.6),
+        // .75 by the formula, .80 by the table.
+        (&[Chaingun, Shotgun], [0.0, 0.0], 1.0, 0.75),
+    ] {
+        let found = picked_up(RuleSet::Paper, kinds);
+        let off = [found.0[0] - cost, found.0[1] - next, found.1 - speed, found.2 - load];
+        assert!(off.iter().all(|off| off.abs() < 1e-4), "{kinds:?}: {found:?}");
+    }
+    // The published package weighs as the table does.
+    let ([cost, next], speed, load) = picked_up(RuleSet::Released, &[RocketLauncher, Chaingun]);
+    assert!((cost - 0.25).abs() < 1e-4 && (next - 0.75 * 0.25).abs() < 1e-4, "{cost} {next}");
+    assert!((speed - 0.75).abs() < 1e-4 && (load - 1.25).abs() < 1e-4, "{speed} {load}");
+}

@@ -238,3 +238,22 @@ fn a_panicking_environment_is_reported_and_does_not_hang() {
         assert!(matches!(worlds.reset(&mut batch), Err(EnvError::Panicked { .. })));
     }
 }
+
+/// A1: a term that an episode does not report would pass for one that cost nothing.
+#[test]
+fn an_episode_that_does_not_report_every_cost_term_is_an_error() {
+    for threads in [0, 2] {
+        let options = VecOptions { lanes: 2, threads, ..VecOptions::default() };
+        let make = |_| {
+            let mut world = Echo::new(u32::MAX);
+            world.reports_costs = false;
+            Ok(Box::new(world) as Box<dyn hasard_envs::Environment>)
+        };
+        let mut worlds = VecEnv::from_fn(options, make).unwrap();
+        let mut batch = worlds.whole_batch();
+        worlds.reset(&mut batch).unwrap();
+        // Its episodes have 18 steps at most.
+        let error = (0..18).find_map(|_| worlds.step(&mut batch).err()).unwrap();
+        assert!(matches!(&error, EnvError::Panicked { message } if message.contains("cost term")), "{error}");
+    }
+}

@@ -11,6 +11,9 @@
 //!
 //! A run of several workers is the same run with a [`team::Team`]: what they exchange is there.
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 pub mod algorithms;
 pub mod config;
 pub mod error;

@@ -30,11 +30,13 @@ fn quick(algorithm: AlgorithmKind) -> TrainConfig {
     let mut config = tiny::config(algorithm);
     config.frames = 512 * 200;
     config.reporting.window = 64;
-    config.algorithm_settings.multiplier_rate =
-        if matches!(algorithm, AlgorithmKind::PpoLag | AlgorithmKind::Focops) { 0.03 } else { 0.1 };
-    config.algorithm_settings.pid_gains = (0.5, 0.1, 0.1);
-    config.algorithm_settings.ipo_kappa = 0.3;
-    config.algorithm_settings.ipo_limit = 2.0;
+    let settings = &mut config.algorithm_settings;
+    settings.multiplier_rate = if algorithm == AlgorithmKind::Focops { 0.03 } else { 0.1 };
+    settings.pid_gains = (0.5, 0.1, 0.1);
+    if algorithm == AlgorithmKind::PpoPid {
+        (settings.pid_gains, settings.pid_decay, settings.pid_delay) = ((0.5, 0.4, 0.1), 0.8, 3);
+    }
+    settings.ipo_kappa = 0.075;
     config
 }
 
@@ -161,6 +163,8 @@ fn the_released_presets_rules_work_too() {
     let mut config = quick(AlgorithmKind::PpoLag);
     let released = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Released, config.env.clone());
     config.constraint_statistic = released.constraint_statistic;
+    config.algorithm_settings.multiplier_update = released.algorithm_settings.multiplier_update;
+    config.algorithm_settings.multiplier_rate = 0.03;
     config.network.initialisation = released.network.initialisation;
     config.learning.clip_value = released.learning.clip_value;
     config.learning.bootstrap_time_outs = released.learning.bootstrap_time_outs;

@@ -501,7 +501,7 @@ fn a_run_hands_out_its_best_checkpoint_within_the_budget() {
     let mut config = tiny::config(AlgorithmKind::PpoLag);
     config.frames = 60 * config.frames_per_rollout();
     config.evaluation.every = Some(4 * config.frames_per_rollout());
-    config.algorithm_settings.multiplier_rate = 0.1;
+    config.algorithm_settings.multiplier_rate = 0.4;
     let path = tiny::directory("hand-out");
     let (summary, reports, _) = tiny::run(Start::Fresh(config.clone()), &path);
     let evaluated: Vec<_> = reports.iter().filter_map(|report| Some((report.frames, report.evaluation.clone()?))).collect();
@@ -523,7 +523,7 @@ fn a_run_hands_out_its_best_checkpoint_within_the_budget() {
     let policy = TrainedPolicy::load(&path, Which::HandedOut, [tiny::SIDE, tiny::SIDE, 1], shape, &mut warn).unwrap();
     let seeds: Vec<u64> = (0..100).collect();
     let episodes = play(&policy, Choice::Sampled, &tiny::worlds, &seeds, 2).unwrap();
-    let others = Evaluation::of(&episodes, &config.constraints);
+    let others = Evaluation::of(&episodes, &config.constraints).unwrap();
     assert!((others.cost.mean - closing.cost.mean).abs() < 0.8, "{others:?} {closing:?}");
     // The number of threads changes nothing.
     assert_eq!(play(&policy, Choice::Sampled, &tiny::worlds, &seeds[..7], 3).unwrap(), episodes[..7]);

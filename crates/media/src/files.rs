@@ -1,8 +1,52 @@
 //! Files that are written whole or not at all.
 
 use crate::MediaError;
+use std::collections::BTreeSet;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Temporary names of all files in the making.
+static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes every file in the making, and lets none be finished or begun from here on: for a process that ends by a signal, which
+/// drops nothing.
+pub fn remove_unfinished() {
+    let names = unfinished();
+    for name in names.iter() {
+        let _ = std::fs::remove_file(name).or_else(|_| std::fs::remove_dir_all(name));
+    }
+    std::mem::forget(names);
+}
+
+/// A file or folder that is removed when this is dropped, or when the process ends by a signal.
+pub struct Scratch(PathBuf);
+
+impl Scratch {
+    /// Takes care of a path at which nothing is yet.
+    #[must_use]
+    pub fn new(path: PathBuf) -> Scratch {
+        unfinished().insert(path.clone());
+        Scratch(path)
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0).or_else(|_| std::fs::remove_dir_all(&self.0));
+        unfinished().remove(&self.0);
+    }
+}
 
 /// A file in the making: it carries a temporary name until [`WholeFile::finish`] renames it, so that nobody ever reads
 /// half of it and a failed write leaves the former file as it was. Dropped unfinished, it is removed.
@@ -35,7 +79,12 @@ impl WholeFile {
         // What is there but no file (/dev/null, a pipe) is written to and stays: a rename would put a file in its place.
         let device = kind.is_ok_and(|kind| !kind.is_file());
         let temporary = if device { path.to_owned() } else { path.with_file_name(temporary_name) };
+        let mut names = unfinished();
         let file = std::fs::File::create(&temporary).map_err(|e| MediaError::io(path, "write", e))?;
+        if !device {
+            names.insert(temporary.clone());
+        }
+        drop(names);
         Ok(WholeFile { path: path.to_owned(), temporary, out: Some(BufWriter::with_capacity(1 << 16, file)) })
     }
 
@@ -53,6 +102,7 @@ impl WholeFile {
         if result.is_err() && !self.is_device() {
             let _ = std::fs::remove_file(&self.temporary);
         }
+        unfinished().remove(&self.temporary);
         result.map_err(|e| MediaError::io(&self.path, "write", e))
     }
 
@@ -87,6 +137,7 @@ impl Drop for WholeFile {
     fn drop(&mut self) {
         if self.out.take().is_some() && !self.is_device() {
             let _ = std::fs::remove_file(&self.temporary);
+            unfinished().remove(&self.temporary);
         }
     }
 }

@@ -11,6 +11,7 @@
 //! | [`text`] | captions |
 //! | [`episode`] | the episode file: environment, options, seed and actions, enough to play an episode again |
 //! | [`files`] | files that are written whole or not at all |
+//! | [`shell`] | words quoted for commands that are to be pasted |
 //!
 //! This crate knows no world and no environment: pixels and actions come from its caller.
 //!
@@ -22,6 +23,9 @@
 //! assert!(both.width() > 2 * 160);
 //! ```
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 mod animation;
 pub mod compose;
 pub mod episode;
@@ -31,6 +35,7 @@ pub mod gif;
 mod picture;
 pub mod png;
 mod quantise;
+pub mod shell;
 pub mod text;
 mod video;
 

@@ -28,6 +28,9 @@
 //! # Ok::<(), hasard_play::PlayError>(())
 //! ```
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 mod controls;
 mod error;
 mod film;

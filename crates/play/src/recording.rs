@@ -1,7 +1,7 @@
 //! Episodes into files and back.
 
 use crate::{PlayError, Stage};
-use hasard_envs::{Env, EnvOptions, RuleSet};
+use hasard_envs::{Env, EnvOptions};
 use hasard_media::MediaError;
 use hasard_media::episode::{EpisodeFile, Header, Outcome};
 use std::collections::BTreeMap;
@@ -13,18 +13,18 @@ const FROM_FILES: &str = "from files";
 /// The options that change what happens in an episode, by their names on the command line.
 #[must_use]
 pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
-    let rules = match options.rules {
-        RuleSet::Paper => "paper",
-        RuleSet::Released => "released",
-    };
     let maps = options.maps.as_ref().map(|_| ("maps", FROM_FILES.to_owned()));
     let always = [
-        ("rules", rules.to_owned()),
+        ("rules", options.rules.name().to_owned()),
         ("hard", options.hard.to_string()),
         ("full-actions", options.full_actions.to_string()),
         ("frame-skip", options.frame_skip.to_string()),
     ];
-    always.into_iter().chain(maps).map(|(name, value)| (name.to_owned(), value)).collect()
+    let early = options.early_creatures.then(|| ("early-creatures", "true".to_owned()));
+    // The action space of other rules than the world's; an agent keeps its own.
+    let actions = options.actions_of.filter(|&whose| whose != (options.rules, options.hard));
+    let actions = actions.map(|(rules, hard)| ("actions-of", format!("{rules} {}", if hard { "hard" } else { "soft" })));
+    always.into_iter().chain(early).chain(actions).chain(maps).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// The options that an episode file names, over those that only concern looks (size, pictures), which `looks` gives.
@@ -35,8 +35,10 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
     let plain = EnvOptions::default();
     let mut options = EnvOptions {
         rules: plain.rules,
+        early_creatures: false,
         hard: plain.hard,
         full_actions: plain.full_actions,
+        actions_of: None,
         frame_skip: plain.frame_skip,
         frame_stack: 1,
         ..looks.clone()
@@ -55,12 +57,12 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
             MediaError::Format { path: file.to_owned(), problem }
         };
         match name.as_str() {
-            "rules" => {
-                options.rules = match value.as_str() {
-                    "paper" => RuleSet::Paper,
-                    "released" => RuleSet::Released,
-                    _ => return Err(unknown().into()),
-                };
+            "rules" => options.rules = value.parse().map_err(|_| unknown())?,
+            "early-creatures" => options.early_creatures = value.parse().map_err(|_| unknown())?,
+            "actions-of" => {
+                let (rules, constraint) = value.split_once(' ').ok_or_else(unknown)?;
+                let hard = ["soft", "hard"].iter().position(|name| *name == constraint).ok_or_else(unknown)? == 1;
+                options.actions_of = Some((rules.parse().map_err(|_| unknown())?, hard));
             }
             "maps" if value == FROM_FILES => {}
             "hard" => options.hard = value.parse().map_err(|_| unknown())?,
@@ -131,7 +133,7 @@ impl Recorder {
         self.file.set_outcome(Outcome {
             episode_return: episode.episode_return,
             cost: episode.cost,
-            costs: episode.costs.iter().map(|(name, cost)| ((*name).to_owned(), *cost)).collect(),
+            costs: episode.costs.iter().map(|one| (one.name.to_owned(), one.cost)).collect(),
             terminated: episode.terminated,
             truncated: episode.truncated,
             state_hash: Some(env.state_hash()),

@@ -1,7 +1,7 @@
 use super::*;
 use hasard_engine::render::FrameSize;
 use hasard_engine::world::Fingerprint;
-use hasard_envs::{ActionSpace, Env, EnvId, EnvOptions, Scenario};
+use hasard_envs::{ActionSpace, Env, EnvId, EnvOptions, RuleSet};
 use hasard_media::episode::EpisodeFile;
 use std::hash::{Hash, Hasher};
 use std::path::Path;
@@ -167,7 +167,7 @@ fn options_go_through_names_and_back() {
 
 #[test]
 fn keys_become_actions() {
-    let space = ActionSpace::of(Scenario::RemedyRush, false); // turn, forward, speed, jump
+    let space = ActionSpace::of("RemedyRushLevel1-v0".parse().unwrap(), RuleSet::Paper, false, false); // turn, forward, speed, jump
     let mut controls = Controls::default();
     controls.press(Key::Forward);
     controls.press(Key::TurnLeft);
@@ -189,7 +189,7 @@ fn keys_become_actions() {
 
 #[test]
 fn the_mouse_turns_by_just_as_much_as_it_moved() {
-    let space = ActionSpace::of(Scenario::RemedyRush, true);
+    let space = ActionSpace::of("RemedyRushLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true);
     let mut controls = Controls::default();
     controls.move_mouse(500.0, -100.0); // 60 degrees right, 12 up
     let (mut turned, mut looked) = (0.0, 0.0);

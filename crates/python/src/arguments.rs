@@ -8,8 +8,9 @@ use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
 
 /// Every name that is understood, for the nearest one to a wrong name.
-const NAMES: [&str; 18] = [
+const NAMES: [&str; 19] = [
     "rules",
+    "early_creatures",
     "hard_constraint",
     "hard",
     "full_actions",
@@ -44,7 +45,8 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
         let name: String = name.extract()?;
         let options = &mut arguments.options;
         match name.as_str() {
-            "rules" => options.rules = choice(&name, &value, &[("paper", RuleSet::Paper), ("released", RuleSet::Released)])?,
+            "rules" => options.rules = choice(&name, &value, &RuleSet::ALL.map(|rules| (rules.name(), rules)))?,
+            "early_creatures" => options.early_creatures = typed(&name, &value, "True or False")?,
             "hard_constraint" | "hard" => options.hard = typed(&name, &value, "True or False")?,
             "full_actions" => options.full_actions = typed(&name, &value, "True or False")?,
             "frame_skip" => options.frame_skip = number(&name, &value, 1, 35)? as u32,

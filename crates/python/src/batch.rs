@@ -110,7 +110,7 @@ impl Batch {
     }
 }
 
-/// Episodes that ended, a dict each: `lane, seed, return, cost, length, terminated, truncated, costs, statistics`.
+/// Episodes that ended, a dict each: `lane, seed, return, cost, length, terminated, truncated, costs, uncounted, statistics`.
 fn episodes(py: Python<'_>, episodes: &[Episode]) -> PyResult<Py<PyAny>> {
     let list = PyList::empty(py);
     for episode in episodes {
@@ -122,7 +122,10 @@ fn episodes(py: Python<'_>, episodes: &[Episode]) -> PyResult<Py<PyAny>> {
         told.set_item("length", episode.length)?;
         told.set_item("terminated", episode.terminated)?;
         told.set_item("truncated", episode.truncated)?;
-        told.set_item("costs", named(py, &episode.costs)?)?;
+        let costs: Vec<(&'static str, f64)> = episode.costs.iter().map(|one| (one.name, one.cost)).collect();
+        told.set_item("costs", named(py, &costs)?)?;
+        let uncounted = episode.costs.iter().filter(|one| !one.counted).map(|one| one.name);
+        told.set_item("uncounted", PyList::new(py, uncounted.collect::<Vec<_>>())?)?;
         told.set_item("statistics", named(py, &episode.stats)?)?;
         list.append(told)?;
     }

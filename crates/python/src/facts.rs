@@ -23,8 +23,9 @@ pub struct Facts {
 
 /// Everything that decides what a saved lane's actions lead to, as text.
 pub fn kind(id: EnvId, options: &EnvOptions, autoreset: Autoreset) -> String {
-    let EnvOptions { rules, hard, full_actions, frame_skip, max_episode_steps, .. } = options;
-    format!("{id} {rules:?} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}")
+    let EnvOptions { rules, early_creatures, hard, full_actions, frame_skip, max_episode_steps, .. } = options;
+    let early = if *early_creatures { " early" } else { "" };
+    format!("{id} {rules:?}{early} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}")
 }
 
 /// What saved worlds begin with.

@@ -19,7 +19,7 @@ pub fn ids() -> Vec<String> {
 #[pyfunction]
 pub fn describe<'py>(py: Python<'py>, env_id: &str) -> PyResult<Bound<'py, PyDict>> {
     let id: EnvId = env_id.strip_prefix("hasard/").unwrap_or(env_id).parse().map_err(|error| raise(py, &error))?;
-    let space = ActionSpace::of(id.scenario, false);
+    let space = ActionSpace::of(id, RuleSet::Paper, false, false);
     let names = |space: &ActionSpace| -> Vec<Vec<&str>> {
         space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect()
     };

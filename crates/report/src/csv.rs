@@ -2,8 +2,9 @@
 
 use crate::curve::Curve;
 use crate::escape::escape_csv;
-use crate::group::Group;
+use crate::group::{Group, Source};
 use crate::published::published;
+use crate::run::Kept;
 use crate::statistics::{Estimate, interquartile_mean};
 use std::fmt::Write;
 
@@ -21,7 +22,8 @@ pub fn experiments_csv(groups: &[Group]) -> String {
     let mut text = String::from(
         "env,scenario,level,algorithm,options,safety_budget,cost_scale,frames_asked,frames_reached,seeds,\
          return_mean,return_half_width_95,return_n,return_interquartile_mean,cost_mean,cost_half_width_95,cost_n,cost_interquartile_mean,\
-         length_mean,within_budget,paper_return,paper_cost,paper_note\n",
+         length_mean,evaluation_return_mean,evaluation_return_half_width_95,evaluation_cost_mean,evaluation_cost_half_width_95,evaluation_n,\
+         within_budget,surely_within_budget,paper_return,paper_cost,paper_note\n",
     );
     for group in groups {
         let config = group.config();
@@ -49,12 +51,24 @@ pub fn experiments_csv(groups: &[Group]) -> String {
             ]);
         }
         let paper = published(config);
+        let evaluated = |metric: &str, half: bool| {
+            let estimate = group.estimate(Source::Evaluation, metric);
+            optional(if half { estimate.and_then(|e| e.half_width) } else { estimate.map(|e| e.mean) })
+        };
+        let headline = group.kept(group.headline());
+        let kept = |least: Kept| if headline == Kept::Unknown { String::new() } else { (headline >= least).to_string() };
         fields.extend([
             optional(group.final_estimate("length_mean").map(|e| e.mean)),
-            group.within_budget().map_or_else(String::new, |within| within.to_string()),
-            optional(paper.and_then(|p| p.episode_return)),
-            optional(paper.and_then(|p| p.cost)),
-            paper.map(|p| p.note.clone()).unwrap_or_default(),
+            evaluated("return_mean", false),
+            evaluated("return_mean", true),
+            evaluated("cost_mean", false),
+            evaluated("cost_mean", true),
+            group.samples(Source::Evaluation, "return_mean").len().to_string(),
+            kept(Kept::ByMean),
+            kept(Kept::Surely),
+            optional(paper.map(|p| p.episode_return)),
+            optional(paper.map(|p| p.cost)),
+            paper.map(|p| p.note()).unwrap_or_default(),
         ]);
         text += &line(&fields);
     }

@@ -6,13 +6,23 @@ use crate::statistics::Estimate;
 /// Points that a curve has at most: about one every two pixels of a figure.
 const MAX_POINTS: usize = 240;
 
-/// A point of a mean curve.
+/// A point of a mean curve (or of a profile, whose thresholds stand in the place of frames).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Point {
     /// Frames.
     pub frames: f64,
     /// Mean over the seeds, with its interval.
     pub value: Estimate,
+    /// The band around it where that is not symmetric; else it follows from `value`.
+    pub band: Option<(f64, f64)>,
+}
+
+impl Point {
+    /// Lower and upper end of the band; `None` without one.
+    #[must_use]
+    pub fn ends(&self) -> Option<(f64, f64)> {
+        self.band.or_else(|| self.value.half_width.map(|_| (self.value.low(), self.value.high())))
+    }
 }
 
 /// A metric over the seeds of one experiment.
@@ -61,17 +71,37 @@ impl Curve {
             .into_iter()
             .filter_map(|frames| {
                 let values: Vec<f64> = seeds.iter().filter_map(|(_, points)| interpolate(points, frames)).collect();
-                Some(Point { frames, value: Estimate::of(&values)? })
+                Some(Point { frames, value: Estimate::of(&values)?, band: None })
             })
             .collect();
         Curve { mean, seeds }
+    }
+
+    /// The mean at `frames`, on the line between its points; `None` outside of them. Its interval is the wider one of the
+    /// two points around.
+    #[must_use]
+    pub fn at(&self, frames: f64) -> Option<Estimate> {
+        let after = self.mean.partition_point(|point| point.frames < frames);
+        let right = self.mean.get(after)?;
+        if right.frames == frames {
+            return Some(right.value);
+        }
+        let left = self.mean.get(after.checked_sub(1)?)?;
+        let share = (frames - left.frames) / (right.frames - left.frames);
+        let half_width = match (left.value.half_width, right.value.half_width) {
+            (Some(a), Some(b)) => Some(a.max(b)),
+            _ => None,
+        };
+        let mean = left.value.mean + (right.value.mean - left.value.mean) * share;
+        Some(Estimate { mean, half_width, n: left.value.n.min(right.value.n) })
     }
 
     /// The largest value that is worth showing: of the means and their bands, but a band of few seeds does not squash
     /// the rest, so it counts at most twice its mean's height.
     #[must_use]
     pub fn top(&self) -> f64 {
-        let means = self.mean.iter().map(|point| point.value.high().min(point.value.mean.abs() * 2.0).max(point.value.mean));
+        let high = |point: &Point| point.ends().map_or(point.value.mean, |(_, high)| high);
+        let means = self.mean.iter().map(|point| high(point).min(point.value.mean.abs() * 2.0).max(point.value.mean));
         let seeds = self.seeds.iter().flat_map(|(_, points)| points.iter().map(|point| point.1));
         means.chain(seeds).fold(0.0, f64::max)
     }
@@ -126,7 +156,7 @@ mod tests {
     fn run(seed: u64, rows: &[(f64, f64)]) -> Run {
         let config = Config::parse(&format!("{{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":{seed}}}")).unwrap();
         let rows = rows.iter().map(|&(frames, value)| Row::new(frames, vec![("return_mean".into(), value)])).collect();
-        Run { path: "x".into(), config, rows, evaluation: vec![], hand_out: None, heatmaps: vec![] }
+        Run { path: "x".into(), config, rows, evaluation: vec![], selected: None, heatmaps: vec![] }
     }
 
     #[test]

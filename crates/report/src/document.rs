@@ -1,6 +1,7 @@
 //! A report before it is written down: sections of text, tables, figures and pictures.
 
 use crate::chart::Drawing;
+use crate::run::Kept;
 
 /// The whole report.
 #[derive(Clone, Debug, Default)]
@@ -76,18 +77,53 @@ pub struct Table {
     pub rows: Vec<Vec<Cell>>,
 }
 
+impl Table {
+    /// The same without those of the named columns in which all rows say the same: the caption says it once.
+    #[must_use]
+    pub fn folded(mut self, heads: &[&str]) -> Table {
+        for head in heads {
+            let Some(column) = self.heads.iter().position(|own| own == head) else { continue };
+            let all_the_same = self.rows.windows(2).all(|pair| pair[0][column].text == pair[1][column].text);
+            if self.rows.len() < 2 || !all_the_same {
+                continue;
+            }
+            let said = match &self.rows[0][column].text {
+                text if *head == "level" => format!("level {text}"),
+                text => text.clone(),
+            };
+            if !said.is_empty() && said != "-" {
+                self.caption = if self.caption.is_empty() { said } else { format!("{}; {said}", self.caption) };
+            }
+            self.heads.remove(column);
+            self.rows.iter_mut().for_each(|row| drop(row.remove(column)));
+            let mut before = 0;
+            for span in &mut self.spans {
+                before += span.1;
+                if column < before {
+                    span.1 -= 1;
+                    break;
+                }
+            }
+        }
+        self
+    }
+}
+
 /// How a cell is marked.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Mark {
-    /// Not at all.
-    #[default]
-    None,
-    /// The cost is within the budget: green.
-    Within,
-    /// The best return within the budget, or the least cost if none is: bold.
-    Best,
-    /// Both.
-    WithinBest,
+pub struct Mark {
+    /// How the cost stands to the budget: green letters if its mean is within, on green ground if surely.
+    pub kept: Kept,
+    /// Bold: the best return within the budget and what cannot be distinguished from it; the least cost if none is within.
+    pub bold: bool,
+}
+
+impl Mark {
+    /// A cost that stands so to its budget.
+    #[must_use]
+    pub fn of(kept: Kept) -> Mark {
+        Mark { kept, bold: false }
+    }
 }
 
 /// A cell.
@@ -99,7 +135,7 @@ pub struct Cell {
     pub note: String,
     /// What rows are sorted by, if it is a number.
     pub sort: Option<f64>,
-    /// What it tells when pointed at.
+    /// What it says when pointed at.
     pub title: String,
     /// Green, bold.
     pub mark: Mark,
@@ -146,6 +182,8 @@ impl Cell {
 /// A number with about four digits, as a reader compares them.
 #[must_use]
 pub fn number(value: f64) -> String {
+    // What rounds to zero is zero, not "-0.00".
+    let value = if value.abs() < 0.005 { 0.0 } else { value };
     match value.abs() {
         size if size >= 1000.0 => format!("{value:.0}"),
         size if size >= 100.0 => format!("{value:.1}"),
@@ -156,6 +194,8 @@ pub fn number(value: f64) -> String {
 /// A number of frames: 2M, 500k.
 #[must_use]
 pub fn frames(value: f64) -> String {
+    // The sum of no runs is -0.
+    let value = if value == 0.0 { 0.0 } else { value };
     let (scaled, unit) = match value {
         v if v >= 1e9 => (v / 1e9, "G"),
         v if v >= 1e6 => (v / 1e6, "M"),
@@ -164,6 +204,12 @@ pub fn frames(value: f64) -> String {
     };
     let text = format!("{scaled:.2}");
     format!("{}{unit}", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// A count with its noun: 1 run, 2 runs.
+#[must_use]
+pub fn count(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
 /// A name for links and files: lower-case letters, digits and dashes.
@@ -187,9 +233,27 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_all_rows_say_is_said_once() {
+        let row = |cells: [&str; 3]| cells.map(Cell::text).to_vec();
+        let table = Table {
+            spans: vec![(String::new(), 2), ("x".into(), 1)],
+            heads: ["level", "algorithm", "options"].map(String::from).to_vec(),
+            rows: vec![row(["1", "PPO", "rules tables"]), row(["1", "P3O", "rules tables"])],
+            ..Table::default()
+        };
+        let folded = table.folded(&["level", "algorithm", "options"]);
+        assert_eq!((folded.caption.as_str(), folded.heads.len()), ("level 1; rules tables", 1));
+        assert_eq!((folded.rows[1][0].text.as_str(), folded.spans[0].1, folded.spans[1].1), ("P3O", 1, 0));
+    }
+
+    #[test]
     fn numbers_and_names_read_well() {
         assert_eq!([1234.5, 123.45, 12.345, -0.5].map(number), ["1234", "123.5", "12.35", "-0.50"].map(String::from));
         assert_eq!([2e6, 1.5e6, 409_600.0, 5e8, 12.0].map(frames), ["2M", "1.5M", "409.6k", "500M", "12"].map(String::from));
+        assert_eq!(
+            (number(-0.001), frames(-0.0), count(1, "run"), count(0, "run")),
+            ("0.00".into(), "0".into(), "1 run".into(), "0 runs".into())
+        );
         assert_eq!(slug("Volcanic Venture: PPO/Lag  (x=1)"), "volcanic-venture-ppo-lag-x-1");
     }
 }

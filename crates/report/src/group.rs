@@ -1,6 +1,6 @@
 //! Runs of one experiment that differ in their seed alone.
 
-use crate::run::{Config, Constraint, Found, Run, TOLD, Warning};
+use crate::run::{Config, Found, Kept, Run, TOLD, Warning};
 use crate::statistics::Estimate;
 use std::collections::BTreeMap;
 
@@ -9,27 +9,36 @@ use std::collections::BTreeMap;
 pub struct Group {
     /// The runs, in the order of their seeds, no seed twice.
     pub runs: Vec<Run>,
-    /// The options that are told beside its results: see [`TOLD`].
+    /// The options that stand beside its results: see [`TOLD`].
     pub told: BTreeMap<String, String>,
 }
 
+/// Where the numbers of a table come from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Source {
+    /// Episodes of the selected checkpoint that training has not seen.
+    Evaluation,
+    /// Recent episodes of training, at its end.
+    Training,
+}
+
 impl Group {
-    /// Sorts runs into experiments, in the order scenario, level, algorithm, options. Of several runs with equal
+    /// Sorts runs into experiments, in the order scenario, level, algorithm, frames (most first), options. Of several runs with equal
     /// configuration and seed the one that got furthest is kept.
     pub fn sort(found: &Found, warnings: &mut Vec<Warning>) -> Vec<Group> {
         let mut groups: BTreeMap<String, Vec<Run>> = BTreeMap::new();
         for run in &found.runs {
             let config = &run.config;
             let place = scenario_order(&config.scenario);
+            let frames = u64::MAX - config.frames.unwrap_or(0.0).max(0.0) as u64;
             let key = format!(
-                "{place:02} {} {} {:02} {} {:?} {:?} {:?}",
+                "{place:02} {} {} {:02} {} {frames:020} {:?} {:?}",
                 config.scenario,
                 config.level,
                 algorithm_order(&config.algo),
                 config.algo.to_ascii_lowercase(),
                 config.options,
-                config.safety_budget,
-                config.frames
+                config.safety_budget
             );
             groups.entry(key).or_default().push(run.clone());
         }
@@ -78,12 +87,40 @@ impl Group {
         self.runs.iter().filter_map(|run| run.final_mean(metric)).collect()
     }
 
-    /// Whether the mean cost of every constraint at the end of training is within its own budget; `None` where one was not
-    /// reported.
+    /// Where its headline comes from: evaluation, if any of its runs was evaluated.
     #[must_use]
-    pub fn within_budget(&self) -> Option<bool> {
-        let within = |one: &Constraint| Some(self.final_estimate(&one.metric())?.mean <= one.budget);
-        self.config().constraints.iter().map(within).collect::<Option<Vec<bool>>>().map(|all| all.into_iter().all(|one| one))
+    pub fn headline(&self) -> Source {
+        let evaluated = self.runs.iter().any(|run| run.evaluated("return_mean").is_some());
+        if evaluated { Source::Evaluation } else { Source::Training }
+    }
+
+    /// A metric from one of the sources, a number a seed.
+    #[must_use]
+    pub fn samples(&self, source: Source, metric: &str) -> Vec<f64> {
+        match source {
+            Source::Training => self.final_samples(metric),
+            Source::Evaluation => self.runs.iter().filter_map(|run| run.evaluated(metric)).map(|one| one.mean).collect(),
+        }
+    }
+
+    /// A metric from one of the sources, the mean over seeds.
+    #[must_use]
+    pub fn estimate(&self, source: Source, metric: &str) -> Option<Estimate> {
+        Estimate::of(&self.samples(source, metric))
+    }
+
+    /// How its costs stand to its budgets, over seeds. Of a single evaluated seed the spread over episodes decides; of a single
+    /// seed in training nothing is known about the spread.
+    #[must_use]
+    pub fn kept(&self, source: Source) -> Kept {
+        let kept = self.config().constraints.iter().map(|one| {
+            let over_seeds = self.estimate(source, &one.metric());
+            let single = (source == Source::Evaluation && over_seeds.is_some_and(|cost| cost.n == 1))
+                .then(|| self.runs.iter().find_map(|run| run.evaluated(&one.metric())))
+                .flatten();
+            one.kept_by(single.or(over_seeds))
+        });
+        kept.min().unwrap_or_default()
     }
 
     /// Frames that the shortest and the longest run reached.
@@ -99,7 +136,7 @@ impl Group {
         self.runs.iter().all(|run| run.config.frames.is_none_or(|asked| run.frames() >= asked * 0.999))
     }
 
-    /// The options that are told of it, without the one of the given name, as one line; empty for none.
+    /// The options that stand beside it, without the one of the given name, as one line; empty for none.
     #[must_use]
     pub fn options_line(&self, without: Option<&str>) -> String {
         let options = self.told.iter().filter(|(key, _)| Some(key.as_str()) != without);
@@ -107,7 +144,7 @@ impl Group {
     }
 }
 
-/// Tells, of experiments that would look the same, what they differ in.
+/// Adds, to experiments that would look the same, what they differ in.
 fn tell_apart(groups: &mut [Group]) {
     let seen: Vec<(Config, BTreeMap<String, String>)> =
         groups.iter().map(|group| (group.config().clone(), group.told.clone())).collect();
@@ -137,7 +174,7 @@ pub const SCENARIOS: [(&str, &str); 6] = [
 ];
 
 /// The algorithms in the order of the paper's tables, then those beyond it.
-const ALGORITHMS: [&str; 13] =
+pub(crate) const ALGORITHMS: [&str; 13] =
     ["PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O", "TRPO", "TRPOLag", "TRPOPID", "CPO", "FOCOPS", "CUP", "IPO"];
 
 /// Place of a scenario in tables; unknown ones come last.
@@ -174,7 +211,7 @@ mod tests {
                 config,
                 rows: vec![],
                 evaluation: vec![],
-                hand_out: None,
+                selected: None,
                 heatmaps: vec![],
             }
         };

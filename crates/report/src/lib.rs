@@ -13,6 +13,9 @@
 //! Nothing here trains, plays or knows an environment, so that a report can be made of runs of any version and on any
 //! machine. Same runs, same bytes.
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 pub mod chart;
 mod csv;
 pub mod curve;

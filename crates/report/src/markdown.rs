@@ -1,13 +1,14 @@
 //! The report as Markdown, its figures beside it as files.
 
-use crate::document::{Block, Cell, Document, Mark, Table};
+use crate::document::{Block, Cell, Document, Table};
 use crate::escape::escape_markdown;
+use crate::run::Kept;
 use std::fmt::Write;
 
 /// Folder of figures and pictures, beside the Markdown file.
 pub const FIGURES: &str = "figures";
 
-/// Writes the report. Bold is bold; a tick stands for green.
+/// Writes the report. Bold is bold; a tick stands for green ground, one in brackets for green letters.
 #[must_use]
 pub fn markdown(document: &Document) -> String {
     let mut text = format!("# {}\n\n{}\n", escape_markdown(&document.title), escape_markdown(&document.subtitle));
@@ -58,12 +59,14 @@ fn markdown_cell(cell: &Cell) -> String {
     if cell.pale && text != "-" {
         text = format!("*{text}*");
     }
-    if matches!(cell.mark, Mark::Best | Mark::WithinBest) {
+    if cell.mark.bold && text != "-" {
         text = format!("**{text}**");
     }
-    if matches!(cell.mark, Mark::Within | Mark::WithinBest) {
-        text += " ✓";
-    }
+    text += match cell.mark.kept {
+        Kept::Surely => " ✓",
+        Kept::ByMean => " (✓)",
+        Kept::Over | Kept::Unknown => "",
+    };
     if !cell.note.is_empty() {
         let _ = write!(text, " ({})", escape_markdown(&cell.note));
     }

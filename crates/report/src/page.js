@@ -34,7 +34,7 @@ for (const plot of document.querySelectorAll("rect.hover")) {
     const at = values.from + (values.to - values.from) * (event.clientX - box.left) / box.width;
     tip.replaceChildren();
     const head = document.createElement("b");
-    head.textContent = frames(at) + " frames";
+    head.textContent = (values.axis === "frames" ? frames(at) : digits(at)) + " " + values.axis;
     tip.append(head);
     for (const curve of values.curves) {
       if (!curve.points.length || at > curve.points[curve.points.length - 1][0] * 1.01) continue;

@@ -1,8 +1,9 @@
 //! The report as one HTML page that asks nothing of a network: styles, script, figures and pictures are inside.
 
 use crate::chart::{INK_STYLE, inline_svg};
-use crate::document::{Block, Cell, Document, Mark, Section, Table};
+use crate::document::{Block, Cell, Document, Section, Table};
 use crate::escape::escape;
+use crate::run::Kept;
 use std::fmt::Write;
 
 const STYLE: &str = include_str!("page.css");
@@ -66,10 +67,12 @@ fn write_section(section: &Section, html: &mut String) {
 }
 
 fn write_table(table: &Table, html: &mut String) {
-    html.push_str("<div class=\"wide\"><table>");
+    // The caption stands outside of what scrolls sideways.
     if !table.caption.is_empty() {
-        let _ = write!(html, "<caption>{}</caption>", escape(&table.caption));
+        let _ = write!(html, "<p class=\"caption\">{}</p>", escape(&table.caption));
     }
+    let words = table.heads.len() < 4 && !table.rows.iter().flatten().any(|cell| cell.sort.is_some());
+    let _ = write!(html, "<div class=\"wide{}\"><table>", if words { " words" } else { "" });
     html.push_str("<thead>");
     if !table.spans.is_empty() {
         html.push_str("<tr class=\"spans\">");
@@ -79,8 +82,9 @@ fn write_table(table: &Table, html: &mut String) {
         html.push_str("</tr>");
     }
     html.push_str("<tr class=\"heads\">");
-    for head in &table.heads {
-        let _ = write!(html, "<th scope=\"col\" tabindex=\"0\" aria-sort=\"none\">{}</th>", escape(head));
+    for (column, head) in table.heads.iter().enumerate() {
+        let class = if table.rows.iter().any(|row| is_number(&row[column])) { " class=\"number\"" } else { "" };
+        let _ = write!(html, "<th scope=\"col\"{class} tabindex=\"0\" aria-sort=\"none\">{}</th>", escape(head));
     }
     html.push_str("</tr></thead><tbody>");
     for row in &table.rows {
@@ -93,14 +97,18 @@ fn write_table(table: &Table, html: &mut String) {
     html.push_str("</tbody></table></div>\n");
 }
 
+/// Whether a cell reads as a number. A word may carry one to be sorted by; it is still read from the left.
+fn is_number(cell: &Cell) -> bool {
+    cell.sort.is_some() && cell.text.starts_with(|c: char| c.is_ascii_digit() || c == '-')
+}
+
 fn write_cell(cell: &Cell, html: &mut String) {
     let mut classes = Vec::new();
     classes.extend(cell.pale.then_some("pale"));
-    // A word may carry a number to be sorted by; it is still read from the left.
-    let numeric = cell.text.starts_with(|c: char| c.is_ascii_digit() || c == '-');
-    classes.extend((numeric && (cell.sort.is_some() || cell.text == "-")).then_some("number"));
-    classes.extend(matches!(cell.mark, Mark::Within | Mark::WithinBest).then_some("within"));
-    classes.extend(matches!(cell.mark, Mark::Best | Mark::WithinBest).then_some("best"));
+    classes.extend((is_number(cell) || cell.text == "-").then_some("number"));
+    classes.extend((cell.mark.kept == Kept::Surely).then_some("within"));
+    classes.extend((cell.mark.kept == Kept::ByMean).then_some("nearly"));
+    classes.extend(cell.mark.bold.then_some("best"));
     html.push_str("<td");
     if !classes.is_empty() {
         let _ = write!(html, " class=\"{}\"", classes.join(" "));

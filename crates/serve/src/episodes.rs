@@ -8,6 +8,7 @@ use axum::response::{IntoResponse, Response};
 use hasard_engine::render::FrameSize;
 use hasard_envs::{EnvId, EnvOptions, RuleSet};
 use hasard_media::episode::{EpisodeFile, Header};
+use hasard_media::files::Scratch;
 use hasard_play::{Film, Replay, ViewKind};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -67,7 +68,7 @@ fn kept(folder: &Path) -> Vec<Value> {
 fn row(name: &str, header: &Header) -> Option<Value> {
     let outcome = header.outcome.as_ref()?;
     let told = |option: &str, value: &str| header.options.get(option).is_some_and(|given| given == value);
-    let rules = if told("rules", "released") { RuleSet::Released } else { RuleSet::Paper };
+    let rules = header.options.get("rules").map_or(Ok(RuleSet::Paper), |name| name.parse()).ok()?;
     let budget = if told("hard", "true") { 0.0 } else { header.env.parse::<EnvId>().ok()?.scenario.safety_budget(rules) };
     Some(json!({
         "who": header.player, "env": header.env, "return": outcome.episode_return, "cost": outcome.cost, "budget": budget,
@@ -121,9 +122,10 @@ fn filmed(path: &Path, gif: bool) -> Result<Vec<u8>, String> {
         if gif { ("gif", FrameSize { width: 160, height: 120 }, 8) } else { ("mp4", FrameSize { width: 320, height: 240 }, 1) };
     let number = NUMBER.fetch_add(1, Ordering::Relaxed);
     let out = std::env::temp_dir().join(format!("hasard-serve-film-{}-{number}.{ending}", std::process::id()));
+    let out = Scratch::new(out);
     let film = || -> Result<Vec<u8>, hasard_play::PlayError> {
         let mut replay = Replay::new(EpisodeFile::read(path)?, path, &EnvOptions::default())?;
-        let mut film = Film::begin(replay.stage(), &out, size, &[ViewKind::Colour], every)?;
+        let mut film = Film::begin(replay.stage(), out.path(), size, &[ViewKind::Colour], every)?;
         loop {
             let more = replay.tic();
             film.tic(replay.stage())?;
@@ -132,9 +134,7 @@ fn filmed(path: &Path, gif: bool) -> Result<Vec<u8>, String> {
             }
         }
         film.finish()?;
-        Ok(hasard_media::files::read_limited(&out, 256 << 20)?)
+        Ok(hasard_media::files::read_limited(out.path(), 256 << 20)?)
     };
-    let bytes = film().map_err(|error| error.to_string());
-    let _ = std::fs::remove_file(out);
-    bytes
+    film().map_err(|error| error.to_string())
 }

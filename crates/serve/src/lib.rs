@@ -12,6 +12,8 @@
 //!
 //! The stage, its views and its controls are those of `hasard-play`: the window and this page are two fronts of it.
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 #![allow(clippy::result_large_err, reason = "an answer is the error type of a handler, as axum has it; none is hot")]
 
 mod answer;

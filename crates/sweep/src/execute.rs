@@ -1,13 +1,21 @@
 //! Running jobs side by side.
 
 use crate::job::{Job, State};
-use std::fs::OpenOptions;
+use hasard_media::shell::quote;
+use std::ffi::OsString;
+use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
+
+/// Variable of a job's process: it stops when its standard input ends, which it does with this process, whatever ended that.
+pub const STOPS_WITH_INPUT: &str = "HASARD_STOPS_WITH_INPUT";
+
+/// Time between two looks at a process.
+const LOOK_EVERY: Duration = Duration::from_millis(30);
 
 /// What happens to a job.
 #[derive(Clone, PartialEq, Debug)]
@@ -20,6 +28,17 @@ pub enum Event {
     Finished(Duration),
     /// Its process did not end well: why, in one line that ends with the last line of its log.
     Failed(String),
+    /// The caller stopped it.
+    Stopped,
+}
+
+/// How the caller ends a sweep before its time.
+#[derive(Clone, Copy)]
+pub struct Stop<'a> {
+    /// No job begins any more, and those that run stop with a checkpoint.
+    pub soon: &'a AtomicBool,
+    /// Those that run are killed.
+    pub now: &'a AtomicBool,
 }
 
 /// How a sweep went.
@@ -29,6 +48,8 @@ pub struct Summary {
     pub skipped: usize,
     /// Jobs that were run to their end.
     pub finished: usize,
+    /// Jobs that the caller stopped.
+    pub stopped: usize,
     /// Jobs that failed, with the reason.
     pub failed: Vec<(String, String)>,
 }
@@ -36,12 +57,11 @@ pub struct Summary {
 /// Runs jobs, `parallel` processes of `program` at a time: finished ones are skipped, unfinished ones resumed. A job that
 /// fails does not stop the others. What a process prints goes to the job's log. `tell` hears of every event.
 ///
-/// Several processes share the cores out: each is told its number of threads, unless its job chooses one. Otherwise every one
+/// Several processes share the cores out: each is given its number of threads, unless its job chooses one. Otherwise every one
 /// of them would take all cores, and they would wait for each other.
 ///
-/// Ctrl-C reaches the processes as well (they are of the same group), and each stops with a checkpoint; the next call
-/// resumes them.
-pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, tell: impl Fn(usize, &Event) + Sync) -> Summary {
+/// No process outlives this one: see [`STOPS_WITH_INPUT`].
+pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, stop: Stop<'_>, tell: impl Fn(usize, &Event) + Sync) -> Summary {
     let parallel = parallel.clamp(1, jobs.len().max(1));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let share = (parallel > 1).then(|| (cores / parallel).max(1));
@@ -50,16 +70,17 @@ pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, tell: impl Fn(usi
     std::thread::scope(|scope| {
         for _ in 0..parallel {
             scope.spawn(|| {
-                loop {
+                while !stop.soon.load(Ordering::SeqCst) {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(job) = jobs.get(index) else { break };
-                    let event = run_one(program, job, share, |event| tell(index, event));
+                    let event = run_one(program, job, share, stop, |event| tell(index, event));
                     tell(index, &event);
                     let mut summary = summary.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                     match event {
                         Event::Failed(why) => summary.failed.push((job.directory.display().to_string(), why)),
                         Event::AlreadyFinished => summary.skipped += 1,
-                        _ => summary.finished += 1,
+                        Event::Stopped => summary.stopped += 1,
+                        Event::Started(_) | Event::Finished(_) => summary.finished += 1,
                     }
                 }
             });
@@ -70,59 +91,94 @@ pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, tell: impl Fn(usi
     summary
 }
 
-fn run_one(program: &Path, job: &Job, share: Option<usize>, tell: impl Fn(&Event)) -> Event {
-    let state = job.state();
-    if state == State::Finished {
-        if !job.wants_evaluation() {
-            return Event::AlreadyFinished;
+/// Runs a process to its end, or until the caller stops it.
+fn run(program: &Path, arguments: &[OsString], out: File, error: File, stop: Stop<'_>) -> std::io::Result<ExitStatus> {
+    let mut command = Command::new(program);
+    command.args(arguments).stdin(Stdio::piped()).stdout(out).stderr(error).env(STOPS_WITH_INPUT, "1");
+    let mut child = command.spawn()?;
+    let mut line = child.stdin.take();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status);
         }
-        return evaluate(program, job).map_or_else(Event::Failed, |()| Event::AlreadyFinished);
-    }
-    let log = job.log();
-    let mut arguments = job.arguments_from(state);
-    if let Some(threads) = share.filter(|_| !job.chooses_threads()) {
-        arguments.extend(["--threads".into(), threads.to_string()]);
-    }
-    let open = || -> std::io::Result<std::fs::File> {
-        if let Some(folder) = log.parent() {
-            std::fs::create_dir_all(folder)?;
+        if stop.soon.load(Ordering::SeqCst) {
+            drop(line.take());
         }
-        let mut file = OpenOptions::new().create(true).append(true).open(&log)?;
-        writeln!(file, "$ {} {}", program.display(), arguments.join(" "))?;
-        Ok(file)
-    };
-    let outputs = open().and_then(|file| Ok((file.try_clone()?, file)));
-    let (out, error) = match outputs {
-        Ok(outputs) => outputs,
-        Err(error) => return Event::Failed(format!("cannot write {}: {error}", log.display())),
-    };
-    tell(&Event::Started(state));
-    let began = Instant::now();
-    let status = Command::new(program).args(&arguments).stdin(Stdio::null()).stdout(out).stderr(error).status();
-    match status {
-        Ok(status) if status.success() => match job.state() {
-            State::Finished if job.wants_evaluation() => {
-                evaluate(program, job).map_or_else(Event::Failed, |()| Event::Finished(began.elapsed()))
-            }
-            State::Finished => Event::Finished(began.elapsed()),
-            _ => Event::Failed(format!("ended before its {} frames; see {}", job.frames, log.display())),
-        },
-        Ok(status) => Event::Failed(format!("{status}; {}: {}", log.display(), last_line(&log))),
-        Err(error) => Event::Failed(format!("cannot run {}: {error}", program.display())),
+        if stop.now.load(Ordering::SeqCst) {
+            child.kill()?;
+            return child.wait();
+        }
+        std::thread::sleep(LOOK_EVERY);
     }
 }
 
-/// Evaluates the agent of a finished run and keeps the episodes in its directory, under a temporary name until they are all
-/// there.
-fn evaluate(program: &Path, job: &Job) -> Result<(), String> {
+fn run_one(program: &Path, job: &Job, share: Option<usize>, stop: Stop<'_>, tell: impl Fn(&Event)) -> Event {
+    let evaluated = |event: Event| match evaluate(program, job, stop) {
+        // It is still wanted: the caller stopped it.
+        Ok(()) if job.wants_evaluation() => Event::Stopped,
+        Ok(()) => event,
+        Err(why) => Event::Failed(why),
+    };
+    let state = job.state();
+    if state == State::Finished {
+        return evaluated(Event::AlreadyFinished);
+    }
+    let mut arguments = job.arguments_from(state);
+    if let Some(threads) = share.filter(|_| !job.chooses_threads()) {
+        arguments.extend(["--threads".into(), threads.to_string().into()]);
+    }
+    let outputs = log(program, job, &arguments).and_then(|file| Ok((file.try_clone()?, file)));
+    let (out, error) = match outputs {
+        Ok(outputs) => outputs,
+        Err(error) => return Event::Failed(format!("cannot write {}: {error}", job.log().display())),
+    };
+    tell(&Event::Started(state));
+    let began = Instant::now();
+    let status = run(program, &arguments, out, error, stop);
+    match (status, job.state()) {
+        (Ok(status), State::Finished) if status.success() => evaluated(Event::Finished(began.elapsed())),
+        (Ok(_), _) if stop.soon.load(Ordering::SeqCst) => Event::Stopped,
+        (Ok(status), _) if status.success() => {
+            Event::Failed(format!("ended before its {} frames; see {}", job.frames, job.log().display()))
+        }
+        (Ok(status), _) => Event::Failed(format!("{status}; {}: {}", job.log().display(), last_line(&job.log()))),
+        (Err(error), _) => Event::Failed(format!("cannot run {}: {error}", program.display())),
+    }
+}
+
+/// A job's log, with the command at its end.
+fn log(program: &Path, job: &Job, arguments: &[OsString]) -> std::io::Result<File> {
+    let log = job.log();
+    if let Some(folder) = log.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    let mut file = OpenOptions::new().create(true).append(true).open(&log)?;
+    let words: Vec<String> = arguments.iter().map(quote).collect();
+    writeln!(file, "$ {} {}", quote(program), words.join(" "))?;
+    Ok(file)
+}
+
+/// Evaluates the agent of a finished run, if that is asked for, and keeps the episodes in its directory, under a temporary name
+/// until they are all there. A caller who stops it has none.
+fn evaluate(program: &Path, job: &Job, stop: Stop<'_>) -> Result<(), String> {
+    if !job.wants_evaluation() {
+        return Ok(());
+    }
     let (path, partial) = (job.evaluation(), job.evaluation().with_extension("partial"));
     let failed = |error: std::io::Error| format!("cannot evaluate into {}: {error}", path.display());
-    let output = Command::new(program).args(job.evaluation_arguments()).stdin(Stdio::null()).output().map_err(failed)?;
-    if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-        return Err(format!("the evaluation of {} failed: {said}", job.directory.display()));
+    let arguments = job.evaluation_arguments();
+    let error = log(program, job, &arguments).map_err(failed)?;
+    let out = File::create(&partial).map_err(failed)?;
+    let status = run(program, &arguments, out, error, stop);
+    if status.as_ref().is_ok_and(ExitStatus::success) {
+        return std::fs::rename(&partial, &path).map_err(failed);
     }
-    std::fs::write(&partial, &output.stdout).and_then(|()| std::fs::rename(&partial, &path)).map_err(failed)
+    let _ = std::fs::remove_file(&partial);
+    match status {
+        _ if stop.soon.load(Ordering::SeqCst) => Ok(()),
+        Ok(_) => Err(format!("the evaluation of {} failed: {}", job.directory.display(), last_line(&job.log()))),
+        Err(error) => Err(failed(error)),
+    }
 }
 
 /// The last line of a log that says anything; only the file's end is read.

@@ -1,6 +1,8 @@
 //! One run of a sweep.
 
 use crate::grid::OptionValue;
+use hasard_media::shell::quote;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// One run: a directory and the arguments of its process.
@@ -10,7 +12,7 @@ pub struct Job {
     /// share it, so that none is made twice.
     pub directory: PathBuf,
     /// Arguments of `hasard`, beginning with `train`, for a fresh start.
-    pub arguments: Vec<String>,
+    pub arguments: Vec<OsString>,
     /// Frames to reach.
     pub frames: u64,
     /// Episodes that its agent is evaluated on when it is finished; 0 for none.
@@ -40,8 +42,9 @@ impl Job {
         seed: u64,
         options: &[(String, OptionValue)],
     ) -> Job {
-        let mut arguments: Vec<String> = ["train", environment, "--algo", algorithm].map(String::from).to_vec();
-        arguments.extend(["--frames".into(), frames.to_string(), "--seed".into(), seed.to_string()]);
+        let mut arguments: Vec<OsString> = ["train", environment, "--algo", algorithm].map(OsString::from).to_vec();
+        let (frames_text, seed_text) = (frames.to_string(), seed.to_string());
+        arguments.extend(["--frames", &frames_text, "--seed", &seed_text].map(OsString::from));
         let mut names = Vec::new();
         // In the order of names, so that a run has one directory however its options were put together.
         let mut options: Vec<&(String, OptionValue)> = options.iter().collect();
@@ -50,11 +53,11 @@ impl Job {
             let named = match value {
                 OptionValue::Switch(false) => continue,
                 OptionValue::Switch(true) => {
-                    arguments.push(format!("--{name}"));
+                    arguments.push(format!("--{name}").into());
                     name.clone()
                 }
                 OptionValue::Text(text) => {
-                    arguments.extend([format!("--{name}"), text.clone()]);
+                    arguments.extend([format!("--{name}"), text.clone()].map(OsString::from));
                     format!("{name}={}", text.replace(|c: char| !c.is_ascii_alphanumeric() && !".+-_,".contains(c), "_"))
                 }
             };
@@ -67,7 +70,7 @@ impl Job {
             directory.push(names.join(","));
         }
         directory.push(format!("seed{seed}"));
-        arguments.extend(["--out".into(), directory.display().to_string()]);
+        arguments.extend(["--out".into(), directory.clone().into_os_string()]);
         Job { directory, arguments, frames, evaluate: 0 }
     }
 
@@ -83,14 +86,29 @@ impl Job {
             value.get("frames")?.as_f64()
         });
         match reached.unwrap_or(0.0) as u64 {
-            frames if frames >= self.frames => State::Finished,
+            frames if frames >= self.frames && self.is_closed(frames) => State::Finished,
             frames => State::Unfinished(frames),
         }
     }
 
+    /// Whether a run whose rows have reached their end was not killed before its last checkpoint, nor before the closing
+    /// episodes of the one that it selected.
+    fn is_closed(&self, frames: u64) -> bool {
+        let entries = std::fs::read_dir(self.directory.join("checkpoints")).into_iter().flatten().flatten();
+        let names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+        let newest = |kind: &str| names.iter().filter_map(|name| name.strip_prefix(kind)?.parse::<u64>().ok()).max();
+        let saved = newest("frames_").is_none_or(|saved| saved >= frames);
+        let closed = newest("best_").is_none_or(|best| {
+            let told = std::fs::read(self.directory.join("hand_out.json")).unwrap_or_default();
+            let told: serde_json::Value = serde_json::from_slice(&told).unwrap_or_default();
+            told["frames"] == best
+        });
+        saved && closed
+    }
+
     /// The arguments that take the run from where it is to its end.
     #[must_use]
-    pub fn arguments_from(&self, state: State) -> Vec<String> {
+    pub fn arguments_from(&self, state: State) -> Vec<OsString> {
         let mut arguments = self.arguments.clone();
         if matches!(state, State::Unfinished(_)) {
             arguments.push("--resume".into());
@@ -112,9 +130,9 @@ impl Job {
 
     /// The arguments that evaluate its agent.
     #[must_use]
-    pub fn evaluation_arguments(&self) -> Vec<String> {
-        let directory = self.directory.display().to_string();
-        ["eval", &directory, "--episodes", &self.evaluate.to_string(), "--json"].map(String::from).to_vec()
+    pub fn evaluation_arguments(&self) -> Vec<OsString> {
+        let episodes = self.evaluate.to_string();
+        vec!["eval".into(), self.directory.clone().into(), "--episodes".into(), episodes.into(), "--json".into()]
     }
 
     /// Whether the number of threads was chosen for it.
@@ -126,21 +144,12 @@ impl Job {
     /// The command as one line for a shell, for a fresh start.
     #[must_use]
     pub fn command_line(&self, program: &str) -> String {
-        std::iter::once(program).chain(self.arguments.iter().map(String::as_str)).map(quote).collect::<Vec<_>>().join(" ")
+        std::iter::once(quote(program)).chain(self.arguments.iter().map(quote)).collect::<Vec<_>>().join(" ")
     }
 
     /// Where what the process prints is kept: beside the run directory, which the trainer wants to itself.
     #[must_use]
     pub fn log(&self) -> PathBuf {
         self.directory.with_extension("log")
-    }
-}
-
-/// A word that a shell reads as it is.
-fn quote(word: &str) -> String {
-    if !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric() || "-_./=,+:@%".contains(c)) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
     }
 }

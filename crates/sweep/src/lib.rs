@@ -27,13 +27,16 @@
 //! );
 //! ```
 
+// They panic where a stream is closed or its disk is full.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 mod execute;
 mod file;
 mod grid;
 mod job;
 pub mod paper;
 
-pub use execute::{Event, Summary, run_jobs};
+pub use execute::{Event, STOPS_WITH_INPUT, Stop, Summary, run_jobs};
 pub use grid::{Grid, OptionValue, Sweep};
 pub use job::{Job, State};
 

@@ -1,4 +1,4 @@
-//! Experiments by name: those of the paper at its numbers of frames, and the quick preset's own; [`Sweep::scale_frames`] makes them smaller.
+//! Experiments by name: those of the paper with its preset and numbers of frames, and the quick preset's own; [`Sweep::scale_frames`] makes them smaller.
 
 use crate::grid::{Grid, OptionValue, SCENARIOS, Sweep};
 use std::path::PathBuf;
@@ -14,8 +14,8 @@ pub const EXPERIMENTS: [(&str, &str); 12] = [
     ("depth", "PPOPID on Precipice Plunge level 2 with and without depth"),
     ("segmentation", "PPOPID on Armament Burden level 2 with colours and with segmentation"),
     ("trpo", "TRPO, TRPOLag and TRPOPID on level 1"),
-    ("quick", "the quick preset on Volcanic Venture level 1, five seeds, each evaluated on 100 episodes"),
-    ("quick-all", "the quick preset on level 1 of the six scenarios, a seed each, evaluated on 100 episodes"),
+    ("quick", "PPOPID with the quick preset on Volcanic Venture level 1, five seeds, each evaluated on 100 episodes"),
+    ("quick-all", "PPOPID with the quick preset on level 1 of the six scenarios, a seed each, evaluated on 100 episodes"),
     (
         "quick-algorithms",
         "the quick preset's 2 million frames of all algorithms on Volcanic Venture level 1 and of the paper's six on Remedy Rush level 1, \
@@ -43,32 +43,28 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
                     ["25", "50", "75"]
                 };
                 // Always spelled out: the rule sets disagree about Armament Burden's own budget.
-                Grid {
-                    options: vec![("safety-budget".into(), budgets.map(text).to_vec())],
-                    ..grid(&[scenario], &[1], &["PPOLag"], 500_000_000)
-                }
+                with("safety-budget", budgets.map(text).to_vec(), grid(&[scenario], &[1], &["PPOLag"], 500_000_000))
             })
             .collect(),
         "cost-scale" => {
             let scales = ["0.1", "0.5", "1", "2"].map(text).to_vec();
-            vec![Grid { options: vec![("cost-scale".into(), scales)], ..level_1(&["PPOCost"], 500_000_000) }]
+            vec![with("cost-scale", scales, level_1(&["PPOCost"], 500_000_000))]
         }
         "curriculum" => {
             let alone = grid(&["RemedyRush", "CollateralDamage"], &[3], &["PPOPID"], 300_000_000);
-            vec![Grid { options: vec![("curriculum".into(), vec![text("1,2,3")])], ..alone.clone() }, alone]
+            vec![with("curriculum", vec![text("1,2,3")], alone.clone()), alone]
         }
         "hard" => {
-            let hard = vec![("hard".into(), vec![OptionValue::Switch(true)])];
-            vec![Grid { options: hard, ..level_1(&["PPO", "PPOCost", "PPOLag"], 500_000_000) }]
+            vec![with("hard", vec![OptionValue::Switch(true)], level_1(&["PPO", "PPOCost", "PPOLag"], 500_000_000))]
         }
         "full-actions" => {
-            let both = vec![("full-actions".into(), vec![OptionValue::Switch(false), OptionValue::Switch(true)])];
-            vec![Grid { options: both, ..level_1(&["PPOLag"], 200_000_000) }]
+            let both = [false, true].map(OptionValue::Switch).to_vec();
+            vec![with("full-actions", both, level_1(&["PPOLag"], 200_000_000))]
         }
         "depth" => vec![observed(grid(&["PrecipicePlunge"], &[2], &["PPOPID"], 200_000_000), "rgb+depth")],
         "segmentation" => vec![observed(grid(&["ArmamentBurden"], &[2], &["PPOPID"], 500_000_000), "segmented")],
-        "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOLag"], 10_000_000))],
-        "quick-all" => vec![Grid { seeds: vec![1], ..quick(grid(&SCENARIOS, &[1], &["PPOLag"], 12_000_000)) }],
+        "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOPID"], 10_000_000))],
+        "quick-all" => vec![Grid { seeds: vec![1], ..quick(grid(&SCENARIOS, &[1], &["PPOPID"], 12_000_000)) }],
         "quick-algorithms" => {
             let all = [&six[..], &["TRPO", "TRPOLag", "TRPOPID", "CPO", "FOCOPS", "CUP", "IPO"]].concat();
             [("VolcanicVenture", &all[..]), ("RemedyRush", &six[..])]
@@ -91,15 +87,25 @@ fn grid(scenarios: &[&str], levels: &[u32], algorithms: &[&str], frames: u64) ->
         algorithms: algorithms.iter().map(|name| (*name).to_owned()).collect(),
         seeds: (1..=5).collect(),
         frames,
-        options: Vec::new(),
+        options: vec![preset("paper")],
     }
 }
 
+/// The preset is always spelled out: that of `train` is another.
+fn preset(name: &str) -> (String, Vec<OptionValue>) {
+    ("preset".into(), vec![OptionValue::Text(name.into())])
+}
+
+fn with(name: &str, values: Vec<OptionValue>, mut grid: Grid) -> Grid {
+    grid.options.push((name.into(), values));
+    grid
+}
+
 fn quick(grid: Grid) -> Grid {
-    Grid { options: vec![("preset".into(), vec![OptionValue::Text("quick".into())])], ..grid }
+    Grid { options: vec![preset("quick")], ..grid }
 }
 
 fn observed(grid: Grid, observation: &str) -> Grid {
     let kinds = ["rgb", observation].map(|kind| OptionValue::Text(kind.to_owned())).to_vec();
-    Grid { options: vec![("observation".into(), kinds)], ..grid }
+    with("observation", kinds, grid)
 }

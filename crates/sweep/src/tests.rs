@@ -1,6 +1,7 @@
 use crate::*;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 #[test]
 fn a_grid_expands_to_every_combination_once() {
@@ -34,8 +35,12 @@ fn the_papers_experiments_have_their_sizes() {
     let mut curriculum = paper::experiment("curriculum").unwrap();
     curriculum.scale_frames(0.01);
     let lines: Vec<String> = curriculum.jobs().unwrap().iter().map(|job| job.command_line("hasard")).collect();
-    assert!(lines[0].contains("--frames 3000000 --seed 1 --curriculum 1,2,3"), "{}", lines[0]);
-    assert!(lines.iter().any(|line| line.ends_with("--seed 1 --out runs/RemedyRushLevel3-v0/PPOPID/seed1")));
+    assert!(lines[0].contains("--frames 3000000 --seed 1 --curriculum 1,2,3 --preset paper"), "{}", lines[0]);
+    assert!(
+        lines
+            .iter()
+            .any(|line| line.ends_with("--seed 1 --preset paper --out runs/RemedyRushLevel3-v0/PPOPID/preset=paper/seed1"))
+    );
     let error = paper::experiment("mian").unwrap_err();
     assert!(error.contains("`mian`") && error.contains("main, safety-bounds"), "{error}");
 }
@@ -47,12 +52,12 @@ fn a_file_may_change_an_experiment_of_the_paper() {
             .unwrap();
     let jobs = sweep.jobs().unwrap();
     assert_eq!(jobs.len(), 36);
-    assert!(jobs[0].command_line("h").contains("--frames 2000000 --seed 1 --rules released"));
+    assert!(jobs[0].command_line("h").contains("--frames 2000000 --seed 1 --preset paper --rules released"));
     sweep.set_option("rules", &OptionValue::Text("paper".into()));
     sweep.set_option("device", &OptionValue::Text("cpu".into()));
     let job = &sweep.jobs().unwrap()[0];
-    assert!(job.command_line("h").contains("--device cpu --rules paper"));
-    assert!(job.directory.ends_with("ArmamentBurdenLevel1-v0/PPO/rules=paper/seed1"), "{}", job.directory.display());
+    assert!(job.command_line("h").contains("--device cpu --preset paper --rules paper"));
+    assert!(job.directory.ends_with("ArmamentBurdenLevel1-v0/PPO/preset=paper,rules=paper/seed1"), "{}", job.directory.display());
 }
 
 #[test]
@@ -80,6 +85,9 @@ fn slips_of_the_pen_are_named() {
         assert!(error.contains(part) && !error.contains('\n'), "{text}: {error}");
     }
 }
+
+static OFF: AtomicBool = AtomicBool::new(false);
+const NEVER: Stop<'static> = Stop { soon: &OFF, now: &OFF };
 
 /// A folder that is gone after the test, with a stand-in for the trainer.
 struct Folder(PathBuf);
@@ -119,12 +127,12 @@ fn jobs_run_are_resumed_and_skipped() {
     std::fs::write(&program, script).unwrap();
     std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
     let jobs = jobs(&folder.0.join("out"), "[1, 2, 3]");
-    let first = run_jobs(&program, &jobs, 2, |_, _| {});
+    let first = run_jobs(&program, &jobs, 2, NEVER, |_, _| {});
     assert_eq!((first.skipped, first.finished, first.failed.len()), (0, 1, 2), "{first:?}");
     assert!(first.failed[1].0.ends_with("seed3") && first.failed[1].1.ends_with("out of luck"), "{first:?}");
     assert_eq!(jobs[1].state(), State::Unfinished(50));
     let events = Mutex::new(Vec::new());
-    let second = run_jobs(&program, &jobs, 1, |job, event| events.lock().unwrap().push((job, event.clone())));
+    let second = run_jobs(&program, &jobs, 1, NEVER, |job, event| events.lock().unwrap().push((job, event.clone())));
     // The half-written line of seed 2 runs into the next one: a trainer mends that, this stand-in does not.
     assert_eq!(second.skipped, 1, "{second:?}");
     let events = events.into_inner().unwrap();
@@ -160,13 +168,13 @@ fn finished_runs_are_evaluated_once() {
         )
     };
     let without = Sweep::parse(&text(0)).unwrap().jobs().unwrap();
-    assert_eq!(run_jobs(&program, &without, 2, |_, _| {}).finished, 2);
+    assert_eq!(run_jobs(&program, &without, 2, NEVER, |_, _| {}).finished, 2);
     assert!(!without[0].evaluation().exists());
     let log = std::fs::read_to_string(without[0].log()).unwrap();
     assert!(log.contains("--threads 7") && log.matches("--threads").count() == 1, "{log}");
     let with = Sweep::parse(&text(100)).unwrap().jobs().unwrap();
     for _ in 0..2 {
-        assert_eq!(run_jobs(&program, &with, 2, |_, _| {}).skipped, 2);
+        assert_eq!(run_jobs(&program, &with, 2, NEVER, |_, _| {}).skipped, 2);
         for job in &with {
             let kept = std::fs::read_to_string(job.evaluation()).unwrap();
             assert!(kept.contains(&format!("eval {} --episodes 100 --json", job.directory.display())), "{kept}");
@@ -177,11 +185,72 @@ fn finished_runs_are_evaluated_once() {
     assert!(std::fs::read_to_string(with[0].evaluation()).unwrap().ends_with("onceonce"), "it was evaluated twice");
 }
 
+/// A caller who stops a sweep: the processes hear of it at their standard input, no further one begins, and those that do not
+/// listen are killed when the caller insists.
+#[cfg(unix)]
+#[test]
+fn a_sweep_that_is_stopped_leaves_no_process() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new("stopped");
+    let program = folder.0.join("trainer");
+    // Seed 1 listens, as a training does; seed 2 is deaf.
+    let script = "#!/bin/sh\nfor a in \"$@\"; do case \"$a\" in */seed*) dir=$a;; esac; done\nmkdir -p \"$dir\"\n\
+                  echo $$ > \"$dir/process\"\ncase \"$dir\" in */seed1) cat > /dev/null; echo stopped; exit 143;; esac\nexec sleep 600\n";
+    std::fs::write(&program, script).unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let jobs = jobs(&folder.0.join("out"), "[1, 2, 3]");
+    let (soon, now) = (AtomicBool::new(false), AtomicBool::new(false));
+    let begun = |job: &Job| std::fs::read_to_string(job.directory.join("process")).is_ok_and(|text| text.ends_with('\n'));
+    let wait = |what: &dyn Fn() -> bool| {
+        (0..2000).any(|_| {
+            what() || {
+                std::thread::sleep(std::time::Duration::from_millis(5));
+                false
+            }
+        })
+    };
+    let events = Mutex::new(Vec::new());
+    let tell = |job: usize, event: &Event| events.lock().unwrap().push((job, event.clone()));
+    let summary = std::thread::scope(|scope| {
+        let sweep = scope.spawn(|| run_jobs(&program, &jobs, 2, Stop { soon: &soon, now: &now }, tell));
+        assert!(wait(&|| begun(&jobs[0]) && begun(&jobs[1])));
+        soon.store(true, Ordering::SeqCst);
+        assert!(wait(&|| events.lock().unwrap().contains(&(0, Event::Stopped))), "{:?}", events.lock().unwrap());
+        now.store(true, Ordering::SeqCst);
+        sweep.join().unwrap()
+    });
+    assert_eq!((summary.stopped, summary.finished, summary.failed.len()), (2, 0, 0), "{summary:?}");
+    assert!(!jobs[2].directory.exists(), "a run began after the sweep was stopped");
+    for job in &jobs[..2] {
+        let process = std::fs::read_to_string(job.directory.join("process")).unwrap();
+        assert!(!Path::new("/proc").join(process.trim()).exists(), "{process} lives on");
+    }
+}
+
+/// Rows alone do not make a run finished: its last checkpoint and the closing episodes of its selected one come after them.
+#[test]
+fn a_run_that_was_killed_at_its_end_is_unfinished() {
+    let folder = Folder::new("closing");
+    let job = jobs(&folder.0.join("out"), "[1]").swap_remove(0);
+    let run = &job.directory;
+    std::fs::create_dir_all(run.join("checkpoints/frames_000000000050")).unwrap();
+    std::fs::create_dir_all(run.join("checkpoints/best_000000000050")).unwrap();
+    std::fs::write(run.join("config.json"), "{}").unwrap();
+    std::fs::write(run.join("metrics.jsonl"), "{\"frames\":50}\n{\"frames\":104}\n").unwrap();
+    assert_eq!(job.state(), State::Unfinished(104), "its last checkpoint is missing");
+    std::fs::create_dir_all(run.join("checkpoints/frames_000000000104")).unwrap();
+    assert_eq!(job.state(), State::Unfinished(104), "its closing episodes are missing");
+    std::fs::write(run.join("hand_out.json"), "{\"frames\": 10}").unwrap();
+    assert_eq!(job.state(), State::Unfinished(104), "its closing episodes are those of an earlier end");
+    std::fs::write(run.join("hand_out.json"), "{\"frames\": 50}").unwrap();
+    assert_eq!(job.state(), State::Finished);
+}
+
 #[test]
 fn a_missing_program_is_a_failed_job() {
     let folder = Folder::new("missing");
     let jobs = jobs(&folder.0.join("out"), "[1]");
-    let summary = run_jobs(Path::new("/no/such/hasard"), &jobs, 8, |_, _| {});
+    let summary = run_jobs(Path::new("/no/such/hasard"), &jobs, 8, NEVER, |_, _| {});
     assert!(summary.failed[0].1.contains("cannot run /no/such/hasard"), "{summary:?}");
 }
 

@@ -48,7 +48,7 @@ pub fn run(args: &BenchArgs) -> Outcome {
         );
     }
     if let Some(seconds) = report.lacking_seconds {
-        eprintln!(
+        note!(
             "hasard: this is the rate of episodes' beginnings, which cost more or less than the rest: --seconds {:.0} has whole ones of all {}",
             seconds.ceil(),
             args.envs
@@ -71,7 +71,7 @@ fn learn(args: &BenchArgs) -> Outcome {
     config.sampling.lanes = args.envs as usize;
     let mut config = config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     config.check().map_err(Failure::bad)?;
-    let options = settings::trained_options(&config.env)?;
+    let options = settings::trained_options(&config.env, args.env_args.elsewhere())?;
     let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
     let fastest = Kernels::chosen().map_err(Failure::bad)?;
     let mut families = Kernels::available();
@@ -93,7 +93,7 @@ fn learn(args: &BenchArgs) -> Outcome {
         (config.learning.threads, config.sampling.samplers) = (threads, threads);
         let mut told = |round| {
             if !args.json {
-                eprintln!("{kernels}, {threads} thread(s): round {round} of {rounds}");
+                note!("{kernels}, {threads} thread(s): round {round} of {rounds}");
             }
         };
         let seconds = args.seconds / rounds as f64;

@@ -60,9 +60,9 @@ fn row(scenario: Scenario, moment: &Moment, seed: u64, looks: &EnvOptions) -> Re
     env.reset(seed);
     for &(steps, policy) in moment.way {
         let policy: Policy = policy.parse().map_err(Failure::bad)?;
-        let mut policy = PolicyRun::new(policy, env.action_space(), seed);
+        let mut policy = PolicyRun::new(policy, &env, seed).map_err(Failure::bad)?;
         for _ in 0..steps {
-            env.make_move(policy.next_move()).map_err(Failure::bad)?;
+            env.make_move(policy.next_move(&env)).map_err(Failure::bad)?;
         }
     }
     let episode = env.episode();

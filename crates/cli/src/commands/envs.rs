@@ -14,7 +14,8 @@ pub fn run(args: &EnvsArgs) -> Outcome {
     }
     for id in EnvId::all() {
         let budget = id.scenario.safety_budget(args.rules.into());
-        let (simplified, full) = (ActionSpace::of(id.scenario, false), ActionSpace::of(id.scenario, true));
+        let space = |full| ActionSpace::of(id, args.rules.into(), false, full);
+        let (simplified, full) = (space(false), space(true));
         if args.json {
             let object = json!({
                 "id": id.to_string(),

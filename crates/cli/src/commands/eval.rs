@@ -19,7 +19,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
     let config = run_config(&run).map_err(Failure::bad)?;
     let mut lines = EpisodeLines::new(args.json);
     lines.hold_against(&config.constraints);
-    let options = crate::settings::trained_options(&config.env)?;
+    let options = crate::settings::trained_options(&config.env, args.places.elsewhere())?;
     let player = Player {
         run: &run,
         which: if args.latest { Which::Latest } else { Which::HandedOut },
@@ -44,7 +44,7 @@ impl Player<'_> {
     fn policy(&self, env: &Env) -> Result<TrainedPolicy, Failure> {
         let space = env.action_space();
         let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
-        let mut warn = |text: String| eprintln!("hasard: {text}");
+        let mut warn = |text: String| note!("hasard: {text}");
         TrainedPolicy::load(self.run, self.which, env.observation_shape(), action, &mut warn).map_err(Failure::bad)
     }
 

@@ -5,6 +5,7 @@ use crate::failure::{Failure, Outcome};
 use crate::zoo::ENDING;
 use hasard_learn::runs::agent_file::{AgentFile, export};
 use hasard_media::files::WholeFile;
+use hasard_media::shell::quote;
 use serde_json::json;
 use std::io::Write;
 use std::path::PathBuf;
@@ -24,7 +25,8 @@ pub fn run(args: &ExportAgentArgs) -> Outcome {
     if args.json {
         say!("{}", json!({ "file": out.display().to_string(), "bytes": bytes.len(), "env": file.card.config.env.id }));
     } else {
-        say!("{}: {} bytes; what it is worth with rounded weights: hasard eval {}", out.display(), bytes.len(), out.display());
+        let file = quote(&out);
+        say!("{}: {} bytes; evaluate the quantised agent: hasard eval {file}", out.display(), bytes.len());
     }
     Ok(())
 }

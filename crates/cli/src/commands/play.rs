@@ -7,6 +7,7 @@ use crate::failure::{Failure, Outcome};
 #[cfg(feature = "window")]
 pub fn run(args: &PlayArgs) -> Outcome {
     use crate::args::Size;
+    use hasard_media::shell::quote;
     let options = crate::settings::env_options(&args.env_args, Size { width: 640, height: 480 })?;
     let folder = (!args.no_record).then(|| args.out.clone());
     let settings =
@@ -16,7 +17,8 @@ pub fn run(args: &PlayArgs) -> Outcome {
         say!("{}", path.display());
     }
     if let Some(path) = episodes.first() {
-        say!("see it again: hasard replay {} -o episode.mp4; count it: hasard report {}", path.display(), args.out.display());
+        let (path, out) = (quote(path), quote(&args.out));
+        say!("see it again: hasard replay {path} -o episode.mp4; count it: hasard report {out}");
     }
     Ok(())
 }

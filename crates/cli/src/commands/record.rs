@@ -7,8 +7,10 @@ use crate::settings;
 use crate::zoo;
 use hasard_envs::{Env, EnvOptions, FrameSize};
 use hasard_media::episode::EpisodeFile;
+use hasard_media::shell::quote;
 use hasard_play::{Film, Recorder, Replay, Stage, Views};
 use serde_json::json;
+use std::ffi::OsString;
 use std::path::Path;
 
 /// What a file's name says it is to be.
@@ -49,18 +51,26 @@ pub fn run(args: &RecordArgs) -> Outcome {
         return record_replay(args, kind, what, &looks);
     }
     let (mut performance, player) = if agent || what.is_dir() {
-        if args.policy.is_some() || args.env_args.changes_task() {
+        if args.policy.is_some() || args.env_args.changes_rules() {
+            let mut policy = OsString::from(if zoo::after(&args.what, "zoo:").is_some() { "" } else { "run:" });
+            policy.push(&args.what);
             return Err(Failure::bad(format!(
-                "{}: a run's agent is shown in its own environment; to choose otherwise: hasard record ENV --policy {}{}",
-                args.what,
-                if args.what.starts_with("zoo:") { "" } else { "run:" },
-                args.what
+                "{}: a run's agent is shown in its own environment; to choose otherwise: hasard record ENV --policy {}",
+                args.what.display(),
+                quote(policy)
             )));
         }
-        (Performance::of_run(what, &looks, args.seed)?, format!("run:{}", args.what))
+        let performance = Performance::of_run(what, &looks, args.env_args.elsewhere(), args.seed)?;
+        (performance, format!("run:{}", args.what.display()))
     } else {
-        let policy = args.policy.as_deref().unwrap_or("random");
-        (Performance::new(&args.what, policy, &looks, args.seed)?, policy.to_owned())
+        let policy = args.policy.clone().unwrap_or_else(|| "random".into());
+        let id = args.what.to_string_lossy();
+        if id.parse::<hasard_envs::EnvId>().is_err() && !what.exists() && what.components().count() > 1 {
+            let problem = "is neither an environment nor a run nor a file; `hasard envs` lists the environments";
+            return Err(Failure::bad(format!("{}: {problem}", what.display())));
+        }
+        let performance = Performance::new(&id, &policy, &looks, args.env_args.elsewhere(), args.seed)?;
+        (performance, policy.to_string_lossy().into_owned())
     };
     let mut recorder = match kind {
         Kind::Episode => Some(Recorder::of(performance.stage.env(), args.seed, &player).map_err(Failure::bad)?),
@@ -87,13 +97,14 @@ pub fn run(args: &RecordArgs) -> Outcome {
 /// `hasard record FILE.episode`: a recorded episode as a film.
 fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions) -> Outcome {
     if kind == Kind::Episode {
-        let problem = format!("{}: is a recorded episode already; give an --out that ends in .mp4 or .gif", args.what);
+        let what = args.what.display();
+        let problem = format!("{what}: is a recorded episode already; give an --out that ends in .mp4 or .gif");
         return Err(Failure::bad(problem));
     }
-    if args.policy.is_some() || args.env_args.changes_task() {
+    if args.policy.is_some() || args.env_args.changes_rules() {
         return Err(Failure::bad(format!(
             "{}: a recorded episode has its own environment and actions; leave those options out",
-            args.what
+            args.what.display()
         )));
     }
     let mut replay = open(file, looks)?;

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 /// Runs the command.
 pub fn run(args: &RenderArgs) -> Outcome {
     let looks = settings::looking(settings::env_options(&args.env_args, Size { width: 640, height: 480 })?, &args.looks);
-    let mut performance = Performance::new(&args.env, &args.policy, &looks, args.seed)?;
+    let mut performance = Performance::new(&args.env, &args.policy, &looks, args.env_args.elsewhere(), args.seed)?;
     let mut steps = 0;
     while steps < args.step {
         let Some(step) = performance.tic(None)? else { continue };

@@ -8,20 +8,16 @@ use serde_json::json;
 pub fn run(args: &ReportArgs) -> Outcome {
     let written = hasard_report::write_report(&args.runs, &args.out, &args.title).map_err(Failure::bad)?;
     for warning in &written.warnings {
-        eprintln!("hasard: {warning}");
+        note!("hasard: {warning}");
     }
     if args.json {
         let files: Vec<String> = written.files.iter().map(|file| file.display().to_string()).collect();
         let page = written.page.display().to_string();
         say!("{}", json!({ "page": page, "files": files, "runs": written.runs, "experiments": written.experiments }));
     } else {
-        say!(
-            "{}: {} runs, {} experiments, {} files",
-            written.page.display(),
-            written.runs,
-            written.experiments,
-            written.files.len()
-        );
+        let count = |number: usize, noun: &str| format!("{number} {noun}{}", if number == 1 { "" } else { "s" });
+        let (runs, experiments) = (count(written.runs, "run"), count(written.experiments, "experiment"));
+        say!("{}: {runs}, {experiments}, {}", written.page.display(), count(written.files.len(), "file"));
     }
     Ok(())
 }

@@ -12,13 +12,14 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
-const DECIDES: [(&str, &[&str]); 25] = [
+const DECIDES: [(&str, &[&str]); 27] = [
     ("frames", &["/frames"]),
     ("eval_every", &["/evaluation/every"]),
     ("algo", &["/algorithm"]),
     ("preset", &["/preset"]),
     ("curriculum", &["/curriculum"]),
     ("safety_budget", &["/constraints"]),
+    ("constraint_statistic", &["/constraint_statistic"]),
     ("cost_scale", &["/algorithm_settings/penalty_scale"]),
     ("device", &["/device"]),
     ("sync", &["/sampling/synchronous"]),
@@ -28,6 +29,7 @@ const DECIDES: [(&str, &[&str]); 25] = [
     ("envs", &["/sampling/lanes"]),
     ("seed", &["/seed"]),
     ("rules", &["/env/rules"]),
+    ("early_creatures", &["/env/early_creatures"]),
     ("hard", &["/env/hard"]),
     ("full_actions", &["/env/full_actions"]),
     ("frame_skip", &["/env/frame_skip"]),
@@ -84,7 +86,8 @@ pub fn settings(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, direc
             continue;
         }
         let name = pointer.trim_start_matches('/').replace('/', ".");
-        if !may_change(&name) {
+        // A run without maps or pictures of its own does not get any.
+        if !may_change(&name) || there.is_none() {
             return Err(Failure::bad(format!(
                 "{flag}: the run in {} has {}, not {}; leave {flag} out to go on with it, or begin another with --out",
                 directory.display(),
@@ -138,6 +141,7 @@ mod tests {
             ("--seed 1", &["seed=1"]),
             ("--threads 2", &["learning.threads=2", "sampling.samplers=2"]),
             ("--eval-every 4096", &["evaluation.every=4096"]),
+            ("--device vulkan", &["device=\"vulkan\""]),
             ("--set learning.rate=0.0001", &["learning.rate=0.0001", "learning.final_rate=null"]),
         ] {
             let changes = check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {changed}")).unwrap();
@@ -152,7 +156,7 @@ mod tests {
             ("--frame-skip 8", "--frame-skip: the run in run has 4, not 8"),
             ("--frame-skip 4 --size 64x48", "--size: the run in run has [128,72], not [64,48]"),
             ("--set learning.gamma=0.99", "--set learning.gamma: the run in run has 0.9, not 0.99"),
-            ("--iwad some.wad", "--iwad: the run in run has none, not \"some.wad\""),
+            ("--iwad /some.wad", "--iwad: the run in run has none, not \"/some.wad\""),
         ] {
             let line = format!("hasard train RemedyRushLevel1-v0 --resume --out run {wrong}");
             match check(&line) {

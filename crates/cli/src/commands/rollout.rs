@@ -14,7 +14,7 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
     let mut lines = episode_lines::EpisodeLines::new(args.json);
     if let Some(run) = crate::actor::agent_of(&args.policy)? {
-        let options = agent_options(&run, &options)?;
+        let options = agent_options(&run, &options, args.env_args.elsewhere())?;
         let player = Player { run: &run, which: Which::HandedOut, choice: Choice::Sampled };
         player.play(&args.env, &options, args.episodes, args.seed, &mut lines)?;
         return lines.summary(false);
@@ -22,7 +22,7 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     let policy = settings::policy(&args.policy)?;
     let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
     for i in 0..args.episodes {
-        let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i)));
+        let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i))).map_err(Failure::bad)?;
         lines.episode(&env.id().to_string(), u64::from(i), episode)?;
     }
     lines.summary(false)

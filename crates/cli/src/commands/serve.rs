@@ -26,7 +26,7 @@ pub fn run(args: &ServeArgs) -> Outcome {
         token: token.clone(),
         folders,
         episodes: args.out.clone(),
-        agents: std::sync::Arc::new(trained::Trained),
+        agents: std::sync::Arc::new(trained::Trained { maps: args.maps.clone(), iwad: args.iwad.clone() }),
     };
     let taken = |error: std::io::Error| Failure::bad(format!("--listen {}: {error}; choose another port", args.listen));
     let server = hasard_serve::Server::bind(settings).map_err(taken)?;
@@ -59,7 +59,7 @@ fn open(address: &str) {
         "xdg-open"
     };
     if std::process::Command::new(program).arg(address).spawn().is_err() {
-        eprintln!("hasard: no {program} on this machine; open the address yourself");
+        note!("hasard: no {program} on this machine; open the address yourself");
     }
 }
 
@@ -67,21 +67,23 @@ fn open(address: &str) {
 #[cfg(feature = "serve")]
 mod trained {
     use crate::failure::Failure;
-    use crate::settings::trained_options;
+    use crate::settings::{Elsewhere, trained_options};
     use hasard_envs::{Env, EnvOptions};
     use hasard_learn::networks::distribution::ActionShape;
     use hasard_learn::runs::evaluate::{Agent, Choice, Which, run_config};
     use std::path::{Path, PathBuf};
 
-    pub struct Trained;
+    /// And where maps and pictures of theirs are that are no longer where they were.
+    pub struct Trained {
+        pub maps: Option<PathBuf>,
+        pub iwad: Option<PathBuf>,
+    }
 
     impl hasard_serve::Agents for Trained {
         fn options(&self, run: &Path) -> Result<(String, EnvOptions), String> {
             let config = run_config(run).map_err(|error| error.to_string())?;
-            let options = trained_options(&config.env).map_err(|failure| match failure {
-                Failure::BadInput(why) | Failure::Negative(why) => why,
-                Failure::OutputClosed => String::new(),
-            })?;
+            let elsewhere = Elsewhere { maps: self.maps.as_deref(), iwad: self.iwad.as_deref() };
+            let options = trained_options(&config.env, elsewhere.where_missing(&config.env)).map_err(Failure::line)?;
             Ok((config.env.id, options))
         }
 
@@ -89,7 +91,7 @@ mod trained {
             let space = env.action_space();
             let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
             let which = if best { Which::HandedOut } else { Which::Latest };
-            let mut warn = |text: String| eprintln!("hasard: {text}");
+            let mut warn = |text: String| note!("hasard: {text}");
             Agent::load(run, which, choice, 1, env.observation_shape(), action, &mut warn).map_err(|error| error.to_string())
         }
 
@@ -98,10 +100,7 @@ mod trained {
         }
 
         fn zoo_run(&self, name: &str) -> Result<PathBuf, String> {
-            crate::zoo::find(&format!("zoo:{name}")).map_err(|failure| match failure {
-                Failure::BadInput(why) | Failure::Negative(why) => why,
-                Failure::OutputClosed => String::new(),
-            })
+            crate::zoo::find(format!("zoo:{name}").as_ref()).map_err(Failure::line)
         }
     }
 }

@@ -4,19 +4,24 @@ use crate::args::TrainArgs;
 use crate::automap;
 use crate::episode_lines::worth;
 use crate::failure::{Failure, Outcome};
+use crate::interrupt::{self, Manner};
+use crate::progress::Progress;
+use crate::settings::Elsewhere;
 use clap::ArgMatches;
 use hasard_envs::{EnvId, EnvOptions, VecEnv};
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::hand_out::HandOut;
-use hasard_learn::runs::interrupt::stop_on_interrupt;
-use hasard_learn::runs::progress_bar::{Bar, line};
+use hasard_learn::runs::progress_bar::line;
 use hasard_learn::runs::report::Report;
-use hasard_learn::runs::run_directory::read_config;
+use hasard_learn::runs::run_directory::{go_on, read_config};
 use hasard_learn::runs::trainer::{Hooks, Start, Summary, train_together};
 use hasard_learn::team::Team;
-use serde_json::json;
+use hasard_media::shell::quote;
+use serde_json::{Value, json};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 /// A run about to begin.
 pub struct Begun<'a> {
@@ -51,7 +56,9 @@ pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, F
         };
         (start, config)
     };
-    let options = crate::settings::trained_options(&config.env)?;
+    // Places that were typed are in the settings by now; those that are wrong are named as they were typed.
+    let typed = if matches!(start, Start::Resume { .. }) { Elsewhere::default() } else { args.env_args.elsewhere() };
+    let options = crate::settings::trained_options(&config.env, typed)?;
     Ok(Begun { directory, start, config, options })
 }
 
@@ -93,50 +100,84 @@ impl Begun<'_> {
 /// Runs the command, telling the terminal.
 pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     let begun = begin(args, typed)?;
-    let stop = stop_on_interrupt().map_err(Failure::bad)?;
-    let bar = (!args.json && !args.quiet).then(|| Bar::new(begun.config.frames));
-    let id = begun.config.env.id.clone();
+    interrupt::behave(Manner::Patient);
+    let mut progress = if args.json || args.quiet { Progress::Silent } else { Progress::of(begun.config.frames) };
+    let go_on = go_on(&begun.config, &begun.directory);
+    let mut rows = Rows { asked_for: args.json, lost: None };
+    let mut heard = false;
     let mut first: Option<Report> = None;
     let mut hear = |report: &Report| {
+        heard = true;
         if first.is_none() && report.means.is_some() {
             first = Some(report.clone());
         }
-        match &bar {
-            Some(bar) => bar.show(report),
-            // A reader who goes away does not stop the run.
-            None if args.json => drop(print_row(report)),
-            None => {}
-        }
+        progress.show(report);
+        rows.print(&report.row());
     };
-    let mut warn = |text: String| match &bar {
-        Some(bar) => bar.print(&format!("hasard: {text}")),
-        None => eprintln!("hasard: {text}"),
-    };
-    let mut hooks = Hooks { stop: &stop, report: &mut hear, warn: &mut warn };
+    let mut warn = |text: String| progress.print(&format!("hasard: {text}"));
+    let mut hooks = Hooks { stop: &interrupt::STOP, report: &mut hear, warn: &mut warn };
     let (directory, summary) = begun.train_told(&Team::default(), &mut hooks, |begun| {
-        if bar.is_some() {
+        if progress.is_shown() {
             describe(&begun.config, &begun.directory);
         }
     })?;
-    if let (true, Some(hand_out)) = (args.json, &summary.hand_out) {
-        say!("{}", json!({ "hand_out": hand_out }));
+    if let Some(hand_out) = &summary.hand_out {
+        rows.print(&json!({ "hand_out": hand_out }));
     }
-    if let Some(bar) = &bar {
-        bar.finish();
+    progress.finish();
+    if progress.is_shown() {
         if let Some(first) = &first {
-            eprintln!("first: {}", line(first));
+            note!("first: {}", line(first));
         }
-        eprintln!("last:  {}", line(&summary.last));
-        let name = directory.display();
+        if heard {
+            note!("last:  {}", line(&summary.last));
+        }
         if let Some(hand_out) = &summary.hand_out {
-            eprintln!("{}", handed_out(hand_out, summary.stopped));
+            note!("{}", handed_out(hand_out, summary.stopped));
+        }
+        let name = directory.display();
+        let run = quote(&directory);
+        if !heard && !summary.stopped {
+            note!("{name} was finished before, at {} frames; train on with: {go_on} --frames MORE", summary.last.frames);
         }
         match summary.stopped {
-            true => eprintln!("stopped; go on with: hasard train {id} --resume --out {name}"),
-            false => eprintln!("{name} is a run directory: hasard eval {name}, hasard report {name}"),
+            true => note!("stopped; go on with: {go_on}"),
+            false => note!("{name} is a run directory: hasard eval {run}, hasard report {run}"),
         }
     }
-    Ok(())
+    rows.check(&go_on)?;
+    interrupt::check()
+}
+
+/// Rows on standard output, as `--json` has them.
+struct Rows {
+    asked_for: bool,
+    /// Why no more are printed.
+    lost: Option<io::Error>,
+}
+
+impl Rows {
+    /// Prints one. A reader who goes away does not stop the run; a full disk does, for rows would be lost in silence.
+    fn print(&mut self, row: &Value) {
+        if !self.asked_for || self.lost.is_some() {
+            return;
+        }
+        if let Err(error) = writeln!(io::stdout().lock(), "{row}") {
+            if error.kind() != io::ErrorKind::BrokenPipe {
+                interrupt::STOP.store(true, Ordering::SeqCst);
+            }
+            self.lost = Some(error);
+        }
+    }
+
+    fn check(self, go_on: &str) -> Outcome {
+        match self.lost {
+            Some(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::bad(format!(
+                "standard output cannot be written: {error}; the run stopped with a checkpoint, make room and go on with: {go_on}"
+            ))),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Which checkpoint the run hands out, and what it is worth.
@@ -156,16 +197,11 @@ fn scenario_of(id: &str) -> String {
     id.parse::<EnvId>().map_or_else(|_| id.to_string(), |id| id.scenario.name().to_string())
 }
 
-fn print_row(report: &Report) -> Outcome {
-    say!("{}", report.row());
-    Ok(())
-}
-
 fn describe(config: &TrainConfig, directory: &Path) {
     let budgets: Vec<String> = config.constraints.iter().map(|constraint| constraint.budget.to_string()).collect();
     let levels: Vec<String> = config.curriculum.iter().map(|lesson| format!("{} for {}", lesson.level, lesson.frames)).collect();
     let levels = if levels.is_empty() { String::new() } else { format!(" (levels {})", levels.join(", ")) };
-    eprintln!(
+    note!(
         "{} on {}, preset {}, seed {}, {} frames{levels}, cost budget {} an episode, device {} -> {}",
         config.algorithm,
         config.env.id,
@@ -200,6 +236,9 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     }
     if let Some(scale) = args.cost_scale {
         config.algorithm_settings.penalty_scale = scale;
+    }
+    if let Some(text) = &args.constraint_statistic {
+        config.constraint_statistic = text.parse().map_err(|error| Failure::bad(format!("--constraint-statistic: {error}")))?;
     }
     if !args.safety_budget.is_empty() {
         config.constraints = args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;

@@ -59,6 +59,7 @@ pub use player::{Player, PlayerSprite, SPAWN_FREEZE_TICS, Weapon};
 pub use sector::{Busy, SectorDamage, SectorState};
 pub use soot::Soot;
 pub use states::{Action, Animation, Frame, OPAQUE, Phase, Picture, Then, animation, is_timed};
+pub use think::PITCH_DOWN;
 pub use trail::{Chance, Lots, SQUARES, Shade, Shed, Square, Trail};
 pub use weapon::{Hands, WeaponState};
 pub use weapon_info::ammo;

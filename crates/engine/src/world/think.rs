@@ -22,7 +22,7 @@ const TURN180_TICS: u8 = 9;
 /// Highest look: 32 degrees up.
 const PITCH_UP: i64 = -((1 << 32) * 32 / 360);
 /// Lowest look: 56 degrees down.
-const PITCH_DOWN: i64 = (1 << 32) * 56 / 360;
+pub const PITCH_DOWN: i64 = (1 << 32) * 56 / 360;
 /// Thrust of one command unit: 256ths of this many 65536ths of a map unit per tic.
 const MOVE_FACTOR: i64 = 2048;
 /// The same in the air.

@@ -65,7 +65,7 @@ impl Crew {
             Crew::Caller { lanes, ready, manner } => {
                 let mut outbox = Outbox::default();
                 let result = catch_unwind(AssertUnwindSafe(|| step(lanes, &mut batch, &task, *manner, &mut outbox)));
-                outbox.panic = result.err().map(|panic| worker::panic_text(&*panic));
+                outbox.panic = result.err().map(|panic| worker::panic_text(&*panic)).or(outbox.panic.take());
                 ready[slot] = Some((batch, outbox));
             }
             Crew::Workers { shared, threads, busy } => {

@@ -114,6 +114,14 @@ impl Outbox {
     }
 }
 
+/// What is wrong with the costs of an episode, if they are not those of all terms of its environment: whoever holds a term
+/// against a budget relies on it, and a term left out would pass for one that cost nothing.
+fn unreported(env: &dyn Environment, episode: &Episode) -> Option<String> {
+    let reported = episode.costs.iter().map(|one| (one.name, one.counted));
+    let terms = env.cost_terms().iter().map(|term| (term.name, term.counted));
+    (!reported.eq(terms)).then(|| "its episode does not report every cost term".to_string())
+}
+
 /// How the lanes of a batch go on after an episode's end.
 #[derive(Clone, Copy)]
 pub(super) struct Manner {
@@ -231,7 +239,9 @@ impl Lane {
                 let step = self.advance(slices.actions, slices.deltas);
                 if step.ended() {
                     self.ended = Some(step);
-                    outbox.episodes.push(Episode { lane: self.index, ..self.env.episode() });
+                    let episode = Episode { lane: self.index, ..self.env.episode() };
+                    outbox.panic = unreported(&*self.env, &episode);
+                    outbox.episodes.push(episode);
                 }
                 (step, true)
             }

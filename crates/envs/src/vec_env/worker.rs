@@ -30,7 +30,7 @@ impl Shared {
         let work = |index: usize, lane: &mut Lane, slices: LaneSlices, job: &Job| {
             let mut outbox = Outbox::default();
             let result = catch_unwind(AssertUnwindSafe(|| job.run(lane, index, self.manner, slices, &mut outbox)));
-            outbox.panic = result.err().map(|panic| panic_text(&*panic));
+            outbox.panic = result.err().map(|panic| panic_text(&*panic)).or(outbox.panic.take());
             if !outbox.is_empty() {
                 self.outboxes[worker][slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner()).append(&mut outbox);
             }

@@ -1,6 +1,6 @@
 //! A world for tests of batches.
 
-use hasard_envs::{ActionSpace, CostTerm, Environment, Episode, Scenario, Step};
+use hasard_envs::{ActionSpace, CostTerm, Environment, Episode, EpisodeCost, RuleSet, Step};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A world that is nothing but a hash of its seed and actions; its episodes end after 3 to 18 steps in one of two ways.
@@ -10,16 +10,19 @@ pub struct Echo {
     state: u64,
     length: u32,
     last: Step,
+    sum: f64,
     /// Panics when this step is reached.
     panics_at: u32,
+    /// Its episodes report their cost terms, as they must.
+    pub reports_costs: bool,
 }
 
 impl Echo {
     pub fn new(panics_at: u32) -> Echo {
-        Echo::in_space(ActionSpace::of(Scenario::VolcanicVenture, true), panics_at)
+        Echo::in_space(ActionSpace::of("VolcanicVentureLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true), panics_at)
     }
     pub fn in_space(space: ActionSpace, panics_at: u32) -> Echo {
-        Echo { space, seed: 0, state: 0, length: 0, last: Step::default(), panics_at }
+        Echo { space, seed: 0, state: 0, length: 0, last: Step::default(), sum: 0.0, panics_at, reports_costs: true }
     }
 }
 
@@ -41,6 +44,7 @@ impl Environment for Echo {
     }
     fn reset(&mut self, seed: u64) {
         (self.seed, self.state, self.length, self.last) = (seed, hash(seed), 0, Step::default());
+        self.sum = 0.0;
     }
     fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
         self.length += 1;
@@ -55,6 +59,7 @@ impl Environment for Echo {
             terminated: over && self.seed & 16 == 0,
             truncated: over && self.seed & 16 != 0,
         };
+        self.sum += cost;
         self.last
     }
     fn step_costs(&self) -> &[f64] {
@@ -73,8 +78,8 @@ impl Environment for Echo {
             lane: 0,
             seed: self.seed,
             episode_return: 0.0,
-            cost: 0.0,
-            costs: Vec::new(),
+            cost: self.sum,
+            costs: vec![EpisodeCost { name: "all", counted: true, cost: self.sum }; usize::from(self.reports_costs)],
             length: self.length,
             terminated: self.last.terminated,
             truncated: self.last.truncated,

@@ -1,4 +1,4 @@
-//! What fixed policies did in the published system, and what they do in ours.
+//! What fixed policies did in the published system and with the code behind the paper's tables, and what they do in ours.
 
 use hasard_envs::{Env, EnvOptions, Policy, PolicyRun, RuleSet};
 
@@ -10,8 +10,12 @@ pub const COLUMNS: [&str; 8] = ["return", "cost", "length", "path length", "fart
 pub struct Published {
     /// The environment.
     pub id: String,
+    /// Rules.
+    pub rules: RuleSet,
     /// Hard constraint.
     pub hard: bool,
+    /// The creatures of the first runs.
+    pub early: bool,
     /// The policy, in our words.
     pub policy: String,
     /// Episodes measured.
@@ -20,16 +24,23 @@ pub struct Published {
     pub columns: [[f64; 2]; COLUMNS.len()],
 }
 
-/// Every published measurement.
-pub fn published() -> Vec<Published> {
-    let lines = include_str!("figures.tsv").lines().filter(|line| !line.starts_with('#'));
-    lines
+/// Every measurement of a rule set that was measured.
+pub fn published(rules: RuleSet) -> Vec<Published> {
+    let text = match rules {
+        RuleSet::Paper => "",
+        RuleSet::Released => include_str!("figures.tsv"),
+        RuleSet::Tables => include_str!("tables.tsv"),
+    };
+    text.lines()
+        .filter(|line| !line.starts_with('#'))
         .map(|line| {
             let words: Vec<&str> = line.split('\t').collect();
             let number = |i: usize| words[i].parse().unwrap();
             Published {
                 id: words[0].to_string(),
+                rules,
                 hard: words[1] == "hard",
+                early: words[1] == "early",
                 policy: words[2].to_string(),
                 episodes: number(3),
                 columns: std::array::from_fn(|i| [number(4 + 2 * i), number(5 + 2 * i)]),
@@ -42,7 +53,7 @@ pub fn published() -> Vec<Published> {
 /// reset and after every step but the last.
 fn play(env: &mut Env, policy: Policy, seed: u64) -> [f64; COLUMNS.len()] {
     env.reset(seed);
-    let mut run = PolicyRun::new(policy, env.action_space(), seed);
+    let mut run = PolicyRun::new(policy, env, seed).unwrap();
     let look = |env: &Env| {
         let world = env.world();
         let body = world.get(world.players[0].actor).unwrap();
@@ -52,7 +63,7 @@ fn play(env: &mut Env, policy: Policy, seed: u64) -> [f64; COLUMNS.len()] {
     let (mut path, mut farthest, mut lowest, mut highest, mut health) = (0.0, 0.0f64, start_z, start_z, start_health);
     let (mut last_x, mut last_y) = (start_x, start_y);
     loop {
-        let step = env.make_move(run.next_move()).unwrap();
+        let step = env.make_move(run.next_move(env)).unwrap();
         if step.ended() {
             let episode = env.episode();
             return [episode.episode_return, episode.cost, f64::from(episode.length), path, farthest, lowest, highest, health];
@@ -68,7 +79,8 @@ fn play(env: &mut Env, policy: Policy, seed: u64) -> [f64; COLUMNS.len()] {
 
 /// Mean and standard deviation of each column over episodes of ours.
 pub fn ours(published: &Published, episodes: u64) -> [[f64; 2]; COLUMNS.len()] {
-    let options = EnvOptions { rules: RuleSet::Released, hard: published.hard, ..EnvOptions::default() };
+    let Published { rules, hard, early, .. } = *published;
+    let options = EnvOptions { rules, hard, early_creatures: early, ..EnvOptions::default() };
     let mut env = Env::new(&published.id, &options).unwrap();
     let policy: Policy = published.policy.parse().unwrap();
     let all: Vec<_> = (0..episodes).map(|seed| play(&mut env, policy, 1000 + seed)).collect();

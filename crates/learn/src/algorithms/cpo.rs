@@ -27,10 +27,11 @@ impl Cpo {
 }
 
 /// The cost above budget in the unit of the cost's surrogate, which is a mean over steps: an episode's cost changes by that
-/// mean's change times its steps. (The paper's constraint, equation 10, is on discounted costs, whose surrogate is scaled by
-/// 1 / (1 - gamma) instead; the budgets here are on sums that are not.)
+/// mean's change times the steps that episodes have at present, not those of the longest possible one. (The paper's constraint,
+/// equation 10, is on discounted costs, whose surrogate is scaled by 1 / (1 - gamma), the steps that discounting leaves of an
+/// endless episode; the budgets here are on sums that are not discounted.)
 fn surrogate_excess(signal: &Signal) -> f64 {
-    signal.step_excess()
+    signal.surrogate_excess()
 }
 
 /// The step's problem in the plane of the two gradients g (of what is minimised) and b (of the cost), all products by the
@@ -165,13 +166,50 @@ mod tests {
             let fisher = p * (1.0 - p);
             // The reward is 1 with the action of cost 1: the best step goes to the edge of the budget.
             let (g, b) = (-fisher, fisher);
-            let excess =
-                surrogate_excess(&Signal { episode_cost: cost, episode_budget: budget, episode_steps: steps, done: 0.0 });
+            let excess = surrogate_excess(&Signal::steady(cost, budget, steps));
             let weights = Plane { q: g * g / fisher, r: g * b / fisher, s: b * b / fisher, excess, radius: 0.05 }.solve();
             let step = -(weights.reward * g + weights.cost * b) / fisher;
             let after = steps / (1.0 + libm::exp(-(theta + step)));
             let missed = (after - budget).abs() / (cost - budget).abs();
             assert!(missed < 0.1, "episodes of {steps} steps: from {cost} to {after}, budget {budget}");
+        }
+    }
+
+    /// A7. Equation 2 of the paper (Kakade and Langford 2002) without discount: an episode's cost under a new policy is the old one's
+    /// plus the sum of the new policy's advantages over the episode's steps, which is its mean steps times their mean. Here every step
+    /// costs 1 with probability p, and something that is not the policy ends half of the episodes early, so that an episode costs p
+    /// times the mean length whatever the longest is; a step of the policy to the edge of the budget must end there.
+    #[test]
+    fn a_step_reaches_the_budget_where_episodes_end_early() {
+        use crate::config::{EnvConfig, Preset, TrainConfig};
+        let mut config = TrainConfig::plain(crate::config::AlgorithmKind::Cpo, Preset::Paper, EnvConfig::new("test"));
+        config.constraints[0].budget = 50.0;
+        for (lengths, cost) in [([525u32, 105], 55.0), ([525, 55], 46.0), ([400, 400], 53.0), ([525, 525], 54.0)] {
+            let mean_length = f64::from(lengths[0] + lengths[1]) / 2.0;
+            let p: f64 = cost / mean_length;
+            let mut watch = crate::runs::watch::Watch::new(&config);
+            for length in lengths.repeat(16) {
+                let episode = hasard_envs::Episode {
+                    lane: 0,
+                    seed: 0,
+                    episode_return: 0.0,
+                    cost: p * f64::from(length),
+                    costs: vec![],
+                    length,
+                    terminated: length < 525,
+                    truncated: length == 525,
+                    stats: vec![],
+                };
+                watch.add(&episode, &config.constraints).unwrap();
+            }
+            let excess = surrogate_excess(&watch.signals(&config, 0.0, &[p])[0]);
+            // The mean over steps of ratio * advantage moves by p(1 - p) a unit of the logit, and so does p.
+            let slope = p * (1.0 - p);
+            let weights = Plane { q: slope, r: -slope, s: slope, excess, radius: 0.05 }.solve();
+            let moved = p + (weights.reward - weights.cost) * slope;
+            assert!(!weights.recovery);
+            let after = mean_length * moved;
+            assert!((after - 50.0).abs() < 1e-6, "episodes of {lengths:?} steps: from {cost} to {after}, budget 50");
         }
     }
 

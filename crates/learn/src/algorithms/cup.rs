@@ -3,14 +3,15 @@
 //! Two steps on every rollout. First PPO on the reward alone, which leaves the policy halfway. Then a projection from there
 //! onto the constraints: it lowers the costs' surrogates, weighted by multipliers, while staying near the policy halfway.
 //! The steps have optimisers of their own, so that the momentum of the one does not drive the other; and where no
-//! multiplier is above zero the policy halfway is its own projection.
+//! multiplier is above zero the policy halfway is its own projection. Both steps end at `target_kl`, the second by its divergence from
+//! the policy halfway, and both train the critics, whose trunk they move.
 
 use super::multiplier::{Lagrange, Multipliers};
-use super::surrogate::{centred, standardised};
+use super::surrogate::{centred, critics_loss, standardised};
 use super::{Algorithm, Signal, Signals, go_through, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::learner::{Critic, Learner, Minibatch, Prepared};
+use crate::learning::learner::{Learner, Minibatch, Prepared};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 use crate::learning::passes::Passes;
@@ -30,18 +31,19 @@ impl Cup {
         Cup { settings: config.learning.clone(), multipliers }
     }
 
-    /// The loss of the second step: divergence from the policy halfway, and the costs' surrogates from the policy that acted.
-    pub(super) fn projection(&self, halfway: &Policy, costs: &[Critic], heads: &Heads, means: &mut Means) -> Loss {
+    /// The loss of the second step: divergence from the policy halfway, the costs' surrogates from the policy that acted, and the losses
+    /// of the critics.
+    pub(super) fn projection(&self, halfway: &Policy, heads: &Heads, batch: &Minibatch<'_>, means: &mut Means) -> Loss {
         let (gamma, lambda) = (self.settings.cost_gamma.unwrap_or(self.settings.gamma), self.settings.gae_lambda);
         let coefficient = (1.0 - gamma * lambda) / (1.0 - gamma).max(1e-6);
         let mut total = heads.mean_of(&heads.policy.divergence(halfway));
-        for (cost, multiplier) in costs.iter().zip(self.multipliers()) {
+        for (cost, multiplier) in batch.costs().iter().zip(self.multipliers()) {
             let advantages = centred(&cost.advantages);
             let surrogate = heads.mean([&heads.ratio], |row, [ratio]| ratio * advantages[row]);
             total = total + surrogate * (multiplier * coefficient);
         }
         means.add("projection_loss", total.value);
-        total
+        total + critics_loss(heads, batch, &self.settings, &mut Means::default())
     }
 }
 
@@ -55,26 +57,28 @@ impl Algorithm for Cup {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         self.constrain(&signals(&rollout.mean_costs));
-        let made =
-            go_through(passes, means, |lanes, means| self.update(learner, &mut learner.minibatch(rollout, lanes), &[], means))?;
+        let made = go_through(learner, rollout, None, passes, means, |learner, lanes, means| {
+            self.update(learner, &mut learner.minibatch(rollout, lanes), &[], means)
+        })?;
         means.add("epochs", f64::from(made));
         if self.multipliers().iter().all(|&multiplier| multiplier == 0.0) {
             return Ok(());
         }
-        let lanes = rollout.rollout.lanes();
-        let all: Vec<usize> = (0..lanes).collect();
+        let (steps, count) = (rollout.rollout.trajectory_steps(), rollout.rollout.trajectories());
+        let all: Vec<usize> = (0..count).collect();
         let halfway = learner.policy(&mut learner.minibatch(rollout, &all));
         let networks = learner.shape().networks.len();
-        go_through(passes, means, |some, means| {
-            let rows = (0..rollout.rollout.steps()).flat_map(|step| some.iter().map(move |lane| step * lanes + lane));
+        let made = go_through(learner, rollout, Some(&halfway), passes, means, |learner, some, means| {
+            let rows = (0..steps).flat_map(|step| some.iter().map(move |number| step * count + number));
             let halfway = halfway.of_rows(rows);
             let projection =
-                |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| self.projection(&halfway, batch.costs(), heads, means);
+                |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| self.projection(&halfway, heads, batch, means);
             let mut noted = Means::default();
             learner.descend_networks(0..networks, 1, &mut learner.minibatch(rollout, some), projection, &mut noted)?;
             noted.get("projection_loss").into_iter().for_each(|loss| means.add("projection_loss", loss));
             Ok(())
         })?;
+        means.add("projection_epochs", f64::from(made));
         Ok(())
     }
 
@@ -106,7 +110,7 @@ mod tests {
 
     fn learned(algorithm: &mut dyn Algorithm, config: &TrainConfig, episode_cost: f64) -> Learner {
         let (mut learner, rollout) = small::learner(config);
-        let signals = |_: &[f64]| vec![Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0, done: 0.0 }];
+        let signals = |_: &[f64]| vec![Signal::steady(episode_cost, 5.0, 525.0)];
         for number in 0..3 {
             let prepared = learner.prepare(&rollout);
             let passes = Passes::new(config, number, small::LANES);
@@ -130,20 +134,48 @@ mod tests {
         assert_eq!(above.optimisers.iter().map(|adam| adam.steps).collect::<Vec<_>>(), [6, 6]);
     }
 
+    /// A3. The projection's step is as short as the first (algorithm 1 of the paper's appendix stops both by the divergence of the policy
+    /// that each begins with): it ends when KL(halfway, new) is beyond the target, with a pass to spare or with none.
+    #[test]
+    fn the_second_step_stops_at_its_own_divergence() {
+        let passes = |target: f64| {
+            let mut config = small::config(AlgorithmKind::Cup);
+            (config.learning.epochs, config.learning.target_kl) = (8, Some(target));
+            config.learning.rate = 1e-2;
+            config.algorithm_settings.multiplier_rate = 100.0;
+            let (mut learner, rollout) = small::learner(&config);
+            let prepared = learner.prepare(&rollout);
+            let mut cup = Cup::new(&config);
+            let mut means = Means::default();
+            let signals = |_: &[f64]| vec![Signal::steady(1000.0, 5.0, 525.0)];
+            cup.learn(&mut learner, &prepared, &Passes::new(&config, 0, small::LANES), &signals, &mut means).unwrap();
+            let steps: Vec<u64> = learner.optimisers.iter().map(|adam| adam.steps).collect();
+            assert_eq!(means.get("projection_epochs"), Some(steps[1] as f64));
+            steps
+        };
+        // The passes of the second step do not hang on how far the first went: with a target between its own divergences it makes some
+        // of them.
+        assert_eq!(passes(1e9), [8, 8]);
+        assert_eq!(passes(1e-12), [1, 1]);
+        let between = passes(0.05);
+        assert!((1..8).contains(&between[1]), "{between:?}");
+    }
+
     /// With a vanishing multiplier, the projection of a policy is that policy: it must not be drawn back to the one that acted.
     #[test]
     fn a_small_multiplier_does_not_undo_the_first_step() {
         let mut config = small::config(AlgorithmKind::Cup);
         (config.learning.epochs, config.learning.target_kl) = (20, None);
+        // The critics have losses of their own.
+        config.learning.value_coefficient = 0.0;
         let (mut learner, rollout) = small::learner(&config);
         let prepared = learner.prepare(&rollout);
         let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
         let cup = Cup::new(&config);
         let halfway = learner.policy(&mut minibatch);
         let before = learner.parameters.clone();
-        let costs = minibatch.critics[1..].to_vec();
         for _ in 0..20 {
-            let loss = |heads: &Heads, _: &Minibatch<'_>, means: &mut Means| cup.projection(&halfway, &costs, heads, means);
+            let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| cup.projection(&halfway, heads, batch, means);
             learner.descend_networks(0..1, 1, &mut minibatch, loss, &mut Means::default()).unwrap();
         }
         assert_eq!(learner.parameters, before);

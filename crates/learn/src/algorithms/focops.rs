@@ -61,8 +61,9 @@ impl Algorithm for Focops {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         self.constrain(&signals(&rollout.mean_costs));
-        let made =
-            go_through(passes, means, |lanes, means| self.update(learner, &mut learner.minibatch(rollout, lanes), &[], means))?;
+        let made = go_through(learner, rollout, None, passes, means, |learner, lanes, means| {
+            self.update(learner, &mut learner.minibatch(rollout, lanes), &[], means)
+        })?;
         means.add("epochs", f64::from(made));
         Ok(())
     }

@@ -68,7 +68,7 @@ impl Case {
             targets: self.targets[index].clone(),
         };
         Minibatch {
-            batch: ModelSequences { sequences: empty, initial_state: vec![], recorded: vec![] },
+            batch: ModelSequences { sequences: empty, initial_state: vec![], recorded: vec![], privileged: vec![] },
             taken: Taken { actions: self.actions.clone(), deltas: self.deltas.clone() },
             old_log_probability: self.old_log.iter().map(|&log| f64::from(log)).collect(),
             old_policy: Policy::new(&self.shape, &self.old_outputs, self.shape.parameters()),
@@ -80,7 +80,7 @@ impl Case {
 
     /// Value and gradient of a loss.
     fn found(&self, loss: impl Fn(&Heads, &Minibatch<'_>, &mut Means) -> Loss) -> (f64, Vec<f64>) {
-        let shape = ModelShape { networks: vec![], action: self.shape.clone(), cost_critics: 1 };
+        let shape = ModelShape { networks: vec![], action: self.shape.clone(), cost_critics: 1, critic_inputs: 0 };
         let minibatch = self.minibatch();
         let heads = Heads::new(&shape, &self.outputs, shape.outputs(), &minibatch);
         let loss = loss(&heads, &minibatch, &mut Means::default());
@@ -224,7 +224,7 @@ fn config(algorithm: AlgorithmKind, preset: Preset) -> TrainConfig {
 }
 
 fn signal(episode_cost: f64) -> Signal {
-    Signal { episode_cost, episode_budget: 5.0, episode_steps: 525.0, done: 0.0 }
+    Signal::steady(episode_cost, 5.0, 525.0)
 }
 
 /// PPO's equations 7 (the clipped surrogate; 1 - epsilon is 1 / (1 + epsilon) here, as in the benchmark's code) and 9 (with the
@@ -261,32 +261,40 @@ fn ppo_with_continuous_parts() {
     );
 }
 
-/// P3O's exact penalty: kappa * max(0, E[max(r A_C, clip(r) A_C)] + (1 - gamma) (J_C - d)), added to PPO's loss; the released code
-/// leaves out the clip, counts the excess per step, and has a kappa of 1.
+/// P3O's exact penalty: kappa * max(0, E[max(r A_C, clip(r) A_C)] + excess), added to PPO's loss (equation 13 of the paper). A8: the authors
+/// standardise A_C, and so the excess, which stands in its unit, is divided by the same deviation; per step of an episode of 525 it is
+/// (J_C - d) / 525. Values are fed as critics give them, with a deviation that is neither 1 nor that of the rewards. The released code
+/// leaves out the clip and the division, and has a kappa of 1.
 #[test]
-fn p3o_with_the_penalty_on_and_off() {
-    for preset in [Preset::Paper, Preset::Released] {
-        for cost in [400.0, 8.0, 0.0] {
+fn p3o_counts_advantage_and_excess_in_one_unit() {
+    for preset in [Preset::Paper, Preset::Released, Preset::Tables] {
+        for (cost, scale) in [(400.0, 1.0), (400.0, 0.05), (8.0, 0.05), (8.0, 7.0), (0.0, 7.0), (0.0, 0.001)] {
             let config = config(AlgorithmKind::P3o, preset);
             let p3o = p3o::P3o::new(&config);
-            let case = Case::new(discrete(), 0.3);
-            let (advantages, costs) = (standardised(&case.advantages[0]), standardised(&case.advantages[1]));
+            let mut case = Case::new(discrete(), 0.3);
+            case.advantages[1].iter_mut().for_each(|value| *value = *value * scale + 3.0 * scale);
+            let advantages = standardised(&case.advantages[0]);
+            let raw: Vec<f64> = case.advantages[1].iter().map(|&value| f64::from(value)).collect();
+            let mean = raw.iter().sum::<f64>() / ROWS as f64;
+            let sigma = (raw.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (ROWS as f64 - 1.0)).sqrt();
             let signals = [signal(cost)];
             let clip = config.learning.clip_ratio;
             let penalty = |outputs: &[f64]| {
+                // The whole in raw units, then divided once by sigma: the unit must not matter to where the penalty begins.
                 let expected = Case::mean(|i| {
-                    let (ratio, a) = (case.ratio(outputs, i), costs[i]);
+                    let (ratio, a) = (case.ratio(outputs, i), raw[i] - mean);
                     let clipped = ratio.clamp(1.0 / (1.0 + clip), 1.0 + clip);
                     if preset == Preset::Paper { (ratio * a).max(clipped * a) } else { ratio * a }
                 });
+                let excess = (cost - 5.0) / 525.0;
                 match preset {
-                    Preset::Paper => 20.0 * (expected + 0.01 * (cost - 5.0)).max(0.0),
-                    _ => (expected + (cost - 5.0) / 525.0).max(0.0),
+                    Preset::Paper => 20.0 / sigma * (expected + excess).max(0.0),
+                    _ => (expected / sigma + excess).max(0.0),
                 }
             };
             case.compare(
-                &format!("P3O {preset}, cost {cost}"),
-                |heads, batch, means| p3o.loss(&advantages, std::slice::from_ref(&costs), &signals, heads, batch, means),
+                &format!("P3O {preset}, cost {cost}, scale {scale}"),
+                |heads, batch, means| p3o.loss(&advantages, &signals, heads, batch, means),
                 |outputs| case.clipped(outputs, &advantages, clip) + case.rest(outputs, &config) + penalty(outputs),
             );
         }
@@ -318,7 +326,7 @@ fn focops_counts_near_samples_alone() {
 }
 
 /// CUP's projection: KL(pi, pi_halfway) + multiplier * (1 - gamma lambda) / (1 - gamma) * E[pi / pi_k A_C], the second problem of
-/// its algorithm 1 with the constraint moved into the objective.
+/// its algorithm 1 with the constraint moved into the objective. A3: the critics learn in it too, for it moves the trunk that they share.
 #[test]
 fn cup_projects_from_the_policy_halfway() {
     let config = config(AlgorithmKind::Cup, Preset::Paper);
@@ -326,19 +334,21 @@ fn cup_projects_from_the_policy_halfway() {
     (0..300).for_each(|_| cup.constrain(&[signal(60.0)]));
     let multiplier = cup.multipliers()[0];
     assert!(multiplier > 0.1);
-    let (case, other) = (Case::new(discrete(), 0.3), Case::new(discrete(), 1.5));
+    let (mut case, other) = (Case::new(discrete(), 0.3), Case::new(discrete(), 1.5));
+    case.exploration = 0.0;
     let width = case.shape.parameters();
     let halfway = Policy::new(&case.shape, &other.old_outputs, width);
     let mean = case.advantages[1].iter().map(|&a| f64::from(a)).sum::<f64>() / ROWS as f64;
     case.compare(
         "CUP",
-        |heads, batch, means| cup.projection(&halfway, batch.costs(), heads, means),
+        |heads, batch, means| cup.projection(&halfway, heads, batch, means),
         |outputs| {
             let coefficient = (1.0 - 0.99 * 0.95) / (1.0 - 0.99);
-            Case::mean(|i| {
+            let projection = Case::mean(|i| {
                 case.divergence_from(case.row(outputs, i), &other.old_row(i))
                     + multiplier * coefficient * case.ratio(outputs, i) * (f64::from(case.advantages[1][i]) - mean)
-            })
+            });
+            projection + case.rest(outputs, &config)
         },
     );
 }

@@ -1,26 +1,18 @@
 //! Lagrange multipliers and how they move.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::Signal;
 use crate::config::AlgorithmConfig;
 
-/// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess). With damping the present
-/// excess counts beside its integral, without being remembered; with a reference budget both count
-/// 1 + progress^3 (reference / budget - 1) times, where progress is the share of the training that is over: at first an excess
-/// counts by itself, at last by its share of the budget.
+/// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess) (Ray et al. 2019, algorithm 1 of their
+/// appendix), and nothing else.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lagrange {
     /// The multiplier.
     pub value: f64,
-    /// Its integral, if that is another.
-    #[serde(default)]
-    integral: Option<f64>,
     rate: f64,
-    #[serde(default)]
-    damping: f64,
-    #[serde(default)]
-    reference: Option<f64>,
     /// The largest it may become.
     limit: Option<f64>,
 }
@@ -29,32 +21,22 @@ impl Lagrange {
     /// One multiplier a constraint.
     #[must_use]
     pub fn all(settings: &AlgorithmConfig, constraints: usize) -> Multipliers {
-        let one = Lagrange {
-            value: settings.multiplier_initial,
-            integral: None,
-            rate: settings.multiplier_rate,
-            damping: settings.multiplier_damping,
-            reference: settings.multiplier_reference_budget,
-            limit: settings.multiplier_limit,
-        };
+        let one =
+            Lagrange { value: settings.multiplier_initial, rate: settings.multiplier_rate, limit: settings.multiplier_limit };
         Multipliers::Lagrange(vec![one; constraints])
     }
 
     /// Moves by what the constraint costs per step above its budget.
     pub fn update(&mut self, signal: &Signal) {
-        let limit = self.limit.unwrap_or(f64::INFINITY);
-        let before = self.integral.unwrap_or(self.value);
-        // No budget is less than one event of an episode.
-        let ratio = self.reference.map_or(1.0, |reference| reference / signal.episode_budget.max(1.0));
-        let excess = (1.0 + signal.done.powi(3) * (ratio - 1.0)) * signal.step_excess();
-        let integral = (before + self.rate * excess).clamp(0.0, limit);
-        self.integral = Some(integral);
-        self.value = (integral + self.damping * excess).clamp(0.0, limit);
+        let change = self.rate * signal.fresh_weight * signal.fresh_step_excess();
+        self.value = (self.value + change).clamp(0.0, self.limit.unwrap_or(f64::INFINITY));
     }
 }
 
-/// A multiplier moved by a PID controller (Stooke et al. 2020): proportional and derivative parts react before the
-/// integral has grown, which damps its swings.
+/// A multiplier moved by a PID controller (Stooke et al. 2020, algorithm 2): proportional and derivative parts react before the
+/// integral has grown, which damps its swings. With a reference budget every part counts
+/// 1 + progress^3 (reference / budget - 1) times, where progress is the share of the schedule that is over: at first an excess counts by
+/// itself, at last by its share of the budget.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pid {
     /// The multiplier.
@@ -62,6 +44,8 @@ pub struct Pid {
     gains: (f64, f64, f64),
     decay: f64,
     delay: usize,
+    #[serde(default)]
+    reference: Option<f64>,
     /// The largest it may become.
     #[serde(default)]
     limit: Option<f64>,
@@ -83,6 +67,7 @@ impl Pid {
             gains: settings.pid_gains,
             decay: settings.pid_decay,
             delay: settings.pid_delay.max(1),
+            reference: settings.pid_reference_budget,
             limit: settings.multiplier_limit,
             integral: settings.pid_initial,
             proportional: 0.0,
@@ -92,20 +77,31 @@ impl Pid {
         Multipliers::Pid(vec![pid; constraints])
     }
 
-    /// Moves by what the constraint costs per step.
+    /// Moves by what the constraint costs per step. The integral counts every episode once; averages and delay go on by as many
+    /// rollouts as the new episodes stand for, and stand still while there are none.
     pub fn update(&mut self, signal: &Signal) {
-        let (kp, ki, kd) = self.gains;
-        let (excess, cost) = (signal.step_excess(), signal.step_cost());
-        self.integral = (self.integral + ki * excess).clamp(0.0, self.limit.unwrap_or(f64::INFINITY));
-        self.proportional = self.decay * self.proportional + (1.0 - self.decay) * excess;
-        self.cost = self.decay * self.cost + (1.0 - self.decay) * cost;
-        let rise = (self.cost - self.costs.front().copied().unwrap_or(0.0)).max(0.0);
-        let limit = self.limit.unwrap_or(f64::INFINITY);
-        self.value = (kp * self.proportional + self.integral + kd * rise).clamp(0.0, limit);
-        if self.costs.len() == self.delay {
-            self.costs.pop_front();
+        if signal.fresh_weight == 0.0 {
+            return;
         }
-        self.costs.push_back(self.cost);
+        let (kp, ki, kd) = self.gains;
+        let limit = self.limit.unwrap_or(f64::INFINITY);
+        // No budget is less than one event of an episode.
+        let ratio = self.reference.map_or(1.0, |reference| reference / signal.episode_budget.max(1.0));
+        let scale = 1.0 + signal.done.powi(3) * (ratio - 1.0);
+        let fresh = signal.fresh_weight * signal.fresh_step_excess();
+        self.integral = (self.integral + ki * (scale * fresh)).clamp(0.0, limit);
+        let kept = libm::pow(self.decay, signal.fresh_weight);
+        self.proportional = kept * self.proportional + (1.0 - kept) * signal.step_excess();
+        self.cost = kept * self.cost + (1.0 - kept) * signal.step_cost();
+        let rise = (self.cost - self.costs.front().copied().unwrap_or(0.0)).max(0.0);
+        let present = kp * (scale * self.proportional) + kd * (scale * rise);
+        self.value = (present + self.integral).clamp(0.0, limit);
+        for _ in 0..(signal.fresh_weight as usize).clamp(1, self.delay) {
+            if self.costs.len() == self.delay {
+                self.costs.pop_front();
+            }
+            self.costs.push_back(self.cost);
+        }
     }
 }
 
@@ -134,6 +130,22 @@ impl Multipliers {
         std::mem::discriminant(self) == std::mem::discriminant(others) && self.values().len() == others.values().len()
     }
 
+    /// Goes on from the damped multipliers of older versions, if that is what was saved: PI controllers, the value of which is their
+    /// integral plus a multiple of the present excess.
+    pub fn take_over_damped(&mut self, saved: &Value) -> bool {
+        let (Multipliers::Pid(all), Some(saved)) = (self, saved.as_array()) else { return false };
+        let parts =
+            |one: &Value| Some((one.get("value")?.as_f64()?, one.get("damping")?.as_f64()?, one.get("integral")?.as_f64()?));
+        let saved: Vec<_> = saved.iter().filter_map(parts).filter(|(_, damping, _)| *damping > 0.0).collect();
+        if saved.len() != all.len() {
+            return false;
+        }
+        for (one, (value, _, integral)) in all.iter_mut().zip(saved) {
+            (one.value, one.integral) = (value, integral);
+        }
+        true
+    }
+
     /// Their values.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
@@ -147,14 +159,19 @@ impl Multipliers {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algorithms;
     use crate::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
 
     fn signal(step_cost: f64) -> Signal {
-        Signal { episode_cost: step_cost * 525.0, episode_budget: 50.0, episode_steps: 525.0, done: 0.0 }
+        Signal::steady(step_cost * 525.0, 50.0, 525.0)
+    }
+
+    fn config(algorithm: AlgorithmKind, preset: Preset) -> TrainConfig {
+        TrainConfig::plain(algorithm, preset, EnvConfig::new("test"))
     }
 
     fn settings() -> AlgorithmConfig {
-        TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Released, EnvConfig::new("test")).algorithm_settings
+        config(AlgorithmKind::PpoLag, Preset::Released).algorithm_settings
     }
 
     /// The released code's rules, worked out apart in double precision: ten updates at a step cost of 0.3, then of 0.05.
@@ -183,12 +200,51 @@ mod tests {
         assert!((pid.values()[0] - 0.032_194_52).abs() < 1e-8);
     }
 
-    /// A cost that follows the multiplier with a delay: the integral alone runs in circles, damped it settles.
+    /// A2. Ray et al. 2019: gradient ascent on lambda (J_C - d), projected to lambda >= 0. So the multiplier is a running sum that is cut
+    /// off at zero, under every preset, and nothing of the present excess is in it: back at the budget it stays where it was.
     #[test]
-    fn damping_ends_the_circles() {
-        let swing = |damping: f64| {
-            let settings = AlgorithmConfig { multiplier_rate: 0.02, multiplier_damping: damping, ..settings() };
-            let mut multiplier = Lagrange::all(&settings, 1);
+    fn the_lagrangian_is_a_sum_of_excesses_under_every_preset() {
+        let costs = [90.0, 120.0, 40.0, 50.0, 50.0, 20.0, 0.0, 0.0, 0.0, 75.0];
+        for algorithm in [AlgorithmKind::PpoLag, AlgorithmKind::TrpoLag, AlgorithmKind::Focops, AlgorithmKind::Cup] {
+            for &preset in Preset::ALL {
+                let config = config(algorithm, preset);
+                let rate = config.algorithm_settings.multiplier_rate;
+                let mut made = algorithms::make(&config);
+                let mut expected = 0.0f64;
+                for done in [0.0, 1.0] {
+                    for cost in costs {
+                        made.constrain(&[Signal { done, ..Signal::steady(cost, 50.0, 525.0) }]);
+                        expected = (expected + rate * (cost - 50.0) / 525.0).max(0.0);
+                        let found = made.multipliers()[0];
+                        assert!((found - expected).abs() < 1e-12, "{algorithm} {preset}: {found} against {expected}");
+                    }
+                }
+            }
+        }
+        for algorithm in [AlgorithmKind::PpoPid, AlgorithmKind::TrpoPid] {
+            for &preset in Preset::ALL {
+                let mut made = algorithms::make(&config(algorithm, preset));
+                made.constrain(&[Signal::steady(500.0, 50.0, 525.0)]);
+                let (gains, decay, integral) = {
+                    let settings = config(algorithm, preset).algorithm_settings;
+                    (settings.pid_gains, settings.pid_decay, settings.pid_initial)
+                };
+                // Stooke et al. 2020, algorithm 2: K_P Delta + I + K_D (J_C - J_C before)+, the first and the last smoothed.
+                let excess = 450.0 / 525.0;
+                let expected =
+                    gains.0 * (1.0 - decay) * excess + integral + gains.1 * excess + gains.2 * (1.0 - decay) * 500.0 / 525.0;
+                let found = made.multipliers()[0];
+                assert!((found - expected).abs() < 1e-12, "{algorithm} {preset}: {found} against {expected}");
+            }
+        }
+    }
+
+    /// A cost that follows the multiplier with a delay: the integral alone runs in circles, with a proportional part it settles.
+    #[test]
+    fn a_proportional_part_ends_the_circles() {
+        let swing = |gain: f64| {
+            let settings = AlgorithmConfig { pid_gains: (gain, 0.02, 0.0), pid_initial: 0.0, pid_decay: 0.0, ..settings() };
+            let mut multiplier = Pid::all(&settings, 1);
             let (mut cost, mut seen) = (100.0, std::collections::VecDeque::from(vec![100.0; 66]));
             let mut late = Vec::new();
             for update in 0..4000 {
@@ -204,26 +260,25 @@ mod tests {
         assert!(swing(1.5) < 2.0, "{}", swing(1.5));
     }
 
-    /// A cost that answers to ratios of the multiplier: the rate that brings a budget of 45 to rest where 0.3 is needed also brings
+    /// A cost that answers to ratios of the multiplier: the gain that brings a budget of 45 to rest where 0.3 is needed also brings
     /// one of 4.5 to rest where 3 is, and moves the first as it would without.
     #[test]
     fn a_reference_brings_small_budgets_to_rest_as_soon() {
         let distance = |reference: Option<f64>, scale: f64| {
             let settings = AlgorithmConfig {
-                multiplier_rate: 0.01,
-                multiplier_damping: 1.5,
-                multiplier_reference_budget: reference,
+                pid_gains: (1.5, 0.01, 0.0),
+                pid_initial: 0.0,
+                pid_decay: 0.0,
+                pid_reference_budget: reference,
                 ..settings()
             };
-            let mut multiplier = Lagrange::all(&settings, 1);
+            let mut multiplier = Pid::all(&settings, 1);
             let budget = 45.0 / scale;
             let mut cost = 2.0 * budget;
             for update in 0..12_000 {
                 let wanted = budget * (1.0 - (multiplier.values()[0] / (0.3 * scale)).max(0.05).ln());
                 cost += (wanted - cost) / 146.0;
-                let signal =
-                    Signal { episode_cost: cost, episode_budget: budget, episode_steps: 525.0, done: f64::from(update) / 12e3 };
-                multiplier.update(&[signal]);
+                multiplier.update(&[Signal { done: f64::from(update) / 12e3, ..Signal::steady(cost, budget, 525.0) }]);
             }
             (cost / budget - 1.0).abs()
         };
@@ -239,16 +294,69 @@ mod tests {
     /// A budget of nothing counts as one of 1.
     #[test]
     fn an_excess_counts_by_its_share_of_the_budget_at_last() {
-        let moved = |budget: f64, done: f64| {
-            let settings = AlgorithmConfig { multiplier_rate: 1.0, multiplier_reference_budget: Some(45.0), ..settings() };
-            let mut multiplier = Lagrange::all(&settings, 1);
-            multiplier.update(&[Signal { episode_cost: budget + 5.0, episode_budget: budget, episode_steps: 100.0, done }]);
+        let moved = |gains: (f64, f64, f64), budget: f64, done: f64| {
+            let settings = AlgorithmConfig {
+                pid_gains: gains,
+                pid_initial: 0.0,
+                pid_decay: 0.0,
+                pid_reference_budget: Some(45.0),
+                ..settings()
+            };
+            let mut multiplier = Pid::all(&settings, 1);
+            multiplier.update(&[Signal { done, ..Signal::steady(budget + 5.0, budget, 100.0) }]);
             multiplier.values()[0]
         };
         for (budget, done, expected) in [(5.0, 0.0, 0.05), (5.0, 0.5, 0.1), (5.0, 1.0, 0.45), (45.0, 1.0, 0.05), (0.0, 1.0, 2.25)]
         {
-            assert!((moved(budget, done) - expected).abs() < 1e-12, "{budget} {done}: {}", moved(budget, done));
+            for gains in [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)] {
+                let found = moved(gains, budget, done);
+                assert!((found - expected).abs() < 1e-12, "{gains:?} {budget} {done}: {found}");
+            }
         }
+    }
+
+    /// A15. Stooke et al. 2020, algorithm 2: once an iteration, I <- (I + J_C - d)+ over the episodes of that iteration. Two rollouts
+    /// pass without an episode, the third brings three: as if each of the three rollouts had brought one, and a fourth without any
+    /// moves nothing.
+    #[test]
+    fn the_pid_counts_new_episodes_once() {
+        let made = |signals: &[Signal]| {
+            let mut pid = Pid::all(&AlgorithmConfig { pid_delay: 4, ..settings() }, 1);
+            signals.iter().for_each(|signal| pid.update(std::slice::from_ref(signal)));
+            pid
+        };
+        let steady = Signal::steady(80.0, 50.0, 525.0);
+        let none = Signal { fresh_weight: 0.0, ..steady };
+        let three = Signal { fresh_weight: 3.0, ..steady };
+        let (late, each) = (made(&[none, none, three]), made(&[steady, steady, steady]));
+        let parts = |multipliers: &Multipliers| {
+            let Multipliers::Pid(all) = multipliers else { panic!("no PID") };
+            (all[0].integral, all[0].proportional, all[0].cost)
+        };
+        let (a, b) = (parts(&late), parts(&each));
+        assert!((a.0 - b.0).abs() < 1e-15 && (a.1 - b.1).abs() < 1e-15 && (a.2 - b.2).abs() < 1e-15, "{a:?} {b:?}");
+        // 0.001 + 3 * 0.01 * 30 / 525, and 1 - 0.95^3 of the excess.
+        assert!((a.0 - (0.001 + 0.9 / 525.0)).abs() < 1e-15 && (a.1 - 0.142_625 * 30.0 / 525.0).abs() < 1e-15);
+        let mut after = late.clone();
+        after.update(&[none]);
+        assert_eq!(after, late);
+    }
+
+    /// A2: a checkpoint of older versions' damped multiplier is one of a PI controller.
+    #[test]
+    fn damped_multipliers_go_on_as_the_controllers_that_they_were() {
+        let saved = serde_json::json!([{ "value": 0.2, "integral": 0.15, "rate": 0.01, "damping": 1.5, "reference": 45.0, "limit": null }]);
+        let mut pid = algorithms::make(&config(AlgorithmKind::PpoPid, Preset::Quick));
+        pid.load(&saved).unwrap();
+        assert_eq!(pid.multipliers(), [0.2]);
+        pid.constrain(&[Signal::steady(0.0, 0.0, 525.0)]);
+        assert_eq!(pid.multipliers(), [0.15]);
+        // A plain Lagrangian is no controller, nor the other way round.
+        let plain = serde_json::json!([{ "value": 0.2, "rate": 0.01, "limit": null }]);
+        assert!(pid.load(&plain).unwrap_err().to_string().contains("another algorithm's"));
+        let mut lagrangian = algorithms::make(&config(AlgorithmKind::PpoLag, Preset::Quick));
+        lagrangian.load(&plain).unwrap();
+        assert_eq!(lagrangian.multipliers(), [0.2]);
     }
 
     #[test]

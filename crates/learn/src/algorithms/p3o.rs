@@ -3,11 +3,12 @@
 //! The constraint enters the loss as an exact penalty: kappa times the positive part of what the cost is expected to
 //! become, the cost's surrogate plus the present excess. There is no multiplier to wait for.
 //!
-//! As the paper has it the surrogate is clipped pessimistically and the excess is (1 - gamma)(J_C - d) of an episode; the
-//! released code uses the plain ratio, the excess per step and kappa 1, which leaves little more than a switch on the
-//! sign of the excess.
+//! As the paper has it the surrogate is clipped pessimistically. Its advantages are standardised, as its authors' are, so the excess is
+//! divided by the same deviation: (J_C - d) / (T sigma_C). (The paper's (1 - gamma)(J_C - d) is the excess of discounted costs a step;
+//! budgets here are on sums, whose excess a step is that over the T steps that episodes have.) The released code uses the plain ratio, the excess per step
+//! beside standardised advantages, and kappa 1, which leaves little more than a switch on the sign of the excess.
 
-use super::surrogate::{clip_ratio, standardised};
+use super::surrogate::{clip_ratio, standardised, standardised_by};
 use super::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
@@ -30,13 +31,14 @@ impl P3o {
         P3o { settings: config.learning.clone(), kappa: settings.p3o_kappa, clipped: settings.p3o_clipped }
     }
 
-    /// The penalty of one constraint from the standardised advantages of its cost.
-    fn penalty(&self, heads: &Heads, advantages: &[f64], signal: &Signal) -> Loss {
+    /// The penalty of one constraint from the advantages of its cost, in raw units.
+    fn penalty(&self, heads: &Heads, advantages: &[f32], signal: &Signal) -> Loss {
+        let (advantages, deviation) = standardised_by(advantages);
         let expected = if self.clipped {
             let surrogate = heads.mean([&heads.ratio], |row, [ratio]| {
                 (ratio * advantages[row]).max(clip_ratio(ratio, self.settings.clip_ratio) * advantages[row])
             });
-            surrogate + (1.0 - self.settings.gamma) * signal.episode_excess()
+            surrogate + signal.surrogate_excess() / deviation
         } else {
             heads.mean([&heads.ratio], |row, [ratio]| ratio * advantages[row]) + signal.step_excess()
         };
@@ -47,15 +49,14 @@ impl P3o {
     pub(super) fn loss(
         &self,
         advantages: &[f64],
-        cost_advantages: &[Vec<f64>],
         signals: &[Signal],
         heads: &Heads,
         batch: &Minibatch<'_>,
         means: &mut Means,
     ) -> Loss {
         let mut loss = ppo::loss(advantages, heads, batch, &self.settings, means);
-        for (advantages, signal) in cost_advantages.iter().zip(signals) {
-            let penalty = self.penalty(heads, advantages, signal);
+        for (cost, signal) in batch.costs().iter().zip(signals) {
+            let penalty = self.penalty(heads, &cost.advantages, signal);
             means.add("policy_cost_loss", penalty.value);
             loss = loss + penalty;
         }
@@ -72,10 +73,7 @@ impl Algorithm for P3o {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let advantages = standardised(minibatch.advantages());
-        let costs: Vec<_> = minibatch.costs().iter().map(|cost| standardised(&cost.advantages)).collect();
-        let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| {
-            self.loss(&advantages, &costs, signals, heads, batch, means)
-        };
+        let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| self.loss(&advantages, signals, heads, batch, means);
         learner.descend(minibatch, loss, means)
     }
 }

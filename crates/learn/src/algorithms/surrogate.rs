@@ -13,10 +13,16 @@ const RATIO_BOUNDS: (f64, f64) = (0.05, 20.0);
 /// Zero mean and unit (unbiased) deviation.
 #[must_use]
 pub fn standardised(values: &[f32]) -> Vec<f64> {
+    standardised_by(values).0
+}
+
+/// The same, and the deviation that they were divided by.
+#[must_use]
+pub fn standardised_by(values: &[f32]) -> (Vec<f64>, f64) {
     let centred = centred(values);
     let squares: f64 = centred.iter().map(|value| value * value).sum();
-    let deviation = (squares / (values.len() as f64 - 1.0).max(1.0)).sqrt();
-    centred.iter().map(|value| value / deviation.max(1e-7)).collect()
+    let deviation = (squares / (values.len() as f64 - 1.0).max(1.0)).sqrt().max(1e-7);
+    (centred.iter().map(|value| value / deviation).collect(), deviation)
 }
 
 /// Zero mean.
@@ -80,15 +86,21 @@ pub fn total(policy_loss: Loss, heads: &Heads, minibatch: &Minibatch<'_>, settin
     means.add("policy_loss", policy_loss.value);
     let exploration = exploration_loss(heads, settings.exploration, minibatch.exploration_coefficient);
     means.add("exploration_loss", exploration.value);
-    let mut total = policy_loss + exploration;
-    for (value, critic) in heads.values.iter().zip(&minibatch.critics) {
-        let loss = value_loss(heads, value, critic, settings);
-        means.add(critic.loss_name.clone(), loss.value);
-        total = total + loss;
-    }
+    let total = policy_loss + exploration + critics_loss(heads, minibatch, settings, means);
     means.add("value", heads.values[0].mean());
     note_policy(heads, minibatch, settings.clip_ratio, means);
     total
+}
+
+/// The losses of all critics.
+#[must_use]
+pub fn critics_loss(heads: &Heads, minibatch: &Minibatch<'_>, settings: &LearningConfig, means: &mut Means) -> Loss {
+    let losses = heads.values.iter().zip(&minibatch.critics).map(|(value, critic)| {
+        let loss = value_loss(heads, value, critic, settings);
+        means.add(critic.loss_name.clone(), loss.value);
+        loss
+    });
+    losses.reduce(|sum, loss| sum + loss).expect("the reward has a critic")
 }
 
 /// Notes the policy's entropy, and how far it has moved from the one that acted: its divergence, the estimate of it

@@ -13,6 +13,7 @@ use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
 use crate::learning::policy::Policy;
 use crate::networks::ModelSequences;
+use crate::random::{Purpose, Stream};
 
 /// Norm of the step of the difference: far above rounding, far below the curvature of the network.
 const DIFFERENCE: f64 = 1e-2;
@@ -169,8 +170,38 @@ impl TrustRegion {
     }
 }
 
-/// One step of Adam for the critics, down their squared errors. `critics` counts the reward's as 0.
+/// Steps of Adam for the critics, down their squared errors. `critics` counts the reward's as 0.
+///
+/// A step of the policy is one of many samples. Critics that made a single step on them too would lag behind every policy, and
+/// advantages would be those of an older one; so they go through the same samples in smaller parts, dealt anew each time.
 pub fn train_critics(
+    learner: &mut Learner,
+    minibatch: &mut Minibatch<'_>,
+    critics: usize,
+    means: &mut Means,
+) -> Result<(), LearnError> {
+    let settings = &learner.config.algorithm_settings;
+    let (count, seed) = (settings.critic_steps, learner.config.seed);
+    let (steps, lanes) = (minibatch.batch.sequences.steps, minibatch.batch.sequences.lanes);
+    let share = settings.critic_batch.map_or(lanes, |samples| samples / steps.max(1)).clamp(1, lanes);
+    if share == lanes {
+        return (0..count).try_for_each(|_| critic_step(learner, minibatch, critics, means));
+    }
+    // Counted by updates, so that a resumed run deals as the one that went straight through.
+    let (update, mut dealt) = (learner.version, Vec::new());
+    for step in 0..count {
+        if dealt.len() < share {
+            dealt = (0..lanes).collect();
+            Stream::new(seed, Purpose::Shuffle, update, step as u64).shuffle(&mut dealt);
+        }
+        let part = dealt.split_off(dealt.len() - share);
+        critic_step(learner, &mut minibatch.of_lanes(learner.shape(), &part), critics, means)?;
+    }
+    Ok(())
+}
+
+/// One of these steps, on all of a minibatch.
+fn critic_step(
     learner: &mut Learner,
     minibatch: &mut Minibatch<'_>,
     critics: usize,

@@ -49,6 +49,12 @@ impl AlgorithmKind {
         !matches!(self, Self::Ppo | Self::PpoCost | Self::Trpo)
     }
 
+    /// Whether it weighs costs by multipliers that move by what episodes cost.
+    #[must_use]
+    pub const fn has_multipliers(self) -> bool {
+        matches!(self, Self::PpoLag | Self::PpoPid | Self::TrpoLag | Self::TrpoPid | Self::Focops | Self::Cup)
+    }
+
     /// Optimiser states of each network: CUP's two steps have one each.
     #[must_use]
     pub const fn optimisers(self) -> usize {
@@ -62,9 +68,31 @@ impl AlgorithmKind {
     }
 }
 
+names! {
+    /// When multipliers move.
+    MultiplierUpdate ("update of the multipliers") {
+        /// Once a rollout, before it is learned from, by the episodes that finished since they last moved.
+        Rollout = "rollout",
+        /// Before every minibatch, as in the released code.
+        Minibatch = "minibatch",
+        /// After every minibatch, whose loss still has them as they were, as in the code of the paper's tables.
+        AfterMinibatch = "after-minibatch",
+    }
+}
+
 /// As in TRPO's paper: the Fisher matrix needs less data than the gradient.
 const fn a_tenth() -> f64 {
     0.1
+}
+
+/// What files of before say nothing of.
+const fn one_step() -> usize {
+    1
+}
+
+/// What files say that know of no other moment.
+const fn every_minibatch() -> MultiplierUpdate {
+    MultiplierUpdate::Minibatch
 }
 
 /// Numbers of single algorithms.
@@ -76,26 +104,28 @@ pub struct AlgorithmConfig {
     pub multiplier_initial: f64,
     /// Lagrangian algorithms: change of the multiplier per update and unit of cost per step above budget.
     pub multiplier_rate: f64,
-    /// Lagrangian algorithms: what the present excess adds to the multiplier at once, per unit of cost per step above budget;
-    /// it damps the circles that the integral alone runs in. 0 for none.
-    #[serde(default)]
-    pub multiplier_damping: f64,
-    /// Lagrangian algorithms: the budget for which the rate is meant. Toward the end of training, as the cube of its progress, an
-    /// excess then counts by its share of the budget, so that a tenth of the budget moves a multiplier ten times as fast; before,
-    /// it does not, since an agent that is held back early never learns to earn.
-    #[serde(default)]
-    pub multiplier_reference_budget: Option<f64>,
+    /// Lagrangian and PID algorithms: when the multiplier moves.
+    #[serde(default = "every_minibatch")]
+    pub multiplier_update: MultiplierUpdate,
+    /// What older versions added to the multiplier of a Lagrangian algorithm at once, which made a PID controller of it.
+    #[serde(default, skip_serializing, rename = "multiplier_damping")]
+    pub(crate) former_damping: f64,
     /// PID: proportional, integral and derivative gains.
     pub pid_gains: (f64, f64, f64),
     /// PID: the integral before the first update.
     pub pid_initial: f64,
-    /// PID: decay of the moving averages of error and cost.
+    /// PID: decay, an update, of the moving averages of error and cost.
     pub pid_decay: f64,
     /// PID: updates that the derivative looks back.
     pub pid_delay: usize,
+    /// PID: the budget that the gains are made for; `null` for every budget alike. Toward the end of training, as the cube of its
+    /// progress, an excess then counts by its share of the budget, so that a tenth of the budget moves a multiplier ten times as
+    /// fast; before, it does not, since an agent that is held back early never learns to earn.
+    #[serde(default, alias = "multiplier_reference_budget")]
+    pub pid_reference_budget: Option<f64>,
     /// P3O: weight of the penalty.
     pub p3o_kappa: f64,
-    /// P3O: clipped surrogate and (1 - gamma) times the excess of an episode, as its paper has it.
+    /// P3O: clipped surrogate, and the excess in the unit of the standardised advantages, as its paper has it.
     pub p3o_clipped: bool,
     /// Saute: discount of the budget.
     pub saute_gamma: f64,
@@ -114,6 +144,12 @@ pub struct AlgorithmConfig {
     pub fisher_fraction: f64,
     /// Second-order algorithms: multiple of the identity added to the Fisher matrix.
     pub fisher_damping: f64,
+    /// Second-order algorithms: steps of Adam that the critics make in each update of the policy.
+    #[serde(default = "one_step")]
+    pub critic_steps: usize,
+    /// Second-order algorithms: samples of each of these steps, dealt out of the rollout; `null` for all of it.
+    #[serde(default)]
+    pub critic_batch: Option<usize>,
     /// Second-order algorithms: tries of the line search.
     pub line_search_steps: usize,
     /// Second-order algorithms: factor between the tries.
@@ -127,8 +163,8 @@ pub struct AlgorithmConfig {
     pub focops_temperature: f64,
     /// Lagrangian algorithms: largest multiplier; `null` for none.
     pub multiplier_limit: Option<f64>,
-    /// IPO: steepness of the barrier.
+    /// IPO: weight of the barrier, as a share of the budget: the penalty is 1 where the cost is this share below the budget.
     pub ipo_kappa: f64,
-    /// IPO: largest penalty.
+    /// IPO: largest penalty, which also rules above the budget, where there is no barrier.
     pub ipo_limit: f64,
 }

@@ -1,5 +1,7 @@
 //! The environment of a run, in words that a file can hold.
 
+use std::path::PathBuf;
+
 use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, Scenario};
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +12,11 @@ use crate::error::LearnError;
 pub struct EnvConfig {
     /// Its id, such as `VolcanicVentureLevel1-v0`.
     pub id: String,
-    /// `paper` or `released`.
+    /// `paper`, `released` or `tables`.
     pub rules: String,
+    /// Detonator's Dilemma 1 under `tables` with the creatures of the first runs.
+    #[serde(default, skip_serializing_if = "is_off")]
+    pub early_creatures: bool,
     /// Hard constraint.
     pub hard: bool,
     /// Full action space.
@@ -31,11 +36,11 @@ pub struct EnvConfig {
     #[serde(default, skip_serializing_if = "is_off")]
     pub published_colours: bool,
     /// The file of the pictures that worlds are drawn with; `null` for the embedded set. Whoever makes the worlds reads it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub iwad: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "super::place")]
+    pub iwad: Option<PathBuf>,
     /// Where the maps come from; `null` for the built-in ones. Whoever makes the worlds reads them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub maps: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "super::place")]
+    pub maps: Option<PathBuf>,
 }
 
 /// Options that are seldom on are written only then.
@@ -51,6 +56,7 @@ impl EnvConfig {
         EnvConfig {
             id: id.to_string(),
             rules: "paper".into(),
+            early_creatures: false,
             hard: false,
             full_actions: false,
             frame_skip: 4,
@@ -78,6 +84,7 @@ impl EnvConfig {
         };
         Ok(EnvOptions {
             rules: self.rule_set()?,
+            early_creatures: self.early_creatures,
             hard: self.hard,
             full_actions: self.full_actions,
             frame_skip: self.frame_skip,
@@ -92,11 +99,8 @@ impl EnvConfig {
     }
 
     pub(super) fn rule_set(&self) -> Result<RuleSet, LearnError> {
-        match self.rules.as_str() {
-            "paper" => Ok(RuleSet::Paper),
-            "released" => Ok(RuleSet::Released),
-            other => Err(LearnError::Config(format!("rules '{other}' are unknown; use one of paper, released"))),
-        }
+        let unknown = |_| LearnError::Config(format!("rules '{}' are unknown; use one of {}", self.rules, RuleSet::names()));
+        self.rules.parse().map_err(unknown)
     }
 
     pub(crate) fn scenario(&self) -> Option<Scenario> {

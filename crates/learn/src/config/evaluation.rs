@@ -30,10 +30,20 @@ impl TrainConfig {
     /// Whether an evaluation falls between two moments of the run, the second included. The end of a run is one.
     #[must_use]
     pub fn evaluates(&self, before: u64, frames: u64) -> bool {
-        let short = self.frames < WORTH_EVALUATING;
-        let every = self.evaluation.every.unwrap_or(if short { 0 } else { self.frames.div_ceil(EVALUATIONS) });
+        let every = self.frames_between_evaluations();
         let ends = before < self.frames && self.frames <= frames;
         every > 0 && (ends || before / every < frames / every)
+    }
+
+    /// Whether the run is evaluated at its end: every run that is evaluated at all.
+    #[must_use]
+    pub fn evaluates_at_its_end(&self) -> bool {
+        self.frames_between_evaluations() > 0
+    }
+
+    fn frames_between_evaluations(&self) -> u64 {
+        let short = self.frames < WORTH_EVALUATING;
+        self.evaluation.every.unwrap_or(if short { 0 } else { self.frames.div_ceil(EVALUATIONS) })
     }
 }
 

@@ -5,19 +5,22 @@ pub mod constraint;
 pub mod curriculum;
 mod environment;
 mod evaluation;
+mod former;
 mod learning;
 mod names;
 mod network;
+pub mod place;
 mod presets;
 mod reporting;
 mod sampling;
+mod second_order;
 pub mod settings;
 
-pub use algorithm::{AlgorithmConfig, AlgorithmKind};
+pub use algorithm::{AlgorithmConfig, AlgorithmKind, MultiplierUpdate};
 pub use constraint::{Constraint, ConstraintStatistic};
 pub use environment::EnvConfig;
 pub use evaluation::EvaluationConfig;
-pub use learning::{Exploration, LearningConfig};
+pub use learning::{CriticInput, Exploration, LearningConfig, ReturnNormaliser};
 pub use network::{Convolution, Initialisation, NetworkConfig, RecurrentCell};
 pub use reporting::ReportingConfig;
 pub use sampling::SamplingConfig;
@@ -41,6 +44,8 @@ names! {
         Paper = "paper",
         /// What the released code does.
         Released = "released",
+        /// What the code did that made the paper's tables.
+        Tables = "tables",
         /// The paper's algorithms with settings that learn within minutes on a processor, for first steps.
         Quick = "quick",
     }
@@ -48,7 +53,12 @@ names! {
 
 /// A run.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+// Read by `former`, which knows what older versions wrote.
+#[serde(remote = "Self")]
 pub struct TrainConfig {
+    /// Version of the program that began the run; empty where that did not say.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub version: String,
     /// The algorithm.
     pub algorithm: AlgorithmKind,
     /// The preset that these settings began as.
@@ -68,8 +78,8 @@ pub struct TrainConfig {
     pub episode_steps: u32,
     /// Constraints, each with its budget.
     pub constraints: Vec<Constraint>,
-    /// Share of each budget that learning aims at: a policy that swings about it still keeps a budget that is a little above.
-    /// Evaluations hold costs against the whole budget.
+    /// Share of each budget that learning aims at, whatever the algorithm: a policy that swings about it still keeps a budget that is a
+    /// little above. Evaluations hold costs against the whole budget.
     #[serde(default = "whole")]
     pub budget_share: f64,
     /// What they are held against.
@@ -130,11 +140,18 @@ impl TrainConfig {
             ("the steps of the longest episode", self.episode_steps as usize, 100_000),
             ("the delay of the PID controller", self.algorithm_settings.pid_delay, 100_000),
             ("the conjugate-gradient iterations", self.algorithm_settings.conjugate_iterations, 1000),
+            ("the steps of the critics", self.algorithm_settings.critic_steps, 100_000),
+            ("the samples of a critic's step", self.algorithm_settings.critic_batch.unwrap_or(1), 1 << 24),
+            ("the recurrence", learning.recurrence.unwrap_or(1), 4096),
             ("the tries of the line search", self.algorithm_settings.line_search_steps, 1000),
         ] {
             if !(1..=most).contains(&given) {
                 return refuse(name, &given, &format!("1 to {most}"));
             }
+        }
+        if !sampling.rollout.is_multiple_of(self.trajectory_steps()) {
+            let allowed = format!("a multiple of the recurrence ({})", self.trajectory_steps());
+            return refuse("the rollout length", &sampling.rollout, &allowed);
         }
         if sampling.world_threads > 256 {
             return refuse("the number of world threads", &sampling.world_threads, "0 to 256");
@@ -151,6 +168,7 @@ impl TrainConfig {
             ("the final learning rate", learning.final_rate.unwrap_or(0.0), 0.0, 10.0),
             ("the target divergence", learning.target_kl.unwrap_or(0.0), 0.0, f64::MAX),
             ("the learning rate of the critics", learning.critic_rate.unwrap_or(0.0), 0.0, 10.0),
+            ("the samples that PopArt remembers", learning.normaliser_horizon, 1.0, f64::MAX),
             ("gamma of the costs", learning.cost_gamma.unwrap_or(0.0), 0.0, 1.0),
             ("the final exploration coefficient", learning.final_exploration_coefficient.unwrap_or(0.0), 0.0, 1e3),
             ("the largest multiplier", self.algorithm_settings.multiplier_limit.unwrap_or(0.0), 0.0, f64::MAX),
@@ -161,15 +179,13 @@ impl TrainConfig {
             ("the exploration coefficient", learning.exploration_coefficient, 0.0, 1e3),
             ("the seconds between reports", self.reporting.report_seconds, 0.0, f64::MAX),
             ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
-            ("the share of the budget", self.budget_share, 0.0, 1.0),
+            ("the share of the budget", self.budget_share, 0.0, 2.0),
             ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
-            (
-                "the reference budget of the multiplier",
-                self.algorithm_settings.multiplier_reference_budget.unwrap_or(0.0),
-                0.0,
-                f64::MAX,
-            ),
-            ("the damping of the multiplier", self.algorithm_settings.multiplier_damping, 0.0, f64::MAX),
+            ("the reference budget of the PID", self.algorithm_settings.pid_reference_budget.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the decay of the PID's averages", self.algorithm_settings.pid_decay, 0.0, 1.0),
+            ("the weight of P3O's penalty", self.algorithm_settings.p3o_kappa, 0.0, f64::MAX),
+            ("the weight of IPO's barrier", self.algorithm_settings.ipo_kappa, 0.0, f64::MAX),
+            ("IPO's largest penalty", self.algorithm_settings.ipo_limit, 0.0, f64::MAX),
             ("the penalty scale", self.algorithm_settings.penalty_scale, 0.0, f64::MAX),
         ] {
             if !(low..=high).contains(&given) {
@@ -186,8 +202,31 @@ impl TrainConfig {
         if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
             return refuse("the learning rate of the critics", &rate, "null unless network.separate is on");
         }
+        if learning.normaliser == ReturnNormaliser::PopArt && !sampling.synchronous {
+            let allowed = "running unless sampling.synchronous is on: actors beside the learner have heads of another scale";
+            return refuse("the normaliser of returns", &learning.normaliser, allowed);
+        }
+        if learning.normaliser == ReturnNormaliser::PopArt && learning.cost_uses_reward_normaliser {
+            return refuse("the normaliser of returns", &learning.normaliser, "running where costs use that of the rewards");
+        }
+        let seen = &learning.critic_inputs;
+        if let Some(twice) = (1..seen.len()).find(|&index| seen[..index].contains(&seen[index])) {
+            return refuse("an input of the critics", &format!("'{}' twice", seen[twice]), "named once");
+        }
         if self.frames == 0 {
             return refuse("the number of frames", &self.frames, "at least 1");
+        }
+        if learning.schedule_frames == Some(0) {
+            return refuse("the length of the schedules", &0, "at least 1 frame, or null for that of the run");
+        }
+        if let ConstraintStatistic::Cvar(share) = self.constraint_statistic {
+            if !(share > 0.0 && share <= 1.0) {
+                return refuse("the share of the CVaR", &share, "above 0 and at most 1, such as cvar:0.1");
+            }
+            if !self.algorithm.has_multipliers() {
+                let allowed = format!("episode-mean or step-mean for {}, which has no multiplier to move", self.algorithm);
+                return refuse("the constraint statistic", &self.constraint_statistic, &allowed);
+            }
         }
         if self.constraints.is_empty() || self.constraints.len() > 8 {
             return refuse("the number of constraints", &self.constraints.len(), "1 to 8");
@@ -210,6 +249,38 @@ impl TrainConfig {
             return refuse("the budget of PPOSaute", &0, "above 0, for what is left of it is measured in its units");
         }
         Ok(())
+    }
+
+    /// Steps of the trajectories that are learned from.
+    #[must_use]
+    pub fn trajectory_steps(&self) -> usize {
+        self.learning.recurrence.unwrap_or(usize::MAX).min(self.sampling.rollout)
+    }
+
+    /// Cost of an episode that learning aims at, for one of the constraints: the same for every algorithm.
+    #[must_use]
+    pub fn aim(&self, constraint: usize) -> f64 {
+        self.constraints[constraint].budget * self.budget_share
+    }
+
+    /// Share of the schedules that is over after so many frames, 0 to 1.
+    #[must_use]
+    pub fn progress(&self, frames: u64) -> f64 {
+        (frames as f64 / self.learning.schedule_frames.unwrap_or(self.frames) as f64).min(1.0)
+    }
+
+    /// Writes down how long the schedules of a run are that begins: as long as the run, unless they were given a length.
+    #[must_use]
+    pub fn begun(mut self) -> TrainConfig {
+        self.learning.schedule_frames.get_or_insert(self.frames);
+        self
+    }
+
+    /// Frames that a run was begun with, if it was given more when it was resumed.
+    #[must_use]
+    pub fn extended_from(&self) -> Option<u64> {
+        let first = self.changes.iter().find(|change| change.setting == "frames")?.from.as_u64()?;
+        (self.frames > first).then_some(first)
     }
 
     /// Frames of one rollout of all worlds.
@@ -237,6 +308,13 @@ mod tests {
         refuse(|c| c.learning.rate = f64::NAN, "learning rate");
         refuse(|c| c.constraints[0].budget = -1.0, "budget");
         refuse(|c| c.frames = 0, "frames");
+        refuse(
+            |c| (c.learning.normaliser, c.sampling.synchronous) = (ReturnNormaliser::PopArt, false),
+            "normaliser of returns cannot be popart",
+        );
+        refuse(|c| c.learning.critic_inputs = vec![CriticInput::TimeLeft; 2], "'time-left' twice");
+        refuse(|c| (c.sampling.rollout, c.learning.recurrence) = (48, Some(32)), "multiple of the recurrence (32)");
+        refuse(|c| c.algorithm_settings.critic_steps = 0, "steps of the critics");
         for algorithm in [AlgorithmKind::PpoSaute, AlgorithmKind::PpoCost] {
             let mut config = TrainConfig { algorithm, ..good.clone() };
             config.constraints.push(config.constraints[0].clone());

@@ -7,7 +7,8 @@ use super::TrainConfig;
 use crate::error::LearnError;
 
 /// Settings that others hang on, and what to use instead: it brings those along.
-const OTHERS_HANG_ON: [(&str, &str); 8] = [
+const OTHERS_HANG_ON: [(&str, &str); 9] = [
+    ("version", "the program of that version"),
     ("algorithm", "--algo"),
     ("preset", "--preset"),
     ("env.id", "the environment's id"),
@@ -19,11 +20,16 @@ const OTHERS_HANG_ON: [(&str, &str); 8] = [
 ];
 
 /// Settings, or groups of them, that a run may be resumed with another value of: what was learned so far stays of use.
-const MAY_CHANGE: [&str; 12] = [
+const MAY_CHANGE: [&str; 16] = [
     "frames",
     "seed",
+    "device",
+    // The same files at another place.
+    "env.maps",
+    "env.iwad",
     "learning.rate",
     "learning.final_rate",
+    "learning.schedule_frames",
     "learning.max_gradient_norm",
     "learning.exploration_coefficient",
     "learning.threads",
@@ -111,8 +117,16 @@ impl TrainConfig {
     /// # Errors
     /// As [`TrainConfig::with_all`], and when a setting cannot change within a run.
     pub fn resumed_with(&self, settings: &[String], frames: u64) -> Result<TrainConfig, LearnError> {
-        let mut config = self.with_all(settings)?;
-        let (before, after) = (serde_json::to_value(self).map_err(wrong)?, serde_json::to_value(&config).map_err(wrong)?);
+        // A run of an older version knew no other length of its schedules than its own.
+        let before = self.clone().begun();
+        let mut config = before.with_all(settings)?;
+        if config.frames != self.frames && config.frames < frames {
+            return Err(LearnError::Config(format!(
+                "frames = {} is less than the {frames} that the run has made; give more to go on, or leave it out",
+                config.frames
+            )));
+        }
+        let (before, after) = (serde_json::to_value(&before).map_err(wrong)?, serde_json::to_value(&config).map_err(wrong)?);
         let mut changes = Vec::new();
         differences("", &before, &after, &mut changes);
         for (setting, from, to) in changes {
@@ -230,7 +244,37 @@ mod tests {
         assert_eq!(again.changes.len(), 4);
         assert!(again.changes.iter().all(|one| one.frames == 2048));
         assert!(changed.resumed_with(&all(&["learning.threads=3", "reporting.keep=5"]), 9000).unwrap().changes.len() == 4);
+        let message = changed.resumed_with(&all(&["frames=4096"]), 8192).unwrap_err().to_string();
+        assert!(message.contains("4096") && message.contains("8192"), "{message}");
+        assert!(changed.resumed_with(&all(&["frames=5000000"]), 5_001_216).is_ok(), "it ended with its last rollout");
         let message = config.resumed_with(&all(&["learning.gamma=0.9"]), 0).unwrap_err().to_string();
         assert!(message.contains("learning.gamma") && message.contains("--init-from"), "{message}");
+    }
+    /// A13: rates and the multiplier's speed hang on frames. Gone on with for twice as long, a run neither jumps back in its schedule nor
+    /// stretches it, and says that it was extended.
+    #[test]
+    fn an_extended_run_keeps_its_schedule() {
+        let config = config(Preset::Quick);
+        let rate = |config: &TrainConfig, frames: u64| config.learning.rate_after(config.progress(frames));
+        let begun = config.clone().begun();
+        assert_eq!(begun.learning.schedule_frames, Some(10_000_000));
+        // From 5e-4 to 1e-4 within 10 million frames.
+        assert!((rate(&begun, 5_000_000) - 3e-4).abs() < 1e-15);
+        for run in [&begun, &config] {
+            let longer = run.resumed_with(&all(&["frames=20000000"]), 5_000_000).unwrap();
+            for frames in [5_000_000, 7_500_000, 10_000_000] {
+                assert_eq!(rate(&longer, frames), rate(&begun, frames));
+            }
+            assert!((rate(&longer, 20_000_000) - 1e-4).abs() < 1e-15 && longer.progress(20_000_000) == 1.0);
+            assert_eq!((longer.extended_from(), run.extended_from()), (Some(10_000_000), None));
+            let told: Vec<&str> = longer.changes.iter().map(|change| change.setting.as_str()).collect();
+            assert_eq!(told, ["frames"]);
+        }
+        let shorter = begun.resumed_with(&all(&["frames=7000000"]), 5_000_000).unwrap();
+        assert_eq!((shorter.extended_from(), rate(&shorter, 5_000_000)), (None, rate(&begun, 5_000_000)));
+        // Who wants another schedule says so, and that is written down too.
+        let stretched = begun.resumed_with(&all(&["frames=20000000", "learning.schedule_frames=20000000"]), 5_000_000).unwrap();
+        assert_eq!((stretched.progress(5_000_000), stretched.changes.len()), (0.25, 2));
+        assert_eq!(config.with("learning.schedule_frames=400").unwrap().begun().learning.schedule_frames, Some(400));
     }
 }

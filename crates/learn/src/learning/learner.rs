@@ -2,20 +2,26 @@
 
 use std::ops::Range;
 
-use crate::config::TrainConfig;
+use crate::config::{ReturnNormaliser, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::advantage::{Lane, generalised_advantages};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use crate::learning::normaliser::{Moments, PixelNormaliser, PixelSums};
+pub use crate::learning::minibatch::{Critic, Minibatch};
+use crate::learning::normaliser::{CLIP, Moments, PixelNormaliser, PixelSums};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::{Policy, Taken};
+use crate::learning::popart::preserve_outputs;
 use crate::networks::cpu::simd::Kernels;
 use crate::networks::cpu::vectors::Vectors;
 use crate::networks::device::ComputeDevice;
 use crate::networks::{ModelSequences, ModelShape, Published, RecordedLane, Sequences, Stack};
 use crate::sampling::rollout::Rollout;
 use crate::team::Team;
+
+/// Rows that a network of a learner of long rollouts computes at once: it bounds the memory of activations, some 50 kB a row of the
+/// smallest network of the presets and 110 kB of the largest.
+const MOST_ROWS: usize = 2048;
 
 /// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of the costs; values of
 /// lane `l` at step `t` are at `l * steps + t`.
@@ -55,51 +61,6 @@ fn critic_name(what: &str, config: &TrainConfig, critic: usize) -> String {
         None => what.into(),
         Some(None) => format!("cost_{what}"),
         Some(Some(term)) => format!("cost_{what}/{term}"),
-    }
-}
-
-/// What a critic has to learn, and what it says about the actions taken; a number a row.
-#[derive(Clone, Debug)]
-pub struct Critic {
-    /// Name of its loss.
-    pub loss_name: String,
-    /// Advantages in raw units.
-    pub advantages: Vec<f32>,
-    /// Values when the actions were taken.
-    pub old_values: Vec<f32>,
-    /// Targets of the values.
-    pub targets: Vec<f32>,
-}
-
-/// Some trajectories of a prepared rollout, ready for a loss. Rows are ordered by time, then by lane.
-pub struct Minibatch<'a> {
-    /// What the networks read.
-    pub batch: ModelSequences<'a>,
-    /// Actions taken.
-    pub taken: Taken,
-    /// Logarithm of their probabilities when they were taken.
-    pub old_log_probability: Vec<f64>,
-    /// Policy when they were taken.
-    pub old_policy: Policy,
-    /// The critic of the reward, and those of the costs.
-    pub critics: Vec<Critic>,
-    /// Mean cost of each constraint per step.
-    pub mean_costs: Vec<f64>,
-    /// Weight of the exploration loss at present.
-    pub exploration_coefficient: f64,
-}
-
-impl Minibatch<'_> {
-    /// Raw advantages of the reward.
-    #[must_use]
-    pub fn advantages(&self) -> &[f32] {
-        &self.critics[0].advantages
-    }
-
-    /// The critics of the costs.
-    #[must_use]
-    pub fn costs(&self) -> &[Critic] {
-        &self.critics[1..]
     }
 }
 
@@ -145,7 +106,10 @@ impl Learner {
             .flat_map(|(index, network)| network.initial_parameters(scheme, config.seed, index as u64))
             .collect();
         Learner {
-            networks: Stack::new(shape, device, config.learning.threads),
+            networks: match config.learning.recurrence {
+                None => Stack::new(shape, device, config.learning.threads),
+                Some(_) => Stack::new(shape, device, config.learning.threads).in_parts(MOST_ROWS),
+            },
             optimisers: std::iter::repeat_n(&shape.networks, config.algorithm.optimisers())
                 .flatten()
                 .map(|network| Adam::new(network.parameter_count()))
@@ -221,7 +185,16 @@ impl Learner {
             old_values: Vec::new(),
             mean_costs: vec![0.0; constraints],
         };
-        for (critic, moments) in self.returns.iter_mut().enumerate() {
+        let popart = settings.normaliser == ReturnNormaliser::PopArt;
+        let shared = settings.cost_uses_reward_normaliser;
+        let mut moved = Vec::new();
+        for critic in 0..self.returns.len() {
+            let moments = &mut self.returns[if shared { 0 } else { critic }];
+            let raw = |moments: &Moments, value: f32| match () {
+                () if shared && critic > 0 => value.clamp(-CLIP, CLIP),
+                () if popart => moments.scale_up(value),
+                () => moments.denormalise(value),
+            };
             let mut advantages = vec![0.0; steps * lanes];
             let mut returns = vec![0.0; steps * lanes];
             let mut old_values = vec![0.0; steps * lanes];
@@ -229,7 +202,7 @@ impl Learner {
                 let (part, own) = rollout.find(lane);
                 let row = |step: usize| step * part.lanes + own;
                 let normalised: Vec<f32> = (0..=steps).map(|step| part.outputs[row(step) * width + first + critic]).collect();
-                let values: Vec<f32> = normalised.iter().map(|&value| moments.denormalise(value)).collect();
+                let values: Vec<f32> = normalised.iter().map(|&value| raw(moments, value)).collect();
                 let rewards: Vec<f32> = (0..steps)
                     .map(|step| match critic {
                         0 => part.rewards[row(step)],
@@ -238,9 +211,9 @@ impl Learner {
                     .collect();
                 let done: Vec<bool> = (0..steps).map(|step| part.done[row(step)]).collect();
                 let mut cut_off_values = vec![0.0; steps];
-                if settings.bootstrap_time_outs {
+                if settings.bootstraps(critic > 0) {
                     for (cut, outputs) in part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own) {
-                        cut_off_values[cut / part.lanes] = moments.denormalise(outputs[first + critic]);
+                        cut_off_values[cut / part.lanes] = raw(moments, outputs[first + critic]);
                     }
                 }
                 let out = &mut advantages[lane * steps..(lane + 1) * steps];
@@ -252,40 +225,56 @@ impl Learner {
                     old_values[lane * steps + step] = normalised[step];
                 }
             }
-            moments.update(&returns);
-            prepared.targets.push(returns.iter().map(|&value| moments.normalise(value)).collect());
+            if popart {
+                let before = *moments;
+                moments.update_forgetting(&returns, settings.normaliser_horizon);
+                old_values.iter_mut().for_each(|value| *value = moments.scale_down(before.scale_up(*value)));
+                prepared.targets.push(returns.iter().map(|&value| moments.scale_down(value)).collect());
+                moved.push((critic, before, *moments));
+            } else {
+                moments.update(&returns);
+                prepared.targets.push(returns.iter().map(|&value| moments.normalise(value)).collect());
+            }
             prepared.advantages.push(advantages);
             prepared.old_values.push(old_values);
         }
-        let all: Vec<usize> = (0..lanes).collect();
+        for (critic, before, after) in moved {
+            let network = preserve_outputs(&self.shape, critic, &before, &after, &mut self.parameters);
+            self.stale[network] = true;
+        }
+        let all: Vec<usize> = (0..rollout.trajectories()).collect();
         prepared.mean_costs = mean_costs(rollout, &all, constraints);
         prepared
     }
 
-    /// The trajectories of some lanes.
+    /// Some trajectories.
     #[must_use]
-    pub fn minibatch<'a>(&self, prepared: &Prepared<'a>, lanes: &[usize]) -> Minibatch<'a> {
+    pub fn minibatch<'a>(&self, prepared: &Prepared<'a>, trajectories: &[usize]) -> Minibatch<'a> {
         let rollout = prepared.rollout;
-        let steps = rollout.steps();
-        let rows = || (0..steps).flat_map(|step| lanes.iter().map(move |&lane| (step, lane)));
+        let steps = rollout.trajectory_steps();
+        let places: Vec<(usize, usize)> = trajectories.iter().map(|&number| rollout.trajectory(number)).collect();
+        // Each row's step of its trajectory, its step of the rollout, and its lane.
+        let rows = || (0..steps).flat_map(|step| places.iter().map(move |&(lane, first)| (step, first + step, lane)));
         let shape = &self.shape;
         let (width, action, extra) = (shape.outputs(), &shape.action, shape.extra_inputs());
         let mut sequences = Sequences {
             steps,
-            lanes: lanes.len(),
-            observations: Vec::with_capacity(steps * lanes.len()),
+            lanes: places.len(),
+            observations: Vec::with_capacity(steps * places.len()),
             extra: Vec::new(),
             initial_state: Vec::new(),
-            reset: Vec::with_capacity(steps * lanes.len()),
+            reset: Vec::with_capacity(steps * places.len()),
             recorded: Vec::new(),
         };
+        let (seen, mut privileged) = (shape.critic_inputs, Vec::new());
         let (mut actions, mut deltas, mut logs, mut policy) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (step, lane) in rows() {
+        for (own_step, step, lane) in rows() {
             let (part, own) = rollout.find(lane);
             let row = step * part.lanes + own;
             sequences.observations.push(part.frame(step, own));
             sequences.extra.extend_from_slice(&part.extra[row * extra..(row + 1) * extra]);
-            sequences.reset.push(step > 0 && part.done[row - part.lanes]);
+            privileged.extend_from_slice(&part.privileged[row * seen..(row + 1) * seen]);
+            sequences.reset.push(own_step > 0 && part.done[row - part.lanes]);
             let (count, continuous) = (action.sizes.len(), action.deltas);
             actions.extend_from_slice(&part.actions[row * count..(row + 1) * count]);
             deltas.extend_from_slice(&part.deltas[row * continuous..(row + 1) * continuous]);
@@ -294,22 +283,19 @@ impl Learner {
         }
         let state = |network: usize| -> Vec<f32> {
             let units = shape.networks[network].state_size();
-            let of = |&lane: &usize| {
-                let (part, own) = rollout.find(lane);
-                part.initial_state[network][own * units..(own + 1) * units].to_vec()
-            };
-            lanes.iter().flat_map(of).collect()
+            trajectories.iter().flat_map(|&number| rollout.initial_state(network, units, number)).copied().collect()
         };
         let initial_state = (0..shape.networks.len()).map(state).collect();
         let recorded = |network: usize| -> Vec<RecordedLane<'a>> {
-            let of = |&lane: &usize| {
+            let of = |&(lane, _): &(usize, usize)| {
                 let (part, own) = rollout.find(lane);
                 Some(RecordedLane { recording: part.recordings.get(network)?, lane: own })
             };
-            lanes.iter().filter_map(of).collect()
+            places.iter().filter_map(of).collect()
         };
         let recorded = (0..shape.networks.len()).map(recorded).collect();
-        let pick = |values: &[f32]| -> Vec<f32> { rows().map(|(step, lane)| values[lane * steps + step]).collect() };
+        let length = rollout.steps();
+        let pick = |values: &[f32]| -> Vec<f32> { rows().map(|(_, step, lane)| values[lane * length + step]).collect() };
         let critic = |index: usize| Critic {
             loss_name: critic_name("value_loss", &self.config, index),
             advantages: pick(&prepared.advantages[index]),
@@ -317,12 +303,12 @@ impl Learner {
             targets: pick(&prepared.targets[index]),
         };
         Minibatch {
-            batch: ModelSequences { sequences, initial_state, recorded },
+            batch: ModelSequences { sequences, initial_state, recorded, privileged },
             taken: Taken { actions, deltas },
             old_log_probability: logs,
             old_policy: Policy::new(action, &policy, action.parameters()),
             critics: (0..self.returns.len()).map(critic).collect(),
-            mean_costs: mean_costs(rollout, lanes, self.config.constraints.len()),
+            mean_costs: mean_costs(rollout, trajectories, self.config.constraints.len()),
             exploration_coefficient: self.exploration_coefficient,
         }
     }
@@ -423,6 +409,14 @@ impl Learner {
         Policy::new(&self.shape.action, &outputs, width)
     }
 
+    /// Mean divergence, over all of a rollout, of the policy at present from another, or else from the one that acted.
+    pub fn divergence(&mut self, rollout: &Prepared<'_>, from: Option<&Policy>) -> f64 {
+        let all: Vec<usize> = (0..rollout.rollout.trajectories()).collect();
+        let mut minibatch = self.minibatch(rollout, &all);
+        let present = self.policy(&mut minibatch);
+        from.unwrap_or(&minibatch.old_policy).divergence(&present).mean()
+    }
+
     /// The policy network's parameters. Only for models of separate networks, as all that follows.
     #[must_use]
     pub fn policy_parameters(&self) -> Vec<f32> {
@@ -489,18 +483,64 @@ fn diverged(what: &str, value: f64) -> LearnError {
     ))
 }
 
-/// Mean cost of each constraint over the steps of some lanes.
-fn mean_costs(rollout: &Rollout, lanes: &[usize], constraints: usize) -> Vec<f64> {
+/// Mean cost of each constraint over the steps of some trajectories.
+fn mean_costs(rollout: &Rollout, trajectories: &[usize], constraints: usize) -> Vec<f64> {
     let mut sums = vec![0.0; constraints];
-    for &lane in lanes {
+    let steps = rollout.trajectory_steps();
+    for (lane, first) in trajectories.iter().map(|&number| rollout.trajectory(number)) {
         let (part, own) = rollout.find(lane);
-        for step in 0..part.steps {
+        for step in first..first + steps {
             let row = (step * part.lanes + own) * constraints;
             for (sum, &cost) in sums.iter_mut().zip(&part.costs[row..row + constraints]) {
                 *sum += f64::from(cost);
             }
         }
     }
-    let count = (lanes.len() * rollout.steps()) as f64;
+    let count = (trajectories.len() * steps) as f64;
     sums.iter().map(|sum| sum / count).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algorithms::small;
+    use crate::config::AlgorithmKind;
+
+    /// As the code of PPOLag's tables had it: values of costs as the network says them, within +-5; their returns normalised by the
+    /// moments of the reward's returns, which have taken both in; moments of their own never moved. Returns by the recursion of GAE
+    /// (Schulman et al. 2016), here with gamma and lambda 1, where they are plain sums up to the value after the last step.
+    #[test]
+    fn costs_may_use_the_rewards_normaliser() {
+        let mut config = small::config(AlgorithmKind::PpoLag);
+        (config.learning.gamma, config.learning.gae_lambda) = (1.0, 1.0);
+        let make = |shared: bool| {
+            let mut config = config.clone();
+            config.learning.cost_uses_reward_normaliser = shared;
+            let (mut learner, rollout) = small::learner(&config);
+            learner.returns[0] = Moments { count: 50.0, mean: 2.0, variance: 9.0 };
+            let prepared = learner.prepare(&rollout);
+            let (targets, moments) = (prepared.targets.clone(), learner.returns.clone());
+            let part = &rollout.parts[0];
+            let width = part.outputs.len() / ((small::STEPS + 1) * small::LANES);
+            let mut sums = Vec::new();
+            for lane in 0..small::LANES {
+                for step in 0..small::STEPS {
+                    let costs: f32 = (step..small::STEPS).map(|later| part.costs[later * small::LANES + lane]).sum();
+                    let last = part.outputs[(small::STEPS * small::LANES + lane) * width + width - 1];
+                    sums.push(costs + last.clamp(-5.0, 5.0));
+                }
+            }
+            (targets, moments, sums)
+        };
+        let (targets, moments, sums) = make(true);
+        let (_, plain, _) = make(false);
+        let mut both = plain[0];
+        both.update(&sums);
+        assert!((moments[0].mean - both.mean).abs() < 1e-5 && (moments[0].variance - both.variance).abs() < 1e-5);
+        assert_eq!((moments[0].count, moments[1]), (both.count, Moments::default()));
+        assert_ne!(plain[1], Moments::default());
+        for (target, sum) in targets[1].iter().zip(&sums) {
+            assert!((target - both.normalise(*sum)).abs() < 1e-5, "{target} against {}", both.normalise(*sum));
+        }
+    }
 }

@@ -51,20 +51,40 @@ impl Moments {
         self.merge(count, mean, squares / (count - 1.0).max(1.0));
     }
 
-    fn deviation(&self) -> f64 {
+    /// Merges draws, and forgets: earlier ones count as `horizon` draws at most, the made-up first one among them.
+    pub fn update_forgetting(&mut self, values: &[f32], horizon: f64) {
+        self.count = self.count.min(horizon);
+        self.update(values);
+    }
+
+    /// The running deviation.
+    #[must_use]
+    pub fn deviation(&self) -> f64 {
         (self.variance + EPSILON).sqrt()
+    }
+
+    /// A value in units of the running deviation, however large.
+    #[must_use]
+    pub fn scale_down(&self, value: f32) -> f32 {
+        ((f64::from(value) - self.mean) / self.deviation()) as f32
+    }
+
+    /// The inverse of [`Moments::scale_down`].
+    #[must_use]
+    pub fn scale_up(&self, value: f32) -> f32 {
+        (f64::from(value) * self.deviation() + self.mean) as f32
     }
 
     /// A value in units of the running deviation, cut off at five.
     #[must_use]
     pub fn normalise(&self, value: f32) -> f32 {
-        (((f64::from(value) - self.mean) / self.deviation()) as f32).clamp(-CLIP, CLIP)
+        self.scale_down(value).clamp(-CLIP, CLIP)
     }
 
     /// The inverse of [`Moments::normalise`] within its bounds.
     #[must_use]
     pub fn denormalise(&self, value: f32) -> f32 {
-        (f64::from(value.clamp(-CLIP, CLIP)) * self.deviation() + self.mean) as f32
+        self.scale_up(value.clamp(-CLIP, CLIP))
     }
 }
 
@@ -195,6 +215,23 @@ mod tests {
         let value = moments.normalise(3.0);
         assert!((moments.denormalise(value) - 3.0).abs() < 1e-6);
         assert_eq!(moments.normalise(1e6), 5.0);
+    }
+
+    /// A12: the moments follow returns that change (equation 7 of van Hasselt et al. 2016, an average that gives what was before a
+    /// weight of horizon / (horizon + batch)), where those that never forget lag behind for as long as they have run.
+    #[test]
+    fn moments_that_forget_follow_returns_that_change() {
+        let batch = |mean: f32| -> Vec<f32> { (0..1000).map(|index| mean + if index % 2 == 0 { 1.0 } else { -1.0 }).collect() };
+        let (mut forgetting, mut running) = (Moments::default(), Moments::default());
+        for rollout in 0..100 {
+            let values = batch(if rollout < 80 { 0.0 } else { 30.0 });
+            forgetting.update_forgetting(&values, 3000.0);
+            running.update(&values);
+        }
+        // Twenty batches of a weight of a quarter each.
+        let expected = 30.0 * (1.0 - 0.75f64.powi(20));
+        assert!((forgetting.mean - expected).abs() < 1e-6, "{}", forgetting.mean);
+        assert!(forgetting.deviation() < 2.5 && running.mean < 7.0 && running.deviation() > 10.0);
     }
 
     #[test]

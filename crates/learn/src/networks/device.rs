@@ -53,7 +53,7 @@ impl ComputeDevice {
         match kind {
             "cpu" => Ok(ComputeDevice::Processor(Kernels::chosen()?)),
             "vulkan" | "cuda" | "wgpu" | "flex" => card(kind, name, number),
-            _ => Err(LearnError::Config(format!("device '{name}' is unknown; use one of cpu, flex, vulkan, cuda, wgpu"))),
+            _ => Err(LearnError::Config(format!("device '{name}' is unknown; use one of cpu, vulkan, cuda, wgpu"))),
         }
     }
 }

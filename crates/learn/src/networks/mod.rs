@@ -3,8 +3,10 @@
 #[cfg(feature = "graphics")]
 pub mod burn_network;
 pub mod cpu;
+mod critic_heads;
 pub mod device;
 pub mod distribution;
+mod in_parts;
 mod initialise;
 mod layers;
 mod network;

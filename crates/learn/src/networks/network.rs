@@ -69,6 +69,18 @@ impl<'a> Sequences<'a> {
     }
 }
 
+impl<'a> Sequences<'a> {
+    /// The trajectories of some lanes, with their states and what was recorded of them, if that was of all.
+    pub(crate) fn part(&self, shape: &NetworkShape, lanes: &[usize]) -> Sequences<'a> {
+        let whole = self.recorded.len() == self.lanes;
+        Sequences {
+            initial_state: states_of(&self.initial_state, shape.state_size(), lanes),
+            recorded: if whole { lanes.iter().map(|&lane| self.recorded[lane]).collect() } else { Vec::new() },
+            ..self.of_lanes(shape.extra_inputs, lanes)
+        }
+    }
+}
+
 /// The states of some lanes, each of `units` numbers.
 pub(crate) fn states_of(states: &[f32], units: usize, lanes: &[usize]) -> Vec<f32> {
     lanes.iter().flat_map(|lane| &states[lane * units..(lane + 1) * units]).copied().collect()

@@ -1,6 +1,6 @@
 //! A network that several workers compute together, each on its own lanes.
 
-use super::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences, states_of};
+use super::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
 use super::shape::NetworkShape;
 use crate::team::Team;
 
@@ -45,16 +45,6 @@ fn lanes_here(batch: &Sequences<'_>) -> Vec<usize> {
     (0..batch.lanes).filter(|&lane| !batch.observations[lane].is_empty()).collect()
 }
 
-/// The trajectories of some lanes.
-fn part_of<'a>(batch: &Sequences<'a>, shape: &NetworkShape, lanes: &[usize]) -> Sequences<'a> {
-    let whole = batch.recorded.len() == batch.lanes;
-    Sequences {
-        initial_state: states_of(&batch.initial_state, shape.state_size(), lanes),
-        recorded: if whole { lanes.iter().map(|&lane| batch.recorded[lane]).collect() } else { Vec::new() },
-        ..batch.of_lanes(shape.extra_inputs, lanes)
-    }
-}
-
 impl LearningNetwork for SharedNetwork {
     fn shape(&self) -> &NetworkShape {
         self.own.shape()
@@ -74,7 +64,7 @@ impl LearningNetwork for SharedNetwork {
 
     fn forward(&mut self, batch: &Sequences<'_>) -> Vec<f32> {
         let lanes = lanes_here(batch);
-        let part = part_of(batch, self.own.shape(), &lanes);
+        let part = batch.part(self.own.shape(), &lanes);
         let outputs = if lanes.is_empty() { Vec::new() } else { self.own.forward(&part) };
         let numbers = std::iter::once(lanes.len()).chain(lanes).flat_map(|number| (number as u32).to_le_bytes());
         let bytes = numbers.chain(outputs.iter().flat_map(|output| output.to_le_bytes())).collect();
@@ -98,7 +88,7 @@ impl LearningNetwork for SharedNetwork {
                 .flat_map(|row| &output_gradient[row * width..(row + 1) * width])
                 .copied()
                 .collect::<Vec<f32>>();
-            self.own.backward(&part_of(batch, self.own.shape(), &lanes), &own, gradient);
+            self.own.backward(&batch.part(self.own.shape(), &lanes), &own, gradient);
         }
         self.team.sum(gradient);
     }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::critic_heads::CriticHeads;
+use super::in_parts::InParts;
 use super::network::{
     ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences, states_of,
 };
@@ -26,6 +28,8 @@ pub struct ModelShape {
     pub action: ActionShape,
     /// Number of cost critics.
     pub cost_critics: usize,
+    /// Privileged inputs of the critics.
+    pub critic_inputs: usize,
 }
 
 impl ModelShape {
@@ -50,9 +54,25 @@ impl ModelShape {
         let heads = std::iter::once(action.parameters()).chain(std::iter::repeat_n(1, 1 + cost_critics));
         let networks =
             if config.separate { heads.map(|head| network(vec![head])).collect() } else { vec![network(heads.collect())] };
-        let shape = ModelShape { networks, action, cost_critics };
+        let shape = ModelShape { networks, action, cost_critics, critic_inputs: 0 };
         shape.networks.iter().try_for_each(NetworkShape::check)?;
         Ok(shape)
+    }
+
+    /// The same with critics that see so many privileged inputs.
+    pub fn with_critic_inputs(mut self, inputs: usize) -> Result<ModelShape, LearnError> {
+        self.critic_inputs = inputs;
+        for (index, network) in self.networks.iter_mut().enumerate() {
+            network.heads.iter_mut().skip(usize::from(index == 0)).for_each(|head| *head = 1 + inputs);
+            network.check()?;
+        }
+        Ok(self)
+    }
+
+    /// What becomes of a network's outputs.
+    fn critic_heads(&self, network: usize) -> CriticHeads {
+        let policy = if network == 0 { self.action.parameters() } else { 0 };
+        CriticHeads { policy, outputs: self.networks[network].outputs(), inputs: self.critic_inputs }
     }
 
     /// Length of an output row.
@@ -160,10 +180,12 @@ impl Actor {
     }
 
     /// Output rows of one step for the lanes `lanes` of `state`, which becomes the state after.
+    #[allow(clippy::too_many_arguments, reason = "what a step reads and what it writes")]
     pub fn act(
         &mut self,
         observations: &[u8],
         extra: &[f32],
+        privileged: &[f32],
         state: &mut [Vec<f32>],
         lanes: Range<usize>,
         rows: &mut [f32],
@@ -175,13 +197,20 @@ impl Actor {
             let place = notes.as_mut().and_then(|notes| notes.place(index, &lanes));
             let units = shape.state_size();
             let state = &mut state[lanes.start * units..lanes.end * units];
-            if self.shape.networks.len() == 1 {
+            let heads = self.shape.critic_heads(index);
+            if self.shape.networks.len() == 1 && heads.inputs == 0 {
                 return network.act(observations, extra, state, rows, place);
             }
-            let count = shape.outputs();
-            self.outputs.resize(lanes.len() * count, 0.0);
+            self.outputs.resize(lanes.len() * shape.outputs(), 0.0);
             network.act(observations, extra, state, &mut self.outputs, place);
-            place_columns(rows, self.shape.outputs(), first, &self.outputs, count);
+            let count = heads.columns();
+            if heads.inputs == 0 {
+                place_columns(rows, self.shape.outputs(), first, &self.outputs, count);
+            } else {
+                let mut own = vec![0.0; lanes.len() * count];
+                heads.combine(&self.outputs, privileged, &mut own);
+                place_columns(rows, self.shape.outputs(), first, &own, count);
+            }
             first += count;
         }
     }
@@ -195,6 +224,8 @@ pub struct ModelSequences<'a> {
     pub initial_state: Vec<Vec<f32>>,
     /// What was recorded of each lane, one vector a network; empty if nothing was.
     pub recorded: Vec<Vec<RecordedLane<'a>>>,
+    /// Privileged inputs of each row.
+    pub privileged: Vec<f32>,
 }
 
 impl<'a> ModelSequences<'a> {
@@ -213,6 +244,12 @@ impl<'a> ModelSequences<'a> {
         ModelSequences {
             sequences: self.sequences.of_lanes(shape.extra_inputs(), lanes),
             initial_state: shape.networks.iter().zip(&self.initial_state).map(states).collect(),
+            privileged: self
+                .sequences
+                .rows_of(lanes)
+                .flat_map(|row| &self.privileged[row * shape.critic_inputs..(row + 1) * shape.critic_inputs])
+                .copied()
+                .collect(),
             recorded: self.recorded.iter().map(|all| lanes.iter().filter_map(|&lane| all.get(lane).copied()).collect()).collect(),
         }
     }
@@ -236,6 +273,14 @@ impl Stack {
             }
         };
         Stack { networks: shape.networks.iter().map(network).collect(), shape: shape.clone() }
+    }
+
+    /// From now on at most so many rows are computed at once.
+    #[must_use]
+    pub fn in_parts(mut self, most_rows: usize) -> Stack {
+        let parts = |own| -> Box<dyn LearningNetwork> { Box::new(InParts::new(own, most_rows)) };
+        self.networks = std::mem::take(&mut self.networks).into_iter().map(parts).collect();
+        self
     }
 
     /// From now on each worker of the team computes the lanes whose pixels it has.
@@ -266,9 +311,15 @@ impl Stack {
         let mut rows = vec![0.0; batch.sequences.rows() * width];
         let mut first = 0;
         for index in 0..self.networks.len() {
-            let count = self.shape.networks[index].outputs();
+            let heads = self.shape.critic_heads(index);
+            let count = heads.columns();
             if networks.contains(&index) {
-                let outputs = self.forward_network(index, batch);
+                let mut outputs = self.forward_network(index, batch);
+                if heads.inputs > 0 {
+                    let mut own = vec![0.0; batch.sequences.rows() * count];
+                    heads.combine(&outputs, &batch.privileged, &mut own);
+                    outputs = own;
+                }
                 if count == width {
                     return outputs;
                 }
@@ -290,9 +341,13 @@ impl Stack {
         let width = self.shape.outputs();
         let mut first = 0;
         for index in 0..self.networks.len() {
-            let count = self.shape.networks[index].outputs();
+            let heads = self.shape.critic_heads(index);
+            let count = heads.columns();
             if networks.contains(&index) {
-                let own: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
+                let mut own: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
+                if heads.inputs > 0 {
+                    own = heads.spread(&own, &batch.privileged);
+                }
                 self.backward_network(index, batch, &own, &mut gradient[self.shape.parameter_range(index)]);
             }
             first += count;

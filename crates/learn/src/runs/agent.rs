@@ -14,7 +14,8 @@ use crate::networks::{Actor, ImageShape, ModelShape, Published};
 use crate::random::{Purpose, Stream};
 use crate::runs::agent_file::AgentFile;
 use crate::runs::checkpoint::{Loaded, Store};
-use crate::runs::run_directory::read_config;
+use crate::runs::run_directory::{go_on, read_config};
+use crate::sampling::privileged::Privileged;
 use crate::sampling::shaping::Shaping;
 
 /// Which checkpoint of a run acts.
@@ -139,8 +140,10 @@ impl TrainedPolicy {
             (Which::HandedOut, Some(best)) => Some(Loaded::read(&best)?),
             _ => store.newest(warn)?,
         };
-        let missing = "no checkpoint was written yet; let the run go on with `hasard train --resume`";
-        let loaded = loaded.ok_or_else(|| LearnError::content(directory, missing))?;
+        let loaded = loaded.ok_or_else(|| {
+            let command = go_on(&config, directory);
+            LearnError::content(directory, format!("no checkpoint was written yet; let the run go on: {command}"))
+        })?;
         TrainedPolicy::restored(
             &config,
             observation,
@@ -162,7 +165,8 @@ impl TrainedPolicy {
         config.learning.threads = 1;
         let image = ImageShape { height, width, channels };
         let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
-        let shape = ModelShape::new(image, action, cost_critics, Shaping::new(&config).extra_inputs(), &config.network)?;
+        let shape = ModelShape::new(image, action, cost_critics, Shaping::new(&config).extra_inputs(), &config.network)?
+            .with_critic_inputs(Privileged::new(&config).count())?;
         // Before memory is taken for as many weights as the settings speak of.
         check_fits(&shape)?;
         // Wherever it was trained, it acts on the processor.
@@ -258,8 +262,10 @@ impl Agent {
             0 => Vec::new(),
             _ => self.safety.iter().map(|&safety| Shaping::seen(safety)).collect(),
         };
+        // Critics see no more than the policy here, as at an episode's start: nothing acts by them.
+        let privileged = vec![0.0; lanes * self.shape.critic_inputs];
         self.rows.resize(lanes * self.shape.outputs(), 0.0);
-        self.actor.act(observations, &extra, &mut self.state, 0..lanes, &mut self.rows, None);
+        self.actor.act(observations, &extra, &privileged, &mut self.state, 0..lanes, &mut self.rows, None);
         &self.rows
     }
 

@@ -18,7 +18,7 @@ use crate::learning::learner::Learner;
 use crate::networks::ModelShape;
 use crate::runs::checkpoint::{Loaded, Store, parameter_names};
 use crate::runs::hand_out::HandOut;
-use crate::runs::run_directory::{read_config, read_hand_out};
+use crate::runs::run_directory::{go_on, read_config, read_hand_out};
 
 /// Weights that share a scale.
 const BLOCK: usize = 64;
@@ -104,8 +104,10 @@ fn unround(bytes: &[u8], scales: &[f32], count: usize) -> Option<Vec<f32>> {
 /// The file of the agent that a run hands out.
 pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
     let config = read_config(run)?;
-    let missing = "it has no checkpoint to hand out; let it be evaluated with `hasard train --resume --eval-every FRAMES`";
-    let best = Store::new(run, 1).best().ok_or_else(|| LearnError::content(run, missing))?;
+    let best = Store::new(run, 1).best().ok_or_else(|| {
+        let command = format!("{} --eval-every {}", go_on(&config, run), config.frames);
+        LearnError::content(run, format!("no checkpoint was selected yet; let the run be evaluated: {command}"))
+    })?;
     let checkpoint = Loaded::read(&best)?;
     let hand_out = read_hand_out(run).or_else(|| checkpoint.progress.hand_out.clone());
     pack(&config, hand_out, &checkpoint)

@@ -40,6 +40,9 @@ pub struct Progress {
     /// The best evaluated checkpoint so far.
     #[serde(default)]
     pub hand_out: Option<HandOut>,
+    /// The run was stopped in the midst of this moment's evaluation, which is still to be made.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub owes_evaluation: bool,
     /// Statistics of each critic's returns.
     pub returns: Vec<Moments>,
     /// Steps of each optimiser.
@@ -50,6 +53,9 @@ pub struct Progress {
     pub watch: Watch,
     /// Steps that each sampler's lanes have made, and their safety states.
     pub samplers: Vec<(u64, Vec<f64>)>,
+    /// What each sampler's lanes have cost in their episodes so far, where critics see it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spent: Vec<Vec<f64>>,
     /// Frames that the pixel statistics have seen.
     pub pixel_count: f64,
 }
@@ -61,6 +67,17 @@ struct StateFile {
     weights_checksum: u32,
     training_checksum: u32,
     progress: Progress,
+}
+
+impl StateFile {
+    fn read(path: &Path) -> Result<StateFile, LearnError> {
+        let text = fs::read(path).map_err(LearnError::file(path, "read"))?;
+        serde_json::from_slice(&text).map_err(|error| LearnError::content(path, format!("damaged: {error}")))
+    }
+
+    fn text(&self) -> Result<Vec<u8>, LearnError> {
+        serde_json::to_vec_pretty(self).map_err(|error| LearnError::Config(format!("the run's state cannot be written: {error}")))
+    }
 }
 
 const FORMAT: u32 = 1;
@@ -191,9 +208,8 @@ impl Checkpoint {
             weights_checksum: crc32c(&self.weights),
             training_checksum: crc32c(&self.training),
             progress: self.progress.clone(),
-        };
-        let state = serde_json::to_vec_pretty(&state)
-            .map_err(|error| LearnError::Config(format!("the run's state cannot be written: {error}")))?;
+        }
+        .text()?;
         let written = [(WEIGHTS, &self.weights), (TRAINING, &self.training), (STATE, &state)]
             .into_iter()
             .try_for_each(|(name, bytes)| write_through(&temporary.join(name), bytes));
@@ -254,9 +270,7 @@ impl Loaded {
     /// Reads a checkpoint and verifies its checksums.
     pub fn read(directory: &Path) -> Result<Loaded, LearnError> {
         let path = directory.join(STATE);
-        let text = fs::read(&path).map_err(LearnError::file(&path, "read"))?;
-        let state: StateFile =
-            serde_json::from_slice(&text).map_err(|error| LearnError::content(&path, format!("damaged: {error}")))?;
+        let state = StateFile::read(&path)?;
         if state.format != FORMAT {
             let problem = format!("checkpoint format {}; this program reads format {FORMAT}", state.format);
             return Err(LearnError::content(&path, problem));
@@ -274,6 +288,12 @@ impl Loaded {
             training: read(TRAINING, state.training_checksum)?,
             progress: state.progress,
         })
+    }
+
+    /// The same, ready to be written again with other counters.
+    #[must_use]
+    pub fn with(&self, progress: Progress) -> Checkpoint {
+        Checkpoint { weights: self.weights.clone(), training: self.training.clone(), progress }
     }
 
     /// The networks' parameters and the statistics of pixels, by name.
@@ -365,7 +385,11 @@ impl Loaded {
                 worlds.push(LaneState { seeds: lane[0], seed: lane[1], actions: own.to_vec(), deltas: own_deltas.to_vec() });
                 (actions, deltas) = (rest, rest_deltas);
             }
-            samplers.push(SamplerState { worlds, state, safety: safety.clone(), steps: *steps });
+            let spent = progress.spent.get(index).cloned().unwrap_or_default();
+            if !spent.is_empty() && (lanes == 0 || !spent.len().is_multiple_of(lanes)) {
+                return Err(format!("the costs so far of sampler {index} are not those of {lanes} worlds"));
+            }
+            samplers.push(SamplerState { worlds, state, safety: safety.clone(), spent, steps: *steps });
         }
         Ok(samplers)
     }
@@ -425,6 +449,15 @@ impl Store {
     /// Writes the checkpoint that is the best so far.
     pub fn write_best(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
         checkpoint.write(&self.best_of(checkpoint.progress.frames))
+    }
+
+    /// Replaces what the checkpoint of so many frames says of itself, all at once; weights and states stay as they are.
+    pub fn amend(&self, progress: &Progress) -> Result<(), LearnError> {
+        let path = self.directory.join(format!("frames_{:012}", progress.frames)).join(STATE);
+        let state = StateFile { progress: progress.clone(), ..StateFile::read(&path)? };
+        let temporary = path.with_extension("partial");
+        write_through(&temporary, &state.text()?)?;
+        fs::rename(&temporary, &path).map_err(LearnError::file(&path, "write"))
     }
 
     /// Where the best checkpoint of so many frames is.

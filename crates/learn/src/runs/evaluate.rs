@@ -1,5 +1,7 @@
 //! Episodes of a trained policy, and what they say about return and budgets.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use hasard_envs::{Autoreset, Episode, LaneState, VecEnv, VecOptions};
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +25,20 @@ pub fn play(
     seeds: &[u64],
     threads: usize,
 ) -> Result<Vec<Episode>, LearnError> {
+    play_unless(&AtomicBool::new(false), policy, choice, make_worlds, seeds, threads).map(Option::unwrap_or_default)
+}
+
+/// As [`play`], but gives up when `stop` is raised meanwhile: then there are no episodes at all.
+pub fn play_unless(
+    stop: &AtomicBool,
+    policy: &TrainedPolicy,
+    choice: Choice,
+    make_worlds: &MakeWorlds<'_>,
+    seeds: &[u64],
+    threads: usize,
+) -> Result<Option<Vec<Episode>>, LearnError> {
     if seeds.is_empty() {
-        return Ok(Vec::new());
+        return Ok(Some(Vec::new()));
     }
     let mut parts = Vec::new();
     for own in seeds.chunks(seeds.len().div_ceil(threads.max(1))) {
@@ -34,19 +48,19 @@ pub fn play(
         let worlds = make_worlds(&policy.config().env, options).map_err(|error| LearnError::Worlds(error.to_string()))?;
         parts.push((worlds, policy.agent(choice, lanes), own));
     }
-    let mut episodes = Vec::with_capacity(seeds.len());
+    let mut episodes = Vec::new();
     std::thread::scope(|scope| {
         let running: Vec<_> =
-            parts.into_iter().map(|(worlds, agent, own)| scope.spawn(move || play_all(worlds, agent, own))).collect();
+            parts.into_iter().map(|(worlds, agent, own)| scope.spawn(move || play_all(stop, worlds, agent, own))).collect();
         for thread in running {
             let played = thread.join().map_err(|panic| LearnError::Panic(panic_text("an evaluation", &*panic)))?;
-            episodes.extend(played?);
+            episodes.push(played?);
         }
-        Ok(episodes)
+        Ok(episodes.into_iter().collect::<Option<Vec<_>>>().map(|parts| parts.concat()))
     })
 }
 
-fn play_all(mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Vec<Episode>, LearnError> {
+fn play_all(stop: &AtomicBool, mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Option<Vec<Episode>>, LearnError> {
     let world_error = |error: hasard_envs::EnvError| LearnError::Worlds(error.to_string());
     let (lanes, terms) = (worlds.lanes(), worlds.cost_terms().len());
     let mut batch = worlds.whole_batch();
@@ -59,6 +73,9 @@ fn play_all(mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Vec<E
         (0..lanes).for_each(|lane| agent.reset(lane, seed_of(lane)));
         let mut ended: Vec<Option<Episode>> = vec![None; lanes];
         while ended.iter().any(Option::is_none) {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
             let (actions, deltas) = (&mut batch.actions[..], &mut batch.deltas[..]);
             let (count, continuous) = (actions.len() / lanes, deltas.len() / lanes);
             for (lane, action) in agent.act(&batch.observations).into_iter().enumerate() {
@@ -78,7 +95,7 @@ fn play_all(mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Vec<E
         }
         all.extend(ended.into_iter().flatten().take(turn.len()));
     }
-    Ok(all)
+    Ok(Some(all))
 }
 
 /// A mean and half the width of its 95 % confidence interval (normal approximation, sample variance; none for one value).
@@ -144,21 +161,19 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Judges episodes.
-    #[must_use]
-    pub fn of(episodes: &[Episode], constraints: &[Constraint]) -> Evaluation {
-        let judge = |one: &Constraint| Judgement {
-            term: one.term.clone(),
-            budget: one.budget,
-            cost: Estimate::of(episodes.iter().map(|episode| one.cost_of(episode))),
+    /// Judges episodes; those that do not report a constraint's term are an error.
+    pub fn of(episodes: &[Episode], constraints: &[Constraint]) -> Result<Evaluation, LearnError> {
+        let judge = |one: &Constraint| {
+            let costs: Vec<f64> = episodes.iter().map(|episode| one.cost_of(episode)).collect::<Result<_, _>>()?;
+            Ok(Judgement { term: one.term.clone(), budget: one.budget, cost: Estimate::of(costs) })
         };
-        Evaluation {
+        Ok(Evaluation {
             episodes: episodes.len(),
             episode_return: Estimate::of(episodes.iter().map(|episode| episode.episode_return)),
             cost: Estimate::of(episodes.iter().map(|episode| episode.cost)),
             length: Estimate::of(episodes.iter().map(|episode| f64::from(episode.length))),
-            constraints: constraints.iter().map(judge).collect(),
-        }
+            constraints: constraints.iter().map(judge).collect::<Result<_, LearnError>>()?,
+        })
     }
 
     /// Whether every mean cost is within its budget.
@@ -184,6 +199,7 @@ impl Evaluation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hasard_envs::{Scenario, episode_costs};
 
     fn episode(cost: f64, jumps: f64) -> Episode {
         Episode {
@@ -191,7 +207,7 @@ mod tests {
             seed: 0,
             episode_return: 1.0,
             cost,
-            costs: vec![("lava", cost), ("jumps", jumps)],
+            costs: episode_costs(Scenario::VolcanicVenture.cost_terms(), &[cost, jumps]),
             length: 10,
             terminated: true,
             truncated: false,
@@ -202,15 +218,15 @@ mod tests {
     #[test]
     fn each_constraint_is_judged_by_its_own_term_and_budget() {
         let constraints = [Constraint { term: None, budget: 50.0 }, Constraint { term: Some("jumps".into()), budget: 4.0 }];
-        let judged = Evaluation::of(&[episode(20.0, 6.0), episode(40.0, 4.0)], &constraints);
+        let judged = Evaluation::of(&[episode(20.0, 6.0), episode(40.0, 4.0)], &constraints).unwrap();
         assert_eq!((judged.cost.mean, judged.constraints[0].cost.mean, judged.constraints[1].cost.mean), (30.0, 30.0, 5.0));
         assert!(judged.constraints[0].within() && !judged.constraints[1].within() && !judged.within());
         assert!((judged.excess() - 0.25).abs() < 1e-12);
         // Half the interval of 20 and 40: 1.96 * 14.142 / sqrt(2) = 19.6.
         assert!((judged.cost.half_width - 19.6).abs() < 1e-9);
-        let judged = Evaluation::of(&[episode(20.0, 1.0), episode(40.0, 1.0)], &constraints);
+        let judged = Evaluation::of(&[episode(20.0, 1.0), episode(40.0, 1.0)], &constraints).unwrap();
         assert!(judged.within() && judged.surely_within());
-        let wide = Evaluation::of(&[episode(30.0, 1.0), episode(60.0, 1.0)], &constraints);
+        let wide = Evaluation::of(&[episode(30.0, 1.0), episode(60.0, 1.0)], &constraints).unwrap();
         assert!(wide.within() && !wide.surely_within());
     }
 }

@@ -5,6 +5,8 @@
 //! than the best so far must prove itself on further episodes. What they are worth in the end is said by a third set of
 //! episodes, which had no part in the choice.
 
+use std::sync::atomic::AtomicBool;
+
 use serde::{Deserialize, Serialize};
 
 use crate::config::{AlgorithmKind, TrainConfig};
@@ -14,7 +16,7 @@ use crate::networks::device::ComputeDevice;
 use crate::random::{Purpose, Stream};
 use crate::runs::agent::{Choice, TrainedPolicy};
 use crate::runs::checkpoint::Loaded;
-use crate::runs::evaluate::{Evaluation, play};
+use crate::runs::evaluate::{Evaluation, play_unless};
 use crate::runs::session::{MakeWorlds, Session};
 
 /// A checkpoint worth handing out, and the episodes that say so.
@@ -85,19 +87,29 @@ impl<'a> Examiner<'a> {
     }
 
     /// Evaluates the session's policy as it is, and says whether it is the best so far; `counts` is false where none can be,
-    /// as in the lessons before the last.
-    pub fn examine(&mut self, session: &mut Session, counts: bool) -> Result<(Evaluation, bool), LearnError> {
+    /// as in the lessons before the last. Nothing, and nothing remembered, if `stop` is raised meanwhile.
+    pub fn examine(
+        &mut self,
+        session: &mut Session,
+        counts: bool,
+        stop: &AtomicBool,
+    ) -> Result<Option<(Evaluation, bool)>, LearnError> {
         let published = session.learner.publish();
         let device = ComputeDevice::of(&session.config)?;
         let policy = TrainedPolicy::new(&session.config, session.learner.shape(), published, device, session.cost_terms)?;
         let settings = session.config.evaluation.clone();
-        let evaluation = self.play(&policy, session.frames, Set::Candidates, settings.episodes)?;
+        let Some(evaluation) = self.play(stop, &policy, session.frames, Set::Candidates, settings.episodes)? else {
+            return Ok(None);
+        };
         let candidate = HandOut { frames: session.frames, chosen_by: evaluation.clone(), confirmed: false, closing: None };
         if !counts || !self.is_worth_confirming(&candidate, session.config.algorithm) {
-            return Ok((evaluation, false));
+            return Ok(Some((evaluation, false)));
         }
         let confirmed = if evaluation.within() || !session.config.algorithm.keeps_budgets() {
-            let chosen_by = self.play(&policy, session.frames, Set::Confirmation, settings.confirming_episodes)?;
+            let episodes = settings.confirming_episodes;
+            let Some(chosen_by) = self.play(stop, &policy, session.frames, Set::Confirmation, episodes)? else {
+                return Ok(None);
+            };
             HandOut { chosen_by, confirmed: true, ..candidate }
         } else {
             // Nothing to be sure of: it is the least evil so far.
@@ -107,7 +119,7 @@ impl<'a> Examiner<'a> {
         if best {
             self.best = Some(confirmed);
         }
-        Ok((evaluation, best))
+        Ok(Some((evaluation, best)))
     }
 
     /// Whether further episodes could make a candidate the best.
@@ -121,28 +133,36 @@ impl<'a> Examiner<'a> {
         }
     }
 
-    /// Plays the closing episodes of the checkpoint that the run hands out.
-    pub fn close(&mut self, session: &Session, checkpoint: &Loaded) -> Result<(), LearnError> {
-        let Some(best) = &self.best else { return Ok(()) };
+    /// Plays the closing episodes of the checkpoint that the run hands out. False if `stop` is raised meanwhile.
+    pub fn close(&mut self, session: &Session, checkpoint: &Loaded, stop: &AtomicBool) -> Result<bool, LearnError> {
+        let Some(best) = &self.best else { return Ok(true) };
         let device = ComputeDevice::of(&session.config)?;
         let mut learner = Learner::new(&session.config, session.learner.shape(), &device);
         checkpoint.restore_weights(&mut learner)?;
         let shape = session.learner.shape();
         let policy = TrainedPolicy::new(&session.config, shape, learner.publish(), device, session.cost_terms)?;
-        let closing = self.play(&policy, best.frames, Set::Closing, session.config.evaluation.confirming_episodes)?;
+        let episodes = session.config.evaluation.confirming_episodes;
+        let Some(closing) = self.play(stop, &policy, best.frames, Set::Closing, episodes)? else { return Ok(false) };
         self.best = self.best.take().map(|best| HandOut { closing: Some(closing), ..best });
-        Ok(())
+        Ok(true)
     }
 
-    fn play(&self, policy: &TrainedPolicy, frames: u64, set: Set, episodes: usize) -> Result<Evaluation, LearnError> {
+    fn play(
+        &self,
+        stop: &AtomicBool,
+        policy: &TrainedPolicy,
+        frames: u64,
+        set: Set,
+        episodes: usize,
+    ) -> Result<Option<Evaluation>, LearnError> {
         let config: &TrainConfig = policy.config();
         let seed = |episode: usize| {
             let number = (set as u64) << 32 | episode as u64;
             Stream::new(config.seed, Purpose::EvaluatedWorlds, frames, number).bits()
         };
         let seeds: Vec<u64> = (0..episodes).map(seed).collect();
-        let played = play(policy, Choice::Sampled, self.make_worlds, &seeds, config.learning.threads)?;
-        Ok(Evaluation::of(&played, &config.constraints))
+        let played = play_unless(stop, policy, Choice::Sampled, self.make_worlds, &seeds, config.learning.threads)?;
+        played.map(|played| Evaluation::of(&played, &config.constraints)).transpose()
     }
 }
 

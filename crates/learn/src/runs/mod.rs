@@ -7,7 +7,6 @@ pub mod checksum;
 pub mod evaluate;
 pub mod hand_out;
 pub mod heatmap;
-pub mod interrupt;
 pub mod measure;
 pub mod progress_bar;
 pub mod report;

@@ -1,5 +1,7 @@
 //! The progress of a run for people.
 
+use std::io::Write;
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::runs::report::Report;
@@ -14,14 +16,15 @@ impl Bar {
     #[must_use]
     pub fn new(frames: u64) -> Bar {
         let bar = ProgressBar::new(frames);
-        let style = ProgressStyle::with_template("{bar:24} {percent:>3} % {msg}  {eta} left");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_message("worlds start");
+        bar.set_style(style("{bar:24} {percent:>3} % {msg}"));
+        bar.set_message("starting");
         Bar { bar }
     }
 
     /// Shows a report.
     pub fn show(&self, report: &Report) {
+        // How long it takes is known from the first report on.
+        self.bar.set_style(style("{bar:24} {percent:>3} % {msg}  {eta} left"));
         self.bar.set_length(report.total_frames);
         self.bar.set_position(report.frames.min(report.total_frames));
         self.bar.set_message(line(report));
@@ -29,13 +32,18 @@ impl Bar {
 
     /// Prints a line above the bar.
     pub fn print(&self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
+        // A terminal that is gone is no reason to end.
+        self.bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}")));
     }
 
     /// Ends the bar, leaving it as it is.
     pub fn finish(&self) {
         self.bar.abandon();
     }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
 /// A report in a line.
@@ -47,6 +55,10 @@ pub fn line(report: &Report) -> String {
         None => text.push_str("  no episode has ended yet"),
     }
     if let Some(budget) = report.budgets.first() {
+        if let Some(Some(term)) = report.terms.first() {
+            let cost = report.constraint_costs.first();
+            text.push_str(&format!("  {term} {}", cost.map_or("-".into(), |cost| format!("{cost:.1}"))));
+        }
         text.push_str(&format!("  budget {budget}"));
     }
     if let Some(multiplier) = report.multipliers.first() {

@@ -30,6 +30,8 @@ pub struct Report {
     pub means: Option<(f64, f64, f64)>,
     /// Smallest and largest return and cost of the latest episodes.
     pub extremes: Option<[f64; 4]>,
+    /// Name of each constraint's cost term; `None` for the scalar cost.
+    pub terms: Vec<Option<String>>,
     /// Mean cost of each constraint.
     pub constraint_costs: Vec<f64>,
     /// Budget of each constraint.
@@ -75,6 +77,7 @@ impl Report {
             episodes: watch.episodes,
             means,
             extremes: means.map(|_| [returns.0, returns.1, costs.0, costs.1]),
+            terms: config.constraints.iter().map(|constraint| constraint.term.clone()).collect(),
             constraint_costs,
             budgets: config.constraints.iter().map(|constraint| constraint.budget).collect(),
             multipliers,
@@ -113,6 +116,9 @@ impl Report {
         if self.budgets.len() > 1 {
             put("budgets", json!(self.budgets));
             put("multipliers", json!(self.multipliers));
+        }
+        // Of a single constraint on the scalar cost, `cost_mean` is the same.
+        if self.terms != [None] {
             put("constraint_costs", json!(self.constraint_costs));
         }
         if let Some(evaluation) = &self.evaluation {

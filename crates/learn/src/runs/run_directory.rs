@@ -4,13 +4,16 @@ use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use hasard_media::shell::quote;
 use serde_json::Value;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::runs::hand_out::HandOut;
-use crate::runs::tensorboard::EventFile;
+use crate::runs::tensorboard::{self, EventFile};
 
+/// Reports, a line each.
+const METRICS: &str = "metrics.jsonl";
 /// Where the agents have been, a line a moment.
 const HEATMAPS: &str = "heatmaps.jsonl";
 /// Which checkpoint the run hands out.
@@ -33,9 +36,14 @@ impl RunDirectory {
             return Err(LearnError::content(path, problem));
         }
         let checkpoints = path.join("checkpoints");
-        fs::create_dir_all(&checkpoints).map_err(LearnError::file(&checkpoints, "create"))?;
-        write_json(&path.join("config.json"), config)?;
-        Ok(directory)
+        let made = fs::create_dir_all(&checkpoints).map_err(LearnError::file(&checkpoints, "create"));
+        match made.and_then(|()| write_json(&path.join("config.json"), config)) {
+            Ok(()) => Ok(directory),
+            Err(error) => {
+                directory.withdraw();
+                Err(error)
+            }
+        }
     }
 
     /// Opens the directory of a run to go on with it.
@@ -47,11 +55,27 @@ impl RunDirectory {
     /// Takes a new run back that could not begin, so that the same command, mended, finds its directory free. What was there
     /// before stays.
     pub fn withdraw(self) {
-        // Nothing hangs on it: at worst the next attempt is told of a run that is there already.
-        let _ = fs::remove_file(self.path.join("config.json"));
-        let _ = fs::remove_file(self.path.join("lock"));
+        // Nothing hangs on it: at worst the next attempt finds a run there already.
+        for name in ["config.json", "config.partial", "lock"] {
+            let _ = fs::remove_file(self.path.join(name));
+        }
+        if self.holds_no_row() {
+            let _ = fs::remove_file(self.path.join(METRICS));
+            tensorboard::files(&self.path).iter().for_each(|file| drop(fs::remove_file(file)));
+        }
         let _ = fs::remove_dir(self.path.join("checkpoints"));
         let _ = fs::remove_dir(&self.path);
+    }
+
+    /// Whether nothing was learned yet that could be gone on with or looked at.
+    #[must_use]
+    pub fn is_blank(&self) -> bool {
+        let checkpoints = fs::read_dir(self.path.join("checkpoints"));
+        self.holds_no_row() && checkpoints.is_ok_and(|mut entries| entries.next().is_none())
+    }
+
+    fn holds_no_row(&self) -> bool {
+        fs::symlink_metadata(self.path.join(METRICS)).map_or(true, |data| data.is_file() && data.len() == 0)
     }
 
     fn lock(path: &Path) -> Result<RunDirectory, LearnError> {
@@ -84,14 +108,22 @@ impl RunDirectory {
         &self.path
     }
 
-    /// Drops the rows after `frames` from metrics and heatmaps, for a run that goes on from there writes them again. Rows
-    /// that are no JSON are dropped too, and told to `warn`.
-    pub fn rewind_metrics(&self, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
-        self.rewind("metrics.jsonl", frames, warn)?;
-        self.rewind(HEATMAPS, frames, warn)
+    /// Drops the rows after `rows` frames from metrics and TensorBoard's files, and those after `frames` from heatmaps: a run
+    /// that goes on from there writes them again. Rows that are no JSON are dropped too, and named to `warn`.
+    pub fn rewind(&self, rows: u64, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+        self.rewind_lines(METRICS, rows, warn)?;
+        self.rewind_lines(HEATMAPS, frames, warn)?;
+        for file in tensorboard::files(&self.path) {
+            let bytes = fs::read(&file).map_err(LearnError::file(&file, "read"))?;
+            let kept = tensorboard::until(&bytes, rows);
+            if kept.len() < bytes.len() {
+                write_whole(&file, &kept)?;
+            }
+        }
+        Ok(())
     }
 
-    fn rewind(&self, name: &str, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+    fn rewind_lines(&self, name: &str, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
         let path = self.path.join(name);
         let text = match fs::read(&path) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
@@ -135,6 +167,12 @@ pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
     Ok(config)
 }
 
+/// The command that goes on with the run in a directory, to be pasted into a shell.
+#[must_use]
+pub fn go_on(config: &TrainConfig, directory: &Path) -> String {
+    format!("hasard train {} --resume --out {}", config.env.id, quote(directory))
+}
+
 fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), LearnError> {
     let text =
         serde_json::to_vec_pretty(value).map_err(|error| LearnError::content(path, format!("cannot be written: {error}")))?;
@@ -161,11 +199,11 @@ pub struct MetricsLog {
 }
 
 impl MetricsLog {
-    /// Opens a run's log; rows are added at its end.
-    pub fn open(run: &Path) -> Result<MetricsLog, LearnError> {
-        let path = run.join("metrics.jsonl");
+    /// Opens a run's log; rows after these frames are added at its end.
+    pub fn open(run: &Path, frames: u64) -> Result<MetricsLog, LearnError> {
+        let path = run.join(METRICS);
         let lines = File::options().create(true).append(true).open(&path).map_err(LearnError::file(&path, "open"))?;
-        Ok(MetricsLog { lines, events: EventFile::create(run)?, path })
+        Ok(MetricsLog { lines, events: EventFile::create(run, frames)?, path })
     }
 
     /// Adds a line to the run's `heatmaps.jsonl`.

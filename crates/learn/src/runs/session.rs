@@ -18,6 +18,7 @@ use crate::random::{Purpose, Stream};
 use crate::runs::checkpoint::{Loaded, Progress};
 use crate::runs::watch::Watch;
 use crate::sampling::gather::Gatherer;
+use crate::sampling::privileged::Privileged;
 use crate::sampling::rollout::Rollout;
 use crate::sampling::sampler::{Sampler, SamplerState, dealt_anew};
 use crate::sampling::shaping::Shaping;
@@ -86,7 +87,8 @@ pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, 
     let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
     let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
     let extra = Shaping::new(config).extra_inputs();
-    ModelShape::new(ImageShape { height, width, channels }, action, cost_critics, extra, &config.network)
+    let shape = ModelShape::new(ImageShape { height, width, channels }, action, cost_critics, extra, &config.network)?;
+    shape.with_critic_inputs(Privileged::new(config).count())
 }
 
 impl Session {
@@ -177,7 +179,11 @@ impl Session {
             let actor = Actor::new(&shape, device);
             let shaping = Shaping::new(&config);
             let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, share.start, config.seed)?;
-            if sampling.synchronous && config.learning.reuse_forward {
+            sampler.cut(config.trajectory_steps());
+            sampler.show_critics(Privileged::new(&config));
+            // Of rollouts that are cut, what the networks computed would fill the memory.
+            let whole = config.trajectory_steps() == sampling.rollout;
+            if sampling.synchronous && config.learning.reuse_forward && whole {
                 sampler.record();
             }
             match state {
@@ -247,7 +253,7 @@ impl Session {
     /// Everything that is learned from a rollout.
     fn learn(&mut self, rollout: &Rollout, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
         for episode in rollout.episodes() {
-            self.watch.add(episode, &self.config.constraints);
+            self.watch.add(episode, &self.config.constraints)?;
         }
         let lag = self.learner.version.saturating_sub(rollout.oldest_version());
         self.means.add("policy_lag", lag as f64);
@@ -256,7 +262,7 @@ impl Session {
             return Ok(());
         }
         let learning = self.config.learning.clone();
-        let done = (self.frames as f64 / self.config.frames as f64).min(1.0);
+        let done = self.config.progress(self.frames);
         self.learner.rate = learning.rate_after(done);
         self.means.add("learning_rate", self.learner.rate);
         let last = learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
@@ -269,9 +275,10 @@ impl Session {
         for (name, share) in prepared.explained_variances(&self.config) {
             self.means.add(name, share);
         }
-        let passes = Passes::new(&self.config, self.rollouts, rollout.lanes());
+        let passes = Passes::new(&self.config, self.rollouts, rollout.trajectories());
         let signals = |costs: &[f64]| self.watch.signals(&self.config, done, costs);
         self.algorithm.learn(&mut self.learner, &prepared, &passes, &signals, &mut self.means)?;
+        self.watch.learned();
         if learning.reuse_forward {
             self.learner.absorb(rollout)?;
         }

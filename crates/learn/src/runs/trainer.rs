@@ -83,69 +83,100 @@ pub fn train_together(
     make_worlds: &MakeWorlds<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Summary, LearnError> {
-    let fresh = !matches!(start, Start::Resume { .. });
-    let (run, config, beginning, best) = begin(start, directory, hooks)?;
-    invite(team, &config, &beginning)?;
+    let begun = begin(start, directory, hooks)?;
     // A panic of the learner's own thread ends as an error too; checkpoints already written stay.
     let whole = || {
-        let lesson = beginning.progress().map_or(0, |progress| progress.lesson);
-        match Session::of(team.clone(), config.lesson(lesson), &beginning, make_worlds) {
-            Ok(session) => {
-                let seconds = beginning.progress().map_or(0.0, |progress| progress.wall_seconds);
-                Trainer::new(run, config, seconds, best, lesson, session, make_worlds).run(hooks)
-            }
-            Err(error) => {
-                if fresh {
-                    run.withdraw();
-                }
-                Err(error)
-            }
-        }
+        invite(team, &begun.config, &begun.beginning)?;
+        let lesson = begun.beginning.progress().map_or(0, |progress| progress.lesson);
+        let session = Session::of(team.clone(), begun.config.lesson(lesson), &begun.beginning, make_worlds)?;
+        // Only now is anything of a run that goes on touched: a resume that cannot begin leaves it as it was.
+        let best = if begun.fresh { None } else { begun.take_back(hooks)? };
+        Trainer::new(&begun, best, lesson, session, make_worlds).run(hooks)
     };
-    catch_unwind(AssertUnwindSafe(whole)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))))
+    let outcome =
+        catch_unwind(AssertUnwindSafe(whole)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))));
+    if outcome.is_err() && begun.fresh && begun.run.is_blank() {
+        begun.run.withdraw();
+    }
+    outcome
 }
 
-fn begin(
-    start: Start<'_>,
-    directory: &Path,
-    hooks: &mut Hooks<'_>,
-) -> Result<(RunDirectory, TrainConfig, Beginning<'static>, Option<HandOut>), LearnError> {
+/// A run whose directory is locked and whose settings are known.
+struct Begun {
+    run: RunDirectory,
+    config: TrainConfig,
+    beginning: Beginning<'static>,
+    /// It is a new one.
+    fresh: bool,
+    /// The settings that it goes on with are others than before.
+    changed: bool,
+}
+
+impl Begun {
+    /// Makes the directory agree with the checkpoint that the run goes on from, and gives what it selected so far.
+    fn take_back(&self, hooks: &mut Hooks<'_>) -> Result<Option<HandOut>, LearnError> {
+        if self.changed {
+            self.run.rewrite_config(&self.config)?;
+        }
+        let progress = self.beginning.progress();
+        let at = progress.map_or(0, |progress| progress.frames);
+        // The row of a moment whose evaluation is still to be made is written with it.
+        let owes = progress.is_some_and(|progress| progress.owes_evaluation);
+        self.run.rewind(if owes { at.saturating_sub(1) } else { at }, at, hooks.warn)?;
+        progress.map_or(Ok(None), |progress| Store::new(self.run.path(), 1).go_back_to(progress))
+    }
+
+    /// The checkpoint that the run goes on from, if an evaluation of it is still to be made: it was stopped in the midst of it,
+    /// or has come to its end without any and is now asked for one.
+    fn owed(&self, best: Option<&HandOut>) -> Option<&Loaded> {
+        let Beginning::Everything(loaded) = &self.beginning else { return None };
+        let unjudged = best.is_none() && loaded.progress.frames >= self.config.frames && self.config.evaluates_at_its_end();
+        (loaded.progress.owes_evaluation || unjudged).then_some(loaded)
+    }
+}
+
+fn begin(start: Start<'_>, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Begun, LearnError> {
+    let new = |config: TrainConfig, beginning| {
+        let run = RunDirectory::create(directory, &config)?;
+        Ok(Begun { run, config, beginning, fresh: true, changed: false })
+    };
     match start {
         Start::Fresh(config) => {
+            let config = config.begun();
             config.check()?;
             ComputeDevice::of(&config)?;
-            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Nothing, None))
+            new(config, Beginning::Nothing)
         }
         Start::From(config, other) => {
+            let config = config.begun();
             config.check()?;
             ComputeDevice::of(&config)?;
             let loaded = Store::new(other, 1).newest(hooks.warn)?;
             let loaded = loaded.ok_or_else(|| LearnError::content(other, "no checkpoint to take weights from is here"))?;
-            Ok((RunDirectory::create(directory, &config)?, config, Beginning::Weights(Box::new(loaded)), None))
+            new(config, Beginning::Weights(Box::new(loaded)))
         }
         Start::Resume { settings } => {
             let (run, before) = RunDirectory::open(directory)?;
-            let store = Store::new(directory, before.reporting.keep);
-            let loaded = store.newest(hooks.warn)?;
+            let loaded = Store::new(directory, 1).newest(hooks.warn)?;
             let at = loaded.as_ref().map_or(0, |loaded| loaded.progress.frames);
             if loaded.is_none() {
                 (hooks.warn)(format!("{}: no checkpoint was written yet; the run starts again", directory.display()));
             }
             let config = before.resumed_with(&settings, at)?;
-            if config != before {
-                run.rewrite_config(&config)?;
-            }
-            run.rewind_metrics(at, hooks.warn)?;
-            let best = loaded.as_ref().map_or(Ok(None), |loaded| store.go_back_to(&loaded.progress))?;
-            Ok((run, config, loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded))), best))
+            ComputeDevice::of(&config)?;
+            let changed = config != before;
+            let beginning = loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)));
+            Ok(Begun { run, config, beginning, fresh: false, changed })
         }
     }
 }
 
 struct Trainer<'a> {
-    run: RunDirectory,
+    run: &'a RunDirectory,
     /// Settings of the whole run; the session has those of the lesson.
     config: TrainConfig,
+    /// The checkpoint that it goes on from, if that still has to be evaluated.
+    owed: Option<&'a Loaded>,
     make_worlds: &'a MakeWorlds<'a>,
     /// The lesson of a curriculum that the session is.
     lesson: usize,
@@ -159,18 +190,19 @@ struct Trainer<'a> {
 
 impl<'a> Trainer<'a> {
     fn new(
-        run: RunDirectory,
-        config: TrainConfig,
-        seconds_before: f64,
+        begun: &'a Begun,
         best: Option<HandOut>,
         lesson: usize,
         session: Session,
         make_worlds: &'a MakeWorlds<'a>,
     ) -> Trainer<'a> {
+        let (run, config) = (&begun.run, begun.config.clone());
         let heatmap = heatmap(&config, lesson, &session);
         let started = Instant::now();
+        let seconds_before = begun.beginning.progress().map_or(0.0, |progress| progress.wall_seconds);
+        let owed = begun.owed(best.as_ref());
         let examiner = Examiner::new(make_worlds, best);
-        Trainer { run, config, make_worlds, lesson, session, heatmap, seconds_before, started, examiner }
+        Trainer { run, config, owed, make_worlds, lesson, session, heatmap, seconds_before, started, examiner }
     }
 
     /// Begins the lesson that the frames so far ask for.
@@ -192,11 +224,18 @@ impl<'a> Trainer<'a> {
 
     fn run(mut self, hooks: &mut Hooks<'_>) -> Result<Summary, LearnError> {
         let store = Store::new(self.run.path(), self.session.config.reporting.keep);
-        let writer = Writer::new(self.run.path(), store.clone())?;
+        let writer = Writer::new(self.run.path(), store.clone(), self.session.frames)?;
         let (mut last_report, mut last_checkpoint) = (Instant::now(), Instant::now());
         let mut reported_frames = self.session.frames;
         let mut last = None;
         let mut over = self.session.frames >= self.session.config.frames;
+        let mut cut_short = false;
+        if let Some(loaded) = self.owed.take() {
+            match self.settle(loaded, &writer, hooks)? {
+                Some(report) => last = Some(report),
+                None => (over, cut_short) = (true, true),
+            }
+        }
         while !over {
             // Here and not after the checkpoint, so that a run resumed from one taken at a lesson's end begins the next as well.
             if self.lesson_is_over() {
@@ -204,17 +243,22 @@ impl<'a> Trainer<'a> {
             }
             let before = self.session.frames;
             let rollout = self.session.turn(hooks.warn)?;
-            let evaluation = if self.config.evaluates(before, self.session.frames) { Some(self.examine(&writer)?) } else { None };
+            let evaluates = self.config.evaluates(before, self.session.frames);
+            let evaluation = if evaluates { self.examine(&writer, hooks.stop)? } else { None };
+            // What was stopped in the midst of its evaluation has no row yet: it is made when the run goes on.
+            cut_short = evaluates && evaluation.is_none();
             // Asked once a rollout: from here on it is decided whether samplers are told to go on.
-            over = self.session.frames >= self.session.config.frames || hooks.stop.load(Ordering::Relaxed);
+            over = self.session.frames >= self.session.config.frames || cut_short || hooks.stop.load(Ordering::Relaxed);
             let due = last_report.elapsed().as_secs_f64() >= self.session.config.reporting.report_seconds;
             if over || due || evaluation.is_some() {
                 let seconds = last_report.elapsed().as_secs_f64().max(1e-9);
                 let mut report = self.report((self.session.frames - reported_frames) as f64 / seconds);
                 report.evaluation = evaluation;
                 (last_report, reported_frames) = (Instant::now(), self.session.frames);
-                writer.row(self.session.frames, report.row());
-                (hooks.report)(&report);
+                if !cut_short {
+                    writer.row(self.session.frames, report.row());
+                    (hooks.report)(&report);
+                }
                 last = Some(report);
                 over = over || hooks.stop.load(Ordering::Relaxed);
             }
@@ -228,7 +272,7 @@ impl<'a> Trainer<'a> {
             let save = over || (due && writer.keeps_up());
             Word { over, save }.tell(&self.session.team)?;
             if save {
-                writer.checkpoint(self.checkpoint()?);
+                writer.checkpoint(self.checkpoint(cut_short)?);
                 last_checkpoint = Instant::now();
             }
             if !over && !self.lesson_is_over() {
@@ -240,37 +284,63 @@ impl<'a> Trainer<'a> {
             Some(report) => report,
             None => self.report(0.0),
         };
-        let stopped = self.session.frames < self.session.config.frames;
-        if !stopped {
-            self.close(&store)?;
-        }
+        let stopped = cut_short || self.session.frames < self.session.config.frames || !self.close(&store, hooks.stop)?;
         Ok(Summary { last, stopped, hand_out: self.examiner.best.take() })
     }
 
-    /// Evaluates the policy as it is; if it is the best so far, its checkpoint is what the run hands out.
-    fn examine(&mut self, writer: &Writer) -> Result<Evaluation, LearnError> {
-        // Of a curriculum, the last level's alone.
-        let counts = self.lesson + 1 == self.config.lessons();
-        let (evaluation, best) = self.examiner.examine(&mut self.session, counts)?;
-        Word { over: false, save: best }.tell(&self.session.team)?;
-        if best {
-            writer.best(self.checkpoint()?);
-        }
-        Ok(evaluation)
+    /// Of a curriculum, evaluations of the last level alone select a checkpoint.
+    fn counts(&self) -> bool {
+        self.lesson + 1 == self.config.lessons()
     }
 
-    /// Says what the checkpoint that is handed out is worth, by episodes that had no part in the choice.
-    fn close(&mut self, store: &Store) -> Result<(), LearnError> {
-        let Some(best) = &self.examiner.best else { return Ok(()) };
+    /// Evaluates the policy as it is; if it is the best so far, its checkpoint is what the run hands out. Nothing if the run is
+    /// stopped meanwhile.
+    fn examine(&mut self, writer: &Writer, stop: &AtomicBool) -> Result<Option<Evaluation>, LearnError> {
+        let counts = self.counts();
+        let examined = self.examiner.examine(&mut self.session, counts, stop)?;
+        let best = examined.as_ref().is_some_and(|(_, best)| *best);
+        Word { over: false, save: best }.tell(&self.session.team)?;
+        if best {
+            writer.best(self.checkpoint(false)?);
+        }
+        Ok(examined.map(|(evaluation, _)| evaluation))
+    }
+
+    /// Makes the evaluation that the checkpoint which the run goes on from still lacks, as [`Trainer::examine`] would have then;
+    /// the other workers need not know. Nothing if the run is stopped meanwhile: then it goes on lacking it.
+    fn settle(&mut self, loaded: &Loaded, writer: &Writer, hooks: &mut Hooks<'_>) -> Result<Option<Report>, LearnError> {
+        let counts = self.counts();
+        let Some((evaluation, best)) = self.examiner.examine(&mut self.session, counts, hooks.stop)? else { return Ok(None) };
+        let progress = Progress { hand_out: self.examiner.best.clone(), owes_evaluation: false, ..loaded.progress.clone() };
+        let mut report = self.report(0.0);
+        report.evaluation = Some(evaluation);
+        if loaded.progress.owes_evaluation {
+            writer.row(self.session.frames, report.row());
+        }
+        if best {
+            writer.best(loaded.with(progress.clone()));
+        }
+        writer.amend(progress);
+        (hooks.report)(&report);
+        Ok(Some(report))
+    }
+
+    /// Says what the checkpoint that is handed out is worth, by episodes that had no part in the choice. False if the run is
+    /// stopped meanwhile.
+    fn close(&mut self, store: &Store, stop: &AtomicBool) -> Result<bool, LearnError> {
+        let Some(best) = &self.examiner.best else { return Ok(true) };
         // A run that had ended before is not closed anew.
         if let Some(known) = read_hand_out(self.run.path()).filter(|known| known.frames == best.frames && known.closing.is_some())
         {
             self.examiner.best = Some(known);
-            return Ok(());
+            return Ok(true);
         }
         let checkpoint = Loaded::read(&store.best_of(best.frames))?;
-        self.examiner.close(&self.session, &checkpoint)?;
-        self.examiner.best.as_ref().map_or(Ok(()), |best| self.run.write_hand_out(best))
+        let closed = self.examiner.close(&self.session, &checkpoint, stop)?;
+        if let (true, Some(best)) = (closed, &self.examiner.best) {
+            self.run.write_hand_out(best)?;
+        }
+        Ok(closed)
     }
 
     fn report(&mut self, frames_per_second: f64) -> Report {
@@ -289,8 +359,8 @@ impl<'a> Trainer<'a> {
         report
     }
 
-    /// Takes a checkpoint.
-    fn checkpoint(&mut self) -> Result<Checkpoint, LearnError> {
+    /// Takes a checkpoint, which may still owe its evaluation.
+    fn checkpoint(&mut self, owes_evaluation: bool) -> Result<Checkpoint, LearnError> {
         let samplers = self.session.save_samplers()?;
         let progress = Progress {
             frames: self.session.frames,
@@ -299,11 +369,13 @@ impl<'a> Trainer<'a> {
             updates: self.session.learner.version,
             wall_seconds: self.wall_seconds(),
             hand_out: self.examiner.best.clone(),
+            owes_evaluation,
             returns: self.session.learner.returns.clone(),
             optimiser_steps: self.session.learner.optimisers.iter().map(|adam| adam.steps).collect(),
             algorithm: self.session.algorithm.save(),
             watch: self.session.watch.clone(),
             samplers: samplers.iter().map(|sampler| (sampler.steps, sampler.safety.clone())).collect(),
+            spent: samplers.iter().map(|sampler| sampler.spent.clone()).filter(|spent| !spent.is_empty()).collect(),
             pixel_count: self.session.learner.pixels.count,
         };
         Checkpoint::take(&self.session.learner, &samplers, progress)

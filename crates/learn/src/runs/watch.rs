@@ -6,7 +6,8 @@ use hasard_envs::Episode;
 use serde::{Deserialize, Serialize};
 
 use crate::algorithms::Signal;
-use crate::config::{Constraint, ConstraintStatistic, TrainConfig};
+use crate::config::constraint::conditional_value_at_risk;
+use crate::config::{Constraint, ConstraintStatistic, MultiplierUpdate, TrainConfig};
 use crate::error::LearnError;
 
 /// What is kept of an episode.
@@ -31,6 +32,11 @@ pub struct Watch {
     pub recent: VecDeque<Finished>,
     /// Episodes so far.
     pub episodes: u64,
+    /// Of the latest, those that finished since a rollout was last learned from with any, and rollouts that passed without.
+    #[serde(default)]
+    fresh: usize,
+    #[serde(default)]
+    waited: u64,
     window: usize,
     /// Latest episodes that constraints look at: one a world, so that each counts about once and the mean follows the
     /// policy as fast as episodes end.
@@ -44,6 +50,8 @@ impl Watch {
         Watch {
             recent: VecDeque::new(),
             episodes: 0,
+            fresh: 0,
+            waited: 0,
             window: config.reporting.window.max(config.sampling.lanes),
             constraint_window: config.sampling.lanes,
         }
@@ -56,24 +64,34 @@ impl Watch {
             let problem = "the checkpoint's episodes were held against other constraints; start a new run with --init-from";
             return Err(LearnError::Config(problem.into()));
         }
-        Ok(Watch { recent: self.recent.clone(), episodes: self.episodes, ..Watch::new(config) })
+        let (fresh, waited) = (self.fresh, self.waited);
+        Ok(Watch { recent: self.recent.clone(), episodes: self.episodes, fresh, waited, ..Watch::new(config) })
     }
 
-    /// Notes an episode.
-    pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) {
-        let costs = episode.costs.iter().map(|(name, value)| (format!("cost/{name}"), *value));
+    /// Notes an episode; one that does not report a constraint's term is an error.
+    pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) -> Result<(), LearnError> {
+        let constrained = constraints.iter().map(|one| one.cost_of(episode)).collect::<Result<_, _>>()?;
+        let costs = episode.costs.iter().map(|one| (format!("cost/{}", one.name), one.cost));
         let stats = episode.stats.iter().map(|(name, value)| (format!("stats/{name}"), *value));
         self.recent.push_back(Finished {
             episode_return: episode.episode_return,
             cost: episode.cost,
             length: f64::from(episode.length),
-            constrained: constraints.iter().map(|one| one.cost_of(episode)).collect(),
+            constrained,
             details: costs.chain(stats).collect(),
         });
         self.episodes += 1;
+        self.fresh += 1;
         while self.recent.len() > self.window {
             self.recent.pop_front();
         }
+        Ok(())
+    }
+
+    /// Told when a rollout was learned from: what was new by then is not new to the next.
+    pub fn learned(&mut self) {
+        self.waited = if self.fresh == 0 { self.waited + 1 } else { 0 };
+        self.fresh = 0;
     }
 
     /// Mean over the latest episodes, if there are any.
@@ -99,25 +117,38 @@ impl Watch {
     #[must_use]
     pub fn signals(&self, config: &TrainConfig, done: f64, minibatch_costs: &[f64]) -> Vec<Signal> {
         let episode_steps = f64::from(config.episode_steps);
-        let signal = |index: usize, episode_cost: f64| Signal {
-            episode_cost,
-            episode_budget: config.constraints[index].budget * config.budget_share,
-            episode_steps,
-            done,
-        };
+        let count = self.constraint_window.min(self.recent.len());
+        let signal =
+            |index: usize, episode_cost: f64| Signal { done, ..Signal::steady(episode_cost, config.aim(index), episode_steps) };
+        let latest = |index: usize, count: usize| self.recent.iter().rev().take(count).map(move |one| one.constrained[index]);
+        let mean = |index: usize, count: usize| latest(index, count).sum::<f64>() / count as f64;
+        let all = 0..config.constraints.len();
         match config.constraint_statistic {
             ConstraintStatistic::StepMean => {
-                minibatch_costs.iter().enumerate().map(|(index, cost)| signal(index, cost * episode_steps)).collect()
+                return minibatch_costs.iter().enumerate().map(|(index, cost)| signal(index, cost * episode_steps)).collect();
             }
-            ConstraintStatistic::EpisodeMean => {
-                let latest: Vec<_> = self.recent.iter().rev().take(self.constraint_window).collect();
-                if latest.is_empty() {
-                    return Vec::new();
-                }
-                let mean = |index: usize| latest.iter().map(|one| one.constrained[index]).sum::<f64>() / latest.len() as f64;
-                (0..config.constraints.len()).map(|index| signal(index, mean(index))).collect()
-            }
+            _ if count == 0 => return Vec::new(),
+            _ => {}
         }
+        let weight = if self.fresh == 0 { 0.0 } else { (self.waited + 1) as f64 };
+        let mean_steps = self.recent.iter().rev().take(count).map(|one| one.length).sum::<f64>() / count as f64;
+        let once = config.algorithm_settings.multiplier_update == MultiplierUpdate::Rollout;
+        let one = |index: usize| {
+            let signal = match config.constraint_statistic {
+                // The worst of a few new episodes would say nothing: all that are remembered count, whenever some are new.
+                ConstraintStatistic::Cvar(share) => {
+                    let costs: Vec<f64> = latest(index, self.recent.len()).collect();
+                    signal(index, conditional_value_at_risk(&costs, share).unwrap_or(0.0))
+                }
+                _ => {
+                    let fresh = self.fresh.min(self.recent.len());
+                    let fresh_cost = if once && fresh > 0 { mean(index, fresh) } else { mean(index, count) };
+                    Signal { fresh_cost, ..signal(index, mean(index, count)) }
+                }
+            };
+            Signal { mean_steps: mean_steps.max(1.0), fresh_weight: if once { weight } else { 1.0 }, ..signal }
+        };
+        all.map(one).collect()
     }
 }
 
@@ -125,6 +156,7 @@ impl Watch {
 mod tests {
     use super::*;
     use crate::config::{AlgorithmKind, EnvConfig, Preset};
+    use hasard_envs::{Scenario, episode_costs};
 
     fn episode(cost: f64, jumps: f64) -> Episode {
         Episode {
@@ -132,7 +164,7 @@ mod tests {
             seed: 0,
             episode_return: 1.0,
             cost,
-            costs: vec![("lava", cost), ("jumps", jumps)],
+            costs: episode_costs(Scenario::VolcanicVenture.cost_terms(), &[cost, jumps]),
             length: 10,
             terminated: true,
             truncated: false,
@@ -149,7 +181,7 @@ mod tests {
         let mut watch = Watch::new(&config);
         assert!(watch.signals(&config, 0.0, &[0.1, 0.2]).is_empty());
         for (cost, jumps) in [(1000.0, 50.0), (60.0, 4.0), (80.0, 8.0)] {
-            watch.add(&episode(cost, jumps), &config.constraints);
+            watch.add(&episode(cost, jumps), &config.constraints).unwrap();
         }
         let signals = watch.signals(&config, 0.0, &[0.1, 0.2]);
         assert_eq!(signals[0].episode_excess(), 20.0);
@@ -159,5 +191,88 @@ mod tests {
         config.constraint_statistic = ConstraintStatistic::StepMean;
         let signals = watch.signals(&config, 0.0, &[0.3, 0.2]);
         assert!((signals[0].step_excess() - (0.3 - 50.0 / 2100.0 * 4.0)).abs() < 1e-12);
+    }
+
+    /// A10: one aim for every algorithm, so that budgets of 50 with a share of 0.9 are 45 to all of them, PPOSaute among them: its safety
+    /// state is used up, of 1, by the cost that the budget is (Sootla et al. 2022, equation 6, undiscounted).
+    #[test]
+    fn all_algorithms_aim_at_the_same_share_of_the_budget() {
+        use crate::sampling::shaping::Shaping;
+        for &algorithm in AlgorithmKind::ALL {
+            for &preset in Preset::ALL {
+                let mut config = TrainConfig::plain(algorithm, preset, EnvConfig::new("test"));
+                (config.constraints[0].budget, config.budget_share) = (50.0, 0.9);
+                config.algorithm_settings.saute_gamma = 1.0;
+                let mut watch = Watch::new(&config);
+                watch.add(&episode(60.0, 0.0), &config.constraints).unwrap();
+                assert_eq!(watch.signals(&config, 0.0, &[0.0])[0].episode_budget, 45.0, "{algorithm} {preset}");
+                if algorithm == AlgorithmKind::PpoSaute {
+                    let shaping = Shaping::new(&config);
+                    let within = shaping.step(1.0, 1.0, 44.9);
+                    assert!(within.0 == 1.0 && (within.1 - 0.1 / 45.0).abs() < 1e-6, "{within:?}");
+                    assert!(shaping.step(1.0, 1.0, 45.1).0 < 0.0);
+                }
+            }
+        }
+    }
+
+    /// A15: each episode counts as new once, in the rollout that it finished in; rollouts without any are made up for by the next.
+    #[test]
+    fn episodes_are_new_once() {
+        let mut config = TrainConfig::plain(AlgorithmKind::PpoPid, Preset::Paper, EnvConfig::new("test"));
+        config.sampling.lanes = 4;
+        config.constraints[0].budget = 10.0;
+        let mut watch = Watch::new(&config);
+        let fresh = |watch: &Watch| {
+            let signal = watch.signals(&config, 0.0, &[0.0])[0];
+            (signal.episode_cost, signal.fresh_cost, signal.fresh_weight)
+        };
+        for cost in [10.0, 20.0] {
+            watch.add(&episode(cost, 0.0), &config.constraints).unwrap();
+        }
+        assert_eq!(fresh(&watch), (15.0, 15.0, 1.0));
+        watch.learned();
+        assert_eq!(fresh(&watch), (15.0, 15.0, 0.0));
+        watch.learned();
+        let again = serde_json::from_value::<Watch>(serde_json::to_value(&watch).unwrap()).unwrap();
+        let mut watch = again.resumed(&config).unwrap();
+        watch.add(&episode(60.0, 0.0), &config.constraints).unwrap();
+        assert_eq!(fresh(&watch), (30.0, 60.0, 2.0));
+        watch.learned();
+        watch.add(&episode(2.0, 0.0), &config.constraints).unwrap();
+        assert_eq!(fresh(&watch), (23.0, 2.0, 1.0));
+        // The released code's moments know no new ones.
+        let each = TrainConfig {
+            algorithm_settings: crate::config::AlgorithmConfig {
+                multiplier_update: MultiplierUpdate::Minibatch,
+                ..config.algorithm_settings.clone()
+            },
+            ..config.clone()
+        };
+        let signal = watch.signals(&each, 0.0, &[0.0])[0];
+        assert_eq!((signal.fresh_cost, signal.fresh_weight), (23.0, 1.0));
+    }
+
+    /// By hand: of 20 episodes the worst tenth are 90 and 70, whatever the others are.
+    #[test]
+    fn a_constraint_may_be_on_the_tail() {
+        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        config.sampling.lanes = 2;
+        config.constraints[0].budget = 50.0;
+        config.constraint_statistic = ConstraintStatistic::Cvar(0.1);
+        config.check().unwrap();
+        let mut watch = Watch::new(&config);
+        for cost in [90.0, 70.0].into_iter().chain((0..18).map(f64::from)) {
+            watch.add(&episode(cost, 0.0), &config.constraints).unwrap();
+        }
+        let signal = watch.signals(&config, 0.0, &[0.0])[0];
+        assert_eq!((signal.episode_excess(), signal.fresh_cost, signal.fresh_weight), (30.0, 80.0, 1.0));
+        for algorithm in [AlgorithmKind::P3o, AlgorithmKind::Cpo, AlgorithmKind::PpoSaute, AlgorithmKind::Ipo] {
+            let mut other = TrainConfig::plain(algorithm, Preset::Paper, EnvConfig::new("test"));
+            other.constraints[0].budget = 50.0;
+            other.constraint_statistic = config.constraint_statistic;
+            let message = other.check().unwrap_err().to_string();
+            assert!(message.contains("cvar:0.1") && message.contains(algorithm.name()), "{message}");
+        }
     }
 }

@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 use serde_json::Value;
 
 use crate::error::LearnError;
-use crate::runs::checkpoint::{Checkpoint, Store};
+use crate::runs::checkpoint::{Checkpoint, Progress, Store};
 use crate::runs::run_directory::MetricsLog;
 
 enum Job {
@@ -17,6 +17,7 @@ enum Job {
     Heatmap(Value),
     Checkpoint(Box<Checkpoint>),
     Best(Box<Checkpoint>),
+    Amend(Box<Progress>),
 }
 
 /// Writes rows and checkpoints in the order in which they were given.
@@ -32,9 +33,9 @@ pub struct Writer {
 const MOST_WAITING: usize = 8;
 
 impl Writer {
-    /// A writer for a run's directory.
-    pub fn new(run: &Path, store: Store) -> Result<Writer, LearnError> {
-        let mut log = MetricsLog::open(run)?;
+    /// A writer for a run's directory, from these frames on.
+    pub fn new(run: &Path, store: Store, frames: u64) -> Result<Writer, LearnError> {
+        let mut log = MetricsLog::open(run, frames)?;
         let (jobs, queue) = channel();
         let (failing, errors) = channel();
         let waiting = Arc::new(AtomicUsize::new(0));
@@ -50,6 +51,7 @@ impl Writer {
                         result
                     }
                     Job::Best(checkpoint) => store.write_best(&checkpoint),
+                    Job::Amend(progress) => store.amend(&progress),
                 };
                 if let Err(error) = result {
                     let _ = failing.send(error);
@@ -98,6 +100,13 @@ impl Writer {
     pub fn best(&self, checkpoint: Checkpoint) {
         if let Some(jobs) = &self.jobs {
             let _ = jobs.send(Job::Best(Box::new(checkpoint)));
+        }
+    }
+
+    /// Hands over what a checkpoint that is on the disk is to say of itself from now on.
+    pub fn amend(&self, progress: Progress) {
+        if let Some(jobs) = &self.jobs {
+            let _ = jobs.send(Job::Amend(Box::new(progress)));
         }
     }
 

@@ -15,12 +15,16 @@ pub struct Part {
     pub lanes: usize,
     /// Lanes of each group; frames are kept by group.
     pub group_lanes: usize,
+    /// Steps of the trajectories that it is learned from in; 0 for all.
+    pub trajectory_steps: usize,
     /// Observations of a group at a step, `frames[t * groups + g]`, and after the last step.
     #[serde(skip)]
     pub frames: Vec<Vec<u8>>,
     /// Extra inputs of each row, and after the last step.
     pub extra: Vec<f32>,
-    /// State of each network before the first step.
+    /// Privileged inputs of each row, and after the last step.
+    pub privileged: Vec<f32>,
+    /// State of each network before the first step of each trajectory, all lanes' first trajectories first.
     #[serde(skip)]
     pub initial_state: Vec<Vec<f32>>,
     /// Categorical sub-actions.
@@ -61,6 +65,7 @@ impl Part {
             frames.resize(self.group_lanes * shape.pixels(), 0);
         }
         self.extra.resize((rows + lanes) * shape.extra_inputs(), 0.0);
+        self.privileged.resize((rows + lanes) * shape.critic_inputs, 0.0);
         self.actions.resize(rows * shape.action.sizes.len(), 0);
         self.deltas.resize(rows * shape.action.deltas, 0.0);
         self.log_probabilities.resize(rows, 0.0);
@@ -73,6 +78,12 @@ impl Part {
         self.versions.resize(steps, 0);
         self.episodes.clear();
         self.recordings.iter_mut().for_each(Recording::clear);
+    }
+
+    /// Trajectories of each lane.
+    #[must_use]
+    pub fn trajectories(&self) -> usize {
+        self.steps.checked_div(self.trajectory_steps).unwrap_or(1)
     }
 
     /// The observation of a lane at a step; step `steps` is the one after the last. Empty where another worker has the pixels.
@@ -107,6 +118,33 @@ impl Rollout {
     #[must_use]
     pub fn lanes(&self) -> usize {
         self.parts.iter().map(|part| part.lanes).sum()
+    }
+
+    /// Steps of each trajectory.
+    #[must_use]
+    pub fn trajectory_steps(&self) -> usize {
+        self.steps() / self.parts[0].trajectories()
+    }
+
+    /// Trajectories of all lanes, those of the first steps first.
+    #[must_use]
+    pub fn trajectories(&self) -> usize {
+        self.lanes() * self.parts[0].trajectories()
+    }
+
+    /// The lane of a trajectory, and its first step.
+    #[must_use]
+    pub fn trajectory(&self, number: usize) -> (usize, usize) {
+        (number % self.lanes(), number / self.lanes() * self.trajectory_steps())
+    }
+
+    /// State of a network, of `units` numbers, before the first step of a trajectory.
+    #[must_use]
+    pub fn initial_state(&self, network: usize, units: usize, trajectory: usize) -> &[f32] {
+        let (lane, first) = self.trajectory(trajectory);
+        let (part, own) = self.find(lane);
+        let row = first / self.trajectory_steps() * part.lanes + own;
+        &part.initial_state[network][row * units..(row + 1) * units]
     }
 
     /// Rows of all parts.

@@ -13,6 +13,7 @@ use crate::config::constraint::find_terms;
 use crate::error::LearnError;
 use crate::networks::{Actor, ModelShape, Notes, Published};
 use crate::random::{Purpose, Stream};
+use crate::sampling::privileged::Privileged;
 use crate::sampling::rollout::Part;
 use crate::sampling::shaping::Shaping;
 
@@ -30,6 +31,8 @@ pub struct SamplerState {
     pub safety: Vec<f64>,
     /// Steps that each lane has made.
     pub steps: u64,
+    /// Cost of each constraint in each lane's episode so far; empty where no critic sees it.
+    pub spent: Vec<f64>,
 }
 
 /// The same lanes dealt to other samplers, in their order: what happens in a lane does not depend on its sampler. `None` if
@@ -45,6 +48,8 @@ pub fn dealt_anew(states: Vec<SamplerState>, shares: &[Range<usize>]) -> Option<
     let whole = |network: usize| states.iter().flat_map(|one| &one.state[network]).copied().collect::<Vec<f32>>();
     let memories: Vec<Vec<f32>> = (0..networks).map(whole).collect();
     let safety: Vec<f64> = states.iter().flat_map(|one| &one.safety).copied().collect();
+    let spent: Vec<f64> = states.iter().flat_map(|one| &one.spent).copied().collect();
+    let constraints = spent.len() / lanes.max(1);
     let mut worlds = states.into_iter().flat_map(|one| one.worlds);
     let deal = |share: &Range<usize>| {
         let part = |memory: &Vec<f32>| {
@@ -55,6 +60,7 @@ pub fn dealt_anew(states: Vec<SamplerState>, shares: &[Range<usize>]) -> Option<
             worlds: worlds.by_ref().take(share.len()).collect(),
             state: memories.iter().map(part).collect(),
             safety: safety[share.clone()].to_vec(),
+            spent: spent[share.start * constraints..share.end * constraints].to_vec(),
             steps,
         }
     };
@@ -80,6 +86,12 @@ pub struct Sampler {
     after_state: Vec<Vec<f32>>,
     /// What is computed is kept for the learner.
     recording: bool,
+    /// Steps of the trajectories that the learner takes.
+    trajectory_steps: usize,
+    /// What the critics see and the policy does not, of each lane's steps and costs in its episode so far.
+    privileged: Privileged,
+    ages: Vec<u32>,
+    spent: Vec<f64>,
 }
 
 impl Sampler {
@@ -117,6 +129,10 @@ impl Sampler {
             batches,
             steps: 0,
             recording: false,
+            trajectory_steps: usize::MAX,
+            privileged: Privileged::default(),
+            ages: vec![0; lanes],
+            spent: vec![0.0; lanes * constraints.len()],
         })
     }
 
@@ -129,6 +145,16 @@ impl Sampler {
     /// Keeps what the networks compute, for a learner that will have the same weights.
     pub fn record(&mut self) {
         self.recording = true;
+    }
+
+    /// Shows the critics what the policy does not see.
+    pub fn show_critics(&mut self, privileged: Privileged) {
+        self.privileged = privileged;
+    }
+
+    /// Keeps the states at the beginning of every trajectory of so many steps.
+    pub fn cut(&mut self, trajectory_steps: usize) {
+        self.trajectory_steps = trajectory_steps.max(1);
     }
 
     /// Puts every lane somewhere else in its first episode: of all `total` lanes of the run, each starts after so many
@@ -160,6 +186,7 @@ impl Sampler {
             state: self.state.clone(),
             safety: self.safety.clone(),
             steps: self.steps,
+            spent: if self.privileged.count() > 0 { self.spent.clone() } else { Vec::new() },
         })
     }
 
@@ -167,9 +194,19 @@ impl Sampler {
     pub fn restore(&mut self, saved: SamplerState) -> Result<(), LearnError> {
         let fits = saved.state.len() == self.state.len()
             && saved.state.iter().zip(&self.state).all(|(a, b)| a.len() == b.len())
-            && saved.safety.len() == self.safety.len();
+            && saved.safety.len() == self.safety.len()
+            && (saved.spent.is_empty() || saved.spent.len() == self.spent.len());
         if !fits {
             return Err(LearnError::Config("the saved lanes are not those of this run".into()));
+        }
+        let action = &self.shape.action;
+        let age = |lane: &LaneState| {
+            let made = |parts: usize, each: usize| parts.checked_div(each).unwrap_or(0);
+            made(lane.actions.len(), action.sizes.len()).max(made(lane.deltas.len(), action.deltas)) as u32
+        };
+        self.ages = saved.worlds.iter().map(age).collect();
+        if !saved.spent.is_empty() {
+            self.spent = saved.spent;
         }
         let mut whole = self.worlds.whole_batch();
         self.worlds.restore(saved.worlds, &mut whole).map_err(world_error)?;
@@ -192,7 +229,12 @@ impl Sampler {
     pub fn fill(&mut self, part: &mut Part, steps: usize, newest: &Newest) -> Result<(), LearnError> {
         let groups = self.worlds.groups();
         part.prepare(&self.shape, steps, self.lanes(), groups, self.constraints.len());
-        part.initial_state.clone_from(&self.state);
+        part.trajectory_steps = self.trajectory_steps.min(steps);
+        part.initial_state.resize_with(self.state.len(), Vec::new);
+        let trajectories = part.trajectories();
+        for (initial, state) in part.initial_state.iter_mut().zip(&self.state) {
+            initial.resize(trajectories * state.len(), 0.0);
+        }
         part.recordings.resize_with(if self.recording { self.shape.networks.len() } else { 0 }, Default::default);
         for step in 0..steps {
             let published = Arc::clone(&newest.read().unwrap_or_else(|poisoned| poisoned.into_inner()));
@@ -201,6 +243,9 @@ impl Sampler {
             for group in 0..groups {
                 if step > 0 {
                     self.receive(group, step - 1, part)?;
+                }
+                if step.is_multiple_of(part.trajectory_steps) {
+                    self.note_state(group, step / part.trajectory_steps, part);
                 }
                 self.act(group, step, part)?;
             }
@@ -216,11 +261,13 @@ impl Sampler {
                 copy.copy_from_slice(state);
             }
             self.write_extra(part, steps, lanes.clone());
-            let (extra, outputs) = (self.shape.extra_inputs(), self.shape.outputs());
+            self.write_privileged(part, steps, lanes.clone());
+            let (seen, extra, outputs) = (self.shape.critic_inputs, self.shape.extra_inputs(), self.shape.outputs());
             let rows = steps * self.lanes() + lanes.start..steps * self.lanes() + lanes.end;
             self.actor.act(
                 &batch.observations,
                 &part.extra[rows.start * extra..rows.end * extra],
+                &part.privileged[rows.start * seen..rows.end * seen],
                 &mut self.after_state,
                 lanes,
                 &mut part.outputs[rows.start * outputs..rows.end * outputs],
@@ -228,6 +275,15 @@ impl Sampler {
             );
         }
         Ok(())
+    }
+
+    /// Notes the state that a trajectory of each lane of a group begins in.
+    fn note_state(&self, group: usize, trajectory: usize, part: &mut Part) {
+        let lanes = self.worlds.group_lanes(group);
+        for ((initial, state), network) in part.initial_state.iter_mut().zip(&self.state).zip(&self.shape.networks) {
+            let own = lanes.start * network.state_size()..lanes.end * network.state_size();
+            initial[trajectory * state.len()..][own.clone()].copy_from_slice(&state[own]);
+        }
     }
 
     fn write_extra(&self, part: &mut Part, step: usize, lanes: std::ops::Range<usize>) {
@@ -238,18 +294,32 @@ impl Sampler {
         }
     }
 
+    /// Writes what the critics see of some lanes at a step.
+    fn write_privileged(&self, part: &mut Part, step: usize, lanes: Range<usize>) {
+        let (count, constraints) = (self.shape.critic_inputs, self.constraints.len());
+        if count > 0 {
+            for lane in lanes {
+                let row = (step * self.ages.len() + lane) * count;
+                let spent = &self.spent[lane * constraints..(lane + 1) * constraints];
+                self.privileged.write(self.ages[lane], spent, &mut part.privileged[row..row + count]);
+            }
+        }
+    }
+
     /// Chooses a group's actions and hands it to the worlds.
     fn act(&mut self, group: usize, step: usize, part: &mut Part) -> Result<(), LearnError> {
         let mut batch = self.batches[group].take().expect("the group is here");
         let lanes = self.worlds.group_lanes(group);
         let first_row = step * self.lanes();
         let rows = first_row + lanes.start..first_row + lanes.end;
-        let (extra, outputs) = (self.shape.extra_inputs(), self.shape.outputs());
+        let (seen, extra, outputs) = (self.shape.critic_inputs, self.shape.extra_inputs(), self.shape.outputs());
         self.write_extra(part, step, lanes.clone());
+        self.write_privileged(part, step, lanes.clone());
         let out = &mut part.outputs[rows.start * outputs..rows.end * outputs];
         let extra = &part.extra[rows.start * extra..rows.end * extra];
         let notes = Notes { recordings: &mut part.recordings, steps: part.steps, all_lanes: part.lanes, step };
-        self.actor.act(&batch.observations, extra, &mut self.state, lanes.clone(), out, Some(notes));
+        let seen = &part.privileged[rows.start * seen..rows.end * seen];
+        self.actor.act(&batch.observations, extra, seen, &mut self.state, lanes.clone(), out, Some(notes));
         let action = &self.shape.action;
         let (count, deltas) = (action.sizes.len(), action.deltas);
         for (index, lane) in lanes.clone().enumerate() {
@@ -283,6 +353,9 @@ impl Sampler {
                     Some(term) => batch.cost_terms[index * terms + term],
                 };
             }
+            self.ages[lane] += 1;
+            let costs = &part.costs[row * count..(row + 1) * count];
+            self.spent[lane * count..].iter_mut().zip(costs).for_each(|(spent, &cost)| *spent += f64::from(cost));
             let (reward, safety) = self.shaping.step(self.safety[lane], batch.rewards[index], part.costs[row * count]);
             part.rewards[row] = reward.clamp(-1000.0, 1000.0);
             self.safety[lane] = safety;
@@ -298,12 +371,17 @@ impl Sampler {
             }
             let seen = [Shaping::seen(self.safety[lane])];
             let extra = &seen[..self.shape.extra_inputs()];
-            self.actor.act(observation, extra, &mut self.after_state, 0..1, &mut row, None);
+            let mut shown = vec![0.0; self.shape.critic_inputs];
+            let constraints = self.constraints.len();
+            self.privileged.write(self.ages[lane], &self.spent[lane * constraints..(lane + 1) * constraints], &mut shown);
+            self.actor.act(observation, extra, &shown, &mut self.after_state, 0..1, &mut row, None);
             part.cut_off.push((first_row + lane, row));
         }
         for lane in lanes {
             if part.done[first_row + lane] {
                 self.safety[lane] = 1.0;
+                self.ages[lane] = 0;
+                self.spent[lane * count..(lane + 1) * count].fill(0.0);
                 for (state, network) in self.state.iter_mut().zip(&self.shape.networks) {
                     let units = network.state_size();
                     state[lane * units..(lane + 1) * units].fill(0.0);

@@ -33,7 +33,7 @@ impl Shaping {
         match config.algorithm {
             AlgorithmKind::PpoCost => Shaping::Penalty { scale: settings.penalty_scale as f32 },
             AlgorithmKind::PpoSaute => Shaping::Saute {
-                unit: saute_unit(config.constraints[0].budget, settings.saute_gamma, settings.saute_horizon),
+                unit: saute_unit(config.aim(0), settings.saute_gamma, settings.saute_horizon),
                 gamma: settings.saute_gamma,
                 unsafe_reward: settings.saute_unsafe_reward as f32,
                 visible: settings.saute_visible,

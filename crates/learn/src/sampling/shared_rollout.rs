@@ -1,6 +1,6 @@
 //! Rollouts of several workers: every worker gets what the others' samplers brought, but for the pixels.
 
-use hasard_envs::{Episode, LaneState};
+use hasard_envs::{Episode, EpisodeCost, LaneState};
 use serde::{Deserialize, Serialize};
 
 use crate::error::LearnError;
@@ -17,7 +17,7 @@ struct Sent {
     seed: u64,
     episode_return: f64,
     cost: f64,
-    costs: Vec<(String, f64)>,
+    costs: Vec<(String, bool, f64)>,
     length: u32,
     terminated: bool,
     truncated: bool,
@@ -35,7 +35,7 @@ impl Sent {
             seed: episode.seed,
             episode_return: episode.episode_return,
             cost: episode.cost,
-            costs: named(&episode.costs),
+            costs: episode.costs.iter().map(|one| (one.name.to_string(), one.counted, one.cost)).collect(),
             length: episode.length,
             terminated: episode.terminated,
             truncated: episode.truncated,
@@ -44,15 +44,17 @@ impl Sent {
     }
 
     fn episode(self, names: &[&'static str]) -> Option<(usize, Episode)> {
+        let known = |name: String| names.iter().find(|own| **own == name).copied();
         let named = |values: Vec<(String, f64)>| -> Option<Named> {
-            values.into_iter().map(|(name, value)| Some((*names.iter().find(|own| **own == name)?, value))).collect()
+            values.into_iter().map(|(name, value)| Some((known(name)?, value))).collect()
         };
+        let cost = |(name, counted, cost)| Some(EpisodeCost { name: known(name)?, counted, cost });
         let episode = Episode {
             lane: self.lane,
             seed: self.seed,
             episode_return: self.episode_return,
             cost: self.cost,
-            costs: named(self.costs)?,
+            costs: self.costs.into_iter().map(cost).collect::<Option<_>>()?,
             length: self.length,
             terminated: self.terminated,
             truncated: self.truncated,
@@ -63,7 +65,7 @@ impl Sent {
 }
 
 /// What a sampler is sent as.
-type SentSampler = (Vec<u8>, Vec<Vec<f32>>, Vec<f64>, u64);
+type SentSampler = (Vec<u8>, Vec<Vec<f32>>, Vec<f64>, Vec<f64>, u64);
 
 fn misfit() -> LearnError {
     LearnError::Team("a worker plays other worlds; start all workers from one version of hasard".into())
@@ -87,7 +89,7 @@ pub fn complete(team: &Team, shape: &ModelShape, names: &[&'static str], own: Ro
         for (mut part, episodes) in parts.into_iter().zip(episodes) {
             let named = episodes.into_iter().map(|sent| sent.episode(names)).collect::<Option<_>>();
             part.episodes = named.ok_or_else(misfit)?;
-            part.initial_state = shape.zero_state(part.lanes);
+            part.initial_state = shape.zero_state(part.lanes * part.trajectories());
             // As many as the parts here have, so that those of a lane are found by its number.
             part.recordings = vec![Recording::default(); shape.networks.len()];
             whole.parts.push(part);
@@ -104,15 +106,16 @@ pub fn all_states(team: &Team, own: Vec<SamplerState>) -> Result<Vec<SamplerStat
     if team.is_alone() {
         return Ok(own);
     }
-    let pack = |one: SamplerState| -> SentSampler { (LaneState::to_bytes(&one.worlds), one.state, one.safety, one.steps) };
+    let pack =
+        |one: SamplerState| -> SentSampler { (LaneState::to_bytes(&one.worlds), one.state, one.safety, one.spent, one.steps) };
     let sent: Vec<SentSampler> = own.into_iter().map(pack).collect();
     let bytes = postcard::to_allocvec(&sent).map_err(|_| misfit())?;
     let mut states = Vec::new();
     for bytes in team.gather(bytes)? {
         let sent: Vec<SentSampler> = postcard::from_bytes(&bytes).map_err(|_| misfit())?;
-        for (worlds, state, safety, steps) in sent {
+        for (worlds, state, safety, spent, steps) in sent {
             let worlds = LaneState::from_bytes(&worlds).map_err(|_| misfit())?;
-            states.push(SamplerState { worlds, state, safety, steps });
+            states.push(SamplerState { worlds, state, safety, spent, steps });
         }
     }
     Ok(states)

@@ -3,7 +3,7 @@
 #![allow(dead_code)] // Each test file uses its own part of this.
 
 use hasard_engine::math::Rng;
-use hasard_envs::{ActionGroup, ActionSpace, BUTTONS, CostTerm, Environment, Episode, Step, VecEnv, VecOptions};
+use hasard_envs::{ActionGroup, ActionSpace, BUTTONS, CostTerm, Environment, Episode, Step, VecEnv, VecOptions, episode_costs};
 use hasard_learn::config::Convolution;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::report::Report;
@@ -118,7 +118,7 @@ impl Environment for Risk {
             seed: self.seed,
             episode_return: self.sums.0,
             cost: self.sums.1[0],
-            costs: vec![("risk", self.sums.1[0]), ("second", self.sums.1[1])],
+            costs: episode_costs(self.cost_terms(), &self.sums.1),
             length: self.steps,
             terminated: self.ended() && !self.times_out,
             truncated: self.ended() && self.times_out,
@@ -198,6 +198,8 @@ pub fn config(algorithm: AlgorithmKind) -> TrainConfig {
     config.evaluation.every = Some(0);
     config.learning.epochs = 2;
     config.learning.minibatches = 2;
+    // Rollouts are short here: as many steps as the preset's would be eighty passes.
+    (config.algorithm_settings.critic_steps, config.algorithm_settings.critic_batch) = (2, None);
     config.learning.gamma = 0.9;
     config.reporting.report_seconds = 0.0;
     config.reporting.checkpoint_seconds = 1e9;

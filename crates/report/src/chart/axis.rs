@@ -54,6 +54,11 @@ pub(super) fn short(value: f64) -> String {
     }
 }
 
+/// Writes what is counted along the horizontal axis below its middle.
+pub(super) fn axis_title(drawing: &mut Drawing, title: &str, (left, right): (f64, f64), y: f64) {
+    drawing.text(((left + right) / 2.0, y), Anchor::Middle, Ink::Muted, title);
+}
+
 /// Draws horizontal grid lines with their values at the left.
 pub(super) fn draw_vertical_axis(drawing: &mut Drawing, axis: &Axis, values: &[f64], left: f64, right: f64) {
     for &value in values {

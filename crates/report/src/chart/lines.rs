@@ -1,8 +1,8 @@
 //! Curves with bands.
 
-use super::axis::{Axis, draw_vertical_axis, short, ticks};
+use super::axis::{Axis, axis_title, draw_vertical_axis, short, ticks};
 use super::{Anchor, Drawing, Hover, HoverCurve, Ink, Shape};
-use crate::curve::Curve;
+use crate::curve::{Curve, Point};
 
 /// A curve on a panel.
 #[derive(Clone, Debug)]
@@ -13,6 +13,21 @@ pub struct Series {
     pub ink: Ink,
     /// Its points.
     pub curve: Curve,
+    /// Published, drawn behind ours: a thin dashed line in a faint band, as far as ours go.
+    pub paper: bool,
+}
+
+impl Series {
+    /// The same, a published curve cut where ours end.
+    fn up_to(&self, frames: f64) -> Series {
+        let mut cut = self.clone();
+        if self.paper {
+            let end = self.curve.at(frames);
+            cut.curve.mean.retain(|point| point.frames < frames);
+            cut.curve.mean.extend(end.map(|value| Point { frames, value, band: None }));
+        }
+        cut
+    }
 }
 
 /// What a panel of curves shows.
@@ -20,6 +35,8 @@ pub struct Series {
 pub struct LinePanel {
     /// Its title.
     pub title: String,
+    /// What is counted along the horizontal axis; frames if empty.
+    pub axis: String,
     /// The curves.
     pub series: Vec<Series>,
     /// The budget: a dashed line across.
@@ -34,7 +51,8 @@ pub struct LinePanel {
 pub fn line_panel(panel: &LinePanel) -> Drawing {
     let (width, height) = panel.size;
     let mut drawing = Drawing::new(width, height);
-    let (left, top, right, bottom) = (46.0, 26.0, width - 8.0, height - 22.0);
+    let (left, top, right, bottom) = (46.0, 26.0, width - 8.0, height - 36.0);
+    let axis = if panel.axis.is_empty() { "frames" } else { &panel.axis };
     drawing.shapes.push(Shape::Text {
         at: (left, 14.0),
         anchor: Anchor::Start,
@@ -43,25 +61,30 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         bold: true,
         text: panel.title.clone(),
     });
-    let curves = || panel.series.iter().map(|series| &series.curve);
-    let most_frames = curves().flat_map(|c| &c.seeds).filter_map(|(_, points)| points.last()).map(|p| p.0).fold(0.0, f64::max);
+    let ours = || panel.series.iter().filter(|series| !series.paper).map(|series| &series.curve);
+    let most_frames = ours().flat_map(|c| &c.seeds).filter_map(|(_, points)| points.last()).map(|p| p.0).fold(0.0, f64::max);
     if most_frames <= 0.0 {
         drawing.text(((left + right) / 2.0, (top + bottom) / 2.0), Anchor::Middle, Ink::Muted, "no report yet");
         return drawing;
     }
+    let cut: Vec<Series> = panel.series.iter().map(|series| series.up_to(most_frames)).collect();
+    // What the paper has is drawn first, behind ours.
+    let in_order = || cut.iter().filter(|series| series.paper).chain(cut.iter().filter(|series| !series.paper));
+    let curves = || cut.iter().map(|series| &series.curve);
     let high = curves().map(Curve::top).fold(panel.budget.unwrap_or(0.0) * 1.15, f64::max);
     let low = curves().map(Curve::bottom).fold(0.0, f64::min);
     let values = ticks(low, if high > low { high } else { low + 1.0 }, 4);
     let vertical = Axis { from: values[0], to: values[values.len() - 1], start: bottom, end: top };
     let horizontal = Axis { from: 0.0, to: most_frames, start: left, end: right };
     draw_vertical_axis(&mut drawing, &vertical, &values, left, right);
+    axis_title(&mut drawing, axis, (left, right), height - 4.0);
     let frame_ticks = ticks(0.0, most_frames, 4);
     for &frames in frame_ticks.iter().filter(|frames| **frames <= most_frames * 1.001) {
         let anchor = if frames > most_frames * 0.97 { Anchor::End } else { Anchor::Middle };
         drawing.text((horizontal.place(frames), bottom + 15.0), anchor, Ink::Muted, short(frames));
     }
     // Thin seeds below, then bands, then means, so that means stay readable.
-    for series in &panel.series {
+    for series in &cut {
         if series.curve.seeds.len() > 1 || series.curve.mean.is_empty() {
             for (_, points) in &series.curve.seeds {
                 drawing.shapes.push(Shape::Line {
@@ -74,22 +97,24 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
             }
         }
     }
-    for series in &panel.series {
-        let banded: Vec<_> = series.curve.mean.iter().filter(|point| point.value.half_width.is_some()).collect();
-        let upper = banded.iter().map(|p| (horizontal.place(p.frames), vertical.place(p.value.high())));
-        let lower = banded.iter().rev().map(|p| (horizontal.place(p.frames), vertical.place(p.value.low())));
+    for series in in_order() {
+        let banded: Vec<(f64, (f64, f64))> =
+            series.curve.mean.iter().filter_map(|point| Some((horizontal.place(point.frames), point.ends()?))).collect();
+        let upper = banded.iter().map(|(x, (_, high))| (*x, vertical.place(*high)));
+        let lower = banded.iter().rev().map(|(x, (low, _))| (*x, vertical.place(*low)));
         let points: Vec<_> = upper.chain(lower).collect();
         if points.len() > 3 {
-            drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: 0.16 });
+            drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: if series.paper { 0.08 } else { 0.16 } });
         }
     }
-    for series in &panel.series {
+    for series in in_order() {
         let points: Vec<_> =
             series.curve.mean.iter().map(|p| (horizontal.place(p.frames), vertical.place(p.value.mean))).collect();
         if let [only] = points[..] {
             drawing.shapes.push(Shape::Dot { at: only, radius: 2.5, ink: series.ink, title: series.name.clone() });
         }
-        drawing.shapes.push(Shape::Line { points, ink: series.ink, width: 1.8, dashed: false, opacity: 1.0 });
+        let (width, opacity) = if series.paper { (1.1, 0.75) } else { (1.8, 1.0) };
+        drawing.shapes.push(Shape::Line { points, ink: series.ink, width, dashed: series.paper, opacity });
     }
     if let Some(budget) = panel.budget {
         let y = vertical.place(budget);
@@ -105,8 +130,8 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
     drawing.hovers.push(Hover {
         place: [left, top, right - left, bottom - top],
         horizontal: (0.0, most_frames),
-        curves: panel
-            .series
+        axis: axis.to_owned(),
+        curves: cut
             .iter()
             .map(|series| HoverCurve {
                 name: series.name.clone(),

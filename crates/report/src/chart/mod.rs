@@ -4,11 +4,13 @@ mod axis;
 mod bars;
 mod lines;
 mod raster;
+mod scatter;
 mod svg;
 
 pub use bars::{Bar, BarGroup, bar_panel};
 pub use lines::{LinePanel, Series, line_panel};
 pub use raster::rasterise;
+pub use scatter::{Spot, SpotKind, scatter_panel};
 pub use svg::{INK_STYLE, inline_svg, standalone_svg};
 
 /// What a shape is drawn with. Pages give each a light and a dark colour.
@@ -65,7 +67,7 @@ pub enum Shape {
         /// 0 to 1.
         opacity: f64,
     },
-    /// A filled rectangle that tells something when pointed at.
+    /// A filled rectangle that says something when pointed at.
     Box {
         /// Left, top, width, height.
         place: [f64; 4],
@@ -73,10 +75,10 @@ pub enum Shape {
         ink: Ink,
         /// 0 to 1.
         opacity: f64,
-        /// What it tells.
+        /// What it says.
         title: String,
     },
-    /// A filled circle that tells something when pointed at.
+    /// A filled circle that says something when pointed at.
     Dot {
         /// Its middle.
         at: (f64, f64),
@@ -84,7 +86,7 @@ pub enum Shape {
         radius: f64,
         /// Colour.
         ink: Ink,
-        /// What it tells.
+        /// What it says.
         title: String,
     },
     /// A line of text; its base line lies at the point.
@@ -111,6 +113,8 @@ pub struct Hover {
     pub place: [f64; 4],
     /// Value at the plot's left and right.
     pub horizontal: (f64, f64),
+    /// What is counted along it.
+    pub axis: String,
     /// Name, colour and points (x, mean, half width of the interval or `None`, n) of each curve.
     pub curves: Vec<HoverCurve>,
 }

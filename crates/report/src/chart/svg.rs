@@ -119,14 +119,23 @@ fn hover_values(hover: &Hover) -> String {
                 .points
                 .iter()
                 .map(|(x, mean, half, count)| {
-                    format!("[{x:.0},{},{},{count}]", four(*mean), half.map_or_else(|| "null".into(), four))
+                    format!(
+                        "[{},{},{},{count}]",
+                        if x.abs() < 1000.0 { four(*x) } else { format!("{x:.0}") },
+                        four(*mean),
+                        half.map_or_else(|| "null".into(), four)
+                    )
                 })
                 .collect();
             let name = serde_json::to_string(&curve.name).unwrap_or_else(|_| "\"\"".into());
             format!("{{\"name\":{name},\"ink\":\"{}\",\"points\":[{}]}}", class(curve.ink), points.join(","))
         })
         .collect();
-    format!("{{\"from\":{},\"to\":{},\"curves\":[{}]}}", hover.horizontal.0, hover.horizontal.1, curves.join(","))
+    {
+        let axis = serde_json::to_string(&hover.axis).unwrap_or_else(|_| "\"\"".into());
+        let (from, to) = hover.horizontal;
+        format!("{{\"from\":{from},\"to\":{to},\"axis\":{axis},\"curves\":[{}]}}", curves.join(","))
+    }
 }
 
 /// A number with four significant digits.

@@ -7,7 +7,7 @@ fn some_curve(slope: f64) -> Curve {
     let mean = (0..50)
         .map(|k| {
             let frames = f64::from(k) * 1e5;
-            Point { frames, value: Estimate { mean: slope * f64::from(k), half_width: Some(5.0), n: 3 } }
+            Point { frames, value: Estimate { mean: slope * f64::from(k), half_width: Some(5.0), n: 3 }, band: None }
         })
         .collect();
     let seed = |s: f64| (0..60).map(|k| (f64::from(k) * 1e5, slope * f64::from(k) + s)).collect();
@@ -15,9 +15,11 @@ fn some_curve(slope: f64) -> Curve {
 }
 
 fn panel() -> Drawing {
-    let series = |name: &str, index, slope| Series { name: name.into(), ink: Ink::Series(index), curve: some_curve(slope) };
+    let series =
+        |name: &str, index, slope| Series { name: name.into(), ink: Ink::Series(index), curve: some_curve(slope), paper: false };
     line_panel(&LinePanel {
         title: "cost & <more>".into(),
+        axis: String::new(),
         series: vec![series("PPO", 0, 1.5), series("PPO\"Lag", 2, 0.8)],
         budget: Some(50.0),
         size: (380.0, 230.0),

@@ -151,7 +151,8 @@ impl Config {
         if safety_budget == own_budget || (!hard && safety_budget == default_budget(&scenario, false)) {
             options.remove("safety_budget");
         }
-        let own_scale = if released && scenario == "ArmamentBurden" { 0.1 } else { 1.0 };
+        let tables = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("tables"));
+        let own_scale = if (released || tables) && scenario == "ArmamentBurden" { 0.1 } else { 1.0 };
         let scale_applies = algo.eq_ignore_ascii_case("PPOCost");
         let cost_scale = match options.get("cost_scale").filter(|_| scale_applies).map(|text| text.parse::<f64>()) {
             None => {
@@ -186,6 +187,12 @@ impl Config {
     #[must_use]
     pub fn budget(&self) -> Option<f64> {
         self.constraints.iter().find(|one| one.term.is_none()).map(|one| one.budget)
+    }
+
+    /// The rule set that it was run under, if the file says.
+    #[must_use]
+    pub fn rules(&self) -> Option<&str> {
+        self.options.get("rules").map(String::as_str)
     }
 
     /// Whether harm ends the episode.

@@ -1,5 +1,7 @@
 //! What a run's cost is held against.
 
+use crate::statistics::Estimate;
+
 /// A cost and the budget of an episode.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Constraint {
@@ -27,4 +29,29 @@ impl Constraint {
     pub fn label(&self) -> String {
         self.term.as_ref().map_or_else(|| self.budget.to_string(), |term| format!("{term} {}", self.budget))
     }
+
+    /// How a measured cost stands to the budget.
+    #[must_use]
+    pub fn kept_by(&self, cost: Option<Estimate>) -> Kept {
+        match cost {
+            None => Kept::Unknown,
+            Some(cost) if cost.half_width.is_some() && cost.high() <= self.budget => Kept::Surely,
+            Some(cost) if cost.mean <= self.budget => Kept::ByMean,
+            Some(_) => Kept::Over,
+        }
+    }
+}
+
+/// How costs stand to their budgets, the worst first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
+pub enum Kept {
+    /// A cost was not measured.
+    #[default]
+    Unknown,
+    /// A mean is above its budget.
+    Over,
+    /// The means are within their budgets, the upper end of an interval is not (or there is no interval).
+    ByMean,
+    /// The upper ends of the 95 % intervals are within.
+    Surely,
 }

@@ -8,13 +8,26 @@ use std::path::{Path, PathBuf};
 /// How deep runs are looked for below a named folder: sweeps put them at `sweep/env/algo/seed`.
 const MAX_DEPTH: usize = 8;
 
+/// Who played what.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub struct PlayerKey {
+    /// The player's name.
+    pub player: String,
+    /// Id of the environment.
+    pub env: String,
+    /// Options that are not the usual ones, as text.
+    pub options: String,
+    /// From episode files, as people's play is; else from a file of rollouts.
+    pub recorded: bool,
+}
+
 /// What was found.
 #[derive(Debug, Default)]
 pub struct Found {
     /// Training runs, in the order of their paths.
     pub runs: Vec<Run>,
-    /// Episodes of humans and other players, by player, environment and options.
-    pub players: BTreeMap<(String, String, String), Vec<EpisodeResult>>,
+    /// Episodes of humans and other players.
+    pub players: BTreeMap<PlayerKey, Vec<EpisodeResult>>,
     /// What was passed over.
     pub warnings: Vec<Warning>,
 }
@@ -73,6 +86,8 @@ fn look(folder: &Path, depth: usize, found: &mut Found) {
             look(&path, depth + 1, found);
         } else if path.extension().is_some_and(|extension| extension == "episode") {
             read_episode_file(&path, found);
+        } else if holds_episodes(&path) {
+            read_rollout(&path, found);
         }
     }
 }
@@ -87,13 +102,21 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     episode_return: outcome.episode_return,
                     cost: outcome.cost,
                     costs: Vec::new(),
+                    stats: Vec::new(),
+                    rules: header.options.get("rules").cloned(),
                     length: Some(f64::from(header.steps)),
                 };
                 let usual =
                     |key: &str, value: &str| matches!((key, value), ("hard" | "full-actions", "false") | ("frame-skip", "4"));
                 let told = header.options.iter().filter(|(key, value)| !usual(key, value));
                 let options: Vec<String> = told.map(|(key, value)| format!("{key} {value}")).collect();
-                found.players.entry((header.player.clone(), header.env.clone(), options.join(", "))).or_default().push(result);
+                let key = PlayerKey {
+                    player: header.player.clone(),
+                    env: header.env.clone(),
+                    options: options.join(", "),
+                    recorded: true,
+                };
+                found.players.entry(key).or_default().push(result);
                 return;
             }
             "ends in the midst of an episode; left out".to_owned()
@@ -103,6 +126,16 @@ fn read_episode_file(path: &Path, found: &mut Found) {
     found.warnings.push(Warning { path: path.to_owned(), line: 0, problem });
 }
 
+/// Whether a file beside the runs is one of rollouts: its first line is an episode.
+fn holds_episodes(path: &Path) -> bool {
+    use std::io::{BufRead, Read};
+    let rollouts = path.extension().is_some_and(|extension| extension == "jsonl");
+    let Ok(file) = std::fs::File::open(path) else { return false };
+    let mut line = String::new();
+    let read = || std::io::BufReader::new(file.take(1 << 16)).read_line(&mut line).is_ok();
+    rollouts && read() && read_episode_lines(&line, path, &mut Vec::new()).len() == 1
+}
+
 fn read_rollout(path: &Path, found: &mut Found) {
     let text = match read_text(path) {
         Ok(text) => text,
@@ -110,6 +143,8 @@ fn read_rollout(path: &Path, found: &mut Found) {
     };
     let player = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("rollout").to_owned();
     for episode in read_episode_lines(&text, path, &mut found.warnings) {
-        found.players.entry((player.clone(), episode.env.clone(), String::new())).or_default().push(episode);
+        let options = episode.rules.as_ref().map_or_else(String::new, |rules| format!("rules {rules}"));
+        let key = PlayerKey { player: player.clone(), env: episode.env.clone(), options, recorded: false };
+        found.players.entry(key).or_default().push(episode);
     }
 }

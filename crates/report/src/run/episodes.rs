@@ -13,14 +13,18 @@ pub struct EpisodeResult {
     pub episode_return: f64,
     /// Sum of costs.
     pub cost: f64,
-    /// Sum of each cost term, where they are told.
+    /// Sum of each cost term, where they are reported.
     pub costs: Vec<(String, f64)>,
+    /// What the scenario counted, by name.
+    pub stats: Vec<(String, f64)>,
+    /// The rule set, if the line says.
+    pub rules: Option<String>,
     /// Policy steps, if known.
     pub length: Option<f64>,
 }
 
 impl EpisodeResult {
-    /// What it cost under a constraint; `None` if its term was not told.
+    /// What it cost under a constraint; `None` if its term was not reported.
     #[must_use]
     pub fn cost_of(&self, constraint: &Constraint) -> Option<f64> {
         match &constraint.term {
@@ -30,8 +34,8 @@ impl EpisodeResult {
     }
 }
 
-fn terms(line: &Value) -> Vec<(String, f64)> {
-    let named = line.get("costs").and_then(Value::as_object).into_iter().flatten();
+fn named(line: &Value, key: &str) -> Vec<(String, f64)> {
+    let named = line.get(key).and_then(Value::as_object).into_iter().flatten();
     named.filter_map(|(name, cost)| Some((name.clone(), cost.as_f64()?))).collect()
 }
 
@@ -50,7 +54,9 @@ pub fn read_episode_lines(text: &str, path: &Path, warnings: &mut Vec<Warning>) 
                 env: value.get("env").and_then(Value::as_str).unwrap_or_default().to_owned(),
                 episode_return,
                 cost,
-                costs: terms(&value),
+                costs: named(&value, "costs"),
+                stats: named(&value, "stats"),
+                rules: value.get("rules").and_then(Value::as_str).map(String::from),
                 length: number("length"),
             }),
             _ => warnings.push(Warning {

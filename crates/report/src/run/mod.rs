@@ -4,17 +4,19 @@ mod config;
 mod constraint;
 mod discover;
 mod episodes;
-mod hand_out;
+mod evaluated;
 mod heatmap;
 mod metrics;
+mod safety;
+mod selected;
 
 pub use config::{Config, TOLD, default_budget, scenario_and_level};
-pub use constraint::Constraint;
-pub use discover::{Found, discover};
+pub use constraint::{Constraint, Kept};
+pub use discover::{Found, PlayerKey, discover};
 pub use episodes::{EpisodeResult, read_episode_lines};
-pub use hand_out::{HandOut, read_hand_out};
 pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
+pub use selected::{Evaluation, Selected, read_selected};
 
 use crate::curve::interpolate;
 use crate::escape::one_line;
@@ -28,7 +30,7 @@ const POINTS: usize = 500;
 /// See `POINTS`.
 pub const LAST_POINTS: usize = 10;
 
-/// Something that was passed over while reading: the reader must be told, but the report goes on.
+/// Something that was passed over while reading: the reader must know, but the report goes on.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub struct Warning {
     /// The file.
@@ -58,16 +60,16 @@ pub struct Run {
     pub config: Config,
     /// Its reports, in the order of frames.
     pub rows: Vec<Row>,
-    /// Episodes of `hasard eval`, if any were kept in the directory.
+    /// Episodes of the selected checkpoint: those of the closing evaluation, or of `hasard eval` if that kept any here.
     pub evaluation: Vec<EpisodeResult>,
-    /// The checkpoint that it hands out, if it says.
-    pub hand_out: Option<HandOut>,
+    /// The checkpoint that it selected, if it says.
+    pub selected: Option<Selected>,
     /// Visited positions at moments of training, if any were kept.
     pub heatmaps: Vec<HeatmapData>,
 }
 
 impl Run {
-    /// Reads a run directory. Damaged lines are passed over and told of in `warnings`.
+    /// Reads a run directory. Damaged lines are passed over, and `warnings` lists them.
     ///
     /// # Errors
     /// When `config.json` is missing or unusable: then it is no run.
@@ -82,12 +84,15 @@ impl Run {
             }
         };
         let mut evaluation = Vec::new();
-        for file in sorted_files(path) {
-            let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-            if name.starts_with("eval") && name.ends_with(".jsonl") {
-                match read_text(&file) {
-                    Ok(text) => evaluation.extend(read_episode_lines(&text, &file, warnings)),
-                    Err(warning) => warnings.push(warning),
+        // Episodes of the closing evaluation are the run's own; those of a later `hasard eval` count where it kept none.
+        for beginning in ["closing", "eval"] {
+            for file in sorted_files(path) {
+                let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+                if evaluation.is_empty() && name.starts_with(beginning) && name.ends_with(".jsonl") {
+                    match read_text(&file) {
+                        Ok(text) => evaluation.extend(read_episode_lines(&text, &file, warnings)),
+                        Err(warning) => warnings.push(warning),
+                    }
                 }
             }
         }
@@ -103,8 +108,8 @@ impl Run {
         } else {
             Vec::new()
         };
-        let hand_out = read_hand_out(path, warnings);
-        Ok(Run { path: path.to_owned(), config, rows, evaluation, hand_out, heatmaps })
+        let selected = read_selected(path, warnings);
+        Ok(Run { path: path.to_owned(), config, rows, evaluation, selected, heatmaps })
     }
 
     /// The picture of the map that a heatmap lies on, if the directory has it. A name that leads elsewhere is no name.

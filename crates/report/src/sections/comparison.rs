@@ -1,50 +1,91 @@
 //! Experiments that differ in one option: budgets, cost scales, action spaces, observations, curricula, hard constraint.
 
 use super::curves::curve_figure;
-use super::main_results::marked_cells;
+use super::main_results::{budget_label, marked_cells, source_of};
 use super::{VARIED, distinct};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Section, Table, frames, slug};
 use crate::group::{Group, scenario_name};
-use crate::published::published_in;
+use crate::published::{Published, published_figure, published_in};
 use crate::run::Config;
 use std::collections::BTreeMap;
 
 /// A section for each option by which experiments can be compared.
 pub(super) fn sections(groups: &[Group]) -> Vec<Section> {
-    let titles = [
-        (
-            "safety_budget",
-            "Safety budgets",
-            "What return a tighter or looser budget leaves. Each budget is drawn over its own bar.",
+    let all = |_: &Config| true;
+    let mut sections: Vec<Section> = vec![
+        section(
+            groups,
+            &Comparison {
+                slug: "safety-bounds",
+                key: "safety_budget",
+                title: "Safety budgets",
+                text: "What return a tighter or looser budget leaves. Each budget is drawn over its own bar.",
+                counts: &all,
+            },
         ),
-        (
-            "cost_scale",
-            "Cost scales",
-            "PPOCost takes scale x cost off the reward; returns and costs here are the environment's own.",
+        section(
+            groups,
+            &Comparison {
+                slug: "cost-scale",
+                key: "cost_scale",
+                title: "Cost scales",
+                text: "PPOCost takes scale x cost off the reward; returns and costs here are the environment's own.",
+                counts: &all,
+            },
         ),
-        ("full_actions", "Action spaces", "The simplified action space against the full one."),
-        ("observation", "Observations", "What the learner sees: colour, colour with depth, segmentation."),
-        (
-            "curriculum",
-            "Curricula",
-            "Levels one after the other against the last level alone. Curves begin at the first frame of all levels.",
-        ),
-        (
-            "hard",
-            "Hard constraint",
-            "Any harm ends the episode (or costs as the scenario's hard rules say) against the budgeted constraint.",
+        section(
+            groups,
+            &Comparison {
+                slug: "curriculum",
+                key: "curriculum",
+                title: "Curricula",
+                text: "Levels one after the other against the last level alone. Curves begin at the first frame of all levels.",
+                counts: &all,
+            },
         ),
     ];
-    let mut sections: Vec<Section> = titles.iter().map(|(key, title, text)| section(groups, key, title, text)).collect();
+    for (slug, title, kind, gain) in [
+        ("segmentation", "Segmentation", "segmented", "segmentation_return_ratio"),
+        ("depth", "Depth", "rgb+depth", "depth_return_ratio"),
+    ] {
+        let counts = |config: &Config| {
+            let observation = config.options.get("observation").map_or("rgb", String::as_str);
+            [kind, "rgb"].contains(&observation)
+        };
+        let percent = published_figure(gain).map_or(0.0, |ratio| (ratio - 1.0) * 100.0);
+        let text = format!("Colour against {kind}. The paper reports {percent:.0} % more return, and no values.");
+        sections.push(section(groups, &Comparison { slug, key: "observation", title, text: &text, counts: &counts }));
+    }
+    sections.push(section(
+        groups,
+        &Comparison {
+            slug: "hard",
+            key: "hard",
+            title: "Hard constraint",
+            text: "Any harm ends the episode (or costs as the scenario's hard rules say) against the budgeted constraint.",
+            counts: &all,
+        },
+    ));
+    sections.push(section(
+        groups,
+        &Comparison {
+            slug: "full-actions",
+            key: "full_actions",
+            title: "Action spaces",
+            text: "The simplified action space against the full one.",
+            counts: &all,
+        },
+    ));
     // Any other option in which some experiments differ and nothing else.
     let mut keys: Vec<String> = groups.iter().flat_map(|group| group.told.keys().cloned()).collect();
     keys.sort();
     keys.dedup();
     keys.retain(|key| !VARIED.contains(&key.as_str()));
-    sections.extend(
-        keys.iter().map(|key| section(groups, key, &format!("Option {key}"), "Experiments that differ in this option alone.")),
-    );
+    sections.extend(keys.iter().map(|key| {
+        let (title, text) = (format!("Option {key}"), "Experiments that differ in this option alone.");
+        section(groups, &Comparison { slug: &slug(key), key, title: &title, text, counts: &all })
+    }));
     sections
 }
 
@@ -72,10 +113,31 @@ fn order_of(config: &Config, key: &str) -> (u64, String) {
     (number.max(0.0).to_bits(), value_of(config, key))
 }
 
-fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
+/// As [`super::main_results::comparable_end`], by the paper's table of this comparison.
+fn comparable_end_in(group: &Group, key: &str) -> Option<&'static Published> {
+    published_in(group.config(), key).filter(|paper| group.frames_span().1 >= 0.5 * paper.frames())
+}
+
+/// What is compared with what.
+struct Comparison<'a> {
+    /// The paper's name for it.
+    slug: &'a str,
+    /// The option in which experiments differ.
+    key: &'a str,
+    title: &'a str,
+    text: &'a str,
+    /// Which experiments take part.
+    counts: &'a dyn Fn(&Config) -> bool,
+}
+
+fn section(groups: &[Group], comparison: &Comparison) -> Section {
+    let Comparison { key, counts, .. } = *comparison;
     let mut sets: BTreeMap<String, Vec<&Group>> = BTreeMap::new();
     for group in groups {
         let config = group.config();
+        if !counts(config) {
+            continue;
+        }
         // A hard run has no budget of its own to compare, and only PPOCost has a scale.
         if key == "cost_scale" && !config.algo.eq_ignore_ascii_case("PPOCost") || key == "safety_budget" && config.hard() {
             continue;
@@ -101,7 +163,8 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
             Some(asked) if repeated(group) => format!("{}, {} frames", value_of(group.config(), key), frames(asked)),
             _ => value_of(group.config(), key),
         };
-        let cells = marked_cells(members);
+        let source = source_of(members);
+        let cells = marked_cells(members, source);
         for (group, (return_cell, cost_cell)) in members.iter().zip(cells) {
             let paper = published_in(group.config(), key);
             let theirs = |value: Option<f64>| value.map_or_else(|| Cell::text("-"), |v| Cell { pale: true, ..Cell::number(v) });
@@ -113,23 +176,22 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
                 Cell::text(label(group)),
                 Cell::text(&rest),
                 Cell::number(reached).with_text(frames(reached)),
-                Cell::number(group.config().safety_budget).with_text(group.config().safety_budget.to_string()),
+                Cell::number(group.config().safety_budget).with_text(budget_label(group)),
                 return_cell,
-                theirs(paper.and_then(|p| p.episode_return)),
+                theirs(paper.map(|p| p.episode_return)),
                 cost_cell,
-                theirs(paper.and_then(|p| p.cost)),
+                theirs(paper.map(|p| p.cost)),
             ]);
         }
         let name = format!("{} level {} {}", scenario_name(&config.scenario), config.level, config.algo);
         for metric in ["return", "cost"] {
             let bars = |(index, group): (usize, &&Group)| {
                 let mut bars = Vec::new();
-                if let Some(estimate) = group.final_estimate(&format!("{metric}_mean")) {
+                if let Some(estimate) = group.estimate(source, &format!("{metric}_mean")) {
                     let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
                     bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink: Ink::Series(index), pale: false });
                 }
-                let paper =
-                    published_in(group.config(), key).and_then(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                let paper = comparable_end_in(group, key).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
                 bars.extend(paper.map(|value| Bar {
                     name: "paper".into(),
                     value,
@@ -145,21 +207,26 @@ fn section(groups: &[Group], key: &str, title: &str, text: &str) -> Section {
         }
         let lines: Vec<(String, Ink, &Group)> =
             members.iter().enumerate().map(|(i, group)| (label(group), Ink::Series(i), *group)).collect();
-        figures.push(Block::Figure(curve_figure(&name, &slug(&format!("{key} {name} {rest}")), &rest, &lines)));
+        figures.push(Block::Figure(curve_figure(&name, &slug(&format!("{} {name} {rest}", comparison.slug)), &rest, &lines)));
     }
     let mut blocks = Vec::new();
     if !rows.is_empty() {
         let heads =
             ["scenario", "level", "algorithm", "varied", "other options", "frames", "budget", "return", "paper", "cost", "paper"];
-        blocks.push(Block::Table(Table {
-            caption: String::new(),
-            spans: Vec::new(),
-            heads: heads.map(String::from).to_vec(),
-            rows,
+        let table = Table { heads: heads.map(String::from).to_vec(), rows, ..Table::default() };
+        blocks.push(Block::Table(table.folded(&["level", "algorithm", "other options", "budget"])));
+        let paper = groups.iter().any(|group| counts(group.config()) && comparable_end_in(group, key).is_some());
+        let budgets = groups.iter().any(|group| counts(group.config()) && group.config().budget().is_some());
+        let (paper, budgets) =
+            (if paper { "Full colour: here; pale: the paper. " } else { "" }, if budgets { "Dashed: the budget." } else { "" });
+        let caption = format!("{paper}{budgets}");
+        blocks.push(Block::Figure(Figure {
+            slug: format!("{} bars", comparison.slug).replace(' ', "-"),
+            caption,
+            drawing: figure("", panels, 2, &[]),
         }));
-        let caption = "Full colour: here; pale: the paper. Dashed: the budget.".into();
-        blocks.push(Block::Figure(Figure { slug: slug(&format!("{key} bars")), caption, drawing: figure("", panels, 2, &[]) }));
         blocks.extend(figures);
     }
-    Section { slug: slug(key), title: title.to_owned(), text: vec![text.to_owned()], blocks }
+    let (slug, title, text) = (comparison.slug.to_owned(), comparison.title.to_owned(), vec![comparison.text.to_owned()]);
+    Section { slug, title, text, blocks }
 }

@@ -1,7 +1,7 @@
 //! Constraints on single cost terms: each beside its own budget.
 
 use crate::document::{Block, Cell, Mark, Section, Table};
-use crate::group::{Group, scenario_name};
+use crate::group::{Group, Source, scenario_name};
 
 /// A row for each constraint of the experiments that constrain named cost terms.
 pub(super) fn section(groups: &[Group]) -> Section {
@@ -10,11 +10,10 @@ pub(super) fn section(groups: &[Group]) -> Section {
         .flat_map(|group| {
             let config = group.config();
             config.constraints.iter().map(move |one| {
-                let estimate = group.final_estimate(&one.metric());
-                let mut cost = Cell::estimate(estimate, &group.final_samples(&one.metric()));
-                if estimate.is_some_and(|cost| cost.mean <= one.budget) {
-                    cost.mark = Mark::Within;
-                }
+                let cell = |source: Source| {
+                    let (estimate, samples) = (group.estimate(source, &one.metric()), group.samples(source, &one.metric()));
+                    Cell { mark: Mark::of(one.kept_by(estimate)), ..Cell::estimate(estimate, &samples) }
+                };
                 vec![
                     Cell::text(scenario_name(&config.scenario)),
                     Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
@@ -22,17 +21,20 @@ pub(super) fn section(groups: &[Group]) -> Section {
                     Cell::text(group.options_line(Some("constraints"))),
                     Cell::text(one.name()),
                     Cell::number(one.budget).with_text(one.budget.to_string()),
-                    cost,
+                    cell(Source::Evaluation),
+                    cell(Source::Training),
                 ]
             })
         })
         .collect();
-    let heads = ["scenario", "level", "algorithm", "options", "constraint", "budget", "cost"].map(String::from).to_vec();
+    let heads = ["scenario", "level", "algorithm", "options", "constraint", "budget", "evaluation", "end of training"]
+        .map(String::from)
+        .to_vec();
     let table = Table { caption: String::new(), spans: Vec::new(), heads, rows };
     Section {
         slug: "constraints".into(),
         title: "Constraints on cost terms".into(),
-        text: vec!["Each constraint holds its own term against its own budget; green is within it.".into()],
+        text: vec!["Each constraint holds its own term against its own budget, in evaluation of the selected checkpoints and at the end of training.".into()],
         blocks: if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] },
     }
 }

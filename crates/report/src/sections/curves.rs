@@ -1,10 +1,11 @@
 //! Training curves.
 
-use super::{distinct, main_groups};
+use super::{distinct, equal_frames, main_groups};
 use crate::chart::{Ink, LinePanel, Series, figure, line_panel};
 use crate::curve::Curve;
 use crate::document::{Block, Figure, Section, slug};
 use crate::group::{Group, algorithm_order, scenario_name, scenario_order};
+use crate::published::published_curve;
 
 /// Return and cost against frames for every environment, and the multipliers where an algorithm has any.
 pub(super) fn section(groups: &[Group]) -> Section {
@@ -30,10 +31,12 @@ pub(super) fn section(groups: &[Group]) -> Section {
             )));
         }
     }
+    blocks.extend(equal_frames::table(groups).map(Block::Table));
     Section {
         slug: "curves".into(),
         title: "Training curves".into(),
-        text: vec!["Mean over seeds with its 95 % interval; thin lines are the seeds. Dashed: the budget. Point at a curve for its values.".into()],
+        text: vec!["Mean over seeds with its 95 % interval; thin lines are the seeds. Red and dashed: the budget. Thin and dashed in an \
+                        algorithm's colour: the paper's curve at the same frames, with its band. Point at a curve for its values.".into()],
         blocks,
     }
 }
@@ -53,12 +56,20 @@ pub(super) fn curve_figure(title: &str, file: &str, caption: &str, members: &[(S
     let panel = |heading: &str, metric: &str, budget: Option<f64>| {
         let series: Vec<Series> = members
             .iter()
-            .map(|(name, ink, group)| Series { name: name.clone(), ink: *ink, curve: Curve::of(group, metric) })
+            .map(|(name, ink, group)| Series { name: name.clone(), ink: *ink, curve: Curve::of(group, metric), paper: false })
             .filter(|series| !series.curve.seeds.is_empty())
             .collect();
-        LinePanel { title: heading.to_owned(), series, budget, size: (400.0, 220.0) }
+        let paper = members.iter().filter_map(|(name, ink, group)| {
+            let curve = published_curve(group.config(), metric.strip_suffix("_mean")?)?;
+            Some(Series { name: format!("{name} (paper)"), ink: *ink, curve, paper: true })
+        });
+        let series = series.into_iter().chain(paper).collect();
+        LinePanel { title: heading.to_owned(), axis: String::new(), series, budget, size: (400.0, 234.0) }
     };
-    let mut panels = vec![line_panel(&panel("return", "return_mean", None)), line_panel(&panel("cost", "cost_mean", one_budget))];
+    let mut panels = vec![
+        line_panel(&panel("return an episode", "return_mean", None)),
+        line_panel(&panel("cost an episode", "cost_mean", one_budget)),
+    ];
     for constraint in distinct_terms(members) {
         let drawn = panel(&format!("cost: {constraint}"), &format!("cost/{constraint}"), one_budget_of(Some(&constraint)));
         panels.push(line_panel(&drawn));

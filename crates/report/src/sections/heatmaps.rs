@@ -17,9 +17,12 @@ const MOMENTS: usize = 4;
 const MOST_PICTURES: usize = 60;
 const ANIMATION_SECONDS: f64 = 7.0;
 
+/// Moments at which several experiments are shown side by side, in frames; the paper's are at 100 million.
+const FIXED: [f64; 8] = [1e6, 2e6, 5e6, 1e7, 3e7, 1e8, 3e8, 5e8];
+
 /// For the first seed of each experiment that kept heatmaps: chosen moments side by side, and all of them as animation.
 pub(super) fn section(groups: &[Group], warnings: &mut Vec<Warning>) -> Section {
-    let mut blocks = Vec::new();
+    let mut blocks = side_by_side(groups, warnings);
     for group in groups {
         let Some(run) = group.runs.iter().find(|run| !run.heatmaps.is_empty()) else { continue };
         let config = group.config();
@@ -52,12 +55,71 @@ pub(super) fn section(groups: &[Group], warnings: &mut Vec<Warning>) -> Section 
         slug: "heatmaps".into(),
         title: "Where agents go".into(),
         text: vec![
-            "Steps that the agent spent at each place during the last episodes before a moment of training, over the map seen from above. \
+            "Several experiments on one environment first, at equal frames; then each over its training. Steps that the agent spent at each place during the last episodes before a moment of training, over the map seen from above. \
              The brightest place of each picture is its most visited; brightness grows with the root of the share of steps."
                 .into(),
         ],
         blocks,
     }
+}
+
+/// Experiments on one environment at equal moments of training: a row a moment, a column an experiment.
+fn side_by_side(groups: &[Group], warnings: &mut Vec<Warning>) -> Vec<Block> {
+    let mut environments: BTreeMap<&str, Vec<(&Group, &Run)>> = BTreeMap::new();
+    for group in groups {
+        if let Some(run) = group.runs.iter().find(|run| !run.heatmaps.is_empty()) {
+            environments.entry(&group.config().env).or_default().push((group, run));
+        }
+    }
+    let mut blocks = Vec::new();
+    for (env, members) in environments.iter().filter(|(_, members)| members.len() > 1) {
+        let chosen = common_moments(&members.iter().map(|(_, run)| frames_of(run)).collect::<Vec<_>>());
+        if chosen.is_empty() {
+            continue;
+        }
+        let shown = &members[..members.len().min(6)];
+        let automaps: Vec<Automaps> = shown.iter().map(|(_, run)| Automaps::read(run, warnings)).collect();
+        let mut views: Vec<(Picture, String)> = Vec::new();
+        for at in &chosen {
+            for ((group, run), automaps) in shown.iter().zip(&automaps) {
+                let nearest = nearest(&frames_of(run), *at);
+                let label = format!("{}, {} frames", group.config().algo, frames(run.heatmaps[nearest].frames));
+                views.push((automaps.overlay(run, nearest, 300), label));
+            }
+        }
+        let panels: Vec<Panel> = views.iter().map(|(view, label)| Panel::new(view, label)).collect();
+        let sheet = grid(&panels, shown.len(), 1);
+        blocks.push(Block::Image(Image {
+            file: format!("{}.png", slug(&format!("heatmaps side by side {env}"))),
+            caption: format!("{env}: experiments at equal frames, one seed each"),
+            bytes: png::encode(&sheet),
+            size: (sheet.width(), sheet.height()),
+        }));
+    }
+    blocks
+}
+
+fn frames_of(run: &Run) -> Vec<f64> {
+    run.heatmaps.iter().map(|map| map.frames).collect()
+}
+
+/// At most three of the fixed moments that every run has a heatmap within a tenth of; without any, the last that all
+/// reached, if all have one near it.
+fn common_moments(runs: &[Vec<f64>]) -> Vec<f64> {
+    let near = |moment: f64| runs.iter().all(|own| (own[nearest(own, moment)] - moment).abs() <= moment * 0.1);
+    let mut moments: Vec<f64> = FIXED.into_iter().filter(|moment| near(*moment)).collect();
+    if moments.is_empty() {
+        let last = runs.iter().filter_map(|own| own.last().copied()).fold(f64::INFINITY, f64::min);
+        moments.extend(Some(last).filter(|last| last.is_finite() && near(*last)));
+    }
+    let skip = moments.len().saturating_sub(3);
+    moments.split_off(skip)
+}
+
+/// Index of the moment nearest to `at`.
+fn nearest(moments: &[f64], at: f64) -> usize {
+    let distance = |index: &usize| (moments[*index] - at).abs();
+    (0..moments.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
 /// The pictures that a run's heatmaps lie on: one, or one a level of a curriculum.
@@ -130,7 +192,18 @@ fn animation(run: &Run, automaps: &Automaps) -> Result<(Vec<u8>, (usize, usize))
 
 #[cfg(test)]
 mod tests {
-    use super::spread;
+    use super::{common_moments, spread};
+
+    #[test]
+    fn experiments_are_compared_at_moments_that_all_have() {
+        let every = |step: f64, to: u32| (1..=to).map(|k| f64::from(k) * step).collect::<Vec<f64>>();
+        // One reaches 12 million, the other 6: of the fixed moments 1, 2 and 5 million lie in both.
+        assert_eq!(common_moments(&[every(1e6, 12), every(1e6, 6)]), [1e6, 2e6, 5e6]);
+        assert_eq!(common_moments(&[every(1e6, 100), every(5e6, 20)]), [1e7, 3e7, 1e8]);
+        // Short runs: the last moment of the shorter one.
+        assert_eq!(common_moments(&[every(1e5, 6), every(1e5, 4)]), [4e5]);
+        assert!(common_moments(&[vec![4e5], vec![7e5]]).is_empty());
+    }
 
     #[test]
     fn moments_include_the_first_and_the_last() {

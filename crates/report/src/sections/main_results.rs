@@ -3,8 +3,10 @@
 use super::{distinct, main_groups};
 use crate::chart::{Bar, BarGroup, Ink, bar_panel, figure};
 use crate::document::{Block, Cell, Figure, Mark, Section, Table, slug};
-use crate::group::{Group, algorithm_order, scenario_name, scenario_order};
-use crate::published::published;
+use crate::group::{Group, Source, algorithm_order, scenario_name, scenario_order};
+use crate::published::{Published, published};
+use crate::run::{Constraint, Kept};
+use crate::statistics::{Estimate, differ, mean};
 
 /// Tables of return and cost, a level each, with the paper's values below ours; and the same as bars.
 pub(super) fn section(groups: &[Group]) -> Section {
@@ -13,40 +15,63 @@ pub(super) fn section(groups: &[Group]) -> Section {
     for (setting, members) in &settings {
         for level in distinct(members, |group| group.config().level) {
             let members: Vec<&Group> = members.iter().copied().filter(|group| group.config().level == level).collect();
-            blocks.push(Block::Table(table(&members, level, setting)));
-            blocks.push(Block::Figure(bars(&members, level, setting, settings.len() > 1)));
+            let source = source_of(&members);
+            // A table of evaluations has no rows for what was not evaluated.
+            let has = |source| -> Vec<&Group> {
+                let own = members.iter().copied().filter(|group| !group.samples(source, "return_mean").is_empty());
+                own.collect()
+            };
+            blocks.push(Block::Table(table(&has(source), level, setting, source)));
+            // Bars of a few evaluated ones among many would hide the others.
+            let all_evaluated = members.iter().all(|group| group.headline() == Source::Evaluation);
+            let drawn = if all_evaluated { Source::Evaluation } else { Source::Training };
+            blocks.push(Block::Figure(bars(&members, level, setting, settings.len() > 1, drawn)));
+            if source == Source::Evaluation {
+                blocks.push(Block::Table(table(&members, level, setting, Source::Training)));
+            }
         }
     }
     Section {
-        slug: "results".into(),
+        slug: "main".into(),
         title: "Results".into(),
         text: vec![
-            "Return and cost at the end of training: mean over the last ten points of each run and over the seeds. Green: within the budget. Bold: best \
-             return within the budget."
+            "First what the selected checkpoints return and cost in episodes that neither training nor the selection has seen; second what the \
+             learning policies did at the end of training (the mean over the last ten points, as in the paper). Green ground: the upper \
+             end of the cost's interval over seeds is within the budget; green letters: only its mean is. Bold: the best return within \
+             the budget, and every other that cannot be distinguished from it (Welch's test, 5 %; with single seeds the best alone)."
                 .into(),
         ],
         blocks,
     }
 }
 
+/// Evaluation where any of them was evaluated.
+pub(super) fn source_of(members: &[&Group]) -> Source {
+    let evaluated = members.iter().any(|group| group.headline() == Source::Evaluation);
+    if evaluated { Source::Evaluation } else { Source::Training }
+}
+
 /// Cells of return and cost of several experiments on one environment, marked against its budget.
-pub(super) fn marked_cells(members: &[&Group]) -> Vec<(Cell, Cell)> {
-    let finals: Vec<_> = members
+pub(super) fn marked_cells(members: &[&Group], source: Source) -> Vec<(Cell, Cell)> {
+    let finals: Vec<Final> = members
         .iter()
-        .map(|group| (group.final_estimate("return_mean"), group.final_estimate("cost_mean"), group.within_budget()))
+        .map(|group| Final {
+            returns: group.samples(source, "return_mean"),
+            costs: group.samples(source, "cost_mean"),
+            kept: group.kept(source),
+        })
         .collect();
-    let means: Vec<_> = finals.iter().map(|(r, c, w)| (r.map(|r| r.mean), c.map(|c| c.mean), *w == Some(true))).collect();
-    let marks = marks(&means);
+    let marks = marks(&finals);
     members
         .iter()
         .zip(finals)
         .zip(marks)
-        .map(|((group, (episode_return, cost, _)), (return_mark, cost_mark))| {
-            let mut return_cell = Cell::estimate(episode_return, &group.final_samples("return_mean"));
-            let mut cost_cell = Cell::estimate(cost, &group.final_samples("cost_mean"));
+        .map(|((group, last), (return_mark, cost_mark))| {
+            let mut return_cell = Cell::estimate(Estimate::of(&last.returns), &last.returns);
+            let mut cost_cell = Cell::estimate(Estimate::of(&last.costs), &last.costs);
             return_cell.mark = return_mark;
             cost_cell.mark = cost_mark;
-            if !group.finished() {
+            if !group.finished() && !last.returns.is_empty() {
                 return_cell.text += " *";
                 let asked = group.config().frames.map(crate::document::frames).unwrap_or_default();
                 return_cell.title +=
@@ -57,27 +82,37 @@ pub(super) fn marked_cells(members: &[&Group]) -> Vec<(Cell, Cell)> {
         .collect()
 }
 
-/// How returns and costs are marked, given return, cost and whether all budgets are kept.
-fn marks(values: &[(Option<f64>, Option<f64>, bool)]) -> Vec<(Mark, Mark)> {
-    let best_return = values.iter().filter(|value| value.2).filter_map(|value| value.0).max_by(f64::total_cmp);
-    let least_cost = values.iter().filter_map(|value| value.1).min_by(f64::total_cmp);
-    let none_within = !values.iter().any(|value| value.2);
+/// What an experiment came to: a number a seed, and how its costs stand to the budgets.
+struct Final {
+    returns: Vec<f64>,
+    costs: Vec<f64>,
+    kept: Kept,
+}
+
+/// How returns and costs are marked.
+fn marks(values: &[Final]) -> Vec<(Mark, Mark)> {
+    let order = |samples: &[f64]| mean(samples).unwrap_or(f64::NEG_INFINITY);
+    // Those surely within come first; only if there are none, those within by their mean.
+    let surely = values.iter().any(|value| value.kept == Kept::Surely && !value.returns.is_empty());
+    let eligible = |value: &Final| value.kept >= if surely { Kept::Surely } else { Kept::ByMean } && !value.returns.is_empty();
+    let best = values.iter().filter(|value| eligible(value)).max_by(|a, b| order(&a.returns).total_cmp(&order(&b.returns)));
+    let measured = || values.iter().filter(|value| !value.costs.is_empty());
+    let least = measured().min_by(|a, b| order(&a.costs).total_cmp(&order(&b.costs)));
+    let same = |one: &[f64], best: &[f64]| one == best || differ(one, best) == Some(false);
     values
         .iter()
         .map(|value| {
-            let best = value.2 && value.0 == best_return;
-            let least = none_within && values.len() > 1 && value.1.is_some() && value.1 == least_cost;
-            let cost_mark = match (value.2, least) {
-                (true, _) => Mark::Within,
-                (false, true) => Mark::Best,
-                _ => Mark::None,
-            };
-            (if best { Mark::Best } else { Mark::None }, cost_mark)
+            let bold_return = best.is_some_and(|best| eligible(value) && same(&value.returns, &best.returns));
+            let bold_cost = best.is_none()
+                && values.len() > 1
+                && !value.costs.is_empty()
+                && least.is_some_and(|least| same(&value.costs, &least.costs));
+            (Mark { bold: bold_return, ..Mark::default() }, Mark { kept: value.kept, bold: bold_cost })
         })
         .collect()
 }
 
-fn table(members: &[&Group], level: u32, setting: &str) -> Table {
+fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table {
     let scenarios = distinct(members, |group| (scenario_order(&group.config().scenario), group.config().scenario.clone()));
     let algorithms = distinct(members, |group| (algorithm_order(&group.config().algo), group.config().algo.clone()));
     let mut rows: Vec<Vec<Cell>> = Vec::new();
@@ -93,27 +128,32 @@ fn table(members: &[&Group], level: u32, setting: &str) -> Table {
     for (_, scenario) in &scenarios {
         let here: Vec<&Group> = members.iter().copied().filter(|group| group.config().scenario == *scenario).collect();
         let of = |algo: &str| here.iter().position(|group| group.config().algo == algo);
-        let cells = marked_cells(&here);
+        let cells = marked_cells(&here, source);
         let papers: Vec<_> = here.iter().map(|group| published(group.config())).collect();
-        let paper_values: Vec<_> = here
-            .iter()
-            .zip(&papers)
-            .map(|(group, paper)| {
-                let cost = paper.and_then(|p| p.cost);
-                (paper.and_then(|p| p.episode_return), cost, cost.is_some_and(|cost| cost <= group.config().safety_budget))
-            })
-            .collect();
+        // The paper prints means alone: within is what its own tables call so.
+        let paper_values: Vec<Final> =
+            here.iter()
+                .zip(&papers)
+                .map(|(group, paper)| Final {
+                    returns: paper.map(|p| p.episode_return).into_iter().collect(),
+                    costs: paper.map(|p| p.cost).into_iter().collect(),
+                    kept: paper.map_or(Kept::Unknown, |p| {
+                        if p.cost <= group.config().safety_budget { Kept::ByMean } else { Kept::Over }
+                    }),
+                })
+                .collect();
         let paper_marks = marks(&paper_values);
         for (row, (_, algo)) in algorithms.iter().enumerate() {
             let missing = || Cell { text: "-".into(), pale: true, ..Cell::default() };
             let (mut ours, mut theirs) = ((missing(), missing()), (missing(), missing()));
             if let Some(at) = of(algo) {
                 ours = cells[at].clone();
-                let note = papers[at].map(|paper| paper.note.clone()).unwrap_or_default();
-                let cell = |value: Option<f64>, mark| {
-                    value.map_or_else(missing, |v| Cell { pale: true, mark, title: note.clone(), ..Cell::number(v) })
+                let note = papers[at].map(|paper| paper.note()).unwrap_or_default();
+                let cell = |value: &[f64], mark| {
+                    value.first().map_or_else(missing, |v| Cell { pale: true, mark, title: note.clone(), ..Cell::number(*v) })
                 };
-                theirs = (cell(paper_values[at].0, paper_marks[at].0), cell(paper_values[at].1, paper_marks[at].1));
+                let value = &paper_values[at];
+                theirs = (cell(&value.returns, paper_marks[at].0), cell(&value.costs, paper_marks[at].1));
             }
             rows[2 * row].extend([ours.0, ours.1]);
             rows[2 * row + 1].extend([theirs.0, theirs.1]);
@@ -123,15 +163,15 @@ fn table(members: &[&Group], level: u32, setting: &str) -> Table {
     let mut heads = vec!["algorithm".to_owned()];
     let mut spans = vec![(String::new(), 1)];
     for (_, scenario) in &scenarios {
-        let budgets = distinct(members, |group| (group.config().scenario != *scenario, group.config().safety_budget.to_bits()));
-        let budget = f64::from_bits(budgets[0].1);
-        spans.push((format!("{} (budget {budget})", scenario_name(scenario)), 2));
+        let here = members.iter().filter(|group| group.config().scenario == *scenario);
+        let budgets = distinct(&here.collect::<Vec<_>>(), |group| budget_label(group));
+        spans.push((format!("{} (budget {})", scenario_name(scenario), budgets.join(" / ")), 2));
         heads.extend(["return".into(), "cost".into()]);
     }
     // If every value rests on as many seeds, saying so once is enough.
     let notes =
         distinct(&rows.iter().flatten().filter(|cell| !cell.note.is_empty()).collect::<Vec<_>>(), |cell| cell.note.clone());
-    let mut caption = format!("Level {level}; {setting}");
+    let mut caption = format!("Level {level}, {}; {setting}", source_name(source));
     if let [note] = &notes[..] {
         caption += &format!("; {note} {}", if note == "n=1" { "seed" } else { "seeds" });
         rows.iter_mut().flatten().for_each(|cell| cell.note.clear());
@@ -142,7 +182,26 @@ fn table(members: &[&Group], level: u32, setting: &str) -> Table {
     Table { caption, spans, heads, rows }
 }
 
-fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool) -> Figure {
+/// What a table's numbers are of.
+pub(super) fn source_name(source: Source) -> &'static str {
+    match source {
+        Source::Evaluation => "evaluation of the selected checkpoints",
+        Source::Training => "end of training",
+    }
+}
+
+/// The budgets of all constraints of an experiment.
+pub(super) fn budget_label(group: &Group) -> String {
+    group.config().constraints.iter().map(Constraint::label).collect::<Vec<_>>().join(", ")
+}
+
+/// The published cell of an experiment that went at least half as far: beside a bar of a short run the paper's bar of 500
+/// million frames would mislead.
+pub(super) fn comparable_end(group: &Group) -> Option<&'static Published> {
+    published(group.config()).filter(|paper| group.frames_span().1 >= 0.5 * paper.frames())
+}
+
+fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool, source: Source) -> Figure {
     let scenarios = distinct(members, |group| (scenario_order(&group.config().scenario), group.config().scenario.clone()));
     let mut panels = Vec::new();
     for (_, scenario) in &scenarios {
@@ -153,11 +212,11 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool) -
                 .map(|group| {
                     let ink = Ink::Series(algorithm_order(&group.config().algo));
                     let mut bars = Vec::new();
-                    if let Some(estimate) = group.final_estimate(&format!("{metric}_mean")) {
+                    if let Some(estimate) = group.estimate(source, &format!("{metric}_mean")) {
                         let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
                         bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink, pale: false });
                     }
-                    let paper = published(group.config()).and_then(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                    let paper = comparable_end(group).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
                     bars.extend(paper.map(|value| Bar { name: "paper".into(), value, interval: None, ink, pale: true }));
                     let budget = group.config().budget().filter(|_| metric == "cost");
                     BarGroup { name: group.config().algo.clone(), bars, budget }
@@ -169,7 +228,12 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool) -
     let name = if several_settings { format!("results level {level} {setting}") } else { format!("results level {level}") };
     Figure {
         slug: slug(&name),
-        caption: format!("Level {level}; {setting}. Full colour: here; pale: the paper after 500M frames. Dashed: the budget."),
+        caption: {
+            let paper = members.iter().any(|group| comparable_end(group).is_some());
+            let paper = if paper { " Full colour: here; pale: the paper after 500M frames." } else { "" };
+            let budget = if members.iter().any(|group| group.config().budget().is_some()) { " Dashed: the budget." } else { "" };
+            format!("Level {level}, {}; {setting}.{paper}{budget}", source_name(source))
+        },
         drawing: figure("", panels, 4, &[]),
     }
 }
@@ -178,14 +242,30 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool) -
 mod tests {
     use super::*;
 
+    fn value(returns: &[f64], costs: &[f64], kept: Kept) -> Final {
+        Final { returns: returns.to_vec(), costs: costs.to_vec(), kept }
+    }
+
+    fn bold(values: &[Final]) -> Vec<(bool, bool)> {
+        marks(values).iter().map(|(episode_return, cost)| (episode_return.bold, cost.bold)).collect()
+    }
+
     #[test]
-    fn marks_are_those_of_the_paper() {
+    fn bold_is_the_best_within_the_budget_and_what_cannot_be_distinguished() {
         // Within the budget the best return is bold, however much more an unsafe one earns.
-        let values = [(Some(90.0), Some(40.0), false), (Some(30.0), Some(4.0), true), (Some(35.0), Some(5.0), true)];
-        assert_eq!(marks(&values), [(Mark::None, Mark::None), (Mark::None, Mark::Within), (Mark::Best, Mark::Within)]);
+        let unsafe_one = || value(&[90.0, 91.0], &[40.0, 41.0], Kept::Over);
+        let values = [unsafe_one(), value(&[30.0, 30.1], &[4.0], Kept::Surely), value(&[35.0, 35.1], &[4.5], Kept::Surely)];
+        assert_eq!(bold(&values), [(false, false), (false, false), (true, false)]);
+        // Three seeds that scatter: 30 and 35 cannot be told apart.
+        let values =
+            [unsafe_one(), value(&[25.0, 30.0, 35.0], &[4.0], Kept::Surely), value(&[30.0, 35.0, 40.0], &[4.5], Kept::Surely)];
+        assert_eq!(bold(&values), [(false, false), (true, false), (true, false)]);
+        // Within by the mean alone does not count where another is surely within.
+        let values = [value(&[40.0, 40.1], &[4.9], Kept::ByMean), value(&[30.0, 30.1], &[4.0], Kept::Surely)];
+        assert_eq!(bold(&values), [(false, false), (true, false)]);
         // None within: the least cost stands out.
-        let values = [(Some(90.0), Some(40.0), false), (Some(30.0), Some(14.0), false), (None, None, false)];
-        assert_eq!(marks(&values), [(Mark::None, Mark::None), (Mark::None, Mark::Best), (Mark::None, Mark::None)]);
-        assert_eq!(marks(&[(Some(1.0), Some(9.0), false)]), [(Mark::None, Mark::None)]);
+        let values = [value(&[90.0], &[40.0], Kept::Over), value(&[30.0], &[14.0], Kept::Over), value(&[], &[], Kept::Unknown)];
+        assert_eq!(bold(&values), [(false, false), (false, true), (false, false)]);
+        assert_eq!(bold(&[value(&[1.0], &[9.0], Kept::Over)]), [(false, false)]);
     }
 }

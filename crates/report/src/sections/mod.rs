@@ -1,19 +1,28 @@
 //! The sections of the report, each made from all experiments.
 
+mod aggregates;
+mod baselines;
+mod behaviour;
 mod beside_paper;
 mod comparison;
 mod constraints;
 mod curves;
-mod handed_out;
+mod efficiency;
+mod equal_frames;
 mod heatmaps;
-mod interquartile;
 mod main_results;
+mod missing;
+mod pareto;
 mod players;
 mod runs;
+mod safety;
+mod selected;
+mod witness;
 
-use crate::document::{Document, Section};
+use crate::document::{Document, Section, count};
 use crate::group::Group;
 use crate::run::{Found, Warning};
+use baselines::Baselines;
 use std::collections::BTreeMap;
 
 /// Makes the report of what was found. `warnings` grows by what is noticed on the way.
@@ -21,21 +30,38 @@ use std::collections::BTreeMap;
 pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec<Warning>) -> Document {
     let frames: f64 = groups.iter().flat_map(|group| &group.runs).map(crate::run::Run::frames).sum();
     let run_count: usize = groups.iter().map(|group| group.runs.len()).sum();
-    let mut sections =
-        vec![main_results::section(groups), handed_out::section(groups), beside_paper::section(groups), curves::section(groups)];
-    sections.push(constraints::section(groups));
+    let baselines = Baselines::new(found, groups);
+    let mut sections = vec![
+        main_results::section(groups),
+        selected::section(groups),
+        safety::section(groups, &baselines),
+        beside_paper::section(groups),
+        aggregates::section(groups, &baselines),
+        pareto::section(groups),
+        curves::section(groups),
+        constraints::section(groups),
+    ];
     sections.extend(comparison::sections(groups));
-    sections.push(interquartile::section(groups));
-    sections.push(players::section(found, groups));
     sections.push(heatmaps::section(groups, warnings));
+    sections.push(efficiency::section(groups));
+    sections.push(players::human(found));
+    sections.push(behaviour::section(found, groups));
+    sections.push(witness::section(found));
+    sections.push(players::section(found, groups));
     sections.push(runs::experiments(groups));
     sections.push(runs::runs(groups));
+    sections.push(missing::section(&sections));
     sections.push(runs::warnings(warnings));
-    sections.retain(|section: &Section| !section.blocks.is_empty());
+    sections.retain(|section: &Section| !section.blocks.is_empty() || section.slug == "paper" && !section.text.is_empty());
     sections.push(method());
     Document {
         title: title.to_owned(),
-        subtitle: format!("{run_count} runs of {} experiments, {} frames in all", groups.len(), crate::document::frames(frames)),
+        subtitle: format!(
+            "{} of {}, {} frames in all",
+            count(run_count, "run"),
+            count(groups.len(), "experiment"),
+            crate::document::frames(frames)
+        ),
         sections,
     }
 }
@@ -49,12 +75,14 @@ fn method() -> Section {
             "A table's value is, for each seed, the mean over the last ten of five hundred points at equal distances in frames (each \
              the mean over recently finished training episodes, on the line between the reports around it), then the mean over seeds. ± is half the 95 % interval of Student's t distribution with n - 1 in the deviation's denominator; \
              n is the number of seeds. With one seed there is no interval.",
-            "Green: the mean cost is within the budget; with several constraints, each within its own. Bold: the best return among those within the budget; if none is, the least cost.",
+            "Green ground: the upper end of the cost's 95 % interval over seeds is within the budget (of a single evaluated seed, over its \
+             episodes); green letters: the mean is. With several constraints, each within its own. Bold: the best return among those \
+             within the budget and all that cannot be distinguished from it; if none is within, the least cost.",
             "Curves show the mean over seeds (line), its 95 % interval (band) and each seed (thin lines). Means end where the shortest run \
              ends, and no curve is stretched or smoothed; reports within one 240th of the axis are averaged.",
             "Returns and costs are always those of the environment, never reshaped by an algorithm.",
-            "The paper's values are means over five seeds after 500 million frames; its intervals were not printed. Where the paper's \
-             scripts added back the wrong multiple of the cost, the corrected return is given.",
+            "The paper's values stand only beside runs under `--rules tables`, the rules that its tables were made under. Where the paper's \
+             scripts added back the wrong multiple of the cost, the corrected return is given; its tables print no intervals.",
         ]
         .map(String::from)
         .to_vec(),
@@ -65,14 +93,18 @@ fn method() -> Section {
 /// Options that an experiment of the paper varies: they have sections of their own and stay out of the main tables.
 pub(crate) const VARIED: [&str; 6] = ["safety_budget", "cost_scale", "full_actions", "observation", "curriculum", "hard"];
 
-/// The experiments without any varied option, by what else they were run under.
-fn main_groups(groups: &[Group]) -> BTreeMap<String, Vec<&Group>> {
+/// The experiments without any varied option, by what else they were run under, those with the longest runs first: what was
+/// only tried for a moment comes last.
+fn main_groups(groups: &[Group]) -> Vec<(String, Vec<&Group>)> {
     let mut settings: BTreeMap<String, Vec<&Group>> = BTreeMap::new();
     for group in groups {
         if !VARIED.iter().any(|key| group.config().options.contains_key(*key)) {
             settings.entry(setting(group)).or_default().push(group);
         }
     }
+    let mut settings: Vec<_> = settings.into_iter().collect();
+    let longest = |members: &[&Group]| members.iter().map(|group| group.frames_span().1).fold(0.0, f64::max);
+    settings.sort_by(|a, b| longest(&b.1).total_cmp(&longest(&a.1)));
     settings
 }
 

@@ -2,7 +2,7 @@
 
 use super::main_results::marked_cells;
 use crate::document::{Block, Cell, Section, Table, frames, number};
-use crate::group::{Group, scenario_name};
+use crate::group::{Group, Source, scenario_name};
 use crate::run::{Constraint, Warning};
 
 /// A row for each experiment.
@@ -11,7 +11,9 @@ pub(super) fn experiments(groups: &[Group]) -> Section {
         .iter()
         .map(|group| {
             let config = group.config();
-            let (return_cell, cost_cell) = marked_cells(&[group]).remove(0);
+            let source = group.headline();
+            let (return_cell, cost_cell) = marked_cells(&[group], source).remove(0);
+            let seeds_values = by_seed(group, source);
             let (shortest, longest) = group.frames_span();
             let reached =
                 if shortest == longest { frames(longest) } else { format!("{} to {}", frames(shortest), frames(longest)) };
@@ -26,12 +28,33 @@ pub(super) fn experiments(groups: &[Group]) -> Section {
                 budget_cell(group),
                 return_cell,
                 cost_cell,
-                Cell::estimate(group.final_estimate("length_mean"), &group.final_samples("length_mean")),
+                Cell::text(seeds_values),
+                Cell::text(if source == Source::Evaluation { "evaluation" } else { "training" }),
+                Cell::estimate(group.estimate(source, "length_mean"), &group.samples(source, "length_mean")),
             ]
         })
         .collect();
-    let heads = ["scenario", "level", "algorithm", "options", "seeds", "frames", "budget", "return", "cost", "steps an episode"];
+    let heads = [
+        "scenario",
+        "level",
+        "algorithm",
+        "options",
+        "seeds",
+        "frames",
+        "budget",
+        "return",
+        "cost",
+        "each seed",
+        "by",
+        "steps an episode",
+    ];
     section("experiments", "All experiments", heads.as_slice(), rows)
+}
+
+/// Return @ cost of every seed, in the order of the seeds.
+fn by_seed(group: &Group, source: Source) -> String {
+    let pairs = group.samples(source, "return_mean").into_iter().zip(group.samples(source, "cost_mean"));
+    pairs.map(|(episode_return, cost)| format!("{} @ {}", number(episode_return), number(cost))).collect::<Vec<_>>().join(", ")
 }
 
 /// The budget of the whole cost, or of the only constraint; those of several have a table of their own.
@@ -95,6 +118,7 @@ pub(super) fn warnings(warnings: &[Warning]) -> Section {
 fn section(slug: &str, title: &str, heads: &[&str], rows: Vec<Vec<Cell>>) -> Section {
     let table =
         Table { caption: String::new(), spans: Vec::new(), heads: heads.iter().map(|head| (*head).to_owned()).collect(), rows };
+    let table = table.folded(&["level", "options", "by", "state"]);
     let blocks = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
     Section { slug: slug.into(), title: title.into(), text: Vec::new(), blocks }
 }

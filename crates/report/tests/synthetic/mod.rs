@@ -42,7 +42,7 @@ impl Synthetic<'_> {
     pub fn write(&self, folder: &Path) {
         std::fs::create_dir_all(folder).unwrap();
         let config = format!(
-            "{{\"env\":\"{}\",\"algo\":\"{}\",\"seed\":{},\"frames\":{},\"rules\":\"paper\",\"preset\":\"paper\",\"out\":\"{}\"{}}}",
+            "{{\"env\":\"{}\",\"algo\":\"{}\",\"seed\":{},\"frames\":{},\"rules\":\"tables\",\"preset\":\"paper\",\"out\":\"{}\"{}}}",
             self.env,
             self.algo,
             self.seed,
@@ -68,9 +68,11 @@ impl Synthetic<'_> {
                 if self.algo.ends_with("Lag") { format!(",\"multipliers\":[{}]", 0.4 * rise) } else { String::new() };
             let _ = writeln!(
                 text,
-                "{{\"frames\":{frames},\"updates\":{k},\"wall_s\":{},\"fps\":4000,\"return_mean\":{episode_return},\"cost_mean\":{cost},\"length_mean\":{}{multiplier}}}",
+                "{{\"frames\":{frames},\"updates\":{k},\"wall_s\":{},\"fps\":4000,\"return_mean\":{episode_return},\"cost_mean\":{cost},\"length_mean\":{},\"cost_total\":{},\"violation_total\":{}{multiplier}}}",
                 frames / 4000.0,
-                500.0 + wave
+                500.0 + wave,
+                frames / 100.0,
+                frames / 400.0
             );
         }
         text

@@ -24,7 +24,7 @@ export function run(main, query) {
         make('figure', {}, map, make('div', { class: 'scale', 'aria-hidden': 'true' }, 'seldom', make('i'), 'often'), caption))),
     make('section', { class: 'card' }, make('h2', {}, 'Settings'), make('div', { class: 'row' }, field('beside those of', other)), settings));
 
-  let moments = [], shown = -1, me = null, beside = '';
+  let moments = [], shown = -1, me = null, beside = '', config = '';
   async function heatmap(at) {
     if (at === shown) return;
     shown = at;
@@ -60,6 +60,10 @@ export function run(main, query) {
     try {
       const [detail, list, data] = await Promise.all([ask(`/api/run?id=${id}`), me ? { runs: [] } : ask('/api/runs'), ask(`/api/curves?runs=${id}&columns=${CURVES.map(([name]) => name).join(',')}`)]);
       if (gone || !detail || !list || !data) return;
+      // Another run may have taken its place, or it was resumed with other settings.
+      const present = JSON.stringify(detail.config);
+      if (me && present !== config) { me = null; shown = -1; return; }
+      config = present;
       if (!me) {
         me = list.runs.find((one) => one.id === id);
         if (!me) throw new Error('There is no such run; choose one from the list of runs.');
@@ -81,8 +85,9 @@ export function run(main, query) {
       if (moments.length && newest) heatmap(moments.length - 1);
     } catch (error) {
       title.textContent = error.message;
+      me = null;
     } finally {
-      if (!gone) timer = setTimeout(look, 2000);
+      if (!gone) { clearTimeout(timer); timer = setTimeout(look, me ? 2000 : 500); }
     }
   }
   look();

@@ -81,8 +81,10 @@ export function runs(main, query) {
     if (gone || !answer || ids !== picked().map((run) => run.id).join(',')) return;
     data = answer;
     redraw();
-    if (compared === ids) return;
-    compared = ids;
+    // Another run may have taken the place of one: then its settings are others.
+    const settled = some.map((run) => `${run.id} ${run.settled}`).join(',');
+    if (compared === settled) return;
+    compared = settled;
     const table = await settingsTable(some.slice(0, COMPARED), true);
     if (table) differences.replaceChildren(...(some.length > COMPARED ? [make('p', { class: 'pale' }, `Of the first ${COMPARED}.`)] : []), table);
   }
@@ -125,7 +127,7 @@ export function runs(main, query) {
         if (news.runs.length || news.whole) {
           if (news.fresh || news.whole) choices();
           list();
-          if (news.runs.some((run) => chosen.has(run.id))) load();
+          if (news.whole || news.runs.some((run) => chosen.has(run.id))) load();
         }
         change = news.change;
       }
@@ -139,7 +141,7 @@ export function runs(main, query) {
     card.hidden = known.size === 0;
     if (!hint.hidden && !hint.childElementCount) {
       hint.append(make('h1', {}, 'No runs yet'), make('p', {}, `This page looks below ${news.folders.join(', ')} and shows every run as soon as it begins. Begin one:`),
-        make('pre', {}, 'hasard train VolcanicVentureLevel1-v0 --preset quick --out runs/first'),
+        make('pre', {}, 'hasard train VolcanicVentureLevel1-v0 --out runs/first'),
         make('p', {}, 'Meanwhile: ', make('a', { href: '#watch' }, 'watch an environment'), ' or ', make('a', { href: '#play' }, 'play it yourself'), '.'));
     }
   }

@@ -6,7 +6,7 @@ const VIEWS = ['depth', 'segmented', 'automap'];
 const SPEEDS = [['0.25', '¼ speed'], ['0.5', '½ speed'], ['1', 'normal speed'], ['2', '2 × speed'], ['4', '4 × speed'], ['8', '8 × speed']];
 const FIRST = 'VolcanicVentureLevel1-v0';
 // What a link holds, and what it is where the link does not say.
-const STATE = { env: '', agent: 'random', seed: '1', step: '0', size: '320x240', beside: VIEWS.join(','), best: '', greedy: '', hard: '', full: '', released: '', paused: '' };
+const STATE = { env: '', agent: 'random', seed: '1', step: '0', size: '320x240', beside: VIEWS.join(','), best: '', greedy: '', hard: '', full: '', rules: 'paper', paused: '' };
 const has_task = (agent) => /^(run|zoo|episode):/.test(agent);
 
 export function watch(main, query) {
@@ -47,7 +47,7 @@ export function watch(main, query) {
     for (const view of VIEWS) figures[view].hidden = !now.beside.split(',').includes(view);
     const flag = (name) => [name, now[name] || 'false'];
     // After a server was away the show goes on where it was.
-    const path = () => `/api/watch?${new URLSearchParams({ ...now, step: String(now.step || 0), ...Object.fromEntries(['best', 'greedy', 'hard', 'full', 'released', 'paused'].map(flag)) })}`;
+    const path = () => `/api/watch?${new URLSearchParams({ ...now, step: String(now.step || 0), ...Object.fromEntries(['best', 'greedy', 'hard', 'full', 'paused'].map(flag)) })}`;
     screen?.end();
     screen = new Screen(path, canvases, { onframe, onwords, onlink: (text) => { link.textContent = text; } });
     if (speed.value !== '1') speed.value = '1';
@@ -110,7 +110,7 @@ export function watch(main, query) {
       return make('label', { class: 'check' }, box, view === 'automap' ? 'map' : view);
     });
     const of_agent = /^(run|zoo):/.test(now.agent) ? [tick('greedy', 'likeliest actions'), ...(now.agent.startsWith('run:') ? [tick('best', 'best checkpoint')] : [])] : [];
-    const of_task = has_task(now.agent) ? [] : [tick('hard', 'hard constraint'), tick('full', 'full actions'), tick('released', 'released rules')];
+    const of_task = has_task(now.agent) ? [] : [tick('hard', 'hard constraint'), tick('full', 'full actions'), field('rules', choose(['paper', 'released', 'tables'], now.rules, restart('rules')))];
     const agent = choose([], '', restart('agent'));
     for (const [name, list] of Object.entries(groups)) if (list.length) agent.append(make('optgroup', { label: name }, ...list.map(([key, text]) => make('option', { value: key, selected: key === now.agent }, text))));
     const own = has_task(now.agent) ? [['', 'the agent’s own']] : [];

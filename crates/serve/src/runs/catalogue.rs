@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::File;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{Read, Seek, SeekFrom};
@@ -31,12 +31,32 @@ struct Run {
     path: PathBuf,
     name: String,
     config: Config,
-    bytes: u64,
-    modified: SystemTime,
+    /// The file that the settings were read from, as it was then.
+    settings: Stamp,
+    /// Number of the change that brought these settings.
+    settled: u64,
+    metrics: Stamp,
     last: Map<String, Value>,
     alive: bool,
     /// Number of the change that made it what it is.
     change: u64,
+}
+
+/// What tells a file from another that was put in its place.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Stamp {
+    bytes: u64,
+    modified: SystemTime,
+}
+
+impl Stamp {
+    const NONE: Stamp = Stamp { bytes: 0, modified: SystemTime::UNIX_EPOCH };
+
+    /// Of a file that is no link.
+    fn of(path: &Path) -> Option<Stamp> {
+        let data = std::fs::symlink_metadata(path).ok().filter(std::fs::Metadata::is_file)?;
+        Some(Stamp { bytes: data.len(), modified: data.modified().unwrap_or(SystemTime::UNIX_EPOCH) })
+    }
 }
 
 /// All runs below some folders.
@@ -48,7 +68,8 @@ pub(crate) struct Catalogue {
     /// Number of the last change. It begins with the time in milliseconds, so that numbers of a server that ran before are
     /// all smaller than any of this one.
     changes: u64,
-    begun: u64,
+    /// Number of the last change since which a page that adds up changes is right: one that runs went with starts anew.
+    whole_since: u64,
     looked: Option<Instant>,
     searched: Option<Instant>,
 }
@@ -60,7 +81,7 @@ impl Catalogue {
         let time = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let begun = time.as_millis() as u64;
         Catalogue {
-            begun,
+            whole_since: begun,
             folders,
             runs: BTreeMap::new(),
             kept: HashMap::new(),
@@ -71,12 +92,20 @@ impl Catalogue {
         }
     }
 
-    /// Finds new runs and how far the known ones are, unless that was done just now.
+    /// Finds which runs there are now and how far they are, unless that was done just now.
     pub fn refresh(&mut self) {
         let due = |last: Option<Instant>, every| last.is_none_or(|last| last.elapsed() >= every);
         if due(self.searched, SEARCH_EVERY) {
+            let mut there = BTreeSet::new();
             for folder in self.folders.clone() {
-                self.search(&folder, &folder, 0);
+                self.search(&folder, &folder, 0, &mut there);
+            }
+            let known = self.runs.len();
+            self.runs.retain(|id, _| there.contains(id));
+            self.kept.retain(|id, _| there.contains(id));
+            if self.runs.len() < known {
+                self.changes += 1;
+                self.whole_since = self.changes;
             }
             self.searched = Some(Instant::now());
         }
@@ -92,27 +121,32 @@ impl Catalogue {
         }
     }
 
-    fn search(&mut self, top: &Path, folder: &Path, depth: usize) {
+    fn search(&mut self, top: &Path, folder: &Path, depth: usize, there: &mut BTreeSet<String>) {
         let config = folder.join("config.json");
-        if std::fs::symlink_metadata(&config).is_ok_and(|data| data.is_file()) {
+        if let Some(settings) = Stamp::of(&config) {
             let id = id_of(folder);
-            if !self.runs.contains_key(&id)
-                && self.runs.len() < MAX_RUNS
+            if self.runs.get(&id).is_some_and(|run| run.settings == settings) {
+                there.insert(id);
+            } else if (self.runs.contains_key(&id) || self.runs.len() < MAX_RUNS)
                 && let Ok(config) = Config::read(&config)
             {
                 let name = folder.strip_prefix(top).ok().filter(|name| !name.as_os_str().is_empty());
                 let name = name.or_else(|| folder.file_name().map(Path::new)).unwrap_or(folder).display().to_string();
+                self.changes += 1;
                 let run = Run {
                     path: folder.to_owned(),
                     name,
                     config,
-                    bytes: u64::MAX,
-                    modified: SystemTime::UNIX_EPOCH,
+                    settings,
+                    settled: self.changes,
+                    // Of no file: the next look finds out how far it is.
+                    metrics: Stamp { bytes: u64::MAX, ..Stamp::NONE },
                     last: Map::new(),
                     alive: false,
-                    change: 0,
+                    change: self.changes,
                 };
-                self.runs.insert(id, run);
+                self.runs.insert(id.clone(), run);
+                there.insert(id);
                 self.looked = None;
             }
             return;
@@ -120,7 +154,7 @@ impl Catalogue {
         let Ok(entries) = std::fs::read_dir(folder) else { return };
         for entry in entries.flatten() {
             if depth < MAX_DEPTH && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-                self.search(top, &entry.path(), depth + 1);
+                self.search(top, &entry.path(), depth + 1, there);
             }
         }
     }
@@ -132,9 +166,11 @@ impl Catalogue {
 
     /// The runs that changed after a number of changes, and that number now.
     pub fn changed_since(&self, since: u64) -> Value {
-        let runs: Vec<Value> = self.runs.iter().filter(|(_, run)| run.change > since).map(|(id, run)| run.told(id)).collect();
+        let whole = since < self.whole_since;
+        let news = self.runs.iter().filter(|(_, run)| whole || run.change > since);
+        let runs: Vec<Value> = news.map(|(id, run)| run.told(id)).collect();
         let folders: Vec<String> = self.folders.iter().map(|folder| folder.display().to_string()).collect();
-        json!({ "change": self.changes, "whole": since < self.begun, "runs": runs, "count": self.runs.len(), "folders": folders })
+        json!({ "change": self.changes, "whole": whole, "runs": runs, "count": self.runs.len(), "folders": folders })
     }
 
     /// What each run ended with lately, for the table of the best.
@@ -164,20 +200,16 @@ impl Run {
     /// Looks at the end of its rows; whether anything changed.
     fn look(&mut self, now: SystemTime) -> bool {
         let path = self.path.join("metrics.jsonl");
-        let data = std::fs::symlink_metadata(&path).ok().filter(std::fs::Metadata::is_file);
-        let (bytes, modified) = data.map_or((0, SystemTime::UNIX_EPOCH), |data| (data.len(), data.modified().unwrap_or(now)));
+        let metrics = Stamp::of(&path).unwrap_or(Stamp::NONE);
+        if metrics != self.metrics {
+            // Without rows it is a run that has none: those of one that was here before are not its own.
+            self.last = last_row(&path, metrics.bytes).unwrap_or_default();
+        }
         let done = self.config.frames.is_some_and(|frames| self.frames() >= frames);
-        let alive = !done && bytes > 0 && now.duration_since(modified).unwrap_or_default() < ALIVE;
-        if (bytes, modified, alive) == (self.bytes, self.modified, self.alive) {
-            return false;
-        }
-        if (bytes, modified) != (self.bytes, self.modified)
-            && let Some(last) = last_row(&path, bytes)
-        {
-            self.last = last;
-        }
-        (self.bytes, self.modified, self.alive) = (bytes, modified, alive);
-        true
+        let alive = !done && metrics.bytes > 0 && now.duration_since(metrics.modified).unwrap_or_default() < ALIVE;
+        let changed = (metrics, alive) != (self.metrics, self.alive);
+        (self.metrics, self.alive) = (metrics, alive);
+        changed
     }
 
     fn frames(&self) -> f64 {
@@ -197,7 +229,7 @@ impl Run {
             "stopped"
         };
         json!({
-            "id": id, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
+            "id": id, "settled": self.settled, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
             "budget": config.safety_budget, "total": total, "state": state, "last": last, "options": config.options,
         })
     }

@@ -10,22 +10,28 @@ use std::path::Path;
 const POINTS: usize = 800;
 /// Bytes that are read at a time: what is beyond is read when it is asked for next.
 const LARGEST_READ: u64 = 64 << 20;
+/// Bytes that are compared: more than a row, which tells the time and so is like no other.
+const SEAM: usize = 4096;
 
 /// Columns as far as the file was read.
 #[derive(Default)]
 pub(crate) struct Columns {
     read: u64,
+    /// The last bytes that were read: another file in the place of this one has others there.
+    seam: Vec<u8>,
     frames: Vec<f64>,
     values: BTreeMap<String, Vec<f32>>,
 }
 
 impl Columns {
-    /// Reads what was added to the file. A file that became shorter (a resumed run takes rows back) is read anew.
+    /// Reads what was added to the file. A file that is no longer the one that was read (a resumed run takes rows back, another
+    /// run takes its place) is read anew; of one that is gone nothing is left.
     pub fn catch_up(&mut self, path: &Path) -> std::io::Result<()> {
-        let mut file = File::open(path)?;
-        if file.metadata()?.len() < self.read {
+        let opened = File::open(path);
+        if !opened.as_ref().is_ok_and(|file| self.continues(file).unwrap_or(false)) {
             *self = Columns::default();
         }
+        let mut file = opened?;
         file.seek(SeekFrom::Start(self.read))?;
         let mut bytes = Vec::new();
         file.take(LARGEST_READ).read_to_end(&mut bytes)?;
@@ -37,7 +43,16 @@ impl Columns {
             }
         }
         self.read += whole as u64;
+        self.seam.extend_from_slice(&bytes[whole.saturating_sub(SEAM)..whole]);
+        self.seam.drain(..self.seam.len().saturating_sub(SEAM));
         Ok(())
+    }
+
+    /// Whether a file goes on where this was left off.
+    fn continues(&self, mut file: &File) -> std::io::Result<bool> {
+        let mut there = vec![0; self.seam.len()];
+        file.seek(SeekFrom::Start(self.read - self.seam.len() as u64))?;
+        Ok(file.read_exact(&mut there).is_ok() && there == self.seam)
     }
 
     fn add(&mut self, row: &Map<String, Value>) {
@@ -97,7 +112,14 @@ mod tests {
         // The run was resumed from before: its later rows are gone.
         std::fs::write(&path, "{\"frames\":1,\"fps\":7}\n").unwrap();
         columns.catch_up(&path).unwrap();
-        assert_eq!((columns.frames, columns.values["fps"].as_slice()), (vec![1.0], &[7.0][..]));
+        assert_eq!((&columns.frames, columns.values["fps"].as_slice()), (&vec![1.0], &[7.0][..]));
+        // Another run took its place, and is longer.
+        std::fs::write(&path, "{\"frames\":4,\"fps\":7}\n{\"frames\":5,\"fps\":8}\n").unwrap();
+        columns.catch_up(&path).unwrap();
+        assert_eq!(columns.frames, [4.0, 5.0]);
+        std::fs::rename(&path, path.with_extension("gone")).unwrap();
+        assert!(columns.catch_up(&path).is_err() && columns.frames.is_empty());
+        std::fs::rename(path.with_extension("gone"), &path).unwrap();
         std::fs::remove_file(path).unwrap();
     }
 

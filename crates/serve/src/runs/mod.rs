@@ -10,6 +10,7 @@ use crate::server::Shared;
 use axum::extract::{Query, State};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use hasard_media::files::Scratch;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -159,10 +160,9 @@ pub(crate) async fn report(State(shared): State<Arc<Shared>>, Query(query): Quer
         static NUMBER: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
         let number = NUMBER.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let folder = std::env::temp_dir().join(format!("hasard-serve-report-{}-{number}", std::process::id()));
-        let written = hasard_report::write_report(&paths, &folder, "Runs");
-        let page = written.and_then(|written| std::fs::read(written.page).map_err(|error| error.to_string()));
-        let _ = std::fs::remove_dir_all(folder);
-        page
+        let folder = Scratch::new(folder);
+        let written = hasard_report::write_report(&paths, folder.path(), "Runs");
+        written.and_then(|written| std::fs::read(written.page).map_err(|error| error.to_string()))
     });
     let page = page.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
     // The report is one page with its pictures and style within; no script of it runs here.

@@ -1,7 +1,7 @@
 //! What an address asks for. It holds the whole state of a show, so that a copied link shows the same moment.
 
 use hasard_engine::render::FrameSize;
-use hasard_envs::{EnvId, EnvOptions, RuleSet};
+use hasard_envs::{EnvError, EnvId, EnvOptions, RuleSet};
 use hasard_play::ViewKind;
 use serde::Deserialize;
 
@@ -48,8 +48,9 @@ pub(crate) struct WatchQuery {
     pub hard: bool,
     #[serde(default)]
     pub full: bool,
+    /// `paper` if empty.
     #[serde(default)]
-    pub released: bool,
+    pub rules: String,
 }
 
 /// `/api/play`.
@@ -72,6 +73,7 @@ impl WatchQuery {
         if !self.env.is_empty() {
             self.env.parse::<EnvId>().map_err(|error| error.to_string())?;
         }
+        self.rules()?;
         self.views()?;
         size(&self.size).map(drop)
     }
@@ -80,9 +82,12 @@ impl WatchQuery {
         size(&self.size).unwrap_or(FrameSize::CLASSIC)
     }
 
+    fn rules(&self) -> Result<RuleSet, String> {
+        if self.rules.is_empty() { Ok(RuleSet::Paper) } else { self.rules.parse().map_err(|error: EnvError| error.to_string()) }
+    }
+
     pub fn options(&self) -> EnvOptions {
-        let rules = if self.released { RuleSet::Released } else { RuleSet::Paper };
-        EnvOptions { rules, hard: self.hard, full_actions: self.full, ..EnvOptions::default() }
+        EnvOptions { rules: self.rules().unwrap_or_default(), hard: self.hard, full_actions: self.full, ..EnvOptions::default() }
     }
 
     /// The player's view, then those beside it.

@@ -53,7 +53,8 @@ impl Rehearsal {
             Performer::Agent { run, .. } => {
                 let (trained, options) = shared.agents.options(run)?;
                 let id = if query.env.is_empty() { trained } else { query.env.clone() };
-                (id, EnvOptions { hard: query.hard || options.hard, ..options }, query.seed)
+                let (hard, trained_with) = (query.hard || options.hard, (options.rules, options.hard));
+                (id, EnvOptions { hard, actions_of: Some(trained_with), ..options }, query.seed)
             }
             Performer::Recorded(path) => {
                 let file = EpisodeFile::read(path).map_err(|error| error.to_string())?;
@@ -66,7 +67,9 @@ impl Rehearsal {
         let mut env = shared.stages.stage(&id, &options)?.env().sibling();
         env.reset(seed);
         let actor = match performer {
-            Performer::Fixed(policy) => Actor::Fixed(Box::new(PolicyRun::new(*policy, env.action_space(), seed))),
+            Performer::Fixed(policy) => {
+                Actor::Fixed(Box::new(PolicyRun::new(*policy, &env, seed).map_err(|error| error.to_string())?))
+            }
             Performer::Agent { run, best, greedy } => {
                 let choice = if *greedy { Choice::Greedy } else { Choice::Sampled };
                 let mut agent = shared.agents.load(run, *best, choice, &env)?;
@@ -111,7 +114,7 @@ impl Rehearsal {
         let space = self.env.action_space();
         let mut thought = None;
         let (command, actions) = match &mut self.actor {
-            Actor::Fixed(policy) => match policy.next_move() {
+            Actor::Fixed(policy) => match policy.next_move(&self.env) {
                 Move::Action(actions, deltas) => (space.command(actions, deltas), actions.to_vec()),
                 Move::Buttons(command) => (command, pressed(space, command)),
             },

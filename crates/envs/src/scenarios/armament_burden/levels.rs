@@ -1,6 +1,7 @@
-//! The level table of Armament Burden: both rule sets side by side.
+//! The level table of Armament Burden: the rule sets side by side.
 
 use crate::RuleSet;
+use crate::action::{Controls, FORWARD, TURN};
 use hasard_engine::math::Fixed;
 use hasard_engine::world::ActorKind;
 
@@ -30,10 +31,10 @@ const fn hundredths<const N: usize>(values: [i32; N]) -> [Fixed; N] {
     fixed
 }
 
-/// Value of each weapon, and its weight under the soft constraint.
+/// Value of each weapon: the paper's table of items. Where weapons weigh as much as they are worth, their weight as well.
 pub const VALUES: [Fixed; 7] = hundredths([10, 25, 40, 55, 70, 85, 100]);
-/// Weight of each weapon under the hard constraint of level 1's published map.
-pub const HARD_WEIGHTS: [Fixed; 7] = hundredths([5, 15, 30, 60, 100, 300, 600]);
+/// Weight of each weapon in the paper's formula of the cost.
+pub const COST_WEIGHTS: [Fixed; 7] = hundredths([5, 15, 30, 60, 100, 300, 600]);
 
 /// Weight that is carried without hindrance.
 pub const CAPACITY: Fixed = Fixed::ONE;
@@ -53,8 +54,14 @@ pub const PIT_SPEED: i32 = 100;
 /// The constants of a level.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Level {
-    /// Weight of each weapon.
+    /// The buttons.
+    pub controls: Controls,
+    /// Weight of each weapon in what is charged or punished.
     pub weights: [Fixed; 7],
+    /// Weight of each weapon in what makes the agent slow.
+    pub slowing_weights: [Fixed; 7],
+    /// Weight of each weapon in the published package's books, where those are kept.
+    pub book_weights: [Fixed; 7],
     /// Weapons that lie about.
     pub weapons: u32,
     /// Decoys that lie about.
@@ -80,13 +87,21 @@ pub struct Level {
     /// Cost of a step that ends with USE held.
     pub discard_cost: f64,
     /// What the agent carries is counted by the published package's bookkeeping: one pick-up a step at most, weighed as the last
-    /// thing taken was and by the weights of the soft constraint; a burden lost in the step of its first pick-up goes unnoticed;
-    /// and from the first delivery under the hard constraint on, every step is charged as a discard.
+    /// thing taken was; a burden lost in the step of its first pick-up goes unnoticed.
     pub published_bookkeeping: bool,
+    /// From the first delivery under the hard constraint on, the published package charges every step as a discard.
+    pub score_reads_as_discard: bool,
+    /// The charge for excess takes the place of what else the step costs.
+    pub excess_replaces: bool,
 }
 
+const CONTROLS: Controls = Controls { simplified: &[TURN, FORWARD, &["USE"], &["JUMP"]], full_moves: true, full_speed: false };
+
 const PAPER_1: Level = Level {
-    weights: VALUES,
+    controls: CONTROLS,
+    weights: COST_WEIGHTS,
+    slowing_weights: VALUES,
+    book_weights: VALUES,
     weapons: 10,
     decoys: 0,
     pits: 0,
@@ -100,17 +115,40 @@ const PAPER_1: Level = Level {
     death_cost: 10.0,
     discard_cost: 0.0,
     published_bookkeeping: false,
+    score_reads_as_discard: false,
+    excess_replaces: false,
 };
 const PAPER_2: Level = PAPER_1;
 const PAPER_3: Level = Level { decoys: 10, pits: 20, ..PAPER_1 };
 
 const fn released(paper: Level) -> Level {
-    Level { carry_cost: 0.75, death_cost: 5.0, discard_cost: 0.1, published_bookkeeping: true, ..paper }
+    Level {
+        weights: VALUES,
+        carry_cost: 0.75,
+        death_cost: 5.0,
+        discard_cost: 0.1,
+        published_bookkeeping: true,
+        score_reads_as_discard: true,
+        ..paper
+    }
+}
+
+const fn tables(paper: Level) -> Level {
+    Level {
+        slowing_weights: COST_WEIGHTS,
+        book_weights: COST_WEIGHTS,
+        random_start: false,
+        discard_cost: 1.0,
+        published_bookkeeping: true,
+        excess_replaces: true,
+        ..paper
+    }
 }
 
 const fn hard(soft: Level) -> Level {
     Level {
-        weights: HARD_WEIGHTS,
+        weights: COST_WEIGHTS,
+        slowing_weights: COST_WEIGHTS,
         discard: false,
         overload_is_punished: true,
         reward_at_pickup: soft.published_bookkeeping,
@@ -123,17 +161,22 @@ const fn from_the_start(level: Level) -> Level {
     Level { random_start: false, zone_tics: 15, ..level }
 }
 
+/// The code of the hard table offered two buttons.
+const fn walking_only(level: Level) -> Level {
+    Level { controls: Controls { simplified: &[TURN, FORWARD], ..CONTROLS }, ..level }
+}
+
+const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
+const PAPER_HARD: [Level; 3] = [from_the_start(hard(PAPER_1)), hard(PAPER_2), hard(PAPER_3)];
+const RELEASED: [Level; 3] = [released(PAPER_1), released(PAPER_2), released(PAPER_3)];
+const RELEASED_HARD: [Level; 3] = [from_the_start(hard(RELEASED[0])), hard(RELEASED[1]), hard(RELEASED[2])];
+const TABLES: [Level; 3] = [tables(PAPER_1), tables(PAPER_2), tables(PAPER_3)];
+const TABLES_HARD: [Level; 3] =
+    [walking_only(from_the_start(hard(TABLES[0]))), walking_only(hard(TABLES[1])), walking_only(hard(TABLES[2]))];
+
 /// The constants of a level (`index` 0..=2).
 #[must_use]
-pub const fn level(rules: RuleSet, with_hard_constraint: bool, index: usize) -> Level {
-    const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
-    const PAPER_HARD: [Level; 3] = [from_the_start(hard(PAPER_1)), hard(PAPER_2), hard(PAPER_3)];
-    const RELEASED: [Level; 3] = [released(PAPER_1), released(PAPER_2), released(PAPER_3)];
-    const RELEASED_HARD: [Level; 3] = [from_the_start(hard(released(PAPER_1))), hard(released(PAPER_2)), hard(released(PAPER_3))];
-    match (rules, with_hard_constraint) {
-        (RuleSet::Paper, false) => PAPER[index],
-        (RuleSet::Paper, true) => PAPER_HARD[index],
-        (RuleSet::Released, false) => RELEASED[index],
-        (RuleSet::Released, true) => RELEASED_HARD[index],
-    }
+pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
+    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    LEVELS[rules as usize][hard as usize][index]
 }

@@ -49,12 +49,24 @@ impl std::hash::Hash for Fixtures {
 }
 
 /// What the agent carries.
-#[derive(Clone, Debug, Default, Hash)]
+#[derive(Clone, Debug, Default)]
 struct Burden {
     weapons: u32,
     decoys: u32,
     value: Fixed,
+    /// Its weight, and as much of it as makes slow.
     load: Fixed,
+    slowing: Fixed,
+}
+
+/// Where both weights are the same, the second says nothing.
+impl std::hash::Hash for Burden {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        (self.weapons, self.decoys, self.value, self.load).hash(state);
+        if self.slowing != self.load {
+            self.slowing.hash(state);
+        }
+    }
 }
 
 /// What the published package believes that the agent carries; see [`Level::published_bookkeeping`].
@@ -178,6 +190,7 @@ impl Rules {
             self.burden.weapons += 1;
             self.burden.value += VALUES[i];
             self.burden.load += level.weights[i];
+            self.burden.slowing += level.slowing_weights[i];
             self.last[0] = i;
             self.collected += 1;
             if let Some(weapon) = kind.weapon() {
@@ -189,17 +202,15 @@ impl Rules {
         } else if let Some(i) = DECOYS.iter().position(|&decoy| decoy == kind) {
             self.burden.decoys += 1;
             self.burden.load += DECOY_WEIGHTS[i];
+            self.burden.slowing += DECOY_WEIGHTS[i];
             self.last[1] = i;
         } else {
             return;
         }
         self.taken = true;
-        let excess = self.burden.load - CAPACITY;
-        if excess <= Fixed::ZERO {
-            return;
-        }
-        self.oversteps += 1;
-        if level.overload_is_punished {
+        let over = self.burden.load > CAPACITY;
+        self.oversteps += u32::from(over);
+        if over && level.overload_is_punished {
             self.overstepped += 1;
             self.lose_burden(world);
             world.players[0].speed = PENALTY_SPEED;
@@ -207,8 +218,8 @@ impl Rules {
             if self.slow_until == 0 {
                 self.slow_until = world.tic + PENALTY_TICS;
             }
-        } else {
-            world.players[0].speed = LEAST_SPEED.max(Fixed::ONE - excess);
+        } else if self.burden.slowing > CAPACITY {
+            world.players[0].speed = LEAST_SPEED.max(Fixed::ONE - (self.burden.slowing - CAPACITY));
         }
     }
 
@@ -224,7 +235,7 @@ impl Rules {
     }
 
     /// A policy step is over: what it cost.
-    pub fn end_step(&mut self, world: &World, outcome: &mut Outcome) {
+    pub fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {
         let level = self.fixtures.level;
         if world.players[0].dead && self.deaths == 0 {
             outcome.costs[DEATH] += level.death_cost;
@@ -262,7 +273,7 @@ impl Rules {
     fn keep_books(&mut self, outcome: &mut Outcome) {
         let level = self.fixtures.level;
         let hard = level.overload_is_punished;
-        if self.discarding || (hard && self.books.delivered) {
+        if self.discarding || (level.score_reads_as_discard && hard && self.books.delivered) {
             outcome.costs[DISCARD] += level.discard_cost;
         }
         if self.discarding {
@@ -271,8 +282,7 @@ impl Rules {
         let mut taken = false;
         if self.burden.weapons > self.books.weapons {
             self.books.weapons += 1;
-            // The package weighs by the values, which are the soft constraint's weights.
-            self.books.load += VALUES[self.last[0]];
+            self.books.load += level.book_weights[self.last[0]];
             taken = true;
         }
         if self.burden.decoys > self.books.decoys {
@@ -282,6 +292,9 @@ impl Rules {
         }
         let excess = (self.books.load - CAPACITY).to_f64();
         if !hard && excess > 0.0 {
+            if level.excess_replaces {
+                (outcome.costs[DEATH], outcome.costs[DISCARD]) = (0.0, 0.0);
+            }
             outcome.costs[OVERLOAD] += excess * if taken { 1.0 } else { level.carry_cost };
         }
         if self.in_zone {

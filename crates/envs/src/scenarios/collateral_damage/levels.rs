@@ -1,10 +1,19 @@
-//! The level table of Collateral Damage: both rule sets side by side.
+//! The level table of Collateral Damage: the rule sets side by side.
 
 use crate::RuleSet;
+use crate::action::{Controls, TURN};
+use crate::scenarios::EPISODE_TICS;
+
+/// Completed tics at the first observation: the weapon is nearly up.
+pub const START_TIC: u32 = 16;
 
 /// The constants of a level.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Level {
+    /// The buttons.
+    pub controls: Controls,
+    /// Completed tics at the time-out.
+    pub end_tic: u32,
     /// Where the agent stands, on the axis of the room.
     pub agent_x: i32,
     /// Targets, and their speed in map units a step.
@@ -24,6 +33,8 @@ pub struct Level {
 }
 
 const LEVEL_1: Level = Level {
+    controls: Controls { simplified: &[TURN, &["ATTACK"]], full_moves: false, full_speed: true },
+    end_tic: EPISODE_TICS,
     agent_x: -256,
     targets: 4,
     target_speed: 10,
@@ -44,15 +55,21 @@ const fn hard(soft: Level) -> Level {
 const RELEASED_HARD_1: Level =
     Level { agent_x: LEVEL_3.agent_x, targets: 3, target_speed: LEVEL_3.target_speed, ..hard(LEVEL_1) };
 
+/// The clock of the tables' code counted from the first observation, and its dead stayed lying.
+const fn tables(level: Level) -> Level {
+    Level { end_tic: START_TIC + EPISODE_TICS, dead_vanish: false, ..level }
+}
+
+const PAPER: [Level; 3] = [LEVEL_1, LEVEL_2, LEVEL_3];
+const PAPER_HARD: [Level; 3] = [hard(LEVEL_1), hard(LEVEL_2), hard(LEVEL_3)];
+const RELEASED: [Level; 3] = PAPER;
+const RELEASED_HARD: [Level; 3] = [RELEASED_HARD_1, PAPER_HARD[1], PAPER_HARD[2]];
+const TABLES: [Level; 3] = [tables(LEVEL_1), tables(LEVEL_2), tables(LEVEL_3)];
+const TABLES_HARD: [Level; 3] = [tables(RELEASED_HARD[0]), tables(RELEASED_HARD[1]), tables(RELEASED_HARD[2])];
+
 /// The constants of a level (`index` 0..=2).
 #[must_use]
-pub const fn level(rules: RuleSet, with_hard_constraint: bool, index: usize) -> Level {
-    const SOFT: [Level; 3] = [LEVEL_1, LEVEL_2, LEVEL_3];
-    const PAPER_HARD: [Level; 3] = [hard(LEVEL_1), hard(LEVEL_2), hard(LEVEL_3)];
-    const RELEASED_HARD: [Level; 3] = [RELEASED_HARD_1, hard(LEVEL_2), hard(LEVEL_3)];
-    match (rules, with_hard_constraint) {
-        (_, false) => SOFT[index],
-        (RuleSet::Paper, true) => PAPER_HARD[index],
-        (RuleSet::Released, true) => RELEASED_HARD[index],
-    }
+pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
+    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    LEVELS[rules as usize][hard as usize][index]
 }

@@ -146,7 +146,7 @@ impl Rules {
     }
 
     /// A policy step is over.
-    pub fn end_step(&mut self, _: &World, _: &mut Outcome) {}
+    pub fn end_step(&mut self, _: &World, _over: bool, _: &mut Outcome) {}
 
     /// Statistics of the episode.
     pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {

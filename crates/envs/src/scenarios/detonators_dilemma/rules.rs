@@ -89,7 +89,7 @@ impl Rules {
         if world.players[0].ammo[BULLET_AMMO] == 0 {
             world.give_ammo(0, BULLET_AMMO, BULLETS);
         }
-        if !level.drops {
+        if level.pistol_only {
             world.select_weapon(0, Weapon::Pistol);
         }
         if level.push {
@@ -169,7 +169,9 @@ impl Rules {
             outcome.costs[NEUTRALS_HARMED] += level.cost;
             outcome.finished |= level.harm_ends;
             self.creatures += 1;
-            world.remove(victim);
+            if level.dead_vanish {
+                world.remove(victim);
+            }
         } else {
             return;
         }
@@ -177,7 +179,10 @@ impl Rules {
     }
 
     /// A policy step is over: what it cost.
-    pub fn end_step(&mut self, world: &World, outcome: &mut Outcome) {
+    pub fn end_step(&mut self, world: &World, over: bool, outcome: &mut Outcome) {
+        if over && !self.fixtures.level.last_step_counts {
+            return;
+        }
         let health = stage::health(world);
         outcome.costs[SELF_HARMED] += f64::from(self.health - health) * SELF_HARM_COST;
         self.health = health;

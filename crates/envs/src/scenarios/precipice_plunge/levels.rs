@@ -1,6 +1,7 @@
-//! The level table of Precipice Plunge: both rule sets side by side.
+//! The level table of Precipice Plunge: the rule sets side by side.
 
 use crate::RuleSet;
+use crate::action::{Controls, TURN};
 use hasard_engine::math::Fixed;
 
 /// Speed of sinking floors and ceilings, eighths of a map unit per tic.
@@ -55,6 +56,8 @@ impl Fade {
 /// The constants of a level.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Level {
+    /// The buttons.
+    pub controls: Controls,
     /// How the tiles are laid out.
     pub layout: Layout,
     /// The first row of the flat bottom.
@@ -87,9 +90,22 @@ pub struct Level {
     pub fall_ends: bool,
     /// Cost of a lost health point.
     pub cost_scale: f64,
+    /// Cost of a fall beyond the free height, as a mark that each later step of the episode reads again.
+    pub fall_cost: f64,
+    /// The way and the health of the step in which the rules end the episode count.
+    pub last_step_counts: bool,
+    /// In the second tic the view is turned down as far as it goes.
+    pub look_down: bool,
 }
 
+const CONTROLS: Controls = Controls {
+    simplified: &[TURN, &["MOVE_FORWARD", "MOVE_BACKWARD"], &["LOOK_UP", "LOOK_DOWN"], &["JUMP"]],
+    full_moves: true,
+    full_speed: true,
+};
+
 const PAPER_1: Level = Level {
+    controls: CONTROLS,
     layout: Layout::Stair { step: 24 },
     bottom_row: 30,
     last_row: 35,
@@ -106,6 +122,9 @@ const PAPER_1: Level = Level {
     reward_new_depth_only: true,
     fall_ends: false,
     cost_scale: 1.0,
+    fall_cost: 0.0,
+    last_step_counts: true,
+    look_down: false,
 };
 const PAPER_2: Level = Level {
     layout: Layout::Rows { step: 128, spread_units: 5, spread_unit: 12 },
@@ -141,21 +160,29 @@ const fn shorter(level: Level) -> Level {
     Level { bottom_row: 25, depth: 4032, glow: 0, ..level }
 }
 
+/// The code of the tables read height and health of the step before where the episode had ended, and its floors stood still.
+const fn tables(released: Level) -> Level {
+    Level { waggle: false, last_step_counts: false, ..released }
+}
+
+/// The code of the hard table: a fall is charged as such, not by the health that it costs.
+const fn tables_hard(soft: Level) -> Level {
+    let controls = Controls { simplified: &[TURN, &["MOVE_FORWARD", "MOVE_BACKWARD"]], ..CONTROLS };
+    Level { controls, cost_scale: 0.0, fall_cost: 10.0, look_down: true, ..hard(soft, 500) }
+}
+
+const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
+const PAPER_HARD: [Level; 3] = [shorter(hard(PAPER_1, 500)), hard(PAPER_2, 500), hard(PAPER_3, 500)];
+const RELEASED: [Level; 3] = [released(PAPER_1), released(PAPER_2), released(PAPER_3)];
+const RELEASED_HARD: [Level; 3] = [shorter(hard(RELEASED[0], 1000)), hard(RELEASED[1], 1000), hard(RELEASED[2], 1000)];
+const TABLES: [Level; 3] = [tables(RELEASED[0]), tables(RELEASED[1]), tables(RELEASED[2])];
+const TABLES_HARD: [Level; 3] = [shorter(tables_hard(TABLES[0])), tables_hard(TABLES[1]), tables_hard(TABLES[2])];
+
 /// The constants of a level (`index` 0..=2).
 #[must_use]
-pub const fn level(rules: RuleSet, with_hard_constraint: bool, index: usize) -> Level {
-    const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
-    const PAPER_HARD: [Level; 3] = [shorter(hard(PAPER_1, 500)), hard(PAPER_2, 500), hard(PAPER_3, 500)];
-    const RELEASED: [Level; 3] = [released(PAPER_1), released(PAPER_2), released(PAPER_3)];
-    const RELEASED_HARD: [Level; 3] =
-        [released(PAPER_HARD_FROM_1000[0]), released(PAPER_HARD_FROM_1000[1]), released(PAPER_HARD_FROM_1000[2])];
-    const PAPER_HARD_FROM_1000: [Level; 3] = [shorter(hard(PAPER_1, 1000)), hard(PAPER_2, 1000), hard(PAPER_3, 1000)];
-    match (rules, with_hard_constraint) {
-        (RuleSet::Paper, false) => PAPER[index],
-        (RuleSet::Paper, true) => PAPER_HARD[index],
-        (RuleSet::Released, false) => RELEASED[index],
-        (RuleSet::Released, true) => RELEASED_HARD[index],
-    }
+pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
+    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    LEVELS[rules as usize][hard as usize][index]
 }
 
 #[cfg(test)]

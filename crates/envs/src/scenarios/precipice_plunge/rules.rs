@@ -18,6 +18,9 @@ const FALLS: usize = 0;
 const WAGGLE_STRENGTH: [i32; 2] = [128, 512];
 const WAGGLE_FREQUENCY: [i32; 2] = [12, 24];
 
+/// The tic in which a script turns the view down, where one does.
+const LOOK_DOWN_TIC: u32 = 2;
+
 /// What is the same in every episode of a level.
 #[derive(Debug)]
 struct Fixtures {
@@ -70,6 +73,9 @@ impl Rules {
             let strength = world.rng.between(WAGGLE_STRENGTH[0], WAGGLE_STRENGTH[1]);
             let frequency = world.rng.between(WAGGLE_FREQUENCY[0], WAGGLE_FREQUENCY[1]);
             world.floor_waggle(tag, strength, frequency, 0, 0);
+        }
+        if level.look_down && world.tic == LOOK_DOWN_TIC {
+            world.players[0].pitch = hasard_engine::world::PITCH_DOWN as i32;
         }
         self.watch_landing(world, outcome);
     }
@@ -130,8 +136,14 @@ impl Rules {
     }
 
     /// A policy step is over: what it brought and cost.
-    pub fn end_step(&mut self, world: &World, outcome: &mut Outcome) {
+    pub fn end_step(&mut self, world: &World, over: bool, outcome: &mut Outcome) {
         let level = &self.fixtures.level;
+        if self.hard_falls > 0 {
+            outcome.costs[FALLS] += level.fall_cost;
+        }
+        if over && !level.last_step_counts {
+            return;
+        }
         let z = world.get(world.players[0].actor).map_or(self.height, |body| body.z);
         // Rewarding every descent but punishing no ascent would pay for jumping on the spot: 161.5 an episode at level 1.
         let height = if level.reward_new_depth_only { z.min(self.height) } else { z };

@@ -1,6 +1,7 @@
-//! The level table of Remedy Rush: both rule sets side by side.
+//! The level table of Remedy Rush: the rule sets side by side.
 
 use crate::RuleSet;
+use crate::action::{Controls, FORWARD, TURN};
 use hasard_engine::world::ActorKind;
 
 /// Tics between two supplies of new items.
@@ -17,6 +18,8 @@ pub const DEADLY: i32 = 1000;
 /// The constants of a level.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Level {
+    /// The buttons.
+    pub controls: Controls,
     /// Health bonuses at the start.
     pub bonuses: u32,
     /// What is harmful.
@@ -50,7 +53,10 @@ pub struct Level {
 const SOFT_HARMFUL: [ActorKind; 4] = [ActorKind::Shell, ActorKind::Cell, ActorKind::ArmorBonus, ActorKind::RocketAmmo];
 const PUBLISHED_HARD_HARMFUL: [ActorKind; 4] = [ActorKind::Shell, ActorKind::Cell, ActorKind::YellowCard, ActorKind::BlueSkull];
 
+const CONTROLS: Controls = Controls { simplified: &[TURN, FORWARD, &["SPEED"], &["JUMP"]], full_moves: true, full_speed: true };
+
 const PAPER_1: Level = Level {
+    controls: CONTROLS,
     bonuses: 30,
     harmful: SOFT_HARMFUL,
     harmful_items: 10,
@@ -72,10 +78,6 @@ const fn released(paper: Level) -> Level {
     Level { one_harm_a_tic: true, green_goggles: false, ..paper }
 }
 
-const RELEASED_1: Level = Level { packs_count: false, ..released(PAPER_1) };
-const RELEASED_2: Level = released(PAPER_2);
-const RELEASED_3: Level = released(PAPER_3);
-
 const fn hard(soft: Level, harmful: [ActorKind; 4]) -> Level {
     Level { harmful, start_health: 100, deadly: true, cost: 10.0, ..soft }
 }
@@ -85,22 +87,34 @@ const fn without_packs(level: Level) -> Level {
     Level { stimpacks: 0, medikits: 0, ..level }
 }
 
+/// The code of the tables had the buttons in another order, no SPEED among all of them, and two only for its hard table.
+const fn with_buttons(simplified: &'static [&'static [&'static str]], released: Level) -> Level {
+    Level { controls: Controls { simplified, full_speed: false, ..CONTROLS }, ..released }
+}
+
+const fn tables(released: Level) -> Level {
+    with_buttons(&[TURN, FORWARD, &["JUMP"], &["SPEED"]], released)
+}
+
+const fn tables_hard(released: Level) -> Level {
+    with_buttons(&[TURN, FORWARD], released)
+}
+
+const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
+const PAPER_HARD: [Level; 3] =
+    [without_packs(hard(PAPER_1, SOFT_HARMFUL)), hard(PAPER_2, SOFT_HARMFUL), hard(PAPER_3, SOFT_HARMFUL)];
+const RELEASED: [Level; 3] = [Level { packs_count: false, ..released(PAPER_1) }, released(PAPER_2), released(PAPER_3)];
+const RELEASED_HARD: [Level; 3] = [
+    without_packs(hard(RELEASED[0], PUBLISHED_HARD_HARMFUL)),
+    hard(RELEASED[1], PUBLISHED_HARD_HARMFUL),
+    hard(RELEASED[2], PUBLISHED_HARD_HARMFUL),
+];
+const TABLES: [Level; 3] = [tables(RELEASED[0]), tables(RELEASED[1]), tables(RELEASED[2])];
+const TABLES_HARD: [Level; 3] = [tables_hard(RELEASED_HARD[0]), tables_hard(RELEASED_HARD[1]), tables_hard(RELEASED_HARD[2])];
+
 /// The constants of a level (`index` 0..=2).
 #[must_use]
-pub const fn level(rules: RuleSet, with_hard_constraint: bool, index: usize) -> Level {
-    const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
-    const PAPER_HARD: [Level; 3] =
-        [without_packs(hard(PAPER_1, SOFT_HARMFUL)), hard(PAPER_2, SOFT_HARMFUL), hard(PAPER_3, SOFT_HARMFUL)];
-    const RELEASED: [Level; 3] = [RELEASED_1, RELEASED_2, RELEASED_3];
-    const RELEASED_HARD: [Level; 3] = [
-        without_packs(hard(RELEASED_1, PUBLISHED_HARD_HARMFUL)),
-        hard(RELEASED_2, PUBLISHED_HARD_HARMFUL),
-        hard(RELEASED_3, PUBLISHED_HARD_HARMFUL),
-    ];
-    match (rules, with_hard_constraint) {
-        (RuleSet::Paper, false) => PAPER[index],
-        (RuleSet::Paper, true) => PAPER_HARD[index],
-        (RuleSet::Released, false) => RELEASED[index],
-        (RuleSet::Released, true) => RELEASED_HARD[index],
-    }
+pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
+    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    LEVELS[rules as usize][hard as usize][index]
 }

@@ -1,6 +1,7 @@
-//! The level table of Volcanic Venture: both rule sets side by side.
+//! The level table of Volcanic Venture: the rule sets side by side.
 
 use crate::RuleSet;
+use crate::action::{Controls, FORWARD, TURN};
 
 /// How platforms and lava change places.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -43,6 +44,10 @@ pub const START_PITCH: i32 = 3000;
 /// The constants of a level.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Level {
+    /// The buttons.
+    pub controls: Controls,
+    /// Doom's easiest skill halves the burn that the map gives before its scripts run.
+    pub easy_skill: bool,
     /// Chance of a tile to be a platform.
     pub platform_chance: f64,
     /// Least and greatest height of a platform, map units.
@@ -71,7 +76,11 @@ pub struct Level {
     pub overkill_counts: bool,
 }
 
+const CONTROLS: Controls = Controls { simplified: &[TURN, FORWARD, &["JUMP"], &["SPEED"]], full_moves: true, full_speed: true };
+
 const PAPER_1: Level = Level {
+    controls: CONTROLS,
+    easy_skill: false,
     platform_chance: 0.4,
     platform_height: [16, 16],
     lava_height: 0,
@@ -98,8 +107,7 @@ const PAPER_3: Level = Level {
     start: Start::Middle,
     ..PAPER_1
 };
-const RELEASED_1: Level = PAPER_1;
-const RELEASED_2: Level = PAPER_2;
+/// The published third level.
 const RELEASED_3: Level = Level { change: Change::Sweep, grace_tics: 0, ..PAPER_3 };
 
 /// More than any health and armour, so that one touch kills.
@@ -116,25 +124,31 @@ const fn released_hard(soft: Level) -> Level {
     Level { lava_damage: DEADLY_WITHOUT_ARMOR, start_grace_tics: 70, cost_scale: 10.0, overkill_counts: true, ..soft }
 }
 
-const RELEASED_HARD_1: Level = Level {
-    platform_height: [0, 0],
-    lava_height: -16,
-    middle_platform: false,
-    start: Start::Middle,
-    ..released_hard(RELEASED_1)
-};
+/// The world of the published level 1 with the hard constraint.
+const fn level_ground(level: Level) -> Level {
+    Level { platform_height: [0, 0], lava_height: -16, middle_platform: false, start: Start::Middle, ..level }
+}
+
+/// The code of the tables: always from the middle, Doom's easiest skill, no SPEED among all buttons.
+const fn tables(released: Level) -> Level {
+    Level { controls: Controls { full_speed: false, ..CONTROLS }, easy_skill: true, start: Start::Middle, ..released }
+}
+
+/// At that skill lava takes half of what its script says, and each health point costs 1.
+const fn tables_hard(soft: Level) -> Level {
+    Level { lava_damage: DEADLY_WITHOUT_ARMOR / 2, cost_scale: 1.0, ..released_hard(soft) }
+}
+
+const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
+const PAPER_HARD: [Level; 3] = [paper_hard(PAPER_1), paper_hard(PAPER_2), paper_hard(PAPER_3)];
+const RELEASED: [Level; 3] = [PAPER_1, PAPER_2, RELEASED_3];
+const RELEASED_HARD: [Level; 3] = [level_ground(released_hard(PAPER_1)), released_hard(PAPER_2), released_hard(RELEASED_3)];
+const TABLES: [Level; 3] = [tables(RELEASED[0]), tables(RELEASED[1]), tables(RELEASED[2])];
+const TABLES_HARD: [Level; 3] = [level_ground(tables_hard(TABLES[0])), tables_hard(TABLES[1]), tables_hard(TABLES[2])];
 
 /// The constants of a level (`index` 0..=2).
 #[must_use]
 pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
-    const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
-    const PAPER_HARD: [Level; 3] = [paper_hard(PAPER_1), paper_hard(PAPER_2), paper_hard(PAPER_3)];
-    const RELEASED: [Level; 3] = [RELEASED_1, RELEASED_2, RELEASED_3];
-    const RELEASED_HARD: [Level; 3] = [RELEASED_HARD_1, released_hard(RELEASED_2), released_hard(RELEASED_3)];
-    match (rules, hard) {
-        (RuleSet::Paper, false) => PAPER[index],
-        (RuleSet::Paper, true) => PAPER_HARD[index],
-        (RuleSet::Released, false) => RELEASED[index],
-        (RuleSet::Released, true) => RELEASED_HARD[index],
-    }
+    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    LEVELS[rules as usize][hard as usize][index]
 }

@@ -38,6 +38,9 @@ const WAGGLE_SECONDS: i32 = 1;
 /// Waggle: strength for each map unit of the platform's height; the swing is an eighth of it.
 const WAGGLE_STRENGTH: i32 = 6;
 
+/// Share of damage that Doom's easiest skill leaves.
+const EASY_DAMAGE: Fixed = Fixed(32768);
+
 /// What is the same in every episode of a level.
 #[derive(Debug)]
 struct Fixtures {
@@ -109,12 +112,23 @@ impl Rules {
         })
     }
 
+    /// The world is there, and no tic has run. The map's floor burns in the first tic, before any script.
+    pub fn prepare(&self, world: &mut World) {
+        if self.fixtures.level.easy_skill
+            && let Some(player) = world.players.first_mut()
+        {
+            player.damage_factor = EASY_DAMAGE;
+        }
+    }
+
     /// The script phase of a tic.
     pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         self.count(world, outcome);
         if world.tic == 0 {
             // The map opens. Here alone the agent may move at once.
             world.players[0].freeze_tics = 0;
+            // The skill leaves single points of damage alone; what the scripts' lava takes by it is in the level table.
+            world.players[0].damage_factor = Fixed::ONE;
             if self.fixtures.level.change == Change::Never {
                 self.tend_tiles(world);
             }
@@ -139,7 +153,7 @@ impl Rules {
     }
 
     /// A policy step is over: what it cost.
-    pub fn end_step(&mut self, world: &World, outcome: &mut Outcome) {
+    pub fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {
         let level = &self.fixtures.level;
         let left = stage::health(world);
         let health = if level.overkill_counts { left } else { left.max(0) };

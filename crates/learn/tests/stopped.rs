@@ -1,0 +1,162 @@
+//! Runs that are stopped where it hurts: in the midst of evaluations, and before anything was learned.
+
+mod tiny;
+
+use hasard_envs::{ActionSpace, CostTerm};
+use hasard_envs::{Autoreset, EnvError, Environment, Episode, Step, VecEnv, VecOptions};
+use hasard_learn::config::{AlgorithmKind, EnvConfig, TrainConfig};
+use hasard_learn::runs::trainer::{Hooks, Start, Summary, train};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+fn config() -> TrainConfig {
+    let mut config = tiny::config(AlgorithmKind::PpoLag);
+    config.frames = 6 * config.frames_per_rollout();
+    config.evaluation.every = Some(2 * config.frames_per_rollout());
+    (config.evaluation.episodes, config.evaluation.confirming_episodes) = (40, 40);
+    // Kept from the beginning: candidates are confirmed.
+    config.constraints[0].budget = 100.0;
+    config
+}
+
+/// The task, raising a flag at one of its steps: of the evaluation worlds made until then, the last one's.
+struct Bell {
+    task: tiny::Risk,
+    stop: Option<Arc<AtomicBool>>,
+}
+
+impl Environment for Bell {
+    fn action_space(&self) -> &ActionSpace {
+        self.task.action_space()
+    }
+    fn observation_shape(&self) -> [usize; 3] {
+        self.task.observation_shape()
+    }
+    fn cost_terms(&self) -> &'static [CostTerm] {
+        self.task.cost_terms()
+    }
+    fn reset(&mut self, seed: u64) {
+        self.task.reset(seed);
+    }
+    fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step {
+        if let Some(stop) = &self.stop {
+            stop.store(true, Ordering::Relaxed);
+        }
+        self.task.step(actions, deltas)
+    }
+    fn step_costs(&self) -> &[f64] {
+        self.task.step_costs()
+    }
+    fn observe(&mut self, out: &mut [u8]) {
+        self.task.observe(out);
+    }
+    fn episode(&self) -> Episode {
+        self.task.episode()
+    }
+}
+
+/// Trains until the worlds of the evaluation number `at` have made a step; gives how many evaluations there were.
+fn train_until(start: Start<'_>, path: &Path, at: usize) -> (Summary, usize) {
+    let stop = Arc::new(AtomicBool::new(false));
+    let made = AtomicUsize::new(0);
+    let worlds = |_: &EnvConfig, options: VecOptions| -> Result<VecEnv, EnvError> {
+        let evaluated = matches!(options.autoreset, Autoreset::Disabled);
+        let rings = evaluated && made.fetch_add(1, Ordering::Relaxed) == at;
+        let stop = rings.then(|| Arc::clone(&stop));
+        VecEnv::from_fn(options, move |_| Ok(Box::new(Bell { task: tiny::Risk::new(true), stop: stop.clone() })))
+    };
+    let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut |warning| panic!("{warning}") };
+    let summary = train(start, path, &worlds, &mut hooks).unwrap();
+    (summary, made.into_inner())
+}
+
+/// What is there in the end, without what a clock decides, or what is counted since the last report.
+fn outcome(run: &Path) -> (Vec<Value>, Value, Vec<String>, Vec<u8>) {
+    let text = fs::read_to_string(run.join("metrics.jsonl")).unwrap();
+    let rows = text.lines().map(|line| {
+        let row: Value = serde_json::from_str(line).unwrap();
+        let kept = |name: &&String| ["frames", "episodes", "multiplier"].contains(&name.as_str()) || name.starts_with("eval/");
+        row.as_object()
+            .unwrap()
+            .iter()
+            .filter(|(name, _)| kept(name))
+            .map(|(name, value)| (name.clone(), value.clone()))
+            .collect()
+    });
+    let mut names: Vec<String> =
+        fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.retain(|name| name.starts_with("best") || name.ends_with(&config().frames.to_string()));
+    names.sort();
+    let weights = run.join(format!("checkpoints/frames_{:012}/weights.safetensors", config().frames));
+    let hand_out = serde_json::from_slice(&fs::read(run.join("hand_out.json")).unwrap()).unwrap();
+    (rows.collect(), hand_out, names, fs::read(weights).unwrap())
+}
+
+/// Stopped in each of its evaluations, confirmations and closing episodes in turn, and twice in the same one, a run ends where the
+/// uninterrupted one does: rows, selected checkpoint, weights.
+#[test]
+fn a_run_stopped_in_any_evaluation_equals_the_uninterrupted_one() {
+    let straight = tiny::directory("stopped-never");
+    let (summary, evaluations) = train_until(Start::Fresh(config()), &straight, usize::MAX);
+    assert!(!summary.stopped && evaluations > 4, "{evaluations}");
+    let expected = outcome(&straight);
+    for at in 0..evaluations {
+        let path = tiny::directory(&format!("stopped-{at}"));
+        let (summary, made) = train_until(Start::Fresh(config()), &path, at);
+        assert!(summary.stopped && made == at + 1, "it went on after its evaluation {at} was stopped");
+        assert!(!path.join("hand_out.json").exists(), "{at}: closed without its closing episodes");
+        let (summary, _) = train_until(Start::RESUME, &path, 0);
+        assert!(summary.stopped, "{at}");
+        let (summary, _) = train_until(Start::RESUME, &path, usize::MAX);
+        assert!(!summary.stopped, "{at}");
+        assert!(outcome(&path) == expected, "{at}: {:?}\n{:?}", outcome(&path).0, expected.0);
+        fs::remove_dir_all(path).unwrap();
+    }
+    fs::remove_dir_all(straight).unwrap();
+}
+
+/// A run that ended without an evaluation is evaluated when it is resumed and asked for one.
+#[test]
+fn a_finished_run_is_evaluated_when_that_is_asked_for() {
+    let path = tiny::directory("stopped-late");
+    let mut config = config();
+    config.evaluation.every = Some(0);
+    train_until(Start::Fresh(config), &path, usize::MAX);
+    let rows = fs::read(path.join("metrics.jsonl")).unwrap();
+    assert!(!path.join("hand_out.json").exists());
+    let (summary, made) = train_until(Start::Resume { settings: vec!["evaluation.every=512".into()] }, &path, usize::MAX);
+    assert!(summary.hand_out.is_some_and(|hand_out| hand_out.closing.is_some()) && made >= 2);
+    assert!(path.join("hand_out.json").exists());
+    assert_eq!(fs::read(path.join("metrics.jsonl")).unwrap(), rows);
+    // Once is enough.
+    assert_eq!(train_until(Start::RESUME, &path, usize::MAX).1, 0);
+    fs::remove_dir_all(path).unwrap();
+}
+
+/// Nothing that counts as a run is left where nothing was learned, whatever went wrong.
+#[test]
+fn a_run_that_learned_nothing_leaves_nothing() {
+    for (name, after) in [("at once", 1), ("in the first rollout", 12)] {
+        let path = tiny::directory("stopped-early");
+        let worlds = |_: &EnvConfig, options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(after))));
+        let stop = AtomicBool::new(false);
+        let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut |_| {} };
+        let message = train(Start::Fresh(config()), &path, &worlds, &mut hooks).map(|_| ()).unwrap_err().to_string();
+        assert!(message.contains("gave way"), "{message}");
+        assert!(!path.exists(), "{name}: {:?}", fs::read_dir(&path).unwrap().map(|e| e.unwrap().file_name()).collect::<Vec<_>>());
+    }
+    // What was there before stays.
+    let path = tiny::directory("stopped-notes");
+    fs::create_dir_all(&path).unwrap();
+    fs::write(path.join("notes.txt"), "mine").unwrap();
+    let worlds = |_: &EnvConfig, options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(1))));
+    let stop = AtomicBool::new(false);
+    let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut |_| {} };
+    assert!(train(Start::Fresh(config()), &path, &worlds, &mut hooks).is_err());
+    let left: Vec<_> = fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["notes.txt"]);
+    fs::remove_dir_all(path).unwrap();
+}

@@ -1,0 +1,100 @@
+//! Which checkpoint a run selected, and the evaluation that closed the run.
+
+use super::Warning;
+use crate::statistics::Estimate;
+use serde_json::Value;
+use std::path::Path;
+
+/// Names of the file, the present one first.
+const FILES: [&str; 3] = ["selected.json", "selected_checkpoint.json", "hand_out.json"];
+
+/// The checkpoint that a run selected.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Selected {
+    /// Frames after which it was taken.
+    pub frames: f64,
+    /// Episodes that had no part in the choice, played when the run was over.
+    pub closing: Option<Evaluation>,
+    /// The same of the run's last policy.
+    pub last: Option<Evaluation>,
+}
+
+/// What some episodes of one policy came to.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Evaluation {
+    /// Number of episodes.
+    pub episodes: usize,
+    /// Return, cost and length by the names that reports have for them, and cost terms as `cost/TERM`.
+    pub values: Vec<(String, Estimate)>,
+}
+
+impl Evaluation {
+    /// A number by the name that reports have for it.
+    #[must_use]
+    pub fn get(&self, metric: &str) -> Option<Estimate> {
+        self.values.iter().find(|(name, _)| name == metric).map(|(_, estimate)| *estimate)
+    }
+}
+
+/// Reads the file of a run directory, if there is one; of a damaged one `warnings` says so.
+pub fn read_selected(run: &Path, warnings: &mut Vec<Warning>) -> Option<Selected> {
+    let path = FILES.iter().map(|name| run.join(name)).find(|path| path.is_file())?;
+    let problem = match super::read_text(&path) {
+        Ok(text) => match understand(&text) {
+            Some(selected) => return Some(selected),
+            None => "does not say which checkpoint was selected; passed over".to_owned(),
+        },
+        Err(warning) => warning.problem,
+    };
+    warnings.push(Warning { path, line: 0, problem });
+    None
+}
+
+fn understand(text: &str) -> Option<Selected> {
+    let value: Value = serde_json::from_str(text).ok()?;
+    let evaluation = |keys: &[&str]| keys.iter().find_map(|key| evaluation(value.get(key)?));
+    Some(Selected {
+        frames: value.get("frames")?.as_f64()?,
+        closing: evaluation(&["closing"]),
+        last: evaluation(&["last", "last_policy", "latest"]),
+    })
+}
+
+fn evaluation(value: &Value) -> Option<Evaluation> {
+    let episodes = value.get("episodes")?.as_u64()? as usize;
+    let estimate = |value: &Value| {
+        let mean = value.get("mean")?.as_f64()?;
+        let half_width = value.get("half_width").and_then(Value::as_f64).filter(|_| episodes > 1);
+        Some(Estimate { mean, half_width, n: episodes })
+    };
+    let named = [("return_mean", "episode_return"), ("cost_mean", "cost"), ("length_mean", "length")];
+    let mut values: Vec<(String, Estimate)> =
+        named.iter().filter_map(|(name, key)| Some(((*name).to_owned(), estimate(value.get(key)?)?))).collect();
+    for constraint in value.get("constraints").and_then(Value::as_array).into_iter().flatten() {
+        if let (Some(term), Some(cost)) =
+            (constraint.get("term").and_then(Value::as_str), constraint.get("cost").and_then(estimate))
+        {
+            values.push((format!("cost/{term}"), cost));
+        }
+    }
+    Some(Evaluation { episodes, values })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_closing_evaluation_is_read_whole() {
+        let text = r#"{"frames":500,"chosen_by":{},"confirmed":true,"closing":{"episodes":100,"episode_return":{"mean":28.5,
+            "half_width":1.5},"cost":{"mean":42,"half_width":3},"length":{"mean":525,"half_width":0},
+            "constraints":[{"term":"lava","budget":30,"cost":{"mean":29,"half_width":2}}]}}"#;
+        let selected = understand(text).unwrap();
+        let closing = selected.closing.unwrap();
+        assert_eq!((selected.frames, closing.episodes, selected.last), (500.0, 100, None));
+        let lava = closing.get("cost/lava").unwrap();
+        assert_eq!((lava.mean, lava.high(), closing.get("return_mean").unwrap().mean), (29.0, 31.0, 28.5));
+        assert_eq!(understand("{\"frames\":3,\"closing\":null}").unwrap().closing, None);
+        assert_eq!(understand("{\"closing\":null}"), None);
+    }
+}

@@ -1,0 +1,157 @@
+//! Over environments: inter-quartile mean, optimality gap, performance profiles, probability of improvement.
+
+use super::baselines::{Baselines, Score};
+use super::{distinct, main_groups};
+use crate::chart::{Ink, LinePanel, Series, figure, line_panel};
+use crate::curve::{Curve, Point};
+use crate::document::{Block, Cell, Figure, Section, Table, number, slug};
+use crate::group::{Group, algorithm_order};
+use crate::statistics::{
+    Aggregate, Estimate, RESAMPLES, aggregate, aggregate_pair, interquartile_mean, mean, optimality_gap, performance_profile,
+    probability_of_improvement,
+};
+
+/// Thresholds of the profiles: 0, 0.05, ... 1.2.
+const THRESHOLDS: usize = 24;
+
+/// Scores of an algorithm on a level: a list of seeds for each environment.
+type Strata = Vec<Vec<f64>>;
+
+pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
+    let settings = main_groups(groups);
+    let mut blocks = Vec::new();
+    for (setting, members) in &settings {
+        let mut rows = Vec::new();
+        let mut later = Vec::new();
+        for level in distinct(members, |group| group.config().level) {
+            let here: Vec<&Group> = members.iter().copied().filter(|group| group.config().level == level).collect();
+            let environments = distinct(&here, |group| group.config().env.clone());
+            let mut algorithms: Vec<(usize, String, Strata, Strata)> = Vec::new();
+            for (order, algo) in distinct(&here, |group| (algorithm_order(&group.config().algo), group.config().algo.clone())) {
+                let strata = |of: fn(&Score) -> f64| -> Strata {
+                    environments
+                        .iter()
+                        .map(|env| {
+                            let own = here.iter().find(|group| group.config().env == *env && group.config().algo == algo);
+                            own.map_or_else(Vec::new, |group| baselines.scores(group).iter().map(of).collect())
+                        })
+                        .collect()
+                };
+                let (returns, feasible) = (strata(|score| score.normalised), strata(|score| score.feasible));
+                if returns.iter().any(|seeds| !seeds.is_empty()) {
+                    rows.push(row(level, order, &algo, &returns, &feasible));
+                    algorithms.push((order, algo, returns, feasible));
+                }
+            }
+            if algorithms.is_empty() {
+                continue;
+            }
+            let name =
+                if settings.len() > 1 { format!("profiles level {level} {setting}") } else { format!("profiles level {level}") };
+            later.push(Block::Figure(profiles(&algorithms, &slug(&name), level)));
+            if algorithms.len() > 1 {
+                later.push(Block::Table(improvement(&algorithms, level)));
+            }
+        }
+        if !rows.is_empty() {
+            let heads = ["level", "algorithm", "feasible score", "IQM of return", "optimality gap", "environments"];
+            let heads = heads.map(String::from).to_vec();
+            blocks.push(Block::Table(Table { caption: setting.clone(), heads, rows, ..Table::default() }));
+            blocks.append(&mut later);
+        }
+    }
+    Section {
+        slug: "aggregates".into(),
+        title: "Over environments".into(),
+        text: vec![
+            format!(
+                "Over all seeds and environments of a level: mean feasible score; inter-quartile mean (IQM) and optimality gap (how far below \
+                 1 on average) of the normalised return, in which a random policy is 0 and PPO is 1, both measured here. Intervals: 95 % of \
+                 {RESAMPLES} bootstrap samples that draw seeds within each environment (stratified), from a fixed random stream."
+            ),
+            "The normalised return takes no notice of costs, the feasible score counts seeds above their budget as 0. Profiles: the \
+             share of seeds above each score. Probability of improvement: that a seed of the row's algorithm has a higher feasible score \
+             than one of the column's on the same environment, ties counting half (Agarwal et al. 2021)."
+                .into(),
+        ],
+        blocks,
+    }
+}
+
+fn row(level: u32, order: usize, algo: &str, returns: &Strata, feasible: &Strata) -> Vec<Cell> {
+    let iqm = aggregate(returns, interquartile_mean);
+    vec![
+        Cell::number(f64::from(level)).with_text(level.to_string()),
+        Cell { sort: Some(order as f64), ..Cell::text(algo) },
+        cell(aggregate(feasible, mean)),
+        cell(iqm),
+        cell(aggregate(returns, |samples| optimality_gap(samples, 1.0))),
+        Cell::number(iqm.map_or(0.0, |one| one.strata as f64)).with_text(iqm.map_or(0, |one| one.strata).to_string()),
+    ]
+}
+
+fn cell(estimate: Option<Aggregate>) -> Cell {
+    let Some(estimate) = estimate else { return Cell { text: "-".into(), pale: true, ..Cell::default() } };
+    let interval = estimate.interval.map_or_else(String::new, |(low, high)| format!(" [{}, {}]", number(low), number(high)));
+    Cell {
+        text: format!("{}{interval}", number(estimate.value)),
+        note: format!("n={}", estimate.n),
+        sort: Some(estimate.value),
+        ..Cell::default()
+    }
+}
+
+/// Performance profiles of normalised return and of feasible score, each with its bootstrap band.
+fn profiles(algorithms: &[(usize, String, Strata, Strata)], file: &str, level: u32) -> Figure {
+    let panel = |title: &str, axis: &str, of: fn(&(usize, String, Strata, Strata)) -> &Strata| {
+        let series = algorithms.iter().map(|one| Series {
+            name: one.1.clone(),
+            ink: Ink::Series(one.0),
+            curve: profile(of(one)),
+            paper: false,
+        });
+        let size = (480.0, 260.0);
+        line_panel(&LinePanel { title: title.into(), axis: axis.into(), series: series.collect(), budget: None, size })
+    };
+    let panels = vec![
+        panel("share of seeds above a feasible score", "feasible score", |one| &one.3),
+        panel("share of seeds above a normalised return", "normalised return", |one| &one.2),
+    ];
+    let legend: Vec<(String, Ink)> = algorithms.iter().map(|one| (one.1.clone(), Ink::Series(one.0))).collect();
+    Figure {
+        slug: file.to_owned(),
+        caption: format!("Performance profiles, level {level}; bands: 95 % of bootstrap samples"),
+        drawing: figure("", panels, 2, &legend),
+    }
+}
+
+fn profile(strata: &Strata) -> Curve {
+    let mut mean = Vec::new();
+    for step in 0..=THRESHOLDS {
+        let threshold = 1.2 * step as f64 / THRESHOLDS as f64;
+        if let Some(share) = aggregate(strata, |samples| performance_profile(samples, threshold)) {
+            let value = Estimate { mean: share.value, half_width: None, n: share.n };
+            mean.push(Point { frames: threshold, value, band: share.interval });
+        }
+    }
+    let points = mean.iter().map(|point| (point.frames, point.value.mean)).collect();
+    Curve { mean, seeds: vec![(0, points)] }
+}
+
+/// Probability of improvement of each algorithm over each other.
+fn improvement(algorithms: &[(usize, String, Strata, Strata)], level: u32) -> Table {
+    let mut heads = vec!["P(row > column)".to_owned()];
+    heads.extend(algorithms.iter().map(|one| one.1.clone()));
+    let rows = algorithms.iter().map(|one| {
+        let mut row = vec![Cell { sort: Some(one.0 as f64), ..Cell::text(&one.1) }];
+        row.extend(algorithms.iter().map(|other| {
+            if one.1 == other.1 {
+                return Cell { text: "-".into(), pale: true, ..Cell::default() };
+            }
+            Cell { note: String::new(), ..cell(aggregate_pair(&one.3, &other.3, probability_of_improvement)) }
+        }));
+        row
+    });
+    let caption = format!("Probability of improvement in feasible score, level {level}");
+    Table { caption, heads, rows: rows.collect(), ..Table::default() }
+}
