@@ -22,11 +22,15 @@ use args::{Cli, Command};
 use clap::{ArgMatches, CommandFactory, FromArgMatches};
 use failure::Failure;
 use hasard_envs::{EnvOptions, VecEnv};
+use hasard_learn::config::EnvConfig;
+use hasard_learn::runs::agent::{Choice, TrainedPolicy};
+use hasard_learn::runs::evaluate::{Evaluation, play};
 use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Summary};
 use hasard_learn::team::Team;
 use interrupt::Manner;
 use settings::Elsewhere;
+use serde_json::Value;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -97,6 +101,43 @@ pub fn follow(team: Team, warn: &mut dyn FnMut(String)) -> Result<(), String> {
     let invitation = Invitation::hear(team).map_err(|error| error.to_string())?;
     let options = settings::trained_options(&invitation.config.env, Elsewhere::default()).map_err(Failure::line)?;
     invitation.follow(&|env, worlds| VecEnv::new(&env.id, &options, worlds), warn).map_err(|error| error.to_string())
+}
+
+/// The run directory or agent file that a text names: a path, or `zoo:NAME`.
+///
+/// # Errors
+/// One line that names the agents of the zoo.
+pub fn agent_place(text: &Path) -> Result<PathBuf, String> {
+    text.to_str().map_or_else(|| Ok(text.to_owned()), |text| zoo::find(text).map_err(line))
+}
+
+/// Plays an episode of each seed with a policy and gives what `hasard eval --json` prints: a row an episode, then the summary. `interrupted` is
+/// asked between some episodes and others.
+///
+/// # Errors
+/// One line of what went wrong; `None` where it was interrupted.
+pub fn evaluate(
+    policy: &TrainedPolicy,
+    choice: Choice,
+    options: &EnvOptions,
+    seeds: &[u64],
+    mut interrupted: impl FnMut() -> bool,
+) -> Result<Vec<Value>, Option<String>> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let (config, mut rows, mut all) = (policy.config(), Vec::new(), Vec::new());
+    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, options, worlds);
+    for some in seeds.chunks(8 * threads) {
+        if interrupted() {
+            return Err(None);
+        }
+        for episode in play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))? {
+            rows.push(episode_lines::episode_row(&config.env.id, all.len() as u64, &episode));
+            all.push(episode);
+        }
+    }
+    let summary = Evaluation::of(&all, &config.constraints).map_err(|error| Some(error.to_string()))?;
+    rows.push(episode_lines::summary_row(&summary));
+    Ok(rows)
 }
 
 /// The environment's id and options of the run in a directory, as its agent sees them.
