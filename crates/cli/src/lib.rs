@@ -35,7 +35,13 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 fn parse(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, ArgMatches), clap::Error> {
-    let matches = Cli::command().try_get_matches_from(words)?;
+    // A negative number is a value, wrong as it may be, and no flag of that name: else the hint is about flags.
+    let value = |flag: clap::Arg| {
+        let takes = !flag.is_positional() && flag.get_action().takes_values();
+        if takes { flag.allow_negative_numbers(true) } else { flag }
+    };
+    let program = Cli::command().mut_subcommands(|command| command.mut_args(value));
+    let matches = program.try_get_matches_from(words)?;
     Ok((Cli::from_arg_matches(&matches)?, matches))
 }
 
