@@ -29,8 +29,8 @@ use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Summary};
 use hasard_learn::team::Team;
 use interrupt::Manner;
-use settings::Elsewhere;
 use serde_json::Value;
+use settings::Elsewhere;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -114,7 +114,7 @@ pub fn follow(team: Team, warn: &mut dyn FnMut(String)) -> Result<(), String> {
 /// # Errors
 /// One line that names the agents of the zoo.
 pub fn agent_place(text: &Path) -> Result<PathBuf, String> {
-    text.to_str().map_or_else(|| Ok(text.to_owned()), |text| zoo::find(text).map_err(line))
+    zoo::find(text.as_os_str()).map_err(Failure::line)
 }
 
 /// Plays an episode of each seed with a policy and gives what `hasard eval --json` prints: a row an episode, then the summary. `interrupted` is

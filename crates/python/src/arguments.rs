@@ -106,7 +106,8 @@ impl<T: PartialEq> Either<T> {
         if let Some((other, before, kept)) = &self.0
             && *kept != value
         {
-            let why = format!("{other}={before} and {name}={text} contradict each other: both name one argument; give one of them");
+            let why =
+                format!("{other}={before} and {name}={text} contradict each other: both name one argument; give one of them");
             return Err(INVALID_OPTION.error(given.py(), why));
         }
         self.0 = Some((name.to_string(), text, value));
