@@ -23,6 +23,7 @@ SMALL = {"resolution": "64x48", "max_episode_steps": 4}
 # Each with a value that is not its default; "MAP" stands for a file that is made for the test.
 VALUES: dict[str, Any] = {
     "rules": "released",
+    "early_creatures": True,
     "hard_constraint": True,
     "hard": True,
     "full_actions": True,
