@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from hasard_rs import _core
-from hasard_rs.errors import HasardError
+from hasard_rs.arguments import check_seed, is_number, over, plain
+from hasard_rs.errors import HasardError, InvalidOption
 from hasard_rs.progress import Bar
 from hasard_rs.registry import bare
 
@@ -54,7 +55,9 @@ def train(
         callback: is called with every report, a dict by name (frames, fps, return_mean, cost_mean, ...); where it returns True the run ends, with
             a checkpoint. What it raises, and Ctrl-C, end the run the same way and are raised again.
         set: what the program takes as `--set name=value`.
-        flags: the program's, with underscores: `frames=2_000_000, seed=1, envs=32, threads=2, size="64x48", maps="auto", resume=True`.
+        flags: the program's, with underscores: `frames=2_000_000, seed=1, envs=32, threads=2, size="64x48", maps="auto", resume=True`. Names of
+            environments' arguments do too (`hard_constraint`, `resolution`, `map`), and pairs and lists (`size=(64, 48)`, `curriculum=[1, 2]`,
+            `safety_budget=["jumps=5", "lava=20"]`); `async_` stands for --async.
 
     Returns:
         A `Run`.
@@ -63,7 +66,8 @@ def train(
         InvalidOption for wrong settings, before anything is written.
     """
     words = training_words(env_id, algorithm, preset=preset, out=out, set=set, **flags)
-    with Bar(flags.get("frames")) as bar:
+    frames = flags.get("frames")
+    with Bar(int(frames) if isinstance(frames, (int, float)) else None) as bar:
 
         def hear(report: Report) -> Any:
             bar.show(report)
@@ -82,19 +86,52 @@ def training_words(
     set: Mapping[str, Any] | None = None,  # noqa: A002
     **flags: Any,
 ) -> list[str]:
-    """Returns what `train` is given (env_id, algorithm, preset, out, set and flags) as words of the program."""
-    words = [bare(env_id), "--algo", algorithm, "--quiet"]
-    for name, value in {"preset": preset, "out": None if out is None else os.fspath(out), **flags}.items():
-        flag = "--" + name.replace("_", "-")
-        if value is True:
-            words.append(flag)
-        elif isinstance(value, (list, tuple)):
-            words += [word for one in value for word in (flag, str(one))]
-        elif value is not None and value is not False:
-            words += [flag, str(value)]
+    """Returns what `train` is given (env_id, algorithm, preset, out, set and flags) as words of the program. Raises InvalidOption for
+    one setting by two names that contradict each other."""
+    words = [bare(env_id), f"--algo={algorithm}", "--quiet"]
+    names = {"preset": preset, "out": None if out is None else os.fspath(out), **flags}
+    given: dict[str, tuple[str, list[str]]] = {}
+    for other, value in names.items():
+        # `async` is a word of Python's, so that `async_` stands for it.
+        name = _FLAGS.get(other, other).rstrip("_")
+        if name == "algo":
+            raise InvalidOption(f"algo={value!r} and algorithm={algorithm!r} name one setting; give it as algorithm")
+        made = _words(name, plain(value))
+        if value is None:
+            continue
+        if name in given and given[name][1] != made:
+            first = given[name][0]
+            text = f"{first}={names[first]!r} and {other}={value!r} contradict each other: both name one setting; give one of them"
+            raise InvalidOption(text)
+        given[name] = (other, made)
+    words += [word for _, made in given.values() for word in made]
     for name, value in (set or {}).items():
-        words += ["--set", f"{name}={json.dumps(value) if not isinstance(value, str) else value}"]
+        words.append(f"--set={name}={value if isinstance(value, str) else json.dumps(plain(value))}")
     return words
+
+
+_FLAGS = {"hard_constraint": "hard", "resolution": "size", "map": "maps"}
+"""The program's name of each setting that environments have another name for."""
+
+
+def _words(name: str, value: Any) -> list[str]:
+    """A setting as words of the program; none where it is off, or says that nothing is printed."""
+    flag = "--" + name.replace("_", "-")
+    if value is None or value is False or name == "quiet":
+        return []
+    if value is True:
+        return [flag]
+    if isinstance(value, float) and value.is_integer():
+        # 2e6 frames.
+        value = int(value)
+    if isinstance(value, (list, tuple)):
+        if name == "size":
+            return [f"{flag}={'x'.join(map(str, value))}"]
+        if name == "curriculum":
+            return [f"{flag}={','.join(map(str, value))}"]
+        return [f"{flag}={one}" for one in value]
+    # In one word, so that a value that begins with a dash is no flag.
+    return [f"{flag}={value}"]
 
 
 class Agent:
@@ -109,44 +146,50 @@ class Agent:
             observations, rewards, terminations, truncations, infos = env.step(actions)
             state = agent.after(state, infos["cost"], terminations | truncations)
 
-    Made by `Agent.load`. Attributes: run, its directory; env_id; config, the run's settings.
+    Made by `Agent.load`, with its best and greedy. Attributes: run, the directory, file or "zoo:NAME" that it came from; env_id; config, the run's
+    settings.
     """
 
-    def __init__(self, trained: Any, run: Path) -> None:
+    def __init__(self, trained: Any, run: Path, best: bool = False, greedy: bool = False) -> None:
         self._trained = trained
+        self._how = {"best": best, "greedy": greedy}
         self.run = run
         self.env_id = f"hasard/{trained.env_id}"
-        self.config: dict[str, Any] = json.loads((run / "config.json").read_text())
+        self.config: dict[str, Any] = json.loads(trained.config)
 
     @classmethod
     def load(cls, run: str | os.PathLike[str], *, best: bool = False, greedy: bool = False) -> Agent:
-        """The agent of a run directory.
+        """The agent of a run directory, of a file of `hasard export-agent`, or of the zoo.
 
         Args:
-            run: the directory that `train`, or the program, wrote.
-            best: the best checkpoint within budget instead of the newest.
+            run: the directory that `train`, or the program, wrote; a file; or "zoo:NAME", such as "zoo:VolcanicVentureLevel1".
+            best: the best checkpoint within budget instead of the newest; the newest too of a run without one. A file has one agent.
             greedy: takes the likeliest actions instead of drawing them.
 
         Returns:
             An agent.
 
         Raises:
-            InvalidOption where there is no run, no checkpoint or a spoiled one.
+            InvalidOption where there is no run, no checkpoint or a spoiled one, or no such agent in the zoo.
         """
-        return cls(_core.TrainedAgent(Path(run), best=best, greedy=greedy), Path(run))
+        return cls(_core.TrainedAgent(run, best=best, greedy=greedy), Path(run), best, greedy)
 
     def arguments(self) -> dict[str, Any]:
         """Returns keyword arguments of environments like the one that the agent was trained in, its maps and pictures among them."""
         env = self.config["env"]
         told = {name: env[name] for name in ("rules", "full_actions", "frame_skip", "observation", "frame_stack")}
         told |= {"hard_constraint": env["hard"], "resolution": tuple(env["size"])}
-        return told | {name: env[name] for name in ("early_creatures", "published_depth", "published_colours", "maps", "iwad") if name in env}
+        # The attribute that wrappers such as `Saute` go by is what the agent was trained for.
+        scalar = [one["budget"] for one in self.config["constraints"] if one.get("term") is None]
+        told |= {"safety_budget": scalar[0]} if scalar else {}
+        return told | {name: env[name] for name in ("early_creatures", "published_depth", "published_colours", "maps", "iwad") if env.get(name) is not None}
 
     def make(self, **arguments: Any) -> Any:
-        """Returns a single environment like the one that the agent was trained in; `arguments` (see `help(hasard_rs.Env)`) come before its own."""
+        """Returns a single environment like the one that the agent was trained in; `arguments` (see `help(hasard_rs.Env)`, by
+        either name) come before its own."""
         import hasard_rs
 
-        return hasard_rs.make(self.env_id, **{**self.arguments(), **self._format(), **arguments})
+        return hasard_rs.make(self.env_id, **over({**self.arguments(), **self._format()}, arguments))
 
     def make_vec(self, num_envs: int = 1, **arguments: Any) -> Any:
         """A vector environment like the one that the agent was trained in, in SAME_STEP mode.
@@ -160,8 +203,8 @@ class Agent:
         """
         import hasard_rs
 
-        given = {"autoreset_mode": "SameStep", **self.arguments(), **self._format(), **arguments}
-        return hasard_rs.make_vec(self.env_id, num_envs, **given)
+        usual = {"autoreset_mode": "SameStep", **self.arguments(), **self._format()}
+        return hasard_rs.make_vec(self.env_id, num_envs, **over(usual, arguments))
 
     def _format(self) -> dict[str, Any]:
         return {"action_format": "dict"} if self.config["env"]["full_actions"] else {}
@@ -211,26 +254,36 @@ class Agent:
         terms = None if cost_terms is None else np.atleast_2d(cost_terms).astype(float).tolist()
         return _State(state.memory, np.atleast_1d(costs).astype(float).tolist(), np.atleast_1d(over).astype(bool).tolist(), terms)
 
-    def evaluate(self, episodes: int = 20, seed: int = 0, *, best: bool = False, greedy: bool = False) -> list[dict[str, Any]]:
-        """Plays episodes in worlds like those that the agent was trained in, as `hasard eval --json` does.
+    def evaluate(self, episodes: int = 20, seed: int = 0, *, best: bool | None = None, greedy: bool | None = None) -> list[dict[str, Any]]:
+        """Plays episodes in worlds like those that the agent was trained in; what it tells is what `hasard eval --json` prints.
+
+        The weights that were loaded play, whatever has been written to the run since.
 
         Args:
             episodes: how many.
             seed: of the first.
-            best: the best checkpoint within budget instead of the newest.
-            greedy: the likeliest actions instead of drawn ones.
+            best: as of `load`; None: as this agent was loaded. Another than that loads the run anew.
+            greedy: the same.
 
         Returns:
             A dict an episode, and the summary as the last.
 
         Raises:
-            HasardError, with the program's line of what went wrong.
+            InvalidOption for no episodes, and what `load` raises; TypeError or ValueError for a seed that is none.
         """
-        words = ["eval", os.fspath(self.run), "--episodes", str(episodes), "--seed", str(seed), "--json"]
-        return _lines([*words, *["--latest"] * (not best), *["--greedy"] * greedy])
+        asked = {name: bool(self._how[name] if value is None else value) for name, value in (("best", best), ("greedy", greedy))}
+        if asked != self._how:
+            return Agent.load(self.run, **asked).evaluate(episodes, seed)
+        if not is_number(episodes) or int(episodes) < 1:
+            raise InvalidOption(f"episodes cannot be {episodes!r}; it must be 1 or more")
+        first = check_seed(seed)
+        told: list[dict[str, Any]] = json.loads(self._trained.evaluate([(first + number) % 2**64 for number in range(int(episodes))]))
+        return told
 
     def report(self, out: str | os.PathLike[str]) -> Path:
         """Writes the run's page of tables and curves into the folder `out`, as `hasard report` does. Returns the folder; raises HasardError."""
+        if not self.run.is_dir():
+            raise InvalidOption(f"{self.run}: an agent without a run directory has no curves; give the directory that it was trained into")
         return report([self.run], out)
 
 
@@ -266,7 +319,3 @@ def _run(words: Sequence[str]) -> str:
     if done.returncode:
         raise HasardError(done.stderr.strip().removeprefix("hasard: ") or f"hasard ended with {done.returncode}")
     return done.stdout
-
-
-def _lines(words: Sequence[str]) -> list[dict[str, Any]]:
-    return [json.loads(line) for line in _run(words).splitlines()]

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import difflib
+import enum
+import os
 import warnings
 from dataclasses import dataclass, field
 from typing import Any
+
+import numpy as np
 
 from hasard_rs import _core
 from hasard_rs.errors import InvalidOption
@@ -16,6 +20,9 @@ _WORLD = (
 ).split()
 _UPSTREAM = "record_every render_boxes render_segmented".split()
 _VECTOR = "num_envs num_threads autoreset_mode batch_size copy".split()
+
+_NAMES = {"hard": "hard_constraint", "size": "resolution", "map": "maps"}
+"""The first name of each argument that has two."""
 
 RENDER_MODES = ("rgb_array", "depth_array")
 ACTION_FORMATS = ("multi_discrete", "tuple", "dict", "discrete", "box")
@@ -39,6 +46,36 @@ class Arguments:
     def frame_skip(self) -> int:
         """Tics that an action is held."""
         return int(self.world.get("frame_skip", 4))
+
+    @property
+    def hard_constraint(self) -> bool:
+        """Whether harm ends the episode."""
+        return bool(self.world.get("hard_constraint", self.world.get("hard", False)))
+
+    def without(self, where: str, *names: str) -> Arguments:
+        """Makes sure that nothing is dropped in silence.
+
+        Args:
+            where: who has no use for them, for the message.
+            names: of these arguments.
+
+        Returns:
+            The same arguments.
+
+        Raises:
+            InvalidOption where one of them was given.
+        """
+        usual = Arguments("")
+        for name in names:
+            if getattr(self, name) != getattr(usual, name):
+                raise InvalidOption(f"{name} has no effect in {where}; leave it out")
+        return self
+
+
+def over(usual: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
+    """Returns the arguments `given`, and of the `usual` ones those that are not given, by either of their names."""
+    named = {_NAMES.get(name, name) for name in given}
+    return {**{name: value for name, value in usual.items() if _NAMES.get(name, name) not in named}, **given}
 
 
 def read(given: dict[str, Any], *, vector: bool) -> Arguments:
@@ -94,6 +131,26 @@ def _check(arguments: Arguments) -> None:
         arguments.render_resolution = _core.frame_size("render_resolution", arguments.render_resolution)
     if arguments.seed is not None:
         arguments.seed = check_seed(arguments.seed)
+
+
+def plain(value: Any) -> Any:
+    """Returns a value of an argument as JSON can hold it: text, numbers, lists and dicts instead of enums, paths and NumPy's kinds."""
+    if isinstance(value, enum.Enum):
+        return plain(value.value)
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    if isinstance(value, dict):
+        return {name: plain(one) for name, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return type(value)(plain(one) for one in value)
+    return value
+
+
+def is_number(seed: Any) -> bool:
+    """Returns whether a `seed` is one integer, not one a lane: an array without axes too."""
+    return hasattr(seed, "__index__") and np.ndim(seed) == 0
 
 
 def check_seed(seed: Any) -> int:

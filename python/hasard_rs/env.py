@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import secrets
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import gymnasium
@@ -12,12 +13,13 @@ from gymnasium import logger, spaces
 
 from hasard_rs import arguments as _arguments
 from hasard_rs._core import Worlds
+from hasard_rs.common import Shared, frame_size
 from hasard_rs.infos import Infos, row, summary
-from hasard_rs.registry import CostTerm
 from hasard_rs.spaces import action_format
+from hasard_rs.wrappers.drawable import Drawable
 
 
-class Env(gymnasium.Env[np.ndarray, Any]):
+class Env(Shared, gymnasium.Env[np.ndarray, Any]):
     """One world with its task, as Gymnasium's single environment.
 
     Made by `hasard_rs.make(id, **arguments)` or `gymnasium.make(id, **arguments)`.
@@ -30,12 +32,12 @@ class Env(gymnasium.Env[np.ndarray, Any]):
             hard_constraint, or hard (False): harm ends the episode.
             full_actions (False): all buttons, and two continuous axes.
             frame_skip (4): tics of 1/35 s that an action is held, 1 to 35.
-            resolution, or size ("160x120"): "WxH" or (width, height), pixels, 64x48 to 1920x1080.
+            resolution, or size ("160x120"): "WxH" or (width, height), a list too, pixels, 64x48 to 1920x1080.
             observation ("rgb"): "rgb+depth", "segmented" or "grey"; 3, 4, 3 or 1 channels.
             layout ("hwc"): or "chw". frame_stack (1): frames along the channels, oldest first, 1 to 16.
             action_format ("multi_discrete"): "tuple", "dict", "discrete" or "box".
             delta_bins (11): of each continuous axis where the format has none, odd, 3 to 255.
-            max_episode_steps (None): cuts episodes off earlier.
+            max_episode_steps (None): cuts episodes off earlier; `spec.max_episode_steps` and the attribute say what holds.
             render_mode (None): "rgb_array" or "depth_array". render_resolution (None): of `render`, if other than resolution.
             seed (None): of the first reset without one; 64 bits of the operating system's if None.
             infos ("cost"): "full" adds "cost_terms" (float64 [k]), "position" (int32 [2], map units) and "episode_seed" (uint64).
@@ -45,34 +47,38 @@ class Env(gymnasium.Env[np.ndarray, Any]):
             published_depth, published_colours (False): depth and segments look as the published engine's.
 
     Raises:
-        UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no argument.
+        UnknownEnvironment, InvalidOption (two names of one argument that contradict each other, too), InvalidMap, or TypeError for a name that
+        is no argument.
 
     Attributes:
         observation_space: `Box(0, 255, (height, width, channels * frame_stack), uint8)`, or channels first with `layout="chw"`.
         action_space: as action_format says. extent: x from, y from, x to, y to of the map, map units.
         safety_budget: cost that an episode may have. cost_terms: a `CostTerm` each. max_episode_steps: steps of an episode that only time ends.
+        scenario_name, level, hard_constraint, frame_skip: as it was made. spec: Gymnasium's, which makes it again, through JSON too.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 8.75}  # type: ignore[misc]
 
     def __init__(self, **arguments: Any) -> None:
+        self._build(arguments)
+
+    def _build(self, arguments: dict[str, Any]) -> None:
         given = _arguments.read(arguments, vector=False)
-        self._arguments = arguments
-        self._given = given
+        self._arguments, self._given = arguments, given
         self._worlds = Worlds(given.env_id, 1, num_threads=0, autoreset_mode="Disabled", statistics=given.env_stats, **given.world)
         self._format = action_format(given.action_format, self._worlds.nvec, self._worlds.num_deltas, given.delta_bins)
         self._infos = Infos(self._worlds, given.env_id.split("Level")[0], given.infos, given.env_stats)
         self.action_space = self._format.space
         self.observation_space = spaces.Box(0, 255, self._worlds.observation_shape, np.uint8)
-        self.render_mode = given.render_mode
-        self.metadata = {**type(self).metadata, "render_fps": 35 / given.frame_skip}  # type: ignore[misc]
-        self.safety_budget: float = self._worlds.safety_budget
-        self.cost_terms = tuple(CostTerm(name, counted) for name, counted in self._worlds.cost_terms)
-        self.max_episode_steps: int = self._worlds.episode_steps
-        self.extent: tuple[int, int, int, int] = self._worlds.extent
-        self.scenario_name, self.level = given.env_id.removesuffix("-v0").split("Level")[0], int(given.env_id[-4])
-        self.hard_constraint = bool(given.world.get("hard_constraint", given.world.get("hard", False)))
-        self.frame_skip = given.frame_skip
+        self._describe()
+
+    def _limit(self, steps: Any) -> None:
+        # -1 is Gymnasium's word for none.
+        if steps is None or steps == -1 or steps == self.max_episode_steps:
+            return
+        own = self._arguments.get("max_episode_steps")
+        self._worlds.close()
+        self._build({**self._arguments, "max_episode_steps": steps if own is None else min(own, steps)})
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         """Starts an episode.
@@ -125,12 +131,14 @@ class Env(gymnasium.Env[np.ndarray, Any]):
             mode: ignored; the published package has it.
 
         Returns:
-            uint8 [height, width, 3] for "rgb_array", uint8 [height, width] for "depth_array"; None, after a warning, without a render mode.
+            uint8 [height, width, 3] for "rgb_array", uint8 [height, width] for "depth_array" (0 near to 255 far; from `make` with three equal
+            channels, as Gymnasium's wrappers that draw ask for); None, after a warning, without a render mode.
         """
         if self.render_mode is None:
             logger.warn("render() needs render_mode='rgb_array' or 'depth_array' when the environment is made; nothing is drawn")
             return None
-        return self.picture("rgb" if self.render_mode == "rgb_array" else "depth", self._given.render_resolution)
+        kind = "rgb" if self.render_mode == "rgb_array" else "depth"
+        return self._worlds.render(0, kind, frame_size(self._worlds, self._given))
 
     def picture(self, kind: str = "rgb", resolution: str | tuple[int, int] | None = None) -> np.ndarray:
         """Draws the present, whatever `render_mode` is; the episode goes on unchanged.
@@ -145,12 +153,7 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         Raises:
             InvalidOption for another kind or size.
         """
-        return self._worlds.render(0, kind, resolution or self._size())
-
-    def _size(self) -> tuple[int, int]:
-        chw = self._given.world.get("layout") == "chw"
-        height, width = self._worlds.observation_shape[1:] if chw else self._worlds.observation_shape[:2]
-        return width, height
+        return self._worlds.render(0, kind, resolution or frame_size(self._worlds, replace(self._given, render_resolution=None)))
 
     def state_hash(self) -> int:
         """Returns a fingerprint (64 bits) of everything that the future depends on; the same on every platform."""
@@ -189,12 +192,20 @@ class Env(gymnasium.Env[np.ndarray, Any]):
         self._worlds.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        kept = {name: self.__dict__[name] for name in ("_np_random", "_np_random_seed", "render_mode", "spec") if name in self.__dict__}
-        spaces = copy.deepcopy((self.action_space, self.observation_space))
-        return {"arguments": self._arguments, "saved": self.save(), "kept": kept, "spaces": spaces}
+        return {"arguments": self._arguments, "saved": self.save(), "kept": copy.deepcopy(self._kept())}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__init__(**state["arguments"])  # type: ignore[misc]
+        # Not by the constructor: a subclass's has other arguments.
+        self._build(state["arguments"])
         self.load(state["saved"])
         self.__dict__.update(state["kept"])
-        self.action_space, self.observation_space = state["spaces"]
+
+
+def entry(**arguments: Any) -> gymnasium.Env[Any, Any]:
+    """What Gymnasium's `make` calls: returns an `Env` of these arguments, whose depth can be shown and filmed. Raises what `Env` does."""
+    env = Env(**arguments)
+    return Drawable(env) if env.render_mode == "depth_array" else env
+
+
+# Gymnasium looks here for what it may be asked for.
+entry.metadata = Env.metadata  # type: ignore[attr-defined]

@@ -15,6 +15,7 @@ need("omnisafe", "omnisafe", "omnisafe")
 from omnisafe.envs.core import CMDP, env_register  # noqa: E402
 
 import hasard_rs  # noqa: E402
+from hasard_rs.arguments import over  # noqa: E402
 
 
 @env_register
@@ -41,8 +42,9 @@ class HasardEnv(CMDP):
     def __init__(self, env_id: str, num_envs: int = 1, device: Any = "cpu", **arguments: Any) -> None:
         super().__init__(env_id)
         self._device = torch.device(device)
-        given = {"resolution": "64x48", "observation": "grey", **arguments, "action_format": "box"}
-        self.envs = hasard_rs.make_vec(env_id, num_envs, autoreset_mode="SameStep", **given)
+        given = over({"resolution": "64x48", "observation": "grey"}, arguments)
+        self.envs = hasard_rs.make_vec(env_id, num_envs, autoreset_mode="SameStep", action_format="box", **given)
+        self.envs._given.without("hasard_rs.omnisafe", "infos", "env_stats")
         self._num_envs = num_envs
         pixels = int(np.prod(self.envs.worlds.observation_shape))
         self._observation_space = spaces.Box(0.0, 1.0, (pixels,), np.float32)

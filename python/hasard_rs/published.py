@@ -11,9 +11,11 @@ from typing import Any
 
 import gymnasium
 
+from hasard_rs.arguments import over
 from hasard_rs.env import Env
 from hasard_rs.registry import LEVELS, Scenario, bare
 from hasard_rs.wrappers.cost import CostPenalty, CostWrapper
+from hasard_rs.wrappers.drawable import Drawable
 from hasard_rs.wrappers.saute import Saute
 
 _RESOLUTIONS = ("800X600", "640X480", "320X240", "160X120")
@@ -30,14 +32,14 @@ class DoomEnv(Env):
     delta_actions_scaling_factor = 7.5
 
     def __init__(self, **arguments: Any) -> None:
-        given = {"rules": "released", "action_format": "tuple", "resolution": "320x240", "env_stats": True, **arguments}
-        if given["resolution"] is None:
-            given["resolution"] = "320x240"
+        # The published package has None for its own size.
+        arguments = {name: value for name, value in arguments.items() if name not in ("resolution", "size") or value is not None}
+        given = over({"rules": "released", "action_format": "tuple", "resolution": "320x240", "env_stats": True}, arguments)
         if given.get("render_mode") == "human":
             # A window would need pygame; Gymnasium's make adds one to the frames if it is asked for a human mode.
             given["render_mode"] = "rgb_array"
         super().__init__(**given)
-        self.game_res = given["resolution"]
+        self.game_res = given.get("resolution", given.get("size"))
         self._statistics: dict[str, float] = {}
         self._cost = 0.0
 
@@ -57,11 +59,11 @@ class DoomEnv(Env):
 
     def reduced_action_space(self) -> Any:
         """Returns the space of the simplified actions."""
-        return type(self)(**{**self._arguments, "full_actions": False}).action_space
+        return DoomEnv(**{**self._arguments, "full_actions": False}).action_space
 
     def full_action_space(self) -> Any:
         """Returns the space of all buttons, and two continuous axes."""
-        return type(self)(**{**self._arguments, "full_actions": True}).action_space
+        return DoomEnv(**{**self._arguments, "full_actions": True}).action_space
 
     def full_actions(self) -> bool:
         """Returns whether all buttons are in use."""
@@ -72,12 +74,23 @@ class DoomEnv(Env):
         return False
 
 
+def entry(**arguments: Any) -> gymnasium.Env[Any, Any]:
+    """What Gymnasium's `make` calls: returns a `DoomEnv` of these arguments, whose depth can be shown and filmed. Raises what it does."""
+    env = DoomEnv(**arguments)
+    return Drawable(env) if env.render_mode == "depth_array" else env
+
+
+entry.metadata = {**DoomEnv.metadata, "render_modes": [*DoomEnv.metadata["render_modes"]]}  # type: ignore[attr-defined]
+
+
 def register_environment(scenario: str | Scenario, level: int) -> None:
     """Registers one bare id, of a scenario (a `Scenario` or its value) and a level (1 to 3); nothing happens if it is registered."""
     name = scenario.value if isinstance(scenario, Scenario) else scenario
     env_id = f"{name}Level{level}-v0"
     if env_id not in gymnasium.registry:
-        gymnasium.register(env_id, entry_point="hasard_rs.published:DoomEnv", kwargs={"scenario": name, "level": level})
+        gymnasium.register(
+            env_id, entry_point="hasard_rs.published:entry", kwargs={"scenario": name, "level": level}, disable_env_checker=True
+        )
 
 
 def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:

@@ -114,10 +114,12 @@ def register_environment(scenario: str | Scenario, level: int) -> None:
         # No max_episode_steps: it would wrap a limit of the wrong length for another frame_skip; the worlds truncate themselves.
         gymnasium.register(
             env_id,
-            entry_point="hasard_rs.env:Env",
+            entry_point="hasard_rs.env:entry",
             vector_entry_point="hasard_rs.vector:VectorEnv",
             kwargs={"scenario": name, "level": level},
             nondeterministic=False,
+            # The checks of every step are this package's tests; and the checker does not know of depth that can be filmed.
+            disable_env_checker=True,
         )
 
 

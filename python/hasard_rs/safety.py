@@ -16,9 +16,14 @@ class SafetyEnv(gymnasium.Env[np.ndarray, Any]):
     Args:
         env: an id, or an environment that has `info["cost"]`.
         arguments: with an id, those of `help(hasard_rs.Env)`.
+
+    Raises:
+        TypeError for arguments with an environment that is made; what `hasard_rs.make` raises.
     """
 
     def __init__(self, env: str | gymnasium.Env[Any, Any], **arguments: Any) -> None:
+        if arguments and not isinstance(env, str):
+            raise TypeError(f"{', '.join(arguments)}: an environment that is made takes no arguments; give its id, or make it with them")
         self.env = hasard_rs.make(env, **arguments) if isinstance(env, str) else env
         self.action_space, self.observation_space = self.env.action_space, self.env.observation_space
         self.metadata, self.render_mode, self.spec = self.env.metadata, self.env.render_mode, self.env.spec

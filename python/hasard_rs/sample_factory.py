@@ -45,6 +45,7 @@ class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
 
     def __init__(self, env_id: str, num_agents: int, *, render_mode: str | None = None, **arguments: Any) -> None:
         self.worlds = hasard_rs.Worlds(env_id, num_agents, layout="chw", **arguments)
+        self.frame_skip = int(arguments.get("frame_skip", 4))
         self._format = action_format("tuple", self.worlds.nvec, self.worlds.num_deltas, 11)
         self.num_agents, self.render_mode = num_agents, render_mode
         self.observation_space = gymnasium.spaces.Dict({"obs": gymnasium.spaces.Box(0, 255, self.worlds.observation_shape, np.uint8)})
@@ -72,7 +73,7 @@ class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]
         groups = len(self.worlds.nvec)
         deltas = rows[:, groups:].astype(np.float32) if self.worlds.num_deltas else None
         batch = self.worlds.step(rows[:, :groups].astype(np.int64), deltas)
-        infos: list[dict[str, Any]] = [{"cost": cost, "num_frames": 4} for cost in batch.costs.tolist()]
+        infos: list[dict[str, Any]] = [{"cost": cost, "num_frames": self.frame_skip} for cost in batch.costs.tolist()]
         for episode in batch.episodes:
             told = summary(episode)
             infos[episode["lane"]]["episode_extra_stats"] = {name: value for name, value in told.items() if name != "seed"}

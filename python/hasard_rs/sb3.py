@@ -29,8 +29,8 @@ class VecEnv(_VecEnv):
 
     def __init__(self, env_id: str, n_envs: int = 1, **arguments: Any) -> None:
         # Channels first, so that no wrapper transposes every observation.
-        arguments = {"layout": "chw", **arguments, "autoreset_mode": "SameStep"}
-        self.envs = hasard_rs.make_vec(env_id, n_envs, **arguments).unwrapped
+        self.envs = hasard_rs.make_vec(env_id, n_envs, **{"layout": "chw", **arguments}, autoreset_mode="SameStep").unwrapped
+        self.envs._given.without("hasard_rs.sb3", "infos", "env_stats")
         self.render_mode = self.envs.render_mode
         self._actions: Any = None
         self._began = np.zeros(n_envs)

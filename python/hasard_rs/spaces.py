@@ -48,6 +48,12 @@ class ActionFormat:
             raise TypeError(f"{what} must be integers, got dtype {array.dtype}")
         return _shaped(array, shape, what)
 
+    @staticmethod
+    def _wrong(rows: np.ndarray, lane: int, part: int, value: Any, allowed: str) -> InvalidAction:
+        """The error of a part of an action; its lane is named where there are several."""
+        of = f" of lane {lane}" if len(rows) > 1 else ""
+        return InvalidAction(f"action{of}: part {part} is {value}; it must be {allowed}")
+
     def _binned(self, rows: np.ndarray) -> Rows:
         """Rows whose last columns are bins of the deltas."""
         if not self.deltas:
@@ -56,8 +62,7 @@ class ActionFormat:
         wrong = (bins < 0) | (bins >= self.bins)
         if wrong.any():
             lane, part = np.argwhere(wrong)[0]
-            value, part = bins[lane, part], part + self.groups
-            raise InvalidAction(f"action of lane {lane}: part {part} is {value}; it must be 0..={self.bins - 1}")
+            raise self._wrong(rows, lane, part + self.groups, bins[lane, part], f"0..={self.bins - 1}")
         return rows[:, : self.groups], (2.0 * bins / (self.bins - 1) - 1.0).astype(np.float32)
 
 
@@ -74,6 +79,12 @@ def _shaped(array: np.ndarray, shape: tuple[int, ...], what: str) -> np.ndarray:
     if array.ndim == 0:
         raise TypeError(f"{what} must be an array of shape {shape}, got a scalar")
     raise ValueError(f"{what} must have shape {shape}, got {array.shape}")
+
+
+def _column(given: Any, lanes: int) -> Any:
+    """One part a lane, which networks give as a row or as a column."""
+    array = np.asarray(given)
+    return array[:, 0] if array.shape == (lanes, 1) else given
 
 
 def _box(parts: int) -> spaces.Box:
@@ -110,11 +121,11 @@ class Discrete(ActionFormat):
         return self.many(array.reshape(1) if array.size == 1 else array, 1)
 
     def many(self, actions: Any, lanes: int) -> Rows:
-        flat = self._integers(actions, (lanes,), "actions")
+        flat = self._integers(_column(actions, lanes), (lanes,), "actions")
         wrong = (flat < 0) | (flat >= self.count)
         if wrong.any():
             lane = int(wrong.argmax())
-            raise InvalidAction(f"action of lane {lane}: part 0 is {flat[lane]}; it must be 0..={self.count - 1}")
+            raise self._wrong(flat, lane, 0, flat[lane], f"0..={self.count - 1}")
         return self._binned(np.stack(np.unravel_index(flat.astype(np.int64), self.sizes), axis=1))
 
 
@@ -133,7 +144,7 @@ class Tuple(ActionFormat):
 
     def many(self, actions: Any, lanes: int) -> Rows:
         self._count(actions)
-        parts = [self._integers(part, (lanes,), "each part of the actions") for part in actions[: self.groups]]
+        parts = [self._integers(_column(part, lanes), (lanes,), "each part of the actions") for part in actions[: self.groups]]
         if not self.deltas:
             return np.stack(parts, axis=1), None
         continuous = [_numbers(part, "each delta", np.float32).reshape(lanes, 1) for part in actions[self.groups :]]
@@ -197,7 +208,7 @@ class Box(ActionFormat):
         wrong = np.isnan(rows)
         if wrong.any():
             lane, part = np.argwhere(wrong)[0]
-            raise InvalidAction(f"action of lane {lane}: part {part} is nan; it must be a number in [-1, 1]")
+            raise self._wrong(rows, lane, part, "nan", "a number in [-1, 1]")
         rows = np.clip(rows, -1.0, 1.0)
         stretches = np.floor((rows[:, : self.groups] + 1.0) / 2.0 * self.nvec).astype(np.int64)
         deltas = rows[:, self.groups :].astype(np.float32) if self.deltas else None

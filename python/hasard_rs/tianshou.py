@@ -28,6 +28,7 @@ class HasardVectorEnv:
         spec = hasard_rs.spec(env_id)
         arguments = {"layout": "chw", "action_format": "discrete", **arguments}
         given = _arguments.read({**arguments, "scenario": spec.scenario, "level": spec.level}, vector=True)
+        given.without("hasard_rs.tianshou", "env_stats", "render_mode", "render_resolution")
         self.worlds = hasard_rs.Worlds(given.env_id, num_envs, num_threads=num_threads, autoreset_mode="Disabled", **given.world)
         self._format = action_format(given.action_format, self.worlds.nvec, self.worlds.num_deltas, given.delta_bins)
         self._infos = Infos(self.worlds, spec.scenario, given.infos, False)

@@ -155,17 +155,17 @@ def load(run: str | os.PathLike[str], *, best: bool = False) -> Model:
 
     Args:
         run: the directory that `hasard_rs.train`, or the program, wrote.
-        best: the best checkpoint within budget instead of the newest.
+        best: the best checkpoint within budget instead of the newest; the newest too of a run without one, as `Agent.load`.
 
     Returns:
         A `Model`, on the CPU.
 
     Raises:
-        InvalidOption where no such checkpoint was written.
+        InvalidOption where no checkpoint was written.
     """
     checkpoints = Path(run) / "checkpoints"
-    found = [checkpoints / "best"] if best else sorted(checkpoints.glob("frames_*"))
-    if not found or not found[-1].is_dir():
-        raise InvalidOption(f"{run}: no checkpoint was written {'within budget' if best else 'yet'}")
+    found = [*sorted(checkpoints.glob("frames_*")), *(sorted(checkpoints.glob("best_*")) if best else [])]
+    if not found:
+        raise InvalidOption(f"{run}: no checkpoint was written there; give the directory of a run")
     settings = json.loads((Path(run) / "config.json").read_text())["network"]
     return Model(read_weights(found[-1] / "weights.safetensors"), settings)

@@ -37,6 +37,7 @@ class HasardEnv(EnvBase):
         super().__init__(device=torch.device(device), batch_size=torch.Size([num_envs]))
         spec = hasard_rs.spec(env_id)
         given = _arguments.read({"layout": "chw", **arguments, "scenario": spec.scenario, "level": spec.level}, vector=True)
+        given.without("hasard_rs.torchrl", "action_format", "delta_bins", "render_mode", "render_resolution", "infos", "env_stats")
         if given.world.get("full_actions"):
             raise hasard_rs.InvalidOption("full_actions have continuous parts; use GymWrapper over hasard_rs.make_vec for them")
         self.worlds = hasard_rs.Worlds(given.env_id, num_envs, num_threads=num_threads, autoreset_mode="Disabled", **given.world)

@@ -11,11 +11,14 @@ from gymnasium import logger, spaces
 from gymnasium.vector.utils import batch_space
 
 from hasard_rs import arguments as _arguments
+from hasard_rs import columns as _columns
 from hasard_rs._core import Batch, Worlds
+from hasard_rs.common import Shared, frame_size
 from hasard_rs.errors import InvalidOption, OutOfTurn
 from hasard_rs.infos import Infos, row, summary
-from hasard_rs.registry import CostTerm
 from hasard_rs.spaces import action_format
+from hasard_rs.turns import Result, Turns
+from hasard_rs.wrappers.drawable import coloured
 
 try:
     from gymnasium.vector import AutoresetMode
@@ -27,7 +30,7 @@ except ImportError:
 _CALLS = ("render", "position", "episode_seed", "state_hash")
 
 
-class VectorEnv(_Base):  # type: ignore[misc,valid-type]
+class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
     """A batch of worlds, as Gymnasium's vector environment; stepped by Rust threads while the interpreter is free.
 
     Made by `hasard_rs.make_vec(id, num_envs, **arguments)` or `gymnasium.make_vec`. Gymnasium 1.1 or newer.
@@ -37,7 +40,8 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         num_threads: worker threads beside the caller's; 0: none. None: one for every four lanes, as far as there are processors. No result
             depends on it.
         autoreset_mode: "NextStep", "SameStep" or "Disabled", or Gymnasium's enum.
-        batch_size: 0: every step is of all lanes. Otherwise it divides num_envs, and lanes are stepped in groups of so many, in turn.
+        batch_size: 0: every step is of all lanes. Otherwise it divides num_envs, and lanes are stepped in groups of so many, in turn: `send`
+            takes the actions of the group that has waited longest, `recv` gives the next group; `step` does both.
         copy: False: every call writes over the last one's arrays. Unsafe but for measurements.
         arguments: those of `help(hasard_rs.Env)`.
 
@@ -46,7 +50,8 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
 
     Attributes:
         single_observation_space, single_action_space: as of an `Env`. observation_space, action_space: batches of them.
-        autoreset_mode: Gymnasium's enum, in `metadata` too. cost_terms, safety_budget, max_episode_steps: as of an `Env`.
+        autoreset_mode: Gymnasium's enum, in `metadata` too. cost_terms, safety_budget, max_episode_steps, extent, scenario_name, level,
+        hard_constraint, frame_skip, spec: as of an `Env`.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 8.75}  # type: ignore[misc]
@@ -87,19 +92,14 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         self._same_step = self.autoreset_mode == AutoresetMode.SAME_STEP
         # The lanes that a NEXT_STEP step will reset.
         self._over = np.zeros(num_envs, dtype=np.bool_)
-        self._groups, self._given_out = groups, 0
-        self._fresh: dict[int, tuple[Batch, dict[str, Any]]] | None = None
+        self._groups, self._turns = groups, Turns(groups)
         self.num_envs = num_envs
         self.batch_size = batch_size or num_envs
         self.single_observation_space = spaces.Box(0, 255, self._worlds.observation_shape, np.uint8)
         self.single_action_space = self._format.space
         self.observation_space = batch_space(self.single_observation_space, self.batch_size)
         self.action_space = batch_space(self.single_action_space, self.batch_size)
-        self.render_mode = given.render_mode
-        self.metadata = {**type(self).metadata, "render_fps": 35 / given.frame_skip, "autoreset_mode": self.autoreset_mode}  # type: ignore[misc]
-        self.safety_budget: float = self._worlds.safety_budget
-        self.cost_terms = tuple(CostTerm(name, counted) for name, counted in self._worlds.cost_terms)
-        self.max_episode_steps: int = self._worlds.episode_steps
+        self._describe(autoreset_mode=self.autoreset_mode)
         if not copy:
             self._lend()
 
@@ -130,36 +130,56 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
 
         Returns:
             Observations, uint8 [num_envs, ...], and infos: arrays float64, int32, uint64 with first axis num_envs, and for each key a mask
-            bool [num_envs] under "_key". With `batch_size`: of the first group.
+            bool [num_envs] under "_key". With `batch_size`: of the first group, or, with a mask, of the group that was handed out and waits
+            for actions; the others come by `recv`.
+
+            Steps under way are given up with their episodes. A mask gives none up: `recv` brings them, lanes that were reset with their first
+            observation and no reward.
 
         Raises:
-            TypeError or ValueError for seeds or a mask of the wrong kind; Closed after `close`.
+            TypeError or ValueError for seeds or a mask of the wrong kind; ResetNeeded for a first reset of some lanes only; OutOfTurn for a
+            mask after `send`, where rewards and costs would be lost; Closed after `close`. Nothing has changed then.
         """
         seeds = self._seeds(seed)
         mask = self._mask(options)
+        chosen = np.ones(self.num_envs, np.bool_) if mask is None else mask
+        turns = self._turns
+        if chosen.all():
+            for group in sorted(turns.under_way):
+                self._worlds.recv(group)
+                turns.under_way.discard(group)
+            turns.back.clear()
+        elif not turns.due and (turns.under_way or turns.back):
+            raise OutOfTurn("a step is under way, whose rewards and costs a reset_mask would lose; call recv first")
+        else:
+            self._wait()
         if isinstance(seeds, int):
             super().reset(seed=seeds)
         batch = self._worlds.reset(seeds, mask)
-        chosen = np.ones(self.num_envs, np.bool_) if mask is None else mask
         self._over[chosen] = False
         self._infos.begin(chosen)
         infos: dict[str, Any] = {}
         for key, column in self._infos.step(batch).items():
-            self._put(infos, key, column, chosen)
+            _columns.put(infos, key, column, chosen)
         if self._groups == 1:
+            turns.due = [0]
             return batch.observations, infos
-        # Groups are handed out one by one: this one now, the others by recv.
-        self._fresh = {group: (batch, infos) for group in range(1, self._groups)}
-        self._given_out = 0
-        return self._of_group(batch, infos, 0)
+        rests = {group: self._at_rest(batch, infos, group) for group in range(self._groups)}
+        # What was handed out is handed out again; what waits to be fetched keeps its rewards.
+        back = {group: self._with_resets(told, rests[group], chosen[self._lanes(group)]) for group, told in turns.back.items()}
+        first = 0 if chosen.all() else turns.due[0]
+        observations, *_, told = turns.restart({**rests, **back}, first)
+        return observations, told
 
     def _seeds(self, seed: Any) -> Any:
         if seed is None:
             if self._worlds.started:
                 return None
             return self._given.seed if self._given.seed is not None else secrets.randbits(64)
-        if hasattr(seed, "__index__") and not hasattr(seed, "__len__"):
+        if _arguments.is_number(seed):
             return _arguments.check_seed(seed)
+        if not hasattr(seed, "__iter__"):
+            raise TypeError(f"a seed must be an integer, or a sequence with one for each lane, got {seed!r:.60}")
         seeds = [None if one is None else _arguments.check_seed(one) for one in seed]
         if len(seeds) != self.num_envs:
             raise ValueError(
@@ -185,7 +205,7 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         return mask
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Steps every lane; with `batch_size`, the lanes last handed out.
+        """Steps every lane; with `batch_size`, those that have waited longest for actions.
 
         Args:
             actions: of action_space: for "multi_discrete" integers [n, parts].
@@ -200,41 +220,74 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
             first reset, or where a lane's episode is over under DISABLED; Closed after `close`. Nothing has moved then.
         """
         if self._groups > 1:
+            # Once the actions are sent there is something to receive: a refused step has moved nothing.
             self.send(actions)
             return self.recv()
+        if not self._turns.due and self._worlds.started:
+            raise OutOfTurn("a step is under way; call recv first")
         return self._tell(self._worlds.step(*self._format.many(actions, self.num_envs)))
 
     def send(self, actions: Any) -> None:
-        """Hands actions of the lanes last handed out over and comes back at once.
+        """Hands over actions and comes back at once.
 
         Args:
-            actions: for batch_size lanes, as for `step`.
+            actions: for batch_size lanes, as for `step`: those that have waited longest since `reset`, `step` or `recv` handed them out.
 
         Raises:
-            What `step` raises; OutOfTurn if these lanes are under way.
+            What `step` raises; OutOfTurn if no lanes wait for actions.
         """
-        self._worlds.send(*self._format.many(actions, self.batch_size), group=self._given_out)
+        turns = self._turns
+        rows = self._format.many(actions, self.batch_size)
+        # Worlds that were never reset, or are closed, say so themselves.
+        if not turns.due and self._worlds.started:
+            raise OutOfTurn("no lanes wait for actions; fetch what is under way by recv first")
+        group = turns.due[0] if turns.due else 0
+        self._worlds.send(*rows, group=group)
+        turns.due.remove(group)
+        turns.under_way.add(group)
 
     def recv(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Waits for the next group's step, round robin. Returns what `step` returns; the first time after a reset, that group's reset."""
-        group = (self._given_out + 1) % self._groups
-        if self._fresh and group in self._fresh:
-            batch, infos = self._fresh.pop(group)
-            self._given_out = group
-            observations, infos = self._of_group(batch, infos, group)
-            nothing = np.zeros(self.batch_size, np.bool_)
-            return observations, np.zeros(self.batch_size), nothing, nothing.copy(), infos
-        told = self._tell(self._worlds.recv(group))
-        self._given_out = group
+        """Waits for the next group's step, round robin.
+
+        Returns:
+            What `step` returns; the first time after a reset, that group's reset.
+
+        Raises:
+            OutOfTurn if nothing was sent to it; Closed after `close`.
+        """
+        turns = self._turns
+        if turns.coming in turns.back:
+            return turns.take()
+        if turns.coming not in turns.under_way and turns.due and not self._worlds.closed:
+            lanes = self._lanes(turns.coming)
+            raise OutOfTurn(f"lanes {lanes.start}..={lanes.stop - 1} wait for actions; send them first")
+        told = self._tell(self._worlds.recv(turns.coming))
+        turns.under_way.discard(turns.coming)
+        turns.hand_out()
         return told
 
-    def _of_group(self, batch: Batch, infos: dict[str, Any], group: int) -> tuple[np.ndarray, dict[str, Any]]:
-        own = slice(group * self.batch_size, (group + 1) * self.batch_size)
+    def _wait(self) -> None:
+        """Waits for all that is under way, and keeps it for `recv`."""
+        for group in sorted(self._turns.under_way):
+            # A copy: with `copy=False` the next call writes over it.
+            self._turns.back[group] = copy.deepcopy(self._tell(self._worlds.recv(group)))
+            self._turns.under_way.discard(group)
 
-        def cut(columns: dict[str, Any]) -> dict[str, Any]:
-            return {key: cut(column) if isinstance(column, dict) else column[own].copy() for key, column in columns.items()}
+    def _lanes(self, group: int) -> slice:
+        return slice(group * self.batch_size, (group + 1) * self.batch_size)
 
-        return batch.observations[own].copy(), {**cut(infos), **self._env_ids(batch.lanes[own])}
+    def _at_rest(self, batch: Batch, infos: dict[str, Any], group: int) -> Result:
+        """A group as it is, without a step."""
+        own = self._lanes(group)
+        nothing = np.zeros(self.batch_size, np.bool_)
+        told = {**_columns.cut(infos, own), **self._env_ids(batch.lanes[own])}
+        return batch.observations[own].copy(), np.zeros(self.batch_size), nothing, nothing.copy(), told
+
+    def _with_resets(self, told: Result, rest: Result, mask: np.ndarray) -> Result:
+        """A group's step that was not fetched yet, with first observations where lanes were reset since."""
+        observations, rewards, terminated, truncated, infos = told
+        observations[mask] = rest[0][mask]
+        return observations, np.where(mask, 0.0, rewards), terminated & ~mask, truncated & ~mask, _columns.replaced(infos, rest[4], mask)
 
     def _env_ids(self, lanes: np.ndarray) -> dict[str, np.ndarray]:
         return {"env_id": lanes, "_env_id": np.ones(len(lanes), np.bool_)} if self._groups > 1 else {}
@@ -247,7 +300,7 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         infos: dict[str, Any] = {}
         columns = self._infos.step(batch)
         for key, column in columns.items():
-            self._put(infos, key, column, everywhere)
+            _columns.put(infos, key, column, everywhere)
         if batch.episodes:
             self._end(infos, columns, batch)
         if not self._same_step:
@@ -265,7 +318,7 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
             ended[index] = True
             told = {"episode_summary": summary(episode)}
             if not self._same_step:
-                self._add(infos, told, index, count)
+                _columns.add(infos, told, index, count)
                 continue
             final = {**row(columns, index), **told}
             if "episode_seed" in final:
@@ -274,55 +327,25 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
                 infos["final_obs"] = np.full(count, None, dtype=object)
                 infos["_final_obs"] = np.zeros(count, np.bool_)
             infos["final_obs"][index], infos["_final_obs"][index] = lasts[index].copy(), True
-            self._add(infos, {"final_info": final}, index, count)
+            _columns.add(infos, {"final_info": final}, index, count)
             # The new episode's place and statistics; the cost stays that of the step just made.
             self._infos.begin(episode["lane"])
             for key, value in self._infos.now(episode["lane"]).items():
-                self._add(infos, {key: value}, index, count)
-
-    def _add(self, infos: dict[str, Any], info: dict[str, Any], index: int, count: int) -> None:
-        """Puts one lane's values into columns, as Gymnasium's vector environments do."""
-        for key, value in info.items():
-            if isinstance(value, dict):
-                column = infos.setdefault(key, {})
-                self._add(column, value, index, count)
-            else:
-                value = np.asarray(value)
-                column = infos.setdefault(key, np.zeros((count, *value.shape), value.dtype))
-                column[index] = value
-            infos.setdefault(f"_{key}", np.zeros(count, np.bool_))[index] = True
-
-    def _put(self, infos: dict[str, Any], key: str, column: Any, mask: np.ndarray) -> None:
-        """Puts a column in, zero where the mask is not."""
-        if isinstance(column, dict):
-            inner: dict[str, Any] = {}
-            for name, values in column.items():
-                self._put(inner, name, values, mask)
-            infos[key] = inner
-        elif mask.all():
-            infos[key] = column
-        else:
-            infos[key] = np.where(mask.reshape(-1, *[1] * (column.ndim - 1)), column, np.zeros_like(column))
-        infos[f"_{key}"] = mask.copy()
+                _columns.add(infos, {key: value}, index, count)
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Draws the present of every lane as `render_mode` says.
 
         Returns:
-            For each lane uint8 [height, width, 3], or [height, width] for "depth_array"; None, after a warning, without a render mode.
+            For each lane uint8 [height, width, 3], of "depth_array" three equal channels (0 near to 255 far), so that Gymnasium's wrappers can
+            show and film it; None, after a warning, without a render mode.
         """
         if self.render_mode is None:
             logger.warn("render() needs render_mode='rgb_array' or 'depth_array' when the environments are made; nothing is drawn")
             return None
-        kind = "rgb" if self.render_mode == "rgb_array" else "depth"
-        return tuple(self._worlds.render(lane, kind, self._size()) for lane in range(self.num_envs))
-
-    def _size(self) -> Any:
-        if self._given.render_resolution is not None:
-            return self._given.render_resolution
-        shape = self._worlds.observation_shape
-        height, width = shape[1:] if self._given.world.get("layout") == "chw" else shape[:2]
-        return width, height
+        self._wait()
+        kind, size = "rgb" if self.render_mode == "rgb_array" else "depth", frame_size(self._worlds, self._given)
+        return tuple(coloured(self._worlds.render(lane, kind, size)) for lane in range(self.num_envs))
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Asks each lane.
@@ -338,6 +361,8 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         Raises:
             AttributeError for another name.
         """
+        if name in _CALLS:
+            self._wait()
         if name == "render":
             return self.render() or (None,) * self.num_envs
         if name == "position":
@@ -379,7 +404,7 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
     def save(self) -> bytes:
         """Returns where every lane is, to come back to by `load`: bytes of this version. Raises OutOfTurn with `batch_size`."""
         if self._groups > 1:
-            raise OutOfTurn("worlds in groups cannot be saved while some are under way; make them without batch_size")
+            raise OutOfTurn("worlds in groups have no moment that all of them are at; make them without batch_size, or pickle them")
         return self._infos.save()
 
     def load(self, state: bytes) -> np.ndarray:
@@ -392,10 +417,13 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
             Observations of that moment.
 
         Raises:
-            InvalidOption for bytes that are spoiled, or of other worlds; nothing has changed then.
+            InvalidOption for bytes that are spoiled, or of other worlds; OutOfTurn with `batch_size`. Nothing has changed then.
         """
+        if self._groups > 1:
+            raise OutOfTurn("worlds in groups have no moment that all of them are at; make them without batch_size")
         batch = self._infos.load(state)
         self._over[:] = batch.terminated | batch.truncated
+        self._turns.due = [0] if self._worlds.started else []
         return batch.observations
 
     def close_extras(self, **kwargs: Any) -> None:
@@ -406,12 +434,13 @@ class VectorEnv(_Base):  # type: ignore[misc,valid-type]
         """
         if hasattr(self, "_worlds"):
             self._worlds.close()
+            self._turns = Turns(self._groups)
 
     def __getstate__(self) -> dict[str, Any]:
-        kept = {name: self.__dict__[name] for name in ("_np_random", "_np_random_seed", "render_mode", "spec") if name in self.__dict__}
-        return {"arguments": self._arguments, "saved": self.save(), "kept": kept}
+        self._wait()
+        return {"arguments": self._arguments, "saved": self._infos.save(), "kept": copy.deepcopy(self._kept())}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["arguments"])  # type: ignore[misc]
-        self.load(state["saved"])
-        self.__dict__.update(copy.deepcopy(state["kept"]))
+        self._infos.load(state["saved"])
+        self.__dict__.update(state["kept"])

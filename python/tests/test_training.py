@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import hasard_rs
+from hasard_rs.agent import training_words
 
 ENV = "hasard/RemedyRushLevel1-v0"
 # Far longer than any test waits, and reported often: what ends these runs is their callback.
@@ -39,6 +41,89 @@ def test_a_run_directory_is_the_programs(run: hasard_rs.Run) -> None:
     assert done.returncode == 0, done.stderr
     agent = hasard_rs.Agent.load(run.directory)
     assert agent.evaluate(1) == [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def test_what_is_loaded_is_what_plays(tmp_path: Path) -> None:
+    run = hasard_rs.train(ENV, "PPOLag", out=tmp_path / "run", callback=lambda report: True, **SMALL)
+    first = hasard_rs.Agent.load(run.directory)
+    greedy = hasard_rs.Agent.load(run.directory, greedy=True)
+    drawn, likeliest = first.evaluate(1, seed=4), greedy.evaluate(1, seed=4)
+    assert drawn != likeliest, "the test tells them apart"
+    assert first.evaluate(1, seed=4, greedy=True) == likeliest and greedy.evaluate(1, seed=4, greedy=False) == drawn
+    words = [sys.executable, "-m", "hasard_rs.cli", "eval", str(run.directory), "--episodes", "1", "--seed", "4", "--json", "--latest", "--greedy"]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert [json.loads(line) for line in done.stdout.splitlines()] == likeliest
+    # The run goes on: its newest checkpoint is another, and what was loaded still plays. Then the first becomes the best.
+    checkpoints = run.directory / "checkpoints"
+    (oldest,) = checkpoints.glob("frames_*")
+    shutil.copytree(oldest, tmp_path / "first")
+    reports: list[dict] = []
+    hasard_rs.train(ENV, out=run.directory, resume=True, callback=lambda report: reports.append(report) or len(reports) > 2)
+    newest = hasard_rs.Agent.load(run.directory).evaluate(1, seed=4)
+    assert first.evaluate(1, seed=4) == drawn != newest
+    shutil.copytree(tmp_path / "first", checkpoints / oldest.name.replace("frames_", "best_"))
+    best = hasard_rs.Agent.load(run.directory, best=True)
+    assert best.evaluate(1, seed=4) == drawn and best.evaluate(1, seed=4, best=False) == newest
+    assert [episode["seed"] for episode in best.evaluate(2, seed=2**64 - 1)[:2]] == [2**64 - 1, 0]
+    for wrong in ({"episodes": 0}, {"episodes": 2.5}, {"seed": -1}, {"seed": "x"}):
+        with pytest.raises((ValueError, TypeError)):
+            best.evaluate(**wrong)
+
+
+def test_agents_of_the_zoo_and_of_files_are_agents(monkeypatch: pytest.MonkeyPatch) -> None:
+    zoo = Path(__file__).parents[2] / "zoo"
+    monkeypatch.setenv("HASARD_ZOO", str(zoo))
+    by_name = hasard_rs.Agent.load("zoo:RemedyRushLevel1")
+    by_file = hasard_rs.Agent.load(zoo / "RemedyRushLevel1.agent")
+    assert by_name.env_id == by_file.env_id == ENV and by_name.config == by_file.config
+    observations, _ = by_name.make_vec(2).reset(seed=1)
+    assert np.array_equal(by_name.act(observations)[0], by_file.act(observations)[0])
+    words = [sys.executable, "-m", "hasard_rs.cli", "eval", "zoo:RemedyRushLevel1", "--episodes", "1", "--seed", "3", "--json"]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert [json.loads(line) for line in done.stdout.splitlines()] == by_name.evaluate(1, seed=3)
+    with pytest.raises(hasard_rs.InvalidOption, match="zoo:RemedyRushLevel1"):
+        hasard_rs.Agent.load("zoo:Nobody")
+    with pytest.raises(hasard_rs.InvalidOption, match="without a run directory"):
+        by_name.report("nowhere")
+
+
+def test_environments_of_agents_take_both_names(run: hasard_rs.Run) -> None:
+    agent = hasard_rs.Agent.load(run.directory)
+    assert agent.make(size=[72, 48], hard=True).observation_space.shape == (48, 72, 3)
+    assert agent.make_vec(2, resolution="72x48").single_observation_space.shape == (48, 72, 3)
+    assert agent.make().unwrapped.safety_budget == agent.config["constraints"][0]["budget"]
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"frames": 2e6}, ["--frames=2000000"]),
+        ({"frames": np.int64(5)}, ["--frames=5"]),
+        ({"seed": -1}, ["--seed=-1"]),
+        ({"size": (64, 48)}, ["--size=64x48"]),
+        ({"resolution": [64, 48]}, ["--size=64x48"]),
+        ({"resolution": [64, 48], "size": "64x48"}, ["--size=64x48"]),
+        ({"hard_constraint": True, "hard": True}, ["--hard"]),
+        ({"hard_constraint": np.True_}, ["--hard"]),
+        ({"hard_constraint": False}, []),
+        ({"maps": None, "map": Path("a.wad")}, ["--maps=a.wad"]),
+        ({"curriculum": [1, 2]}, ["--curriculum=1,2"]),
+        ({"safety_budget": ["lava=3", "jumps=4"]}, ["--safety-budget=lava=3", "--safety-budget=jumps=4"]),
+        ({"async_": True, "quiet": True}, ["--async"]),
+        ({"set": {"learning.rate": np.float32(0.5), "network.residual": (32, 32)}}, ["--set=learning.rate=0.5", "--set=network.residual=[32, 32]"]),
+    ],
+)
+def test_flags_are_the_programs(given: dict, words: list[str]) -> None:
+    assert training_words(ENV, "PPO", **given) == [ENV.removeprefix("hasard/"), "--algo=PPO", "--quiet", *words]
+
+
+def test_a_setting_is_given_once() -> None:
+    for wrong in ({"algo": "PPOLag"}, {"hard": True, "hard_constraint": False}, {"size": "64x48", "resolution": (72, 48)}, {"map": "a", "maps": "b"}):
+        with pytest.raises(hasard_rs.InvalidOption) as told:
+            training_words(ENV, "PPO", **wrong)
+        assert all(f"{name}=" in str(told.value) for name in wrong)
+    with pytest.raises(hasard_rs.InvalidOption, match="'-1' for '--seed"):
+        hasard_rs.train(ENV, out="nowhere", seed=-1)
 
 
 def test_agents_are_functions_of_what_they_are_given(run: hasard_rs.Run) -> None:

@@ -29,20 +29,7 @@ impl EpisodeLines {
     pub fn episode(&mut self, env: &str, number: u64, episode: Episode) -> Outcome {
         let mut out = std::io::stdout().lock();
         if self.json {
-            let object = json!({
-                "env": env,
-                "episode": number,
-                "seed": episode.seed,
-                "return": episode.episode_return,
-                "cost": episode.cost,
-                "costs": named(episode.costs.iter().map(|one| (one.name, one.cost))),
-                "uncounted": episode.costs.iter().filter(|one| !one.counted).map(|one| one.name).collect::<Vec<_>>(),
-                "length": episode.length,
-                "terminated": episode.terminated,
-                "truncated": episode.truncated,
-                "stats": named(episode.stats.iter().copied()),
-            });
-            writeln!(out, "{object}")?;
+            writeln!(out, "{}", episode_row(env, number, &episode))?;
         } else {
             if self.episodes.is_empty() {
                 writeln!(out, "{env}")?;
@@ -66,17 +53,7 @@ impl EpisodeLines {
         let mut out = std::io::stdout().lock();
         if self.json {
             if as_json {
-                let constraints: Vec<Value> = all.constraints.iter().map(judgement).collect();
-                let object = json!({ "summary": {
-                    "episodes": all.episodes,
-                    "return_mean": all.episode_return.mean, "return_ci95": all.episode_return.half_width,
-                    "cost_mean": all.cost.mean, "cost_ci95": all.cost.half_width,
-                    "length_mean": all.length.mean, "length_ci95": all.length.half_width,
-                    "safety_budget": all.constraints.first().map(|one| one.budget),
-                    "within_budget": (!all.constraints.is_empty()).then(|| all.within()),
-                    "constraints": constraints,
-                }});
-                writeln!(out, "{object}")?;
+                writeln!(out, "{}", summary_row(&all))?;
             }
             return Ok(());
         }
@@ -89,6 +66,37 @@ impl EpisodeLines {
         )?;
         Ok(())
     }
+}
+
+/// An episode as JSON.
+pub fn episode_row(env: &str, number: u64, episode: &Episode) -> Value {
+    json!({
+        "env": env,
+        "episode": number,
+        "seed": episode.seed,
+        "return": episode.episode_return,
+        "cost": episode.cost,
+        "costs": named(episode.costs.iter().map(|one| (one.name, one.cost))),
+        "uncounted": episode.costs.iter().filter(|one| !one.counted).map(|one| one.name).collect::<Vec<_>>(),
+        "length": episode.length,
+        "terminated": episode.terminated,
+        "truncated": episode.truncated,
+        "stats": named(episode.stats.iter().copied()),
+    })
+}
+
+/// Means of episodes and their 95 % confidence half-widths as JSON.
+pub fn summary_row(all: &Evaluation) -> Value {
+    let constraints: Vec<Value> = all.constraints.iter().map(judgement).collect();
+    json!({ "summary": {
+        "episodes": all.episodes,
+        "return_mean": all.episode_return.mean, "return_ci95": all.episode_return.half_width,
+        "cost_mean": all.cost.mean, "cost_ci95": all.cost.half_width,
+        "length_mean": all.length.mean, "length_ci95": all.length.half_width,
+        "safety_budget": all.constraints.first().map(|one| one.budget),
+        "within_budget": (!all.constraints.is_empty()).then(|| all.within()),
+        "constraints": constraints,
+    }})
 }
 
 /// Return and costs with their half-widths, each constraint beside its budget, for people.

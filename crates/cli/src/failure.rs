@@ -103,6 +103,8 @@ pub fn usage_line(error: &clap::Error) -> String {
         .filter(|line| !line.is_empty() && !line.starts_with("Usage:") && !line.starts_with("For more information"))
         .collect();
     let line = presentable(&parts.join("; ").replace(":; ", ": "));
+    // The standard library's words for what is no number without a sign.
+    let line = line.replace("invalid digit found in string", "give a whole number, 0 or more");
     line.strip_prefix("error: ").unwrap_or(&line).to_string()
 }
 

@@ -22,16 +22,26 @@ use args::{Cli, Command};
 use clap::{ArgMatches, CommandFactory, FromArgMatches};
 use failure::Failure;
 use hasard_envs::{EnvOptions, VecEnv};
+use hasard_learn::config::EnvConfig;
+use hasard_learn::runs::agent::{Choice, TrainedPolicy};
+use hasard_learn::runs::evaluate::{Evaluation, play};
 use hasard_learn::runs::together::Invitation;
 use hasard_learn::runs::trainer::{Hooks, Summary};
 use hasard_learn::team::Team;
 use interrupt::Manner;
+use serde_json::Value;
 use settings::Elsewhere;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 fn parse(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, ArgMatches), clap::Error> {
-    let matches = Cli::command().try_get_matches_from(words)?;
+    // A negative number is a value, wrong as it may be, and no flag of that name: else the hint is about flags.
+    let value = |flag: clap::Arg| {
+        let takes = !flag.is_positional() && flag.get_action().takes_values();
+        if takes { flag.allow_negative_numbers(true) } else { flag }
+    };
+    let program = Cli::command().mut_subcommands(|command| command.mut_args(value));
+    let matches = program.try_get_matches_from(words)?;
     Ok((Cli::from_arg_matches(&matches)?, matches))
 }
 
@@ -97,6 +107,43 @@ pub fn follow(team: Team, warn: &mut dyn FnMut(String)) -> Result<(), String> {
     let invitation = Invitation::hear(team).map_err(|error| error.to_string())?;
     let options = settings::trained_options(&invitation.config.env, Elsewhere::default()).map_err(Failure::line)?;
     invitation.follow(&|env, worlds| VecEnv::new(&env.id, &options, worlds), warn).map_err(|error| error.to_string())
+}
+
+/// The run directory or agent file that a text names: a path, or `zoo:NAME`.
+///
+/// # Errors
+/// One line that names the agents of the zoo.
+pub fn agent_place(text: &Path) -> Result<PathBuf, String> {
+    zoo::find(text.as_os_str()).map_err(Failure::line)
+}
+
+/// Plays an episode of each seed with a policy and gives what `hasard eval --json` prints: a row an episode, then the summary. `interrupted` is
+/// asked between some episodes and others.
+///
+/// # Errors
+/// One line of what went wrong; `None` where it was interrupted.
+pub fn evaluate(
+    policy: &TrainedPolicy,
+    choice: Choice,
+    options: &EnvOptions,
+    seeds: &[u64],
+    mut interrupted: impl FnMut() -> bool,
+) -> Result<Vec<Value>, Option<String>> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let (config, mut rows, mut all) = (policy.config(), Vec::new(), Vec::new());
+    let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, options, worlds);
+    for some in seeds.chunks(8 * threads) {
+        if interrupted() {
+            return Err(None);
+        }
+        for episode in play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))? {
+            rows.push(episode_lines::episode_row(&config.env.id, all.len() as u64, &episode));
+            all.push(episode);
+        }
+    }
+    let summary = Evaluation::of(&all, &config.constraints).map_err(|error| Some(error.to_string()))?;
+    rows.push(episode_lines::summary_row(&summary));
+    Ok(rows)
 }
 
 /// The environment's id and options of the run in a directory, as its agent sees them.

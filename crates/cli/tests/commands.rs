@@ -124,6 +124,8 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("replay binary.episode", &["binary.episode"]),
         ("replay none.episode", &["none.episode"]),
         ("rollout RemedyRushLevel1-v0 --episodes 0", &["--episodes"]),
+        ("rollout RemedyRushLevel1-v0 --seed -1", &["'-1'", "--seed", "a whole number, 0 or more"]),
+        ("train RemedyRushLevel1-v0 --frames -5 --out new", &["-5", "--frames"]),
         ("trace RemedyRushLevel1-v0 --actions empty", &["empty", "action"]),
         ("trace RemedyRushLevel1-v0 --actions folder", &["folder"]),
         ("trace RemedyRushLevel1-v0", &["--actions"]),

@@ -54,12 +54,12 @@ fn rows(shape: &[usize], lanes: usize, parts: usize, name: &str) -> PyResult<()>
     Ok(())
 }
 
-/// Writes categorical sub-actions of lanes, `[lanes, groups]`; `lane` names the lane of a row for messages.
+/// Writes categorical sub-actions of lanes, `[lanes, groups]`; `lane` gives the lane of a row for messages, `None` where there is one alone.
 pub fn read_actions(
     given: &Bound<'_, PyAny>,
     space: &ActionSpace,
     lanes: usize,
-    lane: impl Fn(usize) -> usize,
+    lane: impl Fn(usize) -> Option<usize>,
     out: &mut [u8],
 ) -> PyResult<()> {
     let groups = space.groups.len();
@@ -70,10 +70,8 @@ pub fn read_actions(
     for (i, (&value, out)) in values.iter().zip(out).enumerate() {
         let most = space.groups[i % groups].buttons.len();
         if value < 0 || value > most as i64 {
-            let (lane, part) = (lane(i / groups), i % groups);
-            return Err(
-                INVALID_ACTION.error(given.py(), format!("action of lane {lane}: part {part} is {value}; it must be 0..={most}"))
-            );
+            let (of, part) = (lane(i / groups).map_or_else(String::new, |lane| format!(" of lane {lane}")), i % groups);
+            return Err(INVALID_ACTION.error(given.py(), format!("action{of}: part {part} is {value}; it must be 0..={most}")));
         }
         *out = value as u8;
     }

@@ -2,11 +2,12 @@
 
 use crate::errors::INVALID_OPTION;
 use crate::pool::array;
-use hasard_envs::Env;
+use hasard_envs::{Env, EnvOptions};
 use hasard_learn::networks::distribution::ActionShape;
+use hasard_learn::runs::agent::{TrainedPolicy, run_config};
 use hasard_learn::runs::evaluate::{Agent as Trained, Choice, Memory, Which};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard};
@@ -27,10 +28,10 @@ impl AgentState {
 
 /// TrainedAgent(run, *, best=False, greedy=False)
 ///
-/// The agent of a run directory, raw; `hasard_rs.Agent` is what to use.
+/// The agent of a run directory, an agent's file or the zoo, raw; `hasard_rs.Agent` is what to use.
 ///
 /// Args:
-///     run: the directory.
+///     run: the directory, the file, or "zoo:NAME".
 ///     best: the best checkpoint within budget instead of the newest.
 ///     greedy: the likeliest actions instead of drawn ones.
 ///
@@ -39,6 +40,10 @@ impl AgentState {
 #[pyclass(frozen, module = "hasard_rs._core")]
 pub struct TrainedAgent {
     agent: Mutex<Trained>,
+    policy: Mutex<TrainedPolicy>,
+    choice: Choice,
+    options: EnvOptions,
+    config: String,
     env_id: String,
     observation: [usize; 3],
     sizes: Vec<usize>,
@@ -68,7 +73,9 @@ impl TrainedAgent {
     #[new]
     #[pyo3(signature = (run, *, best=false, greedy=false))]
     fn new(py: Python<'_>, run: PathBuf, best: bool, greedy: bool) -> PyResult<TrainedAgent> {
+        let mut warnings: Vec<String> = Vec::new();
         let made = py.detach(|| {
+            let run = hasard_cli::agent_place(&run)?;
             let (env_id, options) = hasard_cli::environment_of_run(&run)?;
             let env = Env::new(&env_id, &options).map_err(|error| error.to_string())?;
             let (space, observation) = (env.action_space(), env.observation_shape());
@@ -76,11 +83,20 @@ impl TrainedAgent {
             let action = ActionShape { sizes: sizes.clone(), deltas };
             let which = if best { Which::HandedOut } else { Which::Latest };
             let choice = if greedy { Choice::Greedy } else { Choice::Sampled };
-            let agent =
-                Trained::load(&run, which, choice, 1, observation, action, &mut |_| {}).map_err(|error| error.to_string())?;
-            Ok(TrainedAgent { agent: Mutex::new(agent), env_id, observation, sizes, deltas })
+            let policy = TrainedPolicy::load(&run, which, observation, action, &mut |text| warnings.push(text))
+                .map_err(|error| error.to_string())?;
+            // The policy's own settings say where it acts, not where it was trained.
+            let config = run_config(&run).map_err(|error| error.to_string())?;
+            let config = serde_json::to_string(&config).map_err(|error| error.to_string())?;
+            let (agent, policy) = (Mutex::new(policy.agent(choice, 1)), Mutex::new(policy));
+            Ok(TrainedAgent { agent, policy, choice, options, config, env_id, observation, sizes, deltas })
         });
-        made.map_err(|line: String| INVALID_OPTION.error(py, line))
+        let made = made.map_err(|line: String| INVALID_OPTION.error(py, line))?;
+        // A damaged checkpoint is passed over: another acts than the newest.
+        for text in warnings {
+            py.import("warnings")?.call_method1("warn", (text, py.get_type::<PyUserWarning>(), 2))?;
+        }
+        Ok(made)
     }
 
     /// begin(seeds) -> AgentState
@@ -184,6 +200,41 @@ impl TrainedAgent {
             seen.map_err(|error: hasard_learn::error::LearnError| INVALID_OPTION.error(py, error.to_string()))?;
         let width = rows.len().checked_div(lanes).unwrap_or(0);
         Ok((array(py, rows, &[lanes, width])?, AgentState { memory }))
+    }
+
+    /// evaluate(seeds) -> str
+    ///
+    /// Plays an episode of each of the `seeds` (int) with the weights that were loaded, in worlds as it was trained in.
+    ///
+    /// Returns:
+    ///     A JSON list, of an object an episode and the summary, as `hasard eval --json` prints them.
+    ///
+    /// Raises:
+    ///     InvalidOption for worlds that cannot be made; what a signal's handler raises, such as KeyboardInterrupt.
+    fn evaluate(&self, py: Python<'_>, seeds: Vec<u64>) -> PyResult<String> {
+        let mut raised = None;
+        let played = py.detach(|| {
+            let policy = self.policy.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            let interrupted = || match Python::attach(|py| py.check_signals()) {
+                Ok(()) => false,
+                Err(error) => {
+                    raised = Some(error);
+                    true
+                }
+            };
+            hasard_cli::evaluate(&policy, self.choice, &self.options, &seeds, interrupted)
+        });
+        match (played, raised) {
+            (_, Some(error)) => Err(error),
+            (Ok(rows), _) => Ok(serde_json::Value::from(rows).to_string()),
+            (Err(line), _) => Err(INVALID_OPTION.error(py, line.unwrap_or_default())),
+        }
+    }
+
+    /// Settings of the run that the agent comes from: JSON, as in config.json.
+    #[getter]
+    fn config(&self) -> &str {
+        &self.config
     }
 
     /// The environment that the agent was trained in, without `hasard/`.

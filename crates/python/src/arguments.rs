@@ -40,17 +40,18 @@ pub struct Arguments {
 /// Reads keyword arguments; an unknown one is a `TypeError` that names the nearest.
 pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Arguments> {
     let mut arguments = Arguments { options: EnvOptions::default(), safety_budget: None, seed: None };
-    let (mut maps, mut iwad) = (None::<PathBuf>, None::<PathBuf>);
+    let (mut hard, mut resolution, mut maps) = (Either::default(), Either::default(), Either::default());
+    let mut iwad = None::<PathBuf>;
     for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
         let name: String = name.extract()?;
         let options = &mut arguments.options;
         match name.as_str() {
             "rules" => options.rules = choice(&name, &value, &RuleSet::ALL.map(|rules| (rules.name(), rules)))?,
             "early_creatures" => options.early_creatures = typed(&name, &value, "True or False")?,
-            "hard_constraint" | "hard" => options.hard = typed(&name, &value, "True or False")?,
+            "hard_constraint" | "hard" => hard.give(&name, &value, typed(&name, &value, "True or False")?)?,
             "full_actions" => options.full_actions = typed(&name, &value, "True or False")?,
             "frame_skip" => options.frame_skip = number(&name, &value, 1, 35)? as u32,
-            "resolution" | "size" => options.size = size(&name, &value)?,
+            "resolution" | "size" => resolution.give(&name, &value, size(&name, &value)?)?,
             "observation" => {
                 let kinds = [
                     ("rgb", ObservationKind::Rgb),
@@ -69,12 +70,16 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
             "safety_budget" if value.is_none() => arguments.safety_budget = None,
             "safety_budget" => arguments.safety_budget = Some(typed(&name, &value, "a number")?),
             "iwad" => iwad = typed(&name, &value, "a path or 'auto'")?,
-            "maps" | "map" => maps = typed(&name, &value, "a path or 'auto'")?,
+            "maps" | "map" if value.is_none() => {}
+            "maps" | "map" => maps.give(&name, &value, typed::<PathBuf>(&name, &value, "a path or 'auto'")?)?,
             "published_depth" => options.published_depth = typed(&name, &value, "True or False")?,
             "published_colours" => options.published_colours = typed(&name, &value, "True or False")?,
             _ => return Err(unknown(py, &name)?),
         }
     }
+    let (defaults, maps) = (&mut arguments.options, maps.value());
+    defaults.hard = hard.value().unwrap_or(defaults.hard);
+    defaults.size = resolution.value().unwrap_or(defaults.size);
     if maps.is_some() || iwad.is_some() {
         // Together: pictures of a map lie over those of the IWAD. What is left out of a map the program tells, where people look.
         let looks = py.detach(|| hasard_cli::looks(maps.as_deref(), iwad.as_deref(), |_| ()));
@@ -83,6 +88,35 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
     }
     arguments.options.check().map_err(|error| raise(py, &error))?;
     Ok(arguments)
+}
+
+/// What an argument of two names was given: by which name, as it was written, and its value.
+struct Either<T>(Option<(String, String, T)>);
+
+impl<T> Default for Either<T> {
+    fn default() -> Either<T> {
+        Either(None)
+    }
+}
+
+impl<T: PartialEq> Either<T> {
+    /// Takes a value by one of the names. Where the other name has another value neither is dropped in silence: that is an error.
+    fn give(&mut self, name: &str, given: &Bound<'_, PyAny>, value: T) -> PyResult<()> {
+        let text = shown(given);
+        if let Some((other, before, kept)) = &self.0
+            && *kept != value
+        {
+            let why =
+                format!("{other}={before} and {name}={text} contradict each other: both name one argument; give one of them");
+            return Err(INVALID_OPTION.error(given.py(), why));
+        }
+        self.0 = Some((name.to_string(), text, value));
+        Ok(())
+    }
+
+    fn value(self) -> Option<T> {
+        self.0.map(|(_, _, value)| value)
+    }
 }
 
 /// A mode of going on after an end, by Gymnasium's name, in snake case, or as Gymnasium's enum.
@@ -167,16 +201,23 @@ fn choice<T: Copy>(name: &str, given: &Bound<'_, PyAny>, choices: &[(&str, T)]) 
     })
 }
 
-/// `"160x120"` in either case, or a pair of width and height.
+/// `"160x120"` in either case, or a pair of width and height: a list too, which is what JSON makes of a tuple.
 pub fn size(name: &str, given: &Bound<'_, PyAny>) -> PyResult<FrameSize> {
-    let wrong = || refused(given, name, "WxH or (width, height), from 64x48 to 1920x1080");
+    let wrong = || refused(given, name, "'WxH' or (width, height), from 64x48 to 1920x1080");
     let (width, height) = match given.extract::<String>() {
         Ok(text) => {
             let text = text.to_lowercase();
             let (width, height) = text.split_once('x').ok_or_else(wrong)?;
             (width.parse().map_err(|_| wrong())?, height.parse().map_err(|_| wrong())?)
         }
-        Err(_) => given.extract::<(u16, u16)>().map_err(|_| wrong())?,
+        Err(_) if given.len().is_ok_and(|length| length == 2) => {
+            let side = |index: usize| -> PyResult<u16> {
+                let side = given.get_item(index).and_then(|side| side.call_method0("__index__")).map_err(|_| wrong())?;
+                side.extract().map_err(|_| wrong())
+            };
+            (side(0)?, side(1)?)
+        }
+        Err(_) => return Err(wrong()),
     };
     let size = FrameSize { width, height };
     size.check().map_err(|_| wrong())?;

@@ -22,7 +22,8 @@ impl Seeds {
     /// Reads `None`, an integer, or one entry a lane.
     pub fn read(given: Option<&Bound<'_, PyAny>>, lanes: usize) -> PyResult<Seeds> {
         let Some(given) = given else { return Ok(Seeds::GoOn) };
-        if given.hasattr("__index__")? && !given.hasattr("__len__")? {
+        // An array without axes is an integer too, though it has the method of lengths.
+        if given.hasattr("__index__")? && given.len().is_err() {
             return Ok(Seeds::From(seed(given)?));
         }
         let wrong = || PyTypeError::new_err("seeds must be None, an integer, or a sequence of them with one entry a lane");

@@ -3,7 +3,7 @@
 use crate::actions::{read_actions, read_deltas};
 use crate::arguments;
 use crate::batch::{Arrays, Batch};
-use crate::errors::{CLOSED, INVALID_OPTION, OUT_OF_TURN, RESET_NEEDED, WORLD_PANICKED, raise};
+use crate::errors::{CLOSED, INVALID_ACTION, INVALID_OPTION, OUT_OF_TURN, RESET_NEEDED, WORLD_PANICKED, raise};
 use crate::facts::{self, Facts};
 use crate::inner::Inner;
 use crate::pool::{Pool, array};
@@ -21,6 +21,8 @@ pub enum Fault {
     Env(EnvError),
     Closed,
     NotReset,
+    /// The first reset was of some lanes only.
+    FirstReset,
     /// These lanes rest.
     Resting(Vec<usize>),
 }
@@ -94,9 +96,17 @@ impl Worlds {
         });
         result.map_err(|fault| match fault {
             Fault::Env(error @ EnvError::Panicked { .. }) => WORLD_PANICKED.error(py, error.to_string()),
+            // Whoever has a single world has never heard of lanes.
+            Fault::Env(error @ EnvError::Action { .. }) if self.facts.lanes == 1 => {
+                INVALID_ACTION.error(py, error.to_string().replacen(" of lane 0", "", 1))
+            }
             Fault::Env(error) => raise(py, &error),
             Fault::Closed => CLOSED.error(py, "these worlds are closed; make new ones"),
             Fault::NotReset => RESET_NEEDED.error(py, "call reset before the first step"),
+            Fault::FirstReset => RESET_NEEDED.error(py, "the first reset must be of all lanes; call reset without a mask"),
+            Fault::Resting(_) if self.facts.lanes == 1 => {
+                RESET_NEEDED.error(py, "the episode is over; call reset before the next step")
+            }
             Fault::Resting(lanes) => {
                 let why = format!("the episodes of lanes {lanes:?} are over; reset them first, by reset_mask or mask");
                 RESET_NEEDED.error(py, why)
@@ -220,7 +230,8 @@ impl Worlds {
         let space = &self.facts.space;
         let mut categorical = vec![0; count * space.groups.len()];
         let mut continuous = vec![0.0; count * space.deltas.len()];
-        read_actions(actions, space, count, &lane, &mut categorical)?;
+        let named = |row| (self.facts.lanes > 1).then(|| lane(row));
+        read_actions(actions, space, count, named, &mut categorical)?;
         read_deltas(deltas, space, count, &mut continuous)?;
         Ok((categorical, continuous))
     }
@@ -315,7 +326,7 @@ impl Worlds {
             // The first episodes follow from a seed in any case.
             let seeds = if inner.started { seeds } else { seeds.or(fresh) };
             if !inner.started && mask.as_ref().is_some_and(|mask| mask.contains(&false)) {
-                return Err(Fault::NotReset);
+                return Err(Fault::FirstReset);
             }
             let how = resets::restarts(&seeds, mask.as_deref(), self.facts.lanes);
             inner.worlds().restart(&how, batch)?;

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import gymnasium
+from gymnasium.utils import RecordConstructorArgs
 
 
-class CostWrapper(gymnasium.Wrapper[Any, Any, Any, Any]):
+class CostWrapper(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     """Makes sure that `info["cost"]` of `env` is there, at reset too, and keeps the episode's sum in `episode_cost`."""
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
-        super().__init__(env)
+        RecordConstructorArgs.__init__(self)
+        gymnasium.Wrapper.__init__(self, env)
         self.episode_cost = 0.0
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
@@ -32,11 +34,12 @@ class CostWrapper(gymnasium.Wrapper[Any, Any, Any, Any]):
         return float(info.setdefault("cost", 0.0))
 
 
-class CostPenalty(gymnasium.Wrapper[Any, Any, Any, Any]):
+class CostPenalty(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     """Takes `penalty_scaling` times the cost from the reward of `env`; the raw reward is in `info["raw_reward"]`."""
 
     def __init__(self, env: gymnasium.Env[Any, Any], penalty_scaling: float = 1.0) -> None:
-        super().__init__(env)
+        RecordConstructorArgs.__init__(self, penalty_scaling=penalty_scaling)
+        gymnasium.Wrapper.__init__(self, env)
         self.penalty_scaling = penalty_scaling
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import gymnasium
+from gymnasium.utils import RecordConstructorArgs
 
 
-class Saute(gymnasium.Wrapper[Any, Any, Any, Any]):
+class Saute(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     """Counts down what is left of the budget: a step that finds nothing left is rewarded with `unsafe_reward`.
 
     The state starts at 1 and follows z' = (z - cost / budget) / gamma (equation 3 of the paper); it is in `info["safety_state"]`. The budget
@@ -23,7 +24,8 @@ class Saute(gymnasium.Wrapper[Any, Any, Any, Any]):
     def __init__(
         self, env: gymnasium.Env[Any, Any], saute_gamma: float = 0.99, *, budget: float | None = None, unsafe_reward: float = -1.0
     ) -> None:
-        super().__init__(env)
+        RecordConstructorArgs.__init__(self, saute_gamma=saute_gamma, budget=budget, unsafe_reward=unsafe_reward)
+        gymnasium.Wrapper.__init__(self, env)
         steps = env.get_wrapper_attr("max_episode_steps")
         total = env.get_wrapper_attr("safety_budget") if budget is None else budget
         share = 1.0 if saute_gamma == 1.0 else (1.0 - saute_gamma**steps) / (1.0 - saute_gamma) / steps

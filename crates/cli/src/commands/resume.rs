@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
-const DECIDES: [(&str, &[&str]); 27] = [
+const DECIDES: &[(&str, &[&str])] = &[
     ("frames", &["/frames"]),
     ("eval_every", &["/evaluation/every"]),
     ("algo", &["/algorithm"]),
