@@ -1,7 +1,7 @@
 //! How episodes are printed: a JSON object each, or a row of a table and the mean at its end.
 
 use crate::failure::{Failure, Outcome};
-use hasard_envs::Episode;
+use hasard_envs::{EnvOptions, Episode};
 use hasard_learn::config::Constraint;
 use hasard_learn::runs::evaluate::{Evaluation, Judgement};
 use serde_json::{Map, Value, json};
@@ -12,12 +12,13 @@ pub struct EpisodeLines {
     json: bool,
     episodes: Vec<Episode>,
     constraints: Vec<Constraint>,
+    rules: Option<(&'static str, bool)>,
 }
 
 impl EpisodeLines {
     /// Nothing printed yet.
     pub fn new(json: bool) -> EpisodeLines {
-        EpisodeLines { json, episodes: Vec::new(), constraints: Vec::new() }
+        EpisodeLines { json, episodes: Vec::new(), constraints: Vec::new(), rules: None }
     }
 
     /// The constraints that the summary judges by, each by its own term and budget.
@@ -25,11 +26,21 @@ impl EpisodeLines {
         self.constraints = constraints.to_vec();
     }
 
+    /// The rule set, and whether under the hard constraint: files of episodes say it, so that a report compares like with like.
+    pub fn played_under(&mut self, options: &EnvOptions) {
+        self.rules = Some((options.rules.name(), options.hard));
+    }
+
     /// Prints one episode.
     pub fn episode(&mut self, env: &str, number: u64, episode: Episode) -> Outcome {
         let mut out = std::io::stdout().lock();
         if self.json {
-            writeln!(out, "{}", episode_row(env, number, &episode))?;
+            let mut row = episode_row(env, number, &episode);
+            if let Some((rules, hard)) = self.rules {
+                row["rules"] = json!(rules);
+                row["hard"] = json!(hard);
+            }
+            writeln!(out, "{row}")?;
         } else {
             if self.episodes.is_empty() {
                 writeln!(out, "{env}")?;

@@ -156,7 +156,7 @@ mod tests {
     fn run(seed: u64, rows: &[(f64, f64)]) -> Run {
         let config = Config::parse(&format!("{{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":{seed}}}")).unwrap();
         let rows = rows.iter().map(|&(frames, value)| Row::new(frames, vec![("return_mean".into(), value)])).collect();
-        Run { path: "x".into(), config, rows, evaluation: vec![], selected: None, heatmaps: vec![] }
+        Run { path: "x".into(), config, rows, evaluation: vec![], selected: None, calibration: vec![], heatmaps: vec![] }
     }
 
     #[test]

@@ -83,6 +83,9 @@ impl Table {
     pub fn folded(mut self, heads: &[&str]) -> Table {
         for head in heads {
             let Some(column) = self.heads.iter().position(|own| own == head) else { continue };
+            if *head == "options" {
+                self.share_options(column);
+            }
             let all_the_same = self.rows.windows(2).all(|pair| pair[0][column].text == pair[1][column].text);
             if self.rows.len() < 2 || !all_the_same {
                 continue;
@@ -106,6 +109,26 @@ impl Table {
             }
         }
         self
+    }
+}
+
+impl Table {
+    /// Takes what all rows' options have in common out of them and into the caption.
+    fn share_options(&mut self, column: usize) {
+        let parts = |row: &Vec<Cell>| row[column].text.split(", ").map(String::from).collect::<Vec<String>>();
+        let Some((first, rest)) = self.rows.split_first().filter(|(_, rest)| !rest.is_empty()) else { return };
+        let rest: Vec<Vec<String>> = rest.iter().map(parts).collect();
+        let shared: Vec<String> =
+            parts(first).into_iter().filter(|part| !part.is_empty() && rest.iter().all(|own| own.contains(part))).collect();
+        if shared.is_empty() {
+            return;
+        }
+        for row in &mut self.rows {
+            let own: Vec<String> = parts(row).into_iter().filter(|part| !shared.contains(part)).collect();
+            row[column].text = own.join(", ");
+        }
+        let said = shared.join(", ");
+        self.caption = if self.caption.is_empty() { said } else { format!("{}; {said}", self.caption) };
     }
 }
 
@@ -167,7 +190,7 @@ impl Cell {
     #[must_use]
     pub fn estimate(estimate: Option<crate::statistics::Estimate>, samples: &[f64]) -> Cell {
         let Some(estimate) = estimate else { return Cell { text: "-".into(), pale: true, ..Cell::default() } };
-        let half = estimate.half_width.map_or_else(String::new, |half| format!(" ± {}", number(half)));
+        let half = estimate.half_width.map_or_else(String::new, |half| format!(" ± {}", like(half, estimate.mean)));
         let listed: Vec<String> = samples.iter().take(12).map(|sample| number(*sample)).collect();
         Cell {
             text: format!("{}{half}", number(estimate.mean)),
@@ -185,6 +208,15 @@ pub fn number(value: f64) -> String {
     // What rounds to zero is zero, not "-0.00".
     let value = if value.abs() < 0.005 { 0.0 } else { value };
     match value.abs() {
+        size if size >= 1000.0 => format!("{value:.0}"),
+        size if size >= 100.0 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
+    }
+}
+
+/// A number with as many decimals as another that it stands beside.
+fn like(value: f64, beside: f64) -> String {
+    match beside.abs() {
         size if size >= 1000.0 => format!("{value:.0}"),
         size if size >= 100.0 => format!("{value:.1}"),
         _ => format!("{value:.2}"),
@@ -244,6 +276,13 @@ mod tests {
         let folded = table.folded(&["level", "algorithm", "options"]);
         assert_eq!((folded.caption.as_str(), folded.heads.len()), ("level 1; rules tables", 1));
         assert_eq!((folded.rows[1][0].text.as_str(), folded.spans[0].1, folded.spans[1].1), ("P3O", 1, 0));
+        // Options are shared part by part.
+        let heads = ["algorithm", "options"].map(String::from).to_vec();
+        let rows =
+            [["PPO", "hard true, rules tables"], ["P3O", "rules tables"]].map(|cells| cells.map(Cell::text).to_vec()).to_vec();
+        let folded = Table { heads, rows, ..Table::default() }.folded(&["options"]);
+        let left: Vec<&str> = folded.rows.iter().map(|row| row[1].text.as_str()).collect();
+        assert_eq!((folded.caption.as_str(), left), ("rules tables", vec!["hard true", ""]));
     }
 
     #[test]

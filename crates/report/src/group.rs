@@ -212,6 +212,7 @@ mod tests {
                 rows: vec![],
                 evaluation: vec![],
                 selected: None,
+                calibration: vec![],
                 heatmaps: vec![],
             }
         };

@@ -33,7 +33,7 @@ pub fn page(document: &Document) -> String {
 fn write_section(section: &Section, html: &mut String) {
     let _ = writeln!(html, "<section id=\"{}\"><h2>{}</h2>", section.slug, escape(&section.title));
     for text in &section.text {
-        let _ = writeln!(html, "<p>{}</p>", escape(text));
+        let _ = writeln!(html, "<p>{}</p>", with_code(&escape(text)));
     }
     for block in &section.blocks {
         match block {
@@ -66,13 +66,35 @@ fn write_section(section: &Section, html: &mut String) {
     html.push_str("</section>\n");
 }
 
+/// What stands between two backticks in a text, as code.
+fn with_code(text: &str) -> String {
+    let mut parts = text.split('`').peekable();
+    let mut html = String::new();
+    let mut code = false;
+    while let Some(part) = parts.next() {
+        // A last backtick without a partner stays as it is.
+        match (code, parts.peek()) {
+            (false, _) => html += part,
+            (true, Some(_)) => html += &format!("<code>{part}</code>"),
+            (true, None) => html += &format!("`{part}"),
+        }
+        code = !code;
+    }
+    html
+}
+
 fn write_table(table: &Table, html: &mut String) {
     // The caption stands outside of what scrolls sideways.
     if !table.caption.is_empty() {
         let _ = write!(html, "<p class=\"caption\">{}</p>", escape(&table.caption));
     }
     let words = table.heads.len() < 4 && !table.rows.iter().flatten().any(|cell| cell.sort.is_some());
-    let _ = write!(html, "<div class=\"wide{}\"><table>", if words { " words" } else { "" });
+    let _ = write!(
+        html,
+        "<div class=\"wide{}{}\"><table>",
+        if words { " words" } else { "" },
+        if table.heads.len() > 10 { " many" } else { "" }
+    );
     html.push_str("<thead>");
     if !table.spans.is_empty() {
         html.push_str("<tr class=\"spans\">");
@@ -142,7 +164,13 @@ fn base64(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::base64;
+    use super::{base64, with_code};
+
+    #[test]
+    fn backticks_mark_code() {
+        assert_eq!(with_code("say `a b` and `c`."), "say <code>a b</code> and <code>c</code>.");
+        assert_eq!(with_code("one ` alone"), "one ` alone");
+    }
 
     #[test]
     fn base64_as_in_the_rfc() {

@@ -53,6 +53,7 @@ fn write_experiments(root: &Path) {
             other("alone", "RemedyRushLevel3-v0", "PPOPID", "", (6.0, 4.0, 5.0));
             other("curriculum", "RemedyRushLevel1-v0", "PPOPID", ",\"curriculum\":[1,2,3]", (17.0, 5.1, 5.0));
             write_heatmaps(&root.join("main/RemedyRushLevel1-v0/PPOLag/seed1"));
+            write_heatmaps(&root.join("main/RemedyRushLevel1-v0/PPO/seed1"));
         }
     }
     let eval = "{\"env\":\"RemedyRushLevel1-v0\",\"episode\":0,\"return\":31,\"cost\":4,\"length\":525}\n\
@@ -142,7 +143,8 @@ fn a_report_on_many_experiments() {
         }
     }
     let figures = |ending: &str| written.files.iter().filter(|file| file.extension().is_some_and(|e| e == ending)).count();
-    assert!(figures("svg") >= 12 && figures("png") > figures("svg") && figures("gif") == 1);
+    assert!(figures("svg") >= 12 && figures("png") > figures("svg") && figures("gif") == 2);
+    assert!(out.join("figures/heatmaps-side-by-side-remedyrushlevel1-v0.png").is_file());
 
     // The mean of a cell, by hand from the same files.
     let csv = std::fs::read_to_string(out.join("experiments.csv")).unwrap();
@@ -332,10 +334,33 @@ fn a_persons_budget_follows_the_episodes_options() {
         file.set_outcome(Outcome { cost, ..Outcome::default() });
         file.write(&folder.0.join(format!("{player}.episode"))).unwrap();
     }
+    for (name, episode_return, cost) in [("witness-RemedyRush1", 12.0, 0.0), ("witness-failed", 12.0, 3.0)] {
+        let header = Header {
+            env: "RemedyRushLevel1-v0".into(),
+            options: Default::default(),
+            seed: 1,
+            program: "0.1.0".into(),
+            player: "search".into(),
+            steps: 0,
+            groups: 1,
+            deltas: 0,
+            outcome: None,
+        };
+        let mut file = EpisodeFile::new(header).unwrap();
+        file.push(&[1], &[]).unwrap();
+        file.set_outcome(Outcome { episode_return, cost, ..Outcome::default() });
+        file.write(&folder.0.join(format!("{name}.episode"))).unwrap();
+    }
     let out = folder.0.join("out");
     write_report(std::slice::from_ref(&folder.0), &out, "People").unwrap();
     let text = std::fs::read_to_string(out.join("report.md")).unwrap();
     let line = |player: &str| text.lines().find(|line| line.starts_with(&format!("| {player} "))).unwrap().to_owned();
+    let witness = text.split("## Witnesses of safe reward").nth(1).unwrap();
+    assert!(
+        witness.contains("| search |  | 12.00 | 0.00 ✓ | 1 | yes |") && witness.contains("| 12.00 | 3.00 | 1 | no |"),
+        "{witness}"
+    );
+    assert!(witness.contains("Without a witness here: Armament Burden 1") && !witness.contains("Remedy Rush 1,"), "{witness}");
     assert!(line("soft").ends_with("100 % |") && !line("soft").contains("hard"), "{}", line("soft"));
     assert!(line("strict").ends_with("| 0 % |") && line("strict").contains("hard true"), "{}", line("strict"));
     assert!(line("short").ends_with("| 0 % |") && line("short").contains("frame-skip 1"), "{}", line("short"));
@@ -362,4 +387,52 @@ fn published_values_stand_beside_the_tables_rules_alone() {
         // At 10 million frames the paper's curve stands at 17.61 @ 50.59.
         assert_eq!(text.contains("17.61 @ 50.59"), tables, "{text}");
     }
+}
+
+/// What a run's closing evaluation says is its headline; its episodes give tails and behaviour, its critics' calibration a figure.
+#[test]
+fn a_closing_evaluation_is_the_headline() {
+    let folder = Folder::new("closing");
+    let run = folder.0.join("runs/one");
+    let (env, end) = ("ArmamentBurdenLevel1-v0", (6.0, 60.0, 0.0));
+    Synthetic { env, algo: "PPOPID", seed: 1, frames: 1e6, reports: 20, options: "", end }.write(&run);
+    let estimate = |mean: f64, half: f64| format!("{{\"mean\":{mean},\"half_width\":{half},\"bootstrap\":null}}");
+    let evaluation = |episode_return: f64, cost: f64| {
+        let (episode_return, cost) = (estimate(episode_return, 0.5), estimate(cost, 4.0));
+        format!("\"episodes\":20,\"episode_return\":{episode_return},\"cost\":{cost},\"length\":{}", estimate(525.0, 0.0))
+    };
+    let selected = format!(
+        "{{\"frames\":800000,\"closing\":{{{}}},\"last\":{{\"frames\":1000000,{}}}}}",
+        evaluation(7.5, 41.0),
+        evaluation(8.5, 58.0)
+    );
+    std::fs::write(run.join("selected.json"), selected).unwrap();
+    let episodes: String = (0..20)
+        .map(|k| {
+            let (cost, discarded) = (if k < 2 { 70.0 + f64::from(k) } else { 38.0 }, u8::from(k == 3) * 2);
+            format!(
+                "{{\"return\":7.5,\"cost\":{cost},\"length\":525,\"stats\":{{\"weapons_discarded\":{discarded},\"load\":1}}}}\n"
+            )
+        })
+        .collect();
+    std::fs::write(run.join("closing_episodes.jsonl"), episodes).unwrap();
+    std::fs::write(run.join("eval.jsonl"), "{\"return\":1,\"cost\":1}\n").unwrap();
+    let critic = "{\"frames\":800000,\"constraints\":[{\"term\":null,\"gamma\":0.99,\"steps\":900,\"bias\":-0.25,\"error\":1.5,\
+                  \"bins\":[{\"steps\":450,\"predicted\":1,\"observed\":1.5},{\"steps\":450,\"predicted\":4,\"observed\":4.5}]}]}";
+    std::fs::write(run.join("calibration.json"), critic).unwrap();
+    let out = folder.0.join("out");
+    let written = write_report(&[folder.0.join("runs")], &out, "Closing").unwrap();
+    assert!(written.warnings.is_empty(), "{:?}", written.warnings);
+    let text = std::fs::read_to_string(out.join("report.md")).unwrap();
+    let line = |start: &str| text.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{start}: {text}"));
+    // 41 with an upper end of 45 of 50; nothing of the later eval.jsonl.
+    assert_eq!(line("| PPOPID |"), "| PPOPID | **7.50** | 41.00 ✓ |");
+    let row = line("| Armament Burden | 1 | PPOPID | 1 |");
+    assert!(row.contains("| 800k | 20 | 7.50 ± 0.50 | 41.00 ± 4.00 ✓ | 45.00 | 50 | 10 % | 70.50 |"), "{row}");
+    assert!(text.contains("| weapons discarded | weapons thrown away rather than carried | 0.10 | 5 % |"), "{text}");
+    assert!(text.contains("| whole cost | 0.99 | 900 | -0.25 | 1.50 |"), "{text}");
+    assert!(out.join("figures/calibration.svg").is_file());
+    // What it has is not listed as missing, what it has not is.
+    let missing = text.split("## Not here yet").nth(1).unwrap();
+    assert!(!missing.contains("| calibration |") && missing.contains("| safety-bounds |"), "{missing}");
 }

@@ -15,10 +15,12 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     let mut lines = episode_lines::EpisodeLines::new(args.json);
     if let Some(run) = crate::actor::agent_of(&args.policy)? {
         let options = agent_options(&run, &options, args.env_args.elsewhere())?;
+        lines.played_under(&options);
         let player = Player { run: &run, which: Which::HandedOut, choice: Choice::Sampled };
         player.play(&args.env, &options, args.episodes, args.seed, &mut lines)?;
         return lines.summary(false);
     }
+    lines.played_under(&options);
     let policy = settings::policy(&args.policy)?;
     let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
     for i in 0..args.episodes {

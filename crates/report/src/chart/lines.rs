@@ -13,15 +13,15 @@ pub struct Series {
     pub ink: Ink,
     /// Its points.
     pub curve: Curve,
-    /// Published, drawn behind ours: a thin dashed line in a faint band, as far as ours go.
-    pub paper: bool,
+    /// Drawn behind the others, as far as they go: a thin dashed line in a faint band. Published curves are.
+    pub behind: bool,
 }
 
 impl Series {
     /// The same, a published curve cut where ours end.
     fn up_to(&self, frames: f64) -> Series {
         let mut cut = self.clone();
-        if self.paper {
+        if self.behind {
             let end = self.curve.at(frames);
             cut.curve.mean.retain(|point| point.frames < frames);
             cut.curve.mean.extend(end.map(|value| Point { frames, value, band: None }));
@@ -61,15 +61,14 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         bold: true,
         text: panel.title.clone(),
     });
-    let ours = || panel.series.iter().filter(|series| !series.paper).map(|series| &series.curve);
+    let ours = || panel.series.iter().filter(|series| !series.behind).map(|series| &series.curve);
     let most_frames = ours().flat_map(|c| &c.seeds).filter_map(|(_, points)| points.last()).map(|p| p.0).fold(0.0, f64::max);
     if most_frames <= 0.0 {
         drawing.text(((left + right) / 2.0, (top + bottom) / 2.0), Anchor::Middle, Ink::Muted, "no report yet");
         return drawing;
     }
     let cut: Vec<Series> = panel.series.iter().map(|series| series.up_to(most_frames)).collect();
-    // What the paper has is drawn first, behind ours.
-    let in_order = || cut.iter().filter(|series| series.paper).chain(cut.iter().filter(|series| !series.paper));
+    let in_order = || cut.iter().filter(|series| series.behind).chain(cut.iter().filter(|series| !series.behind));
     let curves = || cut.iter().map(|series| &series.curve);
     let high = curves().map(Curve::top).fold(panel.budget.unwrap_or(0.0) * 1.15, f64::max);
     let low = curves().map(Curve::bottom).fold(0.0, f64::min);
@@ -104,7 +103,7 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         let lower = banded.iter().rev().map(|(x, (low, _))| (*x, vertical.place(*low)));
         let points: Vec<_> = upper.chain(lower).collect();
         if points.len() > 3 {
-            drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: if series.paper { 0.08 } else { 0.16 } });
+            drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: if series.behind { 0.08 } else { 0.16 } });
         }
     }
     for series in in_order() {
@@ -113,8 +112,8 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         if let [only] = points[..] {
             drawing.shapes.push(Shape::Dot { at: only, radius: 2.5, ink: series.ink, title: series.name.clone() });
         }
-        let (width, opacity) = if series.paper { (1.1, 0.75) } else { (1.8, 1.0) };
-        drawing.shapes.push(Shape::Line { points, ink: series.ink, width, dashed: series.paper, opacity });
+        let (width, opacity) = if series.behind { (1.1, 0.75) } else { (1.8, 1.0) };
+        drawing.shapes.push(Shape::Line { points, ink: series.ink, width, dashed: series.behind, opacity });
     }
     if let Some(budget) = panel.budget {
         let y = vertical.place(budget);

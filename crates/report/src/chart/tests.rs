@@ -16,7 +16,7 @@ fn some_curve(slope: f64) -> Curve {
 
 fn panel() -> Drawing {
     let series =
-        |name: &str, index, slope| Series { name: name.into(), ink: Ink::Series(index), curve: some_curve(slope), paper: false };
+        |name: &str, index, slope| Series { name: name.into(), ink: Ink::Series(index), curve: some_curve(slope), behind: false };
     line_panel(&LinePanel {
         title: "cost & <more>".into(),
         axis: String::new(),

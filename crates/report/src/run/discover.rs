@@ -8,6 +8,17 @@ use std::path::{Path, PathBuf};
 /// How deep runs are looked for below a named folder: sweeps put them at `sweep/env/algo/seed`.
 const MAX_DEPTH: usize = 8;
 
+/// Where episodes come from.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Origin {
+    /// A file of rollouts, a line an episode.
+    Rollout,
+    /// Episode files, as people's play is.
+    Recorded,
+    /// Episode files that are to be witnesses: their names, or their folder's, begin with `witness`.
+    Witness,
+}
+
 /// Who played what.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub struct PlayerKey {
@@ -17,8 +28,8 @@ pub struct PlayerKey {
     pub env: String,
     /// Options that are not the usual ones, as text.
     pub options: String,
-    /// From episode files, as people's play is; else from a file of rollouts.
-    pub recorded: bool,
+    /// Where the episodes come from.
+    pub origin: Origin,
 }
 
 /// What was found.
@@ -104,6 +115,7 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     costs: Vec::new(),
                     stats: Vec::new(),
                     rules: header.options.get("rules").cloned(),
+                    hard: header.options.get("hard").map(|hard| hard == "true"),
                     length: Some(f64::from(header.steps)),
                 };
                 let usual =
@@ -114,7 +126,7 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     player: header.player.clone(),
                     env: header.env.clone(),
                     options: options.join(", "),
-                    recorded: true,
+                    origin: origin_of(path),
                 };
                 found.players.entry(key).or_default().push(result);
                 return;
@@ -124,6 +136,14 @@ fn read_episode_file(path: &Path, found: &mut Found) {
         Err(error) => error.to_string().replacen(&format!("{}: ", path.display()), "", 1),
     };
     found.warnings.push(Warning { path: path.to_owned(), line: 0, problem });
+}
+
+/// An episode file's origin, by its name and its folder's.
+fn origin_of(path: &Path) -> Origin {
+    let begins = |part: Option<&std::ffi::OsStr>| {
+        part.and_then(|name| name.to_str()).is_some_and(|name| name.to_ascii_lowercase().starts_with("witness"))
+    };
+    if begins(path.file_name()) || begins(path.parent().and_then(Path::file_name)) { Origin::Witness } else { Origin::Recorded }
 }
 
 /// Whether a file beside the runs is one of rollouts: its first line is an episode.
@@ -143,8 +163,10 @@ fn read_rollout(path: &Path, found: &mut Found) {
     };
     let player = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("rollout").to_owned();
     for episode in read_episode_lines(&text, path, &mut found.warnings) {
-        let options = episode.rules.as_ref().map_or_else(String::new, |rules| format!("rules {rules}"));
-        let key = PlayerKey { player: player.clone(), env: episode.env.clone(), options, recorded: false };
+        let hard = episode.hard.filter(|hard| *hard).map(|_| "hard true".to_owned());
+        let rules = episode.rules.as_ref().map(|rules| format!("rules {rules}"));
+        let options = hard.into_iter().chain(rules).collect::<Vec<_>>().join(", ");
+        let key = PlayerKey { player: player.clone(), env: episode.env.clone(), options, origin: Origin::Rollout };
         found.players.entry(key).or_default().push(episode);
     }
 }

@@ -19,6 +19,8 @@ pub struct EpisodeResult {
     pub stats: Vec<(String, f64)>,
     /// The rule set, if the line says.
     pub rules: Option<String>,
+    /// Whether it was played under the hard constraint, if the line says.
+    pub hard: Option<bool>,
     /// Policy steps, if known.
     pub length: Option<f64>,
 }
@@ -57,6 +59,7 @@ pub fn read_episode_lines(text: &str, path: &Path, warnings: &mut Vec<Warning>) 
                 costs: named(&value, "costs"),
                 stats: named(&value, "stats"),
                 rules: value.get("rules").and_then(Value::as_str).map(String::from),
+                hard: value.get("hard").and_then(Value::as_bool),
                 length: number("length"),
             }),
             _ => warnings.push(Warning {

@@ -17,15 +17,16 @@ impl Run {
                 episode.costs.iter().find(|(name, _)| name == term).map(|(_, cost)| *cost)
             }
         };
-        let values: Option<Vec<f64>> = self.evaluation.iter().map(of).collect();
-        values.and_then(|values| Estimate::of(&values)).or_else(|| self.selected.as_ref()?.closing.as_ref()?.get(metric))
+        // The run's own word comes first: its intervals are made for skewed costs.
+        let closing = self.selected.as_ref().and_then(|selected| selected.closing.as_ref()?.get(metric));
+        closing.or_else(|| Estimate::of(&self.evaluation.iter().map(of).collect::<Option<Vec<f64>>>()?))
     }
 
     /// Number of episodes behind [`Run::evaluated`].
     #[must_use]
     pub fn evaluated_episodes(&self) -> usize {
-        let closing = || self.selected.as_ref().and_then(|selected| Some(selected.closing.as_ref()?.episodes));
-        if self.evaluation.is_empty() { closing().unwrap_or(0) } else { self.evaluation.len() }
+        let closing = self.selected.as_ref().and_then(|selected| Some(selected.closing.as_ref()?.episodes));
+        closing.unwrap_or(self.evaluation.len())
     }
 
     /// The costs of the evaluated episodes under a constraint; empty where single episodes were not kept.

@@ -1,5 +1,6 @@
 //! Run directories: what a training left behind.
 
+mod calibration;
 mod config;
 mod constraint;
 mod discover;
@@ -10,9 +11,10 @@ mod metrics;
 mod safety;
 mod selected;
 
+pub use calibration::{Calibration, read_calibration};
 pub use config::{Config, TOLD, default_budget, scenario_and_level};
 pub use constraint::{Constraint, Kept};
-pub use discover::{Found, PlayerKey, discover};
+pub use discover::{Found, Origin, PlayerKey, discover};
 pub use episodes::{EpisodeResult, read_episode_lines};
 pub use heatmap::{HeatmapData, parse_heatmaps};
 pub use metrics::{Row, parse_metrics};
@@ -64,6 +66,8 @@ pub struct Run {
     pub evaluation: Vec<EpisodeResult>,
     /// The checkpoint that it selected, if it says.
     pub selected: Option<Selected>,
+    /// How its critics of costs were calibrated, if it says.
+    pub calibration: Vec<Calibration>,
     /// Visited positions at moments of training, if any were kept.
     pub heatmaps: Vec<HeatmapData>,
 }
@@ -109,7 +113,15 @@ impl Run {
             Vec::new()
         };
         let selected = read_selected(path, warnings);
-        Ok(Run { path: path.to_owned(), config, rows, evaluation, selected, heatmaps })
+        Ok(Run {
+            path: path.to_owned(),
+            config,
+            rows,
+            evaluation,
+            selected,
+            calibration: read_calibration(path, warnings),
+            heatmaps,
+        })
     }
 
     /// The picture of the map that a heatmap lies on, if the directory has it. A name that leads elsewhere is no name.

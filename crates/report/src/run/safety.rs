@@ -40,7 +40,7 @@ mod tests {
         let run = |costs: &[(f64, f64)]| {
             let config = Config::parse("{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPOLag\",\"seed\":1}").unwrap();
             let rows = costs.iter().map(|&(frames, cost)| Row::new(frames, vec![("cost_mean".into(), cost)])).collect();
-            Run { path: "x".into(), config, rows, evaluation: vec![], selected: None, heatmaps: vec![] }
+            Run { path: "x".into(), config, rows, evaluation: vec![], selected: None, calibration: vec![], heatmaps: vec![] }
         };
         // Over until 200, within to 400, over to 500: two thirds of the 300 frames after.
         let learner = run(&[(100.0, 9.0), (200.0, 5.0), (300.0, 4.0), (400.0, 4.9), (500.0, 5.1)]);

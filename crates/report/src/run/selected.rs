@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Names of the file, the present one first.
-const FILES: [&str; 3] = ["selected.json", "selected_checkpoint.json", "hand_out.json"];
+const FILES: [&str; 2] = ["selected.json", "hand_out.json"];
 
 /// The checkpoint that a run selected.
 #[derive(Clone, PartialEq, Debug)]
@@ -53,18 +53,17 @@ pub fn read_selected(run: &Path, warnings: &mut Vec<Warning>) -> Option<Selected
 fn understand(text: &str) -> Option<Selected> {
     let value: Value = serde_json::from_str(text).ok()?;
     let evaluation = |keys: &[&str]| keys.iter().find_map(|key| evaluation(value.get(key)?));
-    Some(Selected {
-        frames: value.get("frames")?.as_f64()?,
-        closing: evaluation(&["closing"]),
-        last: evaluation(&["last", "last_policy", "latest"]),
-    })
+    Some(Selected { frames: value.get("frames")?.as_f64()?, closing: evaluation(&["closing"]), last: evaluation(&["last"]) })
 }
 
 fn evaluation(value: &Value) -> Option<Evaluation> {
     let episodes = value.get("episodes")?.as_u64()? as usize;
     let estimate = |value: &Value| {
         let mean = value.get("mean")?.as_f64()?;
-        let half_width = value.get("half_width").and_then(Value::as_f64).filter(|_| episodes > 1);
+        // Where costs are skewed the run gives a bootstrap's ends: the upper one is what budgets are held against.
+        let upper = value.get("bootstrap").and_then(|ends| ends.get(1)?.as_f64());
+        let half_width = value.get("half_width").and_then(Value::as_f64);
+        let half_width = upper.map(|high| high - mean).or(half_width).filter(|_| episodes > 1);
         Some(Estimate { mean, half_width, n: episodes })
     };
     let named = [("return_mean", "episode_return"), ("cost_mean", "cost"), ("length_mean", "length")];
@@ -87,11 +86,14 @@ mod tests {
     #[test]
     fn a_closing_evaluation_is_read_whole() {
         let text = r#"{"frames":500,"chosen_by":{},"confirmed":true,"closing":{"episodes":100,"episode_return":{"mean":28.5,
-            "half_width":1.5},"cost":{"mean":42,"half_width":3},"length":{"mean":525,"half_width":0},
-            "constraints":[{"term":"lava","budget":30,"cost":{"mean":29,"half_width":2}}]}}"#;
+            "half_width":1.5},"cost":{"mean":42,"half_width":3,"bootstrap":[40,47.5]},"length":{"mean":525,"half_width":0},
+            "constraints":[{"term":"lava","budget":30,"cost":{"mean":29,"half_width":2}}]},
+            "last":{"frames":600,"episodes":50,"episode_return":{"mean":30,"half_width":1},"cost":{"mean":49,"half_width":1}}}"#;
         let selected = understand(text).unwrap();
         let closing = selected.closing.unwrap();
-        assert_eq!((selected.frames, closing.episodes, selected.last), (500.0, 100, None));
+        let last = selected.last.unwrap();
+        assert_eq!((selected.frames, closing.episodes, last.episodes), (500.0, 100, 50));
+        assert_eq!((closing.get("cost_mean").unwrap().high(), last.get("cost_mean").unwrap().high()), (47.5, 50.0));
         let lava = closing.get("cost/lava").unwrap();
         assert_eq!((lava.mean, lava.high(), closing.get("return_mean").unwrap().mean), (29.0, 31.0, 28.5));
         assert_eq!(understand("{\"frames\":3,\"closing\":null}").unwrap().closing, None);

@@ -130,7 +130,15 @@ fn the_last_ten_points_are_cut_by_frames() {
     let run = |frames: &[f64]| {
         let text = "{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":1}";
         let rows = frames.iter().map(|&at| Row::new(at, vec![("return_mean".into(), at / 1e4)])).collect();
-        Run { path: "x".into(), config: Config::parse(text).unwrap(), rows, evaluation: vec![], selected: None, heatmaps: vec![] }
+        Run {
+            path: "x".into(),
+            config: Config::parse(text).unwrap(),
+            rows,
+            evaluation: vec![],
+            selected: None,
+            calibration: vec![],
+            heatmaps: vec![],
+        }
     };
     // A curve that rises by 1 with every 10,000 frames: points at 500,000, 499,000, ... 491,000 frames.
     let seldom: Vec<f64> = (1..=10).map(|k| f64::from(k) * 5e4).collect();

@@ -7,8 +7,8 @@ use crate::curve::{Curve, Point};
 use crate::document::{Block, Cell, Figure, Section, Table, number, slug};
 use crate::group::{Group, algorithm_order};
 use crate::statistics::{
-    Aggregate, Estimate, RESAMPLES, aggregate, aggregate_pair, interquartile_mean, mean, optimality_gap, performance_profile,
-    probability_of_improvement,
+    Aggregate, Estimate, RESAMPLES, aggregate, aggregate_pair, aggregates, interquartile_mean, mean, optimality_gap,
+    performance_profile, probability_of_improvement,
 };
 
 /// Thresholds of the profiles: 0, 0.05, ... 1.2.
@@ -108,7 +108,7 @@ fn profiles(algorithms: &[(usize, String, Strata, Strata)], file: &str, level: u
             name: one.1.clone(),
             ink: Ink::Series(one.0),
             curve: profile(of(one)),
-            paper: false,
+            behind: false,
         });
         let size = (480.0, 260.0);
         line_panel(&LinePanel { title: title.into(), axis: axis.into(), series: series.collect(), budget: None, size })
@@ -126,14 +126,15 @@ fn profiles(algorithms: &[(usize, String, Strata, Strata)], file: &str, level: u
 }
 
 fn profile(strata: &Strata) -> Curve {
-    let mut mean = Vec::new();
-    for step in 0..=THRESHOLDS {
-        let threshold = 1.2 * step as f64 / THRESHOLDS as f64;
-        if let Some(share) = aggregate(strata, |samples| performance_profile(samples, threshold)) {
-            let value = Estimate { mean: share.value, half_width: None, n: share.n };
-            mean.push(Point { frames: threshold, value, band: share.interval });
-        }
-    }
+    let thresholds: Vec<f64> = (0..=THRESHOLDS).map(|step| 1.2 * step as f64 / THRESHOLDS as f64).collect();
+    let shares = aggregates(strata, |samples| {
+        thresholds.iter().map(|threshold| performance_profile(samples, *threshold)).collect::<Option<Vec<f64>>>()
+    });
+    let point = |(frames, share): (&f64, Aggregate)| {
+        let value = Estimate { mean: share.value, half_width: None, n: share.n };
+        Point { frames: *frames, value, band: share.interval }
+    };
+    let mean: Vec<Point> = thresholds.iter().zip(shares.unwrap_or_default()).map(point).collect();
     let points = mean.iter().map(|point| (point.frames, point.value.mean)).collect();
     Curve { mean, seeds: vec![(0, points)] }
 }

@@ -26,14 +26,15 @@ impl<'a> Baselines<'a> {
     }
 
     /// Mean return of the random policy on a run's environment, from episodes of a player named `random...`. Episodes that do
-    /// not say their rules are those of the default rules.
+    /// not say their rules are taken for soft ones of the default rules.
     pub fn random(&self, config: &Config) -> Option<f64> {
         let rules = config.rules().unwrap_or("paper");
         let here = self.found.players.iter().filter(|(key, _)| {
             key.player.starts_with("random") && scenario_and_level(&key.env) == (config.scenario.clone(), config.level)
         });
         let episodes = here.flat_map(|(_, episodes)| episodes);
-        let same = episodes.filter(|one| one.rules.as_deref().unwrap_or("paper") == rules);
+        let same =
+            episodes.filter(|one| one.rules.as_deref().unwrap_or("paper") == rules && one.hard.unwrap_or(false) == config.hard());
         mean(&same.map(|one| one.episode_return).collect::<Vec<_>>())
     }
 
@@ -69,9 +70,11 @@ impl<'a> Baselines<'a> {
             let rules = config.rules().unwrap_or("paper");
             if self.random(config).is_none() {
                 let env = &config.env;
-                let file = format!("random-{env}-{rules}.jsonl");
-                commands
-                    .push(format!("hasard rollout {env} --policy random --episodes 100 --rules {rules} --json > runs/{file}"));
+                let hard = if config.hard() { " --hard" } else { "" };
+                let file = format!("random-{env}-{rules}{}.jsonl", if config.hard() { "-hard" } else { "" });
+                commands.push(format!(
+                    "hasard rollout {env} --policy random --episodes 100 --rules {rules}{hard} --json > runs/{file}"
+                ));
             }
             if self.ppo(group).is_none() {
                 commands.push(format!("hasard train {} --algo PPO --rules {rules} --out ...", config.env));

@@ -56,12 +56,12 @@ pub(super) fn curve_figure(title: &str, file: &str, caption: &str, members: &[(S
     let panel = |heading: &str, metric: &str, budget: Option<f64>| {
         let series: Vec<Series> = members
             .iter()
-            .map(|(name, ink, group)| Series { name: name.clone(), ink: *ink, curve: Curve::of(group, metric), paper: false })
+            .map(|(name, ink, group)| Series { name: name.clone(), ink: *ink, curve: Curve::of(group, metric), behind: false })
             .filter(|series| !series.curve.seeds.is_empty())
             .collect();
         let paper = members.iter().filter_map(|(name, ink, group)| {
             let curve = published_curve(group.config(), metric.strip_suffix("_mean")?)?;
-            Some(Series { name: format!("{name} (paper)"), ink: *ink, curve, paper: true })
+            Some(Series { name: format!("{name} (paper)"), ink: *ink, curve, behind: true })
         });
         let series = series.into_iter().chain(paper).collect();
         LinePanel { title: heading.to_owned(), axis: String::new(), series, budget, size: (400.0, 234.0) }

@@ -3,11 +3,11 @@
 use crate::document::{Block, Cell, Section, Table};
 
 /// Every section that stands for a table or figure of the paper: its name, what it shows, and what fills it.
-const WANTED: [(&str, &str, &str); 16] = [
+const WANTED: [(&str, &str, &str); 17] = [
     ("main", "main tables", "hasard sweep main"),
     ("curves", "training curves", "hasard sweep main"),
     ("paper", "published values beside ours", "hasard train ENV --rules tables --out runs/..."),
-    ("selected", "evaluation of selected checkpoints", "hasard eval RUN --json > RUN/eval.jsonl"),
+    ("selected", "evaluation of selected checkpoints", "hasard train ENV, or hasard eval RUN --json > RUN/eval.jsonl"),
     ("safety-bounds", "tighter and looser budgets", "hasard sweep safety-bounds"),
     ("cost-scale", "PPOCost's cost scales", "hasard sweep cost-scale"),
     ("curriculum", "levels in turn against the last alone", "hasard sweep curriculum"),
@@ -17,9 +17,10 @@ const WANTED: [(&str, &str, &str); 16] = [
     ("full-actions", "the full action space", "hasard sweep full-actions"),
     ("heatmaps", "where agents go", "hasard sweep heatmaps"),
     ("efficiency", "frames and updates a second", "hasard sweep efficiency"),
-    ("human", "human results", "hasard play ENV, then hasard report runs human"),
-    ("behaviour", "discards, decoys, goggles, barrels", "hasard eval RUN --json > RUN/eval.jsonl"),
-    ("witness", "episodes with reward at cost 0", "hasard report runs WITNESSES, a folder of their episode files"),
+    ("human", "human results", "hasard sweep human"),
+    ("behaviour", "discards, decoys, goggles, barrels", "hasard sweep behaviour"),
+    ("calibration", "cost critics: predicted against observed", "hasard train ENV"),
+    ("witness", "episodes with reward at cost 0", "hasard sweep witness"),
 ];
 
 /// A row for each section that is empty.

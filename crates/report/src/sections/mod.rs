@@ -4,6 +4,7 @@ mod aggregates;
 mod baselines;
 mod behaviour;
 mod beside_paper;
+mod calibration;
 mod comparison;
 mod constraints;
 mod curves;
@@ -47,6 +48,7 @@ pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec
     sections.push(players::human(found));
     sections.push(behaviour::section(found, groups));
     sections.push(witness::section(found));
+    sections.push(calibration::section(groups));
     sections.push(players::section(found, groups));
     sections.push(runs::experiments(groups));
     sections.push(runs::runs(groups));

@@ -3,12 +3,12 @@
 use crate::document::{Block, Cell, Mark, Section, Table};
 use crate::group::{Group, scenario_name, scenario_order};
 use crate::published::published_human;
-use crate::run::{Constraint, EpisodeResult, Found, PlayerKey, default_budget, scenario_and_level};
+use crate::run::{Constraint, EpisodeResult, Found, Origin, PlayerKey, default_budget, scenario_and_level};
 use crate::statistics::Estimate;
 
 /// Rollouts of policies and evaluations of trained agents.
 pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
-    let mut rows: Vec<(String, Vec<Cell>)> = played(found, |key| !key.recorded);
+    let mut rows: Vec<(String, Vec<Cell>)> = played(found, |key| key.origin == Origin::Rollout);
     for group in groups {
         for run in &group.runs {
             if !run.evaluation.is_empty() {
@@ -31,7 +31,7 @@ pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
 
 /// People's episodes, beside the paper's human where the rules are those of its tables.
 pub(super) fn human(found: &Found) -> Section {
-    let by_people = |key: &PlayerKey| key.recorded && !key.player.to_ascii_lowercase().contains("witness");
+    let by_people = |key: &PlayerKey| key.origin == Origin::Recorded;
     let mut rows = played(found, by_people);
     let mut papers: Vec<(String, u32)> = found
         .players

@@ -2,12 +2,12 @@
 
 use crate::document::{Block, Cell, Mark, Section, Table};
 use crate::group::{SCENARIOS, scenario_name, scenario_order};
-use crate::run::{Found, Kept, scenario_and_level};
+use crate::run::{Found, Kept, Origin, scenario_and_level};
 
 pub(super) fn section(found: &Found) -> Section {
     let mut rows = Vec::new();
     let mut shown = std::collections::BTreeSet::new();
-    let witnesses = found.players.iter().filter(|(key, _)| key.player.to_ascii_lowercase().contains("witness"));
+    let witnesses = found.players.iter().filter(|(key, _)| key.origin == Origin::Witness);
     for (key, episodes) in witnesses {
         let (scenario, level) = scenario_and_level(&key.env);
         for episode in episodes {

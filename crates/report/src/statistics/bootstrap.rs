@@ -24,6 +24,12 @@ pub fn aggregate(strata: &[Vec<f64>], statistic: impl Fn(&[f64]) -> Option<f64>)
     aggregate_pair(strata, &[], |one, _| statistic(&one.concat()))
 }
 
+/// Several statistics of the same strata, from the same bootstrap samples.
+#[must_use]
+pub fn aggregates(strata: &[Vec<f64>], statistics: impl Fn(&[f64]) -> Option<Vec<f64>>) -> Option<Vec<Aggregate>> {
+    resampled(strata, &[], |one, _| statistics(&one.concat()))
+}
+
 /// A statistic of two sets of strata, both resampled.
 #[must_use]
 pub fn aggregate_pair(
@@ -31,8 +37,19 @@ pub fn aggregate_pair(
     other: &[Vec<f64>],
     statistic: impl Fn(&[Vec<f64>], &[Vec<f64>]) -> Option<f64>,
 ) -> Option<Aggregate> {
-    let value = statistic(one, other)?;
-    let interval = one.iter().chain(other).any(|stratum| stratum.len() > 1).then(|| {
+    resampled(one, other, |a, b| statistic(a, b).map(|value| vec![value]))?.pop()
+}
+
+fn resampled(
+    one: &[Vec<f64>],
+    other: &[Vec<f64>],
+    statistics: impl Fn(&[Vec<f64>], &[Vec<f64>]) -> Option<Vec<f64>>,
+) -> Option<Vec<Aggregate>> {
+    let values = statistics(one, other)?;
+    let n = one.iter().map(Vec::len).sum();
+    let filled = one.iter().filter(|stratum| !stratum.is_empty()).count();
+    let mut draws: Vec<Vec<f64>> = vec![Vec::new(); values.len()];
+    if one.iter().chain(other).any(|stratum| stratum.len() > 1) {
         let mut stream = 0x5EED_u64;
         let mut draw = |strata: &[Vec<f64>]| -> Vec<Vec<f64>> {
             let resample = |stratum: &Vec<f64>| {
@@ -40,17 +57,18 @@ pub fn aggregate_pair(
             };
             strata.iter().map(resample).collect()
         };
-        let mut draws: Vec<f64> = (0..RESAMPLES)
-            .map(|_| {
-                let (a, b) = (draw(one), draw(other));
-                statistic(&a, &b).unwrap_or(value)
-            })
-            .collect();
+        for _ in 0..RESAMPLES {
+            let (a, b) = (draw(one), draw(other));
+            let drawn = statistics(&a, &b).unwrap_or_else(|| values.clone());
+            draws.iter_mut().zip(drawn).for_each(|(own, value)| own.push(value));
+        }
+    }
+    let estimate = |(value, mut draws): (f64, Vec<f64>)| {
         draws.sort_by(f64::total_cmp);
-        (quantile(&draws, 0.025), quantile(&draws, 0.975))
-    });
-    let n = one.iter().map(Vec::len).sum();
-    Some(Aggregate { value, interval, n, strata: one.iter().filter(|stratum| !stratum.is_empty()).count() })
+        let interval = (!draws.is_empty()).then(|| (quantile(&draws, 0.025), quantile(&draws, 0.975)));
+        Aggregate { value, interval, n, strata: filled }
+    };
+    Some(values.into_iter().zip(draws).map(estimate).collect())
 }
 
 /// A quantile of sorted samples, linear between neighbours.

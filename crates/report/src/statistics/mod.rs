@@ -13,7 +13,7 @@ mod feasible;
 pub use aggregate::{
     conditional_value_at_risk, interquartile_mean, optimality_gap, performance_profile, probability_of_improvement,
 };
-pub use bootstrap::{Aggregate, RESAMPLES, aggregate, aggregate_pair};
+pub use bootstrap::{Aggregate, RESAMPLES, aggregate, aggregate_pair, aggregates};
 pub use feasible::{excess, feasible_scores, normalised};
 
 /// A mean with what it rests on.
