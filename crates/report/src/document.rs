@@ -91,7 +91,7 @@ impl Table {
                 continue;
             }
             let said = match &self.rows[0][column].text {
-                text if *head == "level" => format!("level {text}"),
+                text if ["level", "budget", "frames"].contains(head) => format!("{head} {text}"),
                 text => text.clone(),
             };
             if !said.is_empty() && said != "-" {

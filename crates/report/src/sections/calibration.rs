@@ -60,7 +60,7 @@ pub(super) fn section(groups: &[Group]) -> Section {
         title: "Calibration of cost critics".into(),
         text: vec![
             "What the selected checkpoint's critics of the costs expected at the steps of its closing episodes, against the discounted cost \
-             that followed: bins of equal numbers of steps. Below the dashed line a critic sees more cost than comes. Bias: mean of \
+             that followed: bins of equal numbers of steps. Below the dashed line less cost came than a critic expected. Bias: mean of \
              prediction minus what came; error: root of the mean squared difference."
                 .into(),
         ],

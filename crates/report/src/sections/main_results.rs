@@ -176,6 +176,9 @@ fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table
         caption += &format!("; {note} {}", if note == "n=1" { "seed" } else { "seeds" });
         rows.iter_mut().flatten().for_each(|cell| cell.note.clear());
     }
+    if rows.iter().any(|row| row[0].text.ends_with("(paper)")) {
+        caption += "; the paper's after 500M frames";
+    }
     if rows.iter().flatten().any(|cell| cell.text.ends_with('*')) {
         caption += "; * not every run has finished";
     }
