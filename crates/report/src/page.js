@@ -22,6 +22,14 @@ for (const head of document.querySelectorAll(".heads th")) {
   head.addEventListener("click", sort);
   head.addEventListener("keydown", (event) => { if (event.key === "Enter") sort(); });
 }
+// A link to a folded section opens it.
+const unfold = () => {
+  const section = location.hash.length > 1 && document.getElementById(location.hash.slice(1));
+  const details = section && section.querySelector("details");
+  if (details) details.open = true;
+};
+addEventListener("hashchange", unfold);
+unfold();
 // Curves: the values of all curves at the pointer.
 const tip = document.getElementById("tip");
 const digits = (v) => Math.abs(v) >= 1000 ? v.toFixed(0) : Math.abs(v) >= 100 ? v.toFixed(1) : v.toFixed(Math.abs(v) >= 1 ? 2 : 4);

@@ -9,6 +9,9 @@ use std::fmt::Write;
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
+/// Long lists of everything, which open on a click (or by a link to them).
+const FOLDED: [&str; 3] = ["experiments", "runs", "players"];
+
 /// Writes the page.
 #[must_use]
 pub fn page(document: &Document) -> String {
@@ -31,7 +34,9 @@ pub fn page(document: &Document) -> String {
 }
 
 fn write_section(section: &Section, html: &mut String) {
-    let _ = writeln!(html, "<section id=\"{}\"><h2>{}</h2>", section.slug, escape(&section.title));
+    let folded = FOLDED.contains(&section.slug.as_str());
+    let (open, close) = if folded { ("<details><summary>", "</summary>") } else { ("", "") };
+    let _ = writeln!(html, "<section id=\"{}\">{open}<h2>{}</h2>{close}", section.slug, escape(&section.title));
     for text in &section.text {
         let _ = writeln!(html, "<p>{}</p>", with_code(&escape(text)));
     }
@@ -63,7 +68,7 @@ fn write_section(section: &Section, html: &mut String) {
             }
         }
     }
-    html.push_str("</section>\n");
+    html.push_str(if folded { "</details></section>\n" } else { "</section>\n" });
 }
 
 /// What stands between two backticks in a text, as code.
