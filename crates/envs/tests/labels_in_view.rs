@@ -13,9 +13,9 @@ fn things_in_view_are_those_with_a_pixel_of_their_value() {
             let mut renderer = env.renderer(size).unwrap();
             for seed in 0..4 {
                 env.reset(seed);
-                let mut run = PolicyRun::new("sticky:5".parse::<Policy>().unwrap(), env.action_space(), seed);
+                let mut run = PolicyRun::new("sticky:5".parse::<Policy>().unwrap(), &env, seed).unwrap();
                 for _ in 0..40 {
-                    if let Move::Action(actions, deltas) = run.next_move() {
+                    if let Move::Action(actions, deltas) = run.next_move(&env) {
                         let step = env.step(actions, deltas).unwrap();
                         if step.terminated || step.truncated {
                             break;

@@ -226,7 +226,7 @@ fn every_message_of_a_map_names_its_file() {
         |source| source.vertices[0].x = 1e6,
         |source| source.sides[0].sector = 100_000,
     ];
-    for id in EnvId::all() {
+    for id in EnvId::all().filter(|id| id.level == 2) {
         for (number, spoil) in spoils.into_iter().enumerate() {
             let error = one_map(&folder, &id.to_string(), spoil).map(|_| ()).unwrap_err();
             assert!(error.contains("one.wad") && !error.contains('\n'), "{id}, fault {number}: {error}");
