@@ -400,7 +400,7 @@ pub struct TrainArgs {
     #[arg(long, default_value = "PPOPID")]
     pub algo: String,
     /// quick: settings that learn within minutes on a CPU; paper, released, tables: 500 million frames with the settings of the
-    /// paper's text, of the published code, or of the code that made the paper's tables
+    /// paper's text, of the published code, or of the code that made the paper's tables (with its rules, unless --rules says others)
     #[arg(long, default_value = "quick")]
     pub preset: String,
     /// Length of the run in frames (tics): policy steps times frame skip; the preset's if absent

@@ -1,6 +1,6 @@
 //! `hasard train`: an agent from pixels.
 
-use crate::args::TrainArgs;
+use crate::args::{Rules, TrainArgs};
 use crate::automap;
 use crate::episode_lines::worth;
 use crate::failure::{Failure, Outcome};
@@ -8,6 +8,7 @@ use crate::interrupt::{self, Manner};
 use crate::progress::Progress;
 use crate::settings::Elsewhere;
 use clap::ArgMatches;
+use clap::parser::ValueSource;
 use hasard_envs::{EnvId, EnvOptions, VecEnv};
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
@@ -49,7 +50,7 @@ pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, F
         let config = config.with_all(&settings).map_err(Failure::bad)?;
         (Start::Resume { settings }, config)
     } else {
-        let config = configuration(args)?;
+        let config = configuration(&with_rules(args, typed))?;
         let start = match &args.init_from {
             Some(other) => Start::From(config.clone(), other),
             None => Start::Fresh(config.clone()),
@@ -214,6 +215,16 @@ fn describe(config: &TrainConfig, directory: &Path) {
     );
 }
 
+/// The command with the rules that its preset belongs to, unless it names others: what made the paper's tables is both.
+fn with_rules(args: &TrainArgs, typed: &ArgMatches) -> TrainArgs {
+    let mut args = args.clone();
+    let given = typed.value_source("rules") == Some(ValueSource::CommandLine);
+    if !given && args.preset.parse().is_ok_and(|preset: Preset| preset == Preset::Tables) {
+        args.env_args.rules = Rules::Tables;
+    }
+    args
+}
+
 /// The settings of a fresh run: the preset's, then flags, then `--set`.
 pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     let env = crate::settings::env_config(&args.env, &args.env_args, &args.observation);
@@ -257,4 +268,47 @@ fn constraint(text: &str) -> Result<Constraint, Failure> {
     let (term, number) = text.split_once('=').map_or((None, text), |(term, number)| (Some(term.to_string()), number));
     let budget = number.parse().map_err(|_| Failure::bad(format!("--safety-budget '{text}': write a number, or TERM=NUMBER")))?;
     Ok(Constraint { term, budget })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Cli, Command};
+    use clap::{CommandFactory, FromArgMatches};
+    use hasard_learn::config::ConstraintStatistic;
+
+    fn config(line: &str) -> Result<TrainConfig, Failure> {
+        let line = format!("hasard train ArmamentBurdenLevel1-v0 {line}");
+        let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
+        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else { panic!("not a training") };
+        configuration(&with_rules(&args, matches.subcommand_matches("train").unwrap()))
+    }
+
+    /// A2: the paper's best algorithm within minutes is what a command without options trains; 500 million frames are asked for.
+    #[test]
+    fn without_options_it_is_the_quick_pid() {
+        let plain = config("").unwrap();
+        assert_eq!((plain.algorithm, plain.preset, plain.frames), (AlgorithmKind::PpoPid, Preset::Quick, 10_000_000));
+        assert_eq!(config("--preset paper").unwrap().frames, 500_000_000);
+    }
+
+    #[test]
+    fn the_preset_of_the_tables_has_their_rules_unless_others_are_named() {
+        for (line, rules) in [
+            ("--preset tables", "tables"),
+            ("--preset tables --rules paper", "paper"),
+            ("--preset released", "paper"),
+            ("", "paper"),
+        ] {
+            assert_eq!(config(line).unwrap().env.rules, rules, "{line}");
+        }
+    }
+
+    #[test]
+    fn a_constraint_on_the_tail_is_asked_for_by_name() {
+        assert_eq!(config("--constraint-statistic cvar:0.1").unwrap().constraint_statistic, ConstraintStatistic::Cvar(0.1));
+        for wrong in ["--constraint-statistic cvar:2", "--algo P3O --constraint-statistic cvar:0.1"] {
+            assert!(config(wrong).is_err(), "{wrong}");
+        }
+    }
 }
