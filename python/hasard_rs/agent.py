@@ -35,7 +35,7 @@ class Run:
 
 def train(
     env_id: str,
-    algorithm: str = "PPOPID",
+    algorithm: str | None = None,
     *,
     preset: str | None = None,
     out: str | os.PathLike[str] | None = None,
@@ -49,7 +49,8 @@ def train(
 
     Args:
         env_id: one of `ids()`, with or without `hasard/`.
-        algorithm: PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP or IPO.
+        algorithm: PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP or IPO; None: the program's, PPOPID, or
+            that of the run that is resumed.
         preset: "quick", "paper", "released" or "tables"; None: the program's, "quick".
         out: the run's directory; None: one under runs/.
         callback: is called with every report, a dict by name (frames, fps, return_mean, cost_mean, ...); where it returns True the run ends, with
@@ -79,7 +80,7 @@ def train(
 
 def training_words(
     env_id: str,
-    algorithm: str,
+    algorithm: str | None,
     *,
     preset: str | None = None,
     out: str | os.PathLike[str] | None = None,
@@ -88,14 +89,12 @@ def training_words(
 ) -> list[str]:
     """Returns what `train` is given (env_id, algorithm, preset, out, set and flags) as words of the program. Raises InvalidOption for
     one setting by two names that contradict each other."""
-    words = [bare(env_id), f"--algo={algorithm}", "--quiet"]
-    names = {"preset": preset, "out": None if out is None else os.fspath(out), **flags}
+    words = [bare(env_id), "--quiet"]
+    names = {"algorithm": algorithm, "preset": preset, "out": None if out is None else os.fspath(out), **flags}
     given: dict[str, tuple[str, list[str]]] = {}
     for other, value in names.items():
         # `async` is a word of Python's, so that `async_` stands for it.
         name = _FLAGS.get(other, other).rstrip("_")
-        if name == "algo":
-            raise InvalidOption(f"algo={value!r} and algorithm={algorithm!r} name one setting; give it as algorithm")
         made = _words(name, plain(value))
         if value is None:
             continue
@@ -110,7 +109,7 @@ def training_words(
     return words
 
 
-_FLAGS = {"hard_constraint": "hard", "resolution": "size", "map": "maps"}
+_FLAGS = {"algorithm": "algo", "hard_constraint": "hard", "resolution": "size", "map": "maps"}
 """The program's name of each setting that environments have another name for."""
 
 

@@ -127,7 +127,7 @@ class Worker:
 
 def train(
     env_id: str,
-    algorithm: str = "PPOPID",
+    algorithm: str | None = None,
     *,
     workers: int,
     address: str | None = None,

@@ -114,7 +114,9 @@ def test_environments_of_agents_take_both_names(run: hasard_rs.Run) -> None:
     ],
 )
 def test_flags_are_the_programs(given: dict, words: list[str]) -> None:
-    assert training_words(ENV, "PPO", **given) == [ENV.removeprefix("hasard/"), "--algo=PPO", "--quiet", *words]
+    assert training_words(ENV, "PPO", **given) == [ENV.removeprefix("hasard/"), "--quiet", "--algo=PPO", *words]
+    assert training_words(ENV, None, algo="PPO", resume=True) == [ENV.removeprefix("hasard/"), "--quiet", "--algo=PPO", "--resume"]
+    assert training_words(ENV, None, resume=True) == [ENV.removeprefix("hasard/"), "--quiet", "--resume"]
 
 
 def test_a_setting_is_given_once() -> None:
