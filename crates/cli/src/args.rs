@@ -1,5 +1,6 @@
 //! The raw flags: each declared once, feeding `--help`, parsing and the tests.
 
+use crate::number::{env_id, positive, whole};
 use crate::settings::Elsewhere;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
@@ -52,6 +53,10 @@ pub enum Command {
     ExportWad(ExportWadArgs),
     /// Draw the scenarios' contact sheets: every level at moments of scripted episodes, in every view
     ContactSheet(ContactSheetArgs),
+    /// List every setting of a run with its value and meaning
+    Settings(SettingsArgs),
+    /// Print what a shell needs to complete commands and flags
+    Completions(CompletionsArgs),
 }
 
 /// Options of every command that makes an environment.
@@ -218,6 +223,7 @@ pub struct EnvsArgs {
 #[derive(Args, Debug)]
 pub struct RolloutArgs {
     /// Environment id, see `hasard envs`
+    #[arg(value_parser = env_id)]
     pub env: String,
     /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME; `hasard envs --json` lists the buttons
     #[arg(long, default_value = "random")]
@@ -243,6 +249,7 @@ pub struct RolloutArgs {
 #[derive(Args, Debug)]
 pub struct TraceArgs {
     /// Environment id
+    #[arg(value_parser = env_id)]
     pub env: String,
     /// Where the player is placed, at rest, in map units and degrees; the episode's own start if absent
     #[arg(long, value_name = "X,Y,Z,ANGLE[,PITCH]", allow_hyphen_values = true)]
@@ -271,6 +278,7 @@ pub struct TraceArgs {
 #[derive(Args, Debug)]
 pub struct BenchArgs {
     /// Environment id
+    #[arg(value_parser = env_id)]
     pub env: String,
     /// Worlds in the batch
     #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=65536))]
@@ -339,6 +347,7 @@ pub enum View {
 )]
 pub struct PlayArgs {
     /// Environment id, see `hasard envs`
+    #[arg(value_parser = env_id)]
     pub env: String,
     /// Folder in which every finished episode is kept; `hasard report FOLDER` counts them as results
     #[arg(short, long, value_name = "DIR", default_value = "human")]
@@ -361,6 +370,7 @@ pub struct PlayArgs {
 #[derive(Args, Debug)]
 pub struct RenderArgs {
     /// Environment id, see `hasard envs`
+    #[arg(value_parser = env_id)]
     pub env: String,
     /// PNG file to write
     #[arg(short, long, value_name = "FILE", default_value = "frame.png")]
@@ -395,6 +405,7 @@ pub struct RenderArgs {
 #[derive(Args, Debug, Clone)]
 pub struct TrainArgs {
     /// Environment id
+    #[arg(value_parser = env_id)]
     pub env: String,
     /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
     #[arg(long, default_value = "PPOPID")]
@@ -404,7 +415,7 @@ pub struct TrainArgs {
     #[arg(long, default_value = "quick")]
     pub preset: String,
     /// Length of the run in frames (tics): policy steps times frame skip; the preset's if absent
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     pub frames: Option<u64>,
     /// Run directory; runs/ENV-ALGO-seedSEED if absent
     #[arg(short, long, value_name = "DIR")]
@@ -415,7 +426,7 @@ pub struct TrainArgs {
     pub resume: bool,
     /// Frames between evaluations on episodes of their own, by which the run chooses the checkpoint that it hands out; a
     /// twentieth of the run if absent, or none in a run of fewer than 400000; 0 for none
-    #[arg(long, value_name = "FRAMES")]
+    #[arg(long, value_name = "FRAMES", value_parser = whole, allow_negative_numbers = true)]
     pub eval_every: Option<u64>,
     /// Levels in turn, weights and normalisers carried over: 1,2,3 shares the frames equally, 1:400000,2:600000 gives each
     /// its own; the run ends in the last level, whatever level ENV names
@@ -425,7 +436,7 @@ pub struct TrainArgs {
     #[arg(long, value_name = "RUN", conflicts_with = "resume")]
     pub init_from: Option<PathBuf>,
     /// Cost that an episode may have; TERM=COST for one named cost term, several times for several constraints
-    #[arg(long, value_name = "COST")]
+    #[arg(long, value_name = "COST", aliases = ["budget", "cost-limit"])]
     pub safety_budget: Vec<String>,
     /// What budgets are held against: episode-mean, step-mean, or cvar:SHARE for the mean of the worst share of the latest episodes,
     /// such as cvar:0.1 for the worst tenth (algorithms with multipliers); the preset's if absent
@@ -668,6 +679,7 @@ pub struct ExportAgentArgs {
 #[derive(Args, Debug)]
 pub struct ExportWadArgs {
     /// Environment id
+    #[arg(value_parser = env_id)]
     pub env: String,
     /// WAD file to write
     #[arg(short, long, value_name = "FILE")]
@@ -705,4 +717,35 @@ pub struct ContactSheetArgs {
     /// One JSON object a file
     #[arg(long)]
     pub json: bool,
+}
+
+/// `hasard settings`.
+#[derive(Args, Debug)]
+pub struct SettingsArgs {
+    /// Environment id
+    #[arg(default_value = "VolcanicVentureLevel1-v0", value_parser = env_id)]
+    pub env: String,
+    /// The algorithm
+    #[arg(long, default_value = "PPOPID")]
+    pub algo: String,
+    /// paper, released or quick
+    #[arg(long, default_value = "quick")]
+    pub preset: String,
+    /// One JSON object a setting
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; nothing is drawn by chance
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard completions`.
+#[derive(Args, Debug)]
+pub struct CompletionsArgs {
+    /// The shell; for bash: hasard completions bash > ~/.local/share/bash-completion/completions/hasard
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+    /// Accepted for uniformity; nothing is drawn by chance
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
 }

@@ -1,5 +1,6 @@
 //! How a command fails, and the one line that says so.
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
 use std::io;
 
@@ -96,6 +97,13 @@ pub fn report_usage(error: &clap::Error, first: Option<&OsString>) -> u8 {
 
 /// A usage error as one line.
 pub fn usage_line(error: &clap::Error) -> String {
+    // A flag that is a setting of `config.json`, by our name or another program's: `--lr`.
+    if error.kind() == ErrorKind::UnknownArgument
+        && let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg)
+        && let Some(setting) = hasard_learn::config::explained::named(&flag.trim_start_matches('-').replace('-', "_"))
+    {
+        return presentable(&format!("there is no {flag}; of a training that is --set {setting}=VALUE"));
+    }
     let text = error.render().to_string();
     let parts: Vec<&str> = text
         .lines()

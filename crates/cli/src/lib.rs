@@ -13,6 +13,7 @@ mod commands;
 mod contact_sheet;
 mod episode_lines;
 mod interrupt;
+mod number;
 mod progress;
 mod settings;
 mod sources;
@@ -72,6 +73,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::ExportAgent(args) => commands::export_agent::run(&args),
         Command::ExportWad(args) => commands::export_wad::run(&args),
         Command::ContactSheet(args) => commands::contact_sheet::run(&args),
+        Command::Settings(args) => commands::settings::run(&args),
+        Command::Completions(args) => commands::completions::run(&args),
     };
     let code = outcome.map_or_else(Failure::report, |()| 0);
     interrupt::behave(Manner::Idle);

@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 pub mod bench;
+pub mod completions;
 pub mod contact_sheet;
 pub mod envs;
 pub mod eval;
@@ -13,6 +14,7 @@ pub mod report;
 mod resume;
 pub mod rollout;
 pub mod serve;
+pub mod settings;
 pub mod sweep;
 pub mod trace;
 pub mod train;

@@ -5,6 +5,7 @@ pub mod constraint;
 pub mod curriculum;
 mod environment;
 mod evaluation;
+pub mod explained;
 mod former;
 mod learning;
 mod names;

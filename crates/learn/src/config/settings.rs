@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::TrainConfig;
+use super::{TrainConfig, explained};
 use crate::error::LearnError;
 
 /// Settings that others hang on, and what to use instead: it brings those along.
@@ -88,8 +88,8 @@ impl TrainConfig {
         }
         let mut all = serde_json::to_value(self).map_err(wrong)?;
         let place = all.pointer_mut(&setting_pointer(&name)).ok_or_else(|| {
-            let known = "names are those of a run's config.json, such as learning.rate";
-            LearnError::Config(format!("there is no setting '{name}'; {known}"))
+            let near = explained::nearest(&name).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+            LearnError::Config(format!("there is no setting '{name}'{near} (`hasard settings` lists them)"))
         })?;
         *place = serde_json::from_str(given).unwrap_or_else(|_| given.into());
         let mut config: TrainConfig = serde_json::from_value(all).map_err(wrong)?;
