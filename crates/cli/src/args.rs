@@ -636,8 +636,9 @@ pub struct ServeArgs {
 /// `hasard sweep`.
 #[derive(Args, Debug)]
 pub struct SweepArgs {
-    /// TOML file, or an experiment of the paper: main, safety-bounds, cost-scale, curriculum, hard, full-actions, depth,
-    /// segmentation, trpo; or quick, quick-all, quick-algorithms: the quick preset
+    /// TOML file, or an experiment: main, safety-bounds, curriculum, segmentation, depth, heatmaps, trpo, cost-scale, hard,
+    /// full-actions, efficiency, human, behaviour, witness (tables and figures of the paper), all-algorithms, or quick, quick-all,
+    /// quick-algorithms with the quick preset. docs/guide/reproduce.md says what each fills and how long it takes
     pub what: OsString,
     /// Folder of the runs
     #[arg(short, long, value_name = "DIR")]
@@ -645,9 +646,36 @@ pub struct SweepArgs {
     /// Runs at a time; they share the cores out
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub parallel: Option<u16>,
-    /// Frames of every run times this, to try an experiment in small
+    /// Preset of every run: quick, paper, released or tables
+    #[arg(long)]
+    pub preset: Option<String>,
+    /// Seeds, the outermost loop: 1,2,3 or 11-15
+    #[arg(long, value_delimiter = ',', value_name = "SEEDS")]
+    pub seeds: Vec<String>,
+    /// Algorithms: of an experiment those of its own that are named, or others in their place
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    pub algos: Vec<String>,
+    /// Levels, chosen in the same way: 1,2,3
+    #[arg(long, value_delimiter = ',')]
+    pub levels: Vec<u32>,
+    /// Scenarios, chosen in the same way: RemedyRush,VolcanicVenture
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    pub scenarios: Vec<String>,
+    /// Frames of every run; changes nothing else
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub frames: Option<u64>,
+    /// Frames of every run times this, to try an experiment in small; the rates of multipliers grow as runs shrink
     #[arg(long, value_name = "FACTOR")]
     pub scale: Option<f64>,
+    /// Episodes that the agent of each finished run is evaluated on, kept in its directory as eval.jsonl
+    #[arg(long, value_name = "EPISODES")]
+    pub evaluate: Option<u32>,
+    /// Another option of hasard train for every run, such as rules=tables or hard; several times for several
+    #[arg(long, value_name = "NAME[=VALUE]")]
+    pub option: Vec<String>,
+    /// Run whatever it takes; without it, --scale or --frames, a sweep of more than 48 hours is not begun
+    #[arg(long)]
+    pub yes: bool,
     /// Print the command lines and run nothing
     #[arg(long)]
     pub dry_run: bool,

@@ -1,7 +1,7 @@
 //! The file that describes a sweep, in TOML:
 //!
 //! ```toml
-//! experiment = "main"              # optional: begin with an experiment of the paper and change it below
+//! experiment = "main"              # optional: begin with an experiment of the paper and choose from it below
 //! out = "runs/main"                # default "runs"
 //! parallel = 2                     # runs at a time, default 1; they share the cores out
 //! evaluate = 100                   # episodes of each finished run's agent, kept as eval.jsonl; default none
@@ -38,6 +38,14 @@ impl Sweep {
     pub fn parse(text: &str) -> Result<Sweep, String> {
         understand(text).map_err(|problem| one_line(&problem))
     }
+
+    /// Whether the text of a sweep file says how long runs are; false for what is no sweep file.
+    #[must_use]
+    pub fn chooses_frames(text: &str) -> bool {
+        let Ok(table) = text.parse::<Table>() else { return false };
+        let grids = table.get("grid").and_then(Value::as_array);
+        table.contains_key("frames") || grids.is_some_and(|grids| grids.iter().all(|grid| grid.get("frames").is_some()))
+    }
 }
 
 fn understand(text: &str) -> Result<Sweep, String> {
@@ -67,8 +75,21 @@ fn understand(text: &str) -> Result<Sweep, String> {
         let count = evaluate.as_integer().and_then(|count| u32::try_from(count).ok());
         sweep.evaluate = count.ok_or("`evaluate` must be a whole number of episodes from 0")?;
     }
+    let mut rest = table.clone();
+    if table.contains_key("experiment") {
+        // Of an experiment, lists choose what is run.
+        if let Some(value) = rest.remove("scenarios") {
+            sweep.restrict_scenarios(&scenarios(&value)?);
+        }
+        if let Some(value) = rest.remove("levels") {
+            sweep.restrict_levels(&levels(&value)?);
+        }
+        if let Some(value) = rest.remove("algorithms") {
+            sweep.restrict_algorithms(&algorithms(&value)?);
+        }
+    }
     for grid in &mut sweep.grids {
-        change(grid, &table)?;
+        change(grid, &rest)?;
     }
     if let Some(grids) = table.get("grid") {
         let grids = grids.as_array().ok_or("`grid` must be written as [[grid]]")?;
@@ -99,13 +120,13 @@ fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
         grid.seeds = list(value, "seeds", "whole numbers from 0", |v| v.as_integer().and_then(|n| u64::try_from(n).ok()))?;
     }
     if let Some(value) = table.get("levels") {
-        grid.levels = list(value, "levels", "1, 2 or 3", |v| v.as_integer().and_then(|n| u32::try_from(n).ok()))?;
+        grid.levels = levels(value)?;
     }
     if let Some(value) = table.get("scenarios") {
-        grid.scenarios = list(value, "scenarios", "names in quotes", |v| v.as_str().map(String::from))?;
+        grid.scenarios = scenarios(value)?;
     }
     if let Some(value) = table.get("algorithms") {
-        grid.algorithms = list(value, "algorithms", "names in quotes", |v| v.as_str().map(String::from))?;
+        grid.algorithms = algorithms(value)?;
     }
     if let Some(options) = table.get("options") {
         for (name, value) in options.as_table().ok_or("`options` must be a table")? {
@@ -117,6 +138,18 @@ fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+fn scenarios(value: &Value) -> Result<Vec<String>, String> {
+    list(value, "scenarios", "names in quotes", |v| v.as_str().map(String::from))
+}
+
+fn algorithms(value: &Value) -> Result<Vec<String>, String> {
+    list(value, "algorithms", "names in quotes", |v| v.as_str().map(String::from))
+}
+
+fn levels(value: &Value) -> Result<Vec<u32>, String> {
+    list(value, "levels", "1, 2 or 3", |v| v.as_integer().and_then(|n| u32::try_from(n).ok()))
 }
 
 fn option_value(value: &Value) -> Option<OptionValue> {

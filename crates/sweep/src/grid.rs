@@ -51,8 +51,8 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Expands the grids into jobs, environments first, then algorithms, options and seeds last, so that an interrupted
-    /// sweep has whole experiments.
+    /// Expands the grids into jobs: seeds outermost, then environments, algorithms and options, so that wherever a sweep stops
+    /// there are whole tables of fewer seeds.
     ///
     /// # Errors
     /// When a list is empty, a value is unusable, or there are too many runs.
@@ -61,7 +61,7 @@ impl Sweep {
     }
 
     fn expand(&self) -> Result<Vec<Job>, String> {
-        let mut jobs: Vec<Job> = Vec::new();
+        let mut jobs: Vec<(usize, Job)> = Vec::new();
         let mut seen = BTreeSet::new();
         for grid in &self.grids {
             let mut expanded = 1usize;
@@ -75,30 +75,69 @@ impl Sweep {
                 return Err(format!("more than {MAX_JOBS} runs; make the grid smaller"));
             }
             grid.check()?;
-            for environment in grid.environments() {
-                for algorithm in &grid.algorithms {
-                    for options in grid.option_combinations() {
-                        for &seed in &grid.seeds {
+            for (index, &seed) in grid.seeds.iter().enumerate() {
+                for environment in grid.environments() {
+                    for algorithm in &grid.algorithms {
+                        for options in grid.option_combinations() {
                             let mut job = Job::new(&self.out, &environment, algorithm, grid.frames, seed, &options);
                             job.evaluate = self.evaluate;
                             if seen.insert(job.directory.clone()) {
-                                jobs.push(job);
+                                jobs.push((index, job));
                             }
                         }
                     }
                 }
             }
         }
+        // The first seeds of all grids, then the second ones.
+        jobs.sort_by_key(|(index, _)| *index);
+        let jobs: Vec<Job> = jobs.into_iter().map(|(_, job)| job).collect();
         if jobs.is_empty() {
             return Err("nothing to run; give scenarios, algorithms and seeds".into());
         }
         Ok(jobs)
     }
 
-    /// Multiplies the frames of every run, to try an experiment in small; at least one frame remains.
+    /// Multiplies the frames of every run, and between its evaluations, to try an experiment in small; at least one frame remains.
     pub fn scale_frames(&mut self, factor: f64) {
+        let scaled = |frames: u64| ((frames as f64 * factor).round() as u64).max(1);
         for grid in &mut self.grids {
-            grid.frames = ((grid.frames as f64 * factor).round() as u64).max(1);
+            grid.frames = scaled(grid.frames);
+            let every = grid.options.iter_mut().filter(|(name, _)| name == "eval-every").flat_map(|(_, values)| values);
+            for value in every {
+                if let OptionValue::Text(text) = value
+                    && let Ok(frames @ 1..) = text.parse::<u64>()
+                {
+                    *text = scaled(frames).to_string();
+                }
+            }
+        }
+    }
+
+    /// Keeps of every grid the scenarios that are wanted; those that no grid has are run in all of them.
+    pub fn restrict_scenarios(&mut self, wanted: &[String]) {
+        self.restrict(wanted, |grid| &mut grid.scenarios);
+    }
+
+    /// The same for levels.
+    pub fn restrict_levels(&mut self, wanted: &[u32]) {
+        self.restrict(wanted, |grid| &mut grid.levels);
+    }
+
+    /// The same for algorithms.
+    pub fn restrict_algorithms(&mut self, wanted: &[String]) {
+        self.restrict(wanted, |grid| &mut grid.algorithms);
+    }
+
+    /// An experiment's grids may differ in what a list goes with (each scenario has its own budgets): there the list only chooses among
+    /// them. What is in none of them goes with all of them.
+    fn restrict<T: Clone + PartialEq>(&mut self, wanted: &[T], list: fn(&mut Grid) -> &mut Vec<T>) {
+        let known = wanted.iter().all(|one| self.grids.iter_mut().any(|grid| list(grid).contains(one)));
+        if known {
+            self.grids.iter_mut().for_each(|grid| list(grid).retain(|one| wanted.contains(one)));
+            self.grids.retain_mut(|grid| !list(grid).is_empty());
+        } else {
+            self.grids.iter_mut().for_each(|grid| *list(grid) = wanted.to_vec());
         }
     }
 

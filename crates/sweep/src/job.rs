@@ -13,6 +13,14 @@ pub struct Job {
     pub directory: PathBuf,
     /// Arguments of `hasard`, beginning with `train`, for a fresh start.
     pub arguments: Vec<OsString>,
+    /// The environment's id.
+    pub environment: String,
+    /// The algorithm's name.
+    pub algorithm: String,
+    /// Options that make it another run, as in its directory's name; empty if none.
+    pub options: String,
+    /// Its seed.
+    pub seed: u64,
     /// Frames to reach.
     pub frames: u64,
     /// Episodes that its agent is evaluated on when it is finished; 0 for none.
@@ -66,12 +74,32 @@ impl Job {
             }
         }
         let mut directory = out.join(environment).join(algorithm);
-        if !names.is_empty() {
-            directory.push(names.join(","));
+        let options = names.join(",");
+        if !options.is_empty() {
+            directory.push(&options);
         }
         directory.push(format!("seed{seed}"));
         arguments.extend(["--out".into(), directory.clone().into_os_string()]);
-        Job { directory, arguments, frames, evaluate: 0 }
+        let (environment, algorithm) = (environment.to_owned(), algorithm.to_owned());
+        Job { directory, arguments, environment, algorithm, options, seed, frames, evaluate: 0 }
+    }
+
+    /// What it is called in a line: `PPOPID RemedyRushLevel1 seed 1, rules=released`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let environment = self.environment.strip_suffix("-v0").unwrap_or(&self.environment);
+        let options = if self.options.is_empty() { String::new() } else { format!(", {}", self.options) };
+        format!("{} {environment} seed {}{options}", self.algorithm, self.seed)
+    }
+
+    /// The words of its command, from `train` on, as far as they are text.
+    pub fn words(&self) -> impl Iterator<Item = std::borrow::Cow<'_, str>> {
+        self.arguments.iter().map(|word| word.to_string_lossy())
+    }
+
+    /// Adds an option of `hasard train`, which leaves its directory as it is.
+    pub fn add_option(&mut self, name: &str, value: &str) {
+        self.arguments.extend([format!("--{name}"), value.to_owned()].map(OsString::from));
     }
 
     /// How far the run is, by its `config.json` and the last whole line of its `metrics.jsonl`.

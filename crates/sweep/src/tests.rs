@@ -14,7 +14,7 @@ fn a_grid_expands_to_every_combination_once() {
     let jobs = sweep.jobs().unwrap();
     // 3 environments x 2 action spaces x 2 seeds, and P3O with one seed; PPO of the second grid is in the first.
     assert_eq!(jobs.len(), 12 + 6);
-    let line = jobs[2].command_line("hasard");
+    let line = jobs[1].command_line("hasard");
     assert_eq!(
         line,
         "hasard train RemedyRushLevel1-v0 --algo PPO --frames 1000 --seed 7 --full-actions --observation rgb+depth \
@@ -29,9 +29,30 @@ fn a_grid_expands_to_every_combination_once() {
 #[test]
 fn the_papers_experiments_have_their_sizes() {
     let count = |name: &str| paper::experiment(name).unwrap().jobs().unwrap().len();
-    let counts = paper::EXPERIMENTS.map(|(name, _)| (name, count(name)));
-    let expected = [540, 90, 120, 20, 90, 60, 10, 10, 90, 5, 6, 19];
-    assert_eq!(counts.map(|(_, count)| count), expected, "{counts:?}");
+    for (name, expected) in [
+        ("main", 540),
+        ("safety-bounds", 90),
+        ("curriculum", 20),
+        ("segmentation", 10),
+        ("depth", 20),
+        ("heatmaps", 9),
+        ("trpo", 90),
+        ("cost-scale", 120),
+        ("hard", 90),
+        ("full-actions", 60),
+        ("efficiency", 1),
+        ("behaviour", 30),
+        ("all-algorithms", 130),
+        ("quick", 5),
+        ("quick-all", 6),
+        ("quick-algorithms", 19),
+    ] {
+        assert_eq!(count(name), expected, "{name}");
+    }
+    for known in paper::EXPERIMENTS {
+        let advised = paper::advice(known.name).is_some();
+        assert_eq!(paper::experiment(known.name).is_err(), advised, "{}", known.name);
+    }
     let mut curriculum = paper::experiment("curriculum").unwrap();
     curriculum.scale_frames(0.01);
     let lines: Vec<String> = curriculum.jobs().unwrap().iter().map(|job| job.command_line("hasard")).collect();
@@ -262,4 +283,109 @@ fn words_are_quoted_for_a_shell() {
         line.contains("--iwad 'my file'") && line.contains("'a b/it'\\''s/RemedyRushLevel1-v0/PPO/iwad=my_file/seed1'"),
         "{line}"
     );
+}
+
+#[test]
+fn seeds_are_the_outermost_loop() {
+    let text = "frames = 1\nscenarios = ['RemedyRush', 'VolcanicVenture']\nalgorithms = ['PPO', 'P3O']\nseeds = [4, 2, 9]\n\
+                [[grid]]\n[[grid]]\nalgorithms = ['CPO']\nseeds = [2, 4]";
+    let jobs = Sweep::parse(text).unwrap().jobs().unwrap();
+    let order: Vec<(u64, &str)> = jobs.iter().map(|job| (job.seed, job.algorithm.as_str())).collect();
+    // The first seeds of both grids, then their second ones; the same run of both is made once.
+    let first = [(4, "PPO"), (4, "P3O"), (4, "PPO"), (4, "P3O"), (2, "CPO"), (2, "CPO")];
+    let second = [(2, "PPO"), (2, "P3O"), (2, "PPO"), (2, "P3O"), (4, "CPO"), (4, "CPO")];
+    assert_eq!(order[..6], first);
+    assert_eq!(order[6..12], second);
+    assert_eq!(order[12..].iter().map(|(seed, _)| *seed).collect::<Vec<_>>(), [9; 4]);
+    assert_eq!(jobs[0].name(), "PPO RemedyRushLevel1 seed 4");
+}
+
+/// Lists choose among an experiment's runs; what it does not have goes with all of them.
+#[test]
+fn lists_choose_among_the_runs_of_an_experiment() {
+    let count = |change: &dyn Fn(&mut Sweep), name: &str| {
+        let mut sweep = paper::experiment(name).unwrap();
+        change(&mut sweep);
+        sweep.jobs().unwrap()
+    };
+    let two = ["RemedyRush", "VolcanicVenture"].map(String::from);
+    let bounds = count(&|sweep| sweep.restrict_scenarios(&two), "safety-bounds");
+    assert_eq!(bounds.len(), 2 * 3 * 5);
+    let lines: Vec<String> = bounds.iter().map(|job| job.command_line("hasard")).collect();
+    // Each with its own budgets.
+    assert!(
+        lines
+            .iter()
+            .all(|line| line.contains("RemedyRush")
+                == ["2.5 ", "5 ", "7.5 "].iter().any(|b| line.contains(&format!("-budget {b}"))))
+    );
+    let file = "experiment = 'safety-bounds'\nscenarios = ['RemedyRush', 'VolcanicVenture']";
+    assert_eq!(Sweep::parse(file).unwrap().jobs().unwrap(), bounds);
+    let elsewhere = count(&|sweep| sweep.restrict_scenarios(&two[..1]), "depth");
+    assert!(elsewhere.iter().all(|job| job.environment == "RemedyRushLevel2-v0"));
+    assert_eq!(elsewhere.len(), 20);
+    assert_eq!(count(&|sweep| sweep.restrict_levels(&[2, 3]), "main").len(), 360);
+    assert_eq!(count(&|sweep| sweep.restrict_algorithms(&["PPO".into()]), "heatmaps").len(), 2);
+}
+
+/// Files of a campaign: an experiment, its length, seeds and preset.
+#[test]
+fn files_of_a_campaign_work_as_they_are() {
+    let common = "out = 'o'\nparallel = 2\nevaluate = 200\nframes = 8_000_000\nseeds = [11, 12, 13]\n";
+    for (what, runs) in [
+        ("experiment = 'main'\nlevels = [1]", 108),
+        (
+            "scenarios = ['ArmamentBurden', 'VolcanicVenture', 'RemedyRush', 'CollateralDamage', 'PrecipicePlunge', 'DetonatorsDilemma']\n\
+             levels = [2, 3]\nalgorithms = ['PPOPID']",
+            36,
+        ),
+        ("experiment = 'curriculum'", 12),
+        ("experiment = 'depth'", 12),
+        ("experiment = 'hard'", 54),
+        ("experiment = 'safety-bounds'", 54),
+        ("experiment = 'segmentation'", 6),
+    ] {
+        let text = format!("{what}\n{common}[options]\npreset = 'quick'");
+        assert!(Sweep::chooses_frames(&text));
+        let sweep = Sweep::parse(&text).unwrap();
+        let jobs = sweep.jobs().unwrap();
+        assert_eq!((jobs.len(), sweep.parallel), (runs, 2), "{what}");
+        for job in jobs {
+            let line = job.command_line("hasard");
+            assert!(line.contains("--frames 8000000") && line.matches("--preset quick").count() == 1, "{line}");
+            assert!(job.evaluate == 200 && (11..=13).contains(&job.seed) && job.options.contains("preset=quick"));
+        }
+    }
+    assert!(!Sweep::chooses_frames("experiment = 'main'") && !Sweep::chooses_frames("frames"));
+}
+
+/// The guide's table of experiments, row by row.
+#[test]
+fn the_guide_has_every_experiment_with_its_size() {
+    let page = std::fs::read_to_string("../../docs/guide/reproduce.md").unwrap();
+    let rows: Vec<Vec<&str>> = page
+        .lines()
+        .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect::<Vec<_>>())
+        .filter(|cells| cells.len() == 8 && paper::EXPERIMENTS.iter().any(|known| known.name == cells[1]))
+        .collect();
+    let names: Vec<&str> = rows.iter().map(|cells| cells[1]).collect();
+    assert_eq!(names, paper::EXPERIMENTS.map(|known| known.name));
+    for (cells, known) in rows.iter().zip(paper::EXPERIMENTS) {
+        let [_, name, fills, what, runs, frames, hours, _] = cells[..] else { unreachable!() };
+        assert_eq!((fills, what), (if known.fills.is_empty() { "-" } else { known.fills }, known.what), "{name}");
+        let Ok(sweep) = paper::experiment(name) else {
+            assert_eq!((runs, frames, hours), ("-", "-", "-"), "{name}");
+            continue;
+        };
+        let jobs = sweep.jobs().unwrap();
+        let total = jobs.iter().map(|job| job.frames).sum::<u64>() as f64;
+        assert_eq!(runs, jobs.len().to_string(), "{name}");
+        let (number, unit) = frames.split_once(' ').unwrap();
+        let scale = [("G", 1e9), ("M", 1e6)].iter().find(|(letter, _)| *letter == unit).unwrap().1;
+        assert_eq!(number.parse::<f64>().unwrap() * scale, total, "{name}");
+        // At 10,000 frames a second.
+        let expected = total / 10_000.0 / 3600.0;
+        let written: f64 = hours.replace(',', "").parse().unwrap();
+        assert!((written - expected).abs() <= 0.005 * expected + 0.05, "{name}: {written} for {expected}");
+    }
 }

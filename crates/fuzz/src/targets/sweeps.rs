@@ -11,7 +11,8 @@ pub const SWEEP: Target = Target {
                     levels = [1, 2]\nalgorithms = [\"PPO\", \"PPOLag\"]\n\n[options]\nrules = \"released\"\n\
                     safety-budget = [2.5, 5, 7.5]\nfull-actions = [false, true]\n\n[[grid]]\nalgorithms = [\"PPOCost\"]\n\
                     options.cost-scale = [0.5, 2]\n\n[[grid]]\nscenarios = \"VolcanicVentureLevel3-v0\"\n";
-        let paper = hasard_sweep::paper::EXPERIMENTS.iter().map(|(name, _)| format!("experiment = \"{name}\"\nframes = 1000\n"));
+        let paper =
+            hasard_sweep::paper::EXPERIMENTS.iter().map(|known| format!("experiment = \"{}\"\nframes = 1000\n", known.name));
         std::iter::once(grid.to_string()).chain(paper).map(String::into_bytes).collect()
     },
     words: &[

@@ -25,6 +25,8 @@ pub struct Measurement {
     pub threads: usize,
     /// Rounds.
     pub rounds: usize,
+    /// Bytes of a checkpoint's numbers: weights, and two moments of each optimiser.
+    pub checkpoint_bytes: u64,
 }
 
 impl Measurement {
@@ -78,6 +80,8 @@ pub fn measure(
     }
     let shape = session.learner.shape();
     let sum = |of: fn(&crate::networks::NetworkShape) -> f64| shape.networks.iter().map(of).sum::<f64>();
+    let tables = shape.networks.iter().map(crate::networks::NetworkShape::parameters);
+    let parameters: usize = tables.map(|table| table.iter().map(|one| one.size()).sum::<usize>()).sum();
     let epochs = config.learning.epochs as f64;
     Ok(Measurement {
         steps_per_second: median(loops),
@@ -86,6 +90,7 @@ pub fn measure(
         kernels,
         threads,
         rounds: rounds.max(1),
+        checkpoint_bytes: 4 * parameters as u64 * (1 + 2 * config.algorithm.optimisers() as u64),
     })
 }
 

@@ -1,23 +1,139 @@
 //! `hasard sweep`: many trainings.
 
+mod plan;
+mod progress;
+mod rescale;
+
 use crate::args::SweepArgs;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::{self, Manner};
-use hasard_learn::config::AlgorithmKind;
-use hasard_sweep::{Event, Job, State, Stop, Summary, Sweep, paper, run_jobs};
+use hasard_learn::config::{AlgorithmKind, TrainConfig};
+use hasard_sweep::{Event, Job, OptionValue, Stop, Summary, Sweep, paper, run_jobs};
+use plan::Plan;
+use progress::Progress;
 use serde_json::json;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+/// A sweep of more hours than this is run only if its length was chosen.
+const HOURS_WITHOUT_ASKING: f64 = 48.0;
+
 /// Runs the command.
 pub fn run(args: &SweepArgs) -> Outcome {
-    let mut sweep = description(&args.what)?;
+    if let Some(advice) = args.what.to_str().and_then(paper::advice) {
+        say!("{advice}");
+        return Ok(());
+    }
+    let Described { mut sweep, chooses_frames } = description(&args.what)?;
+    change(&mut sweep, args)?;
+    let mut jobs = sweep.jobs().map_err(Failure::bad)?;
+    let mut configs = settings(&jobs)?;
+    if let Some(scale) = args.scale {
+        for (job, config) in jobs.iter_mut().zip(&configs) {
+            rescale::rescale(job, config, scale)?;
+        }
+        configs = settings(&jobs)?;
+    }
+    let pairs: Vec<(Job, TrainConfig)> = jobs.iter().cloned().zip(configs).collect();
+    if args.dry_run {
+        return list(args, &pairs, sweep.parallel);
+    }
+    if !args.json {
+        note!("hasard: measuring for some seconds how fast this machine is");
+    }
+    let plan = Plan::of(&pairs, sweep.parallel, true)?;
+    if args.json {
+        say!("{}", plan.object());
+    } else {
+        say!("{}", plan.line());
+    }
+    let chosen = chooses_frames || args.yes || args.scale.is_some() || args.frames.is_some();
+    if let Some(hours) = plan.hours.filter(|&hours| hours > HOURS_WITHOUT_ASKING && !chosen) {
+        let (what, day) = (args.what.to_string_lossy(), plan::two_digits(24.0 / hours));
+        return Err(Failure::bad(format!(
+            "sweep {what}: about {}; give --yes to run all of it, --scale {day} for a day of it, or --frames for the length of each run",
+            plan::span(hours)
+        )));
+    }
+    let (jobs, rate) = (pairs.into_iter().map(|(job, _)| job).collect::<Vec<_>>(), plan.rate);
+    execute(args, &sweep, &jobs, rate)
+}
+
+/// Runs the jobs, saying how they go.
+fn execute(args: &SweepArgs, sweep: &Sweep, jobs: &[Job], rate: Option<f64>) -> Outcome {
+    // The Python package names its script: there this process is the interpreter.
+    let program = match std::env::var_os("HASARD_PROGRAM") {
+        Some(program) => program.into(),
+        None => std::env::current_exe().map_err(|error| Failure::bad(format!("this program's own path: {error}")))?,
+    };
+    interrupt::behave(Manner::Parent);
+    // A reader who goes away does not stop the runs; lines that are lost otherwise make the sweep fail once the runs are done.
+    let lost = Mutex::new(None);
+    let progress = Mutex::new(Progress::new(jobs, sweep.parallel, rate));
+    let stop = Stop { soon: &interrupt::STOP, now: &interrupt::GIVE_UP };
+    let summary = run_jobs(&program, jobs, sweep.parallel, stop, |index, event| {
+        let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
+        progress.hear(index, event);
+        if let Err(failure) = write(args.json, index, &jobs[index], event, &progress) {
+            lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
+        }
+    });
+    let elapsed = progress.into_inner().unwrap_or_else(PoisonError::into_inner).elapsed();
+    match lost.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        None => end(args.json, &summary, &elapsed)?,
+        Some(Failure::OutputClosed) => {}
+        Some(failure) => return Err(failure),
+    }
+    interrupt::check()?;
+    match summary.failed.len() {
+        0 => Ok(()),
+        n => Err(Failure::Negative(format!("{n} of {} runs failed; run the same command again to resume them", jobs.len()))),
+    }
+}
+
+/// What the words of the command change of the description.
+fn change(sweep: &mut Sweep, args: &SweepArgs) -> Result<(), Failure> {
     if let Some(out) = &args.out {
         sweep.out.clone_from(out);
     }
     if let Some(parallel) = args.parallel {
         sweep.parallel = usize::from(parallel);
+    }
+    if let Some(episodes) = args.evaluate {
+        sweep.evaluate = episodes;
+    }
+    // Directories bear the algorithms' own names, however they were typed.
+    let own_name = |name: &String| -> Result<String, Failure> {
+        Ok(name.parse::<AlgorithmKind>().map_err(Failure::bad)?.name().to_string())
+    };
+    for algorithm in sweep.grids.iter_mut().flat_map(|grid| &mut grid.algorithms) {
+        *algorithm = own_name(algorithm)?;
+    }
+    if !args.algos.is_empty() {
+        sweep.restrict_algorithms(&args.algos.iter().map(own_name).collect::<Result<Vec<_>, Failure>>()?);
+    }
+    if !args.scenarios.is_empty() {
+        sweep.restrict_scenarios(&args.scenarios);
+    }
+    if !args.levels.is_empty() {
+        sweep.restrict_levels(&args.levels);
+    }
+    if !args.seeds.is_empty() {
+        let seeds = seeds(&args.seeds)?;
+        sweep.grids.iter_mut().for_each(|grid| grid.seeds.clone_from(&seeds));
+    }
+    if let Some(preset) = &args.preset {
+        sweep.set_option("preset", &OptionValue::Text(preset.clone()));
+    }
+    for option in &args.option {
+        match option.split_once('=') {
+            Some((name, value)) => sweep.set_option(name, &OptionValue::Text(value.to_owned())),
+            None => sweep.set_option(option, &OptionValue::Switch(true)),
+        }
+    }
+    if let Some(frames) = args.frames {
+        sweep.grids.iter_mut().for_each(|grid| grid.frames = frames);
     }
     if let Some(scale) = args.scale {
         if !(scale.is_finite() && scale > 0.0) {
@@ -25,50 +141,47 @@ pub fn run(args: &SweepArgs) -> Outcome {
         }
         sweep.scale_frames(scale);
     }
-    // Directories bear the algorithms' own names, however they were typed.
-    for algorithm in sweep.grids.iter_mut().flat_map(|grid| &mut grid.algorithms) {
-        *algorithm = algorithm.parse::<AlgorithmKind>().map_err(Failure::bad)?.name().to_string();
-    }
-    let jobs = sweep.jobs().map_err(Failure::bad)?;
-    if args.dry_run {
-        for job in &jobs {
-            if args.json {
-                say!("{}", json!({ "directory": job.directory.display().to_string(), "command": job.command_line("hasard") }));
-            } else {
-                say!("{}", job.command_line("hasard"));
-            }
+    Ok(())
+}
+
+/// Seeds from words such as `3` and `11-15`.
+fn seeds(words: &[String]) -> Result<Vec<u64>, Failure> {
+    let wrong = |word: &str| Failure::bad(format!("--seeds {word}: give whole numbers from 0 or ranges, such as 1,2,3 or 11-15"));
+    let mut seeds = Vec::new();
+    for word in words {
+        let (first, last) = word.split_once('-').unwrap_or((word, word));
+        let (Ok(first), Ok(last)) = (first.parse::<u64>(), last.parse::<u64>()) else { return Err(wrong(word)) };
+        if last < first || last - first >= 100_000 {
+            return Err(wrong(word));
         }
-        return Ok(());
+        seeds.extend(first..=last);
     }
-    // The Python package tells where its script is: there this process is the interpreter.
-    let program = match std::env::var_os("HASARD_PROGRAM") {
-        Some(program) => program.into(),
-        None => std::env::current_exe().map_err(|error| Failure::bad(format!("this program's own path: {error}")))?,
-    };
-    let total = jobs.len();
-    interrupt::behave(Manner::Parent);
-    // A reader who goes away does not stop the runs; lines that are lost otherwise make the sweep fail once the runs are done.
-    let lost = Mutex::new(None);
-    let stop = Stop { soon: &interrupt::STOP, now: &interrupt::GIVE_UP };
-    let summary = run_jobs(&program, &jobs, sweep.parallel, stop, |index, event| {
-        if let Err(failure) = tell(args.json, index, total, &jobs[index], event) {
-            lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
+    Ok(seeds)
+}
+
+/// The settings of every run, so that whatever is wrong with one is said before any begins.
+fn settings(jobs: &[Job]) -> Result<Vec<TrainConfig>, Failure> {
+    jobs.iter().map(rescale::settings).collect()
+}
+
+/// The command lines and what they come to.
+fn list(args: &SweepArgs, pairs: &[(Job, TrainConfig)], parallel: usize) -> Outcome {
+    for (job, _) in pairs {
+        if args.json {
+            say!("{}", json!({ "directory": job.directory.display().to_string(), "command": job.command_line("hasard") }));
+        } else {
+            say!("{}", job.command_line("hasard"));
         }
-    });
-    match lost.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        None => end(args.json, &summary)?,
-        Some(Failure::OutputClosed) => {}
-        Some(failure) => return Err(failure),
     }
-    interrupt::check()?;
-    match summary.failed.len() {
-        0 => Ok(()),
-        n => Err(Failure::Negative(format!("{n} of {total} runs failed; run the same command again to resume them"))),
+    if !args.json {
+        // Beside the lines, which a script may run.
+        note!("hasard: {}", Plan::of(pairs, parallel, true)?.line());
     }
+    Ok(())
 }
 
 /// Says how the sweep went.
-fn end(as_json: bool, summary: &Summary) -> Outcome {
+fn end(as_json: bool, summary: &Summary, elapsed: &str) -> Outcome {
     let (finished, skipped, stopped, failed) = (summary.finished, summary.skipped, summary.stopped, summary.failed.len());
     if as_json {
         let counts = json!({ "skipped": skipped, "finished": finished, "stopped": stopped, "failed": failed });
@@ -76,61 +189,54 @@ fn end(as_json: bool, summary: &Summary) -> Outcome {
         return Ok(());
     }
     let stopped = if stopped > 0 { format!(", {stopped} stopped: the same command goes on") } else { String::new() };
-    say!("{finished} finished, {skipped} had been finished before, {failed} failed{stopped}");
+    say!("{finished} finished, {skipped} had been finished before, {failed} failed{stopped}, in {elapsed}");
     Ok(())
 }
 
+/// A sweep, and whether its description says how long runs are.
+struct Described {
+    sweep: Sweep,
+    chooses_frames: bool,
+}
+
 /// A TOML file's sweep, or an experiment by name.
-fn description(what: &OsStr) -> Result<Sweep, Failure> {
+fn description(what: &OsStr) -> Result<Described, Failure> {
     let path = Path::new(what);
     let what = what.to_string_lossy();
     if path.extension().is_none_or(|ending| ending != "toml") && !path.is_file() {
-        return paper::experiment(&what).map_err(Failure::bad);
+        return Ok(Described { sweep: paper::experiment(&what).map_err(Failure::bad)?, chooses_frames: false });
     }
     let bytes = hasard_media::files::read_limited(path, 1 << 20).map_err(Failure::bad)?;
     let text = String::from_utf8(bytes).map_err(|_| Failure::bad(format!("{what}: not text; write a TOML file")))?;
-    Sweep::parse(&text).map_err(|error| Failure::bad(format!("{what}: {error}")))
+    let wrong = |error: String| Failure::bad(format!("{what}: {error}"));
+    Ok(Described { sweep: Sweep::parse(&text).map_err(wrong)?, chooses_frames: Sweep::chooses_frames(&text) })
 }
 
-fn tell(as_json: bool, index: usize, total: usize, job: &Job, event: &Event) -> Outcome {
-    let directory = job.directory.display().to_string();
-    let (name, text) = match event {
-        Event::AlreadyFinished => ("already_finished", "had been finished before".to_string()),
-        Event::Started(State::Unfinished(frames)) => ("resumed", format!("goes on from {frames} frames")),
-        Event::Started(_) => ("started", "begins".to_string()),
-        Event::Finished(time) => ("finished", format!("finished in {:.0} s", time.as_secs_f64())),
-        Event::Failed(why) => ("failed", format!("failed: {why}")),
-        Event::Stopped => ("stopped", "stopped; the same command goes on".to_string()),
-    };
-    if as_json {
-        say!("{}", json!({ "job": index, "directory": directory, "event": name, "text": text }));
-    } else {
-        say!("[{}/{total}] {directory}: {text}", index + 1);
+fn write(as_json: bool, index: usize, job: &Job, event: &Event, progress: &Progress) -> Outcome {
+    let outcome = matches!(event, Event::Finished(_)).then(|| progress::RunResult::of(job)).flatten();
+    let line = progress.line(job, event, outcome.as_ref());
+    if !as_json {
+        if let Some(line) = line {
+            say!("{line}");
+        }
+        return Ok(());
     }
+    let name = match event {
+        Event::AlreadyFinished => "already_finished",
+        Event::Started(hasard_sweep::State::Unfinished(_)) => "resumed",
+        Event::Started(_) => "started",
+        Event::Finished(_) => "finished",
+        Event::Failed(_) => "failed",
+        Event::Stopped => "stopped",
+    };
+    let mut object = progress.object(event, outcome.as_ref());
+    object.insert("job".into(), json!(index));
+    object.insert("directory".into(), json!(job.directory.display().to_string()));
+    object.insert("event".into(), json!(name));
+    object.insert("text".into(), json!(line.unwrap_or_else(|| format!("{}: {name}", job.name()))));
+    say!("{}", serde_json::Value::Object(object));
     Ok(())
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::args::{Cli, Command};
-    use clap::Parser;
-
-    /// Every run of every experiment of the paper is a command that this program takes and can begin.
-    #[test]
-    fn the_papers_experiments_are_commands_of_this_program() {
-        for (name, _) in paper::EXPERIMENTS {
-            let jobs = paper::experiment(name).unwrap().jobs().unwrap();
-            assert!(!jobs.is_empty(), "{name}");
-            for job in jobs {
-                let line = std::iter::once("hasard".into()).chain(job.arguments.iter().cloned());
-                let Command::Train(args) = Cli::try_parse_from(line).unwrap_or_else(|error| panic!("{error}")).command else {
-                    panic!("{} is not a training", job.command_line("hasard"));
-                };
-                if let Err(failure) = crate::commands::train::configuration(&args) {
-                    panic!("{}: {failure:?}", job.command_line("hasard"));
-                }
-            }
-        }
-    }
-}
+mod tests;

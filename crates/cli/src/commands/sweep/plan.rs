@@ -1,0 +1,198 @@
+//! What a sweep comes to, said before anything runs: runs, frames, hours on this machine, disk.
+
+use crate::failure::Failure;
+use crate::settings::Elsewhere;
+use hasard_envs::VecEnv;
+use hasard_learn::config::{EnvConfig, TrainConfig};
+use hasard_learn::networks::cpu::simd::Kernels;
+use hasard_learn::runs::measure::measure;
+use hasard_sweep::{Job, State};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Seconds of measuring, shared by the kinds of runs; and most kinds that are measured, evenly chosen.
+const SECONDS: f64 = 6.0;
+const MOST_KINDS: usize = 6;
+
+/// Tics of the longest episode.
+const EPISODE_TICS: u64 = 2100;
+
+/// What is still to do.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// Runs of the whole sweep.
+    pub runs: usize,
+    /// Those that are finished already.
+    pub finished: usize,
+    /// Frames of the whole sweep.
+    pub frames: u64,
+    /// Frames that remain to be trained.
+    pub left: u64,
+    /// Hours that they take here, evaluations included; `None` where nothing was measured.
+    pub hours: Option<f64>,
+    /// Frames a second of one run's loop, the mean over the kinds of runs.
+    pub rate: Option<f64>,
+    /// Bytes that all runs keep when they are finished.
+    pub bytes: Option<u64>,
+}
+
+/// The kind of a run as far as its speed goes.
+fn kind(config: &TrainConfig) -> String {
+    let (env, network) = (&config.env, &config.network);
+    format!(
+        "{} {} {} {:?} {} {:?} {:?}",
+        config.algorithm, config.preset, env.observation, env.size, env.full_actions, network.convolutions, network.dense
+    )
+}
+
+impl Plan {
+    /// Counts what is to do, and measures for some seconds how fast it goes when `measures`.
+    pub fn of(jobs: &[(Job, TrainConfig)], parallel: usize, measures: bool) -> Result<Plan, Failure> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let at_once = parallel.clamp(1, jobs.len().max(1));
+        let threads = (cores / at_once).max(1);
+        let mut plan = Plan { runs: jobs.len(), ..Plan::default() };
+        let mut kinds: BTreeMap<String, (&TrainConfig, u64)> = BTreeMap::new();
+        for (job, config) in jobs {
+            plan.frames += job.frames;
+            let done = match job.state() {
+                State::Finished => job.frames,
+                State::Unfinished(frames) => frames.min(job.frames),
+                State::New => 0,
+            };
+            plan.finished += usize::from(done == job.frames);
+            let left = job.frames - done;
+            plan.left += left;
+            if left > 0 {
+                kinds.entry(kind(config)).or_insert((config, 0)).1 += left + tested(job, config);
+            }
+        }
+        if !measures || kinds.is_empty() {
+            return Ok(plan);
+        }
+        let stride = kinds.len().div_ceil(MOST_KINDS);
+        let measured = kinds.len().div_ceil(stride);
+        let (mut rates, mut sizes) = (BTreeMap::new(), BTreeMap::new());
+        for (name, (config, _)) in kinds.iter().step_by(stride) {
+            let mut config = (*config).clone();
+            (config.learning.threads, config.sampling.samplers) = (threads, threads);
+            let options = crate::settings::trained_options(&config.env, Elsewhere::default())?;
+            let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
+            let kernels = Kernels::chosen().map_err(Failure::bad)?;
+            let seconds = SECONDS / measured as f64;
+            let loops = measure(kernels, &config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
+            rates.insert(name.clone(), loops.steps_per_second * f64::from(config.env.frame_skip));
+            sizes.insert(name.clone(), loops.checkpoint_bytes * (config.reporting.keep as u64 + 1));
+        }
+        let mean = rates.values().sum::<f64>() / rates.len() as f64;
+        let size = sizes.values().sum::<u64>() / sizes.len() as u64;
+        let seconds: f64 = kinds.iter().map(|(name, (_, frames))| *frames as f64 / rates.get(name).unwrap_or(&mean)).sum();
+        plan.rate = Some(mean);
+        plan.hours = Some(seconds / at_once.min(cores) as f64 / 3600.0);
+        plan.bytes = Some(jobs.iter().map(|(_, config)| sizes.get(&kind(config)).unwrap_or(&size)).sum());
+        Ok(plan)
+    }
+
+    /// The plan in one line.
+    pub fn line(&self) -> String {
+        let mut text = format!("{} runs, {} frames", self.runs, short(self.frames));
+        if self.finished > 0 || self.left < self.frames {
+            text += &format!("; {} finished, {} frames to go", self.finished, short(self.left));
+        }
+        if let (Some(hours), Some(rate)) = (self.hours, self.rate) {
+            text += &format!("; about {} here, at {rate:.0} frames/s and with evaluations", span(hours));
+        }
+        if let Some(bytes) = self.bytes {
+            text += &format!("; {} on disk", size(bytes));
+        }
+        text
+    }
+
+    /// The plan as an object of JSON.
+    pub fn object(&self) -> Value {
+        json!({ "plan": {
+            "runs": self.runs,
+            "finished": self.finished,
+            "frames": self.frames,
+            "frames_left": self.left,
+            "hours": self.hours,
+            "frames_per_second": self.rate,
+            "bytes": self.bytes,
+        } })
+    }
+}
+
+/// Frames that a run's evaluations play beside what it learns from.
+fn tested(job: &Job, config: &TrainConfig) -> u64 {
+    let evaluation = &config.evaluation;
+    let during = match evaluation.every {
+        Some(0) => 0,
+        Some(every) => config.frames / every,
+        None if config.evaluates(0, config.frames) => 20,
+        None => 0,
+    };
+    // Candidates are confirmed a few times, and the selected checkpoint closes the run.
+    let further = if during > 0 { 4 * evaluation.confirming_episodes as u64 } else { 0 };
+    (during * evaluation.episodes as u64 + further + u64::from(job.evaluate)) * EPISODE_TICS
+}
+
+/// `270 G`, `8.0 M`, `300`.
+pub fn short(count: u64) -> String {
+    let value = count as f64;
+    let (scaled, unit) = match count {
+        1_000_000_000.. => (value / 1e9, " G"),
+        1_000_000.. => (value / 1e6, " M"),
+        10_000.. => (value / 1e3, " k"),
+        _ => return count.to_string(),
+    };
+    if scaled < 10.0 { format!("{scaled:.1}{unit}") } else { format!("{scaled:.0}{unit}") }
+}
+
+/// A time that hours say badly: `267 days`, `5.2 hours`, `3 min`, `40 s`.
+pub fn span(hours: f64) -> String {
+    match hours {
+        h if h >= 48.0 => format!("{:.0} days", h / 24.0),
+        h if h >= 2.0 => format!("{h:.1} hours"),
+        h if h >= 1.0 / 30.0 => format!("{:.0} min", h * 60.0),
+        h => format!("{:.0} s", h * 3600.0),
+    }
+}
+
+/// The two leading digits of a number: 0.0037.
+pub fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+fn size(bytes: u64) -> String {
+    let value = bytes as f64;
+    if value >= 1e9 { format!("{:.1} GB", value / 1e9) } else { format!("{:.0} MB", (value / 1e6).max(1.0)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_said_in_the_unit_that_fits() {
+        assert_eq!([270_000_000_000, 8_000_000, 67_200, 300].map(short), ["270 G", "8.0 M", "67 k", "300"]);
+        assert_eq!([6_400.0, 47.0, 1.5, 0.01].map(span), ["267 days", "47.0 hours", "90 min", "36 s"]);
+        assert_eq!([0.00374, 0.015, 1.26].map(two_digits), [0.0037, 0.015, 1.3]);
+        assert_eq!([60_300_000_000, 114_000_000, 3].map(size), ["60.3 GB", "114 MB", "1 MB"]);
+    }
+
+    #[test]
+    fn a_line_says_what_remains() {
+        let plan = Plan {
+            runs: 540,
+            frames: 270_000_000_000,
+            left: 270_000_000_000,
+            hours: Some(6408.0),
+            rate: Some(11_700.0),
+            ..Plan::default()
+        };
+        let line = Plan { bytes: Some(60_000_000_000), ..plan.clone() }.line();
+        assert_eq!(line, "540 runs, 270 G frames; about 267 days here, at 11700 frames/s and with evaluations; 60.0 GB on disk");
+        let line = Plan { finished: 500, left: 20_000_000_000, hours: None, ..plan }.line();
+        assert_eq!(line, "540 runs, 270 G frames; 500 finished, 20 G frames to go");
+    }
+}
