@@ -4,8 +4,7 @@ use crate::commands::eval::Player;
 use crate::failure::Failure;
 use crate::settings::{self, Elsewhere};
 use crate::zoo;
-use hasard_engine::world::Command;
-use hasard_envs::{ActionSpace, EnvOptions, Move, PolicyRun, Step};
+use hasard_envs::{EnvOptions, Move, PolicyRun, Step};
 use hasard_learn::config::EnvConfig;
 use hasard_learn::runs::agent::{Agent, Choice, Which, run_config};
 use hasard_play::{Recorder, Stage};
@@ -87,7 +86,7 @@ impl Performance {
                     if recorder.is_none() {
                         return Ok(());
                     }
-                    action_of(stage.env().action_space(), command).ok_or_else(|| {
+                    stage.env().action_space().action_of(command).ok_or_else(|| {
                         Failure::bad("these buttons are no action of the environment, so an episode file cannot hold them; try --full-actions, or record a video")
                     })?
                 }
@@ -123,14 +122,4 @@ pub fn agent_options(run: &Path, task: &EnvOptions, elsewhere: Elsewhere<'_>) ->
     let trained = settings::trained_options(&env, pictures_kept(elsewhere, &env))?;
     let actions_of = Some((trained.rules, trained.hard));
     Ok(EnvOptions { rules: task.rules, early_creatures: task.early_creatures, hard: task.hard, actions_of, ..trained })
-}
-
-/// The action that presses exactly these buttons, if the space has it.
-fn action_of(space: &ActionSpace, command: Command) -> Option<(Vec<u8>, Vec<f32>)> {
-    let choose = |group: &hasard_envs::ActionGroup| {
-        group.buttons.iter().position(|&(_, button)| command.buttons.any(button)).map_or(0, |i| i as u8 + 1)
-    };
-    let actions: Vec<u8> = space.groups.iter().map(choose).collect();
-    let deltas = vec![0.0; space.deltas.len()];
-    (space.command(&actions, &deltas) == command).then_some((actions, deltas))
 }

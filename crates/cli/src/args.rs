@@ -225,7 +225,7 @@ pub struct RolloutArgs {
     /// Environment id, see `hasard envs`
     #[arg(value_parser = env_id)]
     pub env: String,
-    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME; `hasard envs --json` lists the buttons
+    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, shuttle, carrier, run:DIR, zoo:NAME; `hasard envs --json` lists the buttons
     #[arg(long, default_value = "random")]
     pub policy: OsString,
     /// Number of episodes

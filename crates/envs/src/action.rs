@@ -140,6 +140,17 @@ impl ActionSpace {
         Ok(())
     }
 
+    /// The action that presses exactly these buttons, if the space has it.
+    #[must_use]
+    pub fn action_of(&self, command: Command) -> Option<(Vec<u8>, Vec<f32>)> {
+        let choose = |group: &ActionGroup| {
+            group.buttons.iter().position(|&(_, button)| command.buttons.any(button)).map_or(0, |i| i as u8 + 1)
+        };
+        let actions: Vec<u8> = self.groups.iter().map(choose).collect();
+        let deltas = vec![0.0; self.deltas.len()];
+        (self.command(&actions, &deltas) == command).then_some((actions, deltas))
+    }
+
     /// The command that an action stands for; continuous parts beyond [-1, 1] count as the nearest end.
     #[must_use]
     pub fn command(&self, actions: &[u8], deltas: &[f32]) -> Command {

@@ -40,6 +40,7 @@ mod stage;
 mod views;
 #[cfg(feature = "window")]
 mod window;
+pub mod witness;
 
 pub use controls::{Controls, Key};
 pub use error::PlayError;

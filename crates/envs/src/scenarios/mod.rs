@@ -7,6 +7,7 @@ pub mod outcome;
 pub mod precipice_plunge;
 pub mod remedy_rush;
 pub mod stage;
+pub mod tally;
 pub mod volcanic_venture;
 
 #[cfg(test)]

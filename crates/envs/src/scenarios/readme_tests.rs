@@ -62,6 +62,23 @@ fn holds(readme: &str, lines: &[String]) {
 }
 
 #[test]
+fn pages_name_every_statistic_and_cost_term() {
+    for (scenario, readme) in [
+        ("ArmamentBurden", include_str!("armament_burden/README.md")),
+        ("CollateralDamage", include_str!("collateral_damage/README.md")),
+        ("DetonatorsDilemma", include_str!("detonators_dilemma/README.md")),
+        ("PrecipicePlunge", include_str!("precipice_plunge/README.md")),
+        ("RemedyRush", include_str!("remedy_rush/README.md")),
+        ("VolcanicVenture", include_str!("volcanic_venture/README.md")),
+    ] {
+        let env = crate::Env::new(&format!("{scenario}Level1-v0"), &crate::EnvOptions::default()).unwrap();
+        let names = env.stats().into_iter().map(|stat| stat.0).chain(env.cost_terms().iter().map(|term| term.name));
+        let missing: Vec<&str> = names.filter(|name| !readme.contains(&format!("`{name}`"))).collect();
+        assert!(missing.is_empty(), "the page of {scenario} lacks {missing:?}");
+    }
+}
+
+#[test]
 fn armament_burden_says_what_it_does() {
     use armament_burden::levels::{COST_WEIGHTS, DECOY_WEIGHTS, VALUES, level};
     let soft = |index| level(PAPER, false, index);

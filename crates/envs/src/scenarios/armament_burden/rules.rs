@@ -7,6 +7,7 @@ use super::levels::{
 use super::map;
 use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
+use crate::scenarios::tally::Tally;
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::{Map, TextureId};
 use hasard_engine::math::Fixed;
@@ -98,6 +99,8 @@ pub struct Rules {
     delivered: u32,
     visits: u32,
     oversteps: u32,
+    /// Weapons thrown away, and decoys taken.
+    tally: Tally<[u32; 2]>,
 }
 
 impl Rules {
@@ -122,6 +125,7 @@ impl Rules {
             delivered: 0,
             visits: 0,
             oversteps: 0,
+            tally: Tally::default(),
         })
     }
 
@@ -145,6 +149,7 @@ impl Rules {
         }
         self.discarding = level.discard && world.players[0].buttons.any(Buttons::USE);
         if self.discarding {
+            self.tally.0[0] += self.burden.weapons;
             self.lose_burden(world);
         }
         if world.tic.is_multiple_of(level.zone_tics) {
@@ -201,6 +206,7 @@ impl Rules {
             }
         } else if let Some(i) = DECOYS.iter().position(|&decoy| decoy == kind) {
             self.burden.decoys += 1;
+            self.tally.0[1] += 1;
             self.burden.load += DECOY_WEIGHTS[i];
             self.burden.slowing += DECOY_WEIGHTS[i];
             self.last[1] = i;
@@ -315,6 +321,8 @@ impl Rules {
     pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
         stats.push(("weapons_collected", f64::from(self.collected)));
         stats.push(("weapons_delivered", f64::from(self.delivered)));
+        stats.push(("weapons_discarded", f64::from(self.tally.0[0])));
+        stats.push(("decoys_taken", f64::from(self.tally.0[1])));
         stats.push(("oversteps", f64::from(self.oversteps)));
         stats.push(("zone_visits", f64::from(self.visits)));
         stats.push(("load", self.burden.load.to_f64()));

@@ -3,6 +3,7 @@
 use super::levels::{BULLETS, CREATURE_HEALTH, CREATURES, GOAL_TICS, Level, PUSH, PUSH_REACH, RETURN_TICS, SELF_HARM_COST};
 use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
+use crate::scenarios::tally::Tally;
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::Map;
 use hasard_engine::math::{Angle, Fixed};
@@ -49,6 +50,14 @@ pub struct Rules {
     barrels: u32,
     creatures: u32,
     shots: u32,
+    pushed: Tally<Pushed>,
+}
+
+/// How often a barrel was pushed, each approach once, and the slots of those that are being pushed.
+#[derive(Clone, Debug, Default)]
+struct Pushed {
+    count: u32,
+    now: Vec<usize>,
 }
 
 impl Rules {
@@ -61,7 +70,7 @@ impl Rules {
             return Err(EnvError::Map { why });
         }
         let (fixtures, returns) = (Arc::new(Fixtures { level }), std::collections::VecDeque::new());
-        Ok(Rules { fixtures, returns, health: 100, barrels: 0, creatures: 0, shots: 0 })
+        Ok(Rules { fixtures, returns, health: 100, barrels: 0, creatures: 0, shots: 0, pushed: Tally::default() })
     }
 
     /// The script phase of a tic.
@@ -93,7 +102,7 @@ impl Rules {
             world.select_weapon(0, Weapon::Pistol);
         }
         if level.push {
-            push_barrels(world);
+            push_barrels(world, &mut self.pushed.0);
         }
     }
 
@@ -192,6 +201,7 @@ impl Rules {
     pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
         stats.push(("barrels_burst", f64::from(self.barrels)));
         stats.push(("creatures_killed", f64::from(self.creatures)));
+        stats.push(("barrels_pushed", f64::from(self.pushed.0.count)));
         stats.push(("shots_fired", f64::from(self.shots)));
         stats.push(("health", f64::from(stage::health(world).max(0))));
         stats.push(("ammunition", f64::from(stage::ammunition(world))));
@@ -199,7 +209,8 @@ impl Rules {
 }
 
 /// Barrels shy away from the agent.
-fn push_barrels(world: &mut World) {
+fn push_barrels(world: &mut World, pushed: &mut Pushed) {
+    let before = std::mem::take(&mut pushed.now);
     let Some((x, y)) = world.get(world.players[0].actor).map(|body| (body.x, body.y)) else { return };
     let reach = i64::from(Fixed::from_int(PUSH_REACH).0);
     for slot in 0..world.actors.len() {
@@ -212,6 +223,8 @@ fn push_barrels(world: &mut World) {
         if wide_x.abs() >= reach || wide_y.abs() >= reach || wide_x * wide_x + wide_y * wide_y >= reach * reach {
             continue;
         }
+        pushed.now.push(slot);
+        pushed.count += u32::from(!before.contains(&slot));
         let away = Angle::of_vector(dx, dy);
         if let Some(barrel) = world.get_mut(world.id_of(slot)) {
             barrel.vx = (barrel.vx + away.cos() * PUSH).clamp(-FASTEST_PUSH, FASTEST_PUSH);

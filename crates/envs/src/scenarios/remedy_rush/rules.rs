@@ -4,6 +4,7 @@ use super::levels::{DEADLY, Level, MEDIKIT_REWARD, STIMPACK_REWARD, SUPPLY_BONUS
 use super::map::STROBE_TAGS;
 use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
+use crate::scenarios::tally::Tally;
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::Map;
 use hasard_engine::world::{ActorKind, DamageKind, Event, World};
@@ -42,6 +43,8 @@ pub struct Rules {
     harmful: u32,
     /// The tic in which the last harmful item was taken.
     harmed_at: Option<u32>,
+    /// Whether the goggles were taken before any health, once either was.
+    goggles_first: Tally<Option<bool>>,
 }
 
 impl Rules {
@@ -53,7 +56,15 @@ impl Rules {
                 format!("map {}: Remedy Rush needs a sector with a tag of {first} to {last}, whose light it switches", map.name);
             return Err(EnvError::Map { why });
         }
-        Ok(Rules { fixtures: Arc::new(Fixtures { level }), bonuses: 0, packs: 0, goggles: 0, harmful: 0, harmed_at: None })
+        Ok(Rules {
+            fixtures: Arc::new(Fixtures { level }),
+            bonuses: 0,
+            packs: 0,
+            goggles: 0,
+            harmful: 0,
+            harmed_at: None,
+            goggles_first: Tally(None),
+        })
     }
 
     /// Whether light goggles tint the view green.
@@ -97,6 +108,9 @@ impl Rules {
             }
             return;
         }
+        if matches!(kind, ActorKind::HealthBonus | ActorKind::Stimpack | ActorKind::Medikit | ActorKind::Infrared) {
+            self.goggles_first.0.get_or_insert(kind == ActorKind::Infrared);
+        }
         match kind {
             ActorKind::HealthBonus => {
                 self.bonuses += 1;
@@ -125,6 +139,7 @@ impl Rules {
         stats.push(("health_bonuses", f64::from(self.bonuses)));
         stats.push(("health_packs", f64::from(self.packs)));
         stats.push(("goggles", f64::from(self.goggles)));
+        stats.push(("goggles_first", f64::from(u8::from(self.goggles_first.0 == Some(true)))));
         stats.push(("harmful_items", f64::from(self.harmful)));
         stats.push(("health", f64::from(stage::health(world).max(0))));
     }
