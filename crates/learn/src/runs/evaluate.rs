@@ -65,8 +65,10 @@ pub fn play_traced(
     }
     let mut episodes = Vec::new();
     std::thread::scope(|scope| {
-        let running: Vec<_> =
-            parts.into_iter().map(|(worlds, agent, own)| scope.spawn(move || play_all(stop, policy, worlds, agent, own))).collect();
+        let running: Vec<_> = parts
+            .into_iter()
+            .map(|(worlds, agent, own)| scope.spawn(move || play_all(stop, policy, worlds, agent, own)))
+            .collect();
         for thread in running {
             let played = thread.join().map_err(|panic| LearnError::Panic(panic_text("an evaluation", &*panic)))?;
             episodes.push(played?);

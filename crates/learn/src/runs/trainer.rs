@@ -132,7 +132,8 @@ impl Begun {
     /// or has come to its end without any and is now asked for one.
     fn owed(&self, candidates: &Candidates) -> Option<&Loaded> {
         let Beginning::Everything(loaded) = &self.beginning else { return None };
-        let unjudged = candidates.ranked.is_empty() && loaded.progress.frames >= self.config.frames && self.config.evaluates_at_its_end();
+        let unjudged =
+            candidates.ranked.is_empty() && loaded.progress.frames >= self.config.frames && self.config.evaluates_at_its_end();
         (loaded.progress.owes_evaluation || unjudged).then_some(loaded)
     }
 }
