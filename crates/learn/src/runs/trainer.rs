@@ -8,7 +8,7 @@ use std::time::Instant;
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::networks::device::ComputeDevice;
-use crate::runs::checkpoint::{Checkpoint, Progress, Store};
+use crate::runs::checkpoint::{Checkpoint, Loaded, Progress, Store};
 use crate::runs::evaluate::Evaluation;
 use crate::runs::examiner::Examiner;
 use crate::runs::heatmap::Heatmap;
