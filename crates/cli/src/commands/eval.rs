@@ -47,7 +47,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
             return Err(Failure::bad(format!(
                 "--calibration: {}: has no critics of costs whose units are known and that see no more than an agent at work; give \
                  the run directory of an algorithm that has them, such as PPOPID",
-                args.run
+                args.run.to_string_lossy()
             )));
         }
     }
