@@ -105,7 +105,6 @@ impl EpisodeLines {
         }
         Ok(())
     }
-
 }
 
 /// Mean of each statistic that the scenario counts.
