@@ -32,6 +32,20 @@ class Run:
     stopped: bool
     last: Report
 
+    @property
+    def selection(self) -> dict[str, Any] | None:
+        """The checkpoint that the run selected, as in `selected.json`: "frames", "closing" (what it is worth in episodes that had no part in the choice),
+        "last" (the same of the last policy) and more; None for a run that was stopped, or never evaluated."""
+        for name in ("selected.json", "hand_out.json"):
+            if (self.directory / name).is_file():
+                return json.loads((self.directory / name).read_text())  # type: ignore[no-any-return]
+        return None
+
+    @property
+    def closing(self) -> dict[str, Any] | None:
+        """What the run is worth: the closing evaluation of the selected checkpoint, or None."""
+        return (self.selection or {}).get("closing")
+
 
 def train(
     env_id: str,

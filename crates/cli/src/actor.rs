@@ -54,13 +54,32 @@ impl Performance {
     }
 
     fn of_agent(id: &str, run: &Path, options: &EnvOptions, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
+        let player = Player { run, which: Which::Selected, choice: Choice::Sampled };
+        Performance::of_player(&player, id, options, looks, seed)
+    }
+
+    /// An agent in an environment as it was trained to see it.
+    pub fn of_player(
+        player: &Player<'_>,
+        id: &str,
+        options: &EnvOptions,
+        looks: &EnvOptions,
+        seed: u64,
+    ) -> Result<Performance, Failure> {
         let mut stage = Stage::shown_as(id, options, looks).map_err(Failure::bad)?;
         stage.reset(seed);
-        let player = Player { run, which: Which::HandedOut, choice: Choice::Sampled };
         let mut agent = player.agent(stage.env())?;
         agent.reset(0, seed);
         let observation = vec![0; stage.env().observation_shape().iter().product()];
         Ok(Performance { stage, actor: Actor::Agent(Box::new(agent), observation) })
+    }
+
+    /// Begins another episode of an agent.
+    pub fn restart(&mut self, seed: u64) {
+        self.stage.reset(seed);
+        if let Actor::Agent(agent, _) = &mut self.actor {
+            agent.reset(0, seed);
+        }
     }
 
     /// Goes on by a tic, choosing an action where the stage wants one and noting it in `recorder`. Gives what a step

@@ -47,7 +47,7 @@ pub enum Command {
     Serve(ServeArgs),
     /// Run many trainings: a grid from a TOML file, or an experiment of the paper by name
     Sweep(SweepArgs),
-    /// Write the agent that a run hands out as one small file
+    /// Write the agent that a run selects as one small file
     ExportAgent(ExportAgentArgs),
     /// Write an environment's map as a WAD that other engines load
     ExportWad(ExportWadArgs),
@@ -424,8 +424,8 @@ pub struct TrainArgs {
     /// learning rate may differ from before
     #[arg(long)]
     pub resume: bool,
-    /// Frames between evaluations on episodes of their own, by which the run chooses the checkpoint that it hands out; a
-    /// twentieth of the run if absent, or none in a run of fewer than 400000; 0 for none
+    /// Frames between evaluations on episodes of their own, by which the run selects a checkpoint; ten in its second half if
+    /// absent, fewer where they would take more than a twentieth of its frames, none in a run of fewer than 400000; 0 for none
     #[arg(long, value_name = "FRAMES", value_parser = whole, allow_negative_numbers = true)]
     pub eval_every: Option<u64>,
     /// Levels in turn, weights and normalisers carried over: 1,2,3 shares the frames equally, 1:400000,2:600000 gives each
@@ -500,9 +500,18 @@ pub struct EvalArgs {
     /// Take each sub-action's likeliest choice instead of sampling
     #[arg(long)]
     pub greedy: bool,
-    /// The latest checkpoint instead of the one that the run hands out
+    /// The latest checkpoint instead of the one that the run selected
     #[arg(long)]
     pub latest: bool,
+    /// Film so many of the worst episodes, those that cost most, one after the other
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub worst: Option<u16>,
+    /// File of the film: .mp4 or .gif  [default: worst.mp4]
+    #[arg(short, long, value_name = "FILE", requires = "worst")]
+    pub out: Option<PathBuf>,
+    /// Write what the critics of the costs expected at each step, and what came, as a table
+    #[arg(long, value_name = "FILE.csv")]
+    pub calibration: Option<PathBuf>,
     /// One JSON object an episode, then one with "summary"
     #[arg(long)]
     pub json: bool,

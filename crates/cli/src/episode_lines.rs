@@ -4,6 +4,7 @@ use crate::failure::{Failure, Outcome};
 use hasard_envs::{EnvOptions, Episode};
 use hasard_learn::config::Constraint;
 use hasard_learn::runs::evaluate::{Evaluation, Judgement};
+use hasard_learn::statistics::{Estimate, Tails};
 use serde_json::{Map, Value, json};
 use std::io::Write;
 
@@ -60,11 +61,25 @@ impl EpisodeLines {
 
     /// Prints means and their 95 % confidence half-widths: always for people; as an object with `"summary"` if asked.
     pub fn summary(&self, as_json: bool) -> Outcome {
+        self.summary_with(as_json, &[])
+    }
+
+    /// The episodes so far.
+    pub fn episodes(&self) -> &[Episode] {
+        &self.episodes
+    }
+
+    /// The same, with further entries of the summary's object.
+    pub fn summary_with(&self, as_json: bool, more: &[(&str, Value)]) -> Outcome {
         let all = Evaluation::of(&self.episodes, &self.constraints).map_err(Failure::bad)?;
         let mut out = std::io::stdout().lock();
         if self.json {
             if as_json {
-                writeln!(out, "{}", summary_row(&all))?;
+                let mut object = summary_row(&all, &self.episodes);
+                for (name, value) in more {
+                    object["summary"][name] = value.clone();
+                }
+                writeln!(out, "{object}")?;
             }
             return Ok(());
         }
@@ -75,8 +90,56 @@ impl EpisodeLines {
             worth(&all),
             all.length.mean
         )?;
+        writeln!(out, "cost of an episode: {}", tails_text(&all.tails, None))?;
+        for one in &all.constraints {
+            writeln!(out, "{}: {}", one.term.as_deref().unwrap_or("under the budget"), tails_text(&one.tails, Some(one.budget)))?;
+        }
+        let stats: Vec<String> = mean_stats(&self.episodes)
+            .as_object()
+            .into_iter()
+            .flatten()
+            .map(|(name, value)| format!("{name} {:.2}", value.as_f64().unwrap_or(0.0)))
+            .collect();
+        if !stats.is_empty() {
+            writeln!(out, "means: {}", stats.join(", "))?;
+        }
         Ok(())
     }
+}
+
+/// Mean of each statistic that the scenario counts.
+fn mean_stats(episodes: &[Episode]) -> Value {
+    let names = episodes.first().map_or(&[][..], |first| &first.stats);
+    let mean = |name: &str| {
+        let values = episodes.iter().flat_map(|one| &one.stats).filter(|(own, _)| *own == name);
+        let (count, sum) = values.fold((0.0, 0.0), |(count, sum), (_, value)| (count + 1.0, sum + value));
+        sum / count
+    };
+    named(names.iter().map(|&(name, _)| (name, mean(name))))
+}
+
+/// By what an interval is: Student's t, or the bootstrap where episodes are skewed.
+fn interval_by(estimate: &Estimate) -> &'static str {
+    if estimate.bootstrap.is_some() { "bca" } else { "t" }
+}
+
+/// How costs spread, as JSON.
+fn spread(tails: &Tails) -> Value {
+    json!({
+        "median": tails.median, "q90": tails.ninety, "worst": tails.worst, "cvar10": tails.cvar, "over_budget": tails.over_budget,
+    })
+}
+
+/// How costs spread, for people.
+fn tails_text(tails: &Tails, budget: Option<f64>) -> String {
+    let over = match (tails.over_budget, budget) {
+        (Some(share), Some(budget)) => format!(", {:.0} % of episodes over the budget of {budget}", 100.0 * share),
+        _ => String::new(),
+    };
+    format!(
+        "median {:.2}, 90 % at most {:.2}, worst {:.2}, mean of the worst tenth {:.2}{over}",
+        tails.median, tails.ninety, tails.worst, tails.cvar
+    )
 }
 
 /// An episode as JSON.
@@ -97,12 +160,15 @@ pub fn episode_row(env: &str, number: u64, episode: &Episode) -> Value {
 }
 
 /// Means of episodes and their 95 % confidence half-widths as JSON.
-pub fn summary_row(all: &Evaluation) -> Value {
+pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
     let constraints: Vec<Value> = all.constraints.iter().map(judgement).collect();
     json!({ "summary": {
         "episodes": all.episodes,
         "return_mean": all.episode_return.mean, "return_ci95": all.episode_return.half_width,
         "cost_mean": all.cost.mean, "cost_ci95": all.cost.half_width,
+        "cost_interval": [all.cost.low(), all.cost.high()], "cost_interval_by": interval_by(&all.cost),
+        "cost_tails": spread(&all.tails),
+        "stats": mean_stats(episodes),
         "length_mean": all.length.mean, "length_ci95": all.length.half_width,
         "safety_budget": all.constraints.first().map(|one| one.budget),
         "within_budget": (!all.constraints.is_empty()).then(|| all.within()),
@@ -132,7 +198,8 @@ pub fn worth(all: &Evaluation) -> String {
 pub fn judgement(one: &Judgement) -> Value {
     json!({
         "term": one.term, "budget": one.budget, "cost_mean": one.cost.mean, "cost_ci95": one.cost.half_width,
-        "within_budget": one.within(),
+        "cost_interval": [one.cost.low(), one.cost.high()], "cost_interval_by": interval_by(&one.cost),
+        "tails": spread(&one.tails), "within_budget": one.within(),
     })
 }
 

@@ -145,7 +145,7 @@ pub fn evaluate(
         }
     }
     let summary = Evaluation::of(&all, &config.constraints).map_err(|error| Some(error.to_string()))?;
-    rows.push(episode_lines::summary_row(&summary));
+    rows.push(episode_lines::summary_row(&summary, &all));
     Ok(rows)
 }
 

@@ -237,6 +237,46 @@ fn a_curriculum_leaves_automaps_an_agent_and_a_report() {
     assert!(Path::new(&folder.0.join("report/index.html")).is_file());
 }
 
+/// The tails of what episodes cost, the worst of them filmed, and whether the critic of the cost expected it.
+#[test]
+fn an_evaluation_shows_the_tails() {
+    let folder = Folder::new("tails");
+    let small = "--algo PPOLag --preset quick --envs 2 --threads 1 --set network.dense=[32] --set network.recurrent=32 \
+                 --observation grey --size 64x48 --frames 600 --quiet";
+    folder.ok(&format!("train RemedyRushLevel1-v0 --safety-budget 3 --out run {small}"));
+    let told = folder.ok("eval run --episodes 11 --json --worst 2 -o worst.gif --calibration table.csv");
+    let lines: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let mut costs: Vec<f64> = lines[..11].iter().map(|line| line["cost"].as_f64().unwrap()).collect();
+    let summary = &lines[11]["summary"];
+    // The worst tenth of eleven episodes is the worst, and a tenth of the next.
+    let filmed = summary["filmed"]["seeds"].as_array().unwrap();
+    let of_seed = |seed: &Value| lines.iter().find(|line| line["seed"] == *seed).unwrap()["cost"].as_f64().unwrap();
+    costs.sort_by(|a, b| b.total_cmp(a));
+    assert_eq!(filmed.iter().map(of_seed).collect::<Vec<_>>(), costs[..2]);
+    let tails = &summary["constraints"][0]["tails"];
+    assert_eq!((tails["worst"].as_f64(), tails["median"].as_f64()), (Some(costs[0]), Some(costs[5])));
+    assert!((tails["cvar10"].as_f64().unwrap() - (costs[0] + 0.1 * costs[1]) / 1.1).abs() < 1e-9, "{tails}");
+    let over = costs.iter().filter(|cost| **cost > 3.0).count() as f64 / 11.0;
+    assert!((tails["over_budget"].as_f64().unwrap() - over).abs() < 1e-9, "{tails}");
+    // Every statistic of the scenario has its mean.
+    let names = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&summary["stats"]), names(&lines[0]["stats"]));
+    assert!(folder.read("worst.gif").len() > 10_000);
+    let table = String::from_utf8(folder.read("table.csv")).unwrap();
+    let steps: u64 = lines[..11].iter().map(|line| line["length"].as_u64().unwrap()).sum();
+    assert_eq!(table.lines().count() as u64, steps + 1);
+    let bins = summary["calibration"][0]["bins"].as_array().unwrap();
+    assert!(bins.len() == 10 && summary["calibration"][0]["steps"].as_u64().unwrap() > 500, "{summary}");
+    let plain = folder.ok("eval run --episodes 3");
+    assert!(
+        plain.contains("mean of the worst tenth") && plain.contains("over the budget of 3") && plain.contains("goggles"),
+        "{plain}"
+    );
+    folder.ok(&format!("train RemedyRushLevel1-v0 --out plain {}", small.replace("PPOLag", "PPO")));
+    assert!(folder.refused("eval plain --calibration table.csv").contains("critics of costs"));
+    assert!(folder.refused("eval run --worst 1 -o worst.avi").contains(".mp4"));
+}
+
 /// A1: a budget on a term that the scalar cost does not count binds, is reported, and is judged by what was measured.
 #[test]
 fn a_budget_on_an_uncounted_term_binds_and_is_judged() {
@@ -267,19 +307,19 @@ fn a_budget_on_an_uncounted_term_binds_and_is_judged() {
     assert!(folder.refused("train RemedyRushLevel1-v0 --safety-budget jumps=2").contains("harmful_items"));
 }
 
-/// A small run from its evaluations to its agent in a file: what is handed out, judged by each constraint's own budget.
+/// A small run from its evaluations to its agent in a file: what is selected, judged by each constraint's own budget.
 #[test]
-fn a_run_hands_out_an_agent_that_fits_in_a_file() {
-    let folder = Folder::new("hand-out");
+fn a_run_selects_an_agent_that_fits_in_a_file() {
+    let folder = Folder::new("selection");
     let small = "--envs 4 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
                  --set episode_steps=8 --observation grey --size 64x48 --set evaluation.episodes=2 \
                  --set evaluation.confirming_episodes=3 --eval-every 128";
     let budgets = "--safety-budget 1000 --safety-budget harmful_items=2000";
     let told = folder.ok(&format!("train RemedyRushLevel1-v0 --algo ppolag --frames 256 --json {budgets} {small}"));
-    // The directory has the algorithm's own name, and the run tells what it hands out.
-    assert!(folder.0.join("runs/RemedyRushLevel1-v0-PPOLag-seed1/hand_out.json").is_file());
+    // The directory has the algorithm's own name, and the run says what it selects.
+    assert!(folder.0.join("runs/RemedyRushLevel1-v0-PPOLag-seed1/selected.json").is_file());
     let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
-    let closing = &last["hand_out"]["closing"];
+    let closing = &last["selection"]["closing"];
     assert_eq!((&closing["episodes"], &closing["constraints"][1]["budget"]), (&Value::from(3), &Value::from(2000.0)), "{told}");
     assert_eq!(told.lines().filter(|line| line.contains("eval/cost/harmful_items")).count(), 2, "{told}");
     let run = "runs/RemedyRushLevel1-v0-PPOLag-seed1";

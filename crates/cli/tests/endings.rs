@@ -236,7 +236,7 @@ fn signals_end_a_training_in_the_midst_of_an_evaluation() {
     folder.ok(&format!("{SMALL} --resume --out run {few}"));
     let row: Value = serde_json::from_str(&fs::read_to_string(folder.0.join("run/metrics.jsonl")).unwrap()).unwrap();
     assert_eq!((&row["frames"], &row["eval/episodes"]), (&Value::from(128), &Value::from(2)));
-    assert!(folder.0.join("run/hand_out.json").exists());
+    assert!(folder.0.join("run/selected.json").exists());
     assert_eq!(folder.checkpoints("run"), ["best_000000000128", "frames_000000000128"]);
 }
 

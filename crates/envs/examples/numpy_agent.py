@@ -27,7 +27,7 @@ def tensors(path):
 
 
 def checkpoint_of(run, latest):
-    """The weights that `hasard eval` plays: of the checkpoint that the run hands out, where it has one, or the latest."""
+    """The weights that `hasard eval` plays: of the checkpoint that the run selected, where it has one, or the latest."""
     found = lambda name: sorted(glob.glob(os.path.join(run, "checkpoints", name, "weights.safetensors")))
     best = [] if latest else found("best_*")
     return (best or found("frames_*"))[-1]

@@ -43,7 +43,7 @@ fn an_episode_reports_the_terms_that_are_not_counted() {
         env.reset(3);
         // Whoever begins in the zone has come by before the first step.
         let before = counted_by_scenario(&env);
-        let episode = rollout(&mut env, &policy.parse().unwrap(), 3);
+        let episode = rollout(&mut env, &policy.parse().unwrap(), 3).unwrap();
         let found = episode.costs.iter().find(|one| one.name == term).unwrap();
         assert!(found.cost >= 1.0 && !found.counted, "{episode:?}");
         // The scenario counts the same in another way.

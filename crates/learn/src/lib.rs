@@ -22,4 +22,5 @@ pub mod networks;
 pub mod random;
 pub mod runs;
 pub mod sampling;
+pub mod statistics;
 pub mod team;

@@ -22,7 +22,7 @@ pub enum Purpose {
     FirstSteps = 6,
     /// Seeds of a curriculum's lessons; counter: lesson.
     Lesson = 7,
-    /// Seeds of the episodes of evaluations during training; counters: frames, episode.
+    /// Seeds of the episodes of evaluations during training; counters: set of episodes, episode.
     EvaluatedWorlds = 8,
 }
 

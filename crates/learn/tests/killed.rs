@@ -17,7 +17,7 @@ fn config() -> TrainConfig {
     config.reporting.checkpoint_seconds = 0.0;
     // Long enough to be still at it when it is killed for the third time.
     config.frames = 240 * config.frames_per_rollout();
-    // The checkpoint that is handed out is written and replaced meanwhile too.
+    // Candidates are written and replaced meanwhile too.
     config.evaluation.every = Some(5 * config.frames_per_rollout());
     config.evaluation.confirming_episodes = 32;
     config
@@ -42,12 +42,12 @@ fn weights(run: &Path) -> Vec<u8> {
     fs::read(run.join(format!("checkpoints/frames_{:012}/weights.safetensors", config().frames))).unwrap()
 }
 
-/// What a run hands out, and the weights of it.
-fn hand_out(run: &Path) -> (serde_json::Value, Vec<u8>) {
-    let told: serde_json::Value = serde_json::from_slice(&fs::read(run.join("hand_out.json")).unwrap()).unwrap();
-    let frames = told["frames"].as_u64().unwrap();
+/// What a run selects, and the weights of it.
+fn selected(run: &Path) -> (serde_json::Value, Vec<u8>) {
+    let written: serde_json::Value = serde_json::from_slice(&fs::read(run.join("selected.json")).unwrap()).unwrap();
+    let frames = written["frames"].as_u64().unwrap();
     let best = fs::read(run.join(format!("checkpoints/best_{frames:012}/weights.safetensors"))).unwrap();
-    (told, best)
+    (written, best)
 }
 
 /// Frames of the newest checkpoint of a run.
@@ -90,7 +90,7 @@ fn a_run_killed_three_times_equals_the_uninterrupted_one() {
         assert!(reached(&broken) < config().frames, "the run was over when it was killed");
     }
     assert!(weights(&straight) == weights(&broken), "weights differ");
-    assert_eq!(hand_out(&straight), hand_out(&broken), "another checkpoint is handed out");
+    assert_eq!(selected(&straight), selected(&broken), "another checkpoint is selected");
     let partial = fs::read_dir(broken.join("checkpoints"))
         .unwrap()
         .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "partial"));

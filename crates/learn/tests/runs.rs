@@ -105,6 +105,12 @@ fn a_resumed_run_equals_the_uninterrupted_one_bit_by_bit() {
         assert!(a.1 == b.1, "{algorithm}: optimiser or lanes differ");
         assert_eq!(a.2, b.2, "{algorithm}");
         assert_eq!(rows(&straight), rows(&broken), "{algorithm}");
+        // While all episodes are in the window, their costs add up to its mean times their number.
+        let early = rows(&straight).into_iter().rfind(|row| row["episodes"].as_f64().unwrap() <= 100.0).unwrap();
+        let sum = early["cost_mean"].as_f64().unwrap_or(0.0) * early["episodes"].as_f64().unwrap();
+        assert!((early["cost_total"].as_f64().unwrap() - sum).abs() < 1e-6, "{early}");
+        let last = rows(&straight).pop().unwrap();
+        assert!(last["violation_total"].as_f64().unwrap() > 0.0 && last["cost_total"].as_f64().unwrap() > sum, "{last}");
         fs::remove_dir_all(straight).unwrap();
         fs::remove_dir_all(broken).unwrap();
     }
@@ -495,32 +501,63 @@ fn a_panic_of_the_learner_ends_the_run_with_an_error_and_it_goes_on() {
     fs::remove_dir_all(path).unwrap();
 }
 
-/// A run is evaluated by frames; it hands out the best checkpoint within its budget, and says what that is worth.
+/// A run is evaluated by frames; it selects the best checkpoint within its budget, and says what that is worth.
 #[test]
-fn a_run_hands_out_its_best_checkpoint_within_the_budget() {
+fn a_run_selects_its_best_checkpoint_within_the_budget() {
     let mut config = tiny::config(AlgorithmKind::PpoLag);
     config.frames = 60 * config.frames_per_rollout();
     config.evaluation.every = Some(4 * config.frames_per_rollout());
     config.algorithm_settings.multiplier_rate = 0.4;
-    let path = tiny::directory("hand-out");
+    let path = tiny::directory("selection");
     let (summary, reports, _) = tiny::run(Start::Fresh(config.clone()), &path);
     let evaluated: Vec<_> = reports.iter().filter_map(|report| Some((report.frames, report.evaluation.clone()?))).collect();
     assert_eq!(evaluated.len(), 15);
-    let hand_out = summary.unwrap().hand_out.unwrap();
-    assert!(hand_out.confirmed && hand_out.chosen_by.surely_within(), "{hand_out:?}");
-    assert!(evaluated.iter().any(|(frames, _)| *frames == hand_out.frames));
-    let closing = hand_out.closing.as_ref().unwrap();
+    let selection = summary.unwrap().selection.unwrap();
+    let selected = &selection.selected;
+    assert!(selected.confirmed && selected.chosen_by.within(), "{selected:?}");
+    assert!(evaluated.iter().any(|(frames, _)| *frames == selected.frames));
+    // Of the candidates that kept the budget none returned more, but those that failed further episodes.
+    let by_candidacy = &evaluated.iter().find(|(frames, _)| *frames == selected.frames).unwrap().1;
+    for (frames, other) in &evaluated {
+        let failed = selection.failed.iter().any(|one| one.frames == *frames);
+        assert!(failed || !other.within() || other.episode_return.mean <= by_candidacy.episode_return.mean, "{frames}");
+    }
+    let closing = selected.closing.as_ref().unwrap();
     assert_eq!((closing.episodes, closing.constraints[0].budget), (100, 4.0));
     // The best is 4 at cost 4; a policy that is blind to the picture gets 0.7 out of each unit of cost.
     assert!(closing.within() && closing.episode_return.mean > 2.9, "{closing:?}");
     // Rows have it too, and other episodes of the agent that is loaded from the directory cost as much.
     let last = rows(&path).pop().unwrap();
     assert!(last["eval/cost_mean"].is_number() && last["eval/episodes"] == 32, "{last}");
-    let told: Value = serde_json::from_slice(&fs::read(path.join("hand_out.json")).unwrap()).unwrap();
-    assert_eq!(told["frames"], hand_out.frames);
+    let written: Value = serde_json::from_slice(&fs::read(path.join("selected.json")).unwrap()).unwrap();
+    assert_eq!((&written["frames"], &written["last"]["frames"]), (&json!(selected.frames), &json!(config.frames)));
+    assert_eq!((&written["last"]["episodes"], &written["closing"]["episodes"]), (&json!(100), &json!(100)));
+    // Its episodes stay with the run, and are those of the closing evaluation.
+    let lines = |name: &str| -> Vec<Value> {
+        let text = fs::read_to_string(path.join(name)).unwrap();
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    };
+    let episodes_of = |name: &str| lines(name).iter().map(|line| line["cost"].as_f64().unwrap()).collect::<Vec<_>>();
+    let kept = episodes_of("closing_episodes.jsonl");
+    assert_eq!((kept.len(), kept.iter().sum::<f64>() / 100.0), (100, closing.cost.mean));
+    assert_eq!(lines("closing_episodes.jsonl")[0]["uncounted"], json!(["second"]));
+    let last_costs = episodes_of("last_policy_episodes.jsonl");
+    assert_eq!(last_costs.iter().sum::<f64>() / 100.0, selection.last.as_ref().unwrap().closing.cost.mean);
+    // 15 evaluations of 32 episodes, then confirmations and closings of 100, of ten frames each.
+    let sets = 2 * selection.failed.len() as u64 + 3;
+    let failed_at_once = selection.failed.iter().filter(|one| one.closing.is_none()).count() as u64;
+    assert_eq!(selection.selection_frames, 15 * 320 + 1000 * (sets - failed_at_once));
+    // What its critic of the cost expects is near what comes, in every bin.
+    let calibration: Value = serde_json::from_slice(&fs::read(path.join("calibration.json")).unwrap()).unwrap();
+    let of_cost = &calibration["constraints"][0];
+    assert!(of_cost["steps"].as_u64().unwrap() > 0 && of_cost["bins"].as_array().unwrap().len() == 10, "{calibration}");
+    for bin in of_cost["bins"].as_array().unwrap() {
+        let (predicted, observed) = (bin["predicted"].as_f64().unwrap(), bin["observed"].as_f64().unwrap());
+        assert!((predicted - observed).abs() < 1.5, "{bin}");
+    }
     let shape = ActionShape { sizes: vec![2, 3], deltas: 0 };
     let mut warn = |warning| panic!("{warning}");
-    let policy = TrainedPolicy::load(&path, Which::HandedOut, [tiny::SIDE, tiny::SIDE, 1], shape, &mut warn).unwrap();
+    let policy = TrainedPolicy::load(&path, Which::Selected, [tiny::SIDE, tiny::SIDE, 1], shape, &mut warn).unwrap();
     let seeds: Vec<u64> = (0..100).collect();
     let episodes = play(&policy, Choice::Sampled, &tiny::worlds, &seeds, 2).unwrap();
     let others = Evaluation::of(&episodes, &config.constraints).unwrap();
@@ -532,7 +569,7 @@ fn a_run_hands_out_its_best_checkpoint_within_the_budget() {
     assert_eq!(best.len(), 1, "{best:?}");
     // Asked again, the run is over and says the same.
     let (again, ..) = tiny::run(Start::RESUME, &path);
-    assert_eq!(again.unwrap().hand_out, Some(hand_out));
+    assert_eq!(again.unwrap().selection, Some(selection));
     fs::remove_dir_all(path).unwrap();
 }
 
@@ -616,8 +653,8 @@ fn two_constraints_are_kept_apart_and_resumed() {
     config.evaluation.confirming_episodes = 32;
     let (straight, broken) = (tiny::directory("two-straight"), tiny::directory("two-broken"));
     let (summary, ..) = tiny::run(Start::Fresh(config.clone()), &straight);
-    let hand_out = summary.unwrap().hand_out.unwrap();
-    let judged: Vec<_> = hand_out.evaluation().constraints.iter().map(|one| (one.term.as_deref(), one.budget)).collect();
+    let selected = summary.unwrap().selection.unwrap().selected;
+    let judged: Vec<_> = selected.evaluation().constraints.iter().map(|one| (one.term.as_deref(), one.budget)).collect();
     assert_eq!(judged, [(Some("risk"), 4.0), (Some("second"), 2.0)]);
     let last = rows(&straight).pop().unwrap();
     assert!(last["eval/cost/risk"].is_number() && last["eval/cost/second"].is_number(), "{last}");

@@ -91,8 +91,8 @@ fn outcome(run: &Path) -> (Vec<Value>, Value, Vec<String>, Vec<u8>) {
     names.retain(|name| name.starts_with("best") || name.ends_with(&config().frames.to_string()));
     names.sort();
     let weights = run.join(format!("checkpoints/frames_{:012}/weights.safetensors", config().frames));
-    let hand_out = serde_json::from_slice(&fs::read(run.join("hand_out.json")).unwrap()).unwrap();
-    (rows.collect(), hand_out, names, fs::read(weights).unwrap())
+    let selected = serde_json::from_slice(&fs::read(run.join("selected.json")).unwrap()).unwrap();
+    (rows.collect(), selected, names, fs::read(weights).unwrap())
 }
 
 /// Stopped in each of its evaluations, confirmations and closing episodes in turn, and twice in the same one, a run ends where the
@@ -107,7 +107,7 @@ fn a_run_stopped_in_any_evaluation_equals_the_uninterrupted_one() {
         let path = tiny::directory(&format!("stopped-{at}"));
         let (summary, made) = train_until(Start::Fresh(config()), &path, at);
         assert!(summary.stopped && made == at + 1, "it went on after its evaluation {at} was stopped");
-        assert!(!path.join("hand_out.json").exists(), "{at}: closed without its closing episodes");
+        assert!(!path.join("selected.json").exists(), "{at}: closed without its closing episodes");
         let (summary, _) = train_until(Start::RESUME, &path, 0);
         assert!(summary.stopped, "{at}");
         let (summary, _) = train_until(Start::RESUME, &path, usize::MAX);
@@ -126,10 +126,10 @@ fn a_finished_run_is_evaluated_when_that_is_asked_for() {
     config.evaluation.every = Some(0);
     train_until(Start::Fresh(config), &path, usize::MAX);
     let rows = fs::read(path.join("metrics.jsonl")).unwrap();
-    assert!(!path.join("hand_out.json").exists());
+    assert!(!path.join("selected.json").exists());
     let (summary, made) = train_until(Start::Resume { settings: vec!["evaluation.every=512".into()] }, &path, usize::MAX);
-    assert!(summary.hand_out.is_some_and(|hand_out| hand_out.closing.is_some()) && made >= 2);
-    assert!(path.join("hand_out.json").exists());
+    assert!(summary.selection.is_some_and(|selection| selection.selected.closing.is_some()) && made >= 2);
+    assert!(path.join("selected.json").exists());
     assert_eq!(fs::read(path.join("metrics.jsonl")).unwrap(), rows);
     // Once is enough.
     assert_eq!(train_until(Start::RESUME, &path, usize::MAX).1, 0);

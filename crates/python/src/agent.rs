@@ -81,7 +81,7 @@ impl TrainedAgent {
             let (space, observation) = (env.action_space(), env.observation_shape());
             let (sizes, deltas) = (space.sizes(), space.deltas.len());
             let action = ActionShape { sizes: sizes.clone(), deltas };
-            let which = if best { Which::HandedOut } else { Which::Latest };
+            let which = if best { Which::Selected } else { Which::Latest };
             let choice = if greedy { Choice::Greedy } else { Choice::Sampled };
             let policy = TrainedPolicy::load(&run, which, observation, action, &mut |text| warnings.push(text))
                 .map_err(|error| error.to_string())?;

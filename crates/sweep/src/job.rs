@@ -126,10 +126,14 @@ impl Job {
         let names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
         let newest = |kind: &str| names.iter().filter_map(|name| name.strip_prefix(kind)?.parse::<u64>().ok()).max();
         let saved = newest("frames_").is_none_or(|saved| saved >= frames);
-        let closed = newest("best_").is_none_or(|best| {
-            let told = std::fs::read(self.directory.join("hand_out.json")).unwrap_or_default();
-            let told: serde_json::Value = serde_json::from_slice(&told).unwrap_or_default();
-            told["frames"] == best
+        let written = |name: &str| -> serde_json::Value {
+            serde_json::from_slice(&std::fs::read(self.directory.join(name)).unwrap_or_default()).unwrap_or_default()
+        };
+        // The last policy is closed with the selected one; of runs of older versions it was not.
+        let last = written("selected.json")["last"]["frames"].as_u64();
+        let closed = newest("best_").is_none_or(|best| match last {
+            Some(last) => last >= frames,
+            None => written("hand_out.json")["frames"] == best,
         });
         saved && closed
     }

@@ -264,6 +264,10 @@ fn a_run_that_was_killed_at_its_end_is_unfinished() {
     std::fs::write(run.join("hand_out.json"), "{\"frames\": 10}").unwrap();
     assert_eq!(job.state(), State::Unfinished(104), "its closing episodes are those of an earlier end");
     std::fs::write(run.join("hand_out.json"), "{\"frames\": 50}").unwrap();
+    assert_eq!(job.state(), State::Finished, "as older versions ended");
+    std::fs::write(run.join("selected.json"), "{\"frames\": 50, \"last\": {\"frames\": 60}}").unwrap();
+    assert_eq!(job.state(), State::Unfinished(104), "it was closed at an earlier end");
+    std::fs::write(run.join("selected.json"), "{\"frames\": 50, \"last\": {\"frames\": 104}}").unwrap();
     assert_eq!(job.state(), State::Finished);
 }
 

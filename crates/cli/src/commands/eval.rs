@@ -1,20 +1,34 @@
 //! `hasard eval`, and `rollout --policy run:DIR`: a trained agent at work.
 
-use crate::args::EvalArgs;
+use super::record::{GIF_SIZE, is_gif};
+use crate::actor::Performance;
+use crate::args::{EvalArgs, Size, View};
 use crate::episode_lines::EpisodeLines;
 use crate::failure::{Failure, Outcome};
 use crate::zoo;
-use hasard_envs::{Env, EnvOptions, VecEnv};
+use hasard_envs::{Env, EnvOptions, Episode, VecEnv};
+use hasard_learn::config::{Constraint, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config};
-use hasard_learn::runs::evaluate::play;
+use hasard_learn::runs::calibration::{calibrate, predictions};
+use hasard_learn::runs::evaluate::{Trace, play_traced};
+use hasard_play::Film;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Episodes that are played before they are printed.
 const AT_ONCE: u32 = 256;
 
 /// Runs the command.
 pub fn run(args: &EvalArgs) -> Outcome {
+    let film = args.worst.map(|count| (usize::from(count), args.out.as_deref().unwrap_or(Path::new("worst.mp4"))));
+    if let Some((_, out)) = film
+        && !out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mp4") || ending.eq_ignore_ascii_case("gif"))
+    {
+        return Err(Failure::bad(format!("--out {}: give a name that ends in .mp4 or .gif", out.display())));
+    }
     let run = zoo::find(&args.run)?;
     let config = run_config(&run).map_err(Failure::bad)?;
     let mut lines = EpisodeLines::new(args.json);
@@ -22,11 +36,111 @@ pub fn run(args: &EvalArgs) -> Outcome {
     let options = crate::settings::trained_options(&config.env, args.places.elsewhere())?;
     let player = Player {
         run: &run,
-        which: if args.latest { Which::Latest } else { Which::HandedOut },
+        which: if args.latest { Which::Latest } else { Which::Selected },
         choice: if args.greedy { Choice::Greedy } else { Choice::Sampled },
     };
-    player.play(&config.env.id, &options, args.episodes, args.seed, &mut lines)?;
-    lines.summary(true)
+    let id = &config.env.id;
+    let mut traces = Vec::new();
+    if args.calibration.is_some() {
+        let policy = player.policy(&Env::new(id, &options).map_err(Failure::bad)?)?;
+        if policy.cost_units().is_empty() {
+            return Err(Failure::bad(format!(
+                "--calibration: {}: has no critics of costs whose units are known and that see no more than an agent at work; give \
+                 the run directory of an algorithm that has them, such as PPOPID",
+                args.run.to_string_lossy()
+            )));
+        }
+    }
+    player.play_traced(id, &options, args.episodes, args.seed, &mut lines, &mut |trace| {
+        if args.calibration.is_some() {
+            traces.push(trace);
+        }
+    })?;
+    let mut more = Vec::new();
+    if let Some(path) = &args.calibration {
+        let played: Vec<(Episode, Trace)> = lines.episodes().iter().cloned().zip(traces).collect();
+        more.push(("calibration", write_calibration(path, &played, &config)?));
+    }
+    if let Some((count, out)) = film {
+        let worst = worst_of(lines.episodes(), config.constraints.first(), count)?;
+        let seeds = film_worst(&player, &config, &options, &worst, out)?;
+        more.push(("filmed", json!({ "file": out.display().to_string(), "seeds": seeds })));
+    }
+    lines.summary_with(true, &more)?;
+    if !args.json {
+        for (what, value) in more {
+            match what {
+                "filmed" => say!("{}: episodes of the seeds {}", value["file"].as_str().unwrap_or_default(), value["seeds"]),
+                _ => print_calibration(&value)?,
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The most costly episodes under a constraint, the worst first.
+fn worst_of(episodes: &[Episode], constraint: Option<&Constraint>, count: usize) -> Result<Vec<Episode>, Failure> {
+    let cost = |episode: &Episode| constraint.map_or(Ok(episode.cost), |one| one.cost_of(episode)).map_err(Failure::bad);
+    let mut all: Vec<(f64, &Episode)> = episodes.iter().map(|one| Ok((cost(one)?, one))).collect::<Result<_, Failure>>()?;
+    // Of equal cost, the earlier comes first.
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    Ok(all.into_iter().take(count).map(|(_, episode)| episode.clone()).collect())
+}
+
+/// Films episodes one after the other; gives their seeds.
+fn film_worst(
+    player: &Player<'_>,
+    config: &TrainConfig,
+    options: &EnvOptions,
+    worst: &[Episode],
+    out: &Path,
+) -> Result<Vec<u64>, Failure> {
+    let size = if is_gif(out) { GIF_SIZE } else { Size { width: 320, height: 240 } };
+    let looks = EnvOptions { size: size.into(), ..options.clone() };
+    let first = worst.first().map_or(0, |episode| episode.seed);
+    let mut performance = Performance::of_player(player, &config.env.id, options, &looks, first)?;
+    let every = if is_gif(out) { 5 } else { 1 };
+    let views = crate::settings::views(View::Rgb, &[]);
+    let mut film = Film::begin(&performance.stage, out, looks.size, &views, every).map_err(Failure::bad)?;
+    for episode in worst {
+        performance.restart(episode.seed);
+        while !performance.stage.ended() {
+            performance.tic(None)?;
+            film.tic(&performance.stage).map_err(Failure::bad)?;
+        }
+        let shown = performance.stage.env().episode();
+        if (shown.episode_return, shown.cost) != (episode.episode_return, episode.cost) {
+            let problem = format!("the episode of seed {} is another one when it is filmed; please report it", episode.seed);
+            return Err(Failure::Negative(problem));
+        }
+    }
+    film.finish().map_err(Failure::bad)?;
+    Ok(worst.iter().map(|episode| episode.seed).collect())
+}
+
+/// Writes the table of predictions, and gives what the summary says of them.
+fn write_calibration(path: &Path, played: &[(Episode, Trace)], config: &TrainConfig) -> Result<Value, Failure> {
+    let all = predictions(played, config);
+    let mut text = String::from("episode,seed,step,term,predicted,observed,cut\n");
+    for one in &all {
+        let term = config.constraints[one.constraint].term.as_deref().unwrap_or("cost");
+        let seed = played[one.episode].0.seed;
+        let _ = writeln!(text, "{},{seed},{},{term},{},{},{}", one.episode, one.step, one.predicted, one.observed, one.cut);
+    }
+    std::fs::write(path, text).map_err(|error| Failure::bad(format!("{}: cannot be written: {error}", path.display())))?;
+    Ok(json!(calibrate(&all, config)))
+}
+
+fn print_calibration(all: &Value) -> Outcome {
+    for one in all.as_array().into_iter().flatten() {
+        let term = one["term"].as_str().unwrap_or("cost");
+        say!("{term} to come, predicted and observed ({} steps; bias {:.3}):", one["steps"], one["bias"].as_f64().unwrap_or(0.0));
+        for bin in one["bins"].as_array().into_iter().flatten() {
+            let number = |name: &str| bin[name].as_f64().unwrap_or(0.0);
+            say!("{:>10.3} {:>10.3}", number("predicted"), number("observed"));
+        }
+    }
+    Ok(())
 }
 
 /// Which agent acts, and how.
@@ -55,6 +169,19 @@ impl Player<'_> {
 
     /// Plays episodes seeded `seed`, `seed + 1`, ... on all cores and prints them in order.
     pub fn play(&self, id: &str, options: &EnvOptions, episodes: u32, seed: u64, lines: &mut EpisodeLines) -> Outcome {
+        self.play_traced(id, options, episodes, seed, lines, &mut |_| {})
+    }
+
+    /// The same, giving away what the agent's critics expected.
+    fn play_traced(
+        &self,
+        id: &str,
+        options: &EnvOptions,
+        episodes: u32,
+        seed: u64,
+        lines: &mut EpisodeLines,
+        traced: &mut dyn FnMut(Trace),
+    ) -> Outcome {
         let env = Env::new(id, options).map_err(Failure::bad)?;
         let policy = self.policy(&env)?;
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -62,9 +189,12 @@ impl Player<'_> {
         for some in numbers.chunks(AT_ONCE as usize) {
             let seeds: Vec<u64> = some.iter().map(|&number| seed.wrapping_add(number.into())).collect();
             let make = |_: &_, worlds| VecEnv::new(id, options, worlds);
-            let played = play(&policy, self.choice, &make, &seeds, threads).map_err(Failure::bad)?;
-            for (&number, episode) in some.iter().zip(played) {
+            let never = AtomicBool::new(false);
+            let played = play_traced(&never, &policy, self.choice, &make, &seeds, threads).map_err(Failure::bad)?;
+            let played = played.unwrap_or_default();
+            for (&number, (episode, trace)) in some.iter().zip(played) {
                 lines.episode(id, number.into(), episode)?;
+                traced(trace);
             }
         }
         Ok(())

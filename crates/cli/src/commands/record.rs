@@ -32,12 +32,12 @@ impl Kind {
     }
 }
 
-fn is_gif(path: &Path) -> bool {
+pub(super) fn is_gif(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gif"))
 }
 
 /// Size of a GIF where none is asked for: that of a whole episode stays below 5 MB.
-const GIF_SIZE: Size = Size { width: 160, height: 120 };
+pub(super) const GIF_SIZE: Size = Size { width: 160, height: 120 };
 
 /// Runs `hasard record`.
 pub fn run(args: &RecordArgs) -> Outcome {

@@ -16,7 +16,7 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     if let Some(run) = crate::actor::agent_of(&args.policy)? {
         let options = agent_options(&run, &options, args.env_args.elsewhere())?;
         lines.played_under(&options);
-        let player = Player { run: &run, which: Which::HandedOut, choice: Choice::Sampled };
+        let player = Player { run: &run, which: Which::Selected, choice: Choice::Sampled };
         player.play(&args.env, &options, args.episodes, args.seed, &mut lines)?;
         return lines.summary(false);
     }

@@ -90,7 +90,7 @@ mod trained {
         fn load(&self, run: &Path, best: bool, choice: Choice, env: &Env) -> Result<Agent, String> {
             let space = env.action_space();
             let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
-            let which = if best { Which::HandedOut } else { Which::Latest };
+            let which = if best { Which::Selected } else { Which::Latest };
             let mut warn = |text: String| note!("hasard: {text}");
             Agent::load(run, which, choice, 1, env.observation_shape(), action, &mut warn).map_err(|error| error.to_string())
         }

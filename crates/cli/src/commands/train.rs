@@ -12,10 +12,10 @@ use clap::parser::ValueSource;
 use hasard_envs::{EnvId, EnvOptions, VecEnv};
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
-use hasard_learn::runs::hand_out::HandOut;
 use hasard_learn::runs::progress_bar::line;
 use hasard_learn::runs::report::Report;
 use hasard_learn::runs::run_directory::{go_on, read_config};
+use hasard_learn::runs::selection::Selection;
 use hasard_learn::runs::trainer::{Hooks, Start, Summary, train_together};
 use hasard_learn::team::Team;
 use hasard_media::shell::quote;
@@ -122,8 +122,8 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
             describe(&begun.config, &begun.directory);
         }
     })?;
-    if let Some(hand_out) = &summary.hand_out {
-        rows.print(&json!({ "hand_out": hand_out }));
+    if let Some(selection) = &summary.selection {
+        rows.print(&json!({ "selection": selection }));
     }
     progress.finish();
     if progress.is_shown() {
@@ -133,9 +133,6 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         if heard {
             note!("last:  {}", line(&summary.last));
         }
-        if let Some(hand_out) = &summary.hand_out {
-            note!("{}", handed_out(hand_out, summary.stopped));
-        }
         let name = directory.display();
         let run = quote(&directory);
         if !heard && !summary.stopped {
@@ -144,6 +141,10 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         match summary.stopped {
             true => note!("stopped; go on with: {go_on}"),
             false => note!("{name} is a run directory: hasard eval {run}, hasard report {run}"),
+        }
+        // What the run is worth comes last, where the eye rests.
+        if let Some(selection) = &summary.selection {
+            headline(selection, summary.stopped).iter().for_each(|line| note!("{line}"));
         }
     }
     rows.check(&go_on)?;
@@ -181,16 +182,25 @@ impl Rows {
     }
 }
 
-/// Which checkpoint the run hands out, and what it is worth.
-fn handed_out(hand_out: &HandOut, stopped: bool) -> String {
-    let all = hand_out.evaluation();
-    let kept = if all.within() { "within" } else { "NOT within" };
+/// Which checkpoint the run selects and what it is worth, after what the policy at its end is.
+fn headline(selection: &Selection, stopped: bool) -> Vec<String> {
+    let all = selection.selected.evaluation();
+    let kept = match (all.within(), selection.selected.surely_within) {
+        (true, true) => "surely within",
+        (true, false) => "within",
+        (false, _) => "NOT within",
+    };
     let so_far = if stopped { " so far" } else { "" };
-    let (frames, episodes) = (hand_out.frames, all.episodes);
-    format!(
-        "handed out{so_far}: the checkpoint of {frames} frames, {kept} its budget; {}, {episodes} episodes of their own",
+    let (frames, episodes) = (selection.selected.frames, all.episodes);
+    let mut lines = Vec::new();
+    if let Some(last) = &selection.last {
+        lines.push(format!("last policy: {}, {} episodes of their own", worth(&last.closing), last.closing.episodes));
+    }
+    lines.push(format!(
+        "selected{so_far}: the checkpoint of {frames} frames, {kept} its budget; {}, {episodes} episodes of their own",
         worth(all)
-    )
+    ));
+    lines
 }
 
 /// An environment id without its level, or the whole text if it is none.

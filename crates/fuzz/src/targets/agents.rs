@@ -37,7 +37,7 @@ fn act(bytes: &[u8]) -> bool {
     let path = folder("agent");
     std::fs::write(&path, bytes).expect("a place for files");
     let (pixels, action) = ([48, 64, 1], ActionShape { sizes: vec![3, 2], deltas: 0 });
-    match TrainedPolicy::load(&path, Which::HandedOut, pixels, action, &mut |_| {}) {
+    match TrainedPolicy::load(&path, Which::Selected, pixels, action, &mut |_| {}) {
         Ok(policy) => {
             let mut agent = policy.agent(Choice::Greedy, 2);
             assert_eq!(agent.act(&[7; 2 * 48 * 64]).len(), 2);

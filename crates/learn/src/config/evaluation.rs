@@ -6,23 +6,31 @@ use super::TrainConfig;
 
 /// When and how long a run's agent is evaluated.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(default)]
 pub struct EvaluationConfig {
-    /// Frames between evaluations, 0 for none; `null` for a twentieth of the run, and none in a short one.
+    /// Frames between evaluations, 0 for none; `null` for ten in the second half of the run, or as many as cost no more than a
+    /// twentieth of its frames, and none in a short one.
     pub every: Option<u64>,
     /// Episodes of an evaluation.
     pub episodes: usize,
-    /// Further episodes by which a checkpoint must prove itself before the run hands it out.
+    /// Further episodes by which a checkpoint must prove itself before the run selects it, and of every closing evaluation.
     pub confirming_episodes: usize,
+    /// Checkpoints that are kept to choose from: so many confirmations there may be.
+    pub candidates: usize,
+    /// Only a checkpoint that is surely within its budgets is selected, where there is one that a confirmation shows to be.
+    pub surely: bool,
 }
 
 impl Default for EvaluationConfig {
     fn default() -> EvaluationConfig {
-        EvaluationConfig { every: None, episodes: 32, confirming_episodes: 100 }
+        EvaluationConfig { every: None, episodes: 32, confirming_episodes: 100, candidates: 5, surely: false }
     }
 }
 
-/// Evaluations of a run that does not say how often.
-const EVALUATIONS: u64 = 20;
+/// Most evaluations of a run that does not say how often: those of the first half are never the best.
+const EVALUATIONS: u64 = 10;
+/// They take no more than this part of the run's frames.
+const SHARE: u64 = 20;
 /// Frames of a run that is worth them: the episodes that choose, confirm and close are some 500,000 frames themselves.
 const WORTH_EVALUATING: u64 = 400_000;
 
@@ -30,20 +38,26 @@ impl TrainConfig {
     /// Whether an evaluation falls between two moments of the run, the second included. The end of a run is one.
     #[must_use]
     pub fn evaluates(&self, before: u64, frames: u64) -> bool {
-        let every = self.frames_between_evaluations();
         let ends = before < self.frames && self.frames <= frames;
-        every > 0 && (ends || before / every < frames / every)
+        if let Some(every) = self.evaluation.every {
+            return every > 0 && (ends || before / every < frames / every);
+        }
+        if self.frames < WORTH_EVALUATING {
+            return false;
+        }
+        let episode = u64::from(self.episode_steps) * u64::from(self.env.frame_skip);
+        let each = (self.evaluation.episodes as u64 * episode).max(1);
+        let count = (self.frames / SHARE / each).clamp(1, EVALUATIONS);
+        // Counted from the end, so that it is one of them.
+        let every = self.frames.div_ceil(2 * count);
+        let left = |frames: u64| self.frames.saturating_sub(frames).div_ceil(every);
+        ends || (left(before) > left(frames) && left(frames) < count)
     }
 
     /// Whether the run is evaluated at its end: every run that is evaluated at all.
     #[must_use]
     pub fn evaluates_at_its_end(&self) -> bool {
-        self.frames_between_evaluations() > 0
-    }
-
-    fn frames_between_evaluations(&self) -> u64 {
-        let short = self.frames < WORTH_EVALUATING;
-        self.evaluation.every.unwrap_or(if short { 0 } else { self.frames.div_ceil(EVALUATIONS) })
+        self.evaluation.every.map_or(self.frames >= WORTH_EVALUATING, |every| every > 0)
     }
 }
 
@@ -67,7 +81,20 @@ mod tests {
         config.evaluation.every = Some(0);
         assert!(at(&config).is_empty());
         (config.frames, config.evaluation.every) = (4_000_000, None);
-        let evaluated = (0..977).filter(|rollout| config.evaluates(rollout * 4096, (rollout + 1) * 4096)).count();
-        assert_eq!(evaluated, 20);
+        // 32 episodes of 2,100 frames are 67,200 frames: two evaluations are no more than a twentieth of 4 million frames, ten of
+        // 16 million.
+        let rollouts = |frames: u64| frames.div_ceil(4096);
+        let evaluated = |config: &TrainConfig| -> Vec<u64> {
+            let at = |rollout: &u64| config.evaluates(rollout * 4096, (rollout + 1) * 4096);
+            (0..rollouts(config.frames) + 3).filter(at).map(|rollout| (rollout + 1) * 4096).collect()
+        };
+        assert_eq!(evaluated(&config), [3_002_368, 4_001_792]);
+        config.frames = 16_000_000;
+        let at = evaluated(&config);
+        assert_eq!((at.len(), at[9]), (10, rollouts(16_000_000) * 4096));
+        assert!(at[0] > 8_000_000 && at.len() as u64 * 67_200 <= 16_000_000 / 20);
+        // However little is left of a twentieth, the end is evaluated.
+        config.frames = 500_000;
+        assert_eq!(evaluated(&config), [rollouts(500_000) * 4096]);
     }
 }

@@ -8,6 +8,7 @@ use crate::config::TrainConfig;
 use crate::config::constraint::find_terms;
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
+use crate::learning::normaliser::Moments;
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{Actor, ImageShape, ModelShape, Published};
@@ -21,9 +22,9 @@ use crate::sampling::shaping::Shaping;
 /// Which checkpoint of a run acts.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Which {
-    /// The one that the run hands out: the best evaluated one within all budgets. The newest of a run without any.
+    /// The one that the run selects: of those within all budgets, the one that returns most. The newest of a run without any.
     #[default]
-    HandedOut,
+    Selected,
     /// The newest whole one.
     Latest,
 }
@@ -46,6 +47,8 @@ pub struct TrainedPolicy {
     device: ComputeDevice,
     /// Where the cost that shapes the agent's input is among the cost terms; `None` for the scalar cost.
     watched: Option<usize>,
+    /// The units of the critics' values; none where they are not known.
+    returns: Vec<Moments>,
 }
 
 /// A trained agent for some worlds side by side, each with an episode of its own.
@@ -113,7 +116,7 @@ impl TrainedPolicy {
     ) -> Result<TrainedPolicy, LearnError> {
         // Only the algorithms of a single constraint shape what the network sees by it.
         let watched = find_terms(cost_terms, &config.constraints[..1])?.swap_remove(0);
-        Ok(TrainedPolicy { config: config.clone(), shape: shape.clone(), published, device, watched })
+        Ok(TrainedPolicy { config: config.clone(), shape: shape.clone(), published, device, watched, returns: Vec::new() })
     }
 
     /// Loads the policy of a run, or of an agent's file, for worlds with these observations (height, width, channels) and actions.
@@ -136,21 +139,39 @@ impl TrainedPolicy {
         }
         let config = read_config(directory)?;
         let store = Store::new(directory, 1);
-        let loaded = match (which, store.best()) {
-            (Which::HandedOut, Some(best)) => Some(Loaded::read(&best)?),
+        let loaded = match (which, store.selected()) {
+            (Which::Selected, Some(selected)) => Some(Loaded::read(&selected)?),
             _ => store.newest(warn)?,
         };
         let loaded = loaded.ok_or_else(|| {
             let command = go_on(&config, directory);
             LearnError::content(directory, format!("no checkpoint was written yet; let the run go on: {command}"))
         })?;
-        TrainedPolicy::restored(
+        let policy = TrainedPolicy::restored(
             &config,
             observation,
             action,
             |shape| loaded.check_fits(shape),
             |learner| loaded.restore_weights(learner),
-        )
+        )?;
+        let critics = 1 + policy.shape.cost_critics;
+        Ok(if loaded.progress.returns.len() == critics { policy.in_units_of(&loaded.progress.returns) } else { policy })
+    }
+
+    /// Its critics' values are normalised returns in the units of these moments.
+    #[must_use]
+    pub fn in_units_of(self, returns: &[Moments]) -> TrainedPolicy {
+        TrainedPolicy { returns: returns.to_vec(), ..self }
+    }
+
+    /// The units of what its critics say of each cost to come; none where they are not known, or where critics saw while they learned
+    /// what an agent at work does not.
+    #[must_use]
+    pub fn cost_units(&self) -> &[Moments] {
+        if !self.config.learning.critic_inputs.is_empty() {
+            return &[];
+        }
+        self.returns.get(1..).unwrap_or_default()
     }
 
     /// A policy for the processor, whose weights `restore` puts into a learner, if `check_fits` finds as many as its shape has.
@@ -297,6 +318,14 @@ impl Agent {
         let row = &self.rows[lane * width..(lane + 1) * width];
         let mut values = row[self.shape.action.parameters()..].iter().copied();
         Thought { probabilities: self.shape.action.probabilities(row), value: values.next(), cost_values: values.collect() }
+    }
+
+    /// What each critic of a cost expected in a lane at its last action, in the normalised units of training.
+    #[must_use]
+    pub fn cost_values(&self, lane: usize) -> &[f32] {
+        let width = self.shape.outputs();
+        let values = &self.rows[lane * width + self.shape.action.parameters()..(lane + 1) * width];
+        values.get(1..).unwrap_or_default()
     }
 
     /// The cost term that it watches while it acts; `None` for the cost of all, or for agents that watch none.

@@ -17,8 +17,8 @@ use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::networks::ModelShape;
 use crate::runs::checkpoint::{Loaded, Store, parameter_names};
-use crate::runs::hand_out::HandOut;
-use crate::runs::run_directory::{go_on, read_config, read_hand_out};
+use crate::runs::run_directory::{go_on, read_config, read_selection};
+use crate::runs::selection::Candidate;
 
 /// Weights that share a scale.
 const BLOCK: usize = 64;
@@ -41,8 +41,9 @@ pub struct Card {
     pub program: String,
     /// Settings of the run that it comes from.
     pub config: TrainConfig,
-    /// What the run said when it handed it out, before its weights were rounded.
-    pub hand_out: Option<HandOut>,
+    /// What the run said when it selected it, before its weights were rounded.
+    #[serde(alias = "hand_out")]
+    pub selection: Option<Candidate>,
 }
 
 /// An agent read from a file.
@@ -101,24 +102,25 @@ fn unround(bytes: &[u8], scales: &[f32], count: usize) -> Option<Vec<f32>> {
     Some(blocks.flat_map(|(block, scale)| block.iter().map(move |&code| f32::from(code) * scale / largest_code(bits))).collect())
 }
 
-/// The file of the agent that a run hands out.
+/// The file of the agent that a run selects.
 pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
     let config = read_config(run)?;
-    let best = Store::new(run, 1).best().ok_or_else(|| {
+    let best = Store::new(run, 1).selected().ok_or_else(|| {
         let command = format!("{} --eval-every {}", go_on(&config, run), config.frames);
         LearnError::content(run, format!("no checkpoint was selected yet; let the run be evaluated: {command}"))
     })?;
     let checkpoint = Loaded::read(&best)?;
-    let hand_out = read_hand_out(run).or_else(|| checkpoint.progress.hand_out.clone());
-    pack(&config, hand_out, &checkpoint)
+    let selection = read_selection(run).map(|selection| selection.selected);
+    let selection = selection.or_else(|| checkpoint.progress.all_candidates().ranked.into_iter().next());
+    pack(&config, selection, &checkpoint)
 }
 
 /// The file of the agent of a checkpoint.
-fn pack(config: &TrainConfig, hand_out: Option<HandOut>, checkpoint: &Loaded) -> Result<Vec<u8>, LearnError> {
+fn pack(config: &TrainConfig, selection: Option<Candidate>, checkpoint: &Loaded) -> Result<Vec<u8>, LearnError> {
     let wrong =
         |error: &dyn std::fmt::Display| LearnError::Config(format!("the checkpoint cannot become an agent file: {error}"));
     let tensors = checkpoint.tensors().map_err(|error| wrong(&error))?;
-    let card = Card { format: FORMAT, program: env!("CARGO_PKG_VERSION").into(), config: config.clone(), hand_out };
+    let card = Card { format: FORMAT, program: env!("CARGO_PKG_VERSION").into(), config: config.clone(), selection };
     let card = serde_json::to_string(&card).map_err(|error| wrong(&error))?;
     let mut file = Vec::new();
     for bits in [8, 4] {

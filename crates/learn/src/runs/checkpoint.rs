@@ -19,7 +19,8 @@ use crate::learning::learner::Learner;
 use crate::learning::normaliser::Moments;
 use crate::networks::ModelShape;
 use crate::runs::checksum::crc32c;
-use crate::runs::hand_out::HandOut;
+use crate::runs::run_directory::read_selection;
+use crate::runs::selection::{Candidate, Candidates};
 use crate::runs::watch::Watch;
 use crate::sampling::sampler::SamplerState;
 
@@ -37,9 +38,12 @@ pub struct Progress {
     pub updates: u64,
     /// Seconds of work so far, those before a resume too.
     pub wall_seconds: f64,
-    /// The best evaluated checkpoint so far.
+    /// The best evaluated checkpoints so far.
     #[serde(default)]
-    pub hand_out: Option<HandOut>,
+    pub candidates: Candidates,
+    /// The best alone, as versions that kept no others wrote it; never written any more.
+    #[serde(default, skip_serializing)]
+    pub hand_out: Option<Candidate>,
     /// The run was stopped in the midst of this moment's evaluation, which is still to be made.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub owes_evaluation: bool,
@@ -58,6 +62,18 @@ pub struct Progress {
     pub spent: Vec<Vec<f64>>,
     /// Frames that the pixel statistics have seen.
     pub pixel_count: f64,
+}
+
+impl Progress {
+    /// The candidates, that of an older version among them.
+    #[must_use]
+    pub fn all_candidates(&self) -> Candidates {
+        let mut all = self.candidates.clone();
+        if all.ranked.is_empty() {
+            all.ranked.extend(self.hand_out.clone());
+        }
+        all
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -266,15 +282,24 @@ mod as_text {
     }
 }
 
+fn read_state(directory: &Path) -> Result<StateFile, LearnError> {
+    let path = directory.join(STATE);
+    let state = StateFile::read(&path)?;
+    if state.format != FORMAT {
+        let problem = format!("checkpoint format {}; this program reads format {FORMAT}", state.format);
+        return Err(LearnError::content(&path, problem));
+    }
+    Ok(state)
+}
+
+fn read_progress(directory: &Path) -> Result<Progress, LearnError> {
+    Ok(read_state(directory)?.progress)
+}
+
 impl Loaded {
     /// Reads a checkpoint and verifies its checksums.
     pub fn read(directory: &Path) -> Result<Loaded, LearnError> {
-        let path = directory.join(STATE);
-        let state = StateFile::read(&path)?;
-        if state.format != FORMAT {
-            let problem = format!("checkpoint format {}; this program reads format {FORMAT}", state.format);
-            return Err(LearnError::content(&path, problem));
-        }
+        let state = read_state(directory)?;
         let read = |name: &str, checksum: u32| {
             let path = directory.join(name);
             let bytes = fs::read(&path).map_err(LearnError::file(&path, "read"))?;
@@ -413,10 +438,19 @@ impl Store {
         Store { directory: run.join("checkpoints"), keep }
     }
 
-    /// The checkpoint that the run hands out, if there is one.
+    /// The checkpoint that the run selects, or would as far as it has come; `None` if it was never evaluated.
     #[must_use]
-    pub fn best(&self) -> Option<PathBuf> {
-        self.numbered("best_").into_iter().next()
+    pub fn selected(&self) -> Option<PathBuf> {
+        let kept = self.numbered("best_");
+        let closed = self.directory.parent().and_then(read_selection).map(|selection| self.best_of(selection.selected.frames));
+        if let Some(closed) = closed.filter(|path| kept.contains(path)) {
+            return Some(closed);
+        }
+        // The newest candidate knows of those before it. Files of older versions, which kept one, say nothing of it.
+        let newest = kept.into_iter().next()?;
+        let known =
+            read_progress(&newest).ok().and_then(|progress| Some(self.best_of(progress.candidates.ranked.first()?.frames)));
+        Some(known.filter(|path| path.is_dir()).unwrap_or(newest))
     }
 
     /// All checkpoints to go on from, newest first.
@@ -438,15 +472,15 @@ impl Store {
         found.into_iter().rev().map(|(_, path)| path).collect()
     }
 
-    /// Writes a checkpoint to go on from; older ones beyond the number to keep go, and so do those that were the best before
-    /// the one that it knows of. Not earlier: whenever the run is killed, what its newest checkpoint hands out is there.
+    /// Writes a checkpoint to go on from; older ones beyond the number to keep go, and so do those that are no candidates any
+    /// more by what it knows. Not earlier: whenever the run is killed, the candidates of its newest checkpoint are there.
     pub fn write(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
         checkpoint.write(&self.directory.join(format!("frames_{:012}", checkpoint.progress.frames)))?;
         self.all().into_iter().skip(self.keep).try_for_each(|old| remove(&old))?;
-        self.keep_best(checkpoint.progress.hand_out.as_ref())
+        self.keep_candidates(&checkpoint.progress.candidates)
     }
 
-    /// Writes the checkpoint that is the best so far.
+    /// Writes the checkpoint of a candidate.
     pub fn write_best(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
         checkpoint.write(&self.best_of(checkpoint.progress.frames))
     }
@@ -460,37 +494,46 @@ impl Store {
         fs::rename(&temporary, &path).map_err(LearnError::file(&path, "write"))
     }
 
-    /// Where the best checkpoint of so many frames is.
+    /// Where the candidate of so many frames is.
     #[must_use]
     pub fn best_of(&self, frames: u64) -> PathBuf {
         self.directory.join(format!("best_{frames:012}"))
     }
 
-    fn keep_best(&self, hand_out: Option<&HandOut>) -> Result<(), LearnError> {
-        let Some(kept) = hand_out.map(|one| self.best_of(one.frames)) else { return Ok(()) };
-        self.numbered("best_").into_iter().filter(|path| *path != kept).try_for_each(|old| remove(&old))
+    fn keep_candidates(&self, candidates: &Candidates) -> Result<(), LearnError> {
+        let kept: Vec<PathBuf> = candidates.ranked.iter().map(|one| self.best_of(one.frames)).collect();
+        if kept.is_empty() {
+            return Ok(());
+        }
+        self.keep_only(&kept)
     }
 
-    /// Makes the directory agree with a checkpoint that the run goes on from, and gives what it hands out so far: what a
-    /// killed run left half-written goes, and so does what was the best in a future that will not be.
-    pub fn go_back_to(&self, progress: &Progress) -> Result<Option<HandOut>, LearnError> {
+    /// Removes all candidates but some.
+    pub fn keep_only(&self, kept: &[PathBuf]) -> Result<(), LearnError> {
+        self.numbered("best_").into_iter().filter(|path| !kept.contains(path)).try_for_each(|old| remove(&old))
+    }
+
+    /// Makes the directory agree with a checkpoint that the run goes on from, and gives its candidates so far: what a
+    /// killed run left half-written goes, and so does what was a candidate in a future that will not be.
+    pub fn go_back_to(&self, progress: &Progress) -> Result<Candidates, LearnError> {
         if let Ok(entries) = fs::read_dir(&self.directory) {
             let half = entries.filter_map(|entry| Some(entry.ok()?.path()));
             half.filter(|path| path.extension().is_some_and(|ending| ending == "partial")).try_for_each(|path| remove(&path))?;
         }
-        let known = progress.hand_out.clone().filter(|one| self.best_of(one.frames).is_dir());
-        match (known, self.best()) {
-            (Some(known), _) => {
-                self.keep_best(Some(&known))?;
-                Ok(Some(known))
-            }
-            // The newer checkpoints were damaged, but what they handed out is whole: better than nothing.
-            (None, Some(left)) if progress.hand_out.is_some() => Ok(Loaded::read(&left)?.progress.hand_out),
-            (None, _) => {
-                self.numbered("best_").into_iter().try_for_each(|path| remove(&path))?;
-                Ok(None)
-            }
+        let mut known = progress.all_candidates();
+        let had_any = !known.ranked.is_empty();
+        known.ranked.retain(|one| self.best_of(one.frames).is_dir());
+        if known.ranked.is_empty()
+            && had_any
+            && let Some(left) = self.numbered("best_").into_iter().next()
+        {
+            // The newer checkpoints were damaged, but a candidate is whole: better than nothing.
+            known = Loaded::read(&left)?.progress.all_candidates();
+            known.ranked.retain(|one| self.best_of(one.frames).is_dir());
         }
+        let kept: Vec<PathBuf> = known.ranked.iter().map(|one| self.best_of(one.frames)).collect();
+        self.keep_only(&kept)?;
+        Ok(known)
     }
 
     /// The newest whole checkpoint; `warn` is told of each damaged one that is passed over.

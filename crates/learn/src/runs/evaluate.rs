@@ -5,16 +5,29 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use hasard_envs::{Autoreset, Episode, LaneState, VecEnv, VecOptions};
 use serde::{Deserialize, Serialize};
 
-use crate::config::Constraint;
+use crate::config::constraint::find_terms;
+use crate::config::{Constraint, ReturnNormaliser};
 use crate::error::LearnError;
+use crate::learning::normaliser::Moments;
 use crate::runs::agent::TrainedPolicy;
 use crate::runs::session::MakeWorlds;
 use crate::sampling::gather::panic_text;
+use crate::statistics::{Estimate, Tails, tails};
 
 pub use crate::runs::agent::{Action, Agent, Choice, Memory, Thought, Which, run_config};
 
 /// Most worlds that one agent acts in side by side.
 const MOST_LANES: usize = 32;
+
+/// What the critics of the costs expected in an episode, and what came.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Trace {
+    /// Discounted cost to come that each constraint's critic expected before each step; no critic where the policy has none, or where
+    /// the unit of its values is not known.
+    pub expected: Vec<Vec<f64>>,
+    /// Cost of each step under each of these constraints.
+    pub costs: Vec<Vec<f64>>,
+}
 
 /// Plays an episode of each seed, on `threads` threads, and gives them in the order of the seeds. What happens in an episode
 /// follows from its seed alone.
@@ -25,18 +38,20 @@ pub fn play(
     seeds: &[u64],
     threads: usize,
 ) -> Result<Vec<Episode>, LearnError> {
-    play_unless(&AtomicBool::new(false), policy, choice, make_worlds, seeds, threads).map(Option::unwrap_or_default)
+    let played = play_traced(&AtomicBool::new(false), policy, choice, make_worlds, seeds, threads)?;
+    Ok(played.unwrap_or_default().into_iter().map(|(episode, _)| episode).collect())
 }
 
-/// As [`play`], but gives up when `stop` is raised meanwhile: then there are no episodes at all.
-pub fn play_unless(
+/// As [`play`], each episode with what the policy's critics expected; but it gives up when `stop` is raised meanwhile: then there are no
+/// episodes at all.
+pub fn play_traced(
     stop: &AtomicBool,
     policy: &TrainedPolicy,
     choice: Choice,
     make_worlds: &MakeWorlds<'_>,
     seeds: &[u64],
     threads: usize,
-) -> Result<Option<Vec<Episode>>, LearnError> {
+) -> Result<Option<Vec<(Episode, Trace)>>, LearnError> {
     if seeds.is_empty() {
         return Ok(Some(Vec::new()));
     }
@@ -50,8 +65,10 @@ pub fn play_unless(
     }
     let mut episodes = Vec::new();
     std::thread::scope(|scope| {
-        let running: Vec<_> =
-            parts.into_iter().map(|(worlds, agent, own)| scope.spawn(move || play_all(stop, worlds, agent, own))).collect();
+        let running: Vec<_> = parts
+            .into_iter()
+            .map(|(worlds, agent, own)| scope.spawn(move || play_all(stop, policy, worlds, agent, own)))
+            .collect();
         for thread in running {
             let played = thread.join().map_err(|panic| LearnError::Panic(panic_text("an evaluation", &*panic)))?;
             episodes.push(played?);
@@ -60,11 +77,25 @@ pub fn play_unless(
     })
 }
 
-fn play_all(stop: &AtomicBool, mut worlds: VecEnv, mut agent: Agent, seeds: &[u64]) -> Result<Option<Vec<Episode>>, LearnError> {
+fn play_all(
+    stop: &AtomicBool,
+    policy: &TrainedPolicy,
+    mut worlds: VecEnv,
+    mut agent: Agent,
+    seeds: &[u64],
+) -> Result<Option<Vec<(Episode, Trace)>>, LearnError> {
     let world_error = |error: hasard_envs::EnvError| LearnError::Worlds(error.to_string());
     let (lanes, terms) = (worlds.lanes(), worlds.cost_terms().len());
     let mut batch = worlds.whole_batch();
     let mut all = Vec::with_capacity(seeds.len());
+    // One critic a constraint, after that of the reward.
+    let critics = policy.cost_units();
+    let worth = |moments: &Moments, value: f32| match policy.config().learning.normaliser {
+        ReturnNormaliser::Running => moments.denormalise(value),
+        ReturnNormaliser::PopArt => moments.scale_up(value),
+    };
+    let constraints = &policy.config().constraints[..critics.len().min(policy.config().constraints.len())];
+    let places = find_terms(worlds.cost_terms(), constraints)?;
     for turn in seeds.chunks(lanes) {
         // A turn that is not full plays its last seed several times, and counts it once.
         let seed_of = |lane: usize| turn[lane.min(turn.len() - 1)];
@@ -72,6 +103,8 @@ fn play_all(stop: &AtomicBool, mut worlds: VecEnv, mut agent: Agent, seeds: &[u6
         worlds.restore(starts, &mut batch).map_err(world_error)?;
         (0..lanes).for_each(|lane| agent.reset(lane, seed_of(lane)));
         let mut ended: Vec<Option<Episode>> = vec![None; lanes];
+        let blank = Trace { expected: vec![Vec::new(); places.len()], costs: vec![Vec::new(); places.len()] };
+        let mut traces = vec![blank; lanes];
         while ended.iter().any(Option::is_none) {
             if stop.load(Ordering::Relaxed) {
                 return Ok(None);
@@ -83,6 +116,14 @@ fn play_all(stop: &AtomicBool, mut worlds: VecEnv, mut agent: Agent, seeds: &[u6
                 deltas[lane * continuous..(lane + 1) * continuous].copy_from_slice(&action.deltas);
             }
             worlds.step(&mut batch).map_err(world_error)?;
+            for lane in (0..lanes).filter(|&lane| ended[lane].is_none()) {
+                for (index, (place, moments)) in places.iter().zip(critics).enumerate() {
+                    let cost = place.map_or(batch.costs[lane], |term| batch.cost_terms[lane * terms + term]);
+                    let value = agent.cost_values(lane).get(index).map_or(f32::NAN, |&value| worth(moments, value));
+                    traces[lane].expected[index].push(value.into());
+                    traces[lane].costs[index].push(cost.into());
+                }
+            }
             for lane in 0..lanes {
                 let own: Vec<f64> = batch.cost_terms[lane * terms..(lane + 1) * terms].iter().map(|&cost| cost.into()).collect();
                 agent.observe_cost(lane, batch.costs[lane].into(), &own);
@@ -93,37 +134,9 @@ fn play_all(stop: &AtomicBool, mut worlds: VecEnv, mut agent: Agent, seeds: &[u6
                 ended[lane] = Some(Episode { lane: 0, ..episode });
             }
         }
-        all.extend(ended.into_iter().flatten().take(turn.len()));
+        all.extend(ended.into_iter().flatten().zip(traces).take(turn.len()));
     }
     Ok(Some(all))
-}
-
-/// A mean and half the width of its 95 % confidence interval (normal approximation, sample variance; none for one value).
-#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
-pub struct Estimate {
-    /// The mean.
-    pub mean: f64,
-    /// Half the width.
-    pub half_width: f64,
-}
-
-impl Estimate {
-    /// The estimate from samples; 0 from none.
-    #[must_use]
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Estimate {
-        let values: Vec<f64> = values.into_iter().collect();
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n.max(1.0);
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-        let half_width = if n > 1.0 { 1.96 * (squares / (n - 1.0) / n).sqrt() } else { 0.0 };
-        Estimate { mean, half_width }
-    }
-
-    /// Upper end of the interval.
-    #[must_use]
-    pub fn high(&self) -> f64 {
-        self.mean + self.half_width
-    }
 }
 
 /// A constraint and what episodes cost under it.
@@ -135,6 +148,9 @@ pub struct Judgement {
     pub budget: f64,
     /// What it had.
     pub cost: Estimate,
+    /// How it spread over the episodes.
+    #[serde(default)]
+    pub tails: Tails,
 }
 
 impl Judgement {
@@ -154,6 +170,9 @@ pub struct Evaluation {
     pub episode_return: Estimate,
     /// Sum of costs.
     pub cost: Estimate,
+    /// How the scalar cost spread over the episodes.
+    #[serde(default)]
+    pub tails: Tails,
     /// Steps.
     pub length: Estimate,
     /// Each constraint by its own term and budget.
@@ -165,12 +184,14 @@ impl Evaluation {
     pub fn of(episodes: &[Episode], constraints: &[Constraint]) -> Result<Evaluation, LearnError> {
         let judge = |one: &Constraint| {
             let costs: Vec<f64> = episodes.iter().map(|episode| one.cost_of(episode)).collect::<Result<_, _>>()?;
-            Ok(Judgement { term: one.term.clone(), budget: one.budget, cost: Estimate::of(costs) })
+            let spread = tails(costs.iter().copied(), Some(one.budget));
+            Ok(Judgement { term: one.term.clone(), budget: one.budget, cost: Estimate::of(costs), tails: spread })
         };
         Ok(Evaluation {
             episodes: episodes.len(),
             episode_return: Estimate::of(episodes.iter().map(|episode| episode.episode_return)),
             cost: Estimate::of(episodes.iter().map(|episode| episode.cost)),
+            tails: tails(episodes.iter().map(|episode| episode.cost), None),
             length: Estimate::of(episodes.iter().map(|episode| f64::from(episode.length))),
             constraints: constraints.iter().map(judge).collect::<Result<_, LearnError>>()?,
         })
@@ -222,11 +243,12 @@ mod tests {
         assert_eq!((judged.cost.mean, judged.constraints[0].cost.mean, judged.constraints[1].cost.mean), (30.0, 30.0, 5.0));
         assert!(judged.constraints[0].within() && !judged.constraints[1].within() && !judged.within());
         assert!((judged.excess() - 0.25).abs() < 1e-12);
-        // Half the interval of 20 and 40: 1.96 * 14.142 / sqrt(2) = 19.6.
-        assert!((judged.cost.half_width - 19.6).abs() < 1e-9);
-        let judged = Evaluation::of(&[episode(20.0, 1.0), episode(40.0, 1.0)], &constraints).unwrap();
+        // Half of the episodes have more than 4 jumps; one costs 40.
+        assert_eq!((judged.constraints[1].tails.over_budget, judged.tails.worst), (Some(0.5), 40.0));
+        // Half the interval of 30 and 31: 12.706 * 0.5 = 6.35.
+        let judged = Evaluation::of(&[episode(30.0, 1.0), episode(31.0, 1.0)], &constraints).unwrap();
         assert!(judged.within() && judged.surely_within());
-        let wide = Evaluation::of(&[episode(30.0, 1.0), episode(60.0, 1.0)], &constraints).unwrap();
+        let wide = Evaluation::of(&[episode(44.0, 1.0), episode(46.0, 1.0)], &constraints).unwrap();
         assert!(wide.within() && !wide.surely_within());
     }
 }

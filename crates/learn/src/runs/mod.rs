@@ -2,15 +2,17 @@
 
 pub mod agent;
 pub mod agent_file;
+pub mod calibration;
 pub mod checkpoint;
 pub mod checksum;
 pub mod evaluate;
-pub mod hand_out;
+pub mod examiner;
 pub mod heatmap;
 pub mod measure;
 pub mod progress_bar;
 pub mod report;
 pub mod run_directory;
+pub mod selection;
 pub mod session;
 pub mod tensorboard;
 pub mod together;

@@ -40,6 +40,12 @@ pub struct Report {
     pub multipliers: Vec<f64>,
     /// The evaluation of the policy at this moment, if there was one.
     pub evaluation: Option<Evaluation>,
+    /// Frames of all evaluations so far.
+    pub evaluated_frames: u64,
+    /// Cost of all training episodes so far; nothing in a run whose earlier part did not count it.
+    pub cost_total: Option<f64>,
+    /// What training episodes cost beyond each budget, added up.
+    pub violation_totals: Option<Vec<f64>>,
     /// Losses and other numbers of the updates since the last report.
     pub learning: Vec<(std::borrow::Cow<'static, str>, f64)>,
     /// Cost terms and statistics of the latest episodes.
@@ -82,6 +88,9 @@ impl Report {
             budgets: config.constraints.iter().map(|constraint| constraint.budget).collect(),
             multipliers,
             evaluation: None,
+            evaluated_frames: 0,
+            cost_total: watch.totals.as_ref().map(|totals| totals.cost),
+            violation_totals: watch.totals.as_ref().map(|totals| totals.violations.clone()),
             learning: learning.take(),
             details: watch.details(),
         }
@@ -111,11 +120,14 @@ impl Report {
         put("return_max", json!(self.extremes.map(|extremes| extremes[1])));
         put("cost_min", json!(self.extremes.map(|extremes| extremes[2])));
         put("cost_max", json!(self.extremes.map(|extremes| extremes[3])));
+        put("cost_total", json!(self.cost_total));
+        put("violation_total", json!(self.violation_totals.as_ref().and_then(|all| all.first())));
         put("budget", json!(self.budgets.first()));
         put("multiplier", json!(self.multipliers.first()));
         if self.budgets.len() > 1 {
             put("budgets", json!(self.budgets));
             put("multipliers", json!(self.multipliers));
+            put("violation_totals", json!(self.violation_totals));
         }
         // Of a single constraint on the scalar cost, `cost_mean` is the same.
         if self.terms != [None] {
@@ -131,6 +143,10 @@ impl Report {
             for (one, term) in evaluation.constraints.iter().filter_map(|one| Some((one, one.term.as_ref()?))) {
                 put(&format!("eval/cost/{term}"), json!(one.cost.mean));
             }
+            put("eval/cost_cvar10", json!(evaluation.tails.cvar));
+            put("eval/cost_worst", json!(evaluation.tails.worst));
+            put("eval/over_budget", json!(evaluation.constraints.first().map(|one| one.tails.over_budget)));
+            put("eval/frames", json!(self.evaluated_frames));
             put("eval/episodes", json!(evaluation.episodes));
             put("eval/within_budget", json!(u8::from(evaluation.within())));
         }

@@ -4,20 +4,27 @@ use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use hasard_envs::Episode;
 use hasard_media::shell::quote;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::runs::hand_out::HandOut;
+use crate::runs::calibration::{calibrate, predictions};
+use crate::runs::examiner::Closing;
+use crate::runs::selection::Selection;
 use crate::runs::tensorboard::{self, EventFile};
 
 /// Reports, a line each.
 const METRICS: &str = "metrics.jsonl";
 /// Where the agents have been, a line a moment.
 const HEATMAPS: &str = "heatmaps.jsonl";
-/// Which checkpoint the run hands out.
-const HAND_OUT: &str = "hand_out.json";
+/// Which checkpoint the run selects, and its name in runs of older versions.
+const SELECTION: [&str; 2] = ["selected.json", "hand_out.json"];
+/// Episodes of the closing evaluations, one a line: of the selected checkpoint, and of the last policy.
+const EPISODES: [&str; 2] = ["closing_episodes.jsonl", "last_policy_episodes.jsonl"];
+/// What the selected checkpoint's critics of the costs expected, and what came.
+const CALIBRATION: &str = "calibration.json";
 
 /// A run's directory, locked against a second trainer for as long as this value lives.
 pub struct RunDirectory {
@@ -97,9 +104,23 @@ impl RunDirectory {
         write_json(&self.path.join("config.json"), config)
     }
 
-    /// Writes which checkpoint the run hands out, and what it is worth.
-    pub fn write_hand_out(&self, hand_out: &HandOut) -> Result<(), LearnError> {
-        write_json(&self.path.join(HAND_OUT), hand_out)
+    /// Writes which checkpoint the run selects and what it is worth, with the episodes that say so. The selection comes last: where it is
+    /// written, the others are.
+    pub fn write_selection(&self, selection: &Selection, closings: &[Closing], config: &TrainConfig) -> Result<(), LearnError> {
+        for closing in closings {
+            let mut lines = String::new();
+            for (number, (episode, _)) in closing.played.iter().enumerate() {
+                lines += &format!("{}\n", episode_line(&config.env.id, number, episode));
+            }
+            write_whole(&self.path.join(EPISODES[usize::from(!closing.selected)]), lines.as_bytes())?;
+        }
+        for closing in closings.iter().filter(|closing| closing.selected) {
+            let all = calibrate(&predictions(&closing.played, config), config);
+            if !all.is_empty() {
+                write_json(&self.path.join(CALIBRATION), &json!({ "frames": closing.frames, "constraints": all }))?;
+            }
+        }
+        write_json(&self.path.join(SELECTION[0]), selection)
     }
 
     /// Where it is.
@@ -145,10 +166,30 @@ impl RunDirectory {
     }
 }
 
-/// What the run in a directory handed out when it ended, if it did.
+/// A closing episode, in the words of `hasard eval --json`.
+fn episode_line(env: &str, number: usize, episode: &Episode) -> Value {
+    let named = |values: &mut dyn Iterator<Item = (&'static str, f64)>| -> Value {
+        values.map(|(name, value)| (name.to_string(), json!(value))).collect::<serde_json::Map<_, _>>().into()
+    };
+    json!({
+        "env": env,
+        "episode": number,
+        "seed": episode.seed,
+        "return": episode.episode_return,
+        "cost": episode.cost,
+        "costs": named(&mut episode.costs.iter().map(|one| (one.name, one.cost))),
+        "uncounted": episode.costs.iter().filter(|one| !one.counted).map(|one| one.name).collect::<Vec<_>>(),
+        "length": episode.length,
+        "terminated": episode.terminated,
+        "truncated": episode.truncated,
+        "stats": named(&mut episode.stats.iter().copied()),
+    })
+}
+
+/// What the run in a directory selected when it ended, if it did.
 #[must_use]
-pub fn read_hand_out(path: &Path) -> Option<HandOut> {
-    serde_json::from_slice(&fs::read(path.join(HAND_OUT)).ok()?).ok()
+pub fn read_selection(path: &Path) -> Option<Selection> {
+    SELECTION.iter().find_map(|name| serde_json::from_slice(&fs::read(path.join(name)).ok()?).ok())
 }
 
 /// The settings of the run in a directory.

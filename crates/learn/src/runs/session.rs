@@ -162,6 +162,7 @@ impl Session {
                 learner.inherit(&before.learner)?;
                 (frames, rollouts) = (before.frames, before.rollouts);
                 watch.episodes = before.watch.episodes;
+                watch.totals.clone_from(&before.watch.totals);
             }
             Beginning::Everything(loaded) => {
                 let saved = dealt_anew(loaded.restore(&mut learner)?, &shares)

@@ -10,10 +10,11 @@ use crate::error::LearnError;
 use crate::networks::device::ComputeDevice;
 use crate::runs::checkpoint::{Checkpoint, Loaded, Progress, Store};
 use crate::runs::evaluate::Evaluation;
-use crate::runs::hand_out::{Examiner, HandOut};
+use crate::runs::examiner::Examiner;
 use crate::runs::heatmap::Heatmap;
 use crate::runs::report::Report;
-use crate::runs::run_directory::{RunDirectory, read_hand_out};
+use crate::runs::run_directory::{RunDirectory, read_selection};
+use crate::runs::selection::{Candidates, Selection};
 use crate::runs::session::{Beginning, MakeWorlds, Session};
 use crate::runs::together::{Word, invite};
 use crate::runs::writer::Writer;
@@ -57,8 +58,8 @@ pub struct Summary {
     pub last: Report,
     /// The caller ended it.
     pub stopped: bool,
-    /// The checkpoint that it hands out; none if it was never evaluated.
-    pub hand_out: Option<HandOut>,
+    /// The checkpoint that it selects; none if it was never evaluated. Of a run that was stopped, the best candidate so far.
+    pub selection: Option<Selection>,
 }
 
 /// Trains in `directory` until the run's frames are used up or the caller ends it.
@@ -90,8 +91,8 @@ pub fn train_together(
         let lesson = begun.beginning.progress().map_or(0, |progress| progress.lesson);
         let session = Session::of(team.clone(), begun.config.lesson(lesson), &begun.beginning, make_worlds)?;
         // Only now is anything of a run that goes on touched: a resume that cannot begin leaves it as it was.
-        let best = if begun.fresh { None } else { begun.take_back(hooks)? };
-        Trainer::new(&begun, best, lesson, session, make_worlds).run(hooks)
+        let candidates = if begun.fresh { Candidates::default() } else { begun.take_back(hooks)? };
+        Trainer::new(&begun, candidates, lesson, session, make_worlds).run(hooks)
     };
     let outcome =
         catch_unwind(AssertUnwindSafe(whole)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))));
@@ -113,8 +114,8 @@ struct Begun {
 }
 
 impl Begun {
-    /// Makes the directory agree with the checkpoint that the run goes on from, and gives what it selected so far.
-    fn take_back(&self, hooks: &mut Hooks<'_>) -> Result<Option<HandOut>, LearnError> {
+    /// Makes the directory agree with the checkpoint that the run goes on from, and gives its candidates so far.
+    fn take_back(&self, hooks: &mut Hooks<'_>) -> Result<Candidates, LearnError> {
         if self.changed {
             self.run.rewrite_config(&self.config)?;
         }
@@ -123,14 +124,16 @@ impl Begun {
         // The row of a moment whose evaluation is still to be made is written with it.
         let owes = progress.is_some_and(|progress| progress.owes_evaluation);
         self.run.rewind(if owes { at.saturating_sub(1) } else { at }, at, hooks.warn)?;
-        progress.map_or(Ok(None), |progress| Store::new(self.run.path(), 1).go_back_to(progress))
+        let none = || Ok(Candidates::default());
+        progress.map_or_else(none, |progress| Store::new(self.run.path(), 1).go_back_to(progress))
     }
 
     /// The checkpoint that the run goes on from, if an evaluation of it is still to be made: it was stopped in the midst of it,
     /// or has come to its end without any and is now asked for one.
-    fn owed(&self, best: Option<&HandOut>) -> Option<&Loaded> {
+    fn owed(&self, candidates: &Candidates) -> Option<&Loaded> {
         let Beginning::Everything(loaded) = &self.beginning else { return None };
-        let unjudged = best.is_none() && loaded.progress.frames >= self.config.frames && self.config.evaluates_at_its_end();
+        let unjudged =
+            candidates.ranked.is_empty() && loaded.progress.frames >= self.config.frames && self.config.evaluates_at_its_end();
         (loaded.progress.owes_evaluation || unjudged).then_some(loaded)
     }
 }
@@ -191,7 +194,7 @@ struct Trainer<'a> {
 impl<'a> Trainer<'a> {
     fn new(
         begun: &'a Begun,
-        best: Option<HandOut>,
+        candidates: Candidates,
         lesson: usize,
         session: Session,
         make_worlds: &'a MakeWorlds<'a>,
@@ -200,8 +203,8 @@ impl<'a> Trainer<'a> {
         let heatmap = heatmap(&config, lesson, &session);
         let started = Instant::now();
         let seconds_before = begun.beginning.progress().map_or(0.0, |progress| progress.wall_seconds);
-        let owed = begun.owed(best.as_ref());
-        let examiner = Examiner::new(make_worlds, best);
+        let owed = begun.owed(&candidates);
+        let examiner = Examiner::new(make_worlds, candidates);
         Trainer { run, config, owed, make_worlds, lesson, session, heatmap, seconds_before, started, examiner }
     }
 
@@ -254,6 +257,7 @@ impl<'a> Trainer<'a> {
                 let seconds = last_report.elapsed().as_secs_f64().max(1e-9);
                 let mut report = self.report((self.session.frames - reported_frames) as f64 / seconds);
                 report.evaluation = evaluation;
+                report.evaluated_frames = self.examiner.candidates.frames;
                 (last_report, reported_frames) = (Instant::now(), self.session.frames);
                 if !cut_short {
                     writer.row(self.session.frames, report.row());
@@ -284,8 +288,17 @@ impl<'a> Trainer<'a> {
             Some(report) => report,
             None => self.report(0.0),
         };
-        let stopped = cut_short || self.session.frames < self.session.config.frames || !self.close(&store, hooks.stop)?;
-        Ok(Summary { last, stopped, hand_out: self.examiner.best.take() })
+        let ended = !cut_short && self.session.frames >= self.session.config.frames;
+        let closed = if ended { self.close(&store, hooks.stop)? } else { None };
+        let stopped = closed.is_none();
+        Ok(Summary { last, stopped, selection: closed.unwrap_or_else(|| self.so_far()) })
+    }
+
+    /// The best candidate of a run that is not over.
+    fn so_far(&self) -> Option<Selection> {
+        let selected = self.examiner.candidates.ranked.first()?.clone();
+        let selection_frames = self.examiner.candidates.frames;
+        Some(Selection { selected, failed: Vec::new(), last: None, level: None, selection_frames })
     }
 
     /// Of a curriculum, evaluations of the last level alone select a checkpoint.
@@ -293,14 +306,13 @@ impl<'a> Trainer<'a> {
         self.lesson + 1 == self.config.lessons()
     }
 
-    /// Evaluates the policy as it is; if it is the best so far, its checkpoint is what the run hands out. Nothing if the run is
-    /// stopped meanwhile.
+    /// Evaluates the policy as it is; if it is a candidate, its checkpoint is kept. Nothing if the run is stopped meanwhile.
     fn examine(&mut self, writer: &Writer, stop: &AtomicBool) -> Result<Option<Evaluation>, LearnError> {
         let counts = self.counts();
         let examined = self.examiner.examine(&mut self.session, counts, stop)?;
-        let best = examined.as_ref().is_some_and(|(_, best)| *best);
-        Word { over: false, save: best }.tell(&self.session.team)?;
-        if best {
+        let candidate = examined.as_ref().is_some_and(|(_, candidate)| *candidate);
+        Word { over: false, save: candidate }.tell(&self.session.team)?;
+        if candidate {
             writer.best(self.checkpoint(false)?);
         }
         Ok(examined.map(|(evaluation, _)| evaluation))
@@ -310,14 +322,18 @@ impl<'a> Trainer<'a> {
     /// the other workers need not know. Nothing if the run is stopped meanwhile: then it goes on lacking it.
     fn settle(&mut self, loaded: &Loaded, writer: &Writer, hooks: &mut Hooks<'_>) -> Result<Option<Report>, LearnError> {
         let counts = self.counts();
-        let Some((evaluation, best)) = self.examiner.examine(&mut self.session, counts, hooks.stop)? else { return Ok(None) };
-        let progress = Progress { hand_out: self.examiner.best.clone(), owes_evaluation: false, ..loaded.progress.clone() };
+        let Some((evaluation, candidate)) = self.examiner.examine(&mut self.session, counts, hooks.stop)? else {
+            return Ok(None);
+        };
+        let candidates = self.examiner.candidates.clone();
+        let progress = Progress { candidates, hand_out: None, owes_evaluation: false, ..loaded.progress.clone() };
         let mut report = self.report(0.0);
         report.evaluation = Some(evaluation);
+        report.evaluated_frames = self.examiner.candidates.frames;
         if loaded.progress.owes_evaluation {
             writer.row(self.session.frames, report.row());
         }
-        if best {
+        if candidate {
             writer.best(loaded.with(progress.clone()));
         }
         writer.amend(progress);
@@ -325,22 +341,22 @@ impl<'a> Trainer<'a> {
         Ok(Some(report))
     }
 
-    /// Says what the checkpoint that is handed out is worth, by episodes that had no part in the choice. False if the run is
-    /// stopped meanwhile.
-    fn close(&mut self, store: &Store, stop: &AtomicBool) -> Result<bool, LearnError> {
-        let Some(best) = &self.examiner.best else { return Ok(true) };
+    /// Selects a checkpoint, by episodes of its own; the other candidates go. The selection, if there were candidates; nothing at all if
+    /// the run is stopped meanwhile.
+    fn close(&mut self, store: &Store, stop: &AtomicBool) -> Result<Option<Option<Selection>>, LearnError> {
         // A run that had ended before is not closed anew.
-        if let Some(known) = read_hand_out(self.run.path()).filter(|known| known.frames == best.frames && known.closing.is_some())
-        {
-            self.examiner.best = Some(known);
-            return Ok(true);
+        let closed = |known: &Selection| known.last.as_ref().is_some_and(|last| last.frames == self.session.frames);
+        if let Some(known) = read_selection(self.run.path()).filter(closed) {
+            store.keep_only(&[store.best_of(known.selected.frames)])?;
+            return Ok(Some(Some(known)));
         }
-        let checkpoint = Loaded::read(&store.best_of(best.frames))?;
-        let closed = self.examiner.close(&self.session, &checkpoint, stop)?;
-        if let (true, Some(best)) = (closed, &self.examiner.best) {
-            self.run.write_hand_out(best)?;
+        if self.examiner.candidates.ranked.is_empty() {
+            return Ok(Some(None));
         }
-        Ok(closed)
+        let Some((selection, closings)) = self.examiner.close(&mut self.session, store, stop)? else { return Ok(None) };
+        self.run.write_selection(&selection, &closings, &self.session.config)?;
+        store.keep_only(&[store.best_of(selection.selected.frames)])?;
+        Ok(Some(Some(selection)))
     }
 
     fn report(&mut self, frames_per_second: f64) -> Report {
@@ -368,7 +384,8 @@ impl<'a> Trainer<'a> {
             lesson: self.lesson,
             updates: self.session.learner.version,
             wall_seconds: self.wall_seconds(),
-            hand_out: self.examiner.best.clone(),
+            candidates: self.examiner.candidates.clone(),
+            hand_out: None,
             owes_evaluation,
             returns: self.session.learner.returns.clone(),
             optimiser_steps: self.session.learner.optimisers.iter().map(|adam| adam.steps).collect(),

@@ -25,6 +25,15 @@ pub struct Finished {
     pub details: Vec<(String, f64)>,
 }
 
+/// Sums over all episodes of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Totals {
+    /// Cost.
+    pub cost: f64,
+    /// What episodes cost beyond each constraint's budget.
+    pub violations: Vec<f64>,
+}
+
 /// The latest episodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
@@ -37,6 +46,9 @@ pub struct Watch {
     fresh: usize,
     #[serde(default)]
     waited: u64,
+    /// Sums over them; nothing in a run whose earlier part did not count them.
+    #[serde(default)]
+    pub totals: Option<Totals>,
     window: usize,
     /// Latest episodes that constraints look at: one a world, so that each counts about once and the mean follows the
     /// policy as fast as episodes end.
@@ -52,6 +64,7 @@ impl Watch {
             episodes: 0,
             fresh: 0,
             waited: 0,
+            totals: Some(Totals { cost: 0.0, violations: vec![0.0; config.constraints.len()] }),
             window: config.reporting.window.max(config.sampling.lanes),
             constraint_window: config.sampling.lanes,
         }
@@ -64,13 +77,19 @@ impl Watch {
             let problem = "the checkpoint's episodes were held against other constraints; start a new run with --init-from";
             return Err(LearnError::Config(problem.into()));
         }
-        let (fresh, waited) = (self.fresh, self.waited);
-        Ok(Watch { recent: self.recent.clone(), episodes: self.episodes, fresh, waited, ..Watch::new(config) })
+        let (fresh, waited, totals) = (self.fresh, self.waited, self.totals.clone());
+        Ok(Watch { recent: self.recent.clone(), episodes: self.episodes, fresh, waited, totals, ..Watch::new(config) })
     }
 
     /// Notes an episode; one that does not report a constraint's term is an error.
     pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) -> Result<(), LearnError> {
-        let constrained = constraints.iter().map(|one| one.cost_of(episode)).collect::<Result<_, _>>()?;
+        let constrained: Vec<f64> = constraints.iter().map(|one| one.cost_of(episode)).collect::<Result<_, _>>()?;
+        if let Some(totals) = &mut self.totals {
+            totals.cost += episode.cost;
+            for ((sum, cost), constraint) in totals.violations.iter_mut().zip(&constrained).zip(constraints) {
+                *sum += (cost - constraint.budget).max(0.0);
+            }
+        }
         let costs = episode.costs.iter().map(|one| (format!("cost/{}", one.name), one.cost));
         let stats = episode.stats.iter().map(|(name, value)| (format!("stats/{name}"), *value));
         self.recent.push_back(Finished {
@@ -183,6 +202,8 @@ mod tests {
         for (cost, jumps) in [(1000.0, 50.0), (60.0, 4.0), (80.0, 8.0)] {
             watch.add(&episode(cost, jumps), &config.constraints).unwrap();
         }
+        // All three count, in the window or not: 950 + 10 + 30 over the budget of 50, 47 + 1 + 5 jumps over that of 3.
+        assert_eq!(watch.totals, Some(Totals { cost: 1140.0, violations: vec![990.0, 53.0] }));
         let signals = watch.signals(&config, 0.0, &[0.1, 0.2]);
         assert_eq!(signals[0].episode_excess(), 20.0);
         assert_eq!(signals[1].episode_excess(), 3.0);

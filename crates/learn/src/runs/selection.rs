@@ -1,0 +1,392 @@
+//! Which checkpoint a run selects: of those that keep the budgets, the one that returns most.
+//!
+//! While it learns, a policy wanders in and out of its budgets, and the episodes that it learned from say little about a single
+//! checkpoint. So it is evaluated now and then on episodes of their own, always the same ones, so that candidates are compared on equal
+//! terms. When the run is over, the candidates that kept their budgets are confirmed on further episodes, the one of the highest return
+//! first, and the first that keeps them there too is closed on a third set, which had no part in the choice. A candidate that fails
+//! there gives way to the next one, with new episodes. The last policy is closed as well: it is what a run is without any choice.
+//!
+//! A checkpoint is *surely* within its budgets if the upper end of its confirmed cost is, at a level shared out over all confirmations that
+//! a run may make (Bonferroni): so the word is wrong for one run in forty at most, however many candidates were tried.
+
+use hasard_envs::Episode;
+use serde::{Deserialize, Serialize};
+
+use crate::config::{AlgorithmKind, Constraint, EvaluationConfig, TrainConfig};
+use crate::error::LearnError;
+use crate::runs::evaluate::Evaluation;
+use crate::statistics::upper_bound;
+
+/// Probability that some checkpoint of a run is called surely within its budgets and is not.
+const ERROR: f64 = 0.025;
+
+/// A checkpoint and the episodes that speak for it.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Candidate {
+    /// Frames after which it was taken.
+    pub frames: u64,
+    /// The episodes that it was chosen by: those of all candidates, or those that confirmed it.
+    pub chosen_by: Evaluation,
+    /// They are further episodes than those that made it a candidate.
+    pub confirmed: bool,
+    /// It keeps its budgets by its confirmation at the level shared out.
+    #[serde(default)]
+    pub surely_within: bool,
+    /// Episodes that had no part in the choice, played when the run was over.
+    pub closing: Option<Evaluation>,
+}
+
+impl Candidate {
+    /// A checkpoint and its first evaluation.
+    #[must_use]
+    pub fn new(frames: u64, chosen_by: Evaluation) -> Candidate {
+        Candidate { frames, chosen_by, confirmed: false, surely_within: false, closing: None }
+    }
+
+    /// The latest word on it.
+    #[must_use]
+    pub fn evaluation(&self) -> &Evaluation {
+        self.closing.as_ref().unwrap_or(&self.chosen_by)
+    }
+
+    /// Whether it is to be preferred. Of algorithms that keep budgets, one within all of them comes before the others; among those the
+    /// return decides, among those over a budget the excess.
+    #[must_use]
+    pub fn is_better_than(&self, other: &Candidate, algorithm: AlgorithmKind) -> bool {
+        let (own, theirs) = (self.evaluation(), other.evaluation());
+        let returns_more = own.episode_return.mean > theirs.episode_return.mean;
+        match (algorithm.keeps_budgets(), own.within(), theirs.within()) {
+            (false, ..) | (true, true, true) => returns_more,
+            (true, false, false) => own.excess() < theirs.excess(),
+            (true, own, _) => own,
+        }
+    }
+}
+
+/// The candidates of a run, the best first, and what it took to find them.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize)]
+pub struct Candidates {
+    /// Those whose checkpoints are kept.
+    pub ranked: Vec<Candidate>,
+    /// Frames of all episodes that were played to choose.
+    pub frames: u64,
+}
+
+impl Candidates {
+    /// Takes a candidate in; whether it is among those that are kept.
+    pub fn add(&mut self, candidate: Candidate, algorithm: AlgorithmKind, kept: usize) -> bool {
+        let at = self.ranked.iter().position(|other| candidate.is_better_than(other, algorithm));
+        let at = at.unwrap_or(self.ranked.len());
+        self.ranked.insert(at, candidate);
+        self.ranked.truncate(kept);
+        at < kept
+    }
+}
+
+/// What the policy at the end of a run is worth.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct LastPolicy {
+    /// Frames of the run.
+    pub frames: u64,
+    /// Closing episodes.
+    #[serde(flatten)]
+    pub closing: Evaluation,
+}
+
+/// The checkpoint that a run selects, and how it came to it.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Selection {
+    /// The selected checkpoint.
+    #[serde(flatten)]
+    pub selected: Candidate,
+    /// Candidates that came before it and did not keep their budgets in further episodes.
+    #[serde(default)]
+    pub failed: Vec<Candidate>,
+    /// The policy at the end of the run, which nothing was chosen by.
+    #[serde(default)]
+    pub last: Option<LastPolicy>,
+    /// Share of the error that each confirmation has: it may not be surely within with a larger probability of being over.
+    #[serde(default)]
+    pub level: Option<f64>,
+    /// Frames of all episodes that were played to choose, confirm and close.
+    #[serde(default)]
+    pub selection_frames: u64,
+}
+
+/// The sets of episodes: their seeds have nothing in common.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum EpisodeSet {
+    /// Those that all candidates of a run play.
+    Candidates,
+    /// Those that confirm a candidate, the same for each.
+    Confirmation,
+    /// Those of the closing with this number; the last policy's is number 0.
+    Closing(u64),
+}
+
+impl EpisodeSet {
+    /// Its number among all sets of a run.
+    #[must_use]
+    pub fn number(self) -> u64 {
+        match self {
+            EpisodeSet::Candidates => 0,
+            EpisodeSet::Confirmation => 1,
+            EpisodeSet::Closing(attempt) => 2 + attempt,
+        }
+    }
+}
+
+/// Plays so many episodes of a set with a checkpoint (by its frames; `None` is the policy at the end of the run); nothing where it was
+/// stopped meanwhile.
+pub type PlaySet<'a> = dyn FnMut(Option<u64>, EpisodeSet, usize) -> Result<Option<Vec<Episode>>, LearnError> + 'a;
+
+/// Whether episodes cost surely no more than every budget, at a level.
+fn surely_within(episodes: &[Episode], constraints: &[Constraint], level: f64) -> Result<bool, LearnError> {
+    for constraint in constraints {
+        let costs: Vec<f64> = episodes.iter().map(|episode| constraint.cost_of(episode)).collect::<Result<_, _>>()?;
+        if upper_bound(&costs, level) > constraint.budget {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// The share of the error that each of the confirmations that a run may make has.
+#[must_use]
+pub fn shared_level(settings: &EvaluationConfig) -> f64 {
+    ERROR / settings.candidates.max(1) as f64
+}
+
+/// Selects among the candidates of a run that is over; `None` if it has none, or playing was stopped.
+pub fn select(
+    candidates: &Candidates,
+    config: &TrainConfig,
+    frames: u64,
+    play: &mut PlaySet<'_>,
+) -> Result<Option<Selection>, LearnError> {
+    let Some(first) = candidates.ranked.first() else { return Ok(None) };
+    let (settings, algorithm) = (&config.evaluation, config.algorithm);
+    let level = shared_level(settings);
+    let episodes = settings.confirming_episodes;
+    let mut spent = candidates.frames;
+    let mut go = |policy: Option<u64>, set: EpisodeSet| -> Result<Option<(Vec<Episode>, Evaluation)>, LearnError> {
+        let Some(played) = play(policy, set, episodes)? else { return Ok(None) };
+        spent += frames_of(&played, config);
+        let evaluation = Evaluation::of(&played, &config.constraints)?;
+        Ok(Some((played, evaluation)))
+    };
+    let kept = |evaluation: &Evaluation, surely: bool| {
+        !algorithm.keeps_budgets() || (evaluation.within() && (surely || !settings.surely))
+    };
+    let (mut failed, mut selected): (Vec<Candidate>, Option<Candidate>) = (Vec::new(), None);
+    let mut attempts = 0;
+    for candidate in candidates.ranked.iter().take(settings.candidates) {
+        // One over its budgets is not worth confirming; it is the least evil at best.
+        if algorithm.keeps_budgets() && !candidate.chosen_by.within() {
+            break;
+        }
+        let Some((played, chosen_by)) = go(Some(candidate.frames), EpisodeSet::Confirmation)? else { return Ok(None) };
+        let surely_within = surely_within(&played, &config.constraints, level)?;
+        let mut confirmed = Candidate { chosen_by, confirmed: true, surely_within, ..candidate.clone() };
+        if kept(&confirmed.chosen_by, surely_within) {
+            attempts += 1;
+            let Some((_, closing)) = go(Some(candidate.frames), EpisodeSet::Closing(attempts))? else { return Ok(None) };
+            let fine = !algorithm.keeps_budgets() || closing.within();
+            confirmed.closing = Some(closing);
+            if fine {
+                selected = Some(confirmed);
+                break;
+            }
+        }
+        failed.push(confirmed);
+    }
+    let selected = match selected {
+        Some(selected) => selected,
+        None => {
+            // None kept its budgets all the way: the best by what is known of each, closed if it is not yet.
+            let best = failed.iter().fold(None, |best: Option<&Candidate>, one| match best {
+                Some(best) if !one.is_better_than(best, algorithm) => Some(best),
+                _ => Some(one),
+            });
+            let mut best = best.unwrap_or(first).clone();
+            failed.retain(|one| one.frames != best.frames);
+            if best.closing.is_none() {
+                let Some((_, closing)) = go(Some(best.frames), EpisodeSet::Closing(attempts + 1))? else { return Ok(None) };
+                best.closing = Some(closing);
+            }
+            best
+        }
+    };
+    let Some((_, closing)) = go(None, EpisodeSet::Closing(0))? else { return Ok(None) };
+    let last = LastPolicy { frames, closing };
+    Ok(Some(Selection { selected, failed, last: Some(last), level: Some(level), selection_frames: spent }))
+}
+
+/// Frames of some episodes.
+#[must_use]
+pub fn frames_of(episodes: &[Episode], config: &TrainConfig) -> u64 {
+    episodes.iter().map(|episode| u64::from(episode.length) * u64::from(config.env.frame_skip)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{EnvConfig, Preset};
+    use crate::statistics::Estimate;
+
+    fn config() -> TrainConfig {
+        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        config.constraints = vec![Constraint { term: None, budget: 5.0 }];
+        config.evaluation.confirming_episodes = 4;
+        config.env.frame_skip = 4;
+        config
+    }
+
+    /// Episodes whose costs lie a little around their mean.
+    fn episodes(episode_return: f64, cost: f64, count: usize) -> Vec<Episode> {
+        let one = |index: usize| Episode {
+            lane: 0,
+            seed: 0,
+            episode_return,
+            cost: cost + if index.is_multiple_of(2) { 0.1 } else { -0.1 },
+            costs: vec![],
+            length: 10,
+            terminated: true,
+            truncated: false,
+            stats: vec![],
+        };
+        (0..count).map(one).collect()
+    }
+
+    fn candidate(frames: u64, episode_return: f64, cost: f64) -> Candidate {
+        Candidate::new(frames, Evaluation::of(&episodes(episode_return, cost, 4), &config().constraints).unwrap())
+    }
+
+    fn ranked(all: &[(u64, f64, f64)], algorithm: AlgorithmKind) -> Candidates {
+        let mut candidates = Candidates::default();
+        for &(frames, episode_return, cost) in all {
+            candidates.add(candidate(frames, episode_return, cost), algorithm, 5);
+        }
+        candidates
+    }
+
+    fn order(candidates: &Candidates) -> Vec<u64> {
+        candidates.ranked.iter().map(|one| one.frames).collect()
+    }
+
+    /// Audit, "Choosing the checkpoint": 4.56 at cost 1.27 was once chosen over 15.2 at 4.9 of a budget of 5.
+    #[test]
+    fn among_those_within_the_budget_the_return_decides() {
+        let all = [(1, 4.56, 1.27), (2, 15.2, 4.9), (3, 40.0, 9.0), (4, 30.0, 5.5), (5, 10.0, 4.0)];
+        assert_eq!(order(&ranked(&all, AlgorithmKind::PpoLag)), [2, 5, 1, 4, 3]);
+        // An algorithm without budgets is after the return.
+        assert_eq!(order(&ranked(&all, AlgorithmKind::Ppo)), [3, 4, 2, 5, 1]);
+        let mut few = ranked(&all, AlgorithmKind::PpoLag);
+        assert!(!few.add(candidate(6, 50.0, 20.0), AlgorithmKind::PpoLag, 5), "worse than five others");
+        assert!(few.add(candidate(7, 12.0, 3.0), AlgorithmKind::PpoLag, 5));
+        assert_eq!(order(&few), [2, 7, 5, 1, 4]);
+    }
+
+    /// A failed closing leads to the next candidate with new episodes; the last policy's closing is always beside it.
+    #[test]
+    fn a_candidate_that_fails_its_closing_gives_way_to_the_next() {
+        let config = config();
+        let candidates = ranked(&[(1, 20.0, 4.0), (2, 18.0, 4.0), (3, 16.0, 4.0), (4, 14.0, 4.0)], AlgorithmKind::PpoLag);
+        let mut asked = Vec::new();
+        let mut play = |policy: Option<u64>, set: EpisodeSet, count: usize| {
+            asked.push((policy, set));
+            let cost = match (policy, set) {
+                // The first fails its confirmation, the second its closing.
+                (Some(1), _) | (Some(2), EpisodeSet::Closing(_)) => 5.5,
+                (None, _) => 7.0,
+                _ => 4.5,
+            };
+            Ok(Some(episodes(11.0, cost, count)))
+        };
+        let selection = select(&Candidates { frames: 1000, ..candidates }, &config, 99, &mut play).unwrap().unwrap();
+        let (confirm, closing) = (EpisodeSet::Confirmation, EpisodeSet::Closing);
+        let expected = [
+            (Some(1), confirm),
+            (Some(2), confirm),
+            (Some(2), closing(1)),
+            (Some(3), confirm),
+            (Some(3), closing(2)),
+            (None, closing(0)),
+        ];
+        assert_eq!(asked, expected);
+        assert_eq!((selection.selected.frames, selection.selected.confirmed), (3, true));
+        assert_eq!(
+            selection.failed.iter().map(|one| (one.frames, one.closing.is_some())).collect::<Vec<_>>(),
+            [(1, false), (2, true)]
+        );
+        let last = selection.last.unwrap();
+        assert_eq!((last.frames, last.closing.cost.mean), (99, 7.0));
+        // Six sets of four episodes of ten steps of four frames.
+        assert_eq!(selection.selection_frames, 1000 + 6 * 160);
+        assert!(selection.selected.evaluation().within());
+    }
+
+    /// Without one that keeps its budgets all the way, the least evil is closed and says so.
+    #[test]
+    fn where_none_keeps_its_budgets_the_least_evil_is_selected() {
+        let candidates = ranked(&[(1, 20.0, 8.0), (2, 18.0, 6.0)], AlgorithmKind::PpoLag);
+        let mut play = |_: Option<u64>, _: EpisodeSet, count: usize| Ok(Some(episodes(11.0, 6.5, count)));
+        let selection = select(&candidates, &config(), 9, &mut play).unwrap().unwrap();
+        assert_eq!((selection.selected.frames, selection.selected.confirmed, selection.failed.len()), (2, false, 0));
+        assert!(!selection.selected.closing.unwrap().within());
+        let mut nothing = |_: Option<u64>, _: EpisodeSet, _: usize| panic!("nothing to play");
+        assert!(select(&Candidates::default(), &config(), 9, &mut nothing).unwrap().is_none());
+    }
+
+    /// Alpha is shared out: at 2.5 % over 5 confirmations, each has 0.5 %. Four costs of 4.5 +- 0.1 have a standard error of 0.0577
+    /// (0.11547 / 2), and scipy.stats.t.ppf(0.995, 3) = 5.8409: the upper end is 4.837. With 0.6 it would be 2.02 higher than 4.5.
+    #[test]
+    fn surely_within_is_said_at_the_level_shared_out() {
+        let mut config = config();
+        assert_eq!(shared_level(&config.evaluation), 0.005);
+        assert!(surely_within(&episodes(1.0, 4.5, 4), &config.constraints, 0.005).unwrap());
+        config.constraints[0].budget = 4.836;
+        assert!(!surely_within(&episodes(1.0, 4.5, 4), &config.constraints, 0.005).unwrap());
+        config.constraints[0].budget = 4.838;
+        assert!(surely_within(&episodes(1.0, 4.5, 4), &config.constraints, 0.005).unwrap());
+        // At 2.5 % alone, 4.5 + 3.1824 * 0.0577 = 4.684 would do.
+        config.constraints[0].budget = 4.7;
+        assert!(surely_within(&episodes(1.0, 4.5, 4), &config.constraints, 0.025).unwrap());
+        assert!(!surely_within(&episodes(1.0, 4.5, 4), &config.constraints, 0.005).unwrap());
+    }
+
+    /// The setting that lets only those be selected that are surely within.
+    #[test]
+    fn runs_may_ask_for_sure_candidates() {
+        let mut config = config();
+        config.evaluation.surely = true;
+        let candidates = ranked(&[(1, 20.0, 4.8), (2, 18.0, 4.0)], AlgorithmKind::PpoLag);
+        let mut play = |policy: Option<u64>, _: EpisodeSet, count: usize| {
+            Ok(Some(episodes(11.0, if policy == Some(1) { 4.8 } else { 4.0 }, count)))
+        };
+        let selection = select(&candidates, &config, 9, &mut play).unwrap().unwrap();
+        assert_eq!((selection.selected.frames, selection.selected.surely_within), (2, true));
+        assert_eq!(selection.failed[0].frames, 1);
+        config.evaluation.surely = false;
+        let selection = select(&candidates, &config, 9, &mut play).unwrap().unwrap();
+        assert_eq!((selection.selected.frames, selection.selected.surely_within), (1, false));
+    }
+
+    /// What older versions wrote as `hand_out.json`.
+    #[test]
+    fn an_older_runs_file_is_read() {
+        let estimate = |mean: f64| serde_json::json!({ "mean": mean, "half_width": 1.0 });
+        let evaluation = serde_json::json!({
+            "episodes": 100, "episode_return": estimate(20.0), "cost": estimate(4.0), "length": estimate(525.0),
+            "constraints": [{ "term": null, "budget": 5.0, "cost": estimate(4.0) }],
+        });
+        let old = serde_json::json!({ "frames": 7, "chosen_by": evaluation, "confirmed": true, "closing": evaluation });
+        let read: Selection = serde_json::from_value(old).unwrap();
+        assert_eq!(
+            (read.selected.frames, read.selected.evaluation().cost),
+            (7, Estimate { mean: 4.0, half_width: 1.0, bootstrap: None })
+        );
+        let again: Selection = serde_json::from_str(&serde_json::to_string(&read).unwrap()).unwrap();
+        assert_eq!(again, read);
+    }
+}
