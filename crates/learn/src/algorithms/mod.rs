@@ -144,7 +144,7 @@ pub trait Algorithm: Send {
         None
     }
 
-    /// Told what each constraint costs, once a rollout or once a minibatch.
+    /// Moves what hangs on the costs of the constraints: once a rollout or once a minibatch.
     fn constrain(&mut self, signals: &[Signal]) {
         if let Some(weights) = self.weights_mut() {
             weights.update(signals);

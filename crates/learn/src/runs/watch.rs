@@ -107,7 +107,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Told when a rollout was learned from: what was new by then is not new to the next.
+    /// Ends what is new: call it when a rollout was learned from.
     pub fn learned(&mut self) {
         self.waited = if self.fresh == 0 { self.waited + 1 } else { 0 };
         self.fresh = 0;

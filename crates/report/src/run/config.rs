@@ -128,6 +128,13 @@ impl Config {
         let algo = take("algo")?;
         let seed = take("seed")?;
         let seed = seed.parse().map_err(|_| format!("has the seed {seed}, which is no whole number from 0 on"))?;
+        // A damped multiplier of older versions was a PID controller, whatever it was called.
+        let damping = options.remove("algorithm_settings.multiplier_damping").and_then(|damping| damping.parse::<f64>().ok());
+        let algo = match algo.as_str() {
+            "PPOLag" if damping > Some(0.0) => "PPOPID".into(),
+            "TRPOLag" if damping > Some(0.0) => "TRPOPID".into(),
+            _ => algo,
+        };
         let (scenario, mut level) = scenario_and_level(&env);
         // A curriculum ends in its last level, and that is what its results are results of.
         if let Some(last) =

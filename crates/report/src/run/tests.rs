@@ -152,3 +152,17 @@ fn the_last_ten_points_are_cut_by_frames() {
     assert_eq!(run(&[7.0]).final_mean("return_mean"), Some(7e-4));
     assert_eq!(run(&[7.0]).final_mean("cost_mean"), None);
 }
+
+/// A2: what older versions called PPOLag with damping is PPOPID's rule, and is compared with PPOPID.
+#[test]
+fn damped_multipliers_are_called_what_they_are() {
+    for (algo, damping, expected) in
+        [("PPOLag", "1.5", "PPOPID"), ("TRPOLag", "1.5", "TRPOPID"), ("PPOLag", "0.0", "PPOLag"), ("CUP", "1.5", "CUP")]
+    {
+        let text = format!(
+            "{{\"algorithm\":\"{algo}\",\"env\":{{\"id\":\"RemedyRushLevel1-v0\"}},\"seed\":1,\
+             \"algorithm_settings\":{{\"multiplier_damping\":{damping}}}}}"
+        );
+        assert_eq!(Config::parse(&text).unwrap().algo, expected, "{algo} {damping}");
+    }
+}
