@@ -1,4 +1,4 @@
-//! The status of `./check`, with a cargo and a Python check that only say how they ended.
+//! The status of `./check`, with a cargo, a formatter and a Python check that only say how they ended.
 #![cfg(unix)]
 
 use std::os::unix::fs::PermissionsExt;
@@ -21,6 +21,8 @@ fn check(name: &str, cargo_test: &str, python_check: &str) -> (String, bool) {
         &format!("if [ \"$1\" = test ] && [ \"$4\" = --no-fail-fast ]; then {cargo_test}; fi"),
     );
     write_script(&folder.join("bin/python3"), "exit 0");
+    write_script(&folder.join("bin/rustfmt"), "exit 0");
+    std::fs::create_dir_all(folder.join("crates")).unwrap();
     write_script(&folder.join("python/check"), python_check);
     let path = format!("{}:{}", folder.join("bin").display(), std::env::var("PATH").unwrap());
     let output = Command::new("bash").arg(folder.join("check")).env("PATH", path).output().unwrap();
