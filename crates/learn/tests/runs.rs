@@ -508,6 +508,8 @@ fn a_run_selects_its_best_checkpoint_within_the_budget() {
     config.frames = 60 * config.frames_per_rollout();
     config.evaluation.every = Some(4 * config.frames_per_rollout());
     config.algorithm_settings.multiplier_rate = 0.4;
+    // Of episodes that the clock ends after ten steps, half of the steps see all of the cost to come that has some weight.
+    config.learning.cost_gamma = Some(0.5);
     let path = tiny::directory("selection");
     let (summary, reports, _) = tiny::run(Start::Fresh(config.clone()), &path);
     let evaluated: Vec<_> = reports.iter().filter_map(|report| Some((report.frames, report.evaluation.clone()?))).collect();

@@ -61,15 +61,17 @@ pub fn advice(name: &str) -> Option<&'static str> {
     match name {
         "human" => Some(
             "People play, nothing is trained. Ten episodes of each environment, as in the paper's Table 14:\n\
-             \x20 hasard play RemedyRushLevel1-v0 --rules tables -o human/NAME-RemedyRush1.episode\n\
+             \x20 hasard play RemedyRushLevel1-v0 --rules tables -o human\n\
              \x20 hasard report runs human        # fills the section \"Human play\"\n\
              `hasard envs` lists the environments; `hasard play --help` has the keys.",
         ),
         "witness" => Some(
-            "A witness is an episode with reward at cost 0, which shows that costs can be avoided. Play or record one a level, then report \
-             them:\n\
-             \x20 hasard play RemedyRushLevel1-v0 -o witnesses/witness-RemedyRush1.episode\n\
-             \x20 hasard record RUN -o witnesses/witness-RemedyRush1.episode --seed N     # or by an agent, with a seed of cost 0\n\
+            "A witness is an episode with reward at cost 0, which shows that costs can be avoided. One of each environment is in the \
+             repository, found by search:\n\
+             \x20 cargo run --release -p hasard-play --example witness -- witnesses\n\
+             Play one yourself, or record an agent's with a seed of cost 0:\n\
+             \x20 hasard play RemedyRushLevel1-v0 -o witnesses\n\
+             \x20 hasard record RUN -o witnesses/witness-RemedyRush1.episode --seed N\n\
              \x20 hasard report runs witnesses    # fills the section \"Witnesses of safe reward\"\n\
              The report checks each episode and lists the levels that have none.",
         ),

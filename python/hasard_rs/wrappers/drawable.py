@@ -28,4 +28,4 @@ class Drawable(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     def render(self) -> Any:
         """Returns uint8 [height, width, 3]."""
         picture = self.env.render()
-        return picture if picture is None else coloured(picture)
+        return coloured(picture) if isinstance(picture, np.ndarray) else picture
