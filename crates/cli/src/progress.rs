@@ -166,8 +166,12 @@ fn line(report: &Report, seconds_left: f64) -> String {
     match report.means {
         Some((episode_return, cost, _)) => {
             text += &format!("; return {episode_return:.2}, cost {cost:.1}");
-            if let Some(budget) = report.budgets.first() {
-                text += &format!(" of {budget}");
+            let constraints = report.terms.iter().zip(&report.constraint_costs).zip(&report.budgets);
+            for ((term, cost), budget) in constraints {
+                match term {
+                    Some(term) => text += &format!(", {term} {cost:.1} of {budget}"),
+                    None => text += &format!(" of {budget}"),
+                }
             }
         }
         None => text += "; no episode has ended yet",

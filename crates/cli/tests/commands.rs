@@ -305,6 +305,12 @@ fn a_budget_on_an_uncounted_term_binds_and_is_judged() {
         assert_eq!((&judged["within_budget"], &lines[12]["summary"]["within_budget"]), (&false.into(), &false.into()), "{told}");
     }
     assert!(folder.refused("train RemedyRushLevel1-v0 --safety-budget jumps=2").contains("harmful_items"));
+    // In words the budget stands beside the term that it is of.
+    let output = folder
+        .run(&format!("train VolcanicVentureLevel1-v0 --safety-budget jumps=2 --out words {}", small.replace("--json", "")));
+    let words = String::from_utf8(output.stderr).unwrap();
+    assert!(words.contains("budget of an episode: jumps 2, device"), "{words}");
+    assert!(words.lines().any(|line| line.contains(", jumps ") && line.contains(" of 2, multiplier")), "{words}");
 }
 
 /// A small run from its evaluations to its agent in a file: what is selected, judged by each constraint's own budget.

@@ -209,17 +209,18 @@ fn scenario_of(id: &str) -> String {
 }
 
 fn describe(config: &TrainConfig, directory: &Path) {
-    let budgets: Vec<String> = config.constraints.iter().map(|constraint| constraint.budget.to_string()).collect();
+    let budget_of = |constraint: &Constraint| format!("{} {}", constraint.term.as_deref().unwrap_or("cost"), constraint.budget);
+    let budgets: Vec<String> = config.constraints.iter().map(budget_of).collect();
     let levels: Vec<String> = config.curriculum.iter().map(|lesson| format!("{} for {}", lesson.level, lesson.frames)).collect();
     let levels = if levels.is_empty() { String::new() } else { format!(" (levels {})", levels.join(", ")) };
     note!(
-        "{} on {}, preset {}, seed {}, {} frames{levels}, cost budget {} an episode, device {} -> {}",
+        "{} on {}, preset {}, seed {}, {} frames{levels}, budget of an episode: {}, device {} -> {}",
         config.algorithm,
         config.env.id,
         config.preset,
         config.seed,
         config.frames,
-        budgets.join(" / "),
+        budgets.join(", "),
         config.device,
         directory.display()
     );
