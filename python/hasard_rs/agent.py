@@ -59,7 +59,7 @@ def train(
 ) -> Run:
     """Trains an agent, as `hasard train` does; other threads of Python run meanwhile.
 
-    On a terminal a line tells how far it is.
+    On a terminal a line shows how far it is.
 
     Args:
         env_id: one of `ids()`, with or without `hasard/`.
@@ -268,7 +268,7 @@ class Agent:
         return _State(state.memory, np.atleast_1d(costs).astype(float).tolist(), np.atleast_1d(over).astype(bool).tolist(), terms)
 
     def evaluate(self, episodes: int = 20, seed: int = 0, *, best: bool | None = None, greedy: bool | None = None) -> list[dict[str, Any]]:
-        """Plays episodes in worlds like those that the agent was trained in; what it tells is what `hasard eval --json` prints.
+        """Plays episodes in worlds like those that the agent was trained in; the result is what `hasard eval --json` prints.
 
         The weights that were loaded play, whatever has been written to the run since.
 

@@ -1,4 +1,4 @@
-//! What each flag of a line stops, measured in the published engine (vizdoom 1.3.2) in the same room.
+//! What each flag of a line stops, measured in ViZDoom (vizdoom 1.3.2) in the same room.
 
 mod hall;
 

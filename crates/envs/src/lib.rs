@@ -64,7 +64,7 @@ pub use error::EnvError;
 pub use hasard_engine::render::FrameSize;
 pub use options::{EnvOptions, Layout, ObservationKind, RuleSet};
 pub use policy::{Move, Policy, PolicyRun};
-pub use registry::{EnvId, Scenario};
+pub use registry::{EnvId, Scenario, edit_distance};
 pub use rollout::rollout;
 pub use snapshot::Snapshot;
 pub use vec_env::{Autoreset, FinalObservations, LaneState, Restart, VecEnv, VecOptions};

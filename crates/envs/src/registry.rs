@@ -101,8 +101,10 @@ impl std::str::FromStr for EnvId {
     }
 }
 
-/// Least number of characters inserted, removed or replaced that turn `a` into `b`.
-fn edit_distance(a: &str, b: &str) -> usize {
+/// Least number of characters inserted, removed or replaced that turn `a` into `b`: what the nearest known name to a mistyped one is
+/// found by. Of `a` the first 200 characters count.
+#[must_use]
+pub fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, from) in a.chars().take(200).enumerate() {

@@ -1,5 +1,7 @@
 //! What the settings of `config.json` mean: the comments beside their fields, so that nothing is said twice.
 
+use hasard_envs::edit_distance;
+
 /// A struct of settings: its place in `config.json`, its name, and the file that declares it.
 const SOURCES: [(&str, &str, &str); 8] = [
     ("", "TrainConfig", include_str!("mod.rs")),
@@ -82,21 +84,6 @@ const SHORT: [(&str, &str); 14] = [
     ("clip_range", "learning.clip_ratio"),
     ("total_timesteps", "frames"),
 ];
-
-/// Least number of letters inserted, removed or replaced that turn one text into another.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().take(200).enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, &to) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(from != to);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
 
 #[cfg(test)]
 mod tests {

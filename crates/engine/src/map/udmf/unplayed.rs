@@ -1,4 +1,4 @@
-//! Fields that the published engine plays or draws and this one does not: a map that uses one is reported.
+//! Fields that ViZDoom plays or draws and this one does not: a map that uses one is reported.
 //!
 //! `docs/guide/maps.md` has every field of the format and what comes of it; a test holds the two together.
 
