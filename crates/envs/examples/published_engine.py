@@ -29,7 +29,7 @@ DECOY_WEIGHTS = np.linspace(0.25, 1.0, 4)
 class Published:
     """A scenario's level; `groups` are the sub-actions, each a list of the buttons of which at most one is pressed."""
 
-    def __init__(self, scenario, level, hard, groups, frames=False):
+    def __init__(self, scenario, level, hard, groups, frames=False, objects=False):
         folder = os.path.join(MAPS, FOLDERS[scenario])
         self.scenario, self.hard, self.groups, self.frames = scenario, hard, groups, frames
         self.game = vizdoom.DoomGame()
@@ -40,6 +40,7 @@ class Published:
         self.game.set_screen_resolution(vizdoom.ScreenResolution.RES_160X120)
         self.game.set_screen_format(vizdoom.ScreenFormat.RGB24)
         self.game.set_window_visible(False)
+        self.game.set_objects_info_enabled(objects)
         self.game.init()
 
     def variable(self, name):
