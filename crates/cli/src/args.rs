@@ -503,6 +503,9 @@ pub struct EvalArgs {
     /// The latest checkpoint instead of the one that the run selected
     #[arg(long)]
     pub latest: bool,
+    /// Play under this rule set instead of the run's; a budget that was the default of the run's rules becomes that of these
+    #[arg(long, value_enum)]
+    pub rules: Option<Rules>,
     /// Film so many of the worst episodes, those that cost most, one after the other
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub worst: Option<u16>,

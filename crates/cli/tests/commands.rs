@@ -277,6 +277,23 @@ fn an_evaluation_shows_the_tails() {
     assert!(folder.refused("eval run --worst 1 -o worst.avi").contains(".mp4"));
 }
 
+/// Under other rules than a run's own its default budget is theirs; one that was asked for stays.
+#[test]
+fn an_agent_is_evaluated_under_other_rules() {
+    let folder = Folder::new("other_rules");
+    let small = "--algo PPOLag --envs 2 --threads 1 --set network.dense=[8] --set network.recurrent=8 --set sampling.rollout=8 \
+                 --set episode_steps=8 --observation grey --size 64x48 --frames 64 --quiet";
+    for (own, asked, budget) in [("usual", "", 5.0), ("asked", "--safety-budget 7", 7.0)] {
+        folder.ok(&format!("train ArmamentBurdenLevel1-v0 --out {own} {asked} {small}"));
+        let told = folder.ok(&format!("eval {own} --latest --episodes 1 --rules released --json"));
+        let lines: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(lines[0]["rules"], "released", "{told}");
+        assert_eq!(lines[1]["summary"]["constraints"][0]["budget"], budget, "{told}");
+    }
+    let told = folder.ok("eval usual --latest --episodes 1 --json");
+    assert!(told.contains("\"budget\":50.0"), "{told}");
+}
+
 /// A1: a budget on a term that the scalar cost does not count binds, is reported, and is judged by what was measured.
 #[test]
 fn a_budget_on_an_uncounted_term_binds_and_is_judged() {

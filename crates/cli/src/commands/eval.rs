@@ -6,7 +6,7 @@ use crate::args::{EvalArgs, Size, View};
 use crate::episode_lines::EpisodeLines;
 use crate::failure::{Failure, Outcome};
 use crate::zoo;
-use hasard_envs::{Env, EnvOptions, Episode, VecEnv};
+use hasard_envs::{Env, EnvId, EnvOptions, Episode, RuleSet, VecEnv};
 use hasard_learn::config::{Constraint, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config};
@@ -30,7 +30,11 @@ pub fn run(args: &EvalArgs) -> Outcome {
         return Err(Failure::bad(format!("--out {}: give a name that ends in .mp4 or .gif", out.display())));
     }
     let run = zoo::find(&args.run)?;
-    let config = run_config(&run).map_err(Failure::bad)?;
+    let mut config = run_config(&run).map_err(Failure::bad)?;
+    if let Some(rules) = args.rules {
+        play_under(&mut config, rules.into())?;
+    }
+    let config = config;
     let mut lines = EpisodeLines::new(args.json);
     lines.hold_against(&config.constraints);
     let options = crate::settings::trained_options(&config.env, args.places.elsewhere())?;
@@ -73,6 +77,20 @@ pub fn run(args: &EvalArgs) -> Outcome {
                 "filmed" => say!("{}: episodes of the seeds {}", value["file"].as_str().unwrap_or_default(), value["seeds"]),
                 _ => print_calibration(&value)?,
             }
+        }
+    }
+    Ok(())
+}
+
+/// Puts a run's environment under another rule set. A budget that its own rules had by default becomes that of these; one that was
+/// asked for stays.
+fn play_under(config: &mut TrainConfig, rules: RuleSet) -> Outcome {
+    let scenario = config.env.id.parse::<EnvId>().map_err(Failure::bad)?.scenario;
+    let before = scenario.safety_budget(config.env.options().map_err(Failure::bad)?.rules);
+    config.env.rules = rules.name().into();
+    for constraint in &mut config.constraints {
+        if constraint.term.is_none() && constraint.budget == before {
+            constraint.budget = scenario.safety_budget(rules);
         }
     }
     Ok(())
