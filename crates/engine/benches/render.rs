@@ -6,7 +6,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use hasard_engine::assets::Assets;
 use hasard_engine::map::{Map, MapBuilder, SectorId, Style, TileGrid};
 use hasard_engine::math::{Angle, Fixed, Rng};
-use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, View};
+use hasard_engine::render::{Buffers, FrameScratch, FrameSize, Renderer, Scene, View};
 use hasard_engine::world::{ActorKind, World};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -67,6 +67,7 @@ fn frames(criterion: &mut Criterion) {
     for (width, height) in [(128, 72), (160, 120), (320, 240), (640, 480), (1920, 1080)] {
         let size = FrameSize { width, height };
         let mut renderer = Renderer::new(scene.clone(), Arc::new(View::new(size).unwrap()));
+        let mut scratch = FrameScratch::default();
         let mut rgb = vec![0; size.pixels() * 3];
         for (name, buffers) in
             [("colour", Buffers::default()), ("colour, depth and labels", Buffers { depth: true, labels: true })]
@@ -79,7 +80,7 @@ fn frames(criterion: &mut Criterion) {
                         world.clone()
                     },
                     |world| {
-                        renderer.render(black_box(&world), 0, buffers);
+                        renderer.render(&mut scratch, black_box(&world), 0, buffers);
                         world
                     },
                     criterion::BatchSize::SmallInput,

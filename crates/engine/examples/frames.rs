@@ -3,7 +3,7 @@
 use hasard_engine::assets::{Assets, sprite_index};
 use hasard_engine::map::{Map, MapBuilder, Mark, SectorId, Style, TileGrid};
 use hasard_engine::math::{Angle, Fixed, Rng};
-use hasard_engine::render::{Buffers, FrameSize, Renderer, Scene, SegmentationColours, TopDown, View};
+use hasard_engine::render::{Buffers, FrameScratch, FrameSize, Renderer, Scene, SegmentationColours, TopDown, View};
 use hasard_engine::world::{ActorKind, PlayerSprite, Weapon, World};
 use std::path::Path;
 use std::sync::Arc;
@@ -161,7 +161,7 @@ fn draw(folder: &Path, scene: &Arc<Scene>, world: &mut World, views: &[(&str, i3
         for (width, height) in [(128, 72), (160, 120), (320, 240), (640, 480)] {
             let size = FrameSize { width, height };
             let mut renderer = Renderer::new(scene.clone(), Arc::new(View::new(size).unwrap()));
-            renderer.render(world, 0, Buffers { depth: true, labels: true });
+            renderer.render(&mut FrameScratch::default(), world, 0, Buffers { depth: true, labels: true });
             let mut rgb = vec![0; size.pixels() * 3];
             renderer.write_rgb_hwc(&mut rgb);
             save(&folder.join(format!("{name}_{width}.png")), size, png::ColorType::Rgb, &rgb);

@@ -1,9 +1,15 @@
 //! What an environment shows its learner: frames drawn, laid out and stacked.
 
 use crate::{EnvOptions, Layout, ObservationKind};
-use hasard_engine::render::{Buffers, RenderOptions, Renderer, Scene, SegmentationColours, View};
+use hasard_engine::render::{Buffers, FrameScratch, RenderOptions, Renderer, Scene, SegmentationColours, View};
 use hasard_engine::world::World;
+use std::cell::RefCell;
 use std::sync::Arc;
+
+thread_local! {
+    /// What frames are drawn in. Each thread that steps environments owns one for all of them, so that it stays in a near cache.
+    static SCRATCH: RefCell<FrameScratch> = RefCell::default();
+}
 
 /// Draws observations of one kind; owns the memory for that.
 #[derive(Clone, Debug)]
@@ -109,7 +115,7 @@ impl Eye {
         let depth = self.kind == ObservationKind::RgbDepth;
         let labels = self.kind == ObservationKind::Segmented;
         let (kind, layout, colours) = (self.kind, self.layout, &self.colours);
-        self.renderer.render_then(world, 0, Buffers { depth, labels }, |renderer| match (kind, layout) {
+        let write = |renderer: &Renderer| match (kind, layout) {
             (ObservationKind::Rgb, Layout::Hwc) => renderer.write_rgb_hwc(out),
             (ObservationKind::Rgb, Layout::Chw) => renderer.write_rgb_chw(out),
             (ObservationKind::Grey, _) => renderer.write_grey(out),
@@ -121,12 +127,14 @@ impl Eye {
                 renderer.write_depth(depth);
             }
             (ObservationKind::RgbDepth, Layout::Hwc) => renderer.write_rgb_depth_hwc(out),
-        });
+        };
+        let buffers = Buffers { depth, labels };
+        SCRATCH.with_borrow_mut(|scratch| self.renderer.render_then(scratch, world, 0, buffers, write));
     }
 
     /// Draws the present with the wanted buffers, for tools that read them.
     pub fn render(&mut self, world: &World, buffers: Buffers) -> &Renderer {
-        self.renderer.render(world, 0, buffers);
+        SCRATCH.with_borrow_mut(|scratch| self.renderer.render(scratch, world, 0, buffers));
         &self.renderer
     }
 

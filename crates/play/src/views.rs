@@ -1,7 +1,7 @@
 //! A moment as pictures.
 
 use crate::{PlayError, Stage};
-use hasard_engine::render::{Buffers, FrameSize, Renderer, SegmentationColours, TopDown};
+use hasard_engine::render::{Buffers, FrameScratch, FrameSize, Renderer, SegmentationColours, TopDown};
 use hasard_engine::world::World;
 use hasard_envs::Env;
 use hasard_media::compose::{Panel, side_by_side};
@@ -42,6 +42,7 @@ impl ViewKind {
 /// Draws moments of a stage at a size of its own.
 pub struct Views {
     renderer: Renderer,
+    scratch: FrameScratch,
     size: FrameSize,
     kinds: Vec<ViewKind>,
     colours: SegmentationColours,
@@ -77,7 +78,7 @@ impl Views {
             if env.options().published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         let automap = kinds.contains(&ViewKind::Automap).then(|| (env.top_down(width, height), width, height));
-        Ok(Views { renderer: env.renderer(size)?, size, kinds, colours, automap })
+        Ok(Views { renderer: env.renderer(size)?, scratch: FrameScratch::default(), size, kinds, colours, automap })
     }
 
     /// A moment of a world in each view.
@@ -110,7 +111,7 @@ impl Views {
     fn render(&mut self, world: &World) {
         let wants = |wanted: &[ViewKind]| self.kinds.iter().any(|kind| wanted.contains(kind));
         let buffers = Buffers { depth: wants(&[ViewKind::Depth]), labels: wants(&[ViewKind::Segmented, ViewKind::Labels]) };
-        self.renderer.render(world, 0, buffers);
+        self.renderer.render(&mut self.scratch, world, 0, buffers);
     }
 
     /// The moment: the view alone, or several side by side with captions.

@@ -25,17 +25,19 @@ const MIDDLE: [usize; 2] = [50, 80];
 
 #[test]
 fn the_sky_above_a_far_lower_neighbour_leaves_the_floor() {
+    let mut scratch = FrameScratch::default();
     let mut builder = MapBuilder::new();
     builder.rectangle(YARD, -64, -512, 256, 512);
     builder.rectangle(Style { floor: -8000, ceiling: -8000, ..YARD }, 256, -512, 512, 512);
     let (world, mut renderer, _) = stand(builder, 41);
-    renderer.render(&world, 0, Buffers { depth: false, labels: true });
+    renderer.render(&mut scratch, &world, 0, Buffers { depth: false, labels: true });
     let class_at = |row: usize| renderer.classes()[row * 160 + MIDDLE[1]];
     assert_eq!((class_at(MIDDLE[0] - 10), class_at(99)), (class::SKY, class::FLOOR));
 }
 
 #[test]
 fn runs_of_a_fence_that_begin_at_the_eye_s_height_show_only_below_it() {
+    let mut scratch = FrameScratch::default();
     let mut builder = MapBuilder::new();
     builder.rectangle(YARD, -64, -512, 512, 512);
     builder.rectangle(Style { floor: 8, ..YARD }, 128, -256, 256, 256);
@@ -44,7 +46,7 @@ fn runs_of_a_fence_that_begin_at_the_eye_s_height_show_only_below_it() {
     // Which columns show the fence, 128 units away, in the row just above the horizon.
     let mut shown = |view_z: Fixed| {
         world.players[0].view_z = view_z;
-        renderer.render(&world, 0, Buffers { depth: true, labels: false });
+        renderer.render(&mut scratch, &world, 0, Buffers { depth: true, labels: false });
         let row = &renderer.depth()[(MIDDLE[0] - 1) * 160..][..160];
         row.iter().map(|&depth| depth < 20).collect::<Vec<bool>>()
     };

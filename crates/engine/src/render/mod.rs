@@ -37,5 +37,6 @@ pub use buffers::request::Buffers;
 pub use output::segmentation::SegmentationColours;
 pub use renderer::{RenderOptions, Renderer};
 pub use scene::prepared::Scene;
+pub use scratch::FrameScratch;
 pub use view::size::{FrameSize, SizeError};
 pub use view::tables::View;

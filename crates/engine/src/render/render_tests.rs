@@ -106,6 +106,7 @@ const ALL: Buffers = Buffers { depth: true, labels: true };
 
 #[test]
 fn every_family_of_instructions_draws_the_same_bits() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(33));
     for (width, height, frames) in [(128, 72, 200), (160, 120, 60), (100, 48, 60), (640, 480, 10), (1001, 700, 3)] {
         let mut plain = renderer(width, height);
@@ -113,11 +114,11 @@ fn every_family_of_instructions_draws_the_same_bits() {
         for frame in 0..frames {
             look_anywhere(&mut world, &mut rng);
             let buffers = [Buffers::default(), ALL][frame % 2];
-            plain.render(&world, 0, buffers);
+            plain.render(&mut scratch, &world, 0, buffers);
             for simd in Simd::available() {
                 let mut other = renderer(width, height);
                 other.set_simd(simd);
-                other.render(&world, 0, buffers);
+                other.render(&mut scratch, &world, 0, buffers);
                 assert!(plain.indices() == other.indices(), "colour of frame {frame}, {width}x{height}, {simd:?}");
                 if buffers.depth {
                     assert!(plain.depth() == other.depth(), "depth of frame {frame}, {width}x{height}, {simd:?}");
@@ -131,6 +132,7 @@ fn every_family_of_instructions_draws_the_same_bits() {
 
 #[test]
 fn what_does_not_stay_is_drawn_as_what_does() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(34));
     let sizes = [(128, 72), (160, 120), (128, 72), (100, 48)];
     let mut pairs = sizes.map(|(width, height)| [renderer(width, height), renderer(width, height)]);
@@ -138,9 +140,9 @@ fn what_does_not_stay_is_drawn_as_what_does() {
         look_anywhere(&mut world, &mut rng);
         for ([keeps, passes], _) in pairs.iter_mut().zip(sizes) {
             let buffers = [Buffers::default(), ALL, Buffers { depth: true, labels: false }][frame % 3];
-            keeps.render(&world, 0, buffers);
+            keeps.render(&mut scratch, &world, 0, buffers);
             let mut written = 0;
-            passes.render_then(&world, 0, buffers, |passes| {
+            passes.render_then(&mut scratch, &world, 0, buffers, |passes| {
                 assert!(passes.indices() == keeps.indices() && passes.palette() == keeps.palette(), "frame {frame}");
                 if buffers.depth {
                     assert!(passes.depth() == keeps.depth(), "depth of frame {frame}");
@@ -158,6 +160,7 @@ fn what_does_not_stay_is_drawn_as_what_does() {
 
 #[test]
 fn flashes_come_and_go() {
+    let mut scratch = FrameScratch::default();
     let mut world = yard_world();
     look(&mut world, Fixed::ZERO, Fixed::ZERO, Angle::EAST, 0);
     let mut lasting = renderer(100, 48);
@@ -165,7 +168,7 @@ fn flashes_come_and_go() {
         (world.players[0].damage_count, world.players[0].bonus_count) = (damage, bonus);
         let mut afresh = renderer(100, 48);
         let written = [&mut lasting, &mut afresh].map(|renderer| {
-            renderer.render(&world, 0, Buffers::default());
+            renderer.render(&mut scratch, &world, 0, Buffers::default());
             let mut out = vec![0; 100 * 48 * 3];
             renderer.write_rgb_hwc(&mut out);
             (out, *renderer.palette())
@@ -178,12 +181,13 @@ fn flashes_come_and_go() {
 
 #[test]
 fn the_learners_frame_is_the_reduction_of_the_classic_one() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(21));
     let (mut small, mut large) = (renderer(128, 72), renderer(160, 120));
     for frame in 0..300 {
         look_anywhere(&mut world, &mut rng);
-        small.render(&world, 0, ALL);
-        large.render(&world, 0, ALL);
+        small.render(&mut scratch, &world, 0, ALL);
+        large.render(&mut scratch, &world, 0, ALL);
         for y in 0..72 {
             for x in 0..128 {
                 let (at, from) = (y * 128 + x, (y * 5 / 3) * 160 + x * 5 / 4);
@@ -203,13 +207,14 @@ fn the_learners_frame_is_the_reduction_of_the_classic_one() {
 
 #[test]
 fn buffers_do_not_change_the_colours() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(22));
     let (mut with, mut without) = (renderer(160, 120), renderer(160, 120));
     for _ in 0..60 {
         look_anywhere(&mut world, &mut rng);
-        with.render(&world, 0, ALL);
+        with.render(&mut scratch, &world, 0, ALL);
         for buffers in [Buffers::default(), Buffers { depth: true, labels: false }, Buffers { depth: false, labels: true }] {
-            without.render(&world, 0, buffers);
+            without.render(&mut scratch, &world, 0, buffers);
             assert_eq!(with.indices(), without.indices());
             assert!(!buffers.depth || with.depth() == without.depth());
             assert!(!buffers.labels || (with.classes() == without.classes() && with.labels() == without.labels()));
@@ -220,12 +225,13 @@ fn buffers_do_not_change_the_colours() {
 /// ViZDoom draws the sky under goggles as without; everything else is then of one light.
 #[test]
 fn goggles_leave_the_sky_as_it_is() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut renderer) = (yard_world(), renderer(160, 120));
     look(&mut world, Fixed::from_int(-550), Fixed::from_int(-250), Angle::EAST, 0);
-    renderer.render(&world, 0, ALL);
+    renderer.render(&mut scratch, &world, 0, ALL);
     let (bare, classes) = (renderer.indices().to_vec(), renderer.classes().to_vec());
     world.players[0].infrared_tics = 1000;
-    renderer.render(&world, 0, ALL);
+    renderer.render(&mut scratch, &world, 0, ALL);
     let changed = |sky: bool| {
         (0..bare.len()).filter(|&at| (classes[at] == class::SKY) == sky && bare[at] != renderer.indices()[at]).count()
     };
@@ -236,6 +242,7 @@ fn goggles_leave_the_sky_as_it_is() {
 
 #[test]
 fn a_used_renderer_draws_as_a_new_one() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(23));
     let sizes = [(128, 72), (64, 48), (320, 240), (641, 480)];
     let mut renderers = sizes.map(|(width, height)| renderer(width, height));
@@ -248,9 +255,9 @@ fn a_used_renderer_draws_as_a_new_one() {
         player.keys = rng.below(4) as u8;
         player.weapon = [None, Some(Weapon::Pistol), Some(Weapon::Bfg9000)][rng.below(3) as usize];
         let ((width, height), used) = (sizes[frame % 4], &mut renderers[frame % 4]);
-        used.render(&world, 0, ALL);
+        used.render(&mut scratch, &world, 0, ALL);
         let mut new = renderer(width, height);
-        new.render(&world, 0, ALL);
+        new.render(&mut scratch, &world, 0, ALL);
         assert_eq!(used.indices(), new.indices());
         assert_eq!((used.depth(), used.classes(), used.palette()), (new.depth(), new.classes(), new.palette()));
     }
@@ -258,6 +265,7 @@ fn a_used_renderer_draws_as_a_new_one() {
 
 #[test]
 fn every_size_draws_from_anywhere() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(24));
     let extremes = [(64, 48), (1920, 1080), (64, 1080), (1920, 48), (128, 72), (320, 240), (1280, 1024), (65, 49)];
     let sizes = (0..40).map(|_| (rng.between(64, 400) as u16, rng.between(48, 300) as u16)).collect::<Vec<_>>();
@@ -265,7 +273,7 @@ fn every_size_draws_from_anywhere() {
         let mut renderer = renderer(width, height);
         for _ in 0..12 {
             look_anywhere(&mut world, &mut rng);
-            renderer.render(&world, 0, ALL);
+            renderer.render(&mut scratch, &world, 0, ALL);
         }
     }
 }
@@ -284,10 +292,11 @@ fn room(half: i32) -> (World, Renderer) {
 
 #[test]
 fn depth_is_the_distance_forward() {
+    let mut scratch = FrameScratch::default();
     for half in [40, 256, 756, 1500] {
         let (mut world, mut renderer) = room(half);
         look(&mut world, Fixed::ZERO, Fixed::ZERO, Angle::EAST, 0);
-        renderer.render(&world, 0, ALL);
+        renderer.render(&mut scratch, &world, 0, ALL);
         let depth = |x: usize, y: usize| i32::from(renderer.depth()[y * 160 + x]);
         // The wall ahead is equally far in every column.
         let wall = half * 10 / 73;
@@ -302,16 +311,18 @@ fn depth_is_the_distance_forward() {
 
 #[test]
 fn published_depth_ends_early_except_on_floors() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut renderer) = room(2000);
     look(&mut world, Fixed::ZERO, Fixed::ZERO, Angle::EAST, 0);
     renderer.set_options(RenderOptions { published_depth: true, ..RenderOptions::default() });
-    renderer.render(&world, 0, ALL);
+    renderer.render(&mut scratch, &world, 0, ALL);
     assert_eq!(renderer.depth()[48 * 160 + 80], 63);
     assert!(renderer.depth()[54 * 160 + 80] > 63, "floor");
 }
 
 #[test]
 fn no_pixel_of_a_closed_room_is_missed() {
+    let mut scratch = FrameScratch::default();
     // A hole would show as a pixel that is not of the wall's, floor's or ceiling's class at its proper place; the
     // buffers start as far wall, so depth shows it: no wall of this room is farther than its diagonal.
     let (mut world, mut renderer) = room(300);
@@ -319,7 +330,7 @@ fn no_pixel_of_a_closed_room_is_missed() {
     for _ in 0..500 {
         let (x, y) = (Fixed(rng.between(-280 << 16, 280 << 16)), Fixed(rng.between(-280 << 16, 280 << 16)));
         look(&mut world, x, y, Angle(rng.next_u64() as u32), rng.between(-380, 660) << 20);
-        renderer.render(&world, 0, ALL);
+        renderer.render(&mut scratch, &world, 0, ALL);
         let farthest = renderer.depth()[..160 * 100].iter().max().copied().unwrap_or(0);
         assert!(i32::from(farthest) <= 850 * 10 / 73, "a hole as far as {farthest}");
     }
@@ -327,12 +338,13 @@ fn no_pixel_of_a_closed_room_is_missed() {
 
 #[test]
 fn labels_agree_with_the_class_buffer() {
+    let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(25));
     let mut renderer = renderer(160, 120);
     let mut labelled = 0;
     for _ in 0..100 {
         look_anywhere(&mut world, &mut rng);
-        renderer.render(&world, 0, ALL);
+        renderer.render(&mut scratch, &world, 0, ALL);
         for (i, label) in renderer.labels().iter().enumerate() {
             assert_eq!(usize::from(label.class - class::FIRST_ACTOR), i);
             let actor = world.get(label.actor).unwrap();
@@ -353,6 +365,7 @@ fn labels_agree_with_the_class_buffer() {
 
 #[test]
 fn an_actor_behind_a_wall_is_not_seen() {
+    let mut scratch = FrameScratch::default();
     let mut builder = MapBuilder::new();
     builder.rectangle(STYLE, -500, -500, 500, 500);
     builder.solid(&[(100, -60), (140, -60), (140, 60), (100, 60)]);
@@ -364,7 +377,7 @@ fn an_actor_behind_a_wall_is_not_seen() {
     let mut seen_at = |y: i32| {
         let id = world.spawn(ActorKind::ArmorBonus, Fixed::from_int(300), Fixed::from_int(y), Fixed::ZERO);
         look(&mut world, Fixed::ZERO, Fixed::ZERO, Angle::EAST, 0);
-        renderer.render(&world, 0, ALL);
+        renderer.render(&mut scratch, &world, 0, ALL);
         world.remove(id);
         renderer.labels().len()
     };
@@ -374,10 +387,11 @@ fn an_actor_behind_a_wall_is_not_seen() {
 
 #[test]
 fn conversions_agree_with_one_another() {
+    let mut scratch = FrameScratch::default();
     let mut world = yard_world();
     let mut renderer = renderer(128, 72);
     look(&mut world, Fixed::from_int(-550), Fixed::from_int(-250), Angle::from_degrees(45.0), 0);
-    renderer.render(&world, 0, ALL);
+    renderer.render(&mut scratch, &world, 0, ALL);
     let pixels = 128 * 72;
     let (mut hwc, mut chw, mut grey) = (vec![0; pixels * 3], vec![0; pixels * 3], vec![0; pixels]);
     renderer.write_rgb_hwc(&mut hwc);

@@ -26,8 +26,8 @@ use crate::simd::Simd;
 use crate::world::World;
 use std::sync::Arc;
 
-/// Draws frames of one size of the worlds of one map. It owns what stays of a frame; what one is drawn in belongs to
-/// its thread, and drawing allocates nothing once every buffer has grown.
+/// Draws frames of one size of the worlds of one map. It owns what stays of a frame; what one is drawn in, the
+/// [`FrameScratch`], is the caller's. Drawing allocates nothing once every buffer has grown.
 #[derive(Clone, Debug)]
 pub struct Renderer {
     scene: Arc<Scene>,
@@ -94,26 +94,31 @@ impl Renderer {
     ///
     /// # Panics
     /// If the world is of another map than the scene, or has no such player.
-    pub fn render(&mut self, world: &World, player: usize, buffers: Buffers) {
+    pub fn render(&mut self, scratch: &mut FrameScratch, world: &World, player: usize, buffers: Buffers) {
         self.frame.fit(&self.view, self.frame.depths);
-        FrameScratch::with(|space| self.draw_buffers(space, world, player, buffers));
+        self.draw_buffers(scratch, world, player, buffers);
     }
 
-    /// Draws what player `player` of `world` sees, and lets `write` read it; it does not stay. Renderers of a thread share the
-    /// memory of such frames, so that it is in a near cache however many worlds take turns.
+    /// Draws what player `player` of `world` sees, and lets `write` read it; it does not stay. Renderers share the memory
+    /// of such frames with the scratch, so that it is in a near cache however many worlds take turns.
     ///
     /// # Panics
-    /// If the world is of another map than the scene, or has no such player; if `write` draws.
-    pub fn render_then(&mut self, world: &World, player: usize, buffers: Buffers, write: impl FnOnce(&Renderer)) {
-        FrameScratch::with(|space| {
-            let mut shared = std::mem::take(&mut space.frame);
-            shared.fit(&self.view, self.frame.depths);
-            std::mem::swap(&mut self.frame, &mut shared);
-            self.draw_buffers(space, world, player, buffers);
-            write(self);
-            std::mem::swap(&mut self.frame, &mut shared);
-            space.frame = shared;
-        });
+    /// If the world is of another map than the scene, or has no such player.
+    pub fn render_then(
+        &mut self,
+        scratch: &mut FrameScratch,
+        world: &World,
+        player: usize,
+        buffers: Buffers,
+        write: impl FnOnce(&Renderer),
+    ) {
+        let mut shared = std::mem::take(&mut scratch.frame);
+        shared.fit(&self.view, self.frame.depths);
+        std::mem::swap(&mut self.frame, &mut shared);
+        self.draw_buffers(scratch, world, player, buffers);
+        write(self);
+        std::mem::swap(&mut self.frame, &mut shared);
+        scratch.frame = shared;
     }
 
     #[inline(never)]

@@ -70,7 +70,7 @@ fn level(folder: &Path, out: Option<&Path>, list: bool) -> Any<Tallies> {
         let mut posed = stage.pose(&level, moment);
         let guess = untold::find(&mut stage, &mut posed, &theirs, &level.scenario, moment);
         leave_trails(&mut posed.world, moment);
-        stage.renderer.render(&posed.world, 0, Buffers { depth: true, labels: true });
+        stage.renderer.render(&mut stage.scratch, &posed.world, 0, Buffers { depth: true, labels: true });
         stage.renderer.write_rgb_hwc(&mut stage.rgb);
         let own = compare(&stage, &posed, &theirs, moment, &level.scenario);
         if list {

@@ -5,7 +5,7 @@ use crate::{Any, chance};
 use hasard_engine::assets::Assets;
 use hasard_engine::map::{Map, SectorId, udmf};
 use hasard_engine::math::{Angle, Fixed};
-use hasard_engine::render::{FrameSize, RenderOptions, Renderer, Scene, View};
+use hasard_engine::render::{FrameScratch, FrameSize, RenderOptions, Renderer, Scene, View};
 use hasard_engine::wad::Wad;
 use hasard_engine::world::{ActorId, ActorKind, Chance, Trail, Weapon, World};
 use hasard_envs::maps::pictures_beside;
@@ -22,6 +22,7 @@ pub struct Stage {
     /// The world as scripts left it at the last moment's tic.
     world: World,
     pub renderer: Renderer,
+    pub scratch: FrameScratch,
     pub size: [usize; 2],
     /// The last picture.
     pub rgb: Vec<u8>,
@@ -61,6 +62,7 @@ impl Stage {
             world,
             map,
             renderer,
+            scratch: FrameScratch::default(),
             size: [level.width, level.height].map(usize::from),
             rgb: vec![0; size.pixels() * 3],
             kinds,

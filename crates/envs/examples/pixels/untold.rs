@@ -177,7 +177,7 @@ fn best(stage: &mut Stage, world: &mut World, theirs: &Pictures, variants: Vec<C
     let mut most = None;
     for (index, change) in variants.iter().enumerate() {
         change(world);
-        stage.renderer.render(world, 0, Buffers::default());
+        stage.renderer.render(&mut stage.scratch, world, 0, Buffers::default());
         stage.renderer.write_rgb_hwc(&mut stage.rgb);
         let pixels = theirs.rgb.chunks_exact(3).zip(stage.rgb.chunks_exact(3)).enumerate();
         let equal = pixels.filter(|&(at, (a, b))| a == b && counts(at)).count();

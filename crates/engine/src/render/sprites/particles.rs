@@ -139,6 +139,7 @@ mod tests {
     use crate::render::buffers::request::Buffers;
     use crate::render::renderer::Renderer;
     use crate::render::scene::prepared::Scene;
+    use crate::render::scratch::FrameScratch;
     use crate::render::view::size::FrameSize;
     use crate::render::view::tables::View;
     use crate::simd::Simd;
@@ -167,10 +168,11 @@ mod tests {
     }
 
     fn shoot(world: &World, size: FrameSize, simd: Simd) -> Shot {
+        let mut scratch = FrameScratch::default();
         let scene = Arc::new(Scene::new(&world.map, Assets::embedded()));
         let mut renderer = Renderer::new(scene, Arc::new(View::new(size).unwrap()));
         renderer.set_simd(simd);
-        renderer.render(world, 0, Buffers { depth: true, labels: true });
+        renderer.render(&mut scratch, world, 0, Buffers { depth: true, labels: true });
         let mut rgb = vec![0; size.pixels() * 3];
         renderer.write_rgb_hwc(&mut rgb);
         Shot { rgb, rest: (renderer.depth().to_vec(), renderer.classes().to_vec()) }

@@ -13,10 +13,6 @@ pub(crate) const INVERSE_BITS: u32 = 44;
 /// Fractional bits of the exact columns of a seg's ends.
 pub(crate) const END_BITS: u32 = 18;
 
-/// Bits of a base column's number.
-#[cfg(target_arch = "x86_64")]
-const COLUMN_BITS: u32 = 11;
-
 /// The inverse of a distance beyond all maps, which keeps divisions in range.
 pub(crate) const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
 
@@ -24,6 +20,8 @@ pub(crate) const LEAST_INVERSE: i64 = 1 << (INVERSE_BITS - 17);
 #[cfg(target_arch = "x86_64")]
 #[inline]
 pub(crate) fn fits_doubles(at: i64, step: i64) -> bool {
+    /// Bits of a base column's number.
+    const COLUMN_BITS: u32 = 11;
     (at.unsigned_abs() | step.unsigned_abs() << COLUMN_BITS) >> (f64::MANTISSA_DIGITS - 1) == 0
 }
 

@@ -143,6 +143,7 @@ mod tests {
     use crate::render::buffers::request::Buffers;
     use crate::render::renderer::Renderer;
     use crate::render::scene::prepared::Scene;
+    use crate::render::scratch::FrameScratch;
     use crate::render::view::size::FrameSize;
     use crate::render::view::tables::View;
     use crate::world::World;
@@ -164,8 +165,9 @@ mod tests {
     }
 
     fn frame(world: &World, scene: &Arc<Scene>, size: FrameSize) -> Vec<[u8; 3]> {
+        let mut scratch = FrameScratch::default();
         let mut renderer = Renderer::new(Arc::clone(scene), Arc::new(View::new(size).unwrap()));
-        renderer.render(world, 0, Buffers { depth: true, labels: true });
+        renderer.render(&mut scratch, world, 0, Buffers { depth: true, labels: true });
         let mut rgb = vec![0; size.pixels() * 3];
         renderer.write_rgb_hwc(&mut rgb);
         rgb.as_chunks().0.to_vec()

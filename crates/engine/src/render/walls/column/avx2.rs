@@ -51,3 +51,27 @@ fn numbers<const TEXELS: usize>(at: __m256i, step: __m256i, rows: &[u32; 8]) -> 
     let position = _mm256_add_epi32(at, _mm256_mullo_epi32(step, rows));
     if TEXELS == 64 { _mm256_srli_epi32(position, 26) } else { _mm256_srli_epi32(position, 25) }
 }
+
+/// A column whose picture has few colours, made ready here: for tests, on a processor that has the instructions.
+#[cfg(test)]
+pub(super) fn draw_by_own_colours(column: &super::data::Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+    use super::data::IndexedColumn;
+    use crate::render::textures::local_palette::LocalPalette;
+    let own = LocalPalette::new(column.texels, &[*column.table]);
+    macro_rules! draw {
+        ($texels:literal, $colours:literal) => {{
+            let (texels, lit) = (own.texels.first_chunk().unwrap(), own.lit(0).first_chunk().unwrap());
+            let column = IndexedColumn::<$texels, $colours> { texels, lit, at: column.at, step: column.step };
+            // SAFETY: the processor has the instructions.
+            unsafe { draw(&column, pixels, rows, top, bottom) }
+        }};
+    }
+    match (own.texels.len(), own.room) {
+        (64, 16) => draw!(64, 16),
+        (64, 64) => draw!(64, 64),
+        (64, _) => draw!(64, 256),
+        (_, 16) => draw!(128, 16),
+        (_, 64) => draw!(128, 64),
+        _ => draw!(128, 256),
+    }
+}

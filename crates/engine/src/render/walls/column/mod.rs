@@ -27,32 +27,6 @@ mod tests {
     use super::*;
     use crate::math::Rng;
     use crate::render::blocks::{ROW_BLOCK, ROW_PADDING};
-    #[cfg(target_arch = "x86_64")]
-    use crate::simd::Level;
-
-    /// With vectors of 32 bytes, which the processor has.
-    #[cfg(target_arch = "x86_64")]
-    fn draw_by_own_colours(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
-        use super::data::IndexedColumn;
-        use crate::render::textures::local_palette::LocalPalette;
-        let own = LocalPalette::new(column.texels, &[*column.table]);
-        macro_rules! draw {
-            ($texels:literal, $colours:literal) => {{
-                let (texels, lit) = (own.texels.first_chunk().unwrap(), own.lit(0).first_chunk().unwrap());
-                let column = IndexedColumn::<$texels, $colours> { texels, lit, at: column.at, step: column.step };
-                // SAFETY: the processor has the instructions.
-                unsafe { avx2::draw(&column, pixels, rows, top, bottom) }
-            }};
-        }
-        match (own.texels.len(), own.room) {
-            (64, 16) => draw!(64, 16),
-            (64, 64) => draw!(64, 64),
-            (64, _) => draw!(64, 256),
-            (_, 16) => draw!(128, 16),
-            (_, 64) => draw!(128, 64),
-            _ => draw!(128, 256),
-        }
-    }
 
     #[test]
     fn all_ways_draw_the_same_columns() {
@@ -87,8 +61,8 @@ mod tests {
                 for simd in Simd::available() {
                     compare(&mut |pixels| draw(&column, simd, pixels, &rows, top, bottom), simd.name());
                     #[cfg(target_arch = "x86_64")]
-                    if simd.level() == Level::Avx2 && height != 96 {
-                        compare(&mut |pixels| draw_by_own_colours(&column, pixels, &rows, top, bottom), "by own colours");
+                    if simd.level() == crate::simd::Level::Avx2 && height != 96 {
+                        compare(&mut |pixels| avx2::draw_by_own_colours(&column, pixels, &rows, top, bottom), "by own colours");
                     }
                 }
             }
