@@ -1,12 +1,13 @@
 //! What is named as in view has pixels, and pixels of things are named: in every environment.
 
-use hasard_engine::render::{Buffers, class};
+use hasard_engine::render::{Buffers, FrameScratch, class};
 use hasard_envs::{Env, EnvId, EnvOptions, FrameSize, Move, Policy, PolicyRun};
 use std::collections::BTreeMap;
 
 #[test]
 fn things_in_view_are_those_with_a_pixel_of_their_value() {
     let (mut named, mut hidden) = (0, 0);
+    let mut scratch = FrameScratch::default();
     for id in EnvId::all() {
         for size in [FrameSize { width: 160, height: 120 }, FrameSize { width: 64, height: 48 }] {
             let mut env = Env::new(&id.to_string(), &EnvOptions { size, ..EnvOptions::default() }).unwrap();
@@ -22,7 +23,7 @@ fn things_in_view_are_those_with_a_pixel_of_their_value() {
                         }
                     }
                 }
-                renderer.render(env.world(), 0, Buffers { depth: false, labels: true });
+                renderer.render(&mut scratch, env.world(), 0, Buffers { depth: false, labels: true });
                 let mut picture = vec![7; usize::from(size.width) * usize::from(size.height)];
                 renderer.write_labels(&mut picture);
                 let in_view = renderer.in_view();
