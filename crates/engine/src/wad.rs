@@ -1,7 +1,6 @@
 //! WAD files: the directory of named lumps that maps and pictures come in.
 
-use crate::assets::STAND_INS;
-use crate::map::{MapSource, TextureName, udmf};
+use crate::map::{MapSource, STAND_INS, TextureName, udmf};
 use std::fmt;
 
 /// Bytes of the header and of a directory entry.

@@ -6,7 +6,6 @@ mod embedded;
 mod iwad;
 
 pub use iwad::IwadError;
-pub(crate) use iwad::STAND_INS;
 
 /// A picture: column-major, `pixels[x * height + y]`, so that a wall or sprite column is contiguous.
 #[derive(Clone, Debug, PartialEq, Eq)]

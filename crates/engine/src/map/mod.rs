@@ -12,10 +12,10 @@ mod built;
 mod error;
 #[cfg(test)]
 mod hostile_tests;
-mod left_out;
 mod locator;
 mod source;
 pub mod special;
+mod stand_ins;
 #[cfg(test)]
 mod stone_room;
 mod tile_grid;
@@ -28,6 +28,7 @@ pub use built::{
 };
 pub use error::MapError;
 pub use locator::Locator;
+pub(crate) use stand_ins::STAND_INS;
 pub use source::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
 #[cfg(test)]
 pub(crate) use stone_room::stone_room;

@@ -1,7 +1,7 @@
 //! The editable form of a map: what UDMF text says, field by field.
 
 use super::Blocks;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A texture, flat or lump name: up to 8 upper-case ASCII characters, padded with zeros; all zero means none (`-`).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -68,6 +68,14 @@ pub struct MapSource {
 }
 
 impl MapSource {
+    /// Every texture that the map names.
+    #[must_use]
+    pub fn textures(&self) -> BTreeSet<TextureName> {
+        let walls = self.sides.iter().flat_map(|side| [side.top, side.middle, side.bottom]);
+        let flats = self.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
+        walls.chain(flats).filter(TextureName::is_some).collect()
+    }
+
     /// Turns the two-sided lines that `turned` picks, given their ends (x, y) in map units and the sectors in front and behind:
     /// they run the other way, and front and back change places.
     ///

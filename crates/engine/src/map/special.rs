@@ -10,7 +10,7 @@ pub const SEQUENCE_STEPS: [i32; 2] = [3, 4];
 pub const LAVA: i32 = 83;
 
 /// Whether the specials of a namespace have these numbers. In all others they are those of an older game.
-pub(super) fn are_of(namespace: &str) -> bool {
+pub(crate) fn are_of(namespace: &str) -> bool {
     matches!(namespace, "zdoom" | "zdoomtranslated")
 }
 
@@ -22,6 +22,6 @@ const AT_START: [i32; 30] = [
 ];
 
 /// Whether a line's special does anything where it stands: one that acts from the start, or one that somebody can set off.
-pub(super) fn acts(namespace: &str, special: i32, triggered: bool) -> bool {
+pub(crate) fn acts(namespace: &str, special: i32, triggered: bool) -> bool {
     special != 0 && (triggered || AT_START.contains(&special) || !are_of(namespace))
 }

@@ -1,11 +1,8 @@
-//! Floors that swing. One that nobody stands on is computed when somebody looks at it.
+//! The swing of a floor: where it is, and where it will be any number of tics later.
 
-use super::mover::Mover;
-use super::{Busy, World};
 use crate::map::SectorId;
 use crate::math::{Angle, Fixed};
 use std::hash::{Hash, Hasher};
-use std::sync::Arc;
 
 /// What a swinging floor is doing.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -20,7 +17,7 @@ enum Phase {
 pub(crate) struct Waggle {
     pub(crate) sector: SectorId,
     /// The height that it swings about.
-    rest: Fixed,
+    pub(crate) rest: Fixed,
     /// Phase of the swing: 512ths of a sine table entry.
     accumulator: u32,
     accumulator_step: u32,
@@ -49,6 +46,23 @@ impl Hash for Waggle {
 const FOR_EVER: u32 = u32::MAX;
 
 impl Waggle {
+    /// A floor that begins to swing about `rest` by `amplitude` eighths of a map unit, with a period of 4096 / `frequency` tics.
+    pub(crate) fn new(sector: SectorId, rest: Fixed, amplitude: i32, frequency: i32, offset: i32, seconds: i32) -> Waggle {
+        let full_scale = Fixed(amplitude << 10);
+        Waggle {
+            sector,
+            rest,
+            accumulator: (offset as u32) << 16,
+            accumulator_step: (frequency as u32) << 10,
+            scale: Fixed::ZERO,
+            scale_step: full_scale / (35 + 105 * amplitude / 255),
+            full_scale,
+            steady_tics: (seconds != 0).then_some(seconds * 35),
+            phase: Phase::Growing,
+            as_of: 0,
+        }
+    }
+
     /// Where the floor is; [`Waggle::advance`] told that it goes on.
     #[inline]
     pub(crate) fn height(&self) -> Fixed {
@@ -114,87 +128,6 @@ impl Waggle {
     }
 }
 
-impl World {
-    /// Has the floors of the sectors with a tag swing by `amplitude` eighths of a map unit about their height, with a
-    /// period of 4096 / `frequency` tics. The swing grows to its full size, stays for `seconds` (0: for ever), and
-    /// shrinks again. Busy floors are left alone.
-    pub fn floor_waggle(&mut self, tag: i32, amplitude: i32, frequency: i32, offset: i32, seconds: i32) {
-        let map = Arc::clone(&self.map);
-        for sector in map.tagged(tag) {
-            let state = &mut self.sectors[sector.0 as usize];
-            if state.busy.begin(Busy::FLOOR) {
-                continue;
-            }
-            let full_scale = Fixed(amplitude << 10);
-            let waggle = Waggle {
-                sector,
-                rest: state.floor,
-                accumulator: (offset as u32) << 16,
-                accumulator_step: (frequency as u32) << 10,
-                scale: Fixed::ZERO,
-                scale_step: full_scale / (35 + 105 * amplitude / 255),
-                full_scale,
-                steady_tics: (seconds != 0).then_some(seconds * 35),
-                phase: Phase::Growing,
-                as_of: self.movers.tics(),
-            };
-            self.movers.add(Mover::Waggle(waggle));
-        }
-    }
-
-    /// One tic of a swinging floor, the mover of number `index`; false when it has come to rest.
-    pub(crate) fn run_waggle(&mut self, index: usize) -> bool {
-        let tics = self.movers.tics();
-        let Mover::Waggle(waggle) = &mut self.movers.list[index] else { return true };
-        let sector = waggle.sector;
-        let state = &mut self.sectors[sector.0 as usize];
-        // What nobody looked at first comes to where it was before this tic.
-        let skipped = (tics - waggle.as_of).saturating_sub(1);
-        if skipped > 0 {
-            waggle.advance(skipped);
-            state.floor = waggle.height();
-        }
-        let goes_on = waggle.advance(1);
-        waggle.as_of = tics;
-        let height = if goes_on { waggle.height() } else { waggle.rest };
-        if self.riders.first(sector).is_none() {
-            state.floor = height;
-        } else {
-            self.shift_plane(sector, false, height);
-        }
-        if !goes_on {
-            self.sectors[sector.0 as usize].busy.end(Busy::FLOOR);
-        }
-        goes_on
-    }
-
-    /// The floor of a sector.
-    #[inline]
-    pub(crate) fn floor_of(&self, sector: SectorId) -> Fixed {
-        match self.movers.swing_of(sector) {
-            None => self.sectors[sector.0 as usize].floor,
-            Some(index) => self.swung_floor(sector, index),
-        }
-    }
-
-    fn swung_floor(&self, sector: SectorId, index: usize) -> Fixed {
-        match self.movers.ahead(index) {
-            Some(waggle) => waggle.height(),
-            None => self.sectors[sector.0 as usize].floor,
-        }
-    }
-
-    /// Brings the stored floor of a sector up to this tic.
-    pub(crate) fn settle_floor(&mut self, sector: SectorId) {
-        if let Some(index) = self.movers.swing_of(sector)
-            && let Some(waggle) = self.movers.ahead(index)
-        {
-            self.sectors[sector.0 as usize].floor = waggle.height();
-            self.movers.list[index] = Mover::Waggle(waggle);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,19 +135,7 @@ mod tests {
     #[test]
     fn many_tics_at_once_are_as_many_one_by_one() {
         for (amplitude, seconds) in [(192, 1), (300, 0), (512, 3), (0, 1), (-40, 2), (7, -3)] {
-            let full_scale = Fixed(amplitude << 10);
-            let start = Waggle {
-                sector: SectorId(0),
-                rest: Fixed::from_int(40),
-                accumulator: 0,
-                accumulator_step: 256 << 10,
-                scale: Fixed::ZERO,
-                scale_step: full_scale / (35 + 105 * amplitude / 255),
-                full_scale,
-                steady_tics: (seconds != 0).then_some(seconds * 35),
-                phase: Phase::Growing,
-                as_of: 0,
-            };
+            let start = Waggle::new(SectorId(0), Fixed::from_int(40), amplitude, 256, 0, seconds);
             let mut one_by_one = vec![start];
             for tic in 0..600 {
                 let mut waggle = one_by_one[tic];

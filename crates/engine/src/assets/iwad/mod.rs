@@ -23,7 +23,6 @@ mod wall_textures;
 mod words;
 
 pub use error::IwadError;
-pub(crate) use substitutes::STAND_INS;
 
 use super::{Assets, Image, TextureEntry};
 use crate::map::TextureName;

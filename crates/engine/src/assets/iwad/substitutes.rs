@@ -2,17 +2,8 @@
 
 use super::push;
 use crate::assets::{Assets, Image};
-use crate::map::TextureName;
+use crate::map::{STAND_INS, TextureName};
 use std::collections::BTreeMap;
-
-/// (name, stand-in, size): the published maps brought these textures along; the game files have others of the kind.
-/// Exported maps tell other engines the same.
-pub(crate) const STAND_INS: [(&str, &str, (u16, u16)); 4] = [
-    ("TILES6", "FLAT5_7", (64, 64)),
-    ("BIGSTON3", "STONE3", (64, 128)),
-    ("BRIKS20", "BRICK10", (64, 128)),
-    ("CITY06", "BRWINDOW", (64, 128)),
-];
 
 /// For any other name, one of these.
 const FALLBACKS: [&str; 6] = ["STONE3", "BIGBRIK1", "BROWN1", "GRAY4", "ZIMMER3", "STARGR2"];

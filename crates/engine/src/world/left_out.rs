@@ -1,8 +1,8 @@
-//! What a map asks for that the engine does not do.
+//! What a map asks for that the engine does not do. It is asked here since things are known by the world alone.
 
-use super::{MapSource, SourceLine, TextureName, special};
-use crate::world::ActorKind;
-use std::collections::{BTreeMap, BTreeSet};
+use super::actor::ActorKind;
+use crate::map::{MapSource, SourceLine, special};
+use std::collections::BTreeMap;
 
 /// Sector specials that are played, or that mean nothing.
 const SECTOR_SPECIALS: [i32; 7] = {
@@ -38,13 +38,5 @@ impl MapSource {
         };
         let fields = self.unplayed.iter().map(|(what, times)| format!("{what} ({times})"));
         lists.into_iter().filter_map(phrase).chain(fields).collect()
-    }
-
-    /// Every texture that the map names.
-    #[must_use]
-    pub fn textures(&self) -> BTreeSet<TextureName> {
-        let walls = self.sides.iter().flat_map(|side| [side.top, side.middle, side.bottom]);
-        let flats = self.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
-        walls.chain(flats).filter(TextureName::is_some).collect()
     }
 }
