@@ -28,8 +28,8 @@ pub use built::{
 };
 pub use error::MapError;
 pub use locator::Locator;
-pub(crate) use stand_ins::STAND_INS;
 pub use source::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+pub(crate) use stand_ins::STAND_INS;
 #[cfg(test)]
 pub(crate) use stone_room::stone_room;
 pub use tile_grid::TileGrid;
