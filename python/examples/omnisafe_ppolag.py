@@ -1,5 +1,8 @@
 """OmniSafe's PPOLag, CPO and FOCOPS on flat pixels. Where safety_gymnasium does not install (CPython 3.11 and newer), a stand-in is enough:
-OmniSafe touches it for its own environments alone. Install with `pip install --no-deps omnisafe==0.5.0` and what its imports ask for."""
+OmniSafe touches it for its own environments alone. Install with `pip install --no-deps omnisafe==0.5.0` and what its imports ask for.
+
+    pip install '.[omnisafe]'      # CPython 3.10
+"""
 
 import importlib.util
 import sys

@@ -1,4 +1,7 @@
-"""Samplers on a Ray cluster: two nodes on this machine, one of them killed in the middle; rollouts of both go on coming."""
+"""Samplers on a Ray cluster: two nodes on this machine, one of them killed in the middle; rollouts of both go on coming.
+
+    pip install '.[ray]'
+"""
 
 import ray
 from ray.cluster_utils import Cluster

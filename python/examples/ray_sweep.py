@@ -1,5 +1,8 @@
 """A sweep on a Ray cluster of two nodes of this machine, one of them killed in the middle: every run ends with its results. Then one on submitit's
-local executor, which is Slurm's without Slurm, if submitit is installed."""
+local executor, which is Slurm's without Slurm, if submitit is installed.
+
+    pip install '.[ray]'
+"""
 
 import importlib.util
 import json

@@ -1,4 +1,7 @@
-"""One run over several Ray workers, on two nodes of this machine: equal to one process, equal to itself, and alive after a worker and a node are killed."""
+"""One run over several Ray workers, on two nodes of this machine: equal to one process, equal to itself, and alive after a worker and a node are killed.
+
+    pip install '.[ray]'
+"""
 
 import itertools
 import os

@@ -1,4 +1,7 @@
-"""RLlib's PPO and IMPALA over the native vector environment, with the costs of its steps in their training batches."""
+"""RLlib's PPO and IMPALA over the native vector environment, with the costs of its steps in their training batches.
+
+    pip install '.[rllib]'
+"""
 
 import sys
 

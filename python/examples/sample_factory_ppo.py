@@ -1,4 +1,7 @@
-"""Sample-Factory's APPO on a batched environment, with the published package's names and settings."""
+"""Sample-Factory's APPO on a batched environment, with the published package's names and settings.
+
+    pip install '.[sample-factory]'
+"""
 
 import sys
 

@@ -1,4 +1,7 @@
-"""Stable-Baselines3's PPO, and sb3-contrib's RecurrentPPO, on a native batch of worlds."""
+"""Stable-Baselines3's PPO, and sb3-contrib's RecurrentPPO, on a native batch of worlds.
+
+    pip install '.[sb3]'
+"""
 
 import sys
 

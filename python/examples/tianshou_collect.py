@@ -1,4 +1,7 @@
-"""Tianshou's collector, which steps and resets some of the lanes at a time."""
+"""Tianshou's collector, which steps and resets some of the lanes at a time.
+
+    pip install '.[tianshou]'
+"""
 
 import numpy as np
 from tianshou.data import Collector, VectorReplayBuffer

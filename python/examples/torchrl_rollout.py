@@ -1,4 +1,7 @@
-"""TorchRL: our EnvBase and its own wrapper over the native vector environment, checked and collected from."""
+"""TorchRL: our EnvBase and its own wrapper over the native vector environment, checked and collected from.
+
+    pip install '.[torchrl]'
+"""
 
 import hasard_rs
 from hasard_rs.torchrl import HasardEnv

@@ -2,7 +2,7 @@
 
 use crate::commands::eval::Player;
 use crate::failure::Failure;
-use crate::settings::{self, Elsewhere};
+use crate::settings::{self, Elsewhere, scenario_of};
 use crate::zoo;
 use hasard_envs::{EnvOptions, Move, PolicyRun, Step};
 use hasard_learn::config::EnvConfig;
@@ -37,7 +37,7 @@ impl Performance {
         seed: u64,
     ) -> Result<Performance, Failure> {
         if let Some(run) = agent_of(policy)? {
-            return Performance::of_agent(id, &run, &agent_options(&run, looks, elsewhere)?, looks, seed);
+            return Performance::of_agent(id, &run, &agent_options(id, &run, looks, elsewhere)?, looks, seed);
         }
         let policy = settings::policy(policy)?;
         let mut stage = Stage::new(id, looks).map_err(Failure::bad)?;
@@ -135,9 +135,13 @@ fn pictures_kept<'a>(elsewhere: Elsewhere<'a>, env: &EnvConfig) -> Elsewhere<'a>
     Elsewhere { maps: elsewhere.maps, ..elsewhere.where_missing(env) }
 }
 
-/// What the agent of a run is to see: as it was trained, under the rules and constraint of `task`, with the buttons that it knows.
-pub fn agent_options(run: &Path, task: &EnvOptions, elsewhere: Elsewhere<'_>) -> Result<EnvOptions, Failure> {
+/// What the agent of a run is to see in an environment: as it was trained, under the rules and constraint of `task`, with the buttons that
+/// it knows. Says so where it was trained in another scenario.
+pub fn agent_options(id: &str, run: &Path, task: &EnvOptions, elsewhere: Elsewhere<'_>) -> Result<EnvOptions, Failure> {
     let env = run_config(run).map_err(Failure::bad)?.env;
+    if scenario_of(&env.id) != scenario_of(id) {
+        note!("hasard: {}: was trained in {}, not in {id}", run.display(), env.id);
+    }
     let trained = settings::trained_options(&env, pictures_kept(elsewhere, &env))?;
     let actions_of = Some((trained.rules, trained.hard));
     Ok(EnvOptions { rules: task.rules, early_creatures: task.early_creatures, hard: task.hard, actions_of, ..trained })

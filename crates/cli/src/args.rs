@@ -21,41 +21,43 @@ pub struct Cli {
 /// The commands.
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// List the environments with their budgets and action spaces
+    /// List the environments with their budgets and actions
     Envs(EnvsArgs),
-    /// Play in a window; each episode is kept as a human baseline
+    /// Play in a window; episodes are kept as human baselines
     Play(PlayArgs),
-    /// Run episodes of a fixed policy or a trained agent and print return, cost and statistics
+    /// Run episodes of a policy and print return, cost and statistics
     Rollout(RolloutArgs),
-    /// Run recorded inputs tic by tic and print position, velocity and view as CSV
+    /// Run recorded inputs tic by tic; prints motion as CSV
     Trace(TraceArgs),
-    /// Measure environment speed: random actions, resets included, observations written
+    /// Measure the speed of environments or of training
     Bench(BenchArgs),
-    /// Draw a moment of an episode as PNG: colour, depth, segmentation, labels, luminance or the map from above
+    /// Draw a moment of an episode as PNG, in any view
     Render(RenderArgs),
     /// Train an agent
     Train(TrainArgs),
     /// Evaluate a trained agent
     Eval(EvalArgs),
-    /// Write an episode of a policy or a trained agent as video, GIF, or as a file that `replay` plays again
+    /// Film an episode (.mp4, .gif), or keep it as a file for replay
     Record(RecordArgs),
-    /// Play a recorded episode again: check its result, or draw it at any size as video, GIF or PNG
+    /// Play a recorded episode again: check it, or film it at any size
     Replay(ReplayArgs),
-    /// Make tables, curves and heatmaps from run directories
+    /// Make one page of tables, curves and heatmaps from runs
     Report(ReportArgs),
-    /// Answer with a page in the browser: follow runs, watch agents, play
+    /// Serve a page for the browser: follow runs, watch agents, play
     Serve(ServeArgs),
-    /// Run many trainings: a grid from a TOML file, or an experiment of the paper by name
+    /// Run many trainings: an experiment of the paper, or your own file
     Sweep(SweepArgs),
-    /// Write the agent that a run selects as one small file
+    /// Write a run's selected agent as one small file
     ExportAgent(ExportAgentArgs),
-    /// Write an environment's map as a WAD that other engines load
+    /// Write an environment's map as a WAD for editors and engines
     ExportWad(ExportWadArgs),
-    /// Draw the scenarios' contact sheets: every level at moments of scripted episodes, in every view
+    /// Draw every level of a scenario in every view
     ContactSheet(ContactSheetArgs),
     /// List every setting of a run with its value and meaning
     Settings(SettingsArgs),
-    /// Print what a shell needs to complete commands and flags
+    /// List every key of metrics.jsonl with its unit and meaning
+    Metrics(MetricsArgs),
+    /// Print a shell's completion script
     Completions(CompletionsArgs),
 }
 
@@ -280,7 +282,7 @@ pub struct BenchArgs {
     /// Environment id
     #[arg(value_parser = env_id)]
     pub env: String,
-    /// Worlds in the batch
+    /// Environments in the batch
     #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub envs: u32,
     /// Worker threads
@@ -414,10 +416,11 @@ pub struct TrainArgs {
     /// paper's text, of the published code, or of the code that made the paper's tables (with its rules, unless --rules says others)
     #[arg(long, default_value = "quick")]
     pub preset: String,
-    /// Length of the run in frames (tics): policy steps times frame skip; the preset's if absent
+    /// Length of the run in frames (game tics: policy steps times frame skip), such as 2M or 1e6  [default: 10M with quick, 500M
+    /// with the other presets]
     #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     pub frames: Option<u64>,
-    /// Run directory; runs/ENV-ALGO-seedSEED if absent
+    /// Run directory  [default: runs/ENV-ALGO-seedSEED]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Go on from the last checkpoint in the run directory, if there is one; --frames, --seed, --threads and --set of the
@@ -445,7 +448,8 @@ pub struct TrainArgs {
     /// PPOCost: factor of the cost in the reward
     #[arg(long, value_name = "FACTOR")]
     pub cost_scale: Option<f64>,
-    /// cpu; vulkan, cuda or wgpu where the program was built with that feature; vulkan:1 is the second card
+    /// cpu; vulkan, cuda or wgpu where the program was built with that feature; vulkan:1 is the second card. Such builds also
+    /// have flex, the graphics interface computed on the CPU, for comparisons
     #[arg(long, default_value = "cpu")]
     pub device: String,
     /// Sampling and learning take turns, bit-reproducibly; the default on the CPU, where both want the same cores
@@ -454,14 +458,14 @@ pub struct TrainArgs {
     /// Sampling and learning run side by side; the default on a graphics card
     #[arg(long = "async", conflicts_with = "sync")]
     pub asynchronous: bool,
-    /// Threads; all cores if absent. Results do not depend on their number
+    /// Threads; results do not depend on their number  [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Plain kernels: the same bits on every machine, some six times slower. HASARD_SIMD=plain|avx2|avx512 forces a family
     /// without leaving a trace in the settings
     #[arg(long)]
     pub portable: bool,
-    /// Worlds
+    /// Environments side by side  [default: 32]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub envs: Option<u32>,
     /// Any setting of config.json, such as learning.rate=0.0003; may be given several times
@@ -673,8 +677,8 @@ pub struct SweepArgs {
     /// Scenarios, chosen in the same way: RemedyRush,VolcanicVenture
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub scenarios: Vec<String>,
-    /// Frames of every run; changes nothing else
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    /// Frames of every run, such as 2M; changes nothing else
+    #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     pub frames: Option<u64>,
     /// Frames of every run times this, to try an experiment in small; the rates of multipliers grow as runs shrink
     #[arg(long, value_name = "FACTOR")]
@@ -742,7 +746,7 @@ pub struct ContactSheetArgs {
     #[arg(value_name = "SCENARIO")]
     pub scenarios: Vec<String>,
     /// Folder to write: for each scenario its sheet, and one moment of it at 640x480
-    #[arg(short, long, value_name = "DIR", default_value = "docs/pictures")]
+    #[arg(short, long, value_name = "DIR", default_value = "sheets")]
     pub out: PathBuf,
     /// Added to the seed of every moment; 0 draws the moments that were chosen for the documentation
     #[arg(long, default_value_t = 0)]
@@ -772,6 +776,17 @@ pub struct SettingsArgs {
     #[arg(long, default_value = "quick")]
     pub preset: String,
     /// One JSON object a setting
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; nothing is drawn by chance
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard metrics`.
+#[derive(Args, Debug)]
+pub struct MetricsArgs {
+    /// One JSON object a key
     #[arg(long)]
     pub json: bool,
     /// Accepted for uniformity; nothing is drawn by chance

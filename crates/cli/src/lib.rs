@@ -11,16 +11,21 @@ mod args;
 mod automap;
 mod commands;
 mod contact_sheet;
+#[cfg(test)]
+mod documented_tests;
 mod episode_lines;
+mod help;
 mod interrupt;
 mod number;
+mod places;
 mod progress;
 mod settings;
 mod sources;
+mod ticker;
 mod zoo;
 
 use args::{Cli, Command};
-use clap::{ArgMatches, CommandFactory, FromArgMatches};
+use clap::{ArgMatches, FromArgMatches};
 use failure::Failure;
 use hasard_envs::{EnvOptions, VecEnv};
 use hasard_learn::config::EnvConfig;
@@ -41,7 +46,7 @@ fn parse(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, ArgMatches),
         let takes = !flag.is_positional() && flag.get_action().takes_values();
         if takes { flag.allow_negative_numbers(true) } else { flag }
     };
-    let program = Cli::command().mut_subcommands(|command| command.mut_args(value));
+    let program = help::program().mut_subcommands(|command| command.mut_args(value));
     let matches = program.try_get_matches_from(words)?;
     Ok((Cli::from_arg_matches(&matches)?, matches))
 }
@@ -74,6 +79,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::ExportWad(args) => commands::export_wad::run(&args),
         Command::ContactSheet(args) => commands::contact_sheet::run(&args),
         Command::Settings(args) => commands::settings::run(&args),
+        Command::Metrics(args) => commands::metrics::run(&args),
         Command::Completions(args) => commands::completions::run(&args),
     };
     let code = outcome.map_or_else(Failure::report, |()| 0);

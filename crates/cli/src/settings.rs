@@ -24,6 +24,11 @@ pub fn env_id(text: &str) -> Result<EnvId, Failure> {
     text.parse().map_err(Failure::bad)
 }
 
+/// An environment id without its level, or the whole text if it is none.
+pub fn scenario_of(id: &str) -> String {
+    id.parse::<EnvId>().map_or_else(|_| id.to_string(), |id| id.scenario.name().to_string())
+}
+
 /// Environment options from flags; `default_size` applies where `--size` is absent.
 pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Failure> {
     Ok(EnvOptions {

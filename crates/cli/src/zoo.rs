@@ -1,39 +1,35 @@
-//! The zoo: trained agents that come with the program, as files in the folder `zoo` of its repository.
+//! The zoo: trained agents by name. Six are part of the program; more may lie in a folder.
 
 use crate::failure::Failure;
+use hasard_learn::runs::zoo::{PREFIX, names};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Ending of an agent's file.
 pub const ENDING: &str = "agent";
 
-/// Where the files are looked for: the folder that the variable `HASARD_ZOO` names, `zoo` in the working directory, and the
-/// one of the repository that this program was built in.
+/// Where further files are looked for: the folder that the variable `HASARD_ZOO` names, and `zoo` in the working directory.
 fn folders() -> Vec<PathBuf> {
     let named = std::env::var_os("HASARD_ZOO").map(PathBuf::from);
-    named.into_iter().chain(["zoo", concat!(env!("CARGO_MANIFEST_DIR"), "/../../zoo")].map(PathBuf::from)).collect()
+    named.into_iter().chain([PathBuf::from("zoo")]).collect()
 }
 
-/// The run directory or agent file that a text names: a path, or `zoo:NAME`.
+/// The place of the agent that a text names: a path, or `zoo:NAME`; what is part of the program has the place `zoo:NAME`.
 pub fn find(text: &OsStr) -> Result<PathBuf, Failure> {
-    let Some(name) = after(text, "zoo:") else { return Ok(PathBuf::from(text)) };
+    let Some(name) = after(text, PREFIX) else { return Ok(PathBuf::from(text)) };
     let (name, text) = (name.to_string_lossy(), text.to_string_lossy());
     let wanted = name.strip_suffix("-v0").unwrap_or(&name);
     let all = agents();
     let found = all.iter().find(|(known, _)| known.eq_ignore_ascii_case(wanted));
     found.map(|(_, path)| path.clone()).ok_or_else(|| {
-        let names: Vec<String> = all.iter().map(|(known, _)| format!("zoo:{known}")).collect();
-        let there = match names.len() {
-            0 => "no zoo was found; name its folder in the variable HASARD_ZOO".to_string(),
-            _ => format!("the zoo has {}", names.join(", ")),
-        };
-        Failure::bad(format!("{text}: {there}"))
+        let names: Vec<String> = all.iter().map(|(known, _)| format!("{PREFIX}{known}")).collect();
+        Failure::bad(format!("{text}: the zoo has {}; HASARD_ZOO names a folder with more", names.join(", ")))
     })
 }
 
 /// Whether a text names an agent's file rather than a run directory or an environment.
 pub fn is_agent(text: &OsStr) -> bool {
-    after(text, "zoo:").is_some() || Path::new(text).extension().is_some_and(|ending| ending == ENDING)
+    after(text, PREFIX).is_some() || Path::new(text).extension().is_some_and(|ending| ending == ENDING)
 }
 
 /// What follows a beginning such as `run:`; names of files are not always text.
@@ -49,7 +45,7 @@ pub fn after(text: &OsStr, beginning: &str) -> Option<PathBuf> {
     text.to_str()?.strip_prefix(beginning).map(PathBuf::from)
 }
 
-/// Names and files of all agents, those of earlier folders first.
+/// Names and places of all agents: those of folders, the earlier first, then those of the program that no folder has too.
 pub fn agents() -> Vec<(String, PathBuf)> {
     let mut all: Vec<(String, PathBuf)> = Vec::new();
     for folder in folders() {
@@ -58,10 +54,17 @@ pub fn agents() -> Vec<(String, PathBuf)> {
         paths.sort();
         for path in paths.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == ENDING)) {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            if all.iter().all(|(known, _)| *known != name) {
-                all.push((name, path));
-            }
+            add(&mut all, name, path);
         }
     }
+    for name in names() {
+        add(&mut all, name.to_string(), PathBuf::from(format!("{PREFIX}{name}")));
+    }
     all
+}
+
+fn add(all: &mut Vec<(String, PathBuf)>, name: String, place: PathBuf) {
+    if all.iter().all(|(known, _)| *known != name) {
+        all.push((name, place));
+    }
 }

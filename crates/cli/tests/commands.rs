@@ -383,3 +383,56 @@ fn a_measurement_of_beginnings_alone_says_so() {
     assert!(episode >= 1.0, "{short}");
     assert_eq!(told("bench ArmamentBurdenLevel1-v0 --envs 1 --seconds 2"), "");
 }
+
+/// Row 15 of first contact: the program has its agents wherever it is, with no clone beside it.
+#[test]
+fn agents_of_the_zoo_are_part_of_the_program() {
+    let folder = Folder::new("zoo");
+    let program = folder.0.join("alone");
+    std::fs::copy(env!("CARGO_BIN_EXE_hasard"), &program).unwrap();
+    let elsewhere = folder.0.join("elsewhere");
+    std::fs::create_dir(&elsewhere).unwrap();
+    let mut command = Command::new(&program);
+    let words = ["eval", "zoo:remedyrushlevel1-v0", "--episodes", "1", "--json"];
+    let output = command.args(words).current_dir(&elsewhere).env_remove("HASARD_ZOO").output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let row: Value = serde_json::from_slice(output.stdout.split(|byte| *byte == b'\n').next().unwrap()).unwrap();
+    assert_eq!((&row["env"], &row["length"]), (&Value::from("RemedyRushLevel1-v0"), &Value::from(525)));
+    // A folder's agent of the same name comes first; a recorded episode says who played.
+    folder.ok("record zoo:RemedyRushLevel1 --steps 3 -o agent.episode");
+    let episode = hasard_media::episode::EpisodeFile::read(&folder.0.join("agent.episode")).unwrap();
+    assert_eq!(episode.header().player, "zoo:RemedyRushLevel1");
+    std::fs::create_dir(folder.0.join("zoo")).unwrap();
+    folder.file("zoo/RemedyRushLevel1.agent", b"spoiled");
+    assert!(folder.refused("eval zoo:RemedyRushLevel1").contains("zoo/RemedyRushLevel1.agent"));
+}
+
+/// Rows 26, 30, 33 and 34: a folder of runs lists them, a name that is nearly right is named, and what is made or unlikely is said.
+#[test]
+fn people_are_met_half_way() {
+    let folder = Folder::new("half-way");
+    for run in ["runs/one", "runs/more/two"] {
+        std::fs::create_dir_all(folder.0.join(run)).unwrap();
+        folder.file(&format!("{run}/config.json"), b"{}");
+    }
+    for line in ["eval runs", "record runs -o a.mp4", "export-agent runs"] {
+        let error = folder.refused(line);
+        assert!(error.contains("runs/one") && error.contains("runs/more/two"), "{line}: {error}");
+    }
+    assert!(folder.refused("eval runs/onne").contains("did you mean runs/one?"));
+    assert!(folder.refused("record nothere").contains("neither an environment, a run nor a file"));
+    assert_eq!(
+        folder.ok("render RemedyRushLevel1 --size 64x48 -o new/folder/a.png"),
+        "new/folder/a.png: 64x48\nmade the folder new/folder\n"
+    );
+    assert_eq!(folder.ok("render RemedyRushLevel1 --size 64x48 -o new/folder/a.png"), "new/folder/a.png: 64x48\n");
+    let told = |line: &str| String::from_utf8(folder.run(line).stderr).unwrap();
+    let warning = told("rollout RemedyRushLevel2 --policy zoo:VolcanicVentureLevel1 --episodes 1");
+    assert!(
+        warning.lines().count() == 1 && warning.contains("was trained in VolcanicVentureLevel1-v0, not in RemedyRushLevel2-v0")
+    );
+    assert_eq!(told("rollout RemedyRushLevel2 --policy zoo:RemedyRushLevel1 --episodes 1"), "");
+    assert!(folder.ok("sweep quick --frames 1.5M --dry-run").contains("--frames 1500000"));
+    folder.ok("contact-sheet RemedyRush");
+    assert!(folder.0.join("sheets/remedy_rush_sheet.png").is_file());
+}

@@ -53,3 +53,19 @@ fn links_lead_somewhere() {
         }
     }
 }
+
+/// Every page of the documentation stands in the book's summary once, and the summary names no other.
+#[test]
+fn every_page_is_in_the_book() {
+    let docs = repository().join("docs");
+    let mut pages = Vec::new();
+    files(&docs, &["md"], &mut pages);
+    let mut pages: Vec<PathBuf> = pages.iter().map(|page| page.strip_prefix(&docs).unwrap().to_owned()).collect();
+    pages.retain(|page| page != Path::new("SUMMARY.md"));
+    let summary = std::fs::read_to_string(docs.join("SUMMARY.md")).unwrap();
+    let mut named: Vec<PathBuf> =
+        summary.split("](").skip(1).filter_map(|rest| rest.split(')').next()).map(PathBuf::from).collect();
+    pages.sort();
+    named.sort();
+    assert_eq!(named, pages, "docs/SUMMARY.md names the pages on the left");
+}

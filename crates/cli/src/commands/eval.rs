@@ -5,7 +5,8 @@ use crate::actor::Performance;
 use crate::args::{EvalArgs, Size, View};
 use crate::episode_lines::EpisodeLines;
 use crate::failure::{Failure, Outcome};
-use crate::zoo;
+use crate::places;
+use crate::ticker::Ticker;
 use hasard_envs::{Env, EnvId, EnvOptions, Episode, RuleSet, VecEnv};
 use hasard_learn::config::{Constraint, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
@@ -19,7 +20,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Episodes that are played before they are printed.
-const AT_ONCE: u32 = 256;
+const AT_ONCE: u32 = 64;
 
 /// Runs the command.
 pub fn run(args: &EvalArgs) -> Outcome {
@@ -29,7 +30,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
     {
         return Err(Failure::bad(format!("--out {}: give a name that ends in .mp4 or .gif", out.display())));
     }
-    let run = zoo::find(&args.run)?;
+    let run = places::run(&args.run)?;
     let mut config = run_config(&run).map_err(Failure::bad)?;
     if let Some(rules) = args.rules {
         play_under(&mut config, rules.into())?;
@@ -204,12 +205,15 @@ impl Player<'_> {
         let policy = self.policy(&env)?;
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let numbers: Vec<u32> = (0..episodes).collect();
+        let mut ticker = Ticker::new(episodes.into(), "episodes");
         for some in numbers.chunks(AT_ONCE as usize) {
+            ticker.at(some[0].into());
             let seeds: Vec<u64> = some.iter().map(|&number| seed.wrapping_add(number.into())).collect();
             let make = |_: &_, worlds| VecEnv::new(id, options, worlds);
             let never = AtomicBool::new(false);
             let played = play_traced(&never, &policy, self.choice, &make, &seeds, threads).map_err(Failure::bad)?;
             let played = played.unwrap_or_default();
+            ticker.clear();
             for (&number, (episode, trace)) in some.iter().zip(played) {
                 lines.episode(id, number.into(), episode)?;
                 traced(trace);

@@ -7,6 +7,7 @@ pub mod envs;
 pub mod eval;
 pub mod export_agent;
 pub mod export_wad;
+pub mod metrics;
 pub mod play;
 pub mod record;
 pub mod render;

@@ -3,9 +3,12 @@
 use crate::actor::Performance;
 use crate::args::{FilmArgs, RecordArgs, ReplayArgs, Size, View};
 use crate::failure::{Failure, Outcome};
+use crate::number::env_id;
+use crate::places;
 use crate::settings;
+use crate::ticker::Ticker;
 use crate::zoo;
-use hasard_envs::{Env, EnvOptions, FrameSize};
+use hasard_envs::{Env, EnvId, EnvOptions, FrameSize};
 use hasard_media::episode::EpisodeFile;
 use hasard_media::shell::quote;
 use hasard_play::{Film, Recorder, Replay, Stage, Views};
@@ -60,14 +63,17 @@ pub fn run(args: &RecordArgs) -> Outcome {
                 quote(policy)
             )));
         }
-        let performance = Performance::of_run(what, &looks, args.env_args.elsewhere(), args.seed)?;
-        (performance, format!("run:{}", args.what.display()))
+        let run = &places::run(&args.what)?;
+        let performance = Performance::of_run(run, &looks, args.env_args.elsewhere(), args.seed)?;
+        let named = args.what.to_string_lossy();
+        (performance, if zoo::after(&args.what, "zoo:").is_some() { named.into_owned() } else { format!("run:{named}") })
     } else {
         let policy = args.policy.clone().unwrap_or_else(|| "random".into());
-        let id = args.what.to_string_lossy();
-        if id.parse::<hasard_envs::EnvId>().is_err() && !what.exists() && what.components().count() > 1 {
-            let problem = "is neither an environment nor a run nor a file; `hasard envs` lists the environments";
-            return Err(Failure::bad(format!("{}: {problem}", what.display())));
+        let Ok(id) = env_id(&args.what.to_string_lossy());
+        if let Err(error) = id.parse::<EnvId>()
+            && !what.exists()
+        {
+            return Err(Failure::bad(format!("{}: is neither an environment, a run nor a file; {error}", what.display())));
         }
         let performance = Performance::new(&id, &policy, &looks, args.env_args.elsewhere(), args.seed)?;
         (performance, policy.to_string_lossy().into_owned())
@@ -81,12 +87,15 @@ pub fn run(args: &RecordArgs) -> Outcome {
         _ => Some(begin(&performance.stage, &args.out, looks.size, &args.film)?),
     };
     let mut steps = 0;
+    let mut ticker = Ticker::new(longest(performance.stage.env(), args.steps), "steps");
     while !performance.stage.ended() && args.steps.is_none_or(|most| steps < most) {
+        ticker.at(steps.into());
         steps += u32::from(performance.tic(recorder.as_mut())?.is_some());
         if let Some(film) = &mut film {
             film.tic(&performance.stage).map_err(Failure::bad)?;
         }
     }
+    drop(ticker);
     let env = performance.stage.env();
     if let Some(recorder) = recorder {
         recorder.finish(env).write(&args.out).map_err(Failure::bad)?;
@@ -157,10 +166,17 @@ fn begin(stage: &Stage, out: &Path, size: FrameSize, args: &FilmArgs) -> Result<
     Film::begin(stage, out, size, &settings::views(View::Rgb, &args.beside), every).map_err(Failure::bad)
 }
 
+/// Steps that a film has at most.
+fn longest(env: &Env, steps: Option<u32>) -> u64 {
+    steps.map_or(env.episode_steps(), |most| most.min(env.episode_steps())).into()
+}
+
 /// Films a replay to its end, or to a number of steps.
 fn play_out(replay: &mut Replay, out: &Path, size: FrameSize, args: &FilmArgs, steps: Option<u32>) -> Result<Film, Failure> {
     let mut film = begin(replay.stage(), out, size, args)?;
+    let mut ticker = Ticker::new(longest(replay.stage().env(), steps), "steps");
     while steps.is_none_or(|most| replay.stage().env().episode().length < most) {
+        ticker.at(replay.stage().env().episode().length.into());
         let more = replay.tic();
         film.tic(replay.stage()).map_err(Failure::bad)?;
         if !more {

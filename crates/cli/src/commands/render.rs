@@ -3,6 +3,7 @@
 use crate::actor::Performance;
 use crate::args::{RenderArgs, Size, View};
 use crate::failure::{Failure, Outcome};
+use crate::places::absent_folder;
 use crate::settings;
 use hasard_engine::render::InView;
 use hasard_play::Views;
@@ -23,6 +24,7 @@ pub fn run(args: &RenderArgs) -> Outcome {
     let stage = &performance.stage;
     let mut views = Views::new(stage, looks.size, &settings::views(args.buffer, &args.beside)).map_err(Failure::bad)?;
     let picture = views.draw(stage);
+    let made = absent_folder(&args.out);
     hasard_media::png::write(&picture, &args.out).map_err(Failure::bad)?;
     if args.json {
         let labelled = [args.buffer].iter().chain(&args.beside).any(|view| matches!(view, View::Labels | View::Segmented));
@@ -31,6 +33,9 @@ pub fn run(args: &RenderArgs) -> Outcome {
         say!("{}", json!({ "file": file, "width": picture.width(), "height": picture.height(), "labels": labels }));
     } else {
         say!("{}: {}x{}", args.out.display(), picture.width(), picture.height());
+        if let Some(folder) = made {
+            say!("made the folder {}", folder.display());
+        }
     }
     Ok(())
 }

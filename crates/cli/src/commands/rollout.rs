@@ -14,7 +14,7 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
     let mut lines = episode_lines::EpisodeLines::new(args.json);
     if let Some(run) = crate::actor::agent_of(&args.policy)? {
-        let options = agent_options(&run, &options, args.env_args.elsewhere())?;
+        let options = agent_options(&args.env, &run, &options, args.env_args.elsewhere())?;
         lines.played_under(&options);
         let player = Player { run: &run, which: Which::Selected, choice: Choice::Sampled };
         player.play(&args.env, &options, args.episodes, args.seed, &mut lines)?;

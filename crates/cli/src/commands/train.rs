@@ -6,10 +6,10 @@ use crate::episode_lines::worth;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::{self, Manner};
 use crate::progress::Progress;
-use crate::settings::Elsewhere;
+use crate::settings::{Elsewhere, scenario_of};
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use hasard_envs::{EnvId, EnvOptions, VecEnv};
+use hasard_envs::{EnvOptions, VecEnv};
 use hasard_learn::config::curriculum::parse_curriculum;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::progress_bar::line;
@@ -201,11 +201,6 @@ fn headline(selection: &Selection, stopped: bool) -> Vec<String> {
         worth(all)
     ));
     lines
-}
-
-/// An environment id without its level, or the whole text if it is none.
-fn scenario_of(id: &str) -> String {
-    id.parse::<EnvId>().map_or_else(|_| id.to_string(), |id| id.scenario.name().to_string())
 }
 
 fn describe(config: &TrainConfig, directory: &Path) {

@@ -99,10 +99,10 @@ pub struct Thought {
 
 /// The settings of the run in a directory, or of the one that an agent's file comes from, so that its worlds can be made.
 pub fn run_config(directory: &Path) -> Result<TrainConfig, LearnError> {
-    if directory.is_file() {
-        return Ok(AgentFile::read(directory)?.card.config);
+    match AgentFile::at(directory)? {
+        Some(file) => Ok(file.card.config),
+        None => read_config(directory),
     }
-    read_config(directory)
 }
 
 impl TrainedPolicy {
@@ -127,8 +127,7 @@ impl TrainedPolicy {
         action: ActionShape,
         warn: &mut dyn FnMut(String),
     ) -> Result<TrainedPolicy, LearnError> {
-        if directory.is_file() {
-            let file = AgentFile::read(directory)?;
+        if let Some(file) = AgentFile::at(directory)? {
             return TrainedPolicy::restored(
                 &file.card.config,
                 observation,

@@ -19,6 +19,7 @@ use crate::networks::ModelShape;
 use crate::runs::checkpoint::{Loaded, Store, parameter_names};
 use crate::runs::run_directory::{go_on, read_config, read_selection};
 use crate::runs::selection::Candidate;
+use crate::runs::zoo;
 
 /// Weights that share a scale.
 const BLOCK: usize = 64;
@@ -167,6 +168,15 @@ fn misfit(name: &str) -> LearnError {
 }
 
 impl AgentFile {
+    /// The agent's file at a place: a file, or `zoo:NAME`, one that is part of the program. `None` for anything else, such as a
+    /// run's directory.
+    pub fn at(place: &Path) -> Result<Option<AgentFile>, LearnError> {
+        match zoo::bytes(place) {
+            Some(bytes) => AgentFile::parse(bytes).map(Some).map_err(|problem| LearnError::content(place, problem)),
+            None => place.is_file().then(|| AgentFile::read(place)).transpose(),
+        }
+    }
+
     /// Reads an agent's file.
     pub fn read(path: &Path) -> Result<AgentFile, LearnError> {
         let size = fs::metadata(path).map_err(LearnError::file(path, "read"))?.len();

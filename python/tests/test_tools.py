@@ -1,0 +1,102 @@
+"""Scripts of the repository that publishing needs."""
+
+import importlib.util
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+URL = "https://example.org/somebody/hasard"
+
+
+def tool(name):
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"tools/{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def clone(tmp_path):
+    for name in ("README.md", "Cargo.toml", "pyproject.toml", "CITATION.cff"):
+        shutil.copy(ROOT / name, tmp_path / name)
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools/address.txt").write_text("")
+    shutil.copytree(ROOT / "docs", tmp_path / "docs", ignore=shutil.ignore_patterns("pictures", "witness"))
+    for manifest in ROOT.glob("crates/*/Cargo.toml"):
+        to = tmp_path / manifest.relative_to(ROOT)
+        to.parent.mkdir(parents=True)
+        shutil.copy(manifest, to)
+    return tmp_path
+
+
+def test_without_an_address_pages_stay_as_they_are(clone):
+    before = {path: path.read_bytes() for path in clone.rglob("*.md")}
+    for what in ("--package-page", "--book"):
+        tool("address").main([what], clone)
+    assert before == {path: path.read_bytes() for path in clone.rglob("*.md")}
+
+
+def test_an_address_is_written_everywhere_it_belongs_and_may_change(clone):
+    address = tool("address")
+    for url in (URL, URL + "2"):
+        address.main([url], clone)
+        assert f'repository = "{url}"\n' in (clone / "Cargo.toml").read_text()
+        assert f'repository-code: "{url}"\n' in (clone / "CITATION.cff").read_text()
+        assert (clone / "README.md").read_text().count("badge.svg") == 1
+        assert f'Repository = "{url}"\n' in (clone / "pyproject.toml").read_text()
+        for manifest in clone.glob("crates/*/Cargo.toml"):
+            assert manifest.read_text().count("repository.workspace = true\n") == 1, manifest
+    if sys.version_info >= (3, 11):
+        import tomllib
+
+        read = tomllib.loads((clone / "pyproject.toml").read_text())
+        assert read["project"]["urls"]["Issues"] == URL + "2/issues" and read["project"]["scripts"]
+        assert tomllib.loads((clone / "Cargo.toml").read_text())["workspace"]["package"]["repository"] == URL + "2"
+
+
+def test_the_package_page_and_the_book_have_no_link_that_breaks(clone):
+    address = tool("address")
+    address.main([URL], clone)
+    address.main(["--package-page"], clone)
+    targets = [match[2] for match in address.LINK.finditer((clone / "README.md").read_text())]
+    assert len(targets) > 30 and all(target.startswith("https://") for target in targets), targets
+    assert f"{URL}/raw/main/docs/pictures/zoo/remedy_rush.gif" in targets
+    assert f"{URL}/blob/main/docs/python.md" in targets
+    address.main(["--book"], clone)
+    page = (clone / "docs/scenarios.md").read_text()
+    assert f"({URL}/blob/main/crates/envs/src/scenarios/remedy_rush/README.md)" in page and "(pictures/zoo/remedy_rush.gif)" in page
+
+
+def test_a_word_that_is_no_address_is_refused(clone):
+    for wrong in ("nonsense", "https://", "https://example.org/", "https://example.org/a/"):
+        with pytest.raises(SystemExit, match="give an address"):
+            tool("address").main([wrong], clone)
+
+
+def test_readability_counts_sentences_of_prose_alone():
+    page = "# Heading of one page\n\nOne two three four. Five six\nseven eight [nine](x.md) ten.\n\n- a list item of six\n\n```sh\n" + "x " * 90
+    page += "\n```\n| a table | of many words that are no sentence |\n"
+    words, wide = tool("readability").measure(page)
+    assert (words, wide) == ([4, 4, 6, 5], 0)
+    assert tool("readability").measure("word " * 40)[1] == 1
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib")
+@pytest.mark.parametrize("recipe", sorted((ROOT / "python/examples").glob("*.py")), ids=lambda path: path.stem)
+def test_a_recipe_names_the_extra_that_has_all_that_it_imports(recipe):
+    import ast
+    import re
+    import tomllib
+
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    tree = ast.parse(recipe.read_text())
+    names = {alias.name.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+    names |= {node.module.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module}
+    others = {name.replace("_", "-") for name in names - sys.stdlib_module_names - {"hasard_rs", "numpy", "gymnasium"}}
+    named = re.search(r"pip install '\.\[([a-z0-9-]+)\]'", ast.get_docstring(tree))
+    if others:
+        assert named, f"imports {others}, and its docstring names no extra"
+        assert others <= {re.split(r"[\[>=<]", one)[0] for one in extras[named[1]]}
