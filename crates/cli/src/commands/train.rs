@@ -5,7 +5,7 @@ use crate::automap;
 use crate::episode_lines::worth;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::{self, Manner};
-use crate::progress::Progress;
+use crate::progress::{Progress, grouped};
 use crate::settings::{Elsewhere, scenario_of};
 use clap::ArgMatches;
 use clap::parser::ValueSource;
@@ -214,7 +214,7 @@ fn describe(config: &TrainConfig, directory: &Path) {
         config.env.id,
         config.preset,
         config.seed,
-        config.frames,
+        grouped(config.frames),
         budgets.join(", "),
         config.device,
         directory.display()
