@@ -11,7 +11,7 @@ import numpy as np
 import hasard_rs
 
 ENV = "hasard/PrecipicePlungeLevel1-v0"
-EXAMPLE = Path(__file__).parents[2] / "crates/envs/examples/numpy_agent.py"
+EXAMPLE = Path(__file__).parents[2] / "tools/numpy_agent.py"
 
 
 def test_outputs_are_those_of_the_program(tmp_path: Path) -> None:

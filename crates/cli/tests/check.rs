@@ -23,6 +23,7 @@ fn check(name: &str, cargo_test: &str, python_check: &str) -> (String, bool) {
     write_script(&folder.join("bin/python3"), "exit 0");
     write_script(&folder.join("bin/rustfmt"), "exit 0");
     std::fs::create_dir_all(folder.join("crates")).unwrap();
+    std::fs::create_dir_all(folder.join("tools")).unwrap();
     write_script(&folder.join("python/check"), python_check);
     let path = format!("{}:{}", folder.join("bin").display(), std::env::var("PATH").unwrap());
     let output = Command::new("bash").arg(folder.join("check")).env("PATH", path).output().unwrap();

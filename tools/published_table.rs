@@ -3,7 +3,7 @@
 //! `cargo run --release -p hasard-envs --example published_table -- [EPISODES] [START-OF-ID] [RULES]`; 200 episodes of every
 //! environment under `released` by default; the other measured rules are `tables`. Deviations are in standard errors of both measurements together.
 
-#[path = "../tests/published_figures/mod.rs"]
+#[path = "../crates/envs/tests/published_figures/mod.rs"]
 mod published_figures;
 
 use hasard_envs::RuleSet;

@@ -34,7 +34,7 @@ STANDING = (
     "TorchTree Stalagtite BigTree TechLamp TechLamp2 Candlestick ShortRedTorch ShortBlueTorch ShortGreenTorch "
     "burning_top burning_debris".split()
 )
-RECORDINGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../engine/tests/traces/*.trace")
+RECORDINGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../crates/engine/tests/traces/*.trace")
 SIMPLE = "TURN_LEFT TURN_RIGHT MOVE_FORWARD MOVE_BACKWARD LOOK_UP LOOK_DOWN JUMP".split()
 FULL = SIMPLE + "MOVE_LEFT MOVE_RIGHT SPEED CROUCH TURN180 LOOK_UP_DOWN_DELTA TURN_LEFT_RIGHT_DELTA".split()
 

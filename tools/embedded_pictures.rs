@@ -1,5 +1,5 @@
 //! Writes every embedded picture to contact sheets, to be looked at: `cargo run --release -p hasard-engine --example
-//! contact_sheet -- OUTDIR [ZOOM [NAMES [FRAMES]]]`, NAMES beginnings of names joined by commas. Textures are shown tiled twice across and down, sprites by frame and rotation.
+//! embedded_pictures -- OUTDIR [ZOOM [NAMES [FRAMES]]]`, NAMES beginnings of names joined by commas. Textures are shown tiled twice across and down, sprites by frame and rotation.
 
 use hasard_engine::assets::{Assets, Image, SPRITE_NAMES};
 use std::path::Path;

@@ -1,8 +1,8 @@
 """Plays the published worlds at random in the published engine and keeps what it shows and tells of chosen moments.
 
     pip install vizdoom==1.3.2 hasard==0.2.0 numpy opencv-python-headless
-    python crates/envs/examples/dump_published_scenes.py OUT [--scenarios a,b] [--levels 1,2,3] [--moments 40] [--size 160X120]
-    python crates/envs/examples/dump_published_scenes.py OUT --agent RUN ENVS_JSON    # the level of a run, played by its agent
+    python tools/dump_published_scenes.py OUT [--scenarios a,b] [--levels 1,2,3] [--moments 40] [--size 160X120]
+    python tools/dump_published_scenes.py OUT --agent RUN ENVS_JSON    # the level of a run, played by its agent
 
 For every level one folder OUT/SCENARIO_LEVEL_SIZE_SEED with scenes.json (position, facing, eye, floors, things in view,
 inventory) and, of every moment, its colours, depth and labels as PNG files. `--example pixels` draws them with our engine.

@@ -3,7 +3,7 @@
 
     pip install vizdoom HASARD numpy
     cargo build --release -p hasard-envs --example step_cost
-    python3 crates/envs/examples/beside_published_speed.py [PART OF AN ENVIRONMENT'S NAME...]
+    python3 tools/beside_published_speed.py [PART OF AN ENVIRONMENT'S NAME...]
 
 The published worlds run raw, without any wrapper: 160x120 RGB24 as the engine gives it, reduced to 128x72 by indexing,
 4 tics a step, random buttons, new episodes included; the maps are those of the installed package `hasard`, the pictures

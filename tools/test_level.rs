@@ -1,4 +1,4 @@
-//! Draws views of a small test level, to be looked at: `cargo run --release -p hasard-engine --example frames -- OUTDIR`.
+//! Draws views of a small test level, to be looked at: `cargo run --release -p hasard-engine --example test_level -- OUTDIR`.
 
 use hasard_engine::assets::{Assets, sprite_index};
 use hasard_engine::map::{Map, MapBuilder, Mark, SectorId, Style, TileGrid};

@@ -1,7 +1,7 @@
 //! The same moments as the published engine draws them and as this one does: how many pixels are equal.
 //!
 //! ```sh
-//! python crates/envs/examples/dump_published_scenes.py SCENES --levels 1,2,3 --moments 40
+//! python tools/dump_published_scenes.py SCENES --levels 1,2,3 --moments 40
 //! cargo run --release -p hasard-envs --example pixels -- SCENES/* [--out DIR] [--list]
 //! ```
 //!
