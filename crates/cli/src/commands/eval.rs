@@ -7,7 +7,7 @@ use crate::episode_lines::EpisodeLines;
 use crate::failure::{Failure, Outcome};
 use crate::places;
 use crate::ticker::Ticker;
-use hasard_envs::{Env, EnvId, EnvOptions, Episode, RuleSet, VecEnv};
+use hasard_envs::{ActionSpace, Env, EnvId, EnvOptions, Episode, RuleSet, VecEnv};
 use hasard_learn::config::{Constraint, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config};
@@ -86,13 +86,21 @@ pub fn run(args: &EvalArgs) -> Outcome {
 /// Puts a run's environment under another rule set. A budget that its own rules had by default becomes that of these; one that was
 /// asked for stays.
 fn play_under(config: &mut TrainConfig, rules: RuleSet) -> Outcome {
-    let scenario = config.env.id.parse::<EnvId>().map_err(Failure::bad)?.scenario;
-    let before = scenario.safety_budget(config.env.options().map_err(Failure::bad)?.rules);
+    let id = config.env.id.parse::<EnvId>().map_err(Failure::bad)?;
+    let own = config.env.options().map_err(Failure::bad)?;
+    let before = id.scenario.safety_budget(own.rules);
     config.env.rules = rules.name().into();
     for constraint in &mut config.constraints {
         if constraint.term.is_none() && constraint.budget == before {
-            constraint.budget = scenario.safety_budget(rules);
+            constraint.budget = id.scenario.safety_budget(rules);
         }
+    }
+    let space = |rules| ActionSpace::of(id, rules, own.hard, own.full_actions);
+    if space(rules) != space(own.rules) {
+        let (rules, own) = (rules.name(), own.rules.name());
+        note!(
+            "hasard: under {rules} the sub-actions of {id} are others than under {own}: the agent presses what stands in their places"
+        );
     }
     Ok(())
 }
