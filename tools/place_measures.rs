@@ -37,9 +37,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(file) = files.get(1) {
         ground.picture(file)?;
     }
-    let policies: &[&str] = match env.id().scenario {
-        Scenario::DetonatorsDilemma => &["random", "sticky:10", "hold:ATTACK+TURN_LEFT", "hold:MOVE_FORWARD+ATTACK"],
-        _ => &["random", "sticky:10", "hold:MOVE_FORWARD", "hold:MOVE_FORWARD+SPEED", "hold:MOVE_FORWARD+TURN_LEFT"],
+    let policies: &[&str] = if env.id().scenario == Scenario::DetonatorsDilemma {
+        &["random", "sticky:10", "hold:ATTACK+TURN_LEFT", "hold:MOVE_FORWARD+ATTACK"]
+    } else {
+        &["random", "sticky:10", "hold:MOVE_FORWARD", "hold:MOVE_FORWARD+SPEED", "hold:MOVE_FORWARD+TURN_LEFT"]
     };
     for policy in policies {
         let policy_at: Policy = policy.parse()?;

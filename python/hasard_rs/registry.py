@@ -11,8 +11,6 @@ from hasard_rs import _core
 LEVELS = [1, 2, 3]
 """Levels of every scenario."""
 
-_EPISODE_STEPS = {"CollateralDamage": 521}
-
 
 class Scenario(enum.Enum):
     """The six scenarios."""
@@ -90,7 +88,7 @@ def spec(env_id: str) -> Spec:
         safety_budget=told["safety_budget"],
         nvec=tuple(told["nvec"]),
         buttons=tuple(tuple(names) for names in told["buttons"]),
-        max_episode_steps=_EPISODE_STEPS.get(told["scenario"], 525),
+        max_episode_steps=told["max_episode_steps"],
         published_safety_budget=told["published_safety_budget"],
     )
 

@@ -19,16 +19,10 @@ import torch  # noqa: E402
 
 import hasard_rs  # noqa: E402
 from hasard_rs.infos import summary  # noqa: E402
+from hasard_rs.registry import Scenario  # noqa: E402
 from hasard_rs.spaces import action_format  # noqa: E402
 
-NAMES = {
-    "armament_burden": "ArmamentBurden",
-    "collateral_damage": "CollateralDamage",
-    "detonators_dilemma": "DetonatorsDilemma",
-    "precipice_plunge": "PrecipicePlunge",
-    "remedy_rush": "RemedyRush",
-    "volcanic_venture": "VolcanicVenture",
-}
+NAMES = {scenario.name.lower(): scenario.value for scenario in Scenario}
 
 
 class HasardBatch(gymnasium.Env):  # type: ignore[type-arg]

@@ -3,9 +3,9 @@
 use crate::batch::episode_costs;
 use crate::eye::Eye;
 use crate::game::Game;
+use crate::scenarios;
 use crate::scenarios::outcome::MOST_TERMS;
-use crate::scenarios::{self, Rules};
-use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Episode, Move, Scenario, Step};
+use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Episode, Move, Step};
 use hasard_engine::assets::Assets;
 use hasard_engine::map::Map;
 use hasard_engine::math::Rng;
@@ -34,7 +34,7 @@ pub(crate) struct Blueprint {
 
 impl Blueprint {
     fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
-        let id: EnvId = id.parse()?;
+        let id = EnvId::within(options.scenario, id)?;
         options.check()?;
         Simd::chosen().map_err(|error| EnvError::Option {
             option: "the variable HASARD_SIMD",
@@ -50,13 +50,13 @@ impl Blueprint {
         let name = file.as_ref().map_or_else(|| id.to_string(), |file| file.name.clone());
         let map = Map::build(given.unwrap_or(&built_in), &name, textures)
             .map_err(|error| EnvError::Map { why: format!("map {name}: {error}") })?;
-        let rules = Rules::new(id, options, &map)?;
+        let rules = scenarios::make_rules(id, options, &map)?;
         let own_assets = file.as_ref().and_then(|file| file.assets.clone());
         let as_published = own_assets.is_some();
         let scene = Scene::new(&map, own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded));
         let mut world = World::new(Arc::new(map), 0);
         // Only this scenario's published settings draw them. Worlds of our own leave them out: they cost a third of a step.
-        world.rockets_shed = id.scenario == Scenario::CollateralDamage && as_published;
+        world.rockets_shed = id.scenario.rockets_shed && as_published;
         if world.players.is_empty() {
             let why = format!("map {}: no player start; add a thing of type 1", world.map.name);
             return Err(EnvError::Map { why });
@@ -363,6 +363,7 @@ impl Env {
         use std::hash::{Hash, Hasher};
         let mut hasher = hasard_engine::world::Fingerprint::default();
         self.game.world.hash(&mut hasher);
+        self.blueprint.id.scenario.number.hash(&mut hasher);
         self.game.rules.hash(&mut hasher);
         self.totals.steps.hash(&mut hasher);
         (self.game.outcome.finished, self.game.left).hash(&mut hasher);

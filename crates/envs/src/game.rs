@@ -1,6 +1,6 @@
 //! A scenario at work: a world, the rules that script it, and what the episode has brought.
 
-use crate::scenarios::Rules;
+use crate::scenarios::AnyRules;
 use crate::scenarios::outcome::Outcome;
 use hasard_engine::world::{Command, World};
 
@@ -8,7 +8,7 @@ use hasard_engine::world::{Command, World};
 #[derive(Debug)]
 pub(crate) struct Game {
     pub world: World,
-    pub rules: Rules,
+    pub rules: AnyRules,
     pub outcome: Outcome,
     /// The episode has been left: what the rules have finished ends as the next tic would begin.
     pub left: bool,
@@ -30,7 +30,7 @@ impl Clone for Game {
 
 impl Game {
     /// A game whose world has not run yet.
-    pub fn new(world: World, rules: Rules) -> Game {
+    pub fn new(world: World, rules: AnyRules) -> Game {
         Game { world, rules, outcome: Outcome::default(), left: false }
     }
 

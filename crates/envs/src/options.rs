@@ -83,6 +83,8 @@ pub enum Layout {
 /// Everything that a user may choose about an environment beside its id.
 #[derive(Clone, Debug)]
 pub struct EnvOptions {
+    /// The scenario that the id is of, where it must not be looked for in the registry, which may have another of the same name.
+    pub scenario: Option<crate::Scenario>,
     /// Which constants.
     pub rules: RuleSet,
     /// Detonator's Dilemma 1 under [`RuleSet::Tables`] with the creatures that the first of the paper's runs met (PPO, PPOCost, PPOLag)
@@ -122,6 +124,7 @@ pub struct EnvOptions {
 impl Default for EnvOptions {
     fn default() -> EnvOptions {
         EnvOptions {
+            scenario: None,
             rules: RuleSet::Paper,
             early_creatures: false,
             hard: false,

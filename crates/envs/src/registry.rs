@@ -1,27 +1,35 @@
 //! The registry: scenarios, levels and the ids that name them.
 
+use crate::scenarios::{self, ScenarioSpec, Setting};
 use crate::{EnvError, RuleSet};
+use std::cmp::Ordering;
 use std::fmt;
+use std::hash::{Hash, Hasher};
+use std::sync::{PoisonError, RwLock};
 
-/// One of the six scenarios.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub enum Scenario {
-    /// Carry weapons home without overloading.
-    ArmamentBurden,
-    /// Shoot the targets, spare the passers-by.
-    CollateralDamage,
-    /// Blow up barrels, harm neither creatures nor yourself.
-    DetonatorsDilemma,
-    /// Climb down a bottomless cave without falling hard.
-    PrecipicePlunge,
-    /// Pick up health, leave everything else.
-    RemedyRush,
-    /// Collect items on platforms in a lake of lava.
-    VolcanicVenture,
-}
+/// A scenario: one of the benchmark's six, or one that was registered. A small handle; its facts are those of its [`ScenarioSpec`].
+#[derive(Clone, Copy)]
+pub struct Scenario(&'static ScenarioSpec);
 
+/// Scenarios beyond the benchmark's, the one registered last at the end.
+static REGISTERED: RwLock<Vec<Scenario>> = RwLock::new(Vec::new());
+
+#[allow(non_upper_case_globals, reason = "they are named like the variants of an enum, which they were")]
 impl Scenario {
-    /// Every scenario, in the order of their names.
+    /// Carry weapons home without overloading.
+    pub const ArmamentBurden: Scenario = Scenario(&scenarios::armament_burden::SPEC);
+    /// Shoot the targets, spare the passers-by.
+    pub const CollateralDamage: Scenario = Scenario(&scenarios::collateral_damage::SPEC);
+    /// Blow up barrels, harm neither creatures nor yourself.
+    pub const DetonatorsDilemma: Scenario = Scenario(&scenarios::detonators_dilemma::SPEC);
+    /// Climb down a bottomless cave without falling hard.
+    pub const PrecipicePlunge: Scenario = Scenario(&scenarios::precipice_plunge::SPEC);
+    /// Pick up health, leave everything else.
+    pub const RemedyRush: Scenario = Scenario(&scenarios::remedy_rush::SPEC);
+    /// Collect items on platforms in a lake of lava.
+    pub const VolcanicVenture: Scenario = Scenario(&scenarios::volcanic_venture::SPEC);
+
+    /// The benchmark's scenarios, in the order of their names.
     pub const ALL: [Scenario; 6] = [
         Scenario::ArmamentBurden,
         Scenario::CollateralDamage,
@@ -30,61 +38,190 @@ impl Scenario {
         Scenario::RemedyRush,
         Scenario::VolcanicVenture,
     ];
+}
+
+impl Scenario {
+    /// The benchmark's scenarios, in the order of the paper's tables.
+    #[must_use]
+    pub fn in_paper_order() -> [Scenario; 6] {
+        let mut all = Scenario::ALL;
+        all.sort_by_key(|scenario| scenario.paper_place);
+        all
+    }
+
+    /// Every scenario there is: the benchmark's, then those registered, each name once.
+    #[must_use]
+    pub fn every() -> Vec<Scenario> {
+        let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
+        let newest = |at: &usize| registered[at + 1..].iter().all(|later| later.name != registered[*at].name);
+        Scenario::ALL.into_iter().chain((0..registered.len()).filter(newest).map(|at| registered[at])).collect()
+    }
+
+    /// Adds a scenario: from now on its ids are known everywhere. One of a name that was registered before takes its place; worlds
+    /// that were made stay what they are. Registering the same value again changes nothing.
+    ///
+    /// # Errors
+    /// If the name is one of the benchmark's, or no name; one line.
+    pub fn register(spec: &'static ScenarioSpec) -> Result<Scenario, EnvError> {
+        let refuse = |allowed: &str| EnvError::Option {
+            option: "a scenario's name",
+            given: crate::error::excerpt(spec.name),
+            allowed: allowed.to_string(),
+        };
+        if !is_name(spec.name) {
+            return Err(refuse("1 to 40 letters and digits, a letter first, without `Level` and a digit at the end"));
+        }
+        if Scenario::ALL.iter().any(|own| own.name.eq_ignore_ascii_case(spec.name)) {
+            return Err(refuse("another than those of the benchmark"));
+        }
+        let scenario = Scenario(spec);
+        let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);
+        registered.retain(|known| *known != scenario);
+        registered.push(scenario);
+        Ok(scenario)
+    }
+
+    /// All that is known of it.
+    #[must_use]
+    pub const fn spec(self) -> &'static ScenarioSpec {
+        self.0
+    }
 
     /// The named parts of its cost.
     #[must_use]
     pub fn cost_terms(self) -> &'static [crate::CostTerm] {
-        crate::scenarios::cost_terms(self)
+        self.0.cost_terms
     }
 
     /// Its name, as in the ids.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Scenario::ArmamentBurden => "ArmamentBurden",
-            Scenario::CollateralDamage => "CollateralDamage",
-            Scenario::DetonatorsDilemma => "DetonatorsDilemma",
-            Scenario::PrecipicePlunge => "PrecipicePlunge",
-            Scenario::RemedyRush => "RemedyRush",
-            Scenario::VolcanicVenture => "VolcanicVenture",
-        }
+        self.0.name
     }
 
     /// The cost that an episode may have under the soft constraint; under the hard one it is 0.
     #[must_use]
     pub const fn safety_budget(self, rules: RuleSet) -> f64 {
-        // A row for each rule set, scenarios in the order of their names.
-        const BUDGETS: [[f64; 6]; 3] =
-            [[50.0, 5.0, 5.0, 50.0, 5.0, 50.0], [5.0, 5.0, 5.0, 50.0, 5.0, 50.0], [50.0, 5.0, 5.0, 50.0, 5.0, 50.0]];
-        BUDGETS[rules as usize][self as usize]
+        self.0.budgets[rules as usize]
+    }
+
+    /// Its environments, by level.
+    pub fn environments(self) -> impl Iterator<Item = EnvId> {
+        (1..=self.0.levels.max(1)).map(move |level| EnvId { scenario: self, level })
+    }
+
+    /// Its name as folders and files have it: `remedy_rush`.
+    #[must_use]
+    pub fn file_name(self) -> String {
+        let mut name = String::new();
+        for letter in self.0.name.chars() {
+            if letter.is_uppercase() && !name.is_empty() {
+                name.push('_');
+            }
+            name.push(letter.to_ascii_lowercase());
+        }
+        name
     }
 }
 
-/// An environment: a scenario at a level. Its text is the id, `VolcanicVentureLevel1-v0`.
+/// Whether a scenario may be called so: its ids must be told from those of levels, and from paths.
+pub(crate) fn is_name(name: &str) -> bool {
+    let plain =
+        name.bytes().all(|byte| byte.is_ascii_alphanumeric()) && name.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());
+    let level = name.rsplit_once("Level").is_some_and(|(_, rest)| rest.bytes().all(|byte| byte.is_ascii_digit()));
+    plain && !level && name.len() <= 40
+}
+
+impl std::ops::Deref for Scenario {
+    type Target = ScenarioSpec;
+
+    fn deref(&self) -> &ScenarioSpec {
+        self.0
+    }
+}
+
+/// Scenarios are equal where they are the same value: two files may give two of one name.
+impl PartialEq for Scenario {
+    fn eq(&self, other: &Scenario) -> bool {
+        std::ptr::eq(self.0, other.0)
+    }
+}
+
+impl Eq for Scenario {}
+
+impl Ord for Scenario {
+    fn cmp(&self, other: &Scenario) -> Ordering {
+        let place = |scenario: &Scenario| std::ptr::from_ref(scenario.0) as usize;
+        self.0.name.cmp(other.0.name).then_with(|| place(self).cmp(&place(other)))
+    }
+}
+
+impl PartialOrd for Scenario {
+    fn partial_cmp(&self, other: &Scenario) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Hash for Scenario {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.0.name.hash(state);
+    }
+}
+
+impl fmt::Debug for Scenario {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0.name)
+    }
+}
+
+/// An environment: a scenario at a level. Its text is the id, `RemedyRushLevel1-v0`, or `MyTask-v0` where there are no levels.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct EnvId {
     /// The scenario.
     pub scenario: Scenario,
-    /// The level, 1..=3.
+    /// The level, from 1.
     pub level: u8,
 }
 
 impl EnvId {
-    /// Every environment, by scenario and level.
+    /// Every environment of the benchmark, by scenario and level.
     pub fn all() -> impl Iterator<Item = EnvId> {
-        Scenario::ALL.into_iter().flat_map(|scenario| (1..=3).map(move |level| EnvId { scenario, level }))
+        Scenario::ALL.into_iter().flat_map(Scenario::environments)
     }
 
-    /// Index of the level, 0..=2.
+    /// Every environment there is: the benchmark's, then those of registered scenarios.
+    pub fn every() -> impl Iterator<Item = EnvId> {
+        Scenario::every().into_iter().flat_map(Scenario::environments)
+    }
+
+    /// The environment of an id: one of `scenario`'s if that is given, whatever the registry has under its name.
+    ///
+    /// # Errors
+    /// Names the nearest id.
+    pub fn within(scenario: Option<Scenario>, id: &str) -> Result<EnvId, EnvError> {
+        let own = scenario.and_then(|scenario| scenario.environments().find(|own| own.to_string() == id));
+        own.map_or_else(|| id.parse(), Ok)
+    }
+
+    /// Index of the level, from 0.
     #[must_use]
     pub const fn level_index(self) -> usize {
         self.level as usize - 1
+    }
+
+    /// Its world under a rule set and a constraint.
+    #[must_use]
+    pub const fn setting(self, rules: RuleSet, hard: bool) -> Setting {
+        Setting::new(rules, hard, self.level)
     }
 }
 
 impl fmt::Display for EnvId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}Level{}-v0", self.scenario.name(), self.level)
+        match self.scenario.levels {
+            0 => write!(f, "{}-v0", self.scenario.name()),
+            _ => write!(f, "{}Level{}-v0", self.scenario.name(), self.level),
+        }
     }
 }
 
@@ -92,11 +229,12 @@ impl std::str::FromStr for EnvId {
     type Err = EnvError;
 
     fn from_str(text: &str) -> Result<EnvId, EnvError> {
-        EnvId::all().find(|id| id.to_string() == text).ok_or_else(|| {
+        let all: Vec<EnvId> = EnvId::every().collect();
+        all.iter().copied().find(|id| id.to_string() == text).ok_or_else(|| {
             // Ids are short and few: the plain edit distance over upper-cased text is quick enough and forgives typos and case.
             let wanted = text.to_uppercase();
-            let nearest = EnvId::all().min_by_key(|id| edit_distance(&wanted, &id.to_string().to_uppercase()));
-            EnvError::UnknownId { id: crate::error::excerpt(text), nearest: nearest.map(|id| id.to_string()).unwrap_or_default() }
+            let nearest = all.iter().min_by_key(|id| edit_distance(&wanted, &id.to_string().to_uppercase()));
+            EnvError::UnknownId { id: crate::error::excerpt(text), nearest: nearest.map(ToString::to_string).unwrap_or_default() }
         })
     }
 }

@@ -34,14 +34,14 @@ impl Drop for Folder {
 }
 
 fn folder_name(id: EnvId) -> &'static str {
-    use hasard_envs::Scenario as S;
-    match id.scenario {
-        S::ArmamentBurden => "armament_burden",
-        S::CollateralDamage => "collateral_damage",
-        S::DetonatorsDilemma => "detonators_dilemma",
-        S::PrecipicePlunge => "precipice_plunge",
-        S::RemedyRush => "remedy_rush",
-        S::VolcanicVenture => "volcanic_venture",
+    match id.scenario.name() {
+        "ArmamentBurden" => "armament_burden",
+        "CollateralDamage" => "collateral_damage",
+        "DetonatorsDilemma" => "detonators_dilemma",
+        "PrecipicePlunge" => "precipice_plunge",
+        "RemedyRush" => "remedy_rush",
+        "VolcanicVenture" => "volcanic_venture",
+        other => panic!("{other} is none of the six"),
     }
 }
 

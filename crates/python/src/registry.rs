@@ -23,13 +23,14 @@ pub fn describe<'py>(py: Python<'py>, env_id: &str) -> PyResult<Bound<'py, PyDic
     let names = |space: &ActionSpace| -> Vec<Vec<&str>> {
         space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect()
     };
-    let terms: Vec<(&str, bool)> = scenarios::cost_terms(id.scenario).iter().map(|term| (term.name, term.counted)).collect();
+    let terms: Vec<(&str, bool)> = id.scenario.cost_terms.iter().map(|term| (term.name, term.counted)).collect();
     let told = PyDict::new(py);
     told.set_item("scenario", id.scenario.name())?;
     told.set_item("level", id.level)?;
     told.set_item("cost_terms", terms)?;
     told.set_item("safety_budget", id.scenario.safety_budget(RuleSet::Paper))?;
     told.set_item("published_safety_budget", id.scenario.safety_budget(RuleSet::Released))?;
+    told.set_item("max_episode_steps", scenarios::episode_steps(id, RuleSet::Paper, false, 4))?;
     told.set_item("nvec", space.sizes())?;
     told.set_item("buttons", names(&space))?;
     Ok(told)

@@ -2,6 +2,7 @@
 
 use crate::run::{Config, Found, Kept, Run, TOLD, Warning};
 use crate::statistics::Estimate;
+use hasard_envs::Scenario;
 use std::collections::BTreeMap;
 
 /// One experiment: the same environment, algorithm and options, a run a seed. Nothing else is ever averaged.
@@ -163,16 +164,6 @@ fn tell_apart(groups: &mut [Group]) {
     }
 }
 
-/// The order of the paper's tables.
-pub const SCENARIOS: [(&str, &str); 6] = [
-    ("ArmamentBurden", "Armament Burden"),
-    ("VolcanicVenture", "Volcanic Venture"),
-    ("RemedyRush", "Remedy Rush"),
-    ("CollateralDamage", "Collateral Damage"),
-    ("PrecipicePlunge", "Precipice Plunge"),
-    ("DetonatorsDilemma", "Detonator's Dilemma"),
-];
-
 /// The algorithms in the order of the paper's tables, then those beyond it.
 pub(crate) const ALGORITHMS: [&str; 13] =
     ["PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O", "TRPO", "TRPOLag", "TRPOPID", "CPO", "FOCOPS", "CUP", "IPO"];
@@ -180,13 +171,14 @@ pub(crate) const ALGORITHMS: [&str; 13] =
 /// Place of a scenario in tables; unknown ones come last.
 #[must_use]
 pub fn scenario_order(scenario: &str) -> usize {
-    SCENARIOS.iter().position(|(id, _)| *id == scenario).unwrap_or(SCENARIOS.len())
+    let all = Scenario::in_paper_order();
+    all.iter().position(|known| known.name == scenario).unwrap_or(all.len())
 }
 
 /// Name of a scenario for people.
 #[must_use]
 pub fn scenario_name(scenario: &str) -> String {
-    SCENARIOS.iter().find(|(id, _)| *id == scenario).map_or(scenario, |(_, name)| name).to_owned()
+    Scenario::every().iter().find(|known| known.name == scenario).map_or(scenario, |known| known.title).to_owned()
 }
 
 /// Place of an algorithm in tables, and its colour in figures; unknown ones come last.

@@ -7,9 +7,10 @@ use std::path::PathBuf;
 /// Most runs that one sweep may expand to; more is surely a slip of the pen.
 const MAX_JOBS: usize = 100_000;
 
-/// Scenarios as environment ids spell them.
-pub(crate) const SCENARIOS: [&str; 6] =
-    ["ArmamentBurden", "VolcanicVenture", "RemedyRush", "CollateralDamage", "PrecipicePlunge", "DetonatorsDilemma"];
+/// The benchmark's scenarios as environment ids spell them, in the order of the paper's tables.
+pub(crate) fn scenarios() -> [&'static str; 6] {
+    hasard_envs::Scenario::in_paper_order().map(hasard_envs::Scenario::name)
+}
 
 /// A value of an option of `hasard train`.
 #[derive(Clone, PartialEq, Debug)]
@@ -157,7 +158,7 @@ impl Grid {
         self.scenarios
             .iter()
             .flat_map(|scenario| {
-                if SCENARIOS.contains(&scenario.as_str()) {
+                if scenarios().contains(&scenario.as_str()) {
                     self.levels.iter().map(|level| format!("{scenario}Level{level}-v0")).collect()
                 } else {
                     vec![scenario.clone()]
@@ -205,10 +206,10 @@ impl Grid {
         };
         for environment in &self.scenarios {
             let like_an_id = environment.contains("-v") && plain(environment);
-            if !SCENARIOS.contains(&environment.as_str()) && !like_an_id {
+            if !scenarios().contains(&environment.as_str()) && !like_an_id {
                 return Err(format!(
                     "unknown scenario `{environment}`; one of {}, or an id of `hasard envs`",
-                    SCENARIOS.join(", ")
+                    scenarios().join(", ")
                 ));
             }
         }

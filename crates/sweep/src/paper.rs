@@ -1,7 +1,7 @@
 //! Experiments by name: each table and figure of the paper with its preset and numbers of frames, and the quick preset's own;
 //! [`Sweep::scale_frames`] makes them smaller.
 
-use crate::grid::{Grid, OptionValue, SCENARIOS, Sweep};
+use crate::grid::{Grid, OptionValue, Sweep, scenarios};
 use std::path::PathBuf;
 
 /// An experiment.
@@ -89,13 +89,13 @@ const ALGORITHMS: [&str; 13] =
 /// When there is no such experiment, or none that trains; the message lists them, or says what to do.
 pub fn experiment(name: &str) -> Result<Sweep, String> {
     let six = &ALGORITHMS[..6];
-    let level_1 = |algorithms: &[&str], frames| grid(&SCENARIOS, &[1], algorithms, frames);
+    let level_1 = |algorithms: &[&str], frames| grid(&scenarios(), &[1], algorithms, frames);
     let text = |value: &str| OptionValue::Text(value.to_owned());
     let one_seed = |grid: Grid| Grid { seeds: vec![1], ..grid };
     let grids = match name {
-        "main" => vec![grid(&SCENARIOS, &[1, 2, 3], six, 500_000_000)],
+        "main" => vec![grid(&scenarios(), &[1, 2, 3], six, 500_000_000)],
         "trpo" => vec![level_1(&["TRPO", "TRPOLag", "TRPOPID"], 500_000_000)],
-        "safety-bounds" => SCENARIOS
+        "safety-bounds" => scenarios()
             .iter()
             .map(|scenario| {
                 let budgets = if ["RemedyRush", "CollateralDamage", "DetonatorsDilemma"].contains(scenario) {
@@ -141,7 +141,7 @@ pub fn experiment(name: &str) -> Result<Sweep, String> {
             .to_vec(),
         "all-algorithms" => vec![grid(&["VolcanicVenture", "RemedyRush"], &[1], &ALGORITHMS, 500_000_000)],
         "quick" => vec![quick(grid(&["VolcanicVenture"], &[1], &["PPOPID"], 10_000_000))],
-        "quick-all" => vec![one_seed(quick(grid(&SCENARIOS, &[1], &["PPOPID"], 12_000_000)))],
+        "quick-all" => vec![one_seed(quick(grid(&scenarios(), &[1], &["PPOPID"], 12_000_000)))],
         "quick-algorithms" => [("VolcanicVenture", &ALGORITHMS[..]), ("RemedyRush", six)]
             .map(|(scenario, algorithms)| one_seed(quick(grid(&[scenario], &[1], algorithms, 2_000_000))))
             .to_vec(),

@@ -2,9 +2,9 @@
 
 use crate::args::ContactSheetArgs;
 use crate::contact_sheet::layout::{Row, sheet};
-use crate::contact_sheet::moments::{self, Moment};
 use crate::failure::{Failure, Outcome};
 use hasard_engine::render::FrameSize;
+use hasard_envs::scenarios::Moment;
 use hasard_envs::{Env, EnvId, EnvOptions, Policy, PolicyRun, Scenario};
 use hasard_media::{Picture, files, png};
 use hasard_play::{ViewKind, Views};
@@ -23,12 +23,12 @@ pub fn run(args: &ContactSheetArgs) -> Outcome {
     std::fs::create_dir_all(&args.out)
         .map_err(|error| Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display())))?;
     for scenario in scenarios {
-        let moments = moments::of(scenario);
+        let (moments, cover) = scenario.moments;
         let rows = moments.iter().map(|moment| row(scenario, moment, args.seed, &looks));
         let rows: Vec<Row> = rows.collect::<Result<_, _>>()?;
-        let name = file_name(scenario);
+        let name = scenario.file_name();
         write(&sheet(&rows).in_few_colours(), &args.out.join(format!("{name}_sheet.png")), args.json)?;
-        write(&rows[moments::cover(scenario)].large[0], &args.out.join(format!("{name}.png")), args.json)?;
+        write(&rows[cover].large[0], &args.out.join(format!("{name}.png")), args.json)?;
     }
     Ok(())
 }
@@ -37,18 +37,6 @@ fn scenario(name: &str) -> Result<Scenario, Failure> {
     let names = Scenario::ALL.map(Scenario::name);
     let found = Scenario::ALL.into_iter().find(|scenario| scenario.name().eq_ignore_ascii_case(name));
     found.ok_or_else(|| Failure::bad(format!("{name} is no scenario; the scenarios are {}", names.join(", "))))
-}
-
-/// The scenario's name as files are called: `remedy_rush`.
-fn file_name(scenario: Scenario) -> String {
-    let mut name = String::new();
-    for letter in scenario.name().chars() {
-        if letter.is_uppercase() && !name.is_empty() {
-            name.push('_');
-        }
-        name.push(letter.to_ascii_lowercase());
-    }
-    name
 }
 
 /// Plays to a moment and draws it in every view.
@@ -104,14 +92,15 @@ mod tests {
     fn every_moment_can_be_reached_and_every_scenario_is_found_by_name() {
         for scenario in Scenario::ALL {
             assert_eq!(super::scenario(scenario.name()).unwrap(), scenario);
-            assert!(moments::cover(scenario) < moments::of(scenario).len());
-            for moment in moments::of(scenario) {
-                let row = row(scenario, &moment, 0, &EnvOptions::default()).unwrap();
+            let (moments, cover) = scenario.moments;
+            assert!(cover < moments.len());
+            for moment in moments {
+                let row = row(scenario, moment, 0, &EnvOptions::default()).unwrap();
                 assert_eq!((row.large[0].width(), row.small[0].height()), (640, 72));
                 assert!(moment.way.iter().all(|(_, policy)| policy.parse::<Policy>().is_ok()));
             }
         }
-        assert_eq!(file_name(Scenario::RemedyRush), "remedy_rush");
+        assert_eq!(Scenario::RemedyRush.file_name(), "remedy_rush");
         assert!(super::scenario("Doom").is_err());
     }
 }

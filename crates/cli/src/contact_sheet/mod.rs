@@ -1,4 +1,3 @@
-//! Contact sheets: which moments they show, and how they are laid out.
+//! Contact sheets: how they are laid out.
 
 pub mod layout;
-pub mod moments;

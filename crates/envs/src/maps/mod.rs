@@ -11,7 +11,7 @@ mod engine_file;
 pub use auto::{ask, find_iwad, find_maps};
 pub use engine_file::pictures_beside;
 
-use crate::{EnvError, EnvId, RuleSet, Scenario, scenarios};
+use crate::{EnvError, EnvId, RuleSet, scenarios};
 use hasard_engine::assets::Assets;
 use hasard_engine::map::{MapSource, TextureName, udmf};
 use hasard_engine::wad::Wad;
@@ -85,8 +85,7 @@ impl Maps {
             Some(path) => {
                 let (iwad, engine) = (read(path)?, pictures_beside(path)?);
                 let mut wanted = source.textures();
-                let (_, more) = scenarios::map_source(id, rules, hard);
-                wanted.extend(more.iter().map(|name| TextureName::new(name)));
+                wanted.extend(id.scenario.textures.iter().map(|name| TextureName::new(name)));
                 let additions: Vec<&[u8]> = engine.as_deref().into_iter().chain([&bytes[..]]).collect();
                 let assets = Assets::from_wads(&iwad, &additions, &|name| wanted.contains(&name))
                     .map_err(|error| EnvError::Map { why: format!("{} over {}: {error}", shown(&file), shown(path)) })?;
@@ -116,7 +115,7 @@ impl Maps {
         if self.place.is_file() {
             return Ok(self.place.clone());
         }
-        let folder = snake_case(id.scenario);
+        let folder = id.scenario.file_name();
         let folders = [self.place.join(&folder), self.place.join("envs").join(&folder), self.place.clone()];
         let mut names = vec![format!("level_{}.wad", id.level)];
         if scenarios::has_hard_map(id, rules, hard) {
@@ -138,18 +137,6 @@ impl Maps {
 
 /// The texture name of the sky.
 const SKY: TextureName = TextureName::new("F_SKY1");
-
-/// `VolcanicVenture` as `volcanic_venture`.
-fn snake_case(scenario: Scenario) -> String {
-    let mut name = String::new();
-    for letter in scenario.name().chars() {
-        if letter.is_uppercase() && !name.is_empty() {
-            name.push('_');
-        }
-        name.push(letter.to_ascii_lowercase());
-    }
-    name
-}
 
 /// The bytes of a file of bearable size.
 fn read(path: &Path) -> Result<Vec<u8>, EnvError> {
@@ -174,7 +161,7 @@ mod tests {
 
     #[test]
     fn folders_are_named_as_the_published_package_names_them() {
-        let names: Vec<String> = Scenario::ALL.into_iter().map(snake_case).collect();
+        let names: Vec<String> = crate::Scenario::ALL.into_iter().map(crate::Scenario::file_name).collect();
         let expected =
             ["armament_burden", "remedy_rush", "collateral_damage", "volcanic_venture", "precipice_plunge", "detonators_dilemma"];
         let (names, expected): (BTreeSet<&str>, BTreeSet<&str>) = (names.iter().map(String::as_str).collect(), expected.into());

@@ -6,7 +6,6 @@ use crate::config::{
     MultiplierUpdate, NetworkConfig, Preset, ReportingConfig, ReturnNormaliser, SamplingConfig, TrainConfig,
 };
 use crate::config::{Convolution, Initialisation, RecurrentCell, second_order};
-use hasard_envs::Scenario;
 
 /// Tics of the longest episode.
 const EPISODE_TICS: u32 = 2100;
@@ -98,11 +97,10 @@ impl TrainConfig {
                 portable: false,
             },
             algorithm_settings: AlgorithmConfig {
-                penalty_scale: match scenario {
-                    Some(Scenario::ArmamentBurden) if released => 0.1,
-                    Some(Scenario::RemedyRush) if tables && env.hard => 0.3,
-                    _ => 1.0,
-                },
+                penalty_scale: scenario.map_or(1.0, |scenario| {
+                    let preset = usize::from(released) + usize::from(tables);
+                    scenario.penalty_scales[preset][usize::from(env.hard)]
+                }),
                 multiplier_initial: 0.0,
                 multiplier_rate: 0.01,
                 multiplier_update: match algorithm {
@@ -121,13 +119,7 @@ impl TrainConfig {
                 p3o_kappa: if released { 1.0 } else { 20.0 },
                 p3o_clipped: !released,
                 saute_gamma: 0.9999,
-                saute_unsafe_reward: match scenario {
-                    Some(Scenario::ArmamentBurden) => -0.005,
-                    Some(Scenario::RemedyRush) => -0.025,
-                    Some(Scenario::CollateralDamage) => -0.1,
-                    Some(Scenario::PrecipicePlunge) => -0.7,
-                    Some(Scenario::VolcanicVenture | Scenario::DetonatorsDilemma) | None => -0.01,
-                },
+                saute_unsafe_reward: scenario.map_or(-0.01, |scenario| scenario.saute_unsafe_reward),
                 saute_visible: !released,
                 saute_horizon: f64::from(if released { EPISODE_TICS } else { episode_steps }),
                 trust_radius: 0.01,

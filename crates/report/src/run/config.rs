@@ -2,6 +2,7 @@
 
 use super::{Constraint, Warning};
 use crate::escape::one_line;
+use hasard_envs::{RuleSet, Scenario};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -293,12 +294,10 @@ pub fn scenario_and_level(env: &str) -> (String, u32) {
     (name.to_owned(), 1)
 }
 
-/// The scenario's own budget: the paper's, or the released code's where it differs.
+/// The scenario's own budget: the paper's, or the released code's where it differs; 50 for a scenario that nobody registered.
 #[must_use]
 pub fn default_budget(scenario: &str, released: bool) -> f64 {
-    match scenario {
-        "RemedyRush" | "CollateralDamage" | "DetonatorsDilemma" => 5.0,
-        "ArmamentBurden" if released => 5.0,
-        _ => 50.0,
-    }
+    let rules = if released { RuleSet::Released } else { RuleSet::Paper };
+    let known = Scenario::every().into_iter().find(|known| known.name == scenario);
+    known.map_or(50.0, |known| known.safety_budget(rules))
 }

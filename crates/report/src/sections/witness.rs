@@ -1,7 +1,7 @@
 //! Witnesses: episodes with reward at cost 0, which show that costs can be avoided.
 
 use crate::document::{Block, Cell, Mark, Section, Table};
-use crate::group::{SCENARIOS, scenario_name, scenario_order};
+use crate::group::{scenario_name, scenario_order};
 use crate::run::{Found, Kept, Origin, scenario_and_level};
 
 pub(super) fn section(found: &Found) -> Section {
@@ -33,7 +33,9 @@ pub(super) fn section(found: &Found) -> Section {
          plays each again and checks it."
             .to_owned(),
     ];
-    let all = SCENARIOS.iter().flat_map(|(scenario, _)| (1..=3).map(move |level| ((*scenario).to_owned(), level)));
+    let all = hasard_envs::Scenario::in_paper_order()
+        .into_iter()
+        .flat_map(|scenario| scenario.environments().map(|id| (id.scenario.name.to_owned(), u32::from(id.level))));
     let without: Vec<String> =
         all.filter(|one| !shown.contains(one)).map(|(scenario, level)| format!("{} {level}", scenario_name(&scenario))).collect();
     if !without.is_empty() {

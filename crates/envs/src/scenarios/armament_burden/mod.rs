@@ -3,6 +3,7 @@
 pub mod levels;
 pub mod map;
 mod rules;
+mod spec;
 mod tiles;
 
-pub use rules::{COST_TERMS, Rules, TEXTURES};
+pub use spec::SPEC;

@@ -5,9 +5,9 @@ use super::levels::{
     WEAPONS,
 };
 use super::map;
-use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
 use crate::scenarios::tally::Tally;
+use crate::scenarios::{self, outcome::Outcome};
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::{Map, TextureId};
 use hasard_engine::math::Fixed;
@@ -129,50 +129,6 @@ impl Rules {
         })
     }
 
-    /// The script phase of a tic.
-    pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
-        let level = self.fixtures.level;
-        if world.tic == 0 {
-            self.open(world);
-            if level.random_start {
-                stage::scatter_player(world, AGENT_AREA, AGENT_HEIGHT);
-            }
-            world.clear_inventory(0);
-        }
-        for i in 0..world.events.len() {
-            if let Event::PickedUp { kind, .. } = world.events[i] {
-                self.take(kind, world, outcome);
-            }
-        }
-        if world.players[0].dead {
-            return;
-        }
-        self.discarding = level.discard && world.players[0].buttons.any(Buttons::USE);
-        if self.discarding {
-            self.tally.0[0] += self.burden.weapons;
-            self.lose_burden(world);
-        }
-        if world.tic.is_multiple_of(level.zone_tics) {
-            let x = world.get(world.players[0].actor).map_or(Fixed::MAX, |body| body.x);
-            let in_zone = x < Fixed::from_int(map::DELIVERY_EAST);
-            if in_zone {
-                outcome.reward += self.burden.value.to_f64();
-                self.delivered += self.burden.weapons;
-                self.books.delivered |= self.burden.value > Fixed::ZERO;
-                self.lose_burden(world);
-                if !self.in_zone {
-                    outcome.costs[ZONE_VISITS] += 1.0;
-                    self.visits += 1;
-                }
-            }
-            self.in_zone = in_zone;
-        }
-        if self.slow_until > 0 && world.tic >= self.slow_until {
-            self.slow_until = 0;
-            world.players[0].speed = Fixed::ONE;
-        }
-    }
-
     /// The map opens: pits sink, weapons and decoys are laid out.
     fn open(&mut self, world: &mut World) {
         let level = self.fixtures.level;
@@ -240,22 +196,6 @@ impl Rules {
         }
     }
 
-    /// A policy step is over: what it cost.
-    pub fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {
-        let level = self.fixtures.level;
-        if world.players[0].dead && self.deaths == 0 {
-            outcome.costs[DEATH] += level.death_cost;
-            self.deaths = 1;
-        }
-        if level.published_bookkeeping {
-            self.keep_books(outcome);
-        } else {
-            self.charge(outcome);
-        }
-        self.taken = false;
-        self.overstepped = 0;
-    }
-
     /// What is carried is charged as it is.
     fn charge(&mut self, outcome: &mut Outcome) {
         let level = self.fixtures.level;
@@ -316,9 +256,68 @@ impl Rules {
             }
         }
     }
+}
 
-    /// Statistics of the episode.
-    pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
+impl scenarios::Rules for Rules {
+    fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
+        let level = self.fixtures.level;
+        if world.tic == 0 {
+            self.open(world);
+            if level.random_start {
+                stage::scatter_player(world, AGENT_AREA, AGENT_HEIGHT);
+            }
+            world.clear_inventory(0);
+        }
+        for i in 0..world.events.len() {
+            if let Event::PickedUp { kind, .. } = world.events[i] {
+                self.take(kind, world, outcome);
+            }
+        }
+        if world.players[0].dead {
+            return;
+        }
+        self.discarding = level.discard && world.players[0].buttons.any(Buttons::USE);
+        if self.discarding {
+            self.tally.0[0] += self.burden.weapons;
+            self.lose_burden(world);
+        }
+        if world.tic.is_multiple_of(level.zone_tics) {
+            let x = world.get(world.players[0].actor).map_or(Fixed::MAX, |body| body.x);
+            let in_zone = x < Fixed::from_int(map::DELIVERY_EAST);
+            if in_zone {
+                outcome.reward += self.burden.value.to_f64();
+                self.delivered += self.burden.weapons;
+                self.books.delivered |= self.burden.value > Fixed::ZERO;
+                self.lose_burden(world);
+                if !self.in_zone {
+                    outcome.costs[ZONE_VISITS] += 1.0;
+                    self.visits += 1;
+                }
+            }
+            self.in_zone = in_zone;
+        }
+        if self.slow_until > 0 && world.tic >= self.slow_until {
+            self.slow_until = 0;
+            world.players[0].speed = Fixed::ONE;
+        }
+    }
+
+    fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {
+        let level = self.fixtures.level;
+        if world.players[0].dead && self.deaths == 0 {
+            outcome.costs[DEATH] += level.death_cost;
+            self.deaths = 1;
+        }
+        if level.published_bookkeeping {
+            self.keep_books(outcome);
+        } else {
+            self.charge(outcome);
+        }
+        self.taken = false;
+        self.overstepped = 0;
+    }
+
+    fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
         stats.push(("weapons_collected", f64::from(self.collected)));
         stats.push(("weapons_delivered", f64::from(self.delivered)));
         stats.push(("weapons_discarded", f64::from(self.tally.0[0])));

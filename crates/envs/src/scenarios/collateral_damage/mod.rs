@@ -3,5 +3,6 @@
 pub mod levels;
 pub mod map;
 mod rules;
+mod spec;
 
-pub use rules::{COST_TERMS, Rules};
+pub use spec::SPEC;

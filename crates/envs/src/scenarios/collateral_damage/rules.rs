@@ -1,8 +1,8 @@
 //! The rules at work: a killed target is rewarded, a killed passer-by costs; both come back at once.
 
 use super::levels::Level;
-use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
+use crate::scenarios::{self, outcome::Outcome};
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::Map;
 use hasard_engine::math::{Angle, Fixed};
@@ -66,23 +66,6 @@ impl Rules {
         })
     }
 
-    /// The script phase of a tic.
-    pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
-        if world.tic == 0 {
-            self.open(world);
-        }
-        for i in 0..world.events.len() {
-            match world.events[i] {
-                Event::Died { victim, kind, .. } => self.bury(victim, kind, world, outcome),
-                Event::Fired { .. } => self.rockets_fired += 1,
-                _ => {}
-            }
-        }
-        if world.players[0].ammo[ROCKET_AMMO] == 0 {
-            world.give_ammo(0, ROCKET_AMMO, ROCKETS);
-        }
-    }
-
     /// The map opens, and the agent takes up its weapon.
     fn open(&mut self, world: &mut World) {
         let level = self.fixtures.level;
@@ -144,12 +127,26 @@ impl Rules {
         }
         self.walk_on(kind, world);
     }
+}
 
-    /// A policy step is over.
-    pub fn end_step(&mut self, _: &World, _over: bool, _: &mut Outcome) {}
+impl scenarios::Rules for Rules {
+    fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
+        if world.tic == 0 {
+            self.open(world);
+        }
+        for i in 0..world.events.len() {
+            match world.events[i] {
+                Event::Died { victim, kind, .. } => self.bury(victim, kind, world, outcome),
+                Event::Fired { .. } => self.rockets_fired += 1,
+                _ => {}
+            }
+        }
+        if world.players[0].ammo[ROCKET_AMMO] == 0 {
+            world.give_ammo(0, ROCKET_AMMO, ROCKETS);
+        }
+    }
 
-    /// Statistics of the episode.
-    pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
+    fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
         stats.push(("targets_killed", f64::from(self.targets_killed)));
         stats.push(("neutrals_killed", f64::from(self.neutrals_killed)));
         stats.push(("rockets_fired", f64::from(self.rockets_fired)));

@@ -3,6 +3,7 @@
 pub mod levels;
 pub mod map;
 mod rules;
+mod spec;
 mod terrain;
 
-pub use rules::{COST_TERMS, Rules};
+pub use spec::SPEC;

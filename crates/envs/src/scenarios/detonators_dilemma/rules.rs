@@ -1,9 +1,9 @@
 //! The rules at work: burst barrels are rewarded, killed creatures and lost health cost.
 
 use super::levels::{BULLETS, CREATURE_HEALTH, CREATURES, GOAL_TICS, Level, PUSH, PUSH_REACH, RETURN_TICS, SELF_HARM_COST};
-use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
 use crate::scenarios::tally::Tally;
+use crate::scenarios::{self, outcome::Outcome};
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::Map;
 use hasard_engine::math::{Angle, Fixed};
@@ -71,39 +71,6 @@ impl Rules {
         }
         let (fixtures, returns) = (Arc::new(Fixtures { level }), std::collections::VecDeque::new());
         Ok(Rules { fixtures, returns, health: 100, barrels: 0, creatures: 0, shots: 0, pushed: Tally::default() })
-    }
-
-    /// The script phase of a tic.
-    pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
-        let level = self.fixtures.level;
-        if world.tic == 0 {
-            self.open(world);
-        }
-        for i in 0..world.events.len() {
-            match world.events[i] {
-                Event::Died { victim, kind, tid, .. } => self.bury(victim, kind, tid, world, outcome),
-                Event::Fired { .. } => self.shots += 1,
-                _ => {}
-            }
-        }
-        while let Some(&(tic, kind)) = self.returns.front()
-            && tic <= world.tic
-        {
-            self.returns.pop_front();
-            self.appear(kind, world);
-        }
-        if world.tic.is_multiple_of(GOAL_TICS) && world.tic > 0 {
-            self.choose_goals(world);
-        }
-        if world.players[0].ammo[BULLET_AMMO] == 0 {
-            world.give_ammo(0, BULLET_AMMO, BULLETS);
-        }
-        if level.pistol_only {
-            world.select_weapon(0, Weapon::Pistol);
-        }
-        if level.push {
-            push_barrels(world, &mut self.pushed.0);
-        }
     }
 
     /// The map opens, and the agent enters.
@@ -186,9 +153,42 @@ impl Rules {
         }
         self.returns.push_back((world.tic + RETURN_TICS, kind));
     }
+}
 
-    /// A policy step is over: what it cost.
-    pub fn end_step(&mut self, world: &World, over: bool, outcome: &mut Outcome) {
+impl scenarios::Rules for Rules {
+    fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
+        let level = self.fixtures.level;
+        if world.tic == 0 {
+            self.open(world);
+        }
+        for i in 0..world.events.len() {
+            match world.events[i] {
+                Event::Died { victim, kind, tid, .. } => self.bury(victim, kind, tid, world, outcome),
+                Event::Fired { .. } => self.shots += 1,
+                _ => {}
+            }
+        }
+        while let Some(&(tic, kind)) = self.returns.front()
+            && tic <= world.tic
+        {
+            self.returns.pop_front();
+            self.appear(kind, world);
+        }
+        if world.tic.is_multiple_of(GOAL_TICS) && world.tic > 0 {
+            self.choose_goals(world);
+        }
+        if world.players[0].ammo[BULLET_AMMO] == 0 {
+            world.give_ammo(0, BULLET_AMMO, BULLETS);
+        }
+        if level.pistol_only {
+            world.select_weapon(0, Weapon::Pistol);
+        }
+        if level.push {
+            push_barrels(world, &mut self.pushed.0);
+        }
+    }
+
+    fn end_step(&mut self, world: &World, over: bool, outcome: &mut Outcome) {
         if over && !self.fixtures.level.last_step_counts {
             return;
         }
@@ -197,8 +197,7 @@ impl Rules {
         self.health = health;
     }
 
-    /// Statistics of the episode.
-    pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
+    fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
         stats.push(("barrels_burst", f64::from(self.barrels)));
         stats.push(("creatures_killed", f64::from(self.creatures)));
         stats.push(("barrels_pushed", f64::from(self.pushed.0.count)));

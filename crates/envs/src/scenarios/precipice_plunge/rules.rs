@@ -2,8 +2,8 @@
 
 use super::levels::{FALL_DAMAGE, FREE_FALL, GLOW_TICS, Layout, Level, REWARD, SINK_SPEED};
 use super::map;
-use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
+use crate::scenarios::{self, outcome::Outcome};
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::Map;
 use hasard_engine::math::Fixed;
@@ -62,24 +62,6 @@ impl Rules {
         Ok(Rules { fixtures, landing: zero, height: zero, health, hard_falls: 0, deepest_fall: 0 })
     }
 
-    /// The script phase of a tic.
-    pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
-        let level = self.fixtures.level;
-        if world.tic == 0 {
-            self.sink(world);
-            stage::set_health(world, level.start_health);
-        } else if level.waggle && world.tic as i32 <= self.fixtures.tiles {
-            let tag = map::FIRST_TAG + world.tic as i32 - 1;
-            let strength = world.rng.between(WAGGLE_STRENGTH[0], WAGGLE_STRENGTH[1]);
-            let frequency = world.rng.between(WAGGLE_FREQUENCY[0], WAGGLE_FREQUENCY[1]);
-            world.floor_waggle(tag, strength, frequency, 0, 0);
-        }
-        if level.look_down && world.tic == LOOK_DOWN_TIC {
-            world.players[0].pitch = hasard_engine::world::PITCH_DOWN as i32;
-        }
-        self.watch_landing(world, outcome);
-    }
-
     /// Lays the cave out: every tile of it begins to sink.
     fn sink(&mut self, world: &mut World) {
         let level = &self.fixtures.level;
@@ -134,9 +116,27 @@ impl Rules {
         }
         outcome.finished |= z <= Fixed::from_int(-level.depth);
     }
+}
 
-    /// A policy step is over: what it brought and cost.
-    pub fn end_step(&mut self, world: &World, over: bool, outcome: &mut Outcome) {
+impl scenarios::Rules for Rules {
+    fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
+        let level = self.fixtures.level;
+        if world.tic == 0 {
+            self.sink(world);
+            stage::set_health(world, level.start_health);
+        } else if level.waggle && world.tic as i32 <= self.fixtures.tiles {
+            let tag = map::FIRST_TAG + world.tic as i32 - 1;
+            let strength = world.rng.between(WAGGLE_STRENGTH[0], WAGGLE_STRENGTH[1]);
+            let frequency = world.rng.between(WAGGLE_FREQUENCY[0], WAGGLE_FREQUENCY[1]);
+            world.floor_waggle(tag, strength, frequency, 0, 0);
+        }
+        if level.look_down && world.tic == LOOK_DOWN_TIC {
+            world.players[0].pitch = hasard_engine::world::PITCH_DOWN as i32;
+        }
+        self.watch_landing(world, outcome);
+    }
+
+    fn end_step(&mut self, world: &World, over: bool, outcome: &mut Outcome) {
         let level = &self.fixtures.level;
         if self.hard_falls > 0 {
             outcome.costs[FALLS] += level.fall_cost;
@@ -154,8 +154,7 @@ impl Rules {
         self.health = health;
     }
 
-    /// Statistics of the episode.
-    pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
+    fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
         let z = world.get(world.players[0].actor).map_or(self.height, |body| body.z);
         stats.push(("depth", -z.to_f64()));
         stats.push(("hard_falls", f64::from(self.hard_falls)));

@@ -2,9 +2,9 @@
 
 use super::levels::{DEADLY, Level, MEDIKIT_REWARD, STIMPACK_REWARD, SUPPLY_BONUSES, SUPPLY_TICS};
 use super::map::STROBE_TAGS;
-use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
 use crate::scenarios::tally::Tally;
+use crate::scenarios::{self, outcome::Outcome};
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::Map;
 use hasard_engine::world::{ActorKind, DamageKind, Event, World};
@@ -67,33 +67,6 @@ impl Rules {
         })
     }
 
-    /// Whether light goggles tint the view green.
-    #[must_use]
-    pub fn green_goggles(&self) -> bool {
-        self.fixtures.level.green_goggles
-    }
-
-    /// The script phase of a tic.
-    pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
-        let level = self.fixtures.level;
-        if world.tic == 0 {
-            open(&level, world);
-        }
-        for i in 0..world.events.len() {
-            if let Event::PickedUp { kind, .. } = world.events[i] {
-                self.take(kind, world, outcome);
-            }
-        }
-        if world.tic.is_multiple_of(SUPPLY_TICS) {
-            for _ in 0..SUPPLY_BONUSES {
-                stage::scatter(world, ActorKind::HealthBonus, ITEM_AREA, ITEM_HEIGHT, 0);
-            }
-            for kind in level.harmful {
-                stage::scatter(world, kind, ITEM_AREA, ITEM_HEIGHT, 0);
-            }
-        }
-    }
-
     fn take(&mut self, kind: ActorKind, world: &mut World, outcome: &mut Outcome) {
         let level = self.fixtures.level;
         if level.harmful.contains(&kind) {
@@ -130,12 +103,34 @@ impl Rules {
             _ => {}
         }
     }
+}
 
-    /// A policy step is over.
-    pub fn end_step(&mut self, _: &World, _over: bool, _: &mut Outcome) {}
+impl scenarios::Rules for Rules {
+    fn green_goggles(&self) -> bool {
+        self.fixtures.level.green_goggles
+    }
 
-    /// Statistics of the episode.
-    pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
+    fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
+        let level = self.fixtures.level;
+        if world.tic == 0 {
+            open(&level, world);
+        }
+        for i in 0..world.events.len() {
+            if let Event::PickedUp { kind, .. } = world.events[i] {
+                self.take(kind, world, outcome);
+            }
+        }
+        if world.tic.is_multiple_of(SUPPLY_TICS) {
+            for _ in 0..SUPPLY_BONUSES {
+                stage::scatter(world, ActorKind::HealthBonus, ITEM_AREA, ITEM_HEIGHT, 0);
+            }
+            for kind in level.harmful {
+                stage::scatter(world, kind, ITEM_AREA, ITEM_HEIGHT, 0);
+            }
+        }
+    }
+
+    fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
         stats.push(("health_bonuses", f64::from(self.bonuses)));
         stats.push(("health_packs", f64::from(self.packs)));
         stats.push(("goggles", f64::from(self.goggles)));

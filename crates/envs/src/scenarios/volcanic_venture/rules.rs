@@ -4,8 +4,8 @@ use super::levels::{
     Change, ITEM_TICS, LAVA_TICS, Level, PERIOD_TICS, START_HEALTH, START_PITCH, Start, TILE_SPEED, WAGGLE_DELAY_TICS,
 };
 use super::map;
-use crate::scenarios::outcome::Outcome;
 use crate::scenarios::stage;
+use crate::scenarios::{self, outcome::Outcome};
 use crate::{CostTerm, EnvError};
 use hasard_engine::map::{Map, TextureId};
 use hasard_engine::math::Fixed;
@@ -110,62 +110,6 @@ impl Rules {
             jumps: 0,
             fixtures: Arc::new(fixtures),
         })
-    }
-
-    /// The world is there, and no tic has run. The map's floor burns in the first tic, before any script.
-    pub fn prepare(&self, world: &mut World) {
-        if self.fixtures.level.easy_skill
-            && let Some(player) = world.players.first_mut()
-        {
-            player.damage_factor = EASY_DAMAGE;
-        }
-    }
-
-    /// The script phase of a tic.
-    pub fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
-        self.count(world, outcome);
-        if world.tic == 0 {
-            // The map opens. Here alone the agent may move at once.
-            world.players[0].freeze_tics = 0;
-            // The skill leaves single points of damage alone; what the scripts' lava takes by it is in the level table.
-            world.players[0].damage_factor = Fixed::ONE;
-            if self.fixtures.level.change == Change::Never {
-                self.tend_tiles(world);
-            }
-            for _ in 0..self.fixtures.level.start_items {
-                stage::scatter(world, ActorKind::ArmorBonus, ITEM_AREA, APPEARANCE_HEIGHT, 0);
-            }
-        }
-        if world.tic == 1 {
-            self.enter(world);
-        }
-        if self.fixtures.level.change != Change::Never {
-            self.tend_tiles(world);
-        } else if world.tic.is_multiple_of(ITEM_TICS) {
-            new_item(world);
-        }
-        if world.tic == 1 && self.fixtures.level.start == Start::Platform {
-            self.put_on_platform(world);
-        }
-        if world.tic > 0 {
-            world.players[0].invulnerable = world.tic < self.grace_until;
-        }
-    }
-
-    /// A policy step is over: what it cost.
-    pub fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {
-        let level = &self.fixtures.level;
-        let left = stage::health(world);
-        let health = if level.overkill_counts { left } else { left.max(0) };
-        outcome.costs[LAVA] += f64::from(self.health - health) * level.cost_scale;
-        self.health = health;
-    }
-
-    /// Statistics of the episode.
-    pub fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
-        stats.push(("items", f64::from(self.items)));
-        stats.push(("jumps", f64::from(self.jumps)));
-        stats.push(("health", f64::from(stage::health(world).max(0))));
     }
 
     fn count(&mut self, world: &World, outcome: &mut Outcome) {
@@ -278,6 +222,61 @@ impl Rules {
         if let Some(height) = self.platforms[tile] {
             world.floor_waggle(tag(tile), WAGGLE_STRENGTH * height, WAGGLE_FREQUENCY, 0, WAGGLE_SECONDS);
         }
+    }
+}
+
+impl scenarios::Rules for Rules {
+    /// The world is there, and no tic has run. The map's floor burns in the first tic, before any script.
+    fn prepare(&self, world: &mut World) {
+        if self.fixtures.level.easy_skill
+            && let Some(player) = world.players.first_mut()
+        {
+            player.damage_factor = EASY_DAMAGE;
+        }
+    }
+
+    fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
+        self.count(world, outcome);
+        if world.tic == 0 {
+            // The map opens. Here alone the agent may move at once.
+            world.players[0].freeze_tics = 0;
+            // The skill leaves single points of damage alone; what the scripts' lava takes by it is in the level table.
+            world.players[0].damage_factor = Fixed::ONE;
+            if self.fixtures.level.change == Change::Never {
+                self.tend_tiles(world);
+            }
+            for _ in 0..self.fixtures.level.start_items {
+                stage::scatter(world, ActorKind::ArmorBonus, ITEM_AREA, APPEARANCE_HEIGHT, 0);
+            }
+        }
+        if world.tic == 1 {
+            self.enter(world);
+        }
+        if self.fixtures.level.change != Change::Never {
+            self.tend_tiles(world);
+        } else if world.tic.is_multiple_of(ITEM_TICS) {
+            new_item(world);
+        }
+        if world.tic == 1 && self.fixtures.level.start == Start::Platform {
+            self.put_on_platform(world);
+        }
+        if world.tic > 0 {
+            world.players[0].invulnerable = world.tic < self.grace_until;
+        }
+    }
+
+    fn end_step(&mut self, world: &World, _over: bool, outcome: &mut Outcome) {
+        let level = &self.fixtures.level;
+        let left = stage::health(world);
+        let health = if level.overkill_counts { left } else { left.max(0) };
+        outcome.costs[LAVA] += f64::from(self.health - health) * level.cost_scale;
+        self.health = health;
+    }
+
+    fn stats(&self, world: &World, stats: &mut Vec<(&'static str, f64)>) {
+        stats.push(("items", f64::from(self.items)));
+        stats.push(("jumps", f64::from(self.jumps)));
+        stats.push(("health", f64::from(stage::health(world).max(0))));
     }
 }
 

@@ -1,0 +1,51 @@
+//! What Volcanic Venture is to everything else.
+
+use super::rules::{COST_TERMS, Rules, TEXTURES};
+use super::{levels, map};
+use crate::EnvError;
+use crate::action::Controls;
+use crate::scenarios::rules::AnyRules;
+use crate::scenarios::{Moment, ScenarioSpec, Setting, Task, at};
+use hasard_engine::map::{Map, MapSource};
+
+/// All that is known of it.
+pub static SPEC: ScenarioSpec = ScenarioSpec {
+    cost_terms: COST_TERMS,
+    textures: TEXTURES,
+    paper_place: 1,
+    number: 5,
+    moments: (MOMENTS, 4),
+    ..ScenarioSpec::of("VolcanicVenture", "Volcanic Venture", "Collect items on platforms in a lake of lava.", &Worlds)
+};
+
+/// Two moments of each level.
+const MOMENTS: &[Moment] = &[
+    at(1, 1, &[(130, "sticky:10")]),
+    at(1, 2, &[(60, "sticky:10")]),
+    at(2, 1, &[(130, "sticky:10")]),
+    at(2, 4, &[(60, "sticky:10")]),
+    at(3, 2, &[(10, "sticky:10")]),
+    at(3, 1, &[(130, "sticky:10")]),
+];
+
+/// Makes its worlds.
+#[derive(Debug)]
+struct Worlds;
+
+fn level(setting: Setting) -> levels::Level {
+    levels::level(setting.rules, setting.hard, setting.index())
+}
+
+impl Task for Worlds {
+    fn controls(&self, setting: Setting) -> Controls {
+        level(setting).controls
+    }
+
+    fn map(&self, _: Setting) -> MapSource {
+        map::source()
+    }
+
+    fn rules(&self, setting: Setting, map: &Map) -> Result<AnyRules, EnvError> {
+        Ok(AnyRules::new(Rules::new(map, level(setting))?))
+    }
+}
