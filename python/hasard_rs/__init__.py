@@ -27,6 +27,7 @@ from hasard_rs.errors import (
     UnknownEnvironment,
     WorldPanicked,
 )
+from hasard_rs.own import OwnScenario, is_file
 from hasard_rs.registry import LEVELS, CostTerm, Scenario, Spec, bare, ids, register_all, register_environment, spec
 
 try:
@@ -47,7 +48,7 @@ def make(env_id: str, **kwargs: Any) -> gymnasium.Env[Any, Any]:
     """An environment in a `CostWrapper`, as `gymnasium.make` makes it.
 
     Args:
-        env_id: one of `ids()`, with or without `hasard/`; `module:id` imports the module first.
+        env_id: one of `ids()`, with or without `hasard/`; `module:id` imports the module first; or a task of your own, `my_task.toml`.
         kwargs: keyword arguments, listed in `help(hasard_rs.Env)`, and those of `gymnasium.make`.
 
     Returns:
@@ -84,8 +85,8 @@ def make_vec(env_id: str, num_envs: int = 1, **kwargs: Any) -> VectorEnv:
 
 def _known(env_id: str) -> str:
     """The bare id, if it is one; else the error that names the nearest."""
-    spec(env_id)
-    return bare(env_id)
+    known = spec(env_id)
+    return bare(known.id if is_file(env_id) else env_id)
 
 
 __all__ = [
@@ -100,6 +101,7 @@ __all__ = [
     "InvalidMap",
     "InvalidOption",
     "OutOfTurn",
+    "OwnScenario",
     "ResetNeeded",
     "Run",
     "Scenario",

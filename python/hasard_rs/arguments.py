@@ -97,7 +97,10 @@ def read(given: dict[str, Any], *, vector: bool) -> Arguments:
     except KeyError as missing:
         raise TypeError(f"missing keyword argument {missing}; hasard_rs.make takes an id, which has both") from None
     scenario = getattr(scenario, "value", scenario)
-    arguments = Arguments(env_id=f"{scenario}Level{level}-v0")
+    file = given.pop("scenario_file", None)
+    # An own scenario's text: known by its ids in this process from now on.
+    env_id = f"{scenario}Level{level}-v0" if file is None else _core.register_scenario(*file)[level - 1]
+    arguments = Arguments(env_id=env_id)
     own = [name for name in vars(arguments) if name not in ("env_id", "world")]
     for name, value in given.items():
         if name in _WORLD:

@@ -11,6 +11,7 @@ import numpy as np
 
 from hasard_rs._core import Worlds
 from hasard_rs.arguments import Arguments, plain
+from hasard_rs.own import scenario_and_level
 from hasard_rs.registry import CostTerm
 
 # Made anew from the arguments, where a pickle is read.
@@ -45,7 +46,7 @@ class Shared:
         self.cost_terms = tuple(CostTerm(name, counted) for name, counted in worlds.cost_terms)
         self.max_episode_steps: int = worlds.episode_steps
         self.extent: tuple[int, int, int, int] = worlds.extent
-        self.scenario_name, self.level = given.env_id.removesuffix("-v0").split("Level")[0], int(given.env_id[-4])
+        self.scenario_name, self.level = scenario_and_level(given.env_id)
         self.hard_constraint, self.frame_skip = given.hard_constraint, given.frame_skip
 
     @property

@@ -15,6 +15,7 @@ from hasard_rs import arguments as _arguments
 from hasard_rs._core import Worlds
 from hasard_rs.common import Shared, frame_size
 from hasard_rs.infos import Infos, row, summary
+from hasard_rs.own import scenario_and_level
 from hasard_rs.spaces import action_format
 from hasard_rs.wrappers.drawable import Drawable
 
@@ -26,7 +27,7 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
 
     Args:
         arguments: all keyword-only, the same for `VectorEnv` and (but for those of actions, rendering and infos) `Worlds`.
-            scenario, level: bound by the id.
+            scenario, level, scenario_file: bound by the id.
             rules ("paper"): or "released", those of the published package, or "tables", those of the code behind the paper's tables.
             early_creatures (False): in Detonator's Dilemma 1 under "tables", the creatures that the first of the paper's runs met.
             hard_constraint, or hard (False): harm ends the episode.
@@ -67,7 +68,7 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
         self._arguments, self._given = arguments, given
         self._worlds = Worlds(given.env_id, 1, num_threads=0, autoreset_mode="Disabled", statistics=given.env_stats, **given.world)
         self._format = action_format(given.action_format, self._worlds.nvec, self._worlds.num_deltas, given.delta_bins)
-        self._infos = Infos(self._worlds, given.env_id.split("Level")[0], given.infos, given.env_stats)
+        self._infos = Infos(self._worlds, scenario_and_level(given.env_id)[0], given.infos, given.env_stats)
         self.action_space = self._format.space
         self.observation_space = spaces.Box(0, 255, self._worlds.observation_shape, np.uint8)
         self._describe()

@@ -31,7 +31,7 @@ class Infos:
         self.worlds = worlds
         self.full = infos == "full"
         self.env_stats = env_stats
-        self.published = _PUBLISHED[scenario]
+        self.published = _PUBLISHED.get(scenario, {})
         self.statistics = list(worlds.statistics)
         # Cost of each lane's running episode so far.
         self.cost = np.zeros(worlds.num_envs)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import enum
 import importlib
+import os
 from dataclasses import dataclass
+from typing import Any
 
 from hasard_rs import _core
+from hasard_rs.own import OwnScenario, from_dict, from_file, is_file, opened
 
 LEVELS = [1, 2, 3]
 """Levels of every scenario."""
@@ -21,6 +24,16 @@ class Scenario(enum.Enum):
     PRECIPICE_PLUNGE = "PrecipicePlunge"
     COLLATERAL_DAMAGE = "CollateralDamage"
     REMEDY_RUSH = "RemedyRush"
+
+    @staticmethod
+    def from_file(path: str | os.PathLike[str]) -> OwnScenario:
+        """Returns the scenario of a file of your own. Raises InvalidOption with the first mistake, its line and column."""
+        return from_file(path)
+
+    @staticmethod
+    def from_dict(table: dict[str, Any]) -> OwnScenario:
+        """Returns the scenario of a dictionary with the fields of a file. Raises as `from_file`; TypeError for what a file cannot hold."""
+        return from_dict(table)
 
 
 @dataclass(frozen=True)
@@ -70,7 +83,7 @@ def spec(env_id: str) -> Spec:
     """What is known of an environment without making it.
 
     Args:
-        env_id: one of `ids()`, with or without `hasard/`.
+        env_id: one of `ids()`, with or without `hasard/`; or a scenario's file, `my_task.toml`, which is known by its id from then on.
 
     Returns:
         A `Spec`.
@@ -78,9 +91,11 @@ def spec(env_id: str) -> Spec:
     Raises:
         UnknownEnvironment, which names the nearest id.
     """
+    if is_file(env_id):
+        env_id = opened(env_id)
     told = _core.describe(bare(env_id))
     return Spec(
-        id=f"hasard/{bare(env_id)}",
+        id=f"hasard/{told['id']}",
         scenario=told["scenario"],
         level=told["level"],
         rules="paper",

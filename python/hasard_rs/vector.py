@@ -16,6 +16,7 @@ from hasard_rs._core import Batch, Worlds
 from hasard_rs.common import Shared, frame_size
 from hasard_rs.errors import InvalidOption, OutOfTurn
 from hasard_rs.infos import Infos, row, summary
+from hasard_rs.own import scenario_and_level
 from hasard_rs.spaces import action_format
 from hasard_rs.turns import Result, Turns
 from hasard_rs.wrappers.drawable import coloured
@@ -88,7 +89,7 @@ class VectorEnv(Shared, _Base):  # type: ignore[misc,valid-type]
         self.autoreset_mode = AutoresetMode({"next_step": "NextStep", "same_step": "SameStep", "disabled": "Disabled"}.get(mode, mode))
         self._arguments["autoreset_mode"] = self.autoreset_mode.value
         self._format = action_format(given.action_format, self._worlds.nvec, self._worlds.num_deltas, given.delta_bins)
-        self._infos = Infos(self._worlds, given.env_id.split("Level")[0], given.infos, given.env_stats)
+        self._infos = Infos(self._worlds, scenario_and_level(given.env_id)[0], given.infos, given.env_stats)
         self._same_step = self.autoreset_mode == AutoresetMode.SAME_STEP
         # The lanes that a NEXT_STEP step will reset.
         self._over = np.zeros(num_envs, dtype=np.bool_)

@@ -37,6 +37,8 @@ impl Performance {
         seed: u64,
     ) -> Result<Performance, Failure> {
         if let Some(run) = agent_of(policy)? {
+            // The task that was named, whatever file of that name the run was trained on.
+            let looks = &EnvOptions { scenario: Some(settings::env_id(id)?.scenario), ..looks.clone() };
             return Performance::of_agent(id, &run, &agent_options(id, &run, looks, elsewhere)?, looks, seed);
         }
         let policy = settings::policy(policy)?;
@@ -144,5 +146,7 @@ pub fn agent_options(id: &str, run: &Path, task: &EnvOptions, elsewhere: Elsewhe
     }
     let trained = settings::trained_options(&env, pictures_kept(elsewhere, &env))?;
     let actions_of = Some((trained.rules, trained.hard));
-    Ok(EnvOptions { rules: task.rules, early_creatures: task.early_creatures, hard: task.hard, actions_of, ..trained })
+    let (rules, hard, early_creatures, test_seeds) = (task.rules, task.hard, task.early_creatures, task.test_seeds);
+    let scenario = task.scenario.or(trained.scenario);
+    Ok(EnvOptions { scenario, rules, hard, early_creatures, test_seeds, actions_of, ..trained })
 }

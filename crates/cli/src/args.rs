@@ -23,6 +23,10 @@ pub struct Cli {
 pub enum Command {
     /// List the environments with their budgets and actions
     Envs(EnvsArgs),
+    /// Write the file of a task of your own: it plays at once
+    New(NewArgs),
+    /// Check the file of a task of your own; draw its map
+    Check(CheckArgs),
     /// Play in a window; episodes are kept as human baselines
     Play(PlayArgs),
     /// Run episodes of a policy and print return, cost and statistics
@@ -210,6 +214,9 @@ impl std::fmt::Display for Size {
 /// `hasard envs`.
 #[derive(Args, Debug)]
 pub struct EnvsArgs {
+    /// Files of own tasks, in place of the benchmark's environments
+    #[arg(value_name = "FILE", value_parser = env_id)]
+    pub files: Vec<String>,
     /// One JSON object a line
     #[arg(long)]
     pub json: bool,
@@ -219,6 +226,41 @@ pub struct EnvsArgs {
     /// Accepted for uniformity; the list does not depend on it
     #[arg(long, hide = true, default_value_t = 0)]
     pub seed: u64,
+}
+
+/// `hasard new`.
+#[derive(Args, Debug)]
+pub struct NewArgs {
+    /// Name of the task: my_task becomes the scenario MyTask in my_task.toml
+    pub name: String,
+    /// File to write
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// One JSON object about the file
+    #[arg(long)]
+    pub json: bool,
+    /// Accepted for uniformity; nothing is drawn by chance
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// `hasard check`.
+#[derive(Args, Debug)]
+pub struct CheckArgs {
+    /// The task's file
+    pub file: PathBuf,
+    /// PNG to write: the map from above, with all things of an episode's start
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// The level that is drawn
+    #[arg(long, default_value_t = 1)]
+    pub level: u8,
+    /// Seed of the episode whose start is drawn
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// One JSON object a mistake, then one about the task
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `hasard rollout`.
@@ -233,6 +275,9 @@ pub struct RolloutArgs {
     /// Number of episodes
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     pub episodes: u32,
+    /// Levels that no training has seen, of a task with `train_seeds` in its [map.generate]
+    #[arg(long)]
+    pub test_seeds: bool,
     /// Episode i is seeded SEED + i
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
@@ -498,6 +543,9 @@ pub struct EvalArgs {
     /// Number of episodes
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     pub episodes: u32,
+    /// Levels that no training has seen, of a task with `train_seeds` in its [map.generate]
+    #[arg(long)]
+    pub test_seeds: bool,
     /// Episode i is seeded SEED + i
     #[arg(long, default_value_t = 1_000_000)]
     pub seed: u64,
@@ -626,7 +674,7 @@ pub struct ReportArgs {
 /// `hasard serve`.
 #[derive(Args, Debug)]
 pub struct ServeArgs {
-    /// Folders below which runs are looked for, while they run too; `runs` if absent
+    /// Folders below which runs are looked for, while they run too; `runs` if absent. Files of own tasks, which can be watched and played
     #[arg(value_name = "RUNS")]
     pub runs: Vec<PathBuf>,
     /// Address to listen at; beyond this machine only with the token that is printed

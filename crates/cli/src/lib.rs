@@ -63,6 +63,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
     interrupt::behave(Manner::AtOnce);
     let outcome = match cli.command {
         Command::Envs(args) => commands::envs::run(&args),
+        Command::New(args) => commands::new::run(&args),
+        Command::Check(args) => commands::check::run(&args),
         Command::Play(args) => commands::play::run(&args),
         Command::Rollout(args) => commands::rollout::run(&args),
         Command::Trace(args) => commands::trace::run(&args),

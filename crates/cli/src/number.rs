@@ -39,17 +39,21 @@ pub fn positive(text: &str) -> Result<u64, String> {
     }
 }
 
-/// An environment's id as people write it: any case, without `-v0`, with Python's `hasard/`. Other texts stay as they are; what makes
-/// the environment names the nearest id.
+/// An environment's id as people write it: any case, without `-v0`, with Python's `hasard/`; or a scenario's file, `my_task.toml` or
+/// `my_task.toml#2`, which is read and known by its id from then on. Other texts stay as they are; what makes the environment names
+/// the nearest id.
 ///
 /// # Errors
-/// Never.
-pub fn env_id(text: &str) -> Result<String, std::convert::Infallible> {
+/// What is wrong with a scenario's file.
+pub fn env_id(text: &str) -> Result<String, String> {
+    if hasard_envs::own::is_file(text) {
+        return hasard_envs::own::open(text).map(|id| id.to_string()).map_err(|error| error.to_string());
+    }
     let plain = text.to_ascii_lowercase();
     let plain = plain.strip_prefix("hasard/").unwrap_or(&plain);
     let plain = plain.strip_suffix("-v0").unwrap_or(plain);
     let meant =
-        hasard_envs::EnvId::all().map(|id| id.to_string()).find(|id| id.trim_end_matches("-v0").eq_ignore_ascii_case(plain));
+        hasard_envs::EnvId::every().map(|id| id.to_string()).find(|id| id.trim_end_matches("-v0").eq_ignore_ascii_case(plain));
     Ok(meant.unwrap_or_else(|| text.to_string()))
 }
 

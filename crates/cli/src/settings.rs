@@ -126,11 +126,14 @@ fn place<'a>(kept: Option<&'a Path>, elsewhere: Option<&'a Path>, flag: &str) ->
 /// The options of the environment that a run was trained in, its maps and pictures among them.
 pub fn trained_options(env: &EnvConfig, elsewhere: Elsewhere<'_>) -> Result<EnvOptions, Failure> {
     let options = env.options().map_err(Failure::bad)?;
+    if let Some(changed) = env.scenario_file.and_then(|own| own.changed()) {
+        note!("hasard: {changed}");
+    }
     let maps = place(env.maps.as_deref(), elsewhere.maps, "--maps")?;
     let iwad = place(env.iwad.as_deref(), elsewhere.iwad, "--iwad")?;
     let sources = crate::sources::looks(maps, iwad)?;
     // A map that cannot be read stops a run before it is announced.
-    if let (Some(maps), Ok(id)) = (&sources.maps, env_id(&env.id)) {
+    if let (Some(maps), Ok(id)) = (&sources.maps, EnvId::within(options.scenario, &env.id)) {
         maps.level(id, options.rules, options.hard).map_err(Failure::bad)?;
     }
     Ok(EnvOptions { maps: sources.maps, assets: sources.assets, ..options })

@@ -64,9 +64,11 @@ impl Blueprint {
         rules.prepare(&mut world);
         let (start_tic, end_tic) = scenarios::clock(id, options.rules, options.hard);
         let (whose_rules, whose_constraint) = options.actions_of();
+        // Its names may come to be those of another file: these worlds stay of this one.
+        let scenario = options.scenario.or(id.scenario.file.map(|_| id.scenario));
         Ok(Blueprint {
             id,
-            options: options.clone(),
+            options: EnvOptions { scenario, ..options.clone() },
             space: ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions),
             cost_terms: scenarios::cost_terms(id.scenario),
             start_tic,

@@ -72,6 +72,11 @@ pub enum EnvError {
         /// The panic's message.
         message: String,
     },
+    /// A scenario's file cannot be read, or says what no scenario can be.
+    Scenario {
+        /// Which file, where in it, and what would be right.
+        why: String,
+    },
     /// A map could not be built, or lacks something that its scenario needs.
     Map {
         /// Which map, and what is wrong.
@@ -103,7 +108,7 @@ impl fmt::Display for EnvError {
             EnvError::Panicked { message } => {
                 write!(f, "an environment panicked ({message}); this is a fault of hasard, please report it")
             }
-            EnvError::Map { why } => f.write_str(why),
+            EnvError::Map { why } | EnvError::Scenario { why } => f.write_str(why),
         }
     }
 }

@@ -47,6 +47,7 @@ mod eye;
 mod game;
 pub mod maps;
 mod options;
+pub mod own;
 mod policy;
 mod registry;
 mod rollout;

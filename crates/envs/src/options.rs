@@ -90,6 +90,8 @@ pub struct EnvOptions {
     /// Detonator's Dilemma 1 under [`RuleSet::Tables`] with the creatures that the first of the paper's runs met (PPO, PPOCost, PPOLag)
     /// rather than those of the later ones.
     pub early_creatures: bool,
+    /// Levels that no training has seen, in tasks that make a new map in every episode and train on a number of them.
+    pub test_seeds: bool,
     /// Hard constraint: harm ends the episode.
     pub hard: bool,
     /// The full action space instead of the simplified one.
@@ -127,6 +129,7 @@ impl Default for EnvOptions {
             scenario: None,
             rules: RuleSet::Paper,
             early_creatures: false,
+            test_seeds: false,
             hard: false,
             full_actions: false,
             actions_of: None,
@@ -158,6 +161,7 @@ impl EnvOptions {
         [
             ("rules", self.rules == other.rules),
             ("early_creatures", self.early_creatures == other.early_creatures),
+            ("test_seeds", self.test_seeds == other.test_seeds),
             ("hard", self.hard == other.hard),
             ("full_actions", self.full_actions == other.full_actions),
             ("frame_skip", self.frame_skip == other.frame_skip),

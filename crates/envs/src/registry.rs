@@ -81,6 +81,27 @@ impl Scenario {
         Ok(scenario)
     }
 
+    /// The registered scenario that was read from a file of this text, if there is one; as `last`, it takes the place of others of its
+    /// name from now on.
+    pub(crate) fn of_text(text: &str, last: bool) -> Option<Scenario> {
+        let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);
+        let at = registered.iter().position(|known| known.file.is_some_and(|file| file.text == text))?;
+        if last {
+            registered[at..].rotate_left(1);
+        }
+        Some(registered[if last { registered.len() - 1 } else { at }])
+    }
+
+    /// Adds a scenario beneath those of its name that are known already.
+    pub(crate) fn register_beneath(spec: &'static ScenarioSpec) -> Result<Scenario, EnvError> {
+        let scenario = Scenario::register(spec)?;
+        let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(at) = registered.iter().position(|known| *known == scenario) {
+            registered[..=at].rotate_right(1);
+        }
+        Ok(scenario)
+    }
+
     /// All that is known of it.
     #[must_use]
     pub const fn spec(self) -> &'static ScenarioSpec {
@@ -170,7 +191,8 @@ impl Hash for Scenario {
 
 impl fmt::Debug for Scenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.0.name)
+        f.write_str(self.0.name)?;
+        self.0.file.map_or(Ok(()), |file| write!(f, " {}", file.hash))
     }
 }
 

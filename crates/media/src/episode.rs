@@ -27,7 +27,8 @@ pub const FORMAT_VERSION: u16 = 1;
 const MAX_STEPS: u32 = 1_000_000;
 const MAX_GROUPS: u8 = 32;
 const MAX_DELTAS: u8 = 8;
-const MAX_HEADER: usize = 64 << 10;
+/// With room for an own scenario's text.
+const MAX_HEADER: usize = 1 << 20;
 const MAX_FILE: u64 = 64 << 20;
 
 /// What an episode was, beside its actions.

@@ -1,7 +1,7 @@
 //! Episodes into files and back.
 
 use crate::{PlayError, Stage};
-use hasard_envs::{Env, EnvOptions};
+use hasard_envs::{Env, EnvOptions, own};
 use hasard_media::MediaError;
 use hasard_media::episode::{EpisodeFile, Header, Outcome};
 use std::collections::BTreeMap;
@@ -9,6 +9,10 @@ use std::path::{Path, PathBuf};
 
 /// What a recording says of its maps where they were not the built-in ones. Which files those were is the player's to know.
 const FROM_FILES: &str = "from files";
+
+/// An own scenario's text, and the path that it was read from.
+const SCENARIO: &str = "scenario";
+const SCENARIO_PATH: &str = "scenario-path";
 
 /// The options that change what happens in an episode, by their names on the command line.
 #[must_use]
@@ -24,7 +28,10 @@ pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
     // The action space of other rules than the world's; an agent keeps its own.
     let actions = options.actions_of.filter(|&whose| whose != (options.rules, options.hard));
     let actions = actions.map(|(rules, hard)| ("actions-of", format!("{rules} {}", if hard { "hard" } else { "soft" })));
-    always.into_iter().chain(early).chain(actions).chain(maps).map(|(name, value)| (name.to_owned(), value)).collect()
+    // An own scenario goes with the file that it is told in.
+    let own = options.scenario.and_then(|scenario| scenario.file);
+    let own = own.into_iter().flat_map(|file| [(SCENARIO, file.text.to_owned()), (SCENARIO_PATH, file.path.to_owned())]);
+    always.into_iter().chain(own).chain(early).chain(actions).chain(maps).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// The options that an episode file names, over those that only concern looks (size, pictures), which `looks` gives.
@@ -50,6 +57,11 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
         };
         return Err(MediaError::Format { path: file.to_owned(), problem: problem.to_owned() }.into());
     }
+    options.scenario = None;
+    if let Some(text) = names.get(SCENARIO) {
+        let path = names.get(SCENARIO_PATH).map_or("scenario.toml", String::as_str);
+        options.scenario = Some(own::recall(path, text).map_err(|error| in_file(file, &error.into()))?);
+    }
     for (name, value) in names {
         let unknown = || {
             let problem =
@@ -65,6 +77,7 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
                 options.actions_of = Some((rules.parse().map_err(|_| unknown())?, hard));
             }
             "maps" if value == FROM_FILES => {}
+            SCENARIO | SCENARIO_PATH => {}
             "hard" => options.hard = value.parse().map_err(|_| unknown())?,
             "full-actions" => options.full_actions = value.parse().map_err(|_| unknown())?,
             "frame-skip" => {

@@ -25,7 +25,10 @@ pub struct Facts {
 pub fn kind(id: EnvId, options: &EnvOptions, autoreset: Autoreset) -> String {
     let EnvOptions { rules, early_creatures, hard, full_actions, frame_skip, max_episode_steps, .. } = options;
     let early = if *early_creatures { " early" } else { "" };
-    format!("{id} {rules:?}{early} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}")
+    let file = id.scenario.file.map_or(String::new(), |file| format!(" {}", file.hash));
+    format!(
+        "{id}{file} {rules:?}{early} hard={hard} full={full_actions} skip={frame_skip} limit={max_episode_steps:?} {autoreset:?}"
+    )
 }
 
 /// What saved worlds begin with.

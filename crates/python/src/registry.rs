@@ -1,7 +1,7 @@
 //! The 18 environments, told to Python.
 
 use crate::errors::raise;
-use hasard_envs::{ActionSpace, EnvId, RuleSet, scenarios};
+use hasard_envs::{ActionSpace, EnvError, EnvId, RuleSet, own, scenarios};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -13,12 +13,38 @@ pub fn ids() -> Vec<String> {
     EnvId::all().map(|id| id.to_string()).collect()
 }
 
+/// The environment of an id, with or without `hasard/`, or of a scenario's file.
+pub fn environment(env_id: &str) -> Result<EnvId, EnvError> {
+    if own::is_file(env_id) {
+        return own::open(env_id);
+    }
+    env_id.strip_prefix("hasard/").unwrap_or(env_id).parse()
+}
+
+/// check_scenario(text) -> list[tuple[int, int, bool, str]]
+///
+/// Returns what is wrong with a scenario's text: line, column, whether it can be played nevertheless, and the remedy.
+#[pyfunction]
+pub fn check_scenario(text: &str) -> Vec<(usize, usize, bool, String)> {
+    let mistakes = own::check(text).mistakes.into_iter();
+    mistakes.map(|mistake| (mistake.line, mistake.column, mistake.warning, mistake.text)).collect()
+}
+
+/// register_scenario(path, text) -> list[str]
+///
+/// Makes the environments of a scenario's text known and returns their ids, without `hasard/`. Raises InvalidOption.
+#[pyfunction]
+pub fn register_scenario(py: Python<'_>, path: &str, text: &str) -> PyResult<Vec<String>> {
+    let scenario = own::register(path, text).map_err(|error| raise(py, &error))?;
+    Ok(scenario.environments().map(|id| id.to_string()).collect())
+}
+
 /// describe(env_id) -> dict
 ///
 /// Returns what is known of the environment `env_id` without making it; `hasard_rs.spec` is what to use. Raises UnknownEnvironment.
 #[pyfunction]
 pub fn describe<'py>(py: Python<'py>, env_id: &str) -> PyResult<Bound<'py, PyDict>> {
-    let id: EnvId = env_id.strip_prefix("hasard/").unwrap_or(env_id).parse().map_err(|error| raise(py, &error))?;
+    let id = environment(env_id).map_err(|error| raise(py, &error))?;
     let space = ActionSpace::of(id, RuleSet::Paper, false, false);
     let names = |space: &ActionSpace| -> Vec<Vec<&str>> {
         space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect()
@@ -26,6 +52,7 @@ pub fn describe<'py>(py: Python<'py>, env_id: &str) -> PyResult<Bound<'py, PyDic
     let terms: Vec<(&str, bool)> = id.scenario.cost_terms.iter().map(|term| (term.name, term.counted)).collect();
     let told = PyDict::new(py);
     told.set_item("scenario", id.scenario.name())?;
+    told.set_item("id", id.to_string())?;
     told.set_item("level", id.level)?;
     told.set_item("cost_terms", terms)?;
     told.set_item("safety_budget", id.scenario.safety_budget(RuleSet::Paper))?;

@@ -8,7 +8,7 @@ use crate::facts::{self, Facts};
 use crate::inner::Inner;
 use crate::pool::{Pool, array};
 use crate::resets::{self, Seeds};
-use hasard_envs::{Autoreset, Env, EnvError, EnvId, FinalObservations, LaneState, VecOptions};
+use hasard_envs::{Autoreset, Env, EnvError, FinalObservations, LaneState, VecOptions};
 use hasard_play::ViewKind;
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -253,8 +253,9 @@ impl Worlds {
         statistics: bool,
         arguments: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Worlds> {
-        let id: EnvId = env_id.strip_prefix("hasard/").unwrap_or(env_id).parse().map_err(|error| raise(py, &error))?;
-        let given = arguments::read(py, arguments)?;
+        let id = crate::registry::environment(env_id).map_err(|error| raise(py, &error))?;
+        let mut given = arguments::read(py, arguments)?;
+        given.options.scenario = Some(id.scenario);
         let num_envs = arguments::number("num_envs", num_envs, 1, 65_536)? as usize;
         let num_threads = num_threads.map(|given| arguments::number("num_threads", given, 0, 1024)).transpose()?;
         let groups = groups.map_or(Ok(1), |given| arguments::number("groups", given, 1, num_envs as u64))? as usize;

@@ -144,7 +144,7 @@ async fn envs(State(shared): State<Arc<Shared>>) -> Result<Response, Response> {
     let envs = aside(|| {
         ENVS.get_or_init(|| {
             let of = |id: EnvId| json!({ "id": id.to_string(), "budget": id.scenario.safety_budget(RuleSet::Paper) });
-            EnvId::all().map(of).collect()
+            EnvId::every().map(of).collect()
         })
     })
     .await?;

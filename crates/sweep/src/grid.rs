@@ -205,10 +205,12 @@ impl Grid {
                 && !text.starts_with(['-', '.'])
         };
         for environment in &self.scenarios {
-            let like_an_id = environment.contains("-v") && plain(environment);
+            let own_file =
+                environment.ends_with(".toml") && !environment.starts_with('-') && !environment.contains(char::is_control);
+            let like_an_id = environment.contains("-v") && plain(environment) || own_file;
             if !scenarios().contains(&environment.as_str()) && !like_an_id {
                 return Err(format!(
-                    "unknown scenario `{environment}`; one of {}, or an id of `hasard envs`",
+                    "unknown scenario `{environment}`; one of {}, an id of `hasard envs`, or the file of an own task",
                     scenarios().join(", ")
                 ));
             }

@@ -24,6 +24,8 @@ pub fn run(args: &ContactSheetArgs) -> Outcome {
         .map_err(|error| Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display())))?;
     for scenario in scenarios {
         let (moments, cover) = scenario.moments;
+        let own = own_moments(scenario);
+        let moments = if moments.is_empty() { &own[..] } else { moments };
         let rows = moments.iter().map(|moment| row(scenario, moment, args.seed, &looks));
         let rows: Vec<Row> = rows.collect::<Result<_, _>>()?;
         let name = scenario.file_name();
@@ -34,9 +36,20 @@ pub fn run(args: &ContactSheetArgs) -> Outcome {
 }
 
 fn scenario(name: &str) -> Result<Scenario, Failure> {
+    if hasard_envs::own::is_file(name) {
+        return hasard_envs::own::open(name).map(|id| id.scenario).map_err(Failure::bad);
+    }
     let names = Scenario::ALL.map(Scenario::name);
     let found = Scenario::ALL.into_iter().find(|scenario| scenario.name().eq_ignore_ascii_case(name));
     found.ok_or_else(|| Failure::bad(format!("{name} is no scenario; the scenarios are {}", names.join(", "))))
+}
+
+/// Moments of a scenario for which nobody has chosen any: early and late in each of its first three levels.
+fn own_moments(scenario: Scenario) -> Vec<Moment> {
+    const EARLY: &[(u32, &str)] = &[(10, "sticky:10")];
+    const LATE: &[(u32, &str)] = &[(60, "sticky:10")];
+    let levels = scenario.environments().take(3).map(|id| id.level);
+    levels.flat_map(|level| [Moment { level, seed: 1, way: EARLY }, Moment { level, seed: 2, way: LATE }]).collect()
 }
 
 /// Plays to a moment and draws it in every view.

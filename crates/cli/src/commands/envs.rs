@@ -12,7 +12,11 @@ pub fn run(args: &EnvsArgs) -> Outcome {
     if !args.json {
         writeln!(out, "{:<28} {:>6}  {:<40} full", "id", "budget", "simplified actions")?;
     }
-    for id in EnvId::all() {
+    let mut ids: Vec<EnvId> = if args.files.is_empty() { EnvId::all().collect() } else { Vec::new() };
+    for file in &args.files {
+        ids.extend(crate::settings::env_id(file)?.scenario.environments());
+    }
+    for id in ids {
         let budget = id.scenario.safety_budget(args.rules.into());
         let space = |full| ActionSpace::of(id, args.rules.into(), false, full);
         let (simplified, full) = (space(false), space(true));

@@ -39,6 +39,7 @@ pub fn run(args: &EvalArgs) -> Outcome {
     let mut lines = EpisodeLines::new(args.json);
     lines.hold_against(&config.constraints);
     let options = crate::settings::trained_options(&config.env, args.places.elsewhere())?;
+    let options = EnvOptions { test_seeds: args.test_seeds, ..options };
     let player = Player {
         run: &run,
         which: if args.latest { Which::Latest } else { Which::Selected },

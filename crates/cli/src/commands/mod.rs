@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 pub mod bench;
+pub mod check;
 pub mod completions;
 pub mod contact_sheet;
 pub mod envs;
@@ -8,6 +9,7 @@ pub mod eval;
 pub mod export_agent;
 pub mod export_wad;
 pub mod metrics;
+pub mod new;
 pub mod play;
 pub mod record;
 pub mod render;

@@ -50,7 +50,7 @@ pub fn run(args: &RecordArgs) -> Outcome {
     let looks = settings::looking(looks, &args.film.looks);
     let agent = zoo::is_agent(&args.what);
     let what = &zoo::find(&args.what)?;
-    if what.is_file() && !agent {
+    if what.is_file() && !agent && !hasard_envs::own::is_file(&args.what.to_string_lossy()) {
         return record_replay(args, kind, what, &looks);
     }
     let (mut performance, player) = if agent || what.is_dir() {
@@ -69,7 +69,7 @@ pub fn run(args: &RecordArgs) -> Outcome {
         (performance, if zoo::after(&args.what, "zoo:").is_some() { named.into_owned() } else { format!("run:{named}") })
     } else {
         let policy = args.policy.clone().unwrap_or_else(|| "random".into());
-        let Ok(id) = env_id(&args.what.to_string_lossy());
+        let id = env_id(&args.what.to_string_lossy()).map_err(Failure::bad)?;
         if let Err(error) = id.parse::<EnvId>()
             && !what.exists()
         {

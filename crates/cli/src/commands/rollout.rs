@@ -5,13 +5,16 @@ use crate::actor::agent_options;
 use crate::args::{RolloutArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::{episode_lines, settings};
-use hasard_envs::{Env, rollout};
+use hasard_envs::{Env, EnvOptions, rollout};
 use hasard_learn::runs::agent::{Choice, Which};
 
 /// Runs the command.
 pub fn run(args: &RolloutArgs) -> Outcome {
     // A fixed policy looks at nothing, so nothing is drawn and the size does not matter.
     let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
+    // The task that was named, whatever file of that name an agent was trained on.
+    let scenario = Some(settings::env_id(&args.env)?.scenario);
+    let options = EnvOptions { scenario, test_seeds: args.test_seeds, ..options };
     let mut lines = episode_lines::EpisodeLines::new(args.json);
     if let Some(run) = crate::actor::agent_of(&args.policy)? {
         let options = agent_options(&args.env, &run, &options, args.env_args.elsewhere())?;

@@ -2,16 +2,23 @@
 
 use crate::args::ServeArgs;
 use crate::failure::{Failure, Outcome};
+#[cfg(feature = "serve")]
+use std::path::PathBuf;
 
 /// Runs the command.
 #[cfg(feature = "serve")]
 pub fn run(args: &ServeArgs) -> Outcome {
     // Without folders `runs` is waited for: the first training makes it. A folder that was named is meant.
-    if let Some(folder) = args.runs.iter().find(|folder| !folder.is_dir()) {
+    let (tasks, runs): (Vec<PathBuf>, Vec<PathBuf>) =
+        args.runs.iter().cloned().partition(|path| hasard_envs::own::is_file(&path.to_string_lossy()));
+    for task in &tasks {
+        hasard_envs::own::open(&task.to_string_lossy()).map_err(Failure::bad)?;
+    }
+    if let Some(folder) = runs.iter().find(|folder| !folder.is_dir()) {
         let remedy = "name a folder that holds runs, or none to wait for those below runs";
         return Err(Failure::bad(format!("{}: there is no such folder; {remedy}", folder.display())));
     }
-    let folders = if args.runs.is_empty() { vec!["runs".into()] } else { args.runs.clone() };
+    let folders = if runs.is_empty() { vec!["runs".into()] } else { runs };
     let beyond = !args.listen.ip().is_loopback();
     let token = match &args.token {
         Some(token) if token.len() < 8 || !token.bytes().all(|byte| byte.is_ascii_alphanumeric()) => {

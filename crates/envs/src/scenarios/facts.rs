@@ -10,7 +10,8 @@ pub(crate) fn rules(id: EnvId, options: &EnvOptions, map: &Map) -> Result<AnyRul
     if options.early_creatures && !id.scenario.early_creatures {
         return Err(misplaced());
     }
-    let setting = Setting { early_creatures: options.early_creatures, ..id.setting(options.rules, options.hard) };
+    let (early_creatures, test_seeds) = (options.early_creatures, options.test_seeds);
+    let setting = Setting { early_creatures, test_seeds, ..id.setting(options.rules, options.hard) };
     id.scenario.task.rules(setting, map)
 }
 

@@ -20,13 +20,15 @@ pub struct Setting {
     pub level: u8,
     /// See [`crate::EnvOptions::early_creatures`].
     pub early_creatures: bool,
+    /// See [`crate::EnvOptions::test_seeds`].
+    pub test_seeds: bool,
 }
 
 impl Setting {
     /// A level with its later creatures.
     #[must_use]
     pub const fn new(rules: RuleSet, hard: bool, level: u8) -> Setting {
-        Setting { rules, hard, level, early_creatures: false }
+        Setting { rules, hard, level, early_creatures: false, test_seeds: false }
     }
 
     /// Index of the level, from 0.

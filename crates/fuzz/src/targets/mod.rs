@@ -7,6 +7,7 @@ mod levels;
 mod maps;
 mod pictures;
 mod runs;
+mod scenarios;
 mod sweeps;
 mod words;
 
@@ -34,6 +35,7 @@ pub static ALL: &[Target] = &[
     pictures::IWAD,
     episodes::EPISODE,
     sweeps::SWEEP,
+    scenarios::SCENARIO,
     runs::RUN,
     words::WORDS,
     learning::SETTINGS,

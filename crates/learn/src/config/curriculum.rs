@@ -63,7 +63,7 @@ impl TrainConfig {
     pub fn set_curriculum(&mut self, lessons: Vec<Lesson>) {
         self.frames = lessons.iter().fold(0, |sum, lesson| sum.saturating_add(lesson.frames));
         if let Some(last) = lessons.last() {
-            self.env.id = id_at(&self.env.id, last.level);
+            self.env.id = id_at(&self.env, last.level);
         }
         self.curriculum = lessons;
     }
@@ -90,7 +90,7 @@ impl TrainConfig {
     pub fn lesson(&self, index: usize) -> TrainConfig {
         let mut config = self.clone();
         if let Some(lesson) = self.curriculum.get(index) {
-            config.env.id = id_at(&self.env.id, lesson.level);
+            config.env.id = id_at(&self.env, lesson.level);
         }
         if index > 0 {
             config.seed = Stream::new(self.seed, Purpose::Lesson, index as u64, 0).bits();
@@ -106,8 +106,8 @@ impl TrainConfig {
 }
 
 /// The id at another level; unregistered ids, such as those of tests, have none.
-fn id_at(id: &str, level: u8) -> String {
-    id.parse::<EnvId>().map_or_else(|_| id.to_string(), |id| EnvId { level, ..id }.to_string())
+fn id_at(env: &super::EnvConfig, level: u8) -> String {
+    env.env_id().map_or_else(|_| env.id.clone(), |id| EnvId { level, ..id }.to_string())
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use hasard_envs::{EnvId, EnvOptions, FrameSize, Layout, ObservationKind, RuleSet, Scenario};
 use serde::{Deserialize, Serialize};
 
+use super::own_scenario::OwnScenario;
 use crate::error::LearnError;
 
 /// The environment and its options, in words that a file can hold.
@@ -12,6 +13,9 @@ use crate::error::LearnError;
 pub struct EnvConfig {
     /// Its id, such as `VolcanicVentureLevel1-v0`.
     pub id: String,
+    /// The file of an own scenario, with all of its text; `null` for the benchmark's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scenario_file: Option<OwnScenario>,
     /// `paper`, `released` or `tables`.
     pub rules: String,
     /// Detonator's Dilemma 1 under `tables` with the creatures of the first runs.
@@ -55,6 +59,7 @@ impl EnvConfig {
     pub fn new(id: &str) -> EnvConfig {
         EnvConfig {
             id: id.to_string(),
+            scenario_file: id.parse::<EnvId>().ok().and_then(|id| OwnScenario::of(id.scenario)),
             rules: "paper".into(),
             early_creatures: false,
             hard: false,
@@ -83,6 +88,7 @@ impl EnvConfig {
             other => return Err(unknown("observation", other, "rgb, rgb+depth, segmented, grey")),
         };
         Ok(EnvOptions {
+            scenario: self.scenario_file.map(OwnScenario::scenario),
             rules: self.rule_set()?,
             early_creatures: self.early_creatures,
             hard: self.hard,
@@ -104,6 +110,12 @@ impl EnvConfig {
     }
 
     pub(crate) fn scenario(&self) -> Option<Scenario> {
-        self.id.parse::<EnvId>().ok().map(|id| id.scenario)
+        self.env_id().ok().map(|id| id.scenario)
+    }
+
+    /// The environment that the id names, in the own scenario if there is one.
+    pub(super) fn env_id(&self) -> Result<EnvId, LearnError> {
+        EnvId::within(self.scenario_file.map(OwnScenario::scenario), &self.id)
+            .map_err(|error| LearnError::Config(error.to_string()))
     }
 }

@@ -10,6 +10,7 @@ mod former;
 mod learning;
 mod names;
 mod network;
+mod own_scenario;
 pub mod place;
 mod presets;
 mod reporting;
@@ -28,7 +29,6 @@ pub use sampling::SamplingConfig;
 
 use std::fmt;
 
-use hasard_envs::EnvId;
 use serde::{Deserialize, Serialize};
 
 use constraint::find_terms;
@@ -111,7 +111,7 @@ fn whole() -> f64 {
 impl TrainConfig {
     /// The settings of a preset for an algorithm on an environment.
     pub fn new(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> Result<TrainConfig, LearnError> {
-        let id: EnvId = env.id.parse().map_err(|error: hasard_envs::EnvError| LearnError::Config(error.to_string()))?;
+        let id = env.env_id()?;
         let budget = if env.hard { 0.0 } else { id.scenario.safety_budget(env.rule_set()?) };
         let mut config = TrainConfig::plain(algorithm, preset, env);
         config.constraints[0].budget = budget;

@@ -7,11 +7,12 @@ use super::{TrainConfig, explained};
 use crate::error::LearnError;
 
 /// Settings that others hang on, and what to use instead: it brings those along.
-const OTHERS_HANG_ON: [(&str, &str); 9] = [
+const OTHERS_HANG_ON: [(&str, &str); 10] = [
     ("version", "the program of that version"),
     ("algorithm", "--algo"),
     ("preset", "--preset"),
     ("env.id", "the environment's id"),
+    ("env.scenario_file", "the scenario's file in place of an id"),
     ("env.rules", "--rules"),
     ("env.hard", "--hard"),
     ("env.frame_skip", "--frame-skip"),

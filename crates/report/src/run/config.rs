@@ -16,6 +16,8 @@ const NOT_IDENTITY: &[&str] = &[
     "device",
     "threads",
     "version",
+    "env.scenario_file.path",
+    "env.scenario_file.text",
     "program",
     "commit",
     "command",

@@ -1,0 +1,56 @@
+//! `hasard check`: all that is wrong with a scenario's file, and its map from above.
+
+use crate::args::CheckArgs;
+use crate::failure::{Failure, Outcome};
+use hasard_envs::{Env, EnvOptions, own};
+use serde_json::json;
+
+/// Longer side of the map's picture, pixels.
+const SIDE: usize = 800;
+
+/// Runs the command.
+pub fn run(args: &CheckArgs) -> Outcome {
+    let text = own::read_text(&args.file).map_err(Failure::bad)?;
+    let checked = own::check(&text);
+    let file = args.file.display().to_string();
+    for mistake in &checked.mistakes {
+        if args.json {
+            let (line, column, warning) = (mistake.line, mistake.column, mistake.warning);
+            say!("{}", json!({ "file": file, "line": line, "column": column, "warning": warning, "problem": mistake.text }));
+        } else {
+            say!("{file}:{mistake}");
+        }
+    }
+    let wrong = checked.mistakes.iter().filter(|mistake| !mistake.warning).count();
+    if !checked.can_be_played() {
+        return Err(Failure::Negative(format!("{file}: {wrong} to mend before it can be played")));
+    }
+    let scenario = own::register(&file, &text).map_err(Failure::bad)?;
+    let Some(id) = scenario.environments().nth(usize::from(args.level.max(1)) - 1) else {
+        return Err(Failure::bad(format!("--level {}: its levels are 1 to {}", args.level, scenario.levels.max(1))));
+    };
+    let options = EnvOptions { scenario: Some(scenario), ..EnvOptions::default() };
+    let mut env = Env::new(&id.to_string(), &options).map_err(Failure::bad)?;
+    env.reset(args.seed);
+    if let Some(out) = &args.out {
+        let (map, width, height) = env.top_down_of_extent(SIDE);
+        let mut pixels = vec![0; width * height * 3];
+        map.draw(env.world(), &mut pixels);
+        let picture = hasard_media::Picture::from_rgb(width, height, pixels).map_err(Failure::bad)?;
+        hasard_media::png::write(&picture, out).map_err(Failure::bad)?;
+    }
+    let things = env.world().living().count() - 1;
+    let ids: Vec<String> = scenario.environments().map(|id| id.to_string()).collect();
+    let drawn = args.out.as_ref().map(|out| out.display().to_string());
+    if args.json {
+        let terms: Vec<&str> = scenario.cost_terms.iter().map(|term| term.name).collect();
+        say!(
+            "{}",
+            json!({ "file": file, "scenario": scenario.name, "ids": ids, "things": things, "cost_terms": terms, "map": drawn })
+        );
+    } else {
+        let drawn = drawn.map_or(String::new(), |out| format!("; its map is drawn in {out}"));
+        say!("{file}: can be played as {}; {things} things at the start of seed {}{drawn}", ids.join(", "), args.seed);
+    }
+    Ok(())
+}

@@ -1,0 +1,111 @@
+//! What a file says that can never happen.
+
+use super::mistakes::Mistakes;
+use super::model::{MapPlan, Names, Of, Plan, Trigger};
+use hasard_engine::world::ActorKind;
+
+/// Warns of what happens in none of the settings.
+pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
+    let Some(first) = plans.first() else { return };
+    for (index, when) in first.whens.iter().enumerate() {
+        let possible = |plan: &Plan| plan.whens.get(index).is_some_and(|when| can_happen(plan, when.trigger));
+        if !plans.iter().any(possible) {
+            mistakes.warn(when.at, format!("this never happens: {}", why(first, names, when.trigger)));
+        }
+    }
+    for (index, spawn) in first.spawns.iter().enumerate() {
+        let used = |plan: &Plan| {
+            let spawn = plan.spawns.get(index).is_some_and(|spawn| spawn.count > 0 || (spawn.every > 0 && spawn.each > 0));
+            spawn || plan.whens.iter().any(|when| when.spawn.iter().any(|named| usize::from(*named) == index))
+        };
+        if !plans.iter().any(used) {
+            mistakes.warn(
+                spawn.at,
+                "nothing of this [[spawn]] ever appears: its count is 0, it has no `every`, and no [[when]] calls it",
+            );
+        }
+    }
+    if !plans.iter().any(|plan| plan.whens.iter().any(|when| when.reward != 0.0)) {
+        mistakes.warn(0, "no [[when]] gives a reward: there is nothing to learn");
+    }
+    for (index, term) in names.terms.iter().enumerate() {
+        let charged = |plan: &Plan| plan.whens.iter().any(|when| when.costs.iter().any(|(of, _)| usize::from(*of) == index));
+        if !plans.iter().any(charged) {
+            mistakes.warn(0, format!("cost term {} is charged by no [[when]]", term.name));
+        }
+    }
+}
+
+/// Whether something of a plan sets a rule off.
+fn can_happen(plan: &Plan, trigger: Trigger) -> bool {
+    match trigger {
+        Trigger::Pickup(of) | Trigger::Kill(of) | Trigger::Hit(of) | Trigger::Near { of, .. } => appears(plan, of),
+        Trigger::Enter(zone) | Trigger::Leave(zone) | Trigger::In(zone) => is_somewhere(plan, zone),
+        Trigger::Damage { kinds: 0, zones } => harmful(plan, zones),
+        Trigger::Jump => presses(plan, "JUMP"),
+        Trigger::Use => presses(plan, "USE"),
+        Trigger::Shot => presses(plan, "ATTACK"),
+        Trigger::Counter { counter, .. } => {
+            let counts = |(of, _): &(u8, i32)| *of == counter;
+            plan.whens.iter().any(|when| when.counts.iter().any(counts) || when.sets.iter().any(counts))
+        }
+        _ => true,
+    }
+}
+
+fn why(plan: &Plan, names: &Names, trigger: Trigger) -> String {
+    let zone = |zone: u8| plan.zones.get(usize::from(zone)).map_or("", |zone| &zone.name).to_string();
+    match trigger {
+        Trigger::Enter(of) | Trigger::Leave(of) | Trigger::In(of) => format!("no tile is of zone {}", zone(of)),
+        Trigger::Damage { .. } => {
+            "no floor of that zone does damage; give its letter damage = { points = 1, every = 4 }".to_string()
+        }
+        Trigger::Counter { counter, .. } => {
+            format!("nothing counts {}", names.counters.get(usize::from(counter)).map_or("", |name| name))
+        }
+        Trigger::Jump => "no action is JUMP".to_string(),
+        Trigger::Use => "no action is USE".to_string(),
+        Trigger::Shot => "no action is ATTACK".to_string(),
+        _ => "no such thing ever appears; put one down with [[spawn]] or the legend's `thing`".to_string(),
+    }
+}
+
+/// Whether any of some things ever is in the world.
+fn appears(plan: &Plan, of: Of) -> bool {
+    let asked = |kind: ActorKind| of.kinds >> (kind as u32) & 1 == 1;
+    let spawned = plan.spawns.iter().enumerate().any(|(index, spawn)| {
+        let called = plan.whens.iter().any(|when| when.spawn.iter().any(|named| usize::from(*named) == index));
+        let there = spawn.count > 0 || spawn.every > 0 || called;
+        there && (of.spawns >> index & 1 == 1 || spawn.kinds.iter().any(|(kind, _)| asked(*kind)))
+    });
+    let drawn = match &plan.map {
+        MapPlan::Tiles(tiles) => tiles.kinds.iter().filter_map(|kind| kind.thing).any(asked),
+        MapPlan::BuiltIn(..) => of.kinds != 0,
+    };
+    spawned || drawn
+}
+
+fn is_somewhere(plan: &Plan, zone: u8) -> bool {
+    let own = &plan.zones[usize::from(zone)];
+    match &plan.map {
+        MapPlan::Tiles(tiles) if own.area.is_none() && own.tags.is_none() => {
+            tiles.tiles.iter().any(|tile| tiles.kinds[usize::from(*tile)].zone == Some(zone))
+        }
+        _ => true,
+    }
+}
+
+fn harmful(plan: &Plan, zones: u32) -> bool {
+    match &plan.map {
+        MapPlan::Tiles(tiles) => tiles.tiles.iter().any(|tile| {
+            let kind = &tiles.kinds[usize::from(*tile)];
+            kind.damage.is_some() && kind.zone.is_some_and(|zone| zones >> zone & 1 == 1)
+        }),
+        MapPlan::BuiltIn(..) => true,
+    }
+}
+
+/// Whether a button is among the actions.
+fn presses(plan: &Plan, button: &str) -> bool {
+    plan.actions.iter().flatten().any(|name| *name == button)
+}

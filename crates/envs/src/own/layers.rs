@@ -1,0 +1,95 @@
+//! The document of one level: what the file says, with what `[levels.N]`, `[hard]` and `[rules.NAME]` change of it.
+
+use super::mistakes::{Mistakes, excerpt};
+use super::tree::{Entry, Node, Value};
+use crate::scenarios::Setting;
+
+/// The keys of conditional layers.
+const LAYERS: [&str; 3] = ["rules", "levels", "hard"];
+
+/// The document of a setting. Layers within layers count after those around them: `[levels.2.hard]` after `[levels.2]` and `[hard]`.
+pub(super) fn document(root: &Node, setting: Setting, mistakes: &mut Mistakes) -> Node {
+    let mut layers: Vec<(usize, &Node)> = Vec::new();
+    collect(root, setting, 0, &mut layers);
+    layers.sort_by_key(|(depth, _)| *depth);
+    let mut document = Node { value: Value::Table(Vec::new()), at: root.at };
+    for (depth, layer) in layers {
+        let Value::Table(entries) = &layer.value else {
+            mistakes.add(layer.at, format!("write a table here, not {}", layer.what()));
+            continue;
+        };
+        for entry in entries.iter().filter(|entry| !LAYERS.contains(&&*entry.key)) {
+            if depth == 0 {
+                put(&mut document, entry.clone());
+            } else {
+                change(&mut document, entry, mistakes);
+            }
+        }
+    }
+    document
+}
+
+/// The layers that hold in a setting, each with how deep it is.
+fn collect<'n>(layer: &'n Node, setting: Setting, depth: usize, layers: &mut Vec<(usize, &'n Node)>) {
+    layers.push((depth, layer));
+    let within = [
+        layer.get("rules").and_then(|rules| rules.node.get(setting.rules.name())),
+        layer.get("levels").and_then(|levels| levels.node.get(&setting.level.to_string())),
+        layer.get("hard").filter(|_| setting.hard),
+    ];
+    for entry in within.into_iter().flatten() {
+        collect(&entry.node, setting, depth + 1, layers);
+    }
+}
+
+/// Sets an entry of a table.
+fn put(table: &mut Node, entry: Entry) {
+    let Value::Table(entries) = &mut table.value else { return };
+    entries.retain(|known| known.key != entry.key);
+    entries.push(entry);
+}
+
+/// Applies what a layer says: tables change field by field, everything else is replaced. A key in quotes may be a path,
+/// `"spawn.vials.count"`, and items of lists go by their name or number.
+fn change(target: &mut Node, entry: &Entry, mistakes: &mut Mistakes) {
+    let path: Vec<&str> = if entry.key.len() > 2 { entry.key.split('.').collect() } else { vec![&entry.key] };
+    descend(target, &path, entry, mistakes);
+}
+
+fn descend(target: &mut Node, path: &[&str], entry: &Entry, mistakes: &mut Mistakes) {
+    let [key, rest @ ..] = path else { return };
+    match &mut target.value {
+        Value::Table(entries) => {
+            let known = entries.iter().position(|known| known.key == *key);
+            let index = known.unwrap_or_else(|| {
+                entries.push(Entry { key: (*key).to_string(), at: entry.at, node: Node { at: entry.at, ..Node::empty() } });
+                entries.len() - 1
+            });
+            let place = &mut entries[index].node;
+            if rest.is_empty() { set(place, known.is_some(), entry, mistakes) } else { descend(place, rest, entry, mistakes) }
+        }
+        Value::List(items) => {
+            let named = |item: &Node| item.get("name").and_then(|name| name.node.text().map(str::to_owned));
+            let by_number = || key.parse().ok().filter(|index| *index < items.len());
+            let Some(index) = items.iter().position(|item| named(item).as_deref() == Some(*key)).or_else(by_number) else {
+                let names: Vec<String> = items.iter().filter_map(named).collect();
+                let known =
+                    if names.is_empty() { "give it a `name`".to_string() } else { format!("named are {}", names.join(", ")) };
+                mistakes.add(entry.at, format!("there is no item `{}` to change; {known}", excerpt(key)));
+                return;
+            };
+            let place = &mut items[index];
+            if rest.is_empty() { set(place, true, entry, mistakes) } else { descend(place, rest, entry, mistakes) }
+        }
+        _ => mistakes.add(entry.at, format!("`{}` is within a value that is no table", excerpt(key))),
+    }
+}
+
+fn set(place: &mut Node, known: bool, entry: &Entry, mistakes: &mut Mistakes) {
+    match (&place.value, &entry.node.value) {
+        (Value::Table(_) | Value::List(_), Value::Table(within)) if known => {
+            within.iter().for_each(|entry| change(place, entry, mistakes));
+        }
+        _ => *place = entry.node.clone(),
+    }
+}

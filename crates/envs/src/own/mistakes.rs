@@ -1,0 +1,131 @@
+//! What is wrong with a file: all of it, each with its place and its remedy.
+
+use crate::edit_distance;
+use std::fmt;
+
+/// Most that are listed; who has more sees the rest after mending these.
+const MOST: usize = 100;
+
+/// Something wrong with a scenario's file, or something in it that can never happen.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub struct Mistake {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in letters, from 1.
+    pub column: usize,
+    /// It can be played nevertheless.
+    pub warning: bool,
+    /// What is wrong, and what to write instead; one line.
+    pub text: String,
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.warning { "warning: " } else { "" };
+        write!(f, "{}:{}: {kind}{}", self.line, self.column, self.text)
+    }
+}
+
+/// Collects mistakes while a text is read.
+#[derive(Debug)]
+pub(super) struct Mistakes {
+    found: Vec<(usize, bool, String)>,
+    /// What is read.
+    text: String,
+}
+
+impl Mistakes {
+    pub fn new(text: &str) -> Mistakes {
+        Mistakes { found: Vec::new(), text: text.to_owned() }
+    }
+
+    /// The byte of a letter of a drawing that begins at `at`: by its line and column, from 0, where it is written as it stands.
+    pub fn within_drawing(&self, at: usize, line: usize, column: usize) -> usize {
+        let from = self.text.get(at..).unwrap_or("");
+        let quotes = ["\"\"\"\n", "'''\n", "\"\"\"\r\n", "'''\r\n"];
+        let Some(opening) = quotes.iter().find(|quote| from.starts_with(**quote)) else { return at };
+        let drawing = &from[opening.len()..];
+        let Some(start) = (line == 0).then_some(0).or_else(|| Some(drawing.match_indices('\n').nth(line - 1)?.0 + 1)) else {
+            return at;
+        };
+        let inside = drawing[start..].char_indices().nth(column).map_or(0, |(place, _)| place);
+        at + opening.len() + start + inside
+    }
+
+    /// Notes what is wrong at a byte of the text.
+    pub fn add(&mut self, at: usize, text: impl Into<String>) {
+        self.note(at, false, text.into());
+    }
+
+    /// Notes what can never happen.
+    pub fn warn(&mut self, at: usize, text: impl Into<String>) {
+        self.note(at, true, text.into());
+    }
+
+    fn note(&mut self, at: usize, warning: bool, text: String) {
+        let text: String = text.chars().take(400).flat_map(shown).collect();
+        // Levels repeat what they have in common.
+        if self.found.iter().any(|(place, _, said)| *place == at && *said == text) {
+            return;
+        }
+        if self.found.len() < MOST {
+            self.found.push((at, warning, text));
+        }
+    }
+
+    /// Whether there are as many as are listed.
+    pub fn full(&self) -> bool {
+        self.found.len() >= MOST
+    }
+
+    /// Whether anything keeps the file from being played.
+    pub fn any(&self) -> bool {
+        self.found.iter().any(|(_, warning, _)| !warning)
+    }
+
+    /// All, in the order of the text that they are in.
+    pub fn into_list(mut self) -> Vec<Mistake> {
+        let text = &self.text;
+        self.found.sort();
+        let places: Vec<(usize, usize)> = self.found.iter().map(|(at, ..)| place(text, *at)).collect();
+        let all = self.found.into_iter().zip(places);
+        all.map(|((_, warning, text), (line, column))| Mistake { line, column, warning, text }).collect()
+    }
+}
+
+/// Letters that command a terminal are spelled out.
+fn shown(letter: char) -> Vec<char> {
+    if letter.is_control() { letter.escape_default().collect() } else { vec![letter] }
+}
+
+/// Line and column of a byte.
+fn place(text: &str, at: usize) -> (usize, usize) {
+    let mut end = at.min(text.len());
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    let before = &text[..end];
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+    (line, column)
+}
+
+/// The beginning of a user's word, for a message.
+pub(super) fn excerpt(word: &str) -> String {
+    word.chars().take(40).flat_map(char::escape_debug).collect()
+}
+
+/// A refusal of an unknown word that names the nearest known one, or all if they are few.
+pub(super) fn unknown<'a>(what: &str, word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    let upper: String = word.chars().take(24).collect::<String>().to_uppercase();
+    let nearest = known.iter().min_by_key(|known| edit_distance(&upper, &known.to_uppercase()));
+    let near = nearest.filter(|known| edit_distance(&upper, &known.to_uppercase()) <= 3);
+    let word = excerpt(word);
+    match (near, known.len()) {
+        (Some(near), 9..) => format!("{what} `{word}` is unknown; the nearest is `{near}`"),
+        (_, 0) => format!("{what} `{word}` is unknown; there is none"),
+        (_, ..9) => format!("{what} `{word}` is unknown; write one of {}", known.join(", ")),
+        _ => format!("{what} `{word}` is unknown; write one of {}, ...", known[..8].join(", ")),
+    }
+}

@@ -1,0 +1,31 @@
+//! Own scenarios: a task is one file, read once into tables. `docs/guide/own_task.md` has the whole format.
+
+mod check;
+mod fields;
+mod generate;
+mod intern;
+mod layers;
+mod mistakes;
+mod model;
+mod opening;
+mod place;
+mod program;
+mod read;
+mod read_map;
+mod read_spawns;
+mod read_whens;
+mod rehearsal;
+mod rules;
+mod task;
+mod template;
+#[cfg(test)]
+mod tests;
+mod textures;
+mod tiles;
+mod tree;
+mod walkers;
+
+pub use mistakes::Mistake;
+pub use place::{LARGEST_TEXT, fingerprint, is_file, open, read_text};
+pub use task::{Checked, check, recall, register};
+pub use template::template;

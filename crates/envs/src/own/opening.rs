@@ -1,0 +1,172 @@
+//! The beginning of an episode: the level is set, things are put down, the agent enters. And how things are put down later.
+
+use super::model::{Facing, Goal, Height, Place, Spawn};
+use super::program::Program;
+use super::rules::{OwnRules, body};
+use crate::scenarios::stage;
+use hasard_engine::math::{Angle, Fixed};
+use hasard_engine::world::{ActorId, ActorKind, World};
+use std::sync::atomic::Ordering;
+
+/// Tries to find a free place for a thing, and for the agent.
+const TRIES: u32 = 200;
+const PLAYER_TRIES: u32 = 2_000;
+/// Most slots of things in a world: what more would come is left out.
+const MOST_THINGS: usize = 4_000;
+
+impl OwnRules {
+    /// The map opens, and the agent enters.
+    pub(super) fn open(&mut self, program: &Program, world: &mut World) {
+        if let Some(layout) = &program.layout {
+            layout.apply(world, program.test_seeds);
+        }
+        for tile in &program.loose {
+            let height = world.rng.between(tile.floor[0], tile.floor[1]);
+            world.sector_mut(tile.sector).floor = Fixed::from_int(height);
+        }
+        for (tag, amplitude, frequency) in &program.waggles {
+            world.floor_waggle(*tag, *amplitude, *frequency, 0, 0);
+        }
+        for index in 0..program.plan.spawns.len() {
+            // Where one finds no room, the next would find none either.
+            let _ = (0..program.plan.spawns[index].count).try_for_each(|_| self.put(program, index as u8, world).map(drop));
+        }
+        for light in &program.plan.lights {
+            for tag in &program.tags[usize::from(light.zone)] {
+                if light.glow {
+                    world.light_glow(*tag, light.bright, light.dark, light.bright_tics);
+                } else {
+                    world.light_strobe(*tag, light.bright, light.dark, light.bright_tics, light.dark_tics);
+                }
+            }
+        }
+        enter(program, &mut self.tries, world);
+    }
+
+    /// Puts down a thing of a spawn; none where there is no room.
+    pub(super) fn put(&mut self, program: &Program, index: u8, world: &mut World) -> Option<ActorId> {
+        let spawn = &program.plan.spawns[usize::from(index)];
+        if world.actors.len() >= MOST_THINGS || spawn.kinds.is_empty() || (spawn.most < 500 && living(spawn, world) >= spawn.most)
+        {
+            return None;
+        }
+        let kind = drawn_kind(spawn, world);
+        let tid = if spawn.marked { i32::from(index) + 1 } else { 0 };
+        for _ in 0..TRIES.min(self.tries) {
+            self.tries -= 1;
+            let Some([x, y, z]) = drawn_place(program, spawn.place, spawn.height, spawn.rock, world) else { continue };
+            let Some(id) = world.spawn_checked(kind, x, y, z, tid) else { continue };
+            if let Some(actor) = world.get_mut(id) {
+                actor.health = spawn.health.unwrap_or(actor.health);
+                actor.speed = spawn.speed.map_or(actor.speed, Fixed::from_int);
+            }
+            if spawn.goal != Goal::None {
+                self.set_out(id, index);
+            }
+            return Some(id);
+        }
+        if let Some(unplaced) = &self.unplaced {
+            unplaced.fetch_or(1 << index, Ordering::Relaxed);
+        }
+        None
+    }
+}
+
+/// How many of a spawn's kinds there are.
+fn living(spawn: &Spawn, world: &World) -> u32 {
+    let of = |kind: ActorKind| spawn.kinds.iter().any(|(own, _)| *own == kind);
+    world.living().filter(|(_, actor)| of(actor.kind) && actor.health > 0).count() as u32
+}
+
+fn drawn_kind(spawn: &Spawn, world: &mut World) -> ActorKind {
+    if let [(kind, _)] = spawn.kinds[..] {
+        return kind;
+    }
+    let total: u32 = spawn.kinds.iter().map(|(_, weight)| weight).sum();
+    let mut drawn = world.rng.below(total.max(1));
+    for (kind, weight) in &spawn.kinds {
+        if drawn < *weight {
+            return *kind;
+        }
+        drawn -= weight;
+    }
+    spawn.kinds[0].0
+}
+
+/// A random point of a place; none where it fell into rock.
+pub(super) fn drawn_place(program: &Program, place: Place, height: Height, rock: bool, world: &mut World) -> Option<[Fixed; 3]> {
+    let area = match place {
+        Place::Area(area) => area,
+        _ => match program.areas_of(place) {
+            [] => return None,
+            [area] => *area,
+            areas => areas[world.rng.below(areas.len() as u32) as usize],
+        },
+    };
+    let (x, y) = stage::point_in(world, area);
+    if !rock && !world.map.is_inside(x, y) {
+        return None;
+    }
+    let z = match height {
+        Height::At(z) => Fixed::from_int(z),
+        Height::Above(above) => world.sector(world.map.sector_at(x, y)).floor + Fixed::from_int(above),
+    };
+    Some([x, y, z])
+}
+
+/// Moves the agent to a random point of a place, if there is room for it.
+pub(super) fn move_player(program: &Program, place: Place, height: Height, tries: &mut u32, world: &mut World) {
+    for _ in 0..PLAYER_TRIES.min(*tries) {
+        *tries -= 1;
+        if let Some([x, y, z]) = drawn_place(program, place, height, false, world)
+            && world.set_position(body(world), x, y, z)
+        {
+            return;
+        }
+    }
+}
+
+/// The agent enters.
+fn enter(program: &Program, tries: &mut u32, world: &mut World) {
+    let plan = &program.plan.player;
+    match plan.place {
+        Some(place) => move_player(program, place, plan.height, tries, world),
+        None if program.layout.is_some() => move_player(program, Place::Free, Height::Above(0), tries, world),
+        None if program.starts.len() > 1 => {
+            let (area, degrees) = program.starts[world.rng.below(program.starts.len() as u32) as usize];
+            let [x, y] = [(area[0] + area[2]) / 2, (area[1] + area[3]) / 2].map(Fixed::from_int);
+            let z = world.sector(world.map.sector_at(x, y)).floor;
+            world.set_position(body(world), x, y, z);
+            stage::set_angle(world, turned(degrees));
+        }
+        None => {}
+    }
+    match plan.facing {
+        Facing::Random => {
+            let angle = stage::random_angle(world);
+            stage::set_angle(world, angle);
+        }
+        Facing::Degrees(degrees) => stage::set_angle(world, turned(degrees)),
+        Facing::Map => {}
+    }
+    world.clear_inventory(0);
+    stage::set_health(world, plan.health);
+    let player = &mut world.players[0];
+    player.armor = plan.armor;
+    player.speed = Fixed::from_f64(plan.speed);
+    for weapon in &plan.weapons {
+        world.give_weapon(0, *weapon, false);
+    }
+    for (which, amount) in plan.ammo.iter().enumerate() {
+        if let Some(amount) = amount {
+            let player = &mut world.players[0];
+            player.ammo[which] = *amount;
+            player.max_ammo[which] = player.max_ammo[which].max(*amount);
+        }
+    }
+}
+
+/// An angle in degrees.
+fn turned(degrees: i32) -> Angle {
+    Angle::from_turn_65536(degrees.rem_euclid(360) * 65536 / 360)
+}

@@ -1,0 +1,201 @@
+//! A plan in its map: the tables that the rules run by. Made once for a setting, shared by all its worlds.
+
+use super::generate::Layout;
+use super::model::{Goal, MapPlan, Place, Plan, Trigger, When};
+use crate::EnvError;
+use crate::scenarios::stage::Area;
+use hasard_engine::map::{Map, SectorId};
+use hasard_engine::math::Fixed;
+use hasard_engine::world::ActorKind;
+
+/// First tag that tiles get; a letter of the legend that needs one has its number added.
+pub(super) const FIRST_TAG: i32 = 1000;
+
+/// Kinds of happenings, each with its own list of rules.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(usize)]
+pub(super) enum Happening {
+    Start,
+    Pickup,
+    Damage,
+    Death,
+    Kill,
+    Hit,
+    Shot,
+    Enter,
+    Leave,
+    In,
+    Land,
+    Jump,
+    Use,
+    Timer,
+    Step,
+    Counter,
+    Near,
+}
+
+/// Number of kinds of happenings.
+const HAPPENINGS: usize = Happening::Near as usize + 1;
+
+impl Happening {
+    /// The kind of a trigger.
+    pub const fn of(trigger: Trigger) -> Happening {
+        match trigger {
+            Trigger::Start => Happening::Start,
+            Trigger::Pickup(_) => Happening::Pickup,
+            Trigger::Damage { .. } => Happening::Damage,
+            Trigger::Death => Happening::Death,
+            Trigger::Kill(_) => Happening::Kill,
+            Trigger::Hit(_) => Happening::Hit,
+            Trigger::Shot => Happening::Shot,
+            Trigger::Enter(_) => Happening::Enter,
+            Trigger::Leave(_) => Happening::Leave,
+            Trigger::In(_) => Happening::In,
+            Trigger::Land => Happening::Land,
+            Trigger::Jump => Happening::Jump,
+            Trigger::Use => Happening::Use,
+            Trigger::Timer { .. } => Happening::Timer,
+            Trigger::Step => Happening::Step,
+            Trigger::Counter { .. } => Happening::Counter,
+            Trigger::Near { .. } => Happening::Near,
+        }
+    }
+}
+
+/// A tile that is set anew at each reset.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LooseTile {
+    pub sector: SectorId,
+    pub floor: [i32; 2],
+}
+
+/// The tables of a setting.
+#[derive(Debug)]
+pub(super) struct Program {
+    pub plan: Plan,
+    /// The rules of each kind of happening, in the order of the file.
+    lists: [Vec<u16>; HAPPENINGS],
+    /// The zones of each sector, a bit each.
+    pub zones_of: Vec<u32>,
+    /// Zones that are rectangles.
+    pub rectangles: Vec<(u8, [Fixed; 4])>,
+    /// The areas of each zone, and those where nothing hurts.
+    pub areas: Vec<Vec<Area>>,
+    pub free: Vec<Area>,
+    /// The tags of each zone.
+    pub tags: Vec<Vec<i32>>,
+    /// Areas of the start, one of which is drawn where there are several.
+    pub starts: Vec<(Area, i32)>,
+    /// Tiles with a floor at random, in the order of the map.
+    pub loose: Vec<LooseTile>,
+    /// The sectors of a map that is generated, row by row from the south-west.
+    pub layout: Option<Layout>,
+    /// Tags whose floors swing: eighths of a map unit, frequency.
+    pub waggles: Vec<(i32, i32, i32)>,
+    /// Damage of tags: points, tics.
+    pub damages: Vec<(i32, [i32; 2])>,
+    /// Of each kind of thing the spawn that brings it back, if its things are not told apart.
+    pub comes_back: Vec<(ActorKind, u8)>,
+    /// Names of the counters, for statistics.
+    pub names: Vec<&'static str>,
+    /// Levels that no training has seen.
+    pub test_seeds: bool,
+    /// Somebody moves by goals.
+    pub walkers: bool,
+}
+
+impl Program {
+    /// The tables of a plan in a map.
+    pub fn new(plan: Plan, map: &Map, names: &[&'static str]) -> Result<Program, EnvError> {
+        let mut lists: [Vec<u16>; HAPPENINGS] = std::array::from_fn(|_| Vec::new());
+        for (index, when) in plan.whens.iter().enumerate() {
+            lists[Happening::of(when.trigger) as usize].push(index as u16);
+        }
+        let mut program = Program {
+            lists,
+            zones_of: vec![0; map.sectors.len()],
+            rectangles: Vec::new(),
+            areas: vec![Vec::new(); plan.zones.len()],
+            free: Vec::new(),
+            tags: vec![Vec::new(); plan.zones.len()],
+            starts: Vec::new(),
+            loose: Vec::new(),
+            layout: None,
+            waggles: Vec::new(),
+            damages: Vec::new(),
+            comes_back: Vec::new(),
+            names: names.to_vec(),
+            test_seeds: false,
+            walkers: plan.spawns.iter().any(|spawn| spawn.goal != Goal::None),
+            plan,
+        };
+        program.find_zones(map)?;
+        if let MapPlan::Tiles(tiles) = program.plan.map.clone() {
+            program.place_tiles(&tiles, map);
+        }
+        if program.free.is_empty() {
+            program.free = extent(map);
+        }
+        for (index, spawn) in program.plan.spawns.iter().enumerate().filter(|(_, spawn)| !spawn.marked && spawn.respawn.is_some())
+        {
+            program.comes_back.extend(spawn.kinds.iter().map(|(kind, _)| (*kind, index as u8)));
+        }
+        Ok(program)
+    }
+
+    /// The rules of a kind of happening.
+    pub fn rules(&self, happening: Happening) -> impl Iterator<Item = (u16, &When)> {
+        self.lists[happening as usize].iter().map(|index| (*index, &self.plan.whens[usize::from(*index)]))
+    }
+
+    /// Whether a kind of happening has rules.
+    pub fn has(&self, happening: Happening) -> bool {
+        !self.lists[happening as usize].is_empty()
+    }
+
+    /// The areas of a place.
+    pub fn areas_of(&self, place: Place) -> &[Area] {
+        match place {
+            Place::Free | Place::Area(_) => &self.free,
+            Place::Zone(zone) => &self.areas[usize::from(zone)],
+        }
+    }
+
+    /// Zones that the map's own tags and rectangles make.
+    fn find_zones(&mut self, map: &Map) -> Result<(), EnvError> {
+        for (index, zone) in self.plan.zones.iter().enumerate() {
+            if let Some([west, south, east, north]) = zone.area {
+                self.rectangles.push((index as u8, [west, south, east, north].map(Fixed::from_int)));
+                self.areas[index].push([west, south, east, north]);
+            }
+            let Some([first, last]) = zone.tags else { continue };
+            for tag in first..=last {
+                let mut found = false;
+                for sector in map.tagged(tag) {
+                    found = true;
+                    self.zones_of[sector.0 as usize] |= 1 << index;
+                    let [west, east, south, north] = map.sectors[sector.0 as usize].bounds.map(Fixed::floor);
+                    self.areas[index].push([west, south, east, north]);
+                }
+                if found {
+                    self.tags[index].push(tag);
+                }
+            }
+            if self.tags[index].is_empty() {
+                let why = format!("map {}: zone {} has the tag {first}, which no sector has", map.name, zone.name);
+                return Err(EnvError::Map { why });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A map's extent as an area.
+fn extent(map: &Map) -> Vec<Area> {
+    let mut area = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
+    for vertex in &map.vertices {
+        let (x, y) = (vertex.x.floor(), vertex.y.floor());
+        area = [area[0].min(x), area[1].min(y), area[2].max(x), area[3].max(y)];
+    }
+    vec![area]
+}

@@ -1,0 +1,283 @@
+//! Reads `[map]`: tiles drawn with letters, the map of a built-in scenario, or one made anew at each reset.
+
+use super::fields::{Fields, wholes};
+use super::mistakes::{Mistakes, excerpt, unknown};
+use super::model::{Generate, GenerateKind, MOST_ZONES, MapPlan, TileKind, Tiles, Zone};
+use super::textures;
+use super::tree::{Node, Value};
+use crate::Scenario;
+use hasard_engine::world::ActorKind;
+
+/// Most tiles a side: a map of them is built in a few milliseconds.
+const MOST_TILES: usize = 64;
+
+/// Reads the section. Zones of tiles are added to `zones`.
+pub(super) fn map(node: Option<&Node>, zones: &mut Vec<Zone>, mistakes: &mut Mistakes) -> Option<MapPlan> {
+    let Some(node) = node else {
+        mistakes.add(0, "there is no [map]; draw one: ascii = \"\"\"...\"\"\" with # for rock, . for ground, @ for the start");
+        return None;
+    };
+    let mut fields = Fields::of(node, "[map]", mistakes);
+    let ascii = fields.text("ascii", mistakes);
+    let built_in = fields.text("builtin", mistakes);
+    let generate = fields.node("generate");
+    let side = fields.whole("tile", 32, 512, mistakes).unwrap_or(64) as i32;
+    let level = fields.whole("level", 1, 3, mistakes).unwrap_or(1) as u8;
+    let legend = fields.node("legend");
+    fields.finish(mistakes);
+    let given = usize::from(ascii.is_some()) + usize::from(built_in.is_some()) + usize::from(generate.is_some());
+    if given != 1 {
+        mistakes.add(node.at, "[map] needs one of: ascii = \"\"\"...\"\"\", builtin = \"RemedyRush\", [map.generate]");
+        return None;
+    }
+    if let Some((name, at)) = built_in {
+        let found = Scenario::ALL.into_iter().find(|scenario| scenario.name == name);
+        if found.is_none() {
+            mistakes.add(at, unknown("scenario", name, Scenario::ALL.map(Scenario::name)));
+        }
+        return found.map(|scenario| MapPlan::BuiltIn(scenario, level));
+    }
+    let mut kinds = vec![usual('#'), usual('.'), usual('@'), usual(' ')];
+    if let Some(legend) = legend {
+        read_legend(legend, &mut kinds, zones, mistakes);
+    }
+    // The start is ground like any other, where the legend says nothing of it.
+    let said = legend.is_some_and(|legend| legend.get("@").is_some());
+    let ground = kinds.iter().find(|kind| kind.letter == '.').cloned();
+    if let (false, Some(start), Some(ground)) = (said, kinds.iter_mut().find(|kind| kind.letter == '@'), ground) {
+        *start = TileKind { letter: '@', start: true, start_angle: start.start_angle, ..ground };
+    }
+    let tiles = match (ascii, generate) {
+        (Some((text, at)), _) => drawn(text, at, side, kinds, mistakes),
+        (None, Some(node)) => generated(node, side, kinds, mistakes),
+        (None, None) => None,
+    };
+    tiles.map(MapPlan::Tiles)
+}
+
+/// What a letter is that the legend does not say otherwise of.
+fn usual(letter: char) -> TileKind {
+    TileKind {
+        letter,
+        rock: matches!(letter, '#' | ' '),
+        floor: [0, 0],
+        ceiling: 128,
+        light: 192,
+        floor_texture: "FLAT5_5",
+        ceiling_texture: "FLAT19",
+        wall: (letter == '#').then_some("BIGSTON3"),
+        step: "BIGSTON3",
+        zone: None,
+        damage: None,
+        start: letter == '@',
+        start_angle: 90,
+        thing: None,
+        waggle: None,
+    }
+}
+
+fn read_legend(legend: &Node, kinds: &mut Vec<TileKind>, zones: &mut Vec<Zone>, mistakes: &mut Mistakes) {
+    let Value::Table(entries) = &legend.value else {
+        mistakes.add(legend.at, "[map.legend] must be a table of letters");
+        return;
+    };
+    for entry in entries {
+        let mut letters = entry.key.chars();
+        let (Some(letter), None) = (letters.next(), letters.next()) else {
+            mistakes.add(entry.at, format!("legend `{}`: a single letter stands for a tile", excerpt(&entry.key)));
+            continue;
+        };
+        if kinds.len() >= 64 {
+            mistakes.add(entry.at, "at most 60 letters");
+            return;
+        }
+        let kind = tile_kind(letter, &entry.node, kinds, zones, mistakes);
+        kinds.retain(|known| known.letter != letter);
+        kinds.push(kind);
+    }
+}
+
+fn tile_kind(letter: char, node: &Node, kinds: &[TileKind], zones: &mut Vec<Zone>, mistakes: &mut Mistakes) -> TileKind {
+    let mut fields = Fields::of(node, "a letter of the legend", mistakes);
+    let known = kinds.iter().find(|known| known.letter == letter).cloned();
+    let mut kind = known.unwrap_or_else(|| TileKind { letter, ..usual('.') });
+    if let Some((like, at)) = fields.text("like", mistakes) {
+        let base = kinds.iter().find(|known| like.chars().eq([known.letter]));
+        match base {
+            Some(base) => kind = TileKind { letter, ..base.clone() },
+            None => mistakes.add(at, format!("like = \"{}\": the legend has no such letter before this one", excerpt(like))),
+        }
+    }
+    let whole = |key, fields: &mut Fields<'_>, from, to, mistakes: &mut Mistakes| {
+        fields.whole(key, from, to, mistakes).map(|number| number as i32)
+    };
+    if let Some(node) = fields.node("floor") {
+        match node.value {
+            Value::Whole(height) if (-2048..=2048).contains(&height) => kind.floor = [height as i32; 2],
+            Value::List(_) => kind.floor = wholes::<2>(node, "floor", -2048, 2048, mistakes).unwrap_or(kind.floor),
+            _ => mistakes.add(node.at, "floor must be a height from -2048 to 2048, or [lowest, highest] for one at random"),
+        }
+        if kind.floor[0] > kind.floor[1] {
+            mistakes.add(node.at, "floor = [lowest, highest]: the lower one comes first");
+            kind.floor.reverse();
+        }
+    }
+    kind.ceiling = whole("ceiling", &mut fields, -2048, 4096, mistakes).unwrap_or(kind.ceiling);
+    kind.light = whole("light", &mut fields, 0, 255, mistakes).unwrap_or(kind.light);
+    for (key, place) in
+        [("floor_texture", &mut kind.floor_texture), ("ceiling_texture", &mut kind.ceiling_texture), ("step", &mut kind.step)]
+    {
+        if let Some((name, at)) = fields.text(key, mistakes) {
+            *place = textures::named(name, at, mistakes).unwrap_or(*place);
+        }
+    }
+    let before = kind.wall;
+    if let Some((name, at)) = fields.text("wall", mistakes) {
+        kind.wall = textures::named(name, at, mistakes).or(before);
+    }
+    if fields.node("rock").is_some() {
+        kind.rock = fields.flag("rock", mistakes);
+    } else if fields.node("wall").is_some() && before.is_none() && fields.node("floor").is_none() && fields.node("like").is_none()
+    {
+        // A letter that has a wall and nothing to stand on.
+        kind.rock = true;
+    }
+    if fields.flag("sky", mistakes) {
+        kind.ceiling_texture = "F_SKY1";
+    }
+    if fields.node("start").is_some() {
+        kind.start = fields.flag("start", mistakes);
+    }
+    kind.start_angle = whole("angle", &mut fields, -360, 360, mistakes).unwrap_or(kind.start_angle);
+    if let Some((name, at)) = fields.text("zone", mistakes) {
+        kind.zone = tile_zone(name, at, zones, mistakes);
+    }
+    if let Some(node) = fields.node("damage") {
+        let mut damage = Fields::of(node, "damage", mistakes);
+        let points = whole("points", &mut damage, 0, 10_000, mistakes).unwrap_or(1);
+        let every = whole("every", &mut damage, 1, 10_000, mistakes).unwrap_or(4);
+        damage.finish(mistakes);
+        kind.damage = (points > 0).then_some([points, every]);
+    }
+    if let Some(node) = fields.node("waggle") {
+        let mut waggle = Fields::of(node, "waggle", mistakes);
+        let height = whole("height", &mut waggle, 0, 512, mistakes).unwrap_or(16);
+        let period = whole("period", &mut waggle, 16, 4096, mistakes).unwrap_or(70);
+        waggle.finish(mistakes);
+        kind.waggle = (height > 0).then_some([height, period]);
+    }
+    if let Some((name, at)) = fields.text("thing", mistakes) {
+        kind.thing = actor(name, at, mistakes);
+    }
+    fields.finish(mistakes);
+    if !kind.rock && kind.ceiling < kind.floor[1] + 1 {
+        mistakes.add(node.at, format!("the ceiling ({}) must be above the floor ({})", kind.ceiling, kind.floor[1]));
+    }
+    kind
+}
+
+/// The zone of that name, new if there is none.
+fn tile_zone(name: &str, at: usize, zones: &mut Vec<Zone>, mistakes: &mut Mistakes) -> Option<u8> {
+    if let Some(index) = zones.iter().position(|zone| zone.name == name) {
+        return Some(index as u8);
+    }
+    if name == "free" || !super::fields::own_name(name, at, "zone", mistakes) {
+        mistakes.add(at, "`free` is every place that does not hurt; call the zone otherwise");
+        return None;
+    }
+    if zones.len() == MOST_ZONES {
+        mistakes.add(at, format!("at most {MOST_ZONES} zones"));
+        return None;
+    }
+    zones.push(Zone { name: name.to_string(), area: None, tags: None });
+    Some((zones.len() - 1) as u8)
+}
+
+/// A kind of thing by its name.
+pub(super) fn actor(name: &str, at: usize, mistakes: &mut Mistakes) -> Option<ActorKind> {
+    let hidden = [ActorKind::Player, ActorKind::PatrolPoint];
+    let found = ActorKind::from_class_name(name).filter(|kind| !hidden.contains(kind));
+    if found.is_none() {
+        mistakes.add(at, unknown("kind of thing", name, ActorKind::all().map(ActorKind::class_name)));
+    }
+    found
+}
+
+fn drawn(text: &str, at: usize, side: i32, kinds: Vec<TileKind>, mistakes: &mut Mistakes) -> Option<Tiles> {
+    let lines: Vec<Vec<char>> = text.lines().map(|line| line.trim_end().chars().collect()).collect();
+    let first = lines.iter().position(|line: &Vec<char>| !line.is_empty());
+    let last = lines.iter().rposition(|line| !line.is_empty());
+    let (Some(first), Some(last)) = (first, last) else {
+        mistakes.add(at, "the map is empty; draw it with # for rock, . for ground, @ for the start");
+        return None;
+    };
+    let lines = &lines[first..=last];
+    let (columns, rows) = (lines.iter().map(Vec::len).max().unwrap_or(0), lines.len());
+    if columns > MOST_TILES || rows > MOST_TILES {
+        mistakes.add(at, format!("the map has {columns} x {rows} tiles; at most {MOST_TILES} x {MOST_TILES}"));
+        return None;
+    }
+    let rock = kinds.iter().position(|kind| kind.rock).unwrap_or(0) as u8;
+    let mut tiles = vec![rock; columns * rows];
+    for (row, line) in lines.iter().enumerate() {
+        for (column, letter) in line.iter().enumerate() {
+            match kinds.iter().position(|kind| kind.letter == *letter) {
+                Some(kind) => tiles[(rows - 1 - row) * columns + column] = kind as u8,
+                None => {
+                    let known: Vec<String> = kinds.iter().map(|kind| kind.letter.to_string()).collect();
+                    let letter = excerpt(&letter.to_string());
+                    let at = mistakes.within_drawing(at, first + row, column);
+                    mistakes.add(at, format!("the legend has no letter `{letter}`, only {}", known.join(" ")));
+                }
+            }
+        }
+    }
+    if tiles.iter().all(|tile| kinds[usize::from(*tile)].rock) {
+        mistakes.add(at, "the map is all rock; draw ground with a full stop");
+        return None;
+    }
+    Some(Tiles { side, columns, rows, tiles, kinds, generate: None })
+}
+
+fn generated(node: &Node, side: i32, kinds: Vec<TileKind>, mistakes: &mut Mistakes) -> Option<Tiles> {
+    let mut fields = Fields::of(node, "[map.generate]", mistakes);
+    let kind = match fields.text("kind", mistakes) {
+        Some(("maze", _)) => Some(GenerateKind::Maze),
+        Some(("rooms", _)) => Some(GenerateKind::Rooms),
+        Some(("columns", _)) => Some(GenerateKind::Columns),
+        Some(("platforms", _)) => Some(GenerateKind::Platforms),
+        Some((other, at)) => {
+            mistakes.add(at, unknown("kind of map", other, ["maze", "rooms", "columns", "platforms"]));
+            None
+        }
+        None => {
+            mistakes.add(node.at, "[map.generate] needs a kind: maze, rooms, columns or platforms");
+            None
+        }
+    };
+    let columns = fields.whole("columns", 3, 31, mistakes).unwrap_or(13) as usize;
+    let rows = fields.whole("rows", 3, 31, mistakes).unwrap_or(13) as usize;
+    let share = (fields.number("share", 0.0, 0.9, mistakes).unwrap_or(0.3) * 1000.0) as u32;
+    let loops = (fields.number("loops", 0.0, 1.0, mistakes).unwrap_or(0.0) * 1000.0) as u32;
+    let train_seeds = fields.whole("train_seeds", 0, 1_000_000_000, mistakes).unwrap_or(0) as u32;
+    let room = fields.whole("room", 2, 16, mistakes).unwrap_or(4) as u32;
+    let heights = fields.node("heights").and_then(|node| wholes::<2>(node, "heights", -512, 512, mistakes)).unwrap_or([0, 24]);
+    if heights[0] > heights[1] {
+        mistakes.add(node.at, "heights = [lowest, highest]: the lower one comes first");
+    }
+    fields.finish(mistakes);
+    let kind = kind?;
+    if kind == GenerateKind::Maze && (columns.is_multiple_of(2) || rows.is_multiple_of(2)) {
+        mistakes.add(node.at, "a maze has an odd number of columns and of rows: corridors and walls by turns");
+    }
+    let ground = kinds.iter().position(|kind| kind.letter == '.').unwrap_or(0) as u8;
+    let heights = [heights[0], heights[1].max(heights[0])];
+    Some(Tiles {
+        side,
+        columns,
+        rows,
+        tiles: vec![ground; columns * rows],
+        kinds,
+        generate: Some(Generate { kind, share, room, loops, heights, train_seeds }),
+    })
+}

@@ -1,0 +1,37 @@
+//! A few tics of a task that nobody has registered: what only shows in play is found before.
+
+use super::model::Plan;
+use super::program::Program;
+use super::rules::OwnRules;
+use crate::EnvError;
+use crate::game::Game;
+use crate::scenarios::AnyRules;
+use hasard_engine::map::{Map, MapSource};
+use hasard_engine::math::Rng;
+use hasard_engine::world::{Buttons, Command, World};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Plays some tics of a plan with buttons at random, and gives the spawns, a bit each, for which there was no room.
+pub(super) fn rehearse(plan: &Plan, source: &MapSource, counters: usize, seed: u64, tics: u32) -> Result<u64, EnvError> {
+    let map = Map::build(source, &plan.name, &[]).map_err(|error| EnvError::Map { why: error.to_string() })?;
+    let program = Program::new(plan.clone(), &map, &[])?;
+    let unplaced = Arc::new(AtomicU64::new(0));
+    let mut rules = OwnRules::new(Arc::new(program), counters);
+    rules.unplaced = Some(Arc::clone(&unplaced));
+    let rules = AnyRules::new(rules);
+    let mut world = World::new(Arc::new(map), seed);
+    rules.prepare(&mut world);
+    let mut game = Game::new(world, rules);
+    let mut random = Rng::new(seed);
+    for _ in 0..tics {
+        let buttons = Buttons(random.next_u64() as u32 & 0xFFFF);
+        game.tic(Command { buttons, ..Command::default() });
+        if game.over() {
+            break;
+        }
+        let over = game.over();
+        game.rules.end_step(&game.world, over, &mut game.outcome);
+    }
+    Ok(unplaced.load(Ordering::Relaxed))
+}

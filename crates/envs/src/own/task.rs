@@ -1,0 +1,250 @@
+//! A file as a scenario: read for every level, constraint and rule set, and registered like any other.
+
+use super::intern::intern;
+use super::mistakes::{Mistake, Mistakes};
+use super::model::{MapPlan, Names, Plan};
+use super::program::Program;
+use super::rehearsal::rehearse;
+use super::rules::OwnRules;
+use super::tree::{Node, Value};
+use super::{check as checks, layers, place, read, tiles, tree};
+use crate::action::Controls;
+use crate::scenarios::{AnyRules, ScenarioFile, ScenarioSpec, Setting, Task};
+use crate::{CostTerm, EnvError, RuleSet, Scenario};
+use hasard_engine::map::{Map, MapSource};
+use std::sync::Arc;
+
+/// Most levels of a file.
+const MOST_LEVELS: u8 = 9;
+
+/// Where the settings of a rule set, a constraint and a level lie in a list of all.
+fn index(setting: Setting) -> usize {
+    (usize::from(setting.level) - 1) * 6 + setting.rules as usize * 2 + usize::from(setting.hard)
+}
+
+/// A file that was read.
+#[derive(Debug)]
+pub struct Checked {
+    /// All that is wrong with it or can never happen, in the order of the text.
+    pub mistakes: Vec<Mistake>,
+    /// What it says, if it can be played.
+    read: Option<Read>,
+}
+
+/// What a file says.
+#[derive(Debug)]
+struct Read {
+    levels: u8,
+    names: Names,
+    plans: Vec<Plan>,
+}
+
+impl Checked {
+    /// Whether it can be played.
+    #[must_use]
+    pub fn can_be_played(&self) -> bool {
+        self.read.is_some()
+    }
+
+    /// The map of a level under the soft constraint, as the file draws it.
+    #[must_use]
+    pub fn map(&self, level: u8) -> Option<MapSource> {
+        let read = self.read.as_ref().filter(|read| (1..=read.levels.max(1)).contains(&level))?;
+        map_of(&read.plans[index(Setting::new(RuleSet::Paper, false, level))]).ok()
+    }
+
+    /// Plays some tics of a level with buttons at random, without registering anything.
+    ///
+    /// # Errors
+    /// What keeps the map from being built.
+    pub fn rehearse(&self, level: u8, seed: u64, tics: u32) -> Result<(), EnvError> {
+        let Some(read) = self.read.as_ref().filter(|read| (1..=read.levels.max(1)).contains(&level)) else { return Ok(()) };
+        let plan = &read.plans[index(Setting::new(RuleSet::Paper, false, level))];
+        rehearse(plan, &map_of(plan)?, read.names.counters.len(), seed, tics).map(drop)
+    }
+}
+
+/// Reads a scenario's text and says all that is wrong with it. Nothing is registered.
+#[must_use]
+pub fn check(text: &str) -> Checked {
+    let mut mistakes = Mistakes::new(text);
+    let root = tree::parse(text, &mut mistakes);
+    let mut read = None;
+    if !mistakes.any() {
+        let levels = levels(&root, &mut mistakes);
+        let mut names = Names::default();
+        let mut plans = Vec::new();
+        for level in 1..=levels.max(1) {
+            for rules in RuleSet::ALL {
+                for hard in [false, true] {
+                    if mistakes.full() {
+                        continue;
+                    }
+                    let document = layers::document(&root, Setting::new(rules, hard, level), &mut mistakes);
+                    plans.extend(read::plan(&document, &mut names, &mut mistakes));
+                }
+            }
+        }
+        if !mistakes.any() {
+            for level in 1..=levels.max(1) {
+                try_map(&plans[index(Setting::new(RuleSet::Paper, false, level))], &mut mistakes);
+            }
+        }
+        if !mistakes.any() {
+            checks::warn(&plans, &names, &mut mistakes);
+            for level in 1..=levels.max(1) {
+                try_opening(&plans[index(Setting::new(RuleSet::Paper, false, level))], names.counters.len(), &mut mistakes);
+            }
+            read = Some(Read { levels, names, plans });
+        }
+    }
+    Checked { mistakes: mistakes.into_list(), read }
+}
+
+/// Number of levels: the highest that the file speaks of, 0 if it speaks of none.
+fn levels(root: &Node, mistakes: &mut Mistakes) -> u8 {
+    let mut most = 0;
+    if let Some(entry) = root.get("rules") {
+        known_keys(&entry.node, "rules", &RuleSet::ALL.map(RuleSet::name), mistakes);
+    }
+    let Some(entry) = root.get("levels") else { return 0 };
+    let Value::Table(levels) = &entry.node.value else {
+        mistakes.add(entry.at, "write [levels.2], [levels.3] for what is otherwise there");
+        return 0;
+    };
+    for level in levels {
+        match level.key.parse::<u8>() {
+            Ok(number) if (1..=MOST_LEVELS).contains(&number) => most = most.max(number),
+            _ => mistakes.add(level.at, format!("levels are numbered 1 to {MOST_LEVELS}")),
+        }
+    }
+    most
+}
+
+fn known_keys(node: &Node, what: &str, known: &[&str], mistakes: &mut Mistakes) {
+    if let Value::Table(entries) = &node.value {
+        for entry in entries.iter().filter(|entry| !known.contains(&&*entry.key)) {
+            mistakes.add(entry.at, super::mistakes::unknown(what, &entry.key, known.iter().copied()));
+        }
+    }
+}
+
+/// Builds a map, so that what cannot be built is found before anybody plays.
+fn try_map(plan: &Plan, mistakes: &mut Mistakes) {
+    let built = map_of(plan).and_then(|source| {
+        Map::build(&source, &plan.name, &[]).map_err(|error| EnvError::Map { why: format!("the map cannot be built: {error}") })
+    });
+    match built.and_then(|map| Program::new(plan.clone(), &map, &[])) {
+        Ok(_) => {}
+        Err(error) => mistakes.add(0, error.to_string()),
+    }
+}
+
+/// Opens an episode, and warns of what finds no place in it.
+fn try_opening(plan: &Plan, counters: usize, mistakes: &mut Mistakes) {
+    let opened = map_of(plan).and_then(|source| rehearse(plan, &source, counters, 0, 1));
+    for (index, spawn) in plan.spawns.iter().enumerate() {
+        if opened.as_ref().is_ok_and(|unplaced| unplaced >> index & 1 == 1) {
+            mistakes
+                .warn(spawn.at, "there is no room for all of this [[spawn]]: look at `in`, `z` and `height`, or put down fewer");
+        }
+    }
+}
+
+fn map_of(plan: &Plan) -> Result<MapSource, EnvError> {
+    match &plan.map {
+        MapPlan::Tiles(tiles) => tiles::source(plan, tiles),
+        MapPlan::BuiltIn(scenario, level) => Ok(scenario.task.map(Setting::new(RuleSet::Paper, false, *level))),
+    }
+}
+
+/// Registers the scenario of a text; `path` is where it was read from. The same text again gives the same scenario.
+///
+/// # Errors
+/// One line: the first mistake with its line and column, and how many there are.
+pub fn register(path: &str, text: &str) -> Result<Scenario, EnvError> {
+    Scenario::of_text(text, true).map_or_else(|| Scenario::register(spec(path, text)?), Ok)
+}
+
+/// As [`register`], but beneath scenarios of the same name: what a run kept does not take the place of what the user names.
+///
+/// # Errors
+/// As [`register`].
+pub fn recall(path: &str, text: &str) -> Result<Scenario, EnvError> {
+    Scenario::of_text(text, false).map_or_else(|| Scenario::register_beneath(spec(path, text)?), Ok)
+}
+
+/// The facts of a text's scenario, for ever.
+fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
+    let checked = check(text);
+    let shown = crate::error::excerpt(path);
+    let Some(read) = checked.read else {
+        let mut wrong = checked.mistakes.iter().filter(|mistake| !mistake.warning);
+        let first = wrong.next().map_or("it cannot be read".to_string(), ToString::to_string);
+        let more = match wrong.count() {
+            0 => String::new(),
+            more => format!(" (and {more} more; `hasard check {shown}` lists them)"),
+        };
+        return Err(EnvError::Scenario { why: format!("{shown}:{first}{more}") });
+    };
+    let first = &read.plans[0];
+    let terms: Vec<CostTerm> =
+        read.names.terms.iter().map(|term| CostTerm { name: intern(&term.name), counted: term.counted }).collect();
+    let (name, title, summary) = (intern(&first.name), intern(&first.title), intern(&first.summary));
+    let budget = first.budget;
+    let task = OwnTask {
+        names: read.names.counters.iter().map(|name| intern(name)).collect(),
+        controls: read.plans.iter().map(controls).collect(),
+        plans: read.plans,
+    };
+    // Once for each distinct text: handles to scenarios live as long as the program.
+    let spec = ScenarioSpec {
+        levels: read.levels,
+        budgets: [budget; 3],
+        cost_terms: Box::leak(terms.into_boxed_slice()),
+        number: place::hash(text) as isize,
+        file: Some(ScenarioFile { path: intern(path), text: intern(text), hash: intern(&place::fingerprint(text)) }),
+        ..ScenarioSpec::of(name, title, summary, Box::leak(Box::new(task)))
+    };
+    Ok(Box::leak(Box::new(spec)))
+}
+
+fn controls(plan: &Plan) -> Controls {
+    let groups: Vec<&'static [&'static str]> =
+        plan.actions.iter().map(|group| &*Box::leak(group.clone().into_boxed_slice())).collect();
+    Controls { simplified: Box::leak(groups.into_boxed_slice()), full_moves: true, full_speed: true }
+}
+
+/// Makes the worlds of a file.
+#[derive(Debug)]
+struct OwnTask {
+    names: Vec<&'static str>,
+    controls: Vec<Controls>,
+    plans: Vec<Plan>,
+}
+
+impl OwnTask {
+    fn plan(&self, setting: Setting) -> &Plan {
+        &self.plans[index(setting)]
+    }
+}
+
+impl Task for OwnTask {
+    fn controls(&self, setting: Setting) -> Controls {
+        self.controls[index(setting)]
+    }
+
+    fn clock(&self, setting: Setting) -> (u32, u32) {
+        (1, 1 + self.plan(setting).tics)
+    }
+
+    fn map(&self, setting: Setting) -> MapSource {
+        map_of(self.plan(setting)).expect("a map that was built when the file was read")
+    }
+
+    fn rules(&self, setting: Setting, map: &Map) -> Result<AnyRules, EnvError> {
+        let mut program = Program::new(self.plan(setting).clone(), map, &self.names)?;
+        program.test_seeds = setting.test_seeds;
+        Ok(AnyRules::new(OwnRules::new(Arc::new(program), self.names.len())))
+    }
+}

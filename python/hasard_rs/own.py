@@ -1,0 +1,132 @@
+"""Own scenarios: a task is one file, or the same as a dictionary. docs/guide/own_task.md has the whole format."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hasard_rs import _core
+from hasard_rs.errors import InvalidOption
+
+_LARGEST = 256 << 10
+
+
+@dataclass(frozen=True)
+class OwnScenario:
+    """A scenario from a file or a dictionary, known by its ids from now on.
+
+    path: where its text was, or a name for it; text: all of it, TOML; ids: an id a level, with `hasard/`.
+    """
+
+    path: str
+    text: str
+    ids: tuple[str, ...]
+
+    def make(self, level: int = 1, **arguments: Any) -> Any:
+        """Returns its environment of a `level` in a `CostWrapper`; `arguments` as of `hasard_rs.make`."""
+        import hasard_rs
+
+        return hasard_rs.make(self.ids[level - 1], **arguments)
+
+    def make_vec(self, num_envs: int = 1, level: int = 1, **arguments: Any) -> Any:
+        """Returns a `VectorEnv` of `num_envs` lanes of a `level`; `arguments` as of `hasard_rs.make_vec`."""
+        import hasard_rs
+
+        return hasard_rs.make_vec(self.ids[level - 1], num_envs, **arguments)
+
+
+def is_file(env_id: Any) -> bool:
+    """Whether an id is a scenario's file: a path that ends in `.toml`, perhaps with `#2` for its second level."""
+    return isinstance(env_id, os.PathLike) or (isinstance(env_id, str) and env_id.partition("#")[0].lower().endswith(".toml"))
+
+
+def from_text(text: str, path: str = "scenario.toml") -> OwnScenario:
+    """Makes the environments of a scenario's text known, to Gymnasium too.
+
+    Args:
+        text: TOML.
+        path: what messages call it.
+
+    Returns:
+        The scenario. The last one of a name counts.
+
+    Raises:
+        InvalidOption with the first mistake, its line and column.
+    """
+    ids = tuple(f"hasard/{env_id}" for env_id in _core.register_scenario(path, text))
+    try:
+        import gymnasium
+    except ImportError:  # Worlds works without.
+        return OwnScenario(path, text, ids)
+    for index, env_id in enumerate(ids):
+        name = scenario_and_level(env_id)[0]
+        gymnasium.registry.pop(env_id, None)
+        gymnasium.register(
+            env_id,
+            entry_point="hasard_rs.env:entry",
+            vector_entry_point="hasard_rs.vector:VectorEnv",
+            # The text goes along, so that another process makes the same.
+            kwargs={"scenario": name, "level": index + 1, "scenario_file": [path, text]},
+            nondeterministic=False,
+            disable_env_checker=True,
+        )
+    return OwnScenario(path, text, ids)
+
+
+def from_file(path: str | os.PathLike[str]) -> OwnScenario:
+    """Reads a scenario's file. Returns the scenario. Raises InvalidOption with the first mistake, its line and column."""
+    place = Path(path)
+    try:
+        with place.open("rb") as file:
+            content = file.read(_LARGEST + 1)
+        if len(content) > _LARGEST:
+            raise InvalidOption(f"{place}: larger than the {_LARGEST >> 10} KiB that a scenario's file may have")
+        text = content.decode("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidOption(f"{place}: cannot be read: {error}; `hasard new NAME` writes a file to begin with") from None
+    return from_text(text, os.fspath(place))
+
+
+def from_dict(table: dict[str, Any], path: str = "scenario.toml") -> OwnScenario:
+    """Makes a scenario of a dictionary with the fields of a file. Returns and raises as `from_text`; TypeError for what TOML cannot hold."""
+    return from_text("".join(f"{_key(name)} = {_value(value)}\n" for name, value in table.items()), path)
+
+
+def opened(env_id: Any) -> str:
+    """Reads the file that `env_id` names, `my_task.toml` or `my_task.toml#2`, and returns the id that it has from now on."""
+    path, _, level = os.fspath(env_id).partition("#")
+    scenario = from_file(path)
+    known = {str(number + 1): name for number, name in enumerate(scenario.ids)}
+    if (level or "1") not in known:
+        raise InvalidOption(f"{path}#{level}: its levels are 1 to {len(known)}")
+    return known[level or "1"]
+
+
+def scenario_and_level(env_id: str) -> tuple[str, int]:
+    """Splits `hasard/RemedyRushLevel2-v0` into `RemedyRush` and 2; an id without a level has level 1."""
+    name, found, level = env_id.removeprefix("hasard/").removesuffix("-v0").rpartition("Level")
+    return (name, int(level)) if found and level.isdigit() else (f"{name}{found}{level}", 1)
+
+
+def _key(name: Any) -> str:
+    if not isinstance(name, str):
+        raise TypeError(f"a field's name must be a str, got {name!r:.60}")
+    return _value(name)
+
+
+def _value(value: Any) -> str:
+    """The TOML of a value."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_key(name)} = {_value(inner)}" for name, inner in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    raise TypeError(f"a scenario's fields are text, numbers, true or false, lists and dicts, not {value!r:.60}")

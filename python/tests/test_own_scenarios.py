@@ -1,0 +1,82 @@
+"""Own scenarios: files and dictionaries in place of ids, in every way that makes an environment."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import hasard_rs
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+
+GARDEN: dict[str, Any] = {
+    "scenario": {"name": "PyGarden", "tics": 350, "budget": 3, "actions": [["TURN_LEFT", "TURN_RIGHT"], ["MOVE_FORWARD"]]},
+    "map": {"tile": 64, "ascii": "######\n#....#\n#.@..#\n#....#\n######"},
+    "spawn": [{"name": "vials", "kind": "HealthBonus", "count": 6, "respawn": 0}],
+    "when": [{"event": "pickup", "of": "vials", "reward": 1.0, "cost": {"greed": 0.5}, "count": "vials"}],
+    "levels": {"2": {"spawn": {"vials": {"count": 2}}}},
+}
+
+
+def test_a_dictionary_is_a_scenario_everywhere() -> None:
+    own = hasard_rs.Scenario.from_dict(GARDEN)
+    assert own.ids == ("hasard/PyGardenLevel1-v0", "hasard/PyGardenLevel2-v0")
+    known = hasard_rs.spec(own.ids[0])
+    assert (known.scenario, known.level, known.safety_budget, known.max_episode_steps) == ("PyGarden", 1, 3.0, 88)
+    env = own.make(resolution="64x48", env_stats=True)
+    check_env(env.unwrapped, skip_render_check=True)
+    env.reset(seed=3)
+    reward, cost = 0.0, 0.0
+    for _ in range(88):
+        _, step_reward, terminated, truncated, info = env.step(np.array([1, 1]))
+        reward, cost = reward + float(step_reward), cost + info["cost"]
+    assert truncated and not terminated
+    assert reward == info["env_stats"]["vials"] == 2 * cost > 0
+
+
+def test_batches_and_pickles_play_the_same() -> None:
+    own = hasard_rs.Scenario.from_dict(GARDEN)
+    worlds = own.make_vec(4, level=2, resolution="64x48")
+    copy = pickle.loads(pickle.dumps(own.make(level=2, resolution="64x48")))
+    observations, _ = worlds.reset(seed=5)
+    first, _ = copy.reset(seed=int(worlds.unwrapped._worlds.episode_seeds[0]))
+    assert np.array_equal(observations[0], first)
+    bare = hasard_rs.Worlds(own.ids[1], 2, resolution="64x48")
+    assert bare.reset(5).observations.shape == (2, 48, 64, 3)
+
+
+@pytest.mark.parametrize("path", sorted(SCENARIOS.glob("*.toml")), ids=lambda path: path.stem)
+def test_the_examples_play_from_their_files(path: Path) -> None:
+    env = hasard_rs.make(str(path), resolution="64x48")
+    env.reset(seed=1)
+    for _ in range(20):
+        env.step(env.action_space.sample())
+    assert gymnasium.make(env.unwrapped.spec.id) is not None
+    assert hasard_rs.Worlds(str(path), 1, resolution="64x48").reset(1).observations.shape == (1, 48, 64, 3)
+
+
+def test_mistakes_are_one_line_with_their_place(tmp_path: Path) -> None:
+    file = tmp_path / "bad.toml"
+    file.write_text('[scenario]\nname = "Bad"\ntics = 0\n[map]\nascii = "@"\n')
+    for make in (hasard_rs.make, hasard_rs.spec):
+        with pytest.raises(hasard_rs.InvalidOption, match=r"bad\.toml:3:8: tics must be a whole number") as raised:
+            make(str(file))
+        assert "\n" not in str(raised.value)
+    with pytest.raises(hasard_rs.InvalidOption, match="cannot be read"):
+        hasard_rs.make(str(tmp_path / "none.toml"))
+    with pytest.raises(TypeError, match="text, numbers"):
+        hasard_rs.Scenario.from_dict({"scenario": {"name": None}})
+
+
+def test_the_last_of_a_name_counts() -> None:
+    hasard_rs.Scenario.from_dict(GARDEN)
+    changed = {**GARDEN, "scenario": {**GARDEN["scenario"], "tics": 35}}
+    own = hasard_rs.Scenario.from_dict(changed)
+    assert hasard_rs.make(own.ids[0]).unwrapped.max_episode_steps == 9
+    assert hasard_rs.Scenario.from_dict(GARDEN).make().unwrapped.max_episode_steps == 88
