@@ -4,8 +4,9 @@ use crate::args::Cli;
 use clap::{Command, CommandFactory};
 
 /// Groups of commands, in the order in which people come to need them.
-const GROUPS: [(&str, &[&str]); 4] = [
+const GROUPS: [(&str, &[&str]); 5] = [
     ("Try", &["envs", "render", "rollout", "play", "serve"]),
+    ("Your own task", &["new", "check"]),
     ("Train", &["train", "sweep", "settings", "metrics"]),
     ("Analyse", &["eval", "report", "record", "replay", "bench", "trace"]),
     ("Export", &["export-agent", "export-wad", "contact-sheet", "completions"]),
@@ -14,6 +15,14 @@ const GROUPS: [(&str, &[&str]); 4] = [
 /// What is typed for each command, and what comes of it.
 const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ("envs", &[("hasard envs", "ids, budgets, actions"), ("hasard envs --json", "the same with the names of the buttons")]),
+    ("new", &[("hasard new my_task", "my_task.toml, which every command takes in place of an id")]),
+    (
+        "check",
+        &[
+            ("hasard check my_task.toml", "all its mistakes, with line, column and remedy"),
+            ("hasard check my_task.toml --level 2 -o map.png", "its second level from above"),
+        ],
+    ),
     ("play", &[("hasard play RemedyRushLevel1", "play, and keep each episode in human/")]),
     (
         "rollout",

@@ -53,7 +53,7 @@ impl Drop for Folder {
 
 /// A training of one rollout of milliseconds.
 const SMALL: &str = "--envs 4 --threads 1 --set network.dense=[32] --set network.recurrent=32 --frames 512 --set sampling.rollout=8 \
-                     --set evaluation.episodes=2 --set evaluation.confirming_episodes=2 --eval-every 0 --size 64x48";
+                     --set evaluation.episodes=2 --set evaluation.confirming_episodes=2 --eval-every 256 --size 64x48";
 
 #[test]
 fn a_task_is_written_checked_and_taken_by_every_command() {

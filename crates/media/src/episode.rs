@@ -31,6 +31,9 @@ const MAX_DELTAS: u8 = 8;
 const MAX_HEADER: usize = 1 << 20;
 const MAX_FILE: u64 = 64 << 20;
 
+/// The option that holds an own scenario's text.
+pub const SCENARIO: &str = "scenario";
+
 /// What an episode was, beside its actions.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct Header {
@@ -288,9 +291,10 @@ fn check_header(header: &Header, name: &Path) -> Result<(), MediaError> {
         return Err(MediaError::format(name, "has a header with an empty, overlong or unprintable name"));
     }
     let options = &header.options;
-    if options.len() > 256
-        || !options.iter().all(|(key, value)| printable(key, 128) && (value.is_empty() || printable(value, 4096)))
-    {
+    // An own scenario's text is a file of many lines; nobody prints it.
+    let text = |key: &str, value: &str| key == SCENARIO && value.len() <= MAX_HEADER / 2;
+    let fits = |key: &str, value: &str| value.is_empty() || printable(value, 4096) || text(key, value);
+    if options.len() > 256 || !options.iter().all(|(key, value)| printable(key, 128) && fits(key, value)) {
         return Err(MediaError::format(name, "has a header with too many, overlong or unprintable options"));
     }
     if header.steps > MAX_STEPS || header.groups > MAX_GROUPS || header.deltas > MAX_DELTAS {

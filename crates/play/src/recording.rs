@@ -3,15 +3,14 @@
 use crate::{PlayError, Stage};
 use hasard_envs::{Env, EnvOptions, own};
 use hasard_media::MediaError;
-use hasard_media::episode::{EpisodeFile, Header, Outcome};
+use hasard_media::episode::{EpisodeFile, Header, Outcome, SCENARIO};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What a recording says of its maps where they were not the built-in ones. Which files those were is the player's to know.
 const FROM_FILES: &str = "from files";
 
-/// An own scenario's text, and the path that it was read from.
-const SCENARIO: &str = "scenario";
+/// The path that an own scenario was read from.
 const SCENARIO_PATH: &str = "scenario-path";
 
 /// The options that change what happens in an episode, by their names on the command line.

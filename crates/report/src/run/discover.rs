@@ -120,7 +120,7 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                 };
                 let usual =
                     |key: &str, value: &str| matches!((key, value), ("hard" | "full-actions", "false") | ("frame-skip", "4"));
-                let told = header.options.iter().filter(|(key, value)| !usual(key, value));
+                let told = header.options.iter().filter(|(key, value)| !usual(key, value) && !key.starts_with("scenario"));
                 let options: Vec<String> = told.map(|(key, value)| format!("{key} {value}")).collect();
                 let key = PlayerKey {
                     player: header.player.clone(),
