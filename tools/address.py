@@ -41,14 +41,14 @@ def set_address(root, url):
     if not re.fullmatch(r"https://[^\s/]+/\S*[^\s/]", url):
         sys.exit(f"{url}: give an address such as https://github.com/OWNER/hasard, without a slash at its end")
     (root / "tools/address.txt").write_text(url + "\n")
-    replace(root / "Cargo.toml", r'^(# repository = .*|repository = .*)$', f'repository = "{url}"')
+    replace(root / "Cargo.toml", r'^(?:# )?repository = [^\n]*$', f'repository = "{url}"')
     for manifest in sorted(root.glob("crates/*/Cargo.toml")):
         text = manifest.read_text()
         if "repository.workspace" not in text:
             manifest.write_text(text.replace("license.workspace = true\n", "license.workspace = true\nrepository.workspace = true\n", 1))
     urls = f'[project.urls]\nRepository = "{url}"\nIssues = "{url}/issues"\nChangelog = "{url}/blob/main/CHANGELOG.md"\n'
     replace(root / "pyproject.toml", r"^(# \[project\.urls\].*?|\[project\.urls\]\n.*?)(?=\n\n|\n\[)", urls.rstrip("\n"))
-    replace(root / "CITATION.cff", r'^(# repository-code:.*|repository-code: .*)$', f'repository-code: "{url}"')
+    replace(root / "CITATION.cff", r'^(?:# )?repository-code:[^\n]*$', f'repository-code: "{url}"')
     badges = f"[![check]({url}/actions/workflows/check.yml/badge.svg)]({url}/actions/workflows/check.yml)"
     readme = root / "README.md"
     text = BADGES.sub("", readme.read_text())

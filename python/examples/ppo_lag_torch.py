@@ -172,6 +172,13 @@ def main() -> None:
         return raw * moments.deviation + moments.mean
 
     observation, _ = envs.reset(seed=args.seed)
+    envs.action_space.seed(args.seed)
+    # Lanes begin at different moments, so that their episodes do not all end in one rollout.
+    for step in range(episode_steps - 1):
+        observation, *_ = envs.step(envs.action_space.sample())
+        due = np.arange(lanes) * episode_steps // lanes == step
+        if due.any():
+            observation, _ = envs.reset(options={"reset_mask": due})
     observation = torch.as_tensor(observation, device=device)
     state, begin = torch.zeros((lanes, 256), device=device), torch.ones(lanes, device=device)
     running, finished, latest = np.zeros((lanes, critics)), [], deque(maxlen=100)

@@ -47,6 +47,9 @@ def test_an_address_is_written_everywhere_it_belongs_and_may_change(clone):
         assert f'repository-code: "{url}"\n' in (clone / "CITATION.cff").read_text()
         assert (clone / "README.md").read_text().count("badge.svg") == 1
         assert f'Repository = "{url}"\n' in (clone / "pyproject.toml").read_text()
+        # Nothing else is lost.
+        assert (clone / "Cargo.toml").read_text().count("\n") == (ROOT / "Cargo.toml").read_text().count("\n")
+        assert (clone / "CITATION.cff").read_text().count("\n") == (ROOT / "CITATION.cff").read_text().count("\n")
         for manifest in clone.glob("crates/*/Cargo.toml"):
             assert manifest.read_text().count("repository.workspace = true\n") == 1, manifest
     if sys.version_info >= (3, 11):
