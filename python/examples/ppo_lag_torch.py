@@ -182,6 +182,8 @@ def main() -> None:
     observation = torch.as_tensor(observation, device=device)
     state, begin = torch.zeros((lanes, 256), device=device), torch.ones(lanes, device=device)
     running, finished, latest = np.zeros((lanes, critics)), [], deque(maxlen=100)
+    # Whether a lane's episode was seen from its beginning: others say nothing of what episodes cost.
+    whole = np.zeros(lanes, dtype=bool)
     frames, rollouts, waited, began, said = 0, 0, 0, time.time(), 0.0
     while frames < args.total_frames:
         share = frames / args.total_frames
@@ -208,8 +210,8 @@ def main() -> None:
                 with torch.no_grad():
                     _, beyond, _ = agent(last[None], state[cut], torch.zeros((1, len(cut)), device=device))
                 gains[step, cut] += args.gamma * denormalised(beyond[0])
-            finished += [running[lane].copy() for lane in np.flatnonzero(over)]
-            running[over] = 0.0
+            finished += [running[lane].copy() for lane in np.flatnonzero(over & whole)]
+            running[over], whole = 0.0, whole | over
         frames, rollouts, waited = frames + steps * lanes * frame_skip, rollouts + 1, waited + 1
         if finished:
             multipliers.update(np.mean(finished, 0)[1:], waited)
