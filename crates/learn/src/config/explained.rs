@@ -37,9 +37,6 @@ pub fn settings() -> Vec<Explained> {
             } else if let Some((name, _)) = line.strip_prefix("pub ").and_then(|field| field.split_once(':')) {
                 all.push(Explained { name: format!("{place}{name}"), meaning: meaning.join(" ") });
                 meaning.clear();
-            } else if line.ends_with(',') {
-                // A field that no file has any more.
-                meaning.clear();
             }
         }
     }
@@ -112,9 +109,6 @@ mod tests {
             let one = explained.iter().find(|one| one.name == name).unwrap_or_else(|| panic!("{name} is not explained"));
             assert!(one.meaning.ends_with('.') && one.meaning.len() > 3, "{one:?}");
         }
-        // What stands before it is a field that only old files have.
-        let gains = explained.iter().find(|one| one.name == "algorithm_settings.pid_gains").unwrap();
-        assert_eq!(gains.meaning, "PID: proportional, integral and derivative gains.");
     }
 
     #[test]
