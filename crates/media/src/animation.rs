@@ -2,7 +2,7 @@
 
 use crate::gif::GifWriter;
 use crate::video::VideoWriter;
-use crate::{MediaError, Picture};
+use crate::{MediaError, Picture, Quality};
 use std::path::Path;
 
 /// Writes frames as MP4 or GIF.
@@ -17,7 +17,7 @@ enum Format {
 
 impl AnimationWriter {
     /// Begins `NAME.mp4` or `NAME.gif` of `frames_per_second.0 / frames_per_second.1` frames a second: (35, 4) for the steps
-    /// of a policy that acts every four tics.
+    /// of a policy that acts every four tics. A GIF takes no notice of the quality.
     ///
     /// # Errors
     /// When the name ends otherwise, the size or rate is unusable, or the file cannot be made.
@@ -26,10 +26,12 @@ impl AnimationWriter {
         width: usize,
         height: usize,
         frames_per_second: (u32, u32),
+        quality: Quality,
     ) -> Result<AnimationWriter, MediaError> {
         match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("mp4") => {
-                Ok(AnimationWriter(Format::Video(Box::new(VideoWriter::create(path, width, height, frames_per_second)?))))
+                let writer = VideoWriter::create(path, width, height, frames_per_second, quality)?;
+                Ok(AnimationWriter(Format::Video(Box::new(writer))))
             }
             Some("gif") if frames_per_second.0 > 0 => {
                 let seconds = f64::from(frames_per_second.1) / f64::from(frames_per_second.0);
@@ -71,7 +73,7 @@ mod tests {
         let base = std::env::temp_dir().join(format!("hasard-animation-{}", std::process::id()));
         for (ending, head) in [("mp4", &b"ftyp"[..]), ("GIF", b"89a")] {
             let path = base.with_extension(ending);
-            let mut writer = AnimationWriter::create(&path, 20, 10, (35, 4)).unwrap();
+            let mut writer = AnimationWriter::create(&path, 20, 10, (35, 4), Quality::default()).unwrap();
             writer.push(&Picture::filled(20, 10, [1, 2, 3])).unwrap();
             writer.push(&Picture::filled(20, 10, [9, 2, 3])).unwrap();
             writer.finish().unwrap();
@@ -79,7 +81,7 @@ mod tests {
             assert!(bytes[..16].windows(head.len()).any(|part| part == head), "{ending}");
             std::fs::remove_file(path).unwrap();
         }
-        let error = AnimationWriter::create(Path::new("a.avi"), 20, 10, (35, 4)).err().unwrap().to_string();
+        let error = AnimationWriter::create(Path::new("a.avi"), 20, 10, (35, 4), Quality::default()).err().unwrap().to_string();
         assert_eq!(error, "a.avi: has a name that ends neither in .mp4 nor in .gif");
     }
 }

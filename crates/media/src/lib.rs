@@ -5,7 +5,7 @@
 //! | [`Picture`] | red, green, blue pixels, and drawing on them |
 //! | [`png`] | PNG files, written and read |
 //! | [`gif`] | animated GIF |
-//! | `video` | MP4 |
+//! | `video` | MP4, of a [`Quality`] |
 //! | [`AnimationWriter`] | either, by the name of the file |
 //! | [`compose`] | several views of one moment side by side, with captions |
 //! | [`text`] | captions |
@@ -34,6 +34,7 @@ pub mod files;
 pub mod gif;
 mod picture;
 pub mod png;
+mod quality;
 mod quantise;
 pub mod shell;
 pub mod text;
@@ -42,3 +43,4 @@ mod video;
 pub use animation::AnimationWriter;
 pub use error::MediaError;
 pub use picture::Picture;
+pub use quality::Quality;

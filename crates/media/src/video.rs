@@ -1,34 +1,33 @@
 //! MP4 video: H.264 by `rusty_h264-encoder`, put into its container by `muxide`.
 //!
-//! Both are Rust alone: they build wherever the rest does. `docs/tried/video_encoders.md` compares them with others.
+//! Both are Rust alone: they build wherever the rest does. `docs/tried/video_encoders.md` compares them with others. The quantiser is
+//! constant: a flash or a cut costs bytes, never the pictures after it.
+
+mod segments;
 
 use crate::files::WholeFile;
-use crate::{MediaError, Picture};
+use crate::{MediaError, Picture, Quality};
 use muxide::api::{Muxer, MuxerBuilder, VideoCodec};
 use rusty_h264_common::YuvFrame;
-use rusty_h264_encoder::{Encoder, EncoderConfig, Preset};
+use rusty_h264_encoder::{EncoderConfig, Preset};
+use segments::{Segments, Unit};
 use std::path::{Path, PathBuf};
 
-/// Most frames between pictures that stand alone, where players can jump to.
-const KEY_INTERVAL: u32 = 140;
-/// Bits a pixel that the encoder aims at: 60 seconds of 320x258 at 35 frames a second are below 3 MB.
-const BITS_A_PIXEL: f64 = 0.132;
-/// Quantiser that the search for that rate begins with.
-const QUANTISER: u8 = 32;
 /// Largest side in pixels: what level 5.1 of the standard holds in a square.
 const MAX_SIDE: usize = 3072;
 
 /// Writes an MP4 frame by frame.
 pub(crate) struct VideoWriter {
     path: PathBuf,
-    encoder: Encoder,
+    segments: Segments,
     muxer: Muxer<WholeFile>,
-    frame: YuvFrame,
     width: usize,
     height: usize,
     /// Seconds of a frame.
     seconds: f64,
+    /// Frames taken, and those that are in the file.
     frames: u32,
+    written: u32,
 }
 
 impl VideoWriter {
@@ -36,7 +35,13 @@ impl VideoWriter {
     ///
     /// # Errors
     /// When the file cannot be made, a side is 0 or above 3072, or the rate is not between 1/10 and 1000.
-    pub fn create(path: &Path, width: usize, height: usize, frames_per_second: (u32, u32)) -> Result<VideoWriter, MediaError> {
+    pub fn create(
+        path: &Path,
+        width: usize,
+        height: usize,
+        frames_per_second: (u32, u32),
+        quality: Quality,
+    ) -> Result<VideoWriter, MediaError> {
         if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
             return Err(MediaError::Size(format!("a video cannot be {width}x{height}; its sides are 1 to {MAX_SIDE}")));
         }
@@ -46,23 +51,25 @@ impl VideoWriter {
         }
         let rate = f64::from(frames) / f64::from(seconds);
         // Colour is stored for squares of 2 x 2 pixels: an odd side shows one more column or row, a copy of the last.
-        let frame = YuvFrame::black(width.next_multiple_of(2), height.next_multiple_of(2));
+        let (even_width, even_height) = (width.next_multiple_of(2), height.next_multiple_of(2));
         let config = EncoderConfig {
             level_idc: level(width.div_ceil(16) * height.div_ceil(16), rate),
-            qp: QUANTISER,
-            gop_size: KEY_INTERVAL,
-            bitrate: ((frame.width * frame.height) as f64 * rate * BITS_A_PIXEL) as u32,
+            qp: quality.quantiser(),
+            // Stretches that stand alone are cut by `segments`, not by the encoder.
+            gop_size: u32::MAX,
+            scenecut: 0,
+            mbtree: false,
             framerate: rate as f32,
             preset: Preset::Balanced,
-            ..EncoderConfig::new(frame.width, frame.height)
+            ..EncoderConfig::new(even_width, even_height)
         };
         let refused = |e: String| MediaError::Size(format!("no video of {width}x{height} can be encoded: {e}"));
-        let encoder = Encoder::new(config).map_err(|e| refused(e.to_string()))?;
+        let segments = Segments::new(config).map_err(refused)?;
         let muxer = MuxerBuilder::new(WholeFile::create(path)?)
-            .video(VideoCodec::H264, frame.width as u32, frame.height as u32, rate)
+            .video(VideoCodec::H264, even_width as u32, even_height as u32, rate)
             .build()
             .map_err(|e| refused(e.to_string()))?;
-        Ok(VideoWriter { path: path.to_owned(), encoder, muxer, frame, width, height, seconds: 1.0 / rate, frames: 0 })
+        Ok(VideoWriter { path: path.to_owned(), segments, muxer, width, height, seconds: 1.0 / rate, frames: 0, written: 0 })
     }
 
     /// Adds a frame.
@@ -79,13 +86,23 @@ impl VideoWriter {
                 self.height
             )));
         }
-        fill(&mut self.frame, picture);
-        let failed = |e: String| MediaError::io(&self.path, "write", std::io::Error::other(e));
-        // Steered to a rate, the encoder holds nothing back: a picture in is a picture out.
-        let unit = self.encoder.try_encode(&self.frame).map_err(|e| failed(e.to_string()))?;
-        let time = f64::from(self.frames) * self.seconds;
-        self.muxer.write_video(time, &unit, stands_alone(&unit)).map_err(|e| failed(e.to_string()))?;
+        let mut frame = YuvFrame::black(self.width.next_multiple_of(2), self.height.next_multiple_of(2));
+        fill(&mut frame, picture);
         self.frames += 1;
+        let coded = self.segments.push(frame).map_err(|e| self.failed(e))?;
+        self.write(&coded)
+    }
+
+    fn failed(&self, problem: String) -> MediaError {
+        MediaError::io(&self.path, "write", std::io::Error::other(problem))
+    }
+
+    fn write(&mut self, coded: &[Unit]) -> Result<(), MediaError> {
+        for (unit, stands_alone) in coded {
+            let time = f64::from(self.written) * self.seconds;
+            self.muxer.write_video(time, unit, *stands_alone).map_err(|e| self.failed(e.to_string()))?;
+            self.written += 1;
+        }
         Ok(())
     }
 
@@ -97,15 +114,12 @@ impl VideoWriter {
         if self.frames == 0 {
             return Err(MediaError::Size(format!("{}: a video needs at least one frame", self.path.display())));
         }
+        let coded = self.segments.finish().map_err(|e| self.failed(e))?;
+        self.write(&coded)?;
         let failed = |e: String| MediaError::io(&self.path, "write", std::io::Error::other(e));
         self.muxer.finish_in_place().map_err(|e| failed(e.to_string()))?;
         self.muxer.into_writer().finish()
     }
-}
-
-/// Whether coded bytes hold an IDR picture (NAL unit type 5).
-fn stands_alone(unit: &[u8]) -> bool {
-    unit.windows(4).any(|bytes| bytes[..3] == [0, 0, 1] && bytes[3] & 31 == 5)
 }
 
 /// Converts a picture (ITU-R BT.601, video range, in 16.16 fixed point).

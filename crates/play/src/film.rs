@@ -3,7 +3,7 @@
 use crate::{PlayError, Stage, ViewKind, Views};
 use hasard_engine::render::FrameSize;
 use hasard_media::compose::with_footer;
-use hasard_media::{AnimationWriter, Picture};
+use hasard_media::{AnimationWriter, Picture, Quality};
 use std::path::Path;
 
 /// Tics a second.
@@ -26,9 +26,24 @@ impl Film {
     /// # Errors
     /// When the file's name ends neither in .mp4 nor in .gif, or it cannot be made.
     pub fn begin(stage: &Stage, path: &Path, size: FrameSize, kinds: &[ViewKind], every: u32) -> Result<Film, PlayError> {
+        Film::begin_at(Quality::default(), stage, path, size, kinds, every)
+    }
+
+    /// As [`Film::begin`], an MP4 of a chosen quality.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn begin_at(
+        quality: Quality,
+        stage: &Stage,
+        path: &Path,
+        size: FrameSize,
+        kinds: &[ViewKind],
+        every: u32,
+    ) -> Result<Film, PlayError> {
         let mut views = Views::new(stage, size, kinds)?;
         let first = moment(&mut views, stage);
-        let mut writer = AnimationWriter::create(path, first.width(), first.height(), (TICS, every.max(1)))?;
+        let mut writer = AnimationWriter::create(path, first.width(), first.height(), (TICS, every.max(1)), quality)?;
         writer.push(&first)?;
         Ok(Film { views, writer, every: every.max(1), since: 0, frames: 1, size: (first.width(), first.height()) })
     }

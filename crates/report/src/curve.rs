@@ -3,7 +3,8 @@
 use crate::group::Group;
 use crate::statistics::Estimate;
 
-/// Points that a curve has at most: about one every two pixels of a figure.
+/// Equal distances of frames that the longest run of a figure is divided into: about one every two pixels. A curve has a point at
+/// each, however often its runs reported: reports come by the clock, and a fast machine makes more of them.
 const MAX_POINTS: usize = 240;
 
 /// A point of a mean curve (or of a profile, whose thresholds stand in the place of frames).
@@ -35,38 +36,28 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// The curve of a metric. The axis is divided into equal stretches of frames; a seed's value in a stretch is the mean
-    /// of its reports there, or lies on the line between its neighbours if it made none. Nothing is smoothed otherwise,
-    /// and no curve is stretched to the length of another.
+    /// The curve of a metric, with points at equal distances in frames. Several reports of a seed within one distance are averaged; a
+    /// seed's value at a point lies on the line between those around it. Nothing is smoothed otherwise, and no curve is stretched
+    /// to the length of another.
     #[must_use]
     pub fn of(group: &Group, metric: &str) -> Curve {
         let longest = group.frames_span().1;
-        let most_rows = group.runs.iter().map(|run| run.rows.len()).max().unwrap_or(0);
-        let stretches = most_rows.clamp(1, MAX_POINTS);
-        let stretch = longest / stretches as f64;
+        let stretch = longest / MAX_POINTS as f64;
         let mut seeds = Vec::new();
         for run in &group.runs {
             let reports: Vec<(f64, f64)> = run.rows.iter().filter_map(|row| Some((row.frames, row.get(metric)?))).collect();
-            let binned = bin(&reports, stretch, stretches);
+            let binned = bin(&reports, stretch, MAX_POINTS);
             if !binned.is_empty() {
                 seeds.push((run.config.seed, binned));
             }
         }
         let from = seeds.iter().map(|(_, points)| points[0].0).fold(0.0, f64::max);
         let to = seeds.iter().map(|(_, points)| points[points.len() - 1].0).fold(f64::INFINITY, f64::min);
-        let mut grid: Vec<f64> = seeds.iter().flat_map(|(_, points)| points.iter().map(|point| point.0)).collect();
-        grid.sort_by(f64::total_cmp);
-        grid.dedup();
-        // Reports of different seeds in one stretch differ by a few frames; one point a stretch is enough.
-        let mut last_stretch = usize::MAX;
-        grid.retain(|&frames| {
-            let index = stretch_of(frames, stretch, stretches);
-            let keep = frames >= from && frames <= to && index != last_stretch;
-            if keep {
-                last_stretch = index;
-            }
-            keep
-        });
+        let points = (1..MAX_POINTS).map(|point| point as f64 * longest / MAX_POINTS as f64);
+        let within = points.filter(|frames| *frames > from && *frames < to);
+        // Where the last seed begins and the first one ends there are points too.
+        let mut grid: Vec<f64> = std::iter::once(from).chain(within).collect();
+        grid.extend(Some(to).filter(|to| *to > from && to.is_finite()));
         let mean = grid
             .into_iter()
             .filter_map(|frames| {
@@ -166,9 +157,23 @@ mod tests {
         let curve = Curve::of(&Group { runs: vec![run(1, &long), run(2, &short)], told: Default::default() }, "return_mean");
         assert_eq!(curve.seeds[0].1, long);
         assert_eq!(curve.seeds[1].1, short);
-        assert_eq!(curve.mean.len(), 5);
-        for (k, point) in curve.mean.iter().enumerate() {
-            assert_eq!((point.frames, point.value.mean, point.value.n), ((k + 1) as f64 * 100.0, (k + 1) as f64 + 1.0, 2));
+        assert_eq!((curve.mean[0].frames, curve.mean[curve.mean.len() - 1].frames), (100.0, 500.0));
+        for point in &curve.mean {
+            assert!((point.value.mean - (point.frames / 100.0 + 1.0)).abs() < 1e-9 && point.value.n == 2, "{point:?}");
+        }
+    }
+
+    /// A fast machine reports ten times as often: the points are the same.
+    #[test]
+    fn points_do_not_depend_on_how_often_a_run_reported() {
+        let of = |reports: u32| {
+            let rows: Vec<_> = (0..=reports).map(|k| f64::from(k) * 1e6 / f64::from(reports)).map(|x| (x, x / 1e5)).collect();
+            Curve::of(&Group { runs: vec![run(1, &rows)], told: Default::default() }, "return_mean").mean
+        };
+        let (often, seldom) = (of(230), of(10));
+        assert_eq!(often.len(), seldom.len());
+        for (a, b) in often.iter().zip(&seldom) {
+            assert!(a.frames == b.frames && (a.value.mean - b.value.mean).abs() < 1e-9, "{a:?} {b:?}");
         }
     }
 
@@ -176,7 +181,7 @@ mod tests {
     fn long_runs_are_thinned_by_means() {
         let rows: Vec<_> = (1..=24_000).map(|k| (f64::from(k) * 4096.0, f64::from(k % 100))).collect();
         let curve = Curve::of(&Group { runs: vec![run(1, &rows)], told: Default::default() }, "return_mean");
-        assert_eq!(curve.mean.len(), MAX_POINTS);
+        assert!((MAX_POINTS - 1..=MAX_POINTS + 1).contains(&curve.mean.len()), "{}", curve.mean.len());
         assert!(curve.mean.iter().all(|point| (point.value.mean - 49.5).abs() < 1e-9 && point.value.half_width.is_none()));
     }
 

@@ -137,6 +137,12 @@ impl Group {
         self.runs.iter().all(|run| run.config.frames.is_none_or(|asked| run.frames() >= asked * 0.999))
     }
 
+    /// The least number of frames that one of its runs was first asked for, if any went on beyond that.
+    #[must_use]
+    pub fn extended_from(&self) -> Option<f64> {
+        self.runs.iter().filter_map(|run| run.config.extended_from).reduce(f64::min)
+    }
+
     /// The options that stand beside it, without the one of the given name, as one line; empty for none.
     #[must_use]
     pub fn options_line(&self, without: Option<&str>) -> String {

@@ -8,7 +8,7 @@
 //! | [`published`] | the values that the paper prints |
 //! | [`document`], `sections` | what the report says |
 //! | [`chart`], [`heat`] | figures and heatmaps |
-//! | [`write_report`] | HTML, Markdown, CSV, SVG, PNG and GIF files |
+//! | [`write_report`] | HTML, Markdown, CSV, SVG, PNG and GIF files; LaTeX and PDF where wanted |
 //!
 //! Nothing here trains, plays or knows an environment, so that a report can be made of runs of any version and on any
 //! machine. Same runs, same bytes.
@@ -23,6 +23,7 @@ pub mod document;
 mod escape;
 pub mod group;
 pub mod heat;
+mod latex;
 mod markdown;
 mod page;
 pub mod published;
@@ -31,4 +32,4 @@ mod sections;
 pub mod statistics;
 mod write;
 
-pub use write::{Written, write_report};
+pub use write::{Written, write_report, write_report_and_latex};

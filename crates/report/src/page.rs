@@ -11,6 +11,8 @@ const SCRIPT: &str = include_str!("page.js");
 
 /// Long lists of everything, which open on a click (or by a link to them).
 const FOLDED: [&str; 3] = ["experiments", "runs", "players"];
+/// Tables and figures of a section that are open from the start: those of the longest runs come first.
+const OPEN: usize = 8;
 
 /// Writes the page.
 #[must_use]
@@ -40,7 +42,11 @@ fn write_section(section: &Section, html: &mut String) {
     for text in &section.text {
         let _ = writeln!(html, "<p>{}</p>", with_code(&escape(text)));
     }
-    for block in &section.blocks {
+    let more = section.blocks.len() - OPEN.min(section.blocks.len());
+    for (at, block) in section.blocks.iter().enumerate() {
+        if at == OPEN && !folded {
+            let _ = writeln!(html, "<details><summary>{more} more, of shorter runs or other levels</summary>");
+        }
         match block {
             Block::Heading(text) => {
                 let _ = writeln!(html, "<h3>{}</h3>", escape(text));
@@ -68,7 +74,7 @@ fn write_section(section: &Section, html: &mut String) {
             }
         }
     }
-    html.push_str(if folded { "</details></section>\n" } else { "</section>\n" });
+    html.push_str(if folded || more > 0 { "</details></section>\n" } else { "</section>\n" });
 }
 
 /// What stands between two backticks in a text, as code.

@@ -1,8 +1,9 @@
 //! The whole way from run directories to a folder of files.
 
-use crate::chart::{rasterise, standalone_svg};
+use crate::chart::{pdf, rasterise, standalone_svg};
 use crate::document::Block;
 use crate::group::Group;
+use crate::latex::{DOCUMENT, latex};
 use crate::markdown::{FIGURES, markdown};
 use crate::run::{Warning, discover};
 use crate::{csv, page, sections};
@@ -32,6 +33,19 @@ pub struct Written {
 /// # Errors
 /// One line that names the path and the remedy: nothing found, or a file that cannot be written.
 pub fn write_report(paths: &[PathBuf], out: &Path, title: &str) -> Result<Written, String> {
+    write(paths, out, title, false)
+}
+
+/// As [`write_report`], and beside it what a paper takes in: `tables.tex` (booktabs), `paper.tex`, a document around it, and each
+/// figure as PDF.
+///
+/// # Errors
+/// As there.
+pub fn write_report_and_latex(paths: &[PathBuf], out: &Path, title: &str) -> Result<Written, String> {
+    write(paths, out, title, true)
+}
+
+fn write(paths: &[PathBuf], out: &Path, title: &str, for_papers: bool) -> Result<Written, String> {
     let mut found = discover(paths)?;
     let mut warnings = std::mem::take(&mut found.warnings);
     let groups = Group::sort(&found, &mut warnings);
@@ -48,10 +62,17 @@ pub fn write_report(paths: &[PathBuf], out: &Path, title: &str) -> Result<Writte
     write("experiments.csv", csv::experiments_csv(&groups).as_bytes())?;
     write("runs.csv", csv::runs_csv(&groups).as_bytes())?;
     write("curves.csv", csv::curves_csv(&groups).as_bytes())?;
+    if for_papers {
+        write("tables.tex", latex(&document, FIGURES).as_bytes())?;
+        write("paper.tex", DOCUMENT.as_bytes())?;
+    }
     for block in document.sections.iter().flat_map(|section| &section.blocks) {
         match block {
             Block::Figure(figure) => {
                 write(&format!("{FIGURES}/{}.svg", figure.slug), standalone_svg(&figure.drawing, &figure.caption).as_bytes())?;
+                if for_papers {
+                    write(&format!("{FIGURES}/{}.pdf", figure.slug), &pdf(&figure.drawing))?;
+                }
                 if let Some(picture) = rasterise(&figure.drawing) {
                     write(&format!("{FIGURES}/{}.png", figure.slug), &png::encode(&picture))?;
                 }

@@ -38,12 +38,14 @@ pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, 
         let mut catalogue = shared.catalogue.lock().unwrap_or_else(PoisonError::into_inner);
         catalogue.refresh();
         rows.extend(catalogue.results().iter().filter_map(|run| {
-            let last = &run["last"];
-            let (episode_return, cost, budget) =
-                (last["return_mean"].as_f64()?, last["cost_mean"].as_f64()?, run["budget"].as_f64()?);
+            // What it is worth in closing episodes: training means are of many policies.
+            let value = |place: &str| run.pointer(place).and_then(Value::as_f64);
+            let (episode_return, cost) = (value("/evaluation/return/mean")?, value("/evaluation/costs/0/cost/mean")?);
+            let preset = run["preset"].as_str().map_or_else(String::new, |preset| format!(" ({preset})"));
             Some(json!({
-                "who": format!("{}, seed {}", run["algo"].as_str()?, run["seed"]), "env": run["env"], "return": episode_return,
-                "cost": cost, "budget": budget, "within": cost <= budget, "agent": format!("run:{}", run["id"].as_str()?),
+                "who": format!("{}{preset}, seed {}", run["algo"].as_str()?, run["seed"]), "env": run["env"], "return": episode_return,
+                "cost": cost, "budget": value("/evaluation/costs/0/budget"), "within": ["surely", "mean"].contains(&run["evaluation"]["kept"].as_str()?),
+                "agent": format!("run:{}", run["id"].as_str()?),
             }))
         }));
         rows.sort_by(|a, b| {

@@ -3,7 +3,7 @@
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 
-const FILES: [(&str, &str, &str); 14] = [
+const FILES: [(&str, &str, &str); 25] = [
     ("/", "text/html; charset=utf-8", include_str!("pages/index.html")),
     ("/style.css", "text/css; charset=utf-8", include_str!("pages/style.css")),
     ("/app.js", "text/javascript", include_str!("pages/app.js")),
@@ -13,6 +13,17 @@ const FILES: [(&str, &str, &str); 14] = [
     ("/run.js", "text/javascript", include_str!("pages/run.js")),
     ("/rows.js", "text/javascript", include_str!("pages/rows.js")),
     ("/settings.js", "text/javascript", include_str!("pages/settings.js")),
+    ("/scale.js", "text/javascript", include_str!("pages/scale.js")),
+    ("/curves.js", "text/javascript", include_str!("pages/curves.js")),
+    ("/svg.js", "text/javascript", include_str!("pages/svg.js")),
+    ("/metrics.js", "text/javascript", include_str!("pages/metrics.js")),
+    ("/tools.js", "text/javascript", include_str!("pages/tools.js")),
+    ("/strip.js", "text/javascript", include_str!("pages/strip.js")),
+    ("/heat.js", "text/javascript", include_str!("pages/heat.js")),
+    ("/names.js", "text/javascript", include_str!("pages/names.js")),
+    ("/compare.js", "text/javascript", include_str!("pages/compare.js")),
+    ("/scatter.js", "text/javascript", include_str!("pages/scatter.js")),
+    ("/tasks.js", "text/javascript", include_str!("pages/tasks.js")),
     ("/timeline.js", "text/javascript", include_str!("pages/timeline.js")),
     ("/screen.js", "text/javascript", include_str!("pages/screen.js")),
     ("/watch.js", "text/javascript", include_str!("pages/watch.js")),

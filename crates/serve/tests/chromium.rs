@@ -5,7 +5,7 @@ mod browser;
 mod common;
 
 use browser::Browser;
-use common::{folder, serve, serve_at, write_heatmaps, write_run};
+use common::{folder, serve, serve_at, write_heatmaps, write_run, write_seed};
 use serde_json::json;
 
 /// A key by its name in the browser, as WebDriver wants it.
@@ -26,43 +26,53 @@ fn runs_appear_move_and_are_compared() {
     browser.go(&format!("http://{address}/"));
     browser.wait("document.body.innerText.includes('No runs yet') && document.body.innerText.includes('hasard train')");
     browser.photograph("serve_empty");
-    write_run(&folder, "first<img src=x onerror=document.title='bad'>", 20);
-    write_run(&folder, "second", 900);
+    write_seed(&folder, "first<img src=x onerror=document.title='bad'>", 1, 20);
+    write_seed(&folder, "second", 2, 900);
     write_heatmaps(&folder, "second", &[10_000, 90_000]);
-    browser.wait("document.querySelectorAll('tbody input').length == 2");
-    browser.wait("document.body.innerText.includes('<img src=x')");
+    // Runs that differ in their seed alone are one row, which opens.
+    browser.wait("document.querySelectorAll('tbody input').length == 1 && document.querySelector('button.open')");
+    browser.script("document.querySelector('button.open').click()");
+    browser.wait("document.querySelectorAll('tr.seed').length == 2 && document.body.innerText.includes('<img src=x')");
     assert_ne!(browser.script("return document.title"), json!("bad"));
-    browser.script("document.querySelectorAll('tbody input').forEach((box) => box.click())");
+    browser.script("document.querySelector('tbody input').click()");
     browser.wait("location.hash.includes('chosen=') && !document.getElementById('curves').hidden");
-    browser.wait("document.querySelectorAll('tbody input:checked').length == 2");
+    browser.wait("document.querySelectorAll('tbody input:checked').length == 3");
     // Both are alike but for their names.
     browser.wait("document.body.innerText.includes('All settings are equal')");
-    browser.wait("document.querySelector('.told').innerText.includes('the end, 90K frames')");
-    browser.wait("[...document.querySelectorAll('progress')].some((bar) => bar.value == 90000)");
+    browser.wait("document.querySelector('.told').innerText.includes('(2 seeds)')");
+    let progress = |share: &str| {
+        browser.wait(&format!(
+            "[...document.querySelectorAll('tr.seed progress')].some((bar) => Math.abs(bar.value - {share}) < 1e-6)"
+        ));
+    };
+    progress("0.9");
     // The training goes on: the row moves without reloading.
-    write_run(&folder, "second", 990);
-    browser.wait("[...document.querySelectorAll('progress')].some((bar) => bar.value == 99000)");
+    write_seed(&folder, "second", 2, 990);
+    progress("0.99");
     browser.photograph("serve_runs");
     // By the keyboard alone: a curve is zoomed into and back.
-    browser.script("document.querySelector('canvas.chart').focus()");
-    let span = "document.querySelector('.told').innerText";
+    browser.script("document.querySelector('svg.chart').focus()");
+    let span = "[...document.querySelectorAll('svg.chart text')].map((text) => text.textContent).join('|')";
     let whole = browser.script(&format!("return {span}"));
     browser.keys(&["+", "ArrowLeft"].map(key), true);
     browser.keys(&["+", "ArrowLeft"].map(key), false);
+    browser.wait(&format!("{span} != {whole}"));
     browser.keys(&["0"], true);
     browser.keys(&["0"], false);
     browser.wait(&format!("{span} == {whole}"));
-    browser.script("[...document.querySelectorAll('tbody a')].find((link) => link.innerText == 'second').click()");
-    browser.wait("document.body.innerText.includes('Settings') && document.body.innerText.includes('PPOLag in Remedy')");
-    browser.wait("[...document.querySelectorAll('tbody th')].some((cell) => cell.innerText == 'algorithm')");
+    browser.script("[...document.querySelectorAll('tbody a')].find((link) => link.innerText == 'seed 2').click()");
+    browser.wait(
+        "document.body.innerText.includes('Settings') && document.body.innerText.includes('PPOLag in Remedy Rush 1, seed 2')",
+    );
+    browser.wait("[...document.querySelectorAll('tbody th code')].some((cell) => cell.textContent == 'algorithm')");
     // The newest heatmap, over the map; a click on a curve goes to another moment.
-    browser.wait("document.querySelector('.run figcaption:last-child')?.innerText.includes('At 90,000 frames') || [...document.querySelectorAll('figcaption')].some((text) => text.innerText.includes('At 90,000 frames'))");
+    browser.wait("[...document.querySelectorAll('figcaption')].some((text) => text.innerText.includes('At 90,000 frames'))");
     browser.script(
-        "const c = document.querySelector('canvas.chart'); c.setPointerCapture = () => {}; const at = c.getBoundingClientRect(); for (const type of ['pointerdown', 'pointerup']) c.dispatchEvent(new PointerEvent(type, { clientX: at.left + 60, clientY: at.top + 50, pointerId: 1 }))",
+        "const c = document.querySelector('svg.chart'); c.setPointerCapture = () => {}; const at = c.getBoundingClientRect(); for (const type of ['pointerdown', 'pointerup']) c.dispatchEvent(new PointerEvent(type, { clientX: at.left + 70, clientY: at.top + 50, pointerId: 1 }))",
     );
     browser.wait("[...document.querySelectorAll('figcaption')].some((text) => text.innerText.includes('At 10,000 frames'))");
     browser.photograph("serve_run");
-    // Beside another run only what differs is told.
+    // Beside another run what differs is said.
     browser.script("const one = [...document.querySelectorAll('select')].at(-1); one.value = one.options[1].value; one.dispatchEvent(new Event('change'))");
     browser.wait("document.body.innerText.includes('All settings are equal')");
     assert_eq!(browser.errors(), Vec::<String>::new());
@@ -77,7 +87,7 @@ fn an_agent_is_watched_paused_and_its_harm_jumped_to() {
     browser.wait(&format!("{step} > 5"));
     browser.wait("document.querySelector('[data-kind=harm]')");
     browser.script("document.getElementById('go').click()");
-    browser.wait("document.getElementById('go').innerText == 'Go on'");
+    browser.wait("document.getElementById('go').innerText == 'Play'");
     browser.script("document.querySelector('[data-kind=harm]').click()");
     browser.wait(&format!("{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"));
     let at = browser.script(&format!("return {step}"));
@@ -97,7 +107,7 @@ fn an_agent_is_watched_paused_and_its_harm_jumped_to() {
     browser.wait("location.hash.includes('paused=true')");
     let link = browser.script("return location.href");
     browser.go(link.as_str().unwrap());
-    browser.wait(&format!("{step} == {at} && document.getElementById('go').innerText == 'Go on'"));
+    browser.wait(&format!("{step} == {at} && document.getElementById('go').innerText == 'Play'"));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
@@ -110,18 +120,29 @@ fn an_episode_is_played_kept_and_found_in_the_table() {
     browser.go(&format!("http://{address}/#play?env=VolcanicVentureLevel1-v0&seed=3&hard=true&size=320x240"));
     browser.wait("document.querySelector('#numbers b')");
     browser.photograph("serve_play_dark");
+    // What to do and what to avoid stands above; H shows the keys of this task, and those alone.
+    browser.wait("document.getElementById('task').innerText.includes('Avoid: the lava')");
+    browser.keys(&["h"], true);
+    browser.keys(&["h"], false);
+    let card = "document.getElementById('card')";
+    browser.wait(&format!("!{card}.hidden && {card}.innerText.includes('jump') && !{card}.innerText.includes('fire')"));
     browser.script("document.getElementById('begin').click()");
     browser.keys(&["w"], true);
     browser.wait("document.querySelector('#words').innerText.includes('kept as')");
     browser.keys(&["w"], false);
-    browser.wait("document.querySelector('#best').innerText.includes('human')");
+    // It cost more than the budget of 0: the card says so, and the table of those within has no row for it.
+    browser
+        .wait("!document.getElementById('card').hidden && document.getElementById('card').innerText.includes('Over the budget')");
+    browser.wait("document.querySelector('#best').innerText.includes('Nobody yet')");
     assert_eq!(std::fs::read_dir(folder.join("human")).unwrap().count(), 1);
-    let film = browser.script("return document.querySelector('#best a[href*=mp4]').href");
+    browser.script("fetch('/api/best').then((answer) => answer.json()).then((rows) => { window.film = new URL(`/api/episode?name=${rows[0].episode}&kind=mp4`, location.href).href; })");
+    browser.wait("window.film");
+    let film = browser.script("return window.film");
     let path = film.as_str().unwrap().split_once(&address.to_string()).unwrap().1.to_owned();
     let answer = common::get(address, &path, "");
     assert!(common::status(&answer) == 200 && answer.contains("video/mp4") && answer.contains("ftyp"));
     // It plays here too.
-    browser.script("document.body.append(Object.assign(document.createElement('video'), { src: document.querySelector('#best a[href*=mp4]').href, id: 'film', muted: true })); document.getElementById('film').play()");
+    browser.script("document.body.append(Object.assign(document.createElement('video'), { src: window.film, id: 'film', muted: true })); document.getElementById('film').play()");
     browser.wait("document.getElementById('film').currentTime > 0.2 && document.getElementById('film').videoWidth == 320");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
@@ -144,7 +165,7 @@ fn a_finger_walks_and_a_caught_mouse_turns() {
     browser.wait("document.querySelector('#numbers b')");
     browser.pointer("mouse", Ok("#game"), Some(true));
     browser.pointer("mouse", Ok("#game"), Some(false));
-    browser.wait("document.pointerLockElement?.id == 'game' && document.querySelector('#numbers b').innerText != '0.0 s'");
+    browser.wait("document.pointerLockElement?.id == 'game' && document.querySelector('#numbers b').innerText != '0.0 of 60 s'");
     // Taking the mouse may itself move it, and a busy machine shows that late: from a picture that rests, only the mouse turns.
     browser.resting("#game");
     browser.script(
@@ -163,7 +184,7 @@ fn a_finger_walks_and_a_caught_mouse_turns() {
 fn pages_are_photographed_light_dark_and_narrow() {
     let folder = folder("chromium-photographs");
     for k in 0..30 {
-        write_run(&folder, &format!("remedy/PPOLag/seed{k}"), 100 + 10 * k);
+        write_seed(&folder, &format!("remedy/PPOLag/seed{k}"), k, 100 + 10 * k);
     }
     let address = serve(&folder, None);
     let pages = [
@@ -172,25 +193,26 @@ fn pages_are_photographed_light_dark_and_narrow() {
         ("play", "play?env=ArmamentBurdenLevel1-v0&full=true"),
     ];
     for (kind, width, height, dark) in
-        [("light", 1280, 900, false), ("dark", 1280, 900, true), ("narrow", 380, 1600, false), ("wide", 2560, 1200, false)]
+        [("light", 1280, 900, false), ("dark", 1280, 900, true), ("narrow", 390, 1600, false), ("wide", 2560, 1200, false)]
     {
         let Some(browser) = Browser::open(width, height, dark) else { return };
         for (name, page) in pages {
             browser.go(&format!("http://{address}/#{page}"));
             browser.wait(if name == "runs" {
-                "document.querySelectorAll('tbody input').length == 30"
+                "document.querySelectorAll('tbody input').length == 1 && document.body.innerText.includes('30 runs')"
             } else {
                 "document.querySelector('#numbers b')"
             });
             if name == "runs" {
-                browser.script("[...document.querySelectorAll('tbody input')].slice(0, 3).forEach((box) => box.click())");
+                browser.script("document.querySelector('button.open').click()");
+                browser.script("[...document.querySelectorAll('tr.seed input')].slice(0, 3).forEach((box) => box.click())");
             }
             std::thread::sleep(std::time::Duration::from_millis(1500));
             let lacking = browser.script(include_str!("common/accessible.js"));
             assert_eq!(lacking, json!([]), "{name} {kind}");
             // Nothing is wider than the window.
-            let wide = browser.script("return document.documentElement.scrollWidth");
-            assert!(wide.as_u64().unwrap() <= u64::from(width), "{name} {kind}: {wide}");
+            let wide = browser.script("return document.documentElement.scrollWidth - document.documentElement.clientWidth");
+            assert_eq!(wide, json!(0), "{name} {kind}: wider than the window by {wide}");
             browser.photograph(&format!("serve_{name}_{kind}"));
         }
         assert_eq!(browser.errors(), Vec::<String>::new(), "{kind}");
@@ -221,7 +243,7 @@ fn everything_is_reached_by_the_keyboard() {
     browser.keys(&[" "], true);
     browser.keys(&[" "], false);
     browser.wait("!document.getElementById('curves').hidden");
-    tab_to("canvas.chart");
+    tab_to("svg.chart");
     browser.go(&format!("http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3"));
     browser.wait("document.querySelector('[data-kind=harm]')");
     for control in ["select", "#go", "#tic", "#copy", "input[type=range]", "[data-kind=harm]"] {
@@ -235,7 +257,7 @@ fn everything_is_reached_by_the_keyboard() {
     browser.script("document.activeElement.blur()");
     browser.keys(&[" "], true);
     browser.keys(&[" "], false);
-    browser.wait("document.getElementById('go').innerText == 'Go on'");
+    browser.wait("document.getElementById('go').innerText == 'Play'");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
@@ -265,7 +287,7 @@ fn a_server_that_is_away_is_told_of_and_comes_back() {
     browser.wait("document.getElementById('link').innerText.includes('does not answer')");
     write_run(&folder, "two", 5);
     let mut server = begin();
-    browser.wait("document.getElementById('link').innerText == '' && document.querySelectorAll('tbody input').length == 2");
+    browser.wait("document.getElementById('link').innerText == '' && document.body.innerText.includes('2 runs')");
     server.kill().unwrap();
     server.wait().unwrap();
 }

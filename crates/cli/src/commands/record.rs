@@ -163,7 +163,8 @@ fn open(file: &Path, looks: &EnvOptions) -> Result<Replay, Failure> {
 
 fn begin(stage: &Stage, out: &Path, size: FrameSize, args: &FilmArgs) -> Result<Film, Failure> {
     let every = args.frame_every.unwrap_or(if is_gif(out) { 5 } else { 1 });
-    Film::begin(stage, out, size, &settings::views(View::Rgb, &args.beside), every).map_err(Failure::bad)
+    let views = settings::views(View::Rgb, &args.beside);
+    Film::begin_at(args.quality.unwrap_or_default(), stage, out, size, &views, every).map_err(Failure::bad)
 }
 
 /// Steps that a film has at most.

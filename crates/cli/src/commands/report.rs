@@ -6,7 +6,8 @@ use serde_json::json;
 
 /// Runs the command.
 pub fn run(args: &ReportArgs) -> Outcome {
-    let written = hasard_report::write_report(&args.runs, &args.out, &args.title).map_err(Failure::bad)?;
+    let write = if args.latex { hasard_report::write_report_and_latex } else { hasard_report::write_report };
+    let written = write(&args.runs, &args.out, &args.title).map_err(Failure::bad)?;
     for warning in &written.warnings {
         note!("hasard: {warning}");
     }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use hasard_envs::{CostTerm, Scenario};
 
-use crate::config::TrainConfig;
 use crate::config::constraint::find_terms;
+use crate::config::{ReturnNormaliser, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::learning::normaliser::Moments;
@@ -64,6 +64,9 @@ pub struct Agent {
     episodes: Vec<(u64, u64)>,
     /// What the network put out last, a row a lane.
     rows: Vec<f32>,
+    /// The units of the critics' values; none where they are not known.
+    units: Vec<Moments>,
+    normaliser: ReturnNormaliser,
 }
 
 /// What an agent does in one world.
@@ -95,6 +98,8 @@ pub struct Thought {
     pub value: Option<f32>,
     /// The same of each constrained cost, for algorithms that estimate it.
     pub cost_values: Vec<f32>,
+    /// All of these in the units of returns and costs themselves, discounted, the return first; empty where those are not known.
+    pub in_own_units: Vec<f32>,
 }
 
 /// The settings of the run in a directory, or of the one that an agent's file comes from, so that its worlds can be made.
@@ -219,6 +224,8 @@ impl TrainedPolicy {
             shaping: Shaping::new(&self.config),
             watched: self.watched,
             choice,
+            units: if self.config.learning.critic_inputs.is_empty() { self.returns.clone() } else { Vec::new() },
+            normaliser: self.config.learning.normaliser,
         }
     }
 }
@@ -315,8 +322,17 @@ impl Agent {
     pub fn thought(&self, lane: usize) -> Thought {
         let width = self.shape.outputs();
         let row = &self.rows[lane * width..(lane + 1) * width];
-        let mut values = row[self.shape.action.parameters()..].iter().copied();
-        Thought { probabilities: self.shape.action.probabilities(row), value: values.next(), cost_values: values.collect() }
+        let values = &row[self.shape.action.parameters()..];
+        let worth = |(moments, &value): (&Moments, &f32)| match self.normaliser {
+            ReturnNormaliser::Running => moments.denormalise(value),
+            ReturnNormaliser::PopArt => moments.scale_up(value),
+        };
+        Thought {
+            probabilities: self.shape.action.probabilities(row),
+            value: values.first().copied(),
+            cost_values: values.get(1..).unwrap_or_default().to_vec(),
+            in_own_units: self.units.iter().zip(values).map(worth).collect(),
+        }
     }
 
     /// What each critic of a cost expected in a lane at its last action, in the normalised units of training.

@@ -21,7 +21,7 @@ fn temporary(name: &str) -> PathBuf {
 }
 
 fn write(path: &Path, width: usize, height: usize, frames: usize) {
-    let mut writer = VideoWriter::create(path, width, height, (35, 4)).unwrap();
+    let mut writer = VideoWriter::create(path, width, height, (35, 4), Quality::default()).unwrap();
     for k in 0..frames {
         writer.push(&scene(width, height, k)).unwrap();
     }
@@ -53,17 +53,100 @@ fn a_foreign_decoder_shows_every_frame_much_as_it_was() {
     }
 }
 
+/// Decoded pictures of a file, as brightness.
+fn decoded(path: &Path, frames: usize, (width, height): (usize, usize)) -> Option<Vec<Vec<u8>>> {
+    Command::new("ffmpeg").arg("-version").output().ok()?;
+    let name = path.to_str().unwrap();
+    let decode = ["-v", "warning", "-i", name, "-f", "rawvideo", "-pix_fmt", "yuv420p", "-fps_mode", "passthrough", "-"];
+    let output = Command::new("ffmpeg").args(decode).output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.stdout.len(), width * height * 3 / 2 * frames);
+    Some(output.stdout.chunks_exact(width * height * 3 / 2).map(|frame| frame[..width * height].to_vec()).collect())
+}
+
+/// The size follows from the quality, and the bytes from the pictures alone.
 #[test]
-fn same_frames_give_same_bytes_and_no_more_than_the_rate() {
-    let (first, second) = (temporary("first.mp4"), temporary("second.mp4"));
-    write(&first, 160, 120, 140);
-    write(&second, 160, 120, 140);
-    let bytes = std::fs::read(&first).unwrap();
-    assert!(bytes == std::fs::read(&second).unwrap());
-    let limit = 160.0 * 120.0 * 140.0 * BITS_A_PIXEL / 8.0;
-    assert!((bytes.len() as f64) < 1.2 * limit, "{} of {limit}", bytes.len());
-    std::fs::remove_file(first).unwrap();
-    std::fs::remove_file(second).unwrap();
+fn same_frames_give_same_bytes_and_a_better_quality_costs_more() {
+    let sizes: Vec<usize> = ["20", "55", "90"]
+        .map(|quality| {
+            let (first, second) = (temporary(&format!("{quality}-1.mp4")), temporary(&format!("{quality}-2.mp4")));
+            let bytes = [first, second].map(|path| {
+                let mut writer = VideoWriter::create(&path, 160, 120, (35, 4), quality.parse().unwrap()).unwrap();
+                (0..300).for_each(|k| writer.push(&scene(160, 120, k)).unwrap());
+                writer.finish().unwrap();
+                let bytes = std::fs::read(&path).unwrap();
+                std::fs::remove_file(path).unwrap();
+                bytes
+            });
+            assert!(bytes[0] == bytes[1]);
+            bytes[0].len()
+        })
+        .into();
+    assert!(sizes[0] * 2 < sizes[1] && sizes[1] * 2 < sizes[2], "{sizes:?}");
+    assert!(["101", "-1", "", "good"].iter().all(|bad| bad.parse::<Quality>().is_err()));
+}
+
+/// Row 4 of a newcomer's list: after each flash of the screen the pictures were blocks for half a second.
+#[test]
+fn a_flash_leaves_the_pictures_after_it_as_they_were() {
+    let path = temporary("flash.mp4");
+    let (width, height, frames) = (160, 120, 60);
+    let picture = |k: usize| {
+        let mut picture = scene(width, height, 0);
+        // A flash of three pictures, as a pick-up's, then the same scene again.
+        if (30..33).contains(&k) {
+            for y in 0..height {
+                for x in 0..width {
+                    picture.blend(x as isize, y as isize, [230, 200, 60], 150);
+                }
+            }
+        }
+        picture
+    };
+    let mut writer = VideoWriter::create(&path, width, height, (35, 1), Quality::default()).unwrap();
+    (0..frames).for_each(|k| writer.push(&picture(k)).unwrap());
+    writer.finish().unwrap();
+    let Some(shown) = decoded(&path, frames, (width, height)) else { return };
+    let mut source = YuvFrame::black(width, height);
+    let error = |k: usize, source: &mut YuvFrame| {
+        fill(source, &picture(k));
+        source.y.iter().zip(&shown[k]).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum::<f64>() / source.y.len() as f64
+    };
+    let before = (20..30).map(|k| error(k, &mut source)).sum::<f64>() / 10.0;
+    for k in 30..45 {
+        let now = error(k, &mut source);
+        assert!(now < 2.0 * before + 4.0, "picture {k}: squared error {now}, {before} before the flash");
+    }
+    std::fs::remove_file(path).unwrap();
+}
+
+/// Stretches are coded on several threads: what players jump to lies where they begin.
+#[test]
+fn a_cut_begins_a_stretch_that_stands_alone() {
+    let frame = |value: u8| {
+        let mut frame = YuvFrame::black(32, 32);
+        frame.y.fill(value);
+        frame
+    };
+    let mut segments = Segments::new(EncoderConfig { mbtree: false, scenecut: 0, ..EncoderConfig::new(32, 32) }).unwrap();
+    let mut coded = Vec::new();
+    for k in 0..400 {
+        // A cut at 20, a flicker at 25 that is too near to it, then stretches of 140.
+        let value = if k < 20 {
+            40
+        } else if k == 25 {
+            200
+        } else {
+            90
+        };
+        coded.extend(segments.push(frame(value)).unwrap());
+    }
+    coded.extend(segments.finish().unwrap());
+    let begins: Vec<usize> = (0..coded.len()).filter(|k| coded[*k].1).collect();
+    assert_eq!((coded.len(), begins), (400, vec![0, 20, 160, 300]));
+    // Each of them holds the sequence's parameters and an IDR picture (NAL units 7 and 5).
+    let holds = |unit: &[u8], kind: u8| unit.windows(4).any(|bytes| bytes[..3] == [0, 0, 1] && bytes[3] & 31 == kind);
+    assert!(coded.iter().all(|(unit, alone)| holds(unit, 5) == *alone && holds(unit, 7) == *alone));
 }
 
 #[test]
@@ -86,11 +169,11 @@ fn white_black_and_pure_colours() {
 #[test]
 fn what_cannot_be_is_refused() {
     let path = temporary("refused.mp4");
-    assert!(VideoWriter::create(&path, 0, 10, (35, 4)).is_err());
-    assert!(VideoWriter::create(&path, 5000, 10, (35, 4)).is_err());
-    assert!(VideoWriter::create(&path, 10, 10, (0, 4)).is_err());
-    assert!(VideoWriter::create(&path, 10, 10, (u32::MAX, 1)).is_err());
-    let mut writer = VideoWriter::create(&path, 16, 16, (35, 1)).unwrap();
+    assert!(VideoWriter::create(&path, 0, 10, (35, 4), Quality::default()).is_err());
+    assert!(VideoWriter::create(&path, 5000, 10, (35, 4), Quality::default()).is_err());
+    assert!(VideoWriter::create(&path, 10, 10, (0, 4), Quality::default()).is_err());
+    assert!(VideoWriter::create(&path, 10, 10, (u32::MAX, 1), Quality::default()).is_err());
+    let mut writer = VideoWriter::create(&path, 16, 16, (35, 1), Quality::default()).unwrap();
     assert!(writer.push(&Picture::filled(11, 16, [0; 3])).is_err());
     assert!(writer.finish().unwrap_err().to_string().contains("at least one frame"));
     assert!(!path.exists());

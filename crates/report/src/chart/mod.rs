@@ -3,12 +3,14 @@
 mod axis;
 mod bars;
 mod lines;
+mod pdf;
 mod raster;
 mod scatter;
 mod svg;
 
 pub use bars::{Bar, BarGroup, bar_panel};
 pub use lines::{LinePanel, Series, line_panel};
+pub use pdf::pdf;
 pub use raster::rasterise;
 pub use scatter::{Spot, SpotKind, scatter_panel};
 pub use svg::{INK_STYLE, inline_svg, standalone_svg};

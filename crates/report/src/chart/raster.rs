@@ -33,7 +33,7 @@ pub(super) const LIGHT: [[u8; 3]; SERIES_COLOURS + 5] = [
     [0xff, 0xff, 0xff],
 ];
 
-fn colour(ink: Ink) -> [u8; 3] {
+pub(super) fn colour(ink: Ink) -> [u8; 3] {
     match ink {
         Ink::Series(index) => LIGHT[index % SERIES_COLOURS],
         Ink::Text => LIGHT[SERIES_COLOURS],

@@ -33,7 +33,7 @@ const NOT_IDENTITY: &[&str] = &[
 
 /// Keys that are always told beside a result if they are not at their usual value. Of the others, such as the learning
 /// rate, only those are told that tell apart what would otherwise look the same.
-pub const TOLD: [&str; 11] = [
+pub const TOLD: [&str; 12] = [
     "rules",
     "preset",
     "hard",
@@ -45,6 +45,7 @@ pub const TOLD: [&str; 11] = [
     "constraints",
     "cost_scale",
     "curriculum",
+    "changed",
 ];
 
 /// Where the trainer keeps a value, and other spellings, with the name that this program has for it.
@@ -82,6 +83,8 @@ pub struct Config {
     pub cost_scale: f64,
     /// Frames that were asked for, if the run says.
     pub frames: Option<f64>,
+    /// Frames that were asked for at first, of a run that was resumed to go on beyond them.
+    pub extended_from: Option<f64>,
     /// Every other key that may change results, as text; nested keys are joined by dots. `safety_budget` is among them
     /// only if it is not the scenario's own.
     pub options: BTreeMap<String, String>,
@@ -110,8 +113,11 @@ impl Config {
         let Value::Object(object) = &value else { return Err("is not a JSON object; restore it or leave the run out".into()) };
         let mut flat = BTreeMap::new();
         let mut constraints = Vec::new();
+        let mut extended_from = None;
         for (key, value) in object {
-            if key == "constraints" {
+            if key == "changes" {
+                extended_from = read_changes(value, &mut flat);
+            } else if key == "constraints" {
                 constraints = read_constraints(value, &mut flat)?;
             } else if key == "curriculum" && value.as_array().is_some_and(|lessons| lessons.iter().all(Value::is_object)) {
                 read_curriculum(value, &mut flat)?;
@@ -145,8 +151,6 @@ impl Config {
         {
             level = last;
         }
-        let below =
-            |key: &str, beginning: &str| key.strip_prefix(beginning).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
         options.retain(|key, _| !NOT_IDENTITY.iter().any(|beginning| below(key, beginning)));
         let released = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
         let hard = options.get("hard").is_some_and(|hard| hard == "true");
@@ -190,7 +194,7 @@ impl Config {
             constraints.push(Constraint { term: None, budget: safety_budget });
         }
         let frames = options.remove("frames").and_then(|text| text.parse::<f64>().ok()).filter(|frames| frames.is_finite());
-        Ok(Config { env, scenario, level, algo, seed, safety_budget, constraints, cost_scale, frames, options })
+        Ok(Config { env, scenario, level, algo, seed, safety_budget, constraints, cost_scale, frames, extended_from, options })
     }
 
     /// The budget of the whole cost, if that is constrained.
@@ -210,6 +214,34 @@ impl Config {
     pub fn hard(&self) -> bool {
         self.options.get("hard").is_some_and(|hard| hard == "true")
     }
+}
+
+/// Settings that changed when the run was resumed, as the trainer lists them: those that tell experiments apart go among the options.
+/// Gives the first number of frames that was asked for, if the run went on beyond it.
+fn read_changes(value: &Value, flat: &mut BTreeMap<String, String>) -> Option<f64> {
+    let mut first = None;
+    let mut told = Vec::new();
+    for change in value.as_array().into_iter().flatten() {
+        let Some(setting) = change.get("setting").and_then(Value::as_str) else { continue };
+        let text = |key: &str| change.get(key).map(plain).unwrap_or_default();
+        if setting == "frames" {
+            let frames = |key: &str| change.get(key).and_then(Value::as_f64);
+            if let (None, Some(from), Some(to)) = (first, frames("from"), frames("to")) {
+                first = Some(from).filter(|from| *from < to);
+            }
+        } else if !NOT_IDENTITY.iter().any(|beginning| below(setting, beginning)) {
+            told.push(format!("{setting} {} from {} frames on", text("to"), text("frames")));
+        }
+    }
+    if !told.is_empty() {
+        flat.insert("changed".into(), told.join("; "));
+    }
+    first
+}
+
+/// Whether a key is one that begins so, or below it.
+fn below(key: &str, beginning: &str) -> bool {
+    key.strip_prefix(beginning).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 /// Constraints as the trainer lists them, each a cost term (or the whole cost) with its budget.

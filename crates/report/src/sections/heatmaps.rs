@@ -3,7 +3,7 @@
 use super::setting;
 use crate::document::{Block, Image, Section, frames, slug};
 use crate::group::{Group, scenario_name};
-use crate::heat::{overlay, shown_size};
+use crate::heat::{densest, overlay, shown_size, with_colour_bar};
 use crate::run::{HeatmapData, Run, Warning};
 use hasard_media::compose::{Panel, grid};
 use hasard_media::gif::GifWriter;
@@ -56,7 +56,7 @@ pub(super) fn section(groups: &[Group], warnings: &mut Vec<Warning>) -> Section 
         title: "Where agents go".into(),
         text: vec![
             "Several experiments on one environment first, at equal frames; then each over its training. Steps that the agent spent at each place during the last episodes before a moment of training, over the map seen from above. \
-             The brightest place of each picture is its most visited; brightness grows with the root of the share of steps."
+             All pictures of a sheet have one scale, which the bar below it gives; brightness grows with the root of the share of steps."
                 .into(),
         ],
         blocks,
@@ -79,16 +79,19 @@ fn side_by_side(groups: &[Group], warnings: &mut Vec<Warning>) -> Vec<Block> {
         }
         let shown = &members[..members.len().min(6)];
         let automaps: Vec<Automaps> = shown.iter().map(|(_, run)| Automaps::read(run, warnings)).collect();
+        let shown_at = |run: &Run, at: f64| nearest(&frames_of(run), at);
+        let most = |at: f64| shown.iter().map(|(_, run)| densest(&run.heatmaps[shown_at(run, at)])).fold(0.0, f64::max);
+        let most = chosen.iter().map(|at| most(*at)).fold(0.0, f64::max);
         let mut views: Vec<(Picture, String)> = Vec::new();
         for at in &chosen {
             for ((group, run), automaps) in shown.iter().zip(&automaps) {
-                let nearest = nearest(&frames_of(run), *at);
+                let nearest = shown_at(run, *at);
                 let label = format!("{}, {} frames", group.config().algo, frames(run.heatmaps[nearest].frames));
-                views.push((automaps.overlay(run, nearest, 300), label));
+                views.push((automaps.overlay(run, nearest, 300, most), label));
             }
         }
         let panels: Vec<Panel> = views.iter().map(|(view, label)| Panel::new(view, label)).collect();
-        let sheet = grid(&panels, shown.len(), 1);
+        let sheet = with_colour_bar(&grid(&panels, shown.len(), 1), most);
         blocks.push(Block::Image(Image {
             file: format!("{}.png", slug(&format!("heatmaps side by side {env}"))),
             caption: format!("{env}: experiments at equal frames, one seed each"),
@@ -142,9 +145,9 @@ impl Automaps {
     }
 
     /// A heatmap of the run over its picture.
-    fn overlay(&self, run: &Run, at: usize, side: usize) -> Picture {
+    fn overlay(&self, run: &Run, at: usize, side: usize, most: f64) -> Picture {
         let map = &run.heatmaps[at];
-        overlay(map, run.automap(map).and_then(|path| self.0.get(&path)), side)
+        overlay(map, run.automap(map).and_then(|path| self.0.get(&path)), side, most)
     }
 }
 
@@ -154,11 +157,12 @@ fn last_counted(run: &Run) -> String {
 
 /// About equally spaced moments from the first to the last, side by side.
 fn moments(run: &Run, automaps: &Automaps) -> Picture {
+    let most = spread(run.heatmaps.len(), MOMENTS).map(|at| densest(&run.heatmaps[at])).fold(0.0, f64::max);
     let views: Vec<(Picture, &HeatmapData)> =
-        spread(run.heatmaps.len(), MOMENTS).map(|at| (automaps.overlay(run, at, 360), &run.heatmaps[at])).collect();
+        spread(run.heatmaps.len(), MOMENTS).map(|at| (automaps.overlay(run, at, 360, most), &run.heatmaps[at])).collect();
     let panels: Vec<Panel> = views.iter().map(|(view, map)| Panel::new(view, format!("{} frames", frames(map.frames)))).collect();
     let columns = if views[0].0.width() > 2 * views[0].0.height() { 1 } else { panels.len().min(2) };
-    grid(&panels, columns, 1)
+    with_colour_bar(&grid(&panels, columns, 1), most)
 }
 
 /// `count` of `0..length`, first and last among them.
@@ -175,9 +179,10 @@ fn animation(run: &Run, automaps: &Automaps) -> Result<(Vec<u8>, (usize, usize))
     let result = (|| {
         let chosen: Vec<usize> = spread(run.heatmaps.len(), MOST_PICTURES).collect();
         let (width, height) = shown_size(&run.heatmaps[0], 480);
+        let most = chosen.iter().map(|at| densest(&run.heatmaps[*at])).fold(0.0, f64::max);
         let mut writer = GifWriter::create(&path, width, height)?;
         for (k, &at) in chosen.iter().enumerate() {
-            let mut view = automaps.overlay(run, at, 480).resized(width, height);
+            let mut view = automaps.overlay(run, at, 480, most).resized(width, height);
             hasard_media::text::draw_shadowed(&mut view, 6, 4, &format!("{} frames", frames(run.heatmaps[at].frames)), [255; 3]);
             let last = k + 1 == chosen.len();
             writer.push(&view, ANIMATION_SECONDS / chosen.len() as f64 + if last { 1.0 } else { 0.0 })?;

@@ -77,6 +77,10 @@ pub(super) fn marked_cells(members: &[&Group], source: Source) -> Vec<(Cell, Cel
                 return_cell.title +=
                     &format!("; unfinished: {} of {asked} frames", crate::document::frames(group.frames_span().0));
             }
+            if let Some(first) = group.extended_from().filter(|_| !last.returns.is_empty()) {
+                return_cell.text += " †";
+                return_cell.title += &format!("; went on beyond its first target of {} frames", crate::document::frames(first));
+            }
             (return_cell, cost_cell)
         })
         .collect()
@@ -179,8 +183,11 @@ fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table
     if rows.iter().any(|row| row[0].text.ends_with("(paper)")) {
         caption += "; the paper's after 500M frames";
     }
-    if rows.iter().flatten().any(|cell| cell.text.ends_with('*')) {
+    if rows.iter().flatten().any(|cell| cell.text.contains('*')) {
         caption += "; * not every run has finished";
+    }
+    if rows.iter().flatten().any(|cell| cell.text.ends_with('†')) {
+        caption += "; † went on beyond the frames that its schedules were made for";
     }
     Table { caption, spans, heads, rows }
 }

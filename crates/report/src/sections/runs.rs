@@ -79,6 +79,8 @@ pub(super) fn runs(groups: &[Group]) -> Section {
                 Some(asked) if run.frames() < asked * 0.999 => format!("{:.0} %", 100.0 * run.frames() / asked),
                 _ => "finished".into(),
             };
+            let state =
+                run.config.extended_from.map_or(state.clone(), |first| format!("{state}, extended from {}", frames(first)));
             vec![
                 Cell::text(run.path.display().to_string()),
                 Cell::text(&run.config.env),

@@ -1,200 +1,184 @@
-// Curves on a canvas: a line a run, or mean and 95 % confidence over seeds; the budget dashed; zoom by dragging or + and -, back by a
-// double click or 0. What the curves are at the pointer is told in words.
-import { make } from '/dom.js';
+// Curves as SVG: lines, points with intervals, budgets dashed; zoom by dragging or + and -, back by a double click or 0. Charts of one
+// page share a pointer: what it is at in one is read in all of them.
+import { coded, make } from '/dom.js';
+import { at, smoothed } from '/curves.js';
+import { axis, logTicks, scale, short, ticks } from '/scale.js';
+import { downloads, inks, path, shape, standalone, text } from '/svg.js';
 
-const COLOURS = ['#2f6dbd', '#d1651b', '#2e8b57', '#9a4fb5', '#b8860b', '#c2326e', '#3f8f9b', '#7a6a53'];
-// Student's t at 97.5 %, for 1 to 10 degrees of freedom.
-const T = [12.71, 4.3, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23];
+const LEFT = 62, RIGHT = 12, TOP = 10, BOTTOM = 44;
 
-export function colour(index) {
-  return COLOURS[index % COLOURS.length];
+// What the charts of a page have in common.
+export class Shared {
+  constructor() { Object.assign(this, { charts: [], pointer: null, range: null, over: 'frames', smooth: 0, log: false, moment: null, selected: null }); }
+  add(chart) { this.charts.push(chart); return chart; }
+  clear() { this.charts.forEach((chart) => chart.end()); this.charts = []; }
+  draw() { this.charts.forEach((chart) => chart.draw()); }
+  point(x) { this.pointer = x; this.charts.forEach((chart) => chart.tell()); }
 }
 
-function smoothed(values, weight) {
-  let last = null;
-  return values.map((value) => {
-    if (value == null) return null;
-    last = last == null ? value : weight * last + (1 - weight) * value;
-    return last;
-  });
-}
-
-function at(curve, frames) {
-  const { x, y } = curve;
-  if (!x.length || frames < x[0] || frames > x[x.length - 1]) return null;
-  let high = x.findIndex((value) => value >= frames);
-  if (high <= 0) return y[0];
-  const share = (frames - x[high - 1]) / (x[high] - x[high - 1]);
-  return y[high - 1] == null || y[high] == null ? null : y[high - 1] + share * (y[high] - y[high - 1]);
-}
-
-// Curves of equal group as mean and half width of its confidence.
-function grouped(curves) {
-  const groups = Map.groupBy ? Map.groupBy(curves, (curve) => curve.group) : curves.reduce((map, curve) => map.set(curve.group, [...(map.get(curve.group) ?? []), curve]), new Map());
-  return [...groups].map(([name, all]) => {
-    const end = Math.max(...all.map((curve) => curve.x.at(-1) ?? 0));
-    const x = Array.from({ length: 121 }, (_, k) => (end * k) / 120);
-    const y = [], half = [];
-    for (const frames of x) {
-      const values = all.map((curve) => at(curve, frames)).filter((value) => value != null);
-      const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
-      const variance = values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (values.length - 1);
-      y.push(values.length ? mean : null);
-      half.push(values.length > 1 ? (T[values.length - 2] ?? 1.96) * Math.sqrt(variance / values.length) : 0);
-    }
-    return { name: `${name} (${all.length})`, x, y, half };
-  });
-}
-
-const frames_text = (frames) => Intl.NumberFormat('en', { notation: 'compact' }).format(frames);
-const value_text = (value) => Number(value.toPrecision(3)).toLocaleString('en');
-
-// Round values from below `low` to above `high`, four to nine of them.
-function ticks(low, high) {
-  const rough = (high - low) / 5;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * [1, 2, 2.5, 5, 10].find((one) => one * power >= rough);
-  return Array.from({ length: Math.ceil(high / step) - Math.floor(low / step) + 1 }, (_, k) => (Math.floor(low / step) + k) * step);
-}
-
-// A chart with its caption, which tells what the curves are at the pointer.
-export function chart(name, title, onmoment) {
-  const canvas = make('canvas', { class: 'chart', role: 'img', tabindex: 0, 'aria-label': `${title} over frames` });
-  const told = make('span', { class: 'told' });
-  return { name, chart: new Chart(canvas, told, onmoment), figure: make('figure', {}, make('figcaption', {}, make('b', {}, title), told), canvas) };
-}
-
+// A series: { name, colour, dash, x, y, half, kind: 'line', 'points' or 'thin' }. Thin lines are neither smoothed nor read out.
 export class Chart {
-  constructor(canvas, told, onmoment) {
-    Object.assign(this, { canvas, told, moment: null, pointer: null });
-    this.curves = [];
-    this.range = null;
-    this.smooth = 0;
-    this.bySeeds = false;
+  constructor(shared, { title, unit = '', what = title, note = '', file, onmoment }) {
+    Object.assign(this, { shared, title, unit: unit ? `${what} (${unit})` : what, file, onmoment, series: [], budgets: [], places: null });
+    this.svg = shape('svg', { class: 'chart', role: 'img', tabindex: 0, height: 260, 'aria-label': title });
+    this.told = make('div', { class: 'told' });
+    const saves = downloads(title, file, () => standalone(this.svg, title, this.legend()), () => this.rows());
+    this.element = make('figure', { 'data-chart': file }, make('figcaption', {}, make('span', { class: 'row' }, make('b', {}, title), saves), make('span', { class: 'note' }, ...coded(note))), this.svg, this.told);
+    this.listen();
+    this.sized = new ResizeObserver(() => this.draw());
+    this.sized.observe(this.svg);
+  }
+
+  end() { this.sized.disconnect(); this.element.remove(); }
+
+  listen() {
+    const { svg, shared } = this;
     let from = null;
-    canvas.addEventListener('pointerdown', (event) => { from = event.offsetX; canvas.setPointerCapture(event.pointerId); });
-    canvas.addEventListener('pointerup', (event) => {
-      if (from == null || !this.span) return;
-      const [a, b] = [this.framesAt(Math.min(from, event.offsetX)), this.framesAt(Math.max(from, event.offsetX))];
-      if (Math.abs(event.offsetX - from) > 8) this.range = [a, b];
-      else onmoment?.(a);
+    const inside = (event) => event.clientX - svg.getBoundingClientRect().left;
+    svg.addEventListener('pointerdown', (event) => { from = inside(event); svg.setPointerCapture?.(event.pointerId); });
+    svg.addEventListener('pointerup', (event) => {
+      if (from == null || !this.places) return;
+      const [a, b] = [from, inside(event)].sort((one, other) => one - other).map((pixel) => this.places.x.back(pixel));
+      const far = Math.abs(inside(event) - from) > 8;
       from = this.drag = null;
-      this.draw();
+      if (far) { shared.range = [Math.max(a, this.span[0]), Math.min(b, this.span[1])]; shared.draw(); } else this.onmoment?.(a);
     });
-    canvas.addEventListener('dblclick', () => { this.range = null; this.draw(); });
-    canvas.addEventListener('pointermove', (event) => { this.pointer = event.offsetX; this.drag = from; this.draw(); });
-    canvas.addEventListener('pointerleave', () => { this.pointer = null; this.draw(); });
-    canvas.addEventListener('keydown', (event) => this.key(event));
-    new ResizeObserver(() => this.draw()).observe(canvas);
+    svg.addEventListener('pointermove', (event) => { this.drag = from; if (this.places) shared.point(this.places.x.back(inside(event))); });
+    svg.addEventListener('pointerleave', () => shared.point(null));
+    svg.addEventListener('dblclick', () => { shared.range = null; shared.draw(); });
+    svg.addEventListener('keydown', (event) => this.key(event));
   }
 
   // + and - zoom about the middle, arrows move what is seen, 0 shows all.
   key(event) {
     if (!this.span || event.ctrlKey || event.metaKey || event.altKey) return;
-    const [low, high] = this.span;
+    const { shared, span: [low, high] } = this;
     const [middle, half] = [(low + high) / 2, (high - low) / 2];
     const wanted = { '+': [0, 0.5], '=': [0, 0.5], '-': [0, 2], ArrowLeft: [-0.5, 1], ArrowRight: [0.5, 1], 0: null }[event.key];
     if (wanted === undefined) return;
-    this.range = wanted && [middle + (wanted[0] - wanted[1]) * half, middle + (wanted[0] + wanted[1]) * half].map((frames) => Math.max(0, frames));
-    if (this.range && this.range[1] <= this.range[0]) this.range = null;
+    shared.range = wanted && [middle + (wanted[0] - wanted[1]) * half, middle + (wanted[0] + wanted[1]) * half].map((one) => Math.max(0, one));
+    if (shared.range && shared.range[1] <= shared.range[0]) shared.range = null;
     event.preventDefault();
-    this.draw();
+    shared.draw();
   }
 
-  // The line at a moment, and what the curves are there.
-  tell(pen, drawn, x, height) {
-    const [, , ink] = this.inks;
-    const line = (frames, width) => {
-      pen.fillStyle = ink;
-      pen.fillRect(x(frames) - width / 2, 8, width, height - 30);
-    };
-    if (this.moment != null) line(this.moment, 2);
-    const at_pointer = this.pointer != null && this.pointer > 46;
-    const frames = at_pointer ? this.framesAt(this.pointer) : Math.max(0, ...drawn.map((curve) => curve.x.at(-1) ?? 0));
-    if (at_pointer) line(frames, 1);
-    // Without a pointer, where each curve ends.
-    const value = (curve) => (at_pointer ? at(curve, frames) : curve.y.findLast((one) => one != null));
-    const values = drawn.slice(0, 4).map(value).map((one) => (one == null ? '–' : value_text(one)));
-    this.told.textContent = drawn.length ? ` ${values.join(' · ')}${drawn.length > 4 ? ' …' : ''} at ${at_pointer ? '' : 'the end, '}${frames_text(frames)} frames` : '';
-    this.canvas.setAttribute('aria-description', this.told.textContent);
+  legend() { return this.drawn().filter((one) => one.kind !== 'thin').map(({ name, colour, dash }) => ({ name, colour, dash })); }
+
+  // The numbers behind the picture, as they were reported.
+  rows() {
+    const over = axis(this.shared.over, 0).title.split(' (')[0];
+    return [['series', over === 'time of training' ? 'seconds' : over, this.title, 'half width of the 95 % interval'],
+      ...this.series.flatMap((one) => one.x.map((x, k) => [one.name, x, one.y[k], one.half?.[k] ?? '']))];
   }
 
-  framesAt(pixel) {
-    const [low, high] = this.span;
-    return low + ((pixel - 48) / (this.canvas.clientWidth - 58)) * (high - low);
+  drawn() {
+    const { smooth } = this.shared;
+    return this.series.filter((one) => !one.hidden && one.x.length).map((one) => (one.kind ?? 'line') === 'line' ? { ...one, kind: 'line', raw: smooth ? one.y : null, y: smoothed(one.y, smooth) } : one);
   }
 
   draw() {
-    const { canvas } = this;
-    const [width, height, scale] = [canvas.clientWidth, canvas.clientHeight, devicePixelRatio || 1];
-    canvas.width = width * scale;
-    canvas.height = height * scale;
-    const pen = canvas.getContext('2d');
-    pen.scale(scale, scale);
-    const style = getComputedStyle(canvas);
-    const [ink, line, bad] = ['--pale', '--line', '--bad'].map((name) => style.getPropertyValue(name));
-    this.inks = [line, bad, ink];
-    pen.font = '12px system-ui';
-    const curves = this.curves.map((curve) => ({ ...curve, y: smoothed(curve.y, this.smooth), half: null }));
-    const drawn = this.bySeeds ? grouped(curves) : curves;
-    const span = this.range ?? [0, Math.max(1, ...drawn.map((curve) => curve.x.at(-1) ?? 0))];
+    const { svg, shared } = this;
+    const width = svg.clientWidth;
+    if (!width) return;
+    const height = this.height = Math.round(Math.min(380, Math.max(240, 0.56 * width)));
+    svg.setAttribute('width', width);
+    svg.setAttribute('height', height);
+    const ink = inks(svg);
+    const drawn = this.drawn();
+    const most = Math.max(1e-9, ...drawn.map((one) => one.x.at(-1)));
+    const whole = axis(shared.over, most);
+    const span = shared.range ?? [0, most];
     this.span = span;
-    const seen = drawn.flatMap((curve) => curve.y.filter((y, k) => y != null && curve.x[k] >= span[0] && curve.x[k] <= span[1]));
-    if (this.budget != null) seen.push(this.budget);
-    let [low, high] = [Math.min(0, ...seen), Math.max(...seen, 1e-9) * 1.05];
+    const seen = drawn.flatMap((one) => one.y.flatMap((y, k) => (one.x[k] < span[0] || one.x[k] > span[1] ? [] : one.half?.[k] && one.kind !== 'thin' ? [y - Math.min(one.half[k], Math.abs(y) || 1), y + Math.min(one.half[k], Math.abs(y) || 1)] : [y])));
+    seen.push(...this.budgets.map((one) => one.value));
+    const log = shared.log && seen.some((value) => value > 0);
+    const positive = seen.filter((value) => value > 0);
+    let [low, high] = log ? [Math.min(...positive) * 0.9, Math.max(...positive) * 1.1] : [Math.min(0, ...seen), Math.max(...seen, 1e-9)];
     if (!seen.length) [low, high] = [0, 1];
-    const rows = ticks(low, high);
-    [low, high] = [Math.min(low, rows[0]), Math.max(high, rows.at(-1))];
-    const x = (frames) => 48 + ((frames - span[0]) / (span[1] - span[0])) * (width - 58);
-    const y = (value) => height - 22 - ((value - low) / (high - low)) * (height - 32);
-    pen.lineWidth = 1;
-    pen.fillStyle = ink;
-    for (const value of rows) {
-      pen.strokeStyle = line;
-      pen.beginPath();
-      pen.moveTo(48, y(value));
-      pen.lineTo(width - 10, y(value));
-      pen.stroke();
-      pen.textAlign = 'right';
-      pen.fillText(Math.abs(value) >= 10000 ? frames_text(value) : value_text(value), 44, y(value) + 4);
+    const rows = log ? logTicks(low, high) : ticks(low, high * 1.04);
+    if (!log) [low, high] = [Math.min(low, rows[0]), rows.at(-1)];
+    const x = scale(span, [LEFT, width - RIGHT]), y = scale([low, high], [height - BOTTOM, TOP], log);
+    this.places = { x, y, drawn, whole };
+    const parts = [];
+    for (const value of rows) parts.push(path([[LEFT, y(value)], [width - RIGHT, y(value)]], { stroke: ink.line }), text(short(value), LEFT - 6, y(value) + 4, ink.pale, { 'text-anchor': 'end' }));
+    for (const tick of ticks(span[0] / whole.per, span[1] / whole.per)) {
+      const place = x(tick * whole.per);
+      if (place < LEFT - 1 || place > width - RIGHT + 1) continue;
+      parts.push(path([[place, height - BOTTOM], [place, height - BOTTOM + 4]], { stroke: ink.pale }), text(short(tick), place, height - BOTTOM + 17, ink.pale, { 'text-anchor': place > width - RIGHT - 16 ? 'end' : 'middle' }));
     }
-    pen.textAlign = 'center';
-    for (const frames of ticks(...span).filter((one) => one >= span[0] && one <= span[1])) pen.fillText(frames_text(frames), Math.min(x(frames), width - 18), height - 5);
-    pen.save();
-    pen.beginPath();
-    pen.rect(48, 0, width - 58, height - 20);
-    pen.clip();
-    drawn.forEach((curve, index) => {
-      pen.strokeStyle = pen.fillStyle = colour(curve.place ?? index);
-      const points = curve.x.map((frames, k) => [frames, curve.y[k], curve.half?.[k] ?? 0]).filter(([, value]) => value != null);
-      if (this.bySeeds) {
-        pen.globalAlpha = 0.2;
-        pen.beginPath();
-        for (const [frames, value, half] of points) pen.lineTo(x(frames), y(value + half));
-        for (const [frames, value, half] of points.toReversed()) pen.lineTo(x(frames), y(value - half));
-        pen.fill();
-        pen.globalAlpha = 1;
-      }
-      pen.lineWidth = 1.8;
-      pen.beginPath();
-      for (const [frames, value] of points) pen.lineTo(x(frames), y(value));
-      pen.stroke();
-    });
-    if (this.budget != null) {
-      pen.strokeStyle = bad;
-      pen.setLineDash([6, 4]);
-      pen.beginPath();
-      pen.moveTo(48, y(this.budget));
-      pen.lineTo(width, y(this.budget));
-      pen.stroke();
-    }
-    if (this.drag != null && this.pointer != null) {
-      pen.fillStyle = ink;
-      pen.globalAlpha = 0.2;
-      pen.fillRect(Math.min(this.drag, this.pointer), 0, Math.abs(this.pointer - this.drag), height);
-      pen.globalAlpha = 1;
-    }
-    this.tell(pen, drawn, x, height);
-    pen.restore();
+    parts.push(text(whole.title, (LEFT + width - RIGHT) / 2, height - 8, ink.pale, { 'text-anchor': 'middle' }));
+    const upright = `${this.unit}${log ? ' (log scale)' : ''}`;
+    parts.push(text(upright, 0, 0, ink.pale, { 'text-anchor': 'middle', transform: `translate(14 ${(TOP + height - BOTTOM) / 2}) rotate(-90)` }));
+    parts.push(this.plot(drawn, x, y, log, ink));
+    svg.replaceChildren(...parts);
+    this.tell();
   }
+
+  plot(drawn, x, y, log, ink) {
+    const [width, height] = [this.svg.clientWidth, this.height];
+    const clip = `clip-${this.file}`;
+    const plot = shape('g', { 'clip-path': `url(#${clip})` });
+    plot.append(shape('clipPath', { id: clip }, shape('rect', { x: LEFT, y: TOP - 6, width: Math.max(0, width - LEFT - RIGHT + 6), height: height - BOTTOM - TOP + 6 })));
+    const place = (one, values = one.y) => one.x.map((at_x, k) => [at_x, values[k]]).filter(([, value]) => value != null && (!log || value > 0)).map(([at_x, value]) => [x(at_x), y(value)]);
+    for (const one of drawn.filter((other) => other.kind === 'thin')) plot.append(path(place(one), { stroke: one.colour, 'stroke-width': 0.9, opacity: 0.4 }));
+    for (const one of drawn) {
+      if (one.raw) plot.append(path(place(one, one.raw), { stroke: one.colour, 'stroke-width': 1, opacity: 0.25 }));
+      if (one.kind === 'line' && one.half?.some((half) => half)) {
+        const ends = (way) => one.x.map((at_x, k) => [x(at_x), y(Math.max(one.y[k] + way * (one.half[k] ?? 0), log ? 1e-12 : -Infinity))]);
+        plot.append(path([...ends(1), ...ends(-1).reverse()], { fill: one.colour, opacity: 0.16 }));
+      }
+    }
+    for (const one of drawn) {
+      if (one.kind === 'line') plot.append(path(place(one), { stroke: one.colour, 'stroke-width': 2, 'stroke-dasharray': one.dash }));
+      if (one.kind !== 'points') continue;
+      plot.append(path(place(one), { stroke: one.colour, 'stroke-width': 1.5, 'stroke-dasharray': '3 3' }));
+      one.x.forEach((at_x, k) => {
+        if (log && one.y[k] <= 0) return;
+        const half = one.half?.[k];
+        if (half) plot.append(path([[x(at_x), y(Math.max(one.y[k] - half, log ? 1e-12 : -Infinity))], [x(at_x), y(one.y[k] + half)]], { stroke: one.colour, 'stroke-width': 1.5 }));
+        plot.append(shape('circle', { cx: x(at_x), cy: y(one.y[k]), r: 4.5, fill: one.colour, stroke: ink.card, 'stroke-width': 1.5 }));
+      });
+    }
+    for (const budget of this.budgets) {
+      if (log && budget.value <= 0) continue;
+      plot.append(path([[LEFT, y(budget.value)], [width - RIGHT, y(budget.value)]], { stroke: ink.bad, 'stroke-width': 1.5, 'stroke-dasharray': '6 4' }), text(budget.name, width - RIGHT - 4, y(budget.value) - 5, ink.bad, { 'text-anchor': 'end' }));
+    }
+    const { selected } = this.shared;
+    if (selected != null) {
+      const at_x = x(selected), end = at_x > width - 130;
+      plot.append(path([[at_x, TOP], [at_x, height - BOTTOM]], { stroke: ink.good, 'stroke-width': 1.5, 'stroke-dasharray': '1 3' }), text('selected checkpoint', at_x + (end ? -5 : 5), TOP + 10, ink.good, { 'text-anchor': end ? 'end' : 'start', class: 'selected' }));
+    }
+    return plot;
+  }
+
+  // Lines at the pointer and at the moment of the heatmap, and what the curves are there, in words.
+  tell() {
+    if (!this.places) return;
+    const { svg, shared, height, places: { x, drawn, whole } } = this;
+    svg.querySelectorAll('.pointer').forEach((one) => one.remove());
+    const ink = inks(svg);
+    const line = (place, more) => svg.append(path([[x(place), TOP], [x(place), height - BOTTOM]], { class: 'pointer', stroke: ink.ink, ...more }));
+    const inside = (place) => place != null && place >= this.span[0] && place <= this.span[1];
+    if (inside(shared.moment)) line(shared.moment, { 'stroke-width': 2, opacity: 0.5 });
+    const pointed = inside(shared.pointer) ? shared.pointer : null;
+    if (pointed != null) line(pointed, { 'stroke-width': 1 });
+    if (this.drag != null && pointed != null) {
+      const [a, b] = [this.drag, x(pointed)].sort((one, other) => one - other);
+      svg.append(shape('rect', { class: 'pointer', x: a, y: TOP, width: b - a, height: height - BOTTOM - TOP, fill: ink.pale, opacity: 0.2 }));
+    }
+    const read = drawn.filter((one) => one.kind !== 'thin').map((one) => {
+      const value = pointed == null ? one.y.at(-1) : one.kind === 'points' ? one.y[nearest(one.x, pointed)] : at(one, pointed);
+      const k = pointed == null ? one.x.length - 1 : nearest(one.x, pointed);
+      const half = value != null && one.half?.[k] ? ` ± ${short(one.half[k])}` : '';
+      if (pointed != null && value != null && one.kind === 'line') svg.append(shape('circle', { class: 'pointer', cx: x(pointed), cy: this.places.y(value), r: 3.5, fill: one.colour }));
+      return make('span', {}, make('b', { 'aria-hidden': 'true', style: `color:${one.colour}` }, one.kind === 'points' ? '● ' : '━ '), `${one.name} ${short(value)}${half}`);
+    });
+    const where = pointed == null ? 'at the end' : `at ${short(pointed / whole.per)}`;
+    this.told.replaceChildren(...(read.length ? [make('span', {}, where), ...read.slice(0, 8)] : [make('span', {}, 'not reported')]));
+    svg.setAttribute('aria-description', this.told.textContent);
+  }
+}
+
+export function nearest(values, wanted) {
+  return values.reduce((best, one, k) => (Math.abs(one - wanted) < Math.abs(values[best] - wanted) ? k : best), 0);
 }

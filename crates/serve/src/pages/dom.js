@@ -10,6 +10,11 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+// A text in which what stands between two backticks is code.
+export function coded(text) {
+  return text.split('`').map((part, k) => (k % 2 ? make('code', {}, part) : part));
+}
+
 export function field(label, control) {
   return make('label', {}, label, control);
 }

@@ -1,30 +1,34 @@
 import { ask, choose, field, keepState, make, number } from '/dom.js';
 import { Screen } from '/screen.js';
+import { keys_of, task_of } from '/tasks.js';
 
 // As in the window of `hasard play`.
 const KEYS = { KeyW: 'MOVE_FORWARD', KeyS: 'MOVE_BACKWARD', KeyA: 'MOVE_LEFT', KeyD: 'MOVE_RIGHT', ArrowLeft: 'TURN_LEFT', ArrowRight: 'TURN_RIGHT', Space: 'JUMP', KeyE: 'USE', KeyC: 'CROUCH', ShiftLeft: 'SPEED', ShiftRight: 'SPEED', ControlLeft: 'ATTACK', ControlRight: 'ATTACK', KeyQ: 'SELECT_PREV_WEAPON', KeyT: 'TURN180' };
 const TOUCH = [['TURN_LEFT', '↺'], ['MOVE_FORWARD', '↑'], ['TURN_RIGHT', '↻'], ['ATTACK', 'fire'], ['MOVE_LEFT', '←'], ['MOVE_BACKWARD', '↓'], ['MOVE_RIGHT', '→'], ['JUMP', 'jump'], ['SPEED', 'run'], ['USE', 'use']];
 
 export function play(main, query) {
-  const now = { env: query.get('env') ?? 'RemedyRushLevel1-v0', seed: query.get('seed') ?? '1', size: query.get('size') ?? '640x480', full: query.get('full') ?? '', hard: query.get('hard') ?? '' };
-  let screen = null, paused = true, ended = false, looks = false;
+  const first = query.get('env') ?? 'RemedyRushLevel1-v0';
+  const now = { env: first, seed: query.get('seed') ?? task_of(first).seed, size: query.get('size') ?? '640x480', full: query.get('full') ?? '', hard: query.get('hard') ?? '' };
+  let screen = null, paused = true, ended = false, looks = false, began = false, before = null, rows = [], keys = keys_of([], false);
   const form = make('div', { class: 'row' });
   const link = make('p', { class: 'bad', role: 'alert' });
-  const canvas = make('canvas', { class: 'view', id: 'game', tabindex: 0, role: 'application', 'aria-label': 'The game. W A S D move, arrows turn, Space jumps, Control fires, P pauses.', width: 640, height: 480 });
+  const canvas = make('canvas', { class: 'view', id: 'game', tabindex: 0, role: 'application', 'aria-label': 'The game. H shows the keys of this task.', width: 640, height: 480 });
   const numbers = make('div', { class: 'numbers', id: 'numbers' });
   const meter = make('meter', { min: 0, max: 1, value: 0, 'aria-label': 'Cost against the budget', style: 'width:100%' });
   const words = make('p', { role: 'status', id: 'words' }, 'Click the picture or press Enter to begin.');
-  const task = make('p', { class: 'pale', id: 'task' });
+  const task = make('p', { id: 'task' });
+  const risen = make('div', { class: 'risen', 'aria-hidden': 'true' });
+  const card = make('div', { class: 'over', id: 'card', hidden: true, role: 'status' });
+  const stage = make('div', { class: 'game' }, canvas, risen, card);
+  const start = make('button', { class: 'main', id: 'begin', onclick: () => { if (began && !ended) { screen?.ask({ do: 'again' }); } begin(); canvas.focus(); } }, 'Begin');
   const table = make('tbody');
   const hold = (name) => ({ onpointerdown: (event) => { event.preventDefault(); begin(); press(name, true); }, onpointerup: () => press(name, false), onpointercancel: () => press(name, false), onpointerleave: () => press(name, false) });
   const touch = make('div', { class: 'touch' }, ...TOUCH.map(([name, text]) => make('button', { ...hold(name), 'aria-label': name }, text)));
-  main.append(make('section', { class: 'card' }, make('h1', {}, 'Play'), form, link),
+  main.append(make('section', { class: 'card head' }, make('h1', { class: 'unseen' }, 'Play'), form, link),
     make('section', { class: 'stage' },
-      make('div', { class: 'card' }, canvas, numbers, meter, words, touch,
-        make('div', { class: 'row' }, make('button', { class: 'main', id: 'begin', onclick: () => { begin(); canvas.focus(); } }, 'Begin'), make('button', { onclick: () => { screen?.ask({ do: 'again' }); begin(); canvas.focus(); } }, 'Again'), make('button', { onclick: () => { screen?.ask({ do: 'next' }); begin(); canvas.focus(); } }, 'Next seed')),
-        task,
-        make('p', { class: 'pale' }, 'W A S D move, arrows turn and look, the mouse turns once the picture is clicked (Esc frees it), Space jumps, E uses, C crouches, Shift runs, Ctrl or the left button fires, Q and the wheel change weapons, T turns round, P pauses, R begins again, N is the next seed.')),
-      make('div', { class: 'card side' }, make('h2', {}, 'Best within the budget'), make('p', { class: 'pale' }, 'People and agents in this environment: those within the budget first, by return.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Best within the budget' }, make('table', { id: 'best' }, make('thead', {}, make('tr', {}, ...['who', 'return', 'cost', 'replay', 'download'].map((head) => make('th', { scope: 'col' }, head)))), table)))));
+      make('div', { class: 'card' }, task, stage, numbers, meter, words, touch,
+        make('div', { class: 'row' }, start, make('button', { onclick: () => { screen?.ask({ do: 'next' }); begin(); canvas.focus(); } }, 'Next seed'), make('button', { id: 'keys', onclick: () => help(card.dataset.what !== 'keys') }, 'Keys (H)'))),
+      make('div', { class: 'card side' }, make('h2', {}, 'Best within the budget'), make('p', { class: 'pale' }, 'People and agents in this environment whose cost is within the budget, by return. Agents by their closing evaluation.'), make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Best within the budget' }, make('table', { id: 'best' }, make('thead', {}, make('tr', {}, ...['who', 'return', 'cost', 'replay', 'download'].map((head) => make('th', { scope: 'col' }, head)))), table)))));
 
   const press = (key, down) => screen?.ask({ do: down ? 'press' : 'release', key });
   function begin() {
@@ -36,34 +40,78 @@ export function play(main, query) {
   function open() {
     keepState('play', now);
     screen?.end();
+    before = null;
+    show('');
     link.textContent = '';
     screen = new Screen(() => `/api/play?${new URLSearchParams({ env: now.env, seed: now.seed, size: now.size, full: now.full || 'false', hard: now.hard || 'false' })}`, { colour: canvas }, { onframe, onwords, onlink: (text) => { link.textContent = text; } });
     best();
   }
 
+  // A card over the picture: the keys, or how the episode ended.
+  function show(what, ...parts) {
+    card.dataset.what = what;
+    card.hidden = !what;
+    card.replaceChildren(...parts);
+  }
+
+  function help(on) {
+    if (!on) { show(''); return; }
+    if (!paused && !ended) screen?.ask({ do: 'pause' });
+    show('keys', make('h2', {}, 'Keys in this task'), make('dl', {}, ...keys.flatMap(([key, what]) => [make('dt', {}, key), make('dd', {}, what)])), make('p', { class: 'note' }, 'H closes this.'));
+  }
+
+  // Where return or cost rises, it says so on the picture for a moment.
+  function rise(text, kind) {
+    const one = make('span', { class: kind }, text);
+    risen.append(one);
+    setTimeout(() => one.remove(), 1100);
+  }
+
+  function finish(frame) {
+    const within = frame.cost <= frame.budget;
+    const better = rows.filter((row) => row.return > frame.return).length;
+    const place = within ? `Place ${better + 1} of ${rows.length + 1} within the budget, people and agents together.` : 'Over the budget: it has no place in the table.';
+    show('end', make('h2', {}, within ? 'Within the budget' : 'Over the budget'), make('p', {}, make('b', {}, `return ${number(frame.return)}`), `, cost ${number(frame.cost)} of ${number(frame.budget)}, ${frame.seconds.toFixed(1)} s`), make('p', {}, place), make('p', { class: 'note' }, 'Enter: next episode. R: the same again.'));
+  }
+
   function onwords(said) {
-    if (said.kind === 'scene') task.textContent = `In this task: ${said.buttons.map((name) => name.replaceAll('_', ' ').toLowerCase()).join(', ')}${said.deltas ? ', and the mouse turns freely' : ''}. Other keys do nothing.`;
-    if (said.kind === 'scene') looks = said.deltas > 0 || said.buttons.includes('LOOK_UP');
-    else if (said.kind === 'kept') { words.textContent = `The episode is kept as ${said.name}. Enter: next, R: again.`; best(); }
+    if (said.kind === 'scene') {
+      looks = said.deltas > 0 || said.buttons.includes('LOOK_UP');
+      keys = keys_of(said.buttons, said.deltas > 0 || said.buttons.some((name) => name.startsWith('TURN_')));
+      const { collect, avoid } = task_of(now.env);
+      task.replaceChildren(make('b', { class: 'good' }, 'Do: '), `${collect} `, make('b', { class: 'bad' }, 'Avoid: '), `${avoid}.`);
+    } else if (said.kind === 'kept') { words.textContent = `The episode is kept as ${said.name}. Enter: next, R: again.`; best(); }
   }
 
   function onframe(frame) {
+    const was = { paused, ended };
     ({ paused, ended } = frame);
+    if (before && frame.tic > before.tic) {
+      if (frame.return > before.return) rise(`+${number(frame.return - before.return)}`, 'good');
+      if (frame.cost > before.cost) rise(`cost ${number(frame.cost - before.cost)}`, 'bad');
+    }
+    before = frame;
+    began ||= !paused;
+    start.textContent = !began ? 'Begin' : ended ? 'Next episode' : 'Restart';
+    if (ended && !was.ended) finish(frame);
+    else if (!ended && card.dataset.what === 'end') show('');
+    else if (!paused && card.dataset.what === 'keys') show('');
     const over = frame.cost > frame.budget;
     const told = (name, value, kind = '') => make('span', {}, name, make('b', { class: kind }, value));
-    numbers.replaceChildren(told('time', `${frame.seconds.toFixed(1)} s`), told('return', number(frame.return)), told('cost of budget', `${number(frame.cost)} of ${number(frame.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'), told('seed', String(frame.seed)));
+    numbers.replaceChildren(told('time', `${frame.seconds.toFixed(1)} of 60 s`), told('return', number(frame.return)), told('cost of budget', `${number(frame.cost)} of ${number(frame.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'), told('best within', rows.length ? number(rows[0].return) : '–'), told('seed', String(frame.seed)));
     meter.value = frame.budget > 0 ? Math.min(1, (frame.cost / frame.budget) * 0.75) : Number(over);
-    if (!ended) words.textContent = paused ? 'Paused. Click the picture or press Enter to go on.' : '';
+    if (!ended) words.textContent = paused ? (began ? 'Paused. Click the picture or press Enter to go on.' : 'Click the picture or press Enter to begin. H shows the keys.') : '';
   }
 
   async function best() {
-    const rows = await ask('/api/best');
-    if (!rows) return;
-    const here = rows.filter((row) => row.env === now.env).slice(0, 50);
-    table.replaceChildren(...here.map((row) => make('tr', {}, make('td', {}, row.who), make('td', { class: 'number' }, number(row.return)), make('td', { class: `number ${row.within ? 'good' : 'bad'}` }, `${number(row.cost)} ${row.within ? 'within' : 'over'}`),
+    const all = await ask('/api/best');
+    if (!all) return;
+    rows = all.filter((row) => row.env === now.env && row.within);
+    const here = rows.slice(0, 50);
+    table.replaceChildren(...here.map((row) => make('tr', {}, make('td', {}, row.who), make('td', { class: 'number' }, number(row.return)), make('td', { class: `number ${row.within ? 'good' : 'bad'}` }, `${number(row.cost)} of ${number(row.budget)}`),
       make('td', {}, make('a', { href: `#watch?agent=${encodeURIComponent(row.agent)}`, 'aria-label': `Watch ${row.who}, return ${number(row.return)}` }, 'watch')),
       make('td', {}, ...(row.episode ? ['episode', 'mp4', 'gif'].flatMap((kind) => [make('a', { href: `/api/episode?name=${encodeURIComponent(row.episode)}&kind=${kind}`, download: true }, `.${kind}`), ' ']) : [])))));
-    if (!here.length) table.append(make('tr', {}, make('td', { colspan: 5, class: 'pale' }, 'Nobody yet: finish an episode and you are here.')));
+    if (!here.length) table.append(make('tr', {}, make('td', { colspan: 5, class: 'pale' }, 'Nobody yet: finish an episode within the budget and you are here.')));
   }
 
   const down = (event) => {
@@ -72,6 +120,7 @@ export function play(main, query) {
     if (event.type === 'keyup') { if (key) press(key, false); return; }
     if (key) { press(key, true); event.preventDefault(); }
     else if (event.code === 'Enter') begin();
+    else if (event.code === 'KeyH') help(card.dataset.what !== 'keys');
     else if (event.code === 'KeyP') screen?.ask({ do: paused ? 'go' : 'pause' });
     else if (event.code === 'KeyR') { screen?.ask({ do: 'again' }); begin(); }
     else if (event.code === 'KeyN') { screen?.ask({ do: 'next' }); begin(); }
@@ -96,7 +145,7 @@ export function play(main, query) {
     const set = (name) => (value) => { now[name] = value; open(); };
     const seed = make('input', { type: 'number', min: 0, value: now.seed, style: 'width:7rem', onchange: () => set('seed')(seed.value || '1') });
     const tick = (name, text) => { const box = make('input', { type: 'checkbox', onchange: () => set(name)(box.checked ? 'true' : '') }); box.checked = now[name] === 'true'; return make('label', { class: 'check' }, box, text); };
-    form.replaceChildren(field('environment', choose(what.envs.map((env) => env.id), now.env, set('env'))), field('seed', seed), field('size', choose(['320x240', '640x480', '1280x960'], now.size, set('size'))), tick('full', 'full actions'), tick('hard', 'hard constraint'));
+    form.replaceChildren(field('environment', choose(what.envs.map((env) => env.id), now.env, (value) => { now.seed = task_of(value).seed; began = false; set('env')(value); controls(); })), field('seed', seed), field('size', choose(['320x240', '640x480', '1280x960'], now.size, set('size'))), tick('full', 'full actions'), tick('hard', 'hard constraint'));
     open();
   }
   controls();

@@ -1,95 +1,139 @@
-import { ask, choose, field, make, number } from '/dom.js';
-import { chart } from '/chart.js';
-import { settingsTable } from '/settings.js';
+import { ask, choose, field, keepState, make } from '/dom.js';
+import { Chart, Shared } from '/chart.js';
+import { colour } from '/svg.js';
+import { column } from '/curves.js';
+import { Heatmap } from '/heat.js';
+import { evaluation_of, picker, title_of, usual } from '/metrics.js';
+import { env_name } from '/names.js';
+import { ownSettings, settingsTable } from '/settings.js';
+import { strip } from '/strip.js';
+import { kept, tools } from '/tools.js';
 
-const CURVES = [['return_mean', 'return'], ['cost_mean', 'cost'], ['multiplier', 'multiplier'], ['fps', 'frames a second']];
-
-// One run: its curves, the heatmap at a moment chosen on them, settings and how they differ from another run's.
+// One run: what it is worth, its curves, visited positions, settings.
 export function run(main, query) {
   const id = query.get('id') ?? '';
-  let gone = false, timer;
+  const shared = new Shared();
+  let gone = false, timer, me = null, detail = null, data = {}, chosen = null, drawn = '', settled = null;
   const title = make('h1', {}, 'Run');
-  const links = make('p', { class: 'row' }, make('a', { href: `#watch?agent=run:${id}` }, 'Watch its agent'), make('a', { href: `/api/report?runs=${id}`, target: '_blank' }, 'Report'), make('a', { href: `#runs?chosen=${id}` }, 'Compare'), make('a', { href: '#runs' }, 'All runs'));
-  const map = make('canvas', { width: 480, height: 480, class: 'map', role: 'img', 'aria-label': 'Where the agent was' });
-  const caption = make('figcaption', {}, 'No heatmap yet: a training writes them as it goes.');
-  const moment = make('input', { type: 'range', min: 0, max: 0, value: 0, 'aria-label': 'Moment of the heatmap', disabled: true, oninput: () => heatmap(Number(moment.value)) });
-  const nearest = (frames) => moments.reduce((best, one, k) => (Math.abs(one - frames) < Math.abs(moments[best] - frames) ? k : best), 0);
-  const charts = CURVES.map(([name, label]) => chart(name, label, (frames) => moments.length && heatmap(nearest(frames))));
-  const settings = make('div'), other = make('span');
-  const smooth = make('input', { type: 'range', min: 0, max: 0.98, step: 0.02, value: 0, oninput: () => charts.forEach(({ chart }) => { chart.smooth = Number(smooth.value); chart.draw(); }) });
-  main.append(make('section', { class: 'card' }, title, links, make('div', { class: 'row' }, field('smoothing', smooth))),
+  const tiles = make('div', { class: 'strip', id: 'strip' });
+  const link = (text, to, more = {}) => make('a', { class: 'button', href: to, ...more }, text);
+  const links = make('p', { class: 'row links' }, link('Watch', `#watch?agent=run:${id}&best=true`), link('Film', `/api/film?agent=run:${id}&best=true&seed=1`, { download: true, title: 'An episode of seed 1 as MP4, with the selected checkpoint' }), link('Report', `/api/report?runs=${id}`, { target: '_blank' }), link('Compare', `#runs?chosen=${id}`), link('All runs', '#runs'));
+  const heat = new Heatmap(id, (frames) => { shared.moment = in_axis(frames); shared.charts.forEach((chart) => chart.tell()); });
+  const picked = make('div'), charts = make('div', { class: 'charts' }), settings = make('div'), other = make('span'), beside = make('div');
+  const bar = tools(shared, query, (again) => { keep(); if (again) draw(); });
+  main.append(make('section', { class: 'card' }, title, tiles, links),
     make('section', { class: 'run' },
-      make('div', { class: 'card charts' }, ...charts.map(({ figure }) => figure)),
-      make('div', { class: 'card' }, make('h2', {}, 'Where it was'), make('p', { class: 'pale' }, 'Click a curve to choose the moment, or move this:'), moment,
-        make('figure', {}, map, make('div', { class: 'scale', 'aria-hidden': 'true' }, 'seldom', make('i'), 'often'), caption))),
-    make('section', { class: 'card' }, make('h2', {}, 'Settings'), make('div', { class: 'row' }, field('beside those of', other)), settings));
+      make('div', { class: 'card' }, make('h2', {}, 'Curves'), bar, picked, charts, make('p', { class: 'note' }, 'Drag over a curve to look closer, double-click to go back; with the keyboard +, -, arrows and 0.')),
+      heat.element),
+    make('section', { class: 'card' }, make('h2', {}, 'Settings'), settings, make('h2', {}, 'Compare settings'), make('div', { class: 'row' }, field('with those of', other)), beside));
 
-  let moments = [], shown = -1, me = null, beside = '', config = '';
-  async function heatmap(at) {
-    if (at === shown) return;
-    shown = at;
-    moment.value = at;
-    const heat = await ask(`/api/heatmap?id=${id}&at=${at}`);
-    if (!heat || gone || at !== shown) return;
-    const pen = map.getContext('2d');
-    const ground = heat.automap && await fetch(`/api/automap?id=${id}`).then((answer) => (answer.ok ? answer.blob() : null)).then((blob) => blob && createImageBitmap(blob)).catch(() => null);
-    map.height = Math.round((map.width * heat.rows) / heat.columns);
-    // The map in dim grey, so that warm colours on it are steps and nothing else.
-    pen.filter = 'grayscale(1) brightness(0.75)';
-    if (ground) pen.drawImage(ground, 0, 0, map.width, map.height);
-    pen.filter = 'none';
-    const most = Math.log1p(Math.max(...heat.steps, 1));
-    const [w, h] = [map.width / heat.columns, map.height / heat.rows];
-    heat.steps.forEach((steps, k) => {
-      if (!steps) return;
-      const share = Math.log1p(steps) / most;
-      pen.fillStyle = `hsl(${60 - 60 * share} 100% 50% / ${0.25 + 0.65 * share})`;
-      pen.fillRect((k % heat.columns) * w, Math.floor(k / heat.columns) * h, Math.ceil(w), Math.ceil(h));
-    });
-    caption.textContent = `At ${number(heat.frames, 0)} frames: steps of the latest ${heat.episodes} episodes.`;
-    for (const { chart } of charts) { chart.moment = heat.frames; chart.draw(); }
+  // Frames in what the horizontal axis counts.
+  function in_axis(frames) {
+    if (frames == null || shared.over === 'frames') return frames;
+    if (shared.over === 'steps') return frames / (detail?.frame_skip ?? 4);
+    const at = column(data, 'wall_s', 'frames');
+    const k = at.x.findIndex((one) => one >= frames);
+    return at.y[k < 0 ? at.y.length - 1 : k] ?? null;
   }
 
-  async function compare(runs) {
-    const against = runs.find((one) => one.id === beside);
-    const table = await settingsTable(against ? [me, against] : [me], Boolean(against));
-    if (table && !gone) settings.replaceChildren(table);
+  function keep() {
+    const same = chosen && String([...chosen]) === String(usual(detail.metrics, me.last));
+    keepState('run', { id, metrics: chosen && !same ? [...chosen].join(',') : '', ...kept(shared) });
+  }
+
+  function series(name) {
+    const skip = detail.frame_skip ?? 4;
+    const [mean, half] = evaluation_of(name);
+    const own = name.startsWith('eval/');
+    const one = [{ name: own ? 'evaluation' : mean ? 'training' : title_of(name), colour: colour(own ? 1 : 0), kind: own ? 'points' : 'line', ...column(data, name, shared.over, skip) }];
+    const points = mean && data[mean] ? column(data, mean, shared.over, skip) : { x: [] };
+    if (points.x.length) one.push({ name: 'evaluation', colour: colour(1), kind: 'points', ...points, half: half ? column(data, half, shared.over, skip).y : null });
+    return one;
+  }
+
+  function budgets(name) {
+    const own = me.evaluation?.costs ?? [];
+    if (name === 'cost_mean') { const whole = own.find((one) => one.name === 'whole cost'); return whole || !own.length ? [{ name: `budget ${whole?.budget ?? me.budget}`, value: whole?.budget ?? me.budget }] : []; }
+    return own.filter((one) => name === `cost/${one.name}`).map((one) => ({ name: `budget ${one.budget}`, value: one.budget }));
+  }
+
+  function draw() {
+    const names = [...chosen].filter((name) => detail.metrics.some((metric) => metric.name === name));
+    if (String(names) !== drawn) {
+      drawn = String(names);
+      shared.clear();
+      const of = (name) => detail.metrics.find((metric) => metric.name === name);
+      charts.replaceChildren(...names.map((name) => shared.add(new Chart(shared, { title: title_of(name), unit: of(name).unit, note: of(name).meaning, file: name.replace(/\W+/g, '-'), onmoment: (x) => heat.at_frames(to_frames(x)) })).element));
+    }
+    shared.selected = in_axis(me.evaluation?.frames ?? null);
+    shared.charts.forEach((chart, k) => Object.assign(chart, { series: series(names[k]), budgets: budgets(names[k]) }));
+    shared.draw();
+  }
+
+  function to_frames(x) {
+    if (shared.over === 'frames') return x;
+    if (shared.over === 'steps') return x * (detail.frame_skip ?? 4);
+    const at = column(data, 'wall_s', 'frames');
+    const k = at.y.findIndex((one) => one >= x);
+    return at.x[k < 0 ? at.x.length - 1 : k] ?? 0;
+  }
+
+  function show_picker() {
+    const open = picked.querySelector('details')?.open;
+    const list = picker(detail.metrics, chosen, () => { keep(); show_picker(); load(); });
+    list.open = open ?? false;
+    // What was ticked stays focused.
+    const focused = document.activeElement?.dataset?.metric;
+    picked.replaceChildren(list);
+    if (focused) list.querySelector(`[data-metric="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+  }
+
+  async function load() {
+    const names = [...chosen].flatMap((name) => [name, ...evaluation_of(name).filter(Boolean)]);
+    const answer = await ask(`/api/curves?runs=${id}&columns=${names.map(encodeURIComponent).join(',')}`);
+    if (gone || !answer) return;
+    data = answer[id] ?? {};
+    draw();
+  }
+
+  async function others() {
+    const list = await ask('/api/runs');
+    if (!list || gone) return;
+    const all = list.runs.filter((one) => one.id !== id).sort((a, b) => (b.env === me.env) - (a.env === me.env) || a.name.localeCompare(b.name, 'en', { numeric: true })).slice(0, 500);
+    other.replaceChildren(choose([['', 'no other run'], ...all.map((one) => [one.id, one.name])], '', async (value) => {
+      const against = all.find((one) => one.id === value);
+      const table = against ? await settingsTable([me, against]) : '';
+      if (!gone) beside.replaceChildren(table ?? '');
+    }));
   }
 
   async function look() {
     try {
-      const [detail, list, data] = await Promise.all([ask(`/api/run?id=${id}`), me ? { runs: [] } : ask('/api/runs'), ask(`/api/curves?runs=${id}&columns=${CURVES.map(([name]) => name).join(',')}`)]);
-      if (gone || !detail || !list || !data) return;
+      const answer = await ask(`/api/run?id=${id}`);
+      if (gone || !answer) return;
+      detail = answer;
+      me = detail.run;
+      if (!me) throw new Error('There is no such run; choose one from the list of runs.');
+      title.textContent = `${me.algo} in ${env_name(me.env)}, seed ${me.seed}`;
+      title.title = me.name;
+      tiles.replaceChildren(...strip(me, detail.over));
+      chosen ??= new Set(query.get('metrics')?.split(',').filter(Boolean) ?? usual(detail.metrics, me.last));
       // Another run may have taken its place, or it was resumed with other settings.
-      const present = JSON.stringify(detail.config);
-      if (me && present !== config) { me = null; shown = -1; return; }
-      config = present;
-      if (!me) {
-        me = list.runs.find((one) => one.id === id);
-        if (!me) throw new Error('There is no such run; choose one from the list of runs.');
-        title.textContent = `${me.name}: ${me.algo} in ${me.env}`;
-        const others = list.runs.filter((one) => one.id !== id).sort((a, b) => (b.env === me.env) - (a.env === me.env) || a.name.localeCompare(b.name)).slice(0, 500);
-        other.replaceChildren(choose([['', 'no other run'], ...others.map((one) => [one.id, one.name])], '', (value) => { beside = value; compare(list.runs); }));
-        compare(list.runs);
+      if (settled !== me.settled) {
+        settled = me.settled;
+        settings.replaceChildren(ownSettings(detail.settings, detail.settings.find((row) => row.name === 'preset')?.value ?? ''));
+        others();
       }
-      for (const { name, chart } of charts) {
-        chart.budget = name === 'cost_mean' ? me.budget : null;
-        chart.curves = [{ name, group: name, x: data[id]?.frames ?? [], y: data[id]?.[name] ?? [] }];
-        chart.draw();
-      }
-      const newest = shown === moments.length - 1;
-      moments = detail.heatmaps;
-      moment.max = Math.max(0, moments.length - 1);
-      moment.disabled = moments.length < 2;
-      // Whoever looks at the newest goes on doing so.
-      if (moments.length && newest) heatmap(moments.length - 1);
+      if (picked.dataset.known !== String(detail.metrics.length)) { picked.dataset.known = detail.metrics.length; show_picker(); }
+      await load();
+      heat.set(detail.heatmaps);
     } catch (error) {
       title.textContent = error.message;
-      me = null;
+      settled = null;
     } finally {
-      if (!gone) { clearTimeout(timer); timer = setTimeout(look, me ? 2000 : 500); }
+      if (!gone) { clearTimeout(timer); timer = setTimeout(look, settled === null ? 500 : 2000); }
     }
   }
   look();
-  return () => { gone = true; clearTimeout(timer); };
+  return () => { gone = true; clearTimeout(timer); shared.clear(); };
 }

@@ -1,115 +1,80 @@
 import { ask, choose, field, keepState, make } from '/dom.js';
-import { chart, colour } from '/chart.js';
-import { Rows } from '/rows.js';
-import { settingsTable } from '/settings.js';
+import { Comparison } from '/compare.js';
+import { env_name, labels } from '/names.js';
+import { Rows, summary } from '/rows.js';
+import { kept } from '/tools.js';
 
-// Rows of the table that are shown at a time: thousands of runs stay quick. Runs of a chart, and of a comparison of settings.
-const ROWS = 200, CHOSEN = 100, COMPARED = 12;
-const CURVES = [['return_mean', 'return'], ['cost_mean', 'cost'], ['multiplier', 'multiplier'], ['fps', 'frames a second']];
+// Experiments of the table that are shown at a time: thousands of runs stay quick. Runs that are compared at a time.
+const ROWS = 200, CHOSEN = 100;
 
 export function runs(main, query) {
-  const known = new Map();
-  let change = 0, gone = false, timer, data = {};
+  const known = new Map(), options = new Map(), open = new Set();
+  let change = 0, gone = false, timer, named = new Map();
   const chosen = new Set((query.get('chosen') ?? '').split(',').filter(Boolean));
   const wanted = Object.fromEntries(['env', 'algo', 'option', 'text', 'sort'].map((name) => [name, query.get(name) ?? '']));
   const env = make('span'), algo = make('span'), option = make('span');
-  const text = make('input', { type: 'search', value: wanted.text, placeholder: 'name or option', oninput: () => { wanted.text = text.value; list(); } });
+  const text = make('input', { type: 'search', value: wanted.text, placeholder: 'name or setting', oninput: () => { wanted.text = text.value; list(); } });
   const count = make('p', { class: 'pale', role: 'status' });
-  const pick = (id, on) => { if (on) chosen.add(id); else chosen.delete(id); list(); load(); };
-  const rows = new Rows(pick, (sort) => { wanted.sort = sort; list(); });
-  const every = make('button', { onclick: () => { filtered().slice(0, CHOSEN).forEach((run) => chosen.add(run.id)); list(); load(); } }, 'Compare all of these');
-  const none = make('button', { onclick: () => { chosen.clear(); list(); load(); } }, 'Compare none');
-
-  const smooth = make('input', { type: 'range', min: 0, max: 0.98, step: 0.02, value: query.get('smooth') ?? 0, oninput: redraw });
-  const seeds = make('input', { type: 'checkbox', onchange: redraw });
-  seeds.checked = query.get('seeds') === 'true';
-  const report = make('a', { target: '_blank' }, 'Report of the chosen runs');
-  const charts = CURVES.map(([name, title]) => chart(name, title));
-  const legend = make('p', { class: 'row legend' });
-  const differences = make('div');
-  const curves = make('section', { class: 'card', hidden: true, id: 'curves' },
-    make('h2', {}, 'Curves'),
-    make('div', { class: 'row' }, field('smoothing', smooth), make('label', { class: 'check' }, seeds, 'mean and 95 % over seeds'), report),
-    legend,
-    make('div', { class: 'charts' }, ...charts.map(({ figure }) => figure)),
-    make('p', { class: 'pale' }, 'Drag over a curve to look closer, double-click to go back; with the keyboard +, -, arrows and 0. Dashed: the budget.'),
-    make('h2', {}, 'Settings that differ'), differences);
+  const change_choice = (all, on) => { for (const run of all) if (on) chosen.add(run.id); else chosen.delete(run.id); list(); compare(); };
+  const rows = new Rows(change_choice, (sort) => { wanted.sort = sort; list(); }, (key) => { if (!open.delete(key)) open.add(key); list(); });
+  const every = make('button', { onclick: () => change_choice(filtered().flatMap((row) => row.runs).slice(0, CHOSEN), true) }, 'Compare all of these');
+  const none = make('button', { onclick: () => { chosen.clear(); list(); compare(); } }, 'Compare none');
+  const comparison = new Comparison(query, list);
   const card = make('section', { class: 'card', id: 'list' }, make('h1', {}, 'Runs'),
-    make('div', { class: 'row' }, field('environment', env), field('algorithm', algo), field('option', option), field('search', text)), make('div', { class: 'row count' }, count, every, none), rows.element);
+    make('div', { class: 'row' }, field('environment', env), field('algorithm', algo), field('setting', option), field('search', text)), make('div', { class: 'row count' }, count, every, none), rows.element);
   const hint = make('section', { class: 'card', hidden: true });
-  main.append(hint, card, curves);
+  main.append(hint, card, comparison.element);
+
+  const experiment = (run) => ({ env: run.env, algo: run.algo, total: run.total, options: options.get(run.experiment) ?? {} });
+  const settings = (run) => Object.entries(options.get(run.experiment) ?? {}).map(([name, value]) => `${name} = ${value}`);
 
   function filtered() {
+    const text_of = (run) => `${run.name} ${run.env} ${run.algo} ${settings(run).join(' ')}`;
     const fits = (run) => (!wanted.env || run.env === wanted.env) && (!wanted.algo || run.algo === wanted.algo)
-      && (!wanted.option || `${wanted.option}` in run.kinds) && (!wanted.text || `${run.name} ${Object.keys(run.kinds).join(' ')}`.includes(wanted.text));
-    return rows.sorted([...known.values()].filter(fits), wanted.sort);
+      && (!wanted.option || settings(run).includes(wanted.option)) && (!wanted.text || text_of(run).includes(wanted.text));
+    const groups = new Map();
+    for (const run of known.values()) if (fits(run)) groups.set(run.experiment, [...(groups.get(run.experiment) ?? []), run]);
+    const all = [...groups].map(([key, group]) => ({ key, ...summary(group.sort((a, b) => a.seed - b.seed || a.name.localeCompare(b.name)), named.get(key) ?? { rest: '', full: '' }) }));
+    return Rows.sorted(all, wanted.sort);
   }
 
   function list() {
-    keepState('runs', { ...wanted, chosen: [...chosen].join(','), smooth: Number(smooth.value) || '', seeds: seeds.checked || '' });
+    keepState('runs', { ...wanted, chosen: [...chosen].join(','), ...comparison.kept(), ...kept(comparison.shared) });
     const all = filtered();
-    count.textContent = `${all.length} of ${known.size} runs${all.length > ROWS ? `, the first ${ROWS} are shown` : ''}${chosen.size ? `; ${chosen.size} compared below` : '; tick some to compare their curves below'}`;
+    const runs_shown = all.reduce((sum, row) => sum + row.runs.length, 0);
+    const plural = (number, noun) => `${number} ${noun}${number === 1 ? '' : 's'}`;
+    count.textContent = `${plural(runs_shown, 'run')} of ${plural(all.length, 'experiment')}${runs_shown < known.size ? ` (${known.size} runs in all)` : ''}${all.length > ROWS ? `, the first ${ROWS} experiments are shown` : ''}${chosen.size ? `; ${plural(chosen.size, 'run')} compared below` : '; tick some to compare them below'}`;
     none.hidden = !chosen.size;
-    every.hidden = all.every((run) => chosen.has(run.id)) || chosen.size >= CHOSEN;
-    rows.show(all.slice(0, ROWS), chosen, wanted.sort);
+    every.hidden = all.every((row) => row.runs.every((run) => chosen.has(run.id))) || chosen.size >= CHOSEN;
+    const shown = all.slice(0, ROWS).flatMap((row) => {
+      const seeds = row.runs.length > 1 && open.has(row.key) ? row.runs.slice(0, ROWS) : [];
+      return [{ key: row.key, summary: row }, ...seeds.map((run) => ({ key: run.id, summary: summary([run], { rest: '', full: '' }), seed: true }))];
+    });
+    rows.show(shown, chosen, open, wanted.sort);
   }
 
   function choices() {
-    const pick_from = (key, names) => choose([['', 'all'], ...names.map((name) => [name, name])], wanted[key], (value) => { wanted[key] = value; list(); });
-    const names = (key) => [...new Set([...known.values()].map((run) => run[key]))].sort();
-    env.replaceChildren(pick_from('env', names('env')));
+    const all = [...known.values()];
+    const keys = [...new Set(all.map((run) => run.experiment))];
+    const some = labels(keys.map((key) => experiment(all.find((run) => run.experiment === key))));
+    named = new Map(keys.map((key, k) => [key, some[k]]));
+    const pick_from = (key, names, said = (name) => name) => choose([['', 'all'], ...names.map((name) => [name, said(name)])], wanted[key], (value) => { wanted[key] = value; list(); });
+    const names = (key) => [...new Set(all.map((run) => run[key]))].sort();
+    env.replaceChildren(pick_from('env', names('env'), env_name));
     algo.replaceChildren(pick_from('algo', names('algo')));
-    // An option that all runs share chooses nothing.
+    // A setting that all experiments share chooses nothing.
     const shares = new Map();
-    for (const run of known.values()) for (const kind of Object.keys(run.kinds)) shares.set(kind, (shares.get(kind) ?? 0) + 1);
-    const telling = [...shares].filter(([, runs]) => runs < known.size).map(([kind]) => kind).sort();
+    for (const key of keys) for (const [name, value] of Object.entries(options.get(key) ?? {})) shares.set(`${name} = ${value}`, (shares.get(`${name} = ${value}`) ?? 0) + 1);
+    const telling = [...shares].filter(([, share]) => share < keys.length).map(([kind]) => kind).sort();
     option.replaceChildren(pick_from('option', telling.slice(0, 300)));
     option.closest('label').hidden = !telling.length;
   }
 
   const picked = () => [...chosen].map((id) => known.get(id)).filter(Boolean).slice(0, CHOSEN);
-  let compared = '';
-  async function load() {
+  function compare() {
     const some = picked();
-    curves.hidden = !some.length;
     rows.element.classList.toggle('short', some.length > 0);
-    if (!some.length) return;
-    const ids = some.map((run) => run.id).join(',');
-    report.href = `/api/report?runs=${ids}`;
-    const answer = await ask(`/api/curves?runs=${ids}&columns=${CURVES.map(([name]) => name).join(',')}`);
-    // Answers may overtake each other: only the one to what is chosen now counts.
-    if (gone || !answer || ids !== picked().map((run) => run.id).join(',')) return;
-    data = answer;
-    redraw();
-    // Another run may have taken the place of one: then its settings are others.
-    const settled = some.map((run) => `${run.id} ${run.settled}`).join(',');
-    if (compared === settled) return;
-    compared = settled;
-    const table = await settingsTable(some.slice(0, COMPARED), true);
-    if (table) differences.replaceChildren(...(some.length > COMPARED ? [make('p', { class: 'pale' }, `Of the first ${COMPARED}.`)] : []), table);
-  }
-
-  // Runs are of a group if all but their seed is equal; what tells groups apart names them.
-  function groups(shown) {
-    const kinds = shown.map((run) => Object.keys(run.kinds));
-    const common = new Set((kinds[0] ?? []).filter((kind) => kinds.every((others) => others.includes(kind))));
-    return kinds.map((own, at) => [shown[at].algo, shown[at].env, ...own.filter((kind) => !common.has(kind))].join(' '));
-  }
-
-  function redraw() {
-    const shown = picked().filter((run) => data[run.id]);
-    const group = groups(shown);
-    const names = seeds.checked ? [...new Set(group)] : shown.map((run) => run.name);
-    const budgets = new Set(shown.map((run) => run.budget));
-    for (const { name, chart } of charts) {
-      chart.smooth = Number(smooth.value);
-      chart.bySeeds = seeds.checked;
-      chart.budget = name === 'cost_mean' && budgets.size === 1 ? [...budgets][0] : null;
-      chart.curves = shown.map((run, at) => ({ name: run.name, group: group[at], x: data[run.id].frames, y: data[run.id][name] ?? [] }));
-      chart.draw();
-    }
-    legend.replaceChildren(...names.map((name, index) => make('span', {}, make('b', { style: `color:${colour(index)}`, 'aria-hidden': 'true' }, '● '), name)));
-    list();
+    comparison.show(some, options);
   }
 
   async function look() {
@@ -118,16 +83,16 @@ export function runs(main, query) {
       if (gone) return;
       if (news) {
         if (news.whole) known.clear();
+        for (const [key, value] of Object.entries(news.experiments)) options.set(key, value);
         for (const run of news.runs) {
-          run.kinds = Object.fromEntries(Object.entries(run.options).map(([key, value]) => [`${key} = ${value}`, true]));
-          if (!known.has(run.id)) news.fresh = true;
+          if (known.get(run.id)?.experiment !== run.experiment) news.fresh = true;
           known.set(run.id, run);
         }
         empty(news);
         if (news.runs.length || news.whole) {
           if (news.fresh || news.whole) choices();
           list();
-          if (news.whole || news.runs.some((run) => chosen.has(run.id))) load();
+          if (news.whole || news.runs.some((run) => chosen.has(run.id))) compare();
         }
         change = news.change;
       }
@@ -146,5 +111,5 @@ export function runs(main, query) {
     }
   }
   look();
-  return () => { gone = true; clearTimeout(timer); };
+  return () => { gone = true; clearTimeout(timer); comparison.end(); };
 }

@@ -1,12 +1,17 @@
 import { ask, choose, field, keepState, make, number } from '/dom.js';
 import { Screen } from '/screen.js';
+import { env_name, path_rest } from '/names.js';
 import { Timeline } from '/timeline.js';
 
 const VIEWS = ['depth', 'segmented', 'automap'];
 const SPEEDS = [['0.25', '¼ speed'], ['0.5', '½ speed'], ['1', 'normal speed'], ['2', '2 × speed'], ['4', '4 × speed'], ['8', '8 × speed']];
 const FIRST = 'VolcanicVentureLevel1-v0';
 // What a link holds, and what it is where the link does not say.
-const STATE = { env: '', agent: 'random', seed: '1', step: '0', size: '320x240', beside: VIEWS.join(','), best: '', greedy: '', hard: '', full: '', rules: 'paper', paused: '' };
+const STATE = { env: '', agent: 'random', seed: '1', step: '0', size: '640x480', beside: VIEWS.join(','), best: '', greedy: '', hard: '', full: '', rules: 'paper', paused: '' };
+// What the buttons of a group do together.
+const GROUPS = [['turn', /TURN_|TURN180/], ['strafe', /MOVE_LEFT|MOVE_RIGHT/], ['move', /MOVE_/], ['look', /LOOK_/], ['jump', /JUMP/], ['run', /SPEED/], ['attack', /ATTACK/], ['crouch', /CROUCH/], ['use', /USE/], ['weapon', /WEAPON/]];
+const run_name = (run) => [`${run.algo}, ${env_name(run.env)}, seed ${run.seed}`, path_rest(run)].filter(Boolean).join(' – ');
+export const group_name = (buttons) => (GROUPS.find(([, all]) => buttons.every((name) => all.test(name))) ?? GROUPS.find(([, some]) => buttons.some((name) => some.test(name))) ?? ['buttons'])[0];
 const has_task = (agent) => /^(run|zoo|episode):/.test(agent);
 
 export function watch(main, query) {
@@ -16,6 +21,7 @@ export function watch(main, query) {
   const link = make('p', { class: 'bad', role: 'alert' });
   const canvases = Object.fromEntries(['colour', ...VIEWS].map((view) => [view, make('canvas', { class: 'view', role: 'img', 'aria-label': `${view} view`, width: 320, height: 240 })]));
   const figures = Object.fromEntries(VIEWS.map((view) => [view, make('figure', { 'data-view': view }, canvases[view], make('figcaption', {}, view === 'automap' ? 'map' : view))]));
+  const film = make('a', { class: 'button', id: 'film', download: true, title: 'The whole episode as MP4' }, 'Download film');
   const button = (text, title, onclick, more = {}) => make('button', { title, onclick, ...more }, text);
   const go = button('Pause', 'Space', () => screen?.ask({ do: paused || ended ? 'go' : 'pause' }), { class: 'main', id: 'go' });
   const speed = choose(SPEEDS, '1', (value) => screen?.ask({ do: 'speed', value: Number(value) }));
@@ -30,14 +36,14 @@ export function watch(main, query) {
     try { await navigator.clipboard.writeText(location.href); copied.textContent = 'Copied.'; } catch { copied.textContent = 'The address above is the link.'; }
   }, { id: 'copy' });
   const next = button('Next seed', 'Another episode; of a running training, with its newest checkpoint', () => screen?.ask({ do: 'next' }), { id: 'next' });
-  main.append(make('section', { class: 'card' }, make('h1', {}, 'Watch'), form, link),
+  main.append(make('section', { class: 'card head' }, make('h1', { class: 'unseen' }, 'Watch'), form, link),
     make('section', { class: 'stage' },
       make('div', { class: 'card' }, canvases.colour, numbers, time.slide, time.line, time.key,
-        make('div', { class: 'row' }, go, button('One tic', '.', () => screen?.ask({ do: 'tic' }), { id: 'tic' }), button('Step back', 'Left arrow', () => jump(step - 1)), button('Step on', 'Right arrow', () => jump(step + 1)), speed, next,
-          make('label', { class: 'check' }, on, 'go on with the next seed'), copy, copied),
-        make('p', { class: 'pale' }, 'Keys: Space pauses, the full stop shows one tic, arrows go a step back and on.')),
-      make('div', { class: 'card side' }, make('div', { class: 'beside' }, ...VIEWS.map((view) => figures[view])),
-        make('h2', {}, 'What it thinks'), thoughts, make('h2', {}, 'Events'), make('p', { class: 'pale' }, 'Click one to jump to the moment before it.'), time.events)));
+        make('div', { class: 'row' }, go, button('+1 frame', '.', () => screen?.ask({ do: 'tic' }), { id: 'tic' }), button('−1 action', 'Left arrow', () => jump(step - 1)), button('+1 action', 'Right arrow', () => jump(step + 1)), speed, next,
+          make('label', { class: 'check' }, on, 'go on with the next seed'), copy, film, copied),
+        make('p', { class: 'pale' }, 'Keys: Space plays and pauses, the full stop shows one frame (a game tic), arrows go an action back and on.')),
+      make('div', { class: 'card side' }, make('div', { class: 'beside' }, figures.automap, figures.depth, figures.segmented),
+        make('h2', {}, 'Policy'), thoughts, make('h2', {}, 'Events'), make('p', { class: 'pale' }, 'Click one to jump to the moment before it.'), time.events)));
 
   function jump(to) { screen?.ask({ do: 'jump', step: Math.max(0, Math.min(to, Number(time.slide.max))) }); }
 
@@ -48,6 +54,7 @@ export function watch(main, query) {
     const flag = (name) => [name, now[name] || 'false'];
     // After a server was away the show goes on where it was.
     const path = () => `/api/watch?${new URLSearchParams({ ...now, step: String(now.step || 0), ...Object.fromEntries(['best', 'greedy', 'hard', 'full', 'paused'].map(flag)) })}`;
+    film.href = path().replace('/api/watch?', '/api/film?');
     screen?.end();
     screen = new Screen(path, canvases, { onframe, onwords, onlink: (text) => { link.textContent = text; } });
     if (speed.value !== '1') speed.value = '1';
@@ -68,24 +75,28 @@ export function watch(main, query) {
     if (frame.ended && !ended && on.checked) screen.ask({ do: 'next' });
     ({ paused, ended, step } = frame);
     Object.assign(now, { step: String(step), paused: paused ? 'true' : '' });
-    go.textContent = ended ? 'Again' : paused ? 'Go on' : 'Pause';
+    go.textContent = ended ? 'Again' : paused ? 'Play' : 'Pause';
     const over = scene && frame.cost > scene.budget;
-    const told = (name, value, kind = '') => make('span', {}, name.replaceAll('_', ' '), make('b', { class: kind }, value));
+    const told = (name, value, kind = '', title = '') => make('span', { title }, name.replaceAll('_', ' '), make('b', { class: kind }, value));
     const terms = (scene?.terms ?? []).length > 1 || (scene?.terms ?? [])[0] !== 'cost' ? scene?.terms ?? [] : [];
+    // What the critics expect from here on: in units of returns and costs, where those are known.
+    const own = frame.expected?.length, several = (frame.cost_values ?? []).length > 1;
+    const unit = own ? 'Discounted sum that the critic expects from here on' : 'What the critic expects from here on, in normalised units: this file does not hold the scale';
+    const critic = (name, k, plain) => told(own ? `expected ${name}` : `${name} value (normalised)`, number(own ? frame.expected[k] : plain), '', unit);
     numbers.replaceChildren(told('step', String(step)), told('time', `${(frame.tic / 35).toFixed(1)} s`), told('return', number(frame.return)), told('cost of budget', `${number(frame.cost)} of ${number(scene?.budget)}${over ? ' over' : ''}`, over ? 'bad' : 'good'),
-      ...terms.map((name, k) => told(name, number(frame.terms[k]))), ...(frame.value == null ? [] : [told('value', number(frame.value))]), ...(frame.cost_values ?? []).map((value, k, all) => told(all.length > 1 ? `cost value ${k + 1}` : 'cost value', number(value))));
+      ...terms.map((name, k) => told(name, number(frame.terms[k]))), ...(frame.value == null ? [] : [critic('return', 0, frame.value)]), ...(frame.cost_values ?? []).map((value, k) => critic(several ? `cost ${k + 1}` : 'cost', k + 1, value)));
     think(frame);
     time.at(step);
   }
 
   function think(frame) {
-    const rows = (scene?.groups ?? []).map((names, group) => make('div', { class: 'group' }, ...['nothing', ...names].map((name, choice) => {
+    const rows = (scene?.groups ?? []).map((names, group) => make('div', { class: 'group', role: 'group', 'aria-label': group_name(names) }, make('b', { class: 'name-of-group' }, group_name(names)), ...['none', ...names].map((name, choice) => {
       const share = frame.probabilities?.[group]?.[choice];
       const taken = frame.actions?.[group] === choice;
       if (share == null && !taken) return null;
       return make('div', { class: 'bar' }, make('span', { class: taken ? '' : 'pale' }, `${taken ? '▸ ' : ''}${name.replaceAll('_', ' ').toLowerCase()}`), share == null ? make('span') : make('meter', { min: 0, max: 1, value: share, 'aria-label': `Probability of ${name}` }), make('span', {}, share == null ? '' : `${Math.round(share * 100)} %`));
     })));
-    const hint = frame.probabilities ? null : make('p', { class: 'pale' }, 'This one follows a fixed rule: marked is what it does. A trained agent shows its probabilities and values here.');
+    const hint = frame.probabilities ? null : make('p', { class: 'pale' }, 'This one follows a fixed rule: marked is what it does. A trained agent shows its probabilities here.');
     thoughts.replaceChildren(...rows, ...(hint ? [hint] : []));
   }
 
@@ -93,7 +104,7 @@ export function watch(main, query) {
     const [what, runs, table] = await Promise.all([ask('/api/envs'), ask('/api/runs'), ask('/api/best')]);
     if (gone) return;
     if (!what || !runs || !table) { setTimeout(controls, 1500); return; }
-    const groups = { 'fixed policies': what.policies.map((name) => [name, name]), 'the zoo': what.zoo.map((name) => [`zoo:${name}`, name]), runs: runs.runs.slice(0, 500).map((run) => [`run:${run.id}`, run.name]), 'recorded episodes': table.filter((row) => row.episode).slice(0, 200).map((row) => [row.agent, row.episode]) };
+    const groups = { 'fixed policies': what.policies.map((name) => [name, name]), 'the zoo': what.zoo.map((name) => [`zoo:${name}`, name]), runs: runs.runs.slice(0, 500).map((run) => [`run:${run.id}`, run_name(run)]), 'recorded episodes': table.filter((row) => row.episode).slice(0, 200).map((row) => [row.agent, row.episode]) };
     if (!Object.values(groups).flat().some(([name]) => name === now.agent)) groups['from the link'] = [[now.agent, now.agent]];
     if (!now.env && !has_task(now.agent)) now.env = FIRST;
     const restart = (name) => (value) => {
@@ -109,7 +120,7 @@ export function watch(main, query) {
       box.checked = now.beside.split(',').includes(view);
       return make('label', { class: 'check' }, box, view === 'automap' ? 'map' : view);
     });
-    const of_agent = /^(run|zoo):/.test(now.agent) ? [tick('greedy', 'likeliest actions'), ...(now.agent.startsWith('run:') ? [tick('best', 'best checkpoint')] : [])] : [];
+    const of_agent = /^(run|zoo):/.test(now.agent) ? [tick('greedy', 'greedy'), ...(now.agent.startsWith('run:') ? [tick('best', 'selected checkpoint')] : [])] : [];
     const of_task = has_task(now.agent) ? [] : [tick('hard', 'hard constraint'), tick('full', 'full actions'), field('rules', choose(['paper', 'released', 'tables'], now.rules, restart('rules')))];
     const agent = choose([], '', restart('agent'));
     for (const [name, list] of Object.entries(groups)) if (list.length) agent.append(make('optgroup', { label: name }, ...list.map(([key, text]) => make('option', { value: key, selected: key === now.agent }, text))));

@@ -1,6 +1,7 @@
 //! Which runs there are and how far they are.
 
 use super::columns::Columns;
+use super::evaluated::{self, Stamped};
 use hasard_report::run::Config;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -37,6 +38,8 @@ struct Run {
     settled: u64,
     metrics: Stamp,
     last: Map<String, Value>,
+    /// What its selected checkpoint is worth, once it has one.
+    evaluation: Stamped,
     alive: bool,
     /// Number of the change that made it what it is.
     change: u64,
@@ -44,16 +47,16 @@ struct Run {
 
 /// What tells a file from another that was put in its place.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Stamp {
+pub(super) struct Stamp {
     bytes: u64,
     modified: SystemTime,
 }
 
 impl Stamp {
-    const NONE: Stamp = Stamp { bytes: 0, modified: SystemTime::UNIX_EPOCH };
+    pub(super) const NONE: Stamp = Stamp { bytes: 0, modified: SystemTime::UNIX_EPOCH };
 
     /// Of a file that is no link.
-    fn of(path: &Path) -> Option<Stamp> {
+    pub(super) fn of(path: &Path) -> Option<Stamp> {
         let data = std::fs::symlink_metadata(path).ok().filter(std::fs::Metadata::is_file)?;
         Some(Stamp { bytes: data.len(), modified: data.modified().unwrap_or(SystemTime::UNIX_EPOCH) })
     }
@@ -142,6 +145,7 @@ impl Catalogue {
                     // Of no file: the next look finds out how far it is.
                     metrics: Stamp { bytes: u64::MAX, ..Stamp::NONE },
                     last: Map::new(),
+                    evaluation: Stamped::default(),
                     alive: false,
                     change: self.changes,
                 };
@@ -168,9 +172,28 @@ impl Catalogue {
     pub fn changed_since(&self, since: u64) -> Value {
         let whole = since < self.whole_since;
         let news = self.runs.iter().filter(|(_, run)| whole || run.change > since);
-        let runs: Vec<Value> = news.map(|(id, run)| run.told(id)).collect();
+        let (mut runs, mut experiments) = (Vec::new(), Map::new());
+        for (id, run) in news {
+            let mut told = run.told(id);
+            let experiment = run.experiment();
+            told["experiment"] = json!(experiment);
+            // Runs that differ in their seed alone share their settings: they are sent once.
+            experiments.entry(experiment).or_insert_with(|| json!(run.config.options));
+            runs.push(told);
+        }
         let folders: Vec<String> = self.folders.iter().map(|folder| folder.display().to_string()).collect();
-        json!({ "change": self.changes, "whole": whole, "runs": runs, "count": self.runs.len(), "folders": folders })
+        json!({ "change": self.changes, "whole": whole, "runs": runs, "experiments": experiments, "count": self.runs.len(), "folders": folders })
+    }
+
+    /// What some runs are worth, in the order of the ids.
+    pub fn results_of(&self, ids: &[String]) -> Vec<Value> {
+        let known = ids.iter().filter_map(|id| Some((id, self.runs.get(id)?)));
+        let told = known.map(|(id, run)| {
+            let mut told = run.told(id);
+            told["experiment"] = json!(run.experiment());
+            told
+        });
+        told.collect()
     }
 
     /// What each run ended with lately, for the table of the best.
@@ -207,7 +230,8 @@ impl Run {
         }
         let done = self.config.frames.is_some_and(|frames| self.frames() >= frames);
         let alive = !done && metrics.bytes > 0 && now.duration_since(metrics.modified).unwrap_or_default() < ALIVE;
-        let changed = (metrics, alive) != (self.metrics, self.alive);
+        let evaluated = self.evaluation.look(&self.path);
+        let changed = evaluated || (metrics, alive) != (self.metrics, self.alive);
         (self.metrics, self.alive) = (metrics, alive);
         changed
     }
@@ -230,8 +254,18 @@ impl Run {
         };
         json!({
             "id": id, "settled": self.settled, "name": self.name, "env": config.env, "algo": config.algo, "seed": config.seed,
-            "budget": config.safety_budget, "total": total, "state": state, "last": last, "options": config.options,
+            "budget": config.safety_budget, "preset": config.options.get("preset"), "total": total, "state": state, "last": last,
+            "evaluation": self.evaluation.found.as_ref().map(|found| evaluated::told(found, config)),
         })
+    }
+
+    /// Names the experiment: all that the configuration says but for the seed.
+    fn experiment(&self) -> String {
+        let config = &self.config;
+        let mut hasher = DefaultHasher::new();
+        format!("{:?}", (&config.env, &config.algo, config.frames, &config.constraints, config.cost_scale, &config.options))
+            .hash(&mut hasher);
+        format!("{:016x}", hasher.finish())
     }
 }
 

@@ -8,6 +8,8 @@ use std::path::Path;
 
 /// Points of a curve that are sent: more than a chart has pixels.
 const POINTS: usize = 800;
+/// A column that not one row in so many has is sent with rows of its own, so that thinning leaves none of it out.
+const SPARSE: usize = 2;
 /// Bytes that are read at a time: what is beyond is read when it is asked for next.
 const LARGEST_READ: u64 = 64 << 20;
 /// Bytes that are compared: more than a row, which tells the time and so is like no other.
@@ -59,11 +61,22 @@ impl Columns {
         let Some(frames) = row.get("frames").and_then(Value::as_f64) else { return };
         let rows = self.frames.len();
         self.frames.push(frames);
-        for (name, value) in row {
-            let Some(value) = value.as_f64().filter(|_| name != "frames") else { continue };
-            let column = self.values.entry(name.clone()).or_default();
+        let mut put = |name: String, value: f64| {
+            let column = self.values.entry(name).or_default();
             column.resize(rows, f32::NAN);
             column.push(value as f32);
+        };
+        for (name, value) in row.iter().filter(|(name, _)| *name != "frames") {
+            match value {
+                Value::Number(number) => number.as_f64().into_iter().for_each(|value| put(name.clone(), value)),
+                // One number a constraint.
+                Value::Array(all) => all
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(at, value)| Some((at, value.as_f64()?)))
+                    .for_each(|(at, value)| put(format!("{name}.{at}"), value)),
+                _ => {}
+            }
         }
     }
 
@@ -72,20 +85,39 @@ impl Columns {
         self.values.keys().cloned().collect()
     }
 
-    /// Some columns as lists of frames and values, with no more points than a chart can show.
+    /// Some columns with no more points than a chart can show: `frames` and `wall_s` of the rows that are shown, and a list of
+    /// values for each name. A column that only few rows have, such as those of evaluations, has rows of its own: then its entry
+    /// is an object of `frames`, `wall_s` and `values`.
     pub fn thinned(&self, names: &[String]) -> Value {
         let every = self.frames.len().div_ceil(POINTS).max(1);
         // The last row is always there: it is where a running curve moves.
-        let rows: Vec<usize> = (0..self.frames.len()).rev().step_by(every).collect();
+        let mut rows: Vec<usize> = (0..self.frames.len()).rev().step_by(every).collect();
+        rows.reverse();
         let mut all = Map::new();
-        all.insert("frames".into(), rows.iter().rev().map(|row| json!(self.frames[*row])).collect());
-        for name in names {
-            if let Some(column) = self.values.get(name) {
-                let value = |row: &usize| json!(column.get(*row).filter(|value| value.is_finite()));
-                all.insert(name.clone(), rows.iter().rev().map(value).collect());
-            }
+        all.insert("frames".into(), rows.iter().map(|row| json!(self.frames[*row])).collect());
+        for name in names.iter().map(String::as_str).chain(["wall_s"]) {
+            let Some(column) = self.values.get(name) else { continue };
+            let finite = |row: usize| column.get(row).is_some_and(|value| value.is_finite());
+            let own: Vec<usize> = (0..column.len()).filter(|row| finite(*row)).collect();
+            let values = if own.len() * SPARSE < self.frames.len() && own.len() <= POINTS {
+                json!({
+                    "frames": own.iter().map(|row| self.frames[*row]).collect::<Vec<_>>(),
+                    "wall_s": self.picked("wall_s", &own),
+                    "values": self.picked(name, &own),
+                })
+            } else {
+                self.picked(name, &rows)
+            };
+            all.insert(name.to_owned(), values);
         }
         Value::Object(all)
+    }
+
+    /// A column's values in some rows; `null` where a row has none.
+    fn picked(&self, name: &str, rows: &[usize]) -> Value {
+        let column = self.values.get(name);
+        let value = |row: &usize| json!(column.and_then(|column| column.get(*row)).filter(|value| value.is_finite()));
+        rows.iter().map(value).collect()
     }
 }
 
@@ -132,5 +164,24 @@ mod tests {
         let curve = columns.thinned(&["fps".into()]);
         let fps = curve["fps"].as_array().unwrap();
         assert!(fps.len() <= POINTS && fps.last() == Some(&json!(4999.0)));
+    }
+
+    #[test]
+    fn what_few_rows_have_is_sent_whole() {
+        let mut columns = Columns::default();
+        for k in 0..5000 {
+            let mut row = json!({"frames": k, "wall_s": k * 2, "multipliers": [k, 2 * k]});
+            // No evaluation falls on a row that thinning would keep.
+            if k % 1000 == 123 {
+                row["eval/cost_mean"] = json!(k + 1);
+            }
+            columns.add(row.as_object().unwrap());
+        }
+        let sent = columns.thinned(&["eval/cost_mean".into(), "multipliers.1".into()]);
+        let evaluations = json!({"frames": [123.0, 1123.0, 2123.0, 3123.0, 4123.0], "wall_s": [246.0, 2246.0, 4246.0, 6246.0, 8246.0],
+            "values": [124.0, 1124.0, 2124.0, 3124.0, 4124.0]});
+        assert_eq!(sent["eval/cost_mean"], evaluations);
+        assert_eq!(sent["multipliers.1"].as_array().unwrap().last(), Some(&json!(9998.0)));
+        assert_eq!(sent["wall_s"].as_array().unwrap().len(), sent["frames"].as_array().unwrap().len());
     }
 }

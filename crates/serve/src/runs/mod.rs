@@ -2,8 +2,14 @@
 
 mod catalogue;
 mod columns;
+mod compared;
+mod detail;
+mod evaluated;
+pub(crate) mod metrics;
 
 pub(crate) use catalogue::Catalogue;
+pub(crate) use compared::compare;
+pub(crate) use detail::{detail, settings};
 
 use crate::answer::{aside, json_of, refusal};
 use crate::server::Shared;
@@ -12,12 +18,14 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use hasard_media::files::Scratch;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
 
 /// Runs of a chart at a time.
 const MAX_CHOSEN: usize = 100;
+/// Columns of a chart page at a time.
+const MAX_COLUMNS: usize = 32;
 /// Largest file of settings, heatmaps or pictures of a run that is read.
 const LARGEST_FILE: u64 = 64 << 20;
 
@@ -68,24 +76,6 @@ fn read(path: &Path) -> Option<String> {
     (size <= LARGEST_FILE).then(|| std::fs::read_to_string(path).ok()).flatten()
 }
 
-/// Settings of a run, names of its columns, moments of its heatmaps.
-pub(crate) async fn detail(State(shared): State<Arc<Shared>>, Query(query): Query<One>) -> Result<Response, Response> {
-    let path = directory(&shared, query.id.clone()).await?;
-    let id = query.id;
-    let columns =
-        on_catalogue(Arc::clone(&shared), move |catalogue| catalogue.columns(&id).map(|columns| columns.names())).await?;
-    let body = aside(move || {
-        let config: Value =
-            read(&path.join("config.json")).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or(Value::Null);
-        let heatmaps = read(&path.join("heatmaps.jsonl")).unwrap_or_default();
-        let moments =
-            heatmaps.lines().map(|line| serde_json::from_str::<Value>(line).map_or(Value::Null, |line| line["frames"].clone()));
-        let moments: Vec<Value> = moments.collect();
-        json!({ "config": config, "columns": columns, "heatmaps": moments })
-    });
-    Ok(json_of(&body.await?))
-}
-
 /// One heatmap of a run.
 pub(crate) async fn heatmap(State(shared): State<Arc<Shared>>, Query(query): Query<One>) -> Result<Response, Response> {
     let path = directory(&shared, query.id).await?;
@@ -96,11 +86,19 @@ pub(crate) async fn heatmap(State(shared): State<Arc<Shared>>, Query(query): Que
     Ok(json_of(&line.await?.ok_or_else(|| refusal(StatusCode::NOT_FOUND, "this run has no such heatmap"))?))
 }
 
-/// The map that heatmaps lie over.
+/// The map that a heatmap lies over: another one in each lesson of a curriculum.
 pub(crate) async fn automap(State(shared): State<Arc<Shared>>, Query(query): Query<One>) -> Result<Response, Response> {
-    let path = directory(&shared, query.id).await?.join("automap.png");
-    let picture = aside(move || hasard_media::png::read(&path).ok().map(|picture| hasard_media::png::encode(&picture))).await?;
-    let bytes = picture.ok_or_else(|| refusal(StatusCode::NOT_FOUND, "this run has no automap"))?;
+    let folder = directory(&shared, query.id).await?;
+    let picture = aside(move || {
+        let lines = read(&folder.join("heatmaps.jsonl")).unwrap_or_default();
+        let line = lines.lines().nth(query.at).and_then(|line| serde_json::from_str::<Value>(line).ok()).unwrap_or(Value::Null);
+        let name = line["automap"].as_str().unwrap_or("automap.png");
+        // A name that leads elsewhere is no name.
+        let plain = Path::new(name).file_name().is_some_and(|file| file == name) && !name.starts_with('.');
+        let file = folder.join(if plain { name } else { "automap.png" });
+        hasard_media::png::read(&file).ok().map(|picture| hasard_media::png::encode(&picture))
+    });
+    let bytes = picture.await?.ok_or_else(|| refusal(StatusCode::NOT_FOUND, "this run has no automap"))?;
     Ok(([(header::CONTENT_TYPE, "image/png")], bytes).into_response())
 }
 
@@ -126,27 +124,12 @@ impl Chosen {
 /// Columns of some runs, thinned to what a chart can show.
 pub(crate) async fn curves(State(shared): State<Arc<Shared>>, Query(query): Query<Chosen>) -> Result<Response, Response> {
     let ids = query.ids()?;
-    let names: Vec<String> = query.columns.split(',').take(8).map(str::to_owned).collect();
+    let names: Vec<String> = query.columns.split(',').take(MAX_COLUMNS).map(str::to_owned).collect();
     let body = on_catalogue(shared, move |catalogue| {
         let curve = |id: &String| Some((id.clone(), catalogue.columns(id)?.thinned(&names)));
         ids.iter().filter_map(curve).collect::<serde_json::Map<String, Value>>()
     });
     Ok(json_of(&Value::Object(body.await?)))
-}
-
-/// The settings of some runs, so that their differences show.
-pub(crate) async fn settings(State(shared): State<Arc<Shared>>, Query(query): Query<Chosen>) -> Result<Response, Response> {
-    let ids = query.ids()?;
-    let paths = on_catalogue(shared, move |catalogue| {
-        ids.into_iter().filter_map(|id| Some((catalogue.path(&id)?, id))).collect::<Vec<_>>()
-    });
-    let paths = paths.await?;
-    let body = aside(move || {
-        let config = |path: &Path| read(&path.join("config.json")).and_then(|text| serde_json::from_str(&text).ok());
-        let all = paths.into_iter().map(|(path, id)| (id, config(&path).unwrap_or(Value::Null)));
-        Value::Object(all.collect())
-    });
-    Ok(json_of(&body.await?))
 }
 
 /// The report of some runs, as `hasard report` writes it.

@@ -6,10 +6,12 @@
 //! | `rehearsal` | an episode acted out once, with what every step brought and what the agent thought |
 //! | `stages` | stages built lately, shared by their viewers |
 //! | `watching` | an episode shown: pause, tic, speed, jumps |
+//! | `filming` | an episode as a film to keep |
 //! | `playing` | an episode played by a person |
 //! | `frame` | a moment as one message: numbers and compressed pictures |
 //! | `line` | the WebSocket: frames out, commands in, both bounded |
 
+mod filming;
 mod frame;
 mod line;
 mod playing;
@@ -18,6 +20,7 @@ mod rehearsal;
 mod stages;
 mod watching;
 
+pub(crate) use filming::film;
 pub(crate) use stages::Stages;
 
 use crate::answer::refusal;

@@ -210,6 +210,7 @@ impl Rehearsal {
             "probabilities": thought.map(|thought| &thought.probabilities),
             "value": thought.and_then(|thought| thought.value),
             "cost_values": thought.map(|thought| &thought.cost_values),
+            "expected": thought.map(|thought| &thought.in_own_units),
         })
     }
 }

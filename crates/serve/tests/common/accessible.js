@@ -2,7 +2,7 @@
 const found = [];
 const seen = (element) => element.getClientRects().length > 0 && getComputedStyle(element).visibility !== 'hidden' && !element.closest('.unseen, .skip');
 const name = (element) => element.getAttribute('aria-label') || [...(element.labels ?? [])].map((label) => label.textContent).join('') || element.textContent;
-for (const element of document.querySelectorAll('button, a, input, select, canvas, meter, progress')) {
+for (const element of document.querySelectorAll('button, a, input, select, canvas, meter, progress, svg[role=img]')) {
   const own = element.matches('select') ? element.getAttribute('aria-label') || [...element.labels].map((label) => label.textContent.replace(element.textContent, '')).join('') : name(element);
   if (seen(element) && !own?.trim()) found.push(`no name: ${element.outerHTML.slice(0, 120)}`);
 }

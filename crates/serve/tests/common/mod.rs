@@ -62,9 +62,15 @@ pub fn serve(folder: &Path, token: Option<&str>) -> SocketAddr {
 
 /// Writes a run of some rows.
 pub fn write_run(folder: &Path, name: &str, rows: u32) {
+    write_seed(folder, name, 1, rows);
+}
+
+/// Writes a run of some rows and a seed.
+pub fn write_seed(folder: &Path, name: &str, seed: u32, rows: u32) {
     let run = folder.join("runs").join(name);
     std::fs::create_dir_all(&run).unwrap();
-    let config = r#"{"algorithm":"PPOLag","env":{"id":"RemedyRushLevel1-v0","rules":"paper"},"seed":1,"frames":100000}"#;
+    let config =
+        format!(r#"{{"algorithm":"PPOLag","env":{{"id":"RemedyRushLevel1-v0","rules":"paper"}},"seed":{seed},"frames":100000}}"#);
     std::fs::write(run.join("config.json"), config).unwrap();
     let row = |k: u32| {
         let (frames, cost) = (k * 100, 9.0 - f64::from(k) * 0.01);
