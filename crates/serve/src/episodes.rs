@@ -42,9 +42,10 @@ pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, 
             let value = |place: &str| run.pointer(place).and_then(Value::as_f64);
             let (episode_return, cost) = (value("/evaluation/return/mean")?, value("/evaluation/costs/0/cost/mean")?);
             let preset = run["preset"].as_str().map_or_else(String::new, |preset| format!(" ({preset})"));
+            let within = ["surely", "mean"].contains(&run["evaluation"]["kept"].as_str()?);
             Some(json!({
                 "who": format!("{}{preset}, seed {}", run["algo"].as_str()?, run["seed"]), "env": run["env"], "return": episode_return,
-                "cost": cost, "budget": value("/evaluation/costs/0/budget"), "within": ["surely", "mean"].contains(&run["evaluation"]["kept"].as_str()?),
+                "cost": cost, "budget": value("/evaluation/costs/0/budget"), "within": within,
                 "agent": format!("run:{}", run["id"].as_str()?),
             }))
         }));

@@ -71,7 +71,6 @@ fn runs_appear_move_and_are_compared() {
         "const c = document.querySelector('svg.chart'); c.setPointerCapture = () => {}; const at = c.getBoundingClientRect(); for (const type of ['pointerdown', 'pointerup']) c.dispatchEvent(new PointerEvent(type, { clientX: at.left + 70, clientY: at.top + 50, pointerId: 1 }))",
     );
     browser.wait("[...document.querySelectorAll('figcaption')].some((text) => text.innerText.includes('At 10,000 frames'))");
-    browser.photograph("serve_run");
     // Beside another run what differs is said.
     browser.script("const one = [...document.querySelectorAll('select')].at(-1); one.value = one.options[1].value; one.dispatchEvent(new Event('change'))");
     browser.wait("document.body.innerText.includes('All settings are equal')");

@@ -205,3 +205,24 @@ fn experiments_are_folded_and_compared_by_environment() {
     browser.photograph("serve_compare");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
+
+#[test]
+fn a_run_is_photographed_light_dark_and_narrow() {
+    let address = served("real-photographs");
+    for (kind, width, height, dark) in [
+        ("serve_run", 1280, 1100, false),
+        ("serve_run_dark", 1280, 1100, true),
+        ("serve_run_narrow", 390, 1600, false),
+        ("serve_run_wide", 1920, 1100, false),
+    ] {
+        let Some(browser) = Browser::open(width, height, dark) else { return };
+        open_run(&browser, address);
+        browser.wait("document.querySelector('.ends')?.innerText.includes('%')");
+        let lacking = browser.script(include_str!("common/accessible.js"));
+        assert_eq!(lacking, json!([]), "{kind}");
+        let wide = browser.script("return document.documentElement.scrollWidth - document.documentElement.clientWidth");
+        assert_eq!(wide, json!(0), "{kind}: wider than the window by {wide}");
+        browser.photograph(kind);
+        assert_eq!(browser.errors(), Vec::<String>::new(), "{kind}");
+    }
+}

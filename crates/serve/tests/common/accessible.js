@@ -4,7 +4,7 @@ const seen = (element) => element.getClientRects().length > 0 && getComputedStyl
 const name = (element) => element.getAttribute('aria-label') || [...(element.labels ?? [])].map((label) => label.textContent).join('') || element.textContent;
 for (const element of document.querySelectorAll('button, a, input, select, canvas, meter, progress, svg[role=img]')) {
   const own = element.matches('select') ? element.getAttribute('aria-label') || [...element.labels].map((label) => label.textContent.replace(element.textContent, '')).join('') : name(element);
-  if (seen(element) && !own?.trim()) found.push(`no name: ${element.outerHTML.slice(0, 120)}`);
+  if (seen(element) && !element.closest('[aria-hidden=true]') && !own?.trim()) found.push(`no name: ${element.outerHTML.slice(0, 120)}`);
 }
 for (const element of document.querySelectorAll('[role=region]')) if (!element.getAttribute('aria-label')) found.push('a region without a name');
 if (document.querySelectorAll('h1').length < 1) found.push('no heading');
