@@ -574,8 +574,13 @@ fn a_run_selects_its_best_checkpoint_within_the_budget() {
     let mut agent = policy.agent(Choice::Sampled, 100);
     agent.act(&batch.observations);
     let expected = |critic: usize| (0..100).map(|lane| f64::from(agent.thought(lane).in_own_units[critic])).sum::<f64>() / 100.0;
-    assert!((expected(0) - others.episode_return.mean).abs() < 1.0, "{} {others:?}", expected(0));
-    assert!((expected(1) - others.cost.mean).abs() < 1.0, "{} {others:?}", expected(1));
+    // Ten equal steps, discounted; a clock that ends them cuts nothing off what a critic expects, so that it may be more.
+    let discounted = |mean: f64, gamma: f64| [1.0 - gamma.powi(10), 1.0].map(|part| mean / 10.0 * part / (1.0 - gamma));
+    for (critic, mean, gamma) in [(0, others.episode_return.mean, 0.9), (1, others.cost.mean, 0.5)] {
+        let [least, most] = discounted(mean, gamma);
+        let slack = 0.3 * most;
+        assert!((least - slack..=most + slack).contains(&expected(critic)), "{} of {least} to {most}", expected(critic));
+    }
     let best: Vec<_> = checkpoints(&path).into_iter().filter(|one| one.to_str().unwrap().contains("best_")).collect();
     assert_eq!(best.len(), 1, "{best:?}");
     // Asked again, the run is over and says the same.

@@ -161,15 +161,9 @@ mod tests {
         let bytes = pdf(&drawing);
         let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
         // 400 and 200 pixels with their margins.
-        for part in [
-            "%PDF-1.7",
-            "/MediaBox [0 0 300 150]",
-            "(return 3) Tj",
-            "0 0 m\n20 5 l\nS",
-            "/G10 gs",
-            "/Helvetica-Bold",
-            "%%EOF",
-        ] {
+        for part in
+            ["%PDF-1.7", "/MediaBox [0 0 300 150]", "(return 3) Tj", "0 0 m\n20 5 l\nS", "/G10 gs", "/Helvetica-Bold", "%%EOF"]
+        {
             assert!(text.contains(part), "{part}\n{text}");
         }
         // Helvetica's r, e, t, u, r, n: 333 + 556 + 278 + 556 + 333 + 556 thousandths.
