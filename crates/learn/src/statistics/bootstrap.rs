@@ -18,7 +18,8 @@ pub fn bca_interval(samples: &[f64], probabilities: [f64; 2]) -> [f64; 2] {
     let mean = samples.iter().sum::<f64>() / n.max(1) as f64;
     let deviations: Vec<f64> = samples.iter().map(|sample| sample - mean).collect();
     let squares: f64 = deviations.iter().map(|one| one * one).sum();
-    if n < 2 || squares <= 0.0 {
+    // Their mean may be off by its rounding where all samples are alike, and no deviation is 0.
+    if n < 2 || squares <= 0.0 || samples.iter().all(|sample| *sample == samples[0]) {
         return [mean; 2];
     }
     let mut rng = Rng::new(SEED);
@@ -27,6 +28,8 @@ pub fn bca_interval(samples: &[f64], probabilities: [f64; 2]) -> [f64; 2] {
     means.sort_by(f64::total_cmp);
     // Half of those that equal the mean count as below it.
     let below = means.partition_point(|&one| one < 0.0) + means.partition_point(|&one| one <= 0.0);
+    // No share is 0 or 1, whose quantiles are infinite.
+    let below = below.clamp(1, 2 * RESAMPLES - 1);
     let bias = normal_quantile(below as f64 / (2 * RESAMPLES) as f64);
     // The jackknife's acceleration: leaving sample i out moves a mean by -d_i / (n - 1).
     let cubes: f64 = deviations.iter().map(|one| one * one * one).sum();
@@ -69,5 +72,8 @@ mod tests {
         }
         assert_eq!(bca_interval(&SKEWED, [0.025, 0.975]), bca_interval(&SKEWED, [0.025, 0.975]));
         assert_eq!(bca_interval(&[4.0; 9], [0.025, 0.975]), [4.0; 2]);
+        // The mean of 32 times 243.6 is not 243.6 in doubles: the interval of what does not vary is finite all the same.
+        let ends = bca_interval(&[243.6; 32], [0.025, 0.975]);
+        assert!(ends.iter().all(|end| (end - 243.6).abs() < 1e-9), "{ends:?}");
     }
 }

@@ -78,6 +78,9 @@ fn is_skewed(values: &[f64]) -> bool {
 /// The third standardised moment of samples; 0 where all are alike.
 #[must_use]
 pub fn skewness(values: &[f64]) -> f64 {
+    if values.iter().all(|value| *value == values[0]) {
+        return 0.0;
+    }
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n.max(1.0);
     let moment = |power: i32| values.iter().map(|value| (value - mean).powi(power)).sum::<f64>() / n.max(1.0);
@@ -116,5 +119,8 @@ mod tests {
         assert!(low > 0.0 && high - 2.0 > 2.0 - low && high > 2.0 + all.half_width, "{all:?}");
         assert!(upper_bound(&rare, 0.005) > high);
         assert_eq!(Estimate::of(rare[..19].iter().copied()).bootstrap, None, "too few for a bootstrap");
+        // Episodes that all end at the same depth: a run's state could not be read again for an interval that was no number.
+        let same = Estimate::of([243.6; 32]);
+        assert!(same.bootstrap.is_none() && same.half_width < 1e-9, "{same:?}");
     }
 }
