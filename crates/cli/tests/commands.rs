@@ -281,7 +281,7 @@ fn an_evaluation_shows_the_tails() {
 #[test]
 fn an_agent_is_evaluated_under_other_rules() {
     let folder = Folder::new("other_rules");
-    let small = "--algo PPOLag --envs 2 --threads 1 --set network.dense=[8] --set network.recurrent=8 --set sampling.rollout=8 \
+    let small = "--algo PPOLag --envs 2 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
                  --set episode_steps=8 --observation grey --size 64x48 --frames 64 --quiet";
     for (own, asked, budget) in [("usual", "", 5.0), ("asked", "--safety-budget 7", 7.0)] {
         folder.ok(&format!("train ArmamentBurdenLevel1-v0 --out {own} {asked} {small}"));

@@ -37,9 +37,13 @@ pub fn run(args: &NewArgs) -> Outcome {
 fn scenario_name(word: &str) -> Option<String> {
     let word = word.strip_suffix(".toml").unwrap_or(word);
     let fits = word.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-'));
+    if !fits {
+        return None;
+    }
+    // Every letter is a byte here.
     let parts = word.split(['_', '-']).filter(|part| !part.is_empty());
     let name: String = parts.map(|part| part[..1].to_uppercase() + &part[1..]).collect();
-    (fits && name.bytes().next().is_some_and(|first| first.is_ascii_alphabetic()) && name.len() <= 40).then_some(name)
+    (name.bytes().next().is_some_and(|first| first.is_ascii_alphabetic()) && name.len() <= 40).then_some(name)
 }
 
 fn file_name(word: &str) -> &str {
