@@ -39,7 +39,7 @@ class OwnScenario:
 
 
 def is_file(env_id: Any) -> bool:
-    """Whether an id is a scenario's file: a path that ends in `.toml`, perhaps with `#2` for its second level."""
+    """Returns whether `env_id` is a scenario's file: a path that ends in `.toml`, perhaps with `#2` for its second level."""
     return isinstance(env_id, os.PathLike) or (isinstance(env_id, str) and env_id.partition("#")[0].lower().endswith(".toml"))
 
 
@@ -77,7 +77,7 @@ def from_text(text: str, path: str = "scenario.toml") -> OwnScenario:
 
 
 def from_file(path: str | os.PathLike[str]) -> OwnScenario:
-    """Reads a scenario's file. Returns the scenario. Raises InvalidOption with the first mistake, its line and column."""
+    """Reads the scenario's file at `path`. Returns the scenario. Raises InvalidOption with the first mistake, its line and column."""
     place = Path(path)
     try:
         with place.open("rb") as file:
@@ -91,12 +91,18 @@ def from_file(path: str | os.PathLike[str]) -> OwnScenario:
 
 
 def from_dict(table: dict[str, Any], path: str = "scenario.toml") -> OwnScenario:
-    """Makes a scenario of a dictionary with the fields of a file. Returns and raises as `from_text`; TypeError for what TOML cannot hold."""
+    """Makes a scenario of `table`, a dictionary with the fields of a file; `path` is what messages call it.
+
+    Returns and raises as `from_text`; TypeError for what TOML cannot hold.
+    """
     return from_text("".join(f"{_key(name)} = {_value(value)}\n" for name, value in table.items()), path)
 
 
 def opened(env_id: Any) -> str:
-    """Reads the file that `env_id` names, `my_task.toml` or `my_task.toml#2`, and returns the id that it has from now on."""
+    """Reads the file that `env_id` names, `my_task.toml` or `my_task.toml#2`. Returns the id that it has from now on.
+
+    Raises InvalidOption for a level that it does not have, and as `from_file`.
+    """
     path, _, level = os.fspath(env_id).partition("#")
     scenario = from_file(path)
     known = {str(number + 1): name for number, name in enumerate(scenario.ids)}
@@ -106,7 +112,7 @@ def opened(env_id: Any) -> str:
 
 
 def scenario_and_level(env_id: str) -> tuple[str, int]:
-    """Splits `hasard/RemedyRushLevel2-v0` into `RemedyRush` and 2; an id without a level has level 1."""
+    """Splits an `env_id`. Returns `RemedyRush` and 2 for `hasard/RemedyRushLevel2-v0`; an id without a level has level 1."""
     name, found, level = env_id.removeprefix("hasard/").removesuffix("-v0").rpartition("Level")
     return (name, int(level)) if found and level.isdigit() else (f"{name}{found}{level}", 1)
 

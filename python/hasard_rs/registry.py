@@ -27,12 +27,12 @@ class Scenario(enum.Enum):
 
     @staticmethod
     def from_file(path: str | os.PathLike[str]) -> OwnScenario:
-        """Returns the scenario of a file of your own. Raises InvalidOption with the first mistake, its line and column."""
+        """Returns the scenario of a file of your own at `path`. Raises InvalidOption with the first mistake, its line and column."""
         return from_file(path)
 
     @staticmethod
     def from_dict(table: dict[str, Any]) -> OwnScenario:
-        """Returns the scenario of a dictionary with the fields of a file. Raises as `from_file`; TypeError for what a file cannot hold."""
+        """Returns the scenario of `table`, with the fields of a file. Raises as `from_file`; TypeError for what a file cannot hold."""
         return from_dict(table)
 
 

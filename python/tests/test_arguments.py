@@ -73,9 +73,16 @@ def level(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+def id_for(name: str) -> str:
+    """An environment that takes the argument: one alone has other creatures."""
+    return "hasard/DetonatorsDilemmaLevel1-v0" if name == "early_creatures" else ENV
+
+
 def given(name: str, level: Path, **more: Any) -> dict[str, Any]:
     value = {**VALUES, **BATCH}[name]
-    if name == "published_colours":
+    if name == "early_creatures":
+        more["rules"] = "tables"
+    elif name == "published_colours":
         more["observation"] = "segmented"
     elif name == "published_depth":
         more["observation"] = "rgb+depth"
@@ -94,8 +101,8 @@ def test_every_argument_is_here() -> None:
 @pytest.mark.parametrize("name", VALUES)
 def test_one_world_is_a_lane_of_a_batch(name: str, level: Path) -> None:
     arguments = given(name, level)
-    native = gymnasium.make_vec(ENV, num_envs=2, **arguments)
-    sync = gymnasium.make_vec(ENV, num_envs=2, vectorization_mode="sync", **arguments)
+    native = gymnasium.make_vec(id_for(name), num_envs=2, **arguments)
+    sync = gymnasium.make_vec(id_for(name), num_envs=2, vectorization_mode="sync", **arguments)
     single = sync.envs[0].unwrapped
     for fact in FACTS:
         theirs = f"single_{fact}" if fact.endswith("_space") else fact
@@ -103,7 +110,7 @@ def test_one_world_is_a_lane_of_a_batch(name: str, level: Path) -> None:
         assert fact.endswith("_space") or native.get_attr(fact) == sync.get_attr(fact)
     if name == "seed":
         # Lane i of a batch is seeded with the seed and i, as by `reset`.
-        found, second = native.reset(), hasard_rs.make(ENV, **{**arguments, "seed": 12}).reset()
+        found, second = native.reset(), hasard_rs.make(id_for(name), **{**arguments, "seed": 12}).reset()
         assert_same(found[0], np.stack([single.reset()[0], second[0]]))
         return
     assert_same(native.reset(seed=6), sync.reset(seed=6), "reset")
@@ -138,7 +145,7 @@ def same(one: Any, other: Any) -> None:
 
 @pytest.mark.parametrize("name", VALUES)
 def test_a_world_comes_back_from_json_and_pickle(name: str, level: Path) -> None:
-    env = hasard_rs.make(ENV, **given(name, level))
+    env = hasard_rs.make(id_for(name), **given(name, level))
     again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
     assert type(env.unwrapped) is type(again.unwrapped)
     assert env.spec.max_episode_steps == again.spec.max_episode_steps == env.get_wrapper_attr("max_episode_steps")
@@ -154,7 +161,7 @@ def test_a_world_comes_back_from_json_and_pickle(name: str, level: Path) -> None
 
 @pytest.mark.parametrize("name", {**VALUES, **BATCH})
 def test_a_batch_comes_back_from_json_and_pickle(name: str, level: Path) -> None:
-    envs = hasard_rs.make_vec(ENV, 2, **given(name, level))
+    envs = hasard_rs.make_vec(id_for(name), 2, **given(name, level))
     again = gymnasium.make_vec(EnvSpec.from_json(envs.spec.to_json()))
     assert again.num_envs == 2 and again.autoreset_mode == envs.autoreset_mode and again.batch_size == envs.batch_size
     assert again.spec.max_episode_steps == envs.spec.max_episode_steps == envs.max_episode_steps
