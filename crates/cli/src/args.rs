@@ -54,6 +54,12 @@ pub enum Command {
     Sweep(SweepArgs),
     /// Write a run's selected agent as one small file
     ExportAgent(ExportAgentArgs),
+    /// Write what an agent scores on a scoreboard's episodes, with its file
+    Claim(ClaimArgs),
+    /// Check claims by playing their episodes again, to the bit
+    Verify(VerifyArgs),
+    /// Make a page of a folder's claims that hold
+    Scoreboard(ScoreboardArgs),
     /// Write an environment's map as a WAD for editors and engines
     ExportWad(ExportWadArgs),
     /// Draw every level of a scenario in every view
@@ -772,6 +778,59 @@ pub struct ExportAgentArgs {
     /// Accepted for uniformity; nothing is drawn by chance
     #[arg(long, hide = true, default_value_t = 0)]
     pub seed: u64,
+}
+
+/// `hasard claim`.
+#[derive(Args, Debug)]
+pub struct ClaimArgs {
+    /// Run directory, agent file, or zoo:NAME for an agent that comes with the program
+    #[arg(value_name = "RUN|FILE|zoo:NAME")]
+    pub agent: OsString,
+    /// Name of the agent on a scoreboard
+    #[arg(long, default_value = "hasard")]
+    pub name: String,
+    /// The rule set of the claim  [default: the run's]
+    #[arg(long, value_enum)]
+    pub rules: Option<Rules>,
+    /// Number of episodes; scoreboards list claims of 200 and more
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub episodes: u32,
+    /// The command that trained the agent  [default: from the run's settings]
+    #[arg(long, value_name = "COMMAND")]
+    pub how: Option<String>,
+    /// Folder that claim and agent are written to
+    #[arg(short, long, value_name = "DIR", default_value = "scoreboard")]
+    pub out: PathBuf,
+    /// One JSON object about the claim
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `hasard verify`.
+#[derive(Args, Debug)]
+pub struct VerifyArgs {
+    /// A claim (.claim.json), its agent beside it; or a folder of claims
+    #[arg(value_name = "CLAIM")]
+    pub claim: PathBuf,
+    /// Number of threads; what is found does not depend on it  [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// One JSON object a claim
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `hasard scoreboard`.
+#[derive(Args, Debug)]
+pub struct ScoreboardArgs {
+    /// Folder of claims and their agents; the page becomes its index.html
+    pub folder: PathBuf,
+    /// Title of the page
+    #[arg(long, default_value = "HASARD scoreboard")]
+    pub title: String,
+    /// One JSON object about the page
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `hasard export-wad`.

@@ -8,8 +8,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Try", &["envs", "render", "rollout", "play", "serve"]),
     ("Your own task", &["new", "check"]),
     ("Train", &["train", "sweep", "settings", "metrics"]),
-    ("Analyse", &["eval", "report", "record", "replay", "bench", "trace"]),
-    ("Export", &["export-agent", "export-wad", "contact-sheet", "completions"]),
+    ("Analyse", &["eval", "report", "record", "replay", "verify", "scoreboard", "bench", "trace"]),
+    ("Export", &["export-agent", "claim", "export-wad", "contact-sheet", "completions"]),
 ];
 
 /// What is typed for each command, and what comes of it.
@@ -93,6 +93,21 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     ("export-agent", &[("hasard export-agent runs/vv1 -o zoo/Mine.agent", "then: hasard eval zoo:Mine")]),
+    (
+        "claim",
+        &[(
+            "hasard claim runs/vv1 --name 'my method' -o scoreboard",
+            "200 episodes that everybody plays; writes claim and agent",
+        )],
+    ),
+    (
+        "verify",
+        &[
+            ("hasard verify scoreboard", "every claim of the folder, to the bit"),
+            ("hasard verify theirs.claim.json", "one claim, its agent beside it"),
+        ],
+    ),
+    ("scoreboard", &[("hasard scoreboard scoreboard", "a page of the claims that hold: scoreboard/index.html")]),
     ("export-wad", &[("hasard export-wad VolcanicVentureLevel1 -o vv1.wad", "a map for any UDMF editor")]),
     ("contact-sheet", &[("hasard contact-sheet RemedyRush", "every level in every view, in the folder sheets")]),
     (

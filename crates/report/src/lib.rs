@@ -8,6 +8,7 @@
 //! | [`published`] | the values that the paper prints |
 //! | [`document`], `sections` | what the report says |
 //! | [`chart`], [`heat`] | figures and heatmaps |
+//! | [`scoreboard`] | agents whose claims hold, as a page |
 //! | [`write_report`] | HTML, Markdown, CSV, SVG, PNG and GIF files; LaTeX and PDF where wanted |
 //!
 //! Nothing here trains, plays or knows an environment, so that a report can be made of runs of any version and on any
@@ -28,6 +29,7 @@ mod markdown;
 mod page;
 pub mod published;
 pub mod run;
+pub mod scoreboard;
 mod sections;
 pub mod statistics;
 mod write;

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod check;
+pub mod claim;
 pub mod completions;
 pub mod contact_sheet;
 pub mod envs;
@@ -16,8 +17,10 @@ pub mod render;
 pub mod report;
 mod resume;
 pub mod rollout;
+pub mod scoreboard;
 pub mod serve;
 pub mod settings;
 pub mod sweep;
 pub mod trace;
 pub mod train;
+pub mod verify;

@@ -29,6 +29,12 @@ impl ComputeDevice {
         }
     }
 
+    /// The processor with the plain kernels, whose bits are those of every machine.
+    #[must_use]
+    pub fn plain() -> ComputeDevice {
+        ComputeDevice::Processor(Kernels::PORTABLE)
+    }
+
     /// The kernels that compute what is on the processor: everything, or what comes before and after the networks.
     #[must_use]
     pub fn kernels(&self) -> Kernels {

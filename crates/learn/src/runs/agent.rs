@@ -209,6 +209,12 @@ impl TrainedPolicy {
         &self.config
     }
 
+    /// The same policy, computed by kernels whose bits are those of every processor.
+    #[must_use]
+    pub fn on_plain_kernels(self) -> TrainedPolicy {
+        TrainedPolicy { device: ComputeDevice::plain(), ..self }
+    }
+
     /// An agent for `lanes` worlds.
     #[must_use]
     pub fn agent(&self, choice: Choice, lanes: usize) -> Agent {

@@ -167,6 +167,18 @@ fn misfit(name: &str) -> LearnError {
     LearnError::Config(format!("the agent's file does not fit its own settings: {name}"))
 }
 
+/// The bytes of the agent's file at a place: a file, or `zoo:NAME`.
+///
+/// # Errors
+/// When it is no agent's file.
+pub fn bytes(place: &Path) -> Result<Vec<u8>, LearnError> {
+    if let Some(bytes) = zoo::bytes(place) {
+        return Ok(bytes.to_vec());
+    }
+    AgentFile::read(place)?;
+    fs::read(place).map_err(LearnError::file(place, "read"))
+}
+
 impl AgentFile {
     /// The agent's file at a place: a file, or `zoo:NAME`, one that is part of the program. `None` for anything else, such as a
     /// run's directory.

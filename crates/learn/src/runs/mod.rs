@@ -4,6 +4,7 @@ pub mod agent;
 pub mod agent_file;
 pub mod calibration;
 pub mod checkpoint;
+pub mod claim;
 pub mod checksum;
 pub mod evaluate;
 pub mod examiner;

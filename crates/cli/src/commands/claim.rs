@@ -1,0 +1,73 @@
+//! `hasard claim`: what an agent scores on the episodes of a scoreboard, as a file that anybody can check.
+
+use crate::args::ClaimArgs;
+use crate::failure::{Failure, Outcome};
+use crate::zoo;
+use hasard_learn::runs::agent::run_config;
+use hasard_learn::runs::agent_file;
+use hasard_learn::runs::claim::{Claim, measure};
+use hasard_media::files::write_whole;
+use serde_json::json;
+use std::path::Path;
+
+/// Ending of a claim's file.
+pub const ENDING: &str = "claim.json";
+
+/// Runs the command.
+pub fn run(args: &ClaimArgs) -> Outcome {
+    let agent = zoo::find(&args.agent)?;
+    let config = run_config(&agent).map_err(Failure::bad)?;
+    let bytes = if agent.is_dir() { agent_file::export(&agent) } else { agent_file::bytes(&agent) }.map_err(Failure::bad)?;
+    let rules = args.rules.map(hasard_envs::RuleSet::from);
+    let under = rules.map_or(config.env.rules.as_str(), |rules| rules.name()).to_string();
+    let id = config.env.id.trim_end_matches("-v0").to_string();
+    let stem = format!("{id}.{under}.{}", hasard_report::document::slug(&args.name));
+    let (file, path) = (format!("{stem}.{}", zoo::ENDING), args.out.join(format!("{stem}.{ENDING}")));
+    // The agent first: what is claimed is measured from the very file that is given away.
+    let kept = args.out.join(&file);
+    write_whole(&kept, &bytes).map_err(Failure::bad)?;
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let measured = measure(&kept, rules, args.episodes, threads).map_err(Failure::bad)?;
+    let how = args.how.clone().unwrap_or_else(|| command(&config));
+    let claim = Claim::new(&args.name, &file, &bytes, &how, &measured);
+    write_whole(&path, format!("{:#}\n", json!(claim)).as_bytes()).map_err(Failure::bad)?;
+    let verified = format!("hasard verify {}", hasard_media::shell::quote(&path));
+    if args.json {
+        say!("{}", json!({ "claim": path.display().to_string(), "agent": kept.display().to_string(), "holds": true }));
+    } else {
+        let (evaluation, budget) = (&measured.evaluation, measured.budget);
+        say!(
+            "{}: return {:.3}, cost {:.3} of {budget} over {} episodes; anybody can check it: {verified}",
+            path.display(),
+            evaluation.episode_return.mean,
+            evaluation.cost.mean,
+            evaluation.episodes
+        );
+    }
+    Ok(())
+}
+
+/// The command that trains such an agent.
+fn command(config: &hasard_learn::config::TrainConfig) -> String {
+    let mut words = format!(
+        "hasard train {} --algo {} --preset {} --frames {} --seed {}",
+        config.env.id, config.algorithm, config.preset, config.frames, config.seed
+    );
+    if config.env.rules != "paper" {
+        words += &format!(" --rules {}", config.env.rules);
+    }
+    if config.env.hard {
+        words += " --hard";
+    }
+    words
+}
+
+/// The claims of a folder, by name.
+pub fn claims(folder: &Path) -> Result<Vec<std::path::PathBuf>, Failure> {
+    let listed =
+        std::fs::read_dir(folder).map_err(|error| Failure::bad(format!("{}: cannot be read: {error}", folder.display())))?;
+    let mut found: Vec<_> = listed.flatten().map(|entry| entry.path()).collect();
+    found.retain(|path| path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(&format!(".{ENDING}"))));
+    found.sort();
+    Ok(found)
+}

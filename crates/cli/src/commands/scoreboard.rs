@@ -1,0 +1,75 @@
+//! `hasard scoreboard`: a page of all claims of a folder that hold.
+
+use super::claim::{ENDING, claims};
+use crate::args::ScoreboardArgs;
+use crate::failure::{Failure, Outcome};
+use hasard_learn::runs::claim::{Claim, LISTED_EPISODES, Verdict};
+use hasard_report::scoreboard::{Entry, write_scoreboard};
+use serde_json::json;
+
+/// Runs the command.
+pub fn run(args: &ScoreboardArgs) -> Outcome {
+    let paths = claims(&args.folder)?;
+    if paths.is_empty() {
+        let problem = format!("{}: has no file that ends in .{ENDING}; `hasard claim` writes one", args.folder.display());
+        return Err(Failure::bad(problem));
+    }
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let (mut entries, mut refused) = (Vec::new(), Vec::new());
+    for (number, path) in paths.iter().enumerate() {
+        if !args.json {
+            note!("hasard: {} of {}: {}", number + 1, paths.len(), path.display());
+        }
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let claim = match Claim::read(path) {
+            Ok(claim) => claim,
+            Err(error) => {
+                refused.push((name, error.to_string()));
+                continue;
+            }
+        };
+        if claim.episodes < LISTED_EPISODES {
+            refused.push((
+                name,
+                format!("it has {} episodes; a scoreboard lists claims of {LISTED_EPISODES} and more", claim.episodes),
+            ));
+            continue;
+        }
+        match claim.check(&args.folder, threads) {
+            Ok(Verdict::Holds(measured)) => {
+                let (evaluation, budget) = (&measured.evaluation, measured.budget);
+                let tails = evaluation.constraints.first().map(|one| one.tails).unwrap_or_default();
+                entries.push(Entry {
+                    environment: claim.environment,
+                    rules: claim.rules,
+                    hard: claim.hard,
+                    name: claim.name,
+                    algorithm: claim.algorithm,
+                    frames: claim.frames as f64,
+                    returns: (evaluation.episode_return.mean, evaluation.episode_return.half_width),
+                    cost: (evaluation.cost.mean, evaluation.cost.half_width),
+                    cost_high: evaluation.cost.high(),
+                    budget,
+                    worst_tenth: tails.cvar,
+                    over: tails.over_budget.unwrap_or(0.0),
+                    episodes: claim.episodes as usize,
+                    agent: claim.agent,
+                    how: claim.how,
+                });
+            }
+            Ok(Verdict::Refused(problems)) => refused.push((name, problems.join("; "))),
+            Err(error) => refused.push((name, error.to_string())),
+        }
+    }
+    let page = write_scoreboard(&args.title, entries, &refused, &args.folder.join("index.html")).map_err(Failure::bad)?;
+    if args.json {
+        let list: Vec<_> = refused.iter().map(|(claim, why)| json!({ "claim": claim, "why": why })).collect();
+        say!("{}", json!({ "page": page.display().to_string(), "hold": paths.len() - refused.len(), "refused": list }));
+    } else {
+        say!("{}: {} of {} claims hold", page.display(), paths.len() - refused.len(), paths.len());
+    }
+    match refused.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::Negative(format!("{} claims are not listed; the page says why", refused.len()))),
+    }
+}

@@ -1,0 +1,236 @@
+//! A claim: what an agent scores in an environment, on episodes that are the same for everybody.
+//!
+//! A claim is checked by playing its episodes again. The network is computed by the plain kernels, whose bits are those of every processor,
+//! and the engine's kernels all agree: so a claim holds to the last bit, or it does not hold.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use hasard_envs::{Env, EnvId, Episode, RuleSet, VecEnv};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::config::{Constraint, TrainConfig};
+use crate::error::LearnError;
+use crate::networks::distribution::ActionShape;
+use crate::runs::agent::{Choice, TrainedPolicy, Which, run_config};
+use crate::runs::agent_file;
+use crate::runs::evaluate::{Evaluation, play};
+
+/// Seed of the first episode of every claim. Trainings and evaluations draw theirs elsewhere, and nobody can choose lucky ones.
+pub const FIRST_SEED: u64 = 9_000_000;
+/// Fewest episodes of a claim that a scoreboard lists.
+pub const LISTED_EPISODES: u32 = 200;
+/// Most episodes of a claim.
+pub const MOST_EPISODES: u32 = 10_000;
+/// Layout of the file.
+const FORMAT: u32 = 1;
+/// Bytes of the largest claim that is read.
+const LARGEST: u64 = 1 << 16;
+
+/// What is claimed.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    format: u32,
+    /// Version of the program that made it.
+    pub program: String,
+    /// Name on a scoreboard.
+    pub name: String,
+    /// The agent's file, beside the claim.
+    pub agent: String,
+    /// SHA-256 of that file, in hexadecimal digits.
+    pub agent_sha256: String,
+    /// Id of the environment.
+    pub environment: String,
+    /// The rule set: `paper`, `released` or `tables`.
+    pub rules: String,
+    /// The hard constraint.
+    pub hard: bool,
+    /// Algorithm that trained the agent, and its frames.
+    pub algorithm: String,
+    /// Frames of the training.
+    pub frames: u64,
+    /// The command that trained it.
+    pub how: String,
+    /// Seed of the first episode; the others follow it.
+    pub first_seed: u64,
+    /// Number of episodes.
+    pub episodes: u32,
+    /// Mean return of the episodes.
+    pub return_mean: f64,
+    /// Mean cost of the episodes.
+    pub cost_mean: f64,
+    /// SHA-256 over seed, length, end, return and each cost term of every episode.
+    pub digest: String,
+}
+
+/// Episodes of an agent under the rules of a claim, and what they come to.
+pub struct Measured {
+    /// The agent's settings, its environment under the claim's rules.
+    pub config: TrainConfig,
+    /// The budget of the environment under these rules.
+    pub budget: f64,
+    /// Return, cost and tails.
+    pub evaluation: Evaluation,
+    /// See [`Claim::digest`].
+    pub digest: String,
+}
+
+/// What came of checking a claim.
+pub enum Verdict {
+    /// Every word of it is so.
+    Holds(Measured),
+    /// What is not so.
+    Refused(Vec<String>),
+}
+
+/// SHA-256 in hexadecimal digits.
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// What episodes were, to the bit.
+fn digest(episodes: &[Episode]) -> String {
+    let mut text = String::new();
+    for one in episodes {
+        let costs: Vec<String> = one.costs.iter().map(|term| format!("{}:{:016x}", term.name, term.cost.to_bits())).collect();
+        text += &format!(
+            "{} {} {} {} {:016x} {:016x} {}\n",
+            one.seed,
+            one.length,
+            u8::from(one.terminated),
+            u8::from(one.truncated),
+            one.episode_return.to_bits(),
+            one.cost.to_bits(),
+            costs.join(",")
+        );
+    }
+    sha256(text.as_bytes())
+}
+
+/// Plays an agent's claim episodes under a rule set, by default its own.
+///
+/// # Errors
+/// When the agent cannot be read, or was trained in maps or pictures that are not part of the program.
+pub fn measure(agent: &Path, rules: Option<RuleSet>, episodes: u32, threads: usize) -> Result<Measured, LearnError> {
+    let mut config = run_config(agent)?;
+    if config.env.maps.is_some() || config.env.iwad.is_some() {
+        let problem = "was trained in maps or pictures that are not part of the program; a claim is about those that are";
+        return Err(LearnError::content(agent, problem));
+    }
+    if let Some(rules) = rules {
+        config.env.rules = rules.name().into();
+    }
+    let worlds = |error: hasard_envs::EnvError| LearnError::Worlds(error.to_string());
+    let options = config.env.options()?;
+    let id: EnvId = config.env.id.parse().map_err(worlds)?;
+    let env = Env::new(&config.env.id, &options).map_err(worlds)?;
+    let space = env.action_space();
+    let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
+    let policy = TrainedPolicy::load(agent, Which::Selected, env.observation_shape(), action, &mut |_| {})?.on_plain_kernels();
+    let make = |_: &_, lanes| VecEnv::new(&config.env.id, &options, lanes);
+    let seeds: Vec<u64> = (0..u64::from(episodes)).map(|number| FIRST_SEED + number).collect();
+    let played = play(&policy, Choice::Sampled, &make, &seeds, threads)?;
+    let budget = if options.hard { 0.0 } else { id.scenario.safety_budget(options.rules) };
+    let evaluation = Evaluation::of(&played, &[Constraint { term: None, budget }])?;
+    Ok(Measured { digest: digest(&played), config, budget, evaluation })
+}
+
+impl Claim {
+    /// The claim that measured episodes make.
+    #[must_use]
+    pub fn new(name: &str, file: &str, bytes: &[u8], how: &str, measured: &Measured) -> Claim {
+        let config = &measured.config;
+        Claim {
+            format: FORMAT,
+            program: env!("CARGO_PKG_VERSION").into(),
+            name: name.into(),
+            agent: file.into(),
+            agent_sha256: sha256(bytes),
+            environment: config.env.id.clone(),
+            rules: config.env.rules.clone(),
+            hard: config.env.hard,
+            algorithm: config.algorithm.to_string(),
+            frames: config.frames,
+            how: how.into(),
+            first_seed: FIRST_SEED,
+            episodes: measured.evaluation.episodes as u32,
+            return_mean: measured.evaluation.episode_return.mean,
+            cost_mean: measured.evaluation.cost.mean,
+            digest: measured.digest.clone(),
+        }
+    }
+
+    /// Reads a claim.
+    ///
+    /// # Errors
+    /// One line that names the file and what is wrong with it.
+    pub fn read(path: &Path) -> Result<Claim, LearnError> {
+        let length = std::fs::metadata(path).map_err(LearnError::file(path, "read"))?.len();
+        if length > LARGEST {
+            return Err(LearnError::content(path, format!("is no claim: it has {length} bytes, a claim at most {LARGEST}")));
+        }
+        let text = std::fs::read_to_string(path).map_err(LearnError::file(path, "read"))?;
+        let wrong = |error| LearnError::content(path, format!("is no claim: {error}; `hasard claim` writes one"));
+        let claim: Claim = serde_json::from_str(&text).map_err(wrong)?;
+        if claim.format != FORMAT {
+            return Err(LearnError::content(path, format!("has format {}; this program reads {FORMAT}", claim.format)));
+        }
+        Ok(claim)
+    }
+
+    /// Checks a claim that lies in `folder`, by playing its episodes again on so many threads.
+    ///
+    /// # Errors
+    /// When its agent cannot be read or played at all.
+    pub fn check(&self, folder: &Path, threads: usize) -> Result<Verdict, LearnError> {
+        let mut wrong = Vec::new();
+        if Path::new(&self.agent).file_name().is_none_or(|name| name != self.agent.as_str()) {
+            return Ok(Verdict::Refused(vec![format!("the agent '{}' is no plain name of a file beside the claim", self.agent)]));
+        }
+        if self.first_seed != FIRST_SEED {
+            wrong.push(format!("its episodes begin with seed {}, those of all claims with {FIRST_SEED}", self.first_seed));
+        }
+        if !(1..=MOST_EPISODES).contains(&self.episodes) {
+            wrong.push(format!("it has {} episodes; a claim has 1 to {MOST_EPISODES}", self.episodes));
+        }
+        let path = folder.join(&self.agent);
+        let bytes = agent_file::bytes(&path)?;
+        let found = sha256(&bytes);
+        if found != self.agent_sha256 {
+            wrong.push(format!("{} is another agent: its SHA-256 is {found}", self.agent));
+        }
+        let config = run_config(&path)?;
+        let own = BTreeMap::from([
+            ("environment", (self.environment.clone(), config.env.id.clone())),
+            ("hard", (self.hard.to_string(), config.env.hard.to_string())),
+            ("algorithm", (self.algorithm.clone(), config.algorithm.to_string())),
+            ("frames", (self.frames.to_string(), config.frames.to_string())),
+        ]);
+        for (what, (claimed, agents)) in own {
+            if claimed != agents {
+                wrong.push(format!("it says {what} {claimed}, the agent {agents}"));
+            }
+        }
+        let Ok(rules) = self.rules.parse::<RuleSet>() else {
+            wrong.push(format!("there are no rules '{}'; use paper, released or tables", self.rules));
+            return Ok(Verdict::Refused(wrong));
+        };
+        if !wrong.is_empty() {
+            return Ok(Verdict::Refused(wrong));
+        }
+        let measured = measure(&path, Some(rules), self.episodes, threads)?;
+        let means = (measured.evaluation.episode_return.mean, measured.evaluation.cost.mean);
+        for (what, claimed, found) in [("return", self.return_mean, means.0), ("cost", self.cost_mean, means.1)] {
+            if claimed.to_bits() != found.to_bits() {
+                wrong.push(format!("it says {what} {claimed}, its episodes come to {found}"));
+            }
+        }
+        if self.digest != measured.digest {
+            wrong.push(format!("its episodes were others: their digest is {}", measured.digest));
+        }
+        Ok(if wrong.is_empty() { Verdict::Holds(measured) } else { Verdict::Refused(wrong) })
+    }
+}
