@@ -96,7 +96,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "claim",
         &[(
-            "hasard claim runs/vv1 --name 'my method' -o scoreboard",
+            "hasard claim runs/vv1 --name mine -o scoreboard",
             "200 episodes that everybody plays; writes claim and agent",
         )],
     ),
