@@ -5,7 +5,7 @@ mod folder;
 use folder::Folder;
 use serde_json::{Value, json};
 
-const SMALL: &str = "--algo PPOLag --envs 2 --threads 1 --set network.dense=[8] --set network.recurrent=8 --set sampling.rollout=8 \
+const SMALL: &str = "--algo PPOLag --envs 2 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
                      --set episode_steps=8 --observation grey --size 64x48 --frames 64 --quiet --eval-every 64 \
                      --set evaluation.episodes=1 --set evaluation.confirming_episodes=2";
 
