@@ -77,7 +77,7 @@ fn document(title: &str, entries: Vec<Entry>, refused: &[(String, String)]) -> D
     let mut groups: BTreeMap<(usize, u32, bool, String), Vec<Entry>> = BTreeMap::new();
     for entry in entries {
         let (scenario, level) = scenario_and_level(&entry.environment);
-        let key = (scenario_order(&scenario), level as u32, entry.hard, entry.rules.clone());
+        let key = (scenario_order(&scenario), level, entry.hard, entry.rules.clone());
         groups.entry(key).or_default().push(entry);
     }
     let mut sections: Vec<Section> = groups.into_values().map(section).collect();

@@ -80,7 +80,7 @@ pub struct Measured {
 /// What came of checking a claim.
 pub enum Verdict {
     /// Every word of it is so.
-    Holds(Measured),
+    Holds(Box<Measured>),
     /// What is not so.
     Refused(Vec<String>),
 }
@@ -231,6 +231,6 @@ impl Claim {
         if self.digest != measured.digest {
             wrong.push(format!("its episodes were others: their digest is {}", measured.digest));
         }
-        Ok(if wrong.is_empty() { Verdict::Holds(measured) } else { Verdict::Refused(wrong) })
+        Ok(if wrong.is_empty() { Verdict::Holds(Box::new(measured)) } else { Verdict::Refused(wrong) })
     }
 }
