@@ -95,10 +95,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ("export-agent", &[("hasard export-agent runs/vv1 -o zoo/Mine.agent", "then: hasard eval zoo:Mine")]),
     (
         "claim",
-        &[(
-            "hasard claim runs/vv1 --name mine -o scoreboard",
-            "200 episodes that everybody plays; writes claim and agent",
-        )],
+        &[("hasard claim runs/vv1 --name mine -o scoreboard", "200 episodes that everybody plays; writes claim and agent")],
     ),
     (
         "verify",
