@@ -24,7 +24,7 @@ def there(path):
 def here(path):
     with open(path) as file:
         if path.endswith(".txt"):
-            return [tuple(map(float, pair)) for pair in re.findall(r"here \d+: return ([-\d.]+), cost ([-\d.]+)", file.read())]
+            return [tuple(map(float, pair)) for pair in re.findall(r"\bhere \d+: return ([-\d.]+), cost ([-\d.]+)", file.read())]
         rows = [json.loads(line) for line in file]
     return [(row["return"], row["cost"]) for row in rows if "return" in row and "episode" in row]
 
