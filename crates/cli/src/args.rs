@@ -353,7 +353,7 @@ pub struct BenchArgs {
     /// With --learn: the preset, but for its epochs and minibatches
     #[arg(long, default_value = "paper", requires = "learn")]
     pub preset: String,
-    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512 chooses others
+    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512|avx512bf16 chooses others
     #[arg(long, requires = "learn")]
     pub portable: bool,
     /// With --learn: any setting of config.json but threads, such as learning.reuse_forward=true; may be given several times
@@ -514,7 +514,7 @@ pub struct TrainArgs {
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Plain kernels: the same bits on every machine, some six times slower. HASARD_SIMD=plain|avx2|avx512 forces a family
-    /// without leaving a trace in the settings
+    /// without leaving a trace in the settings; avx512bf16 begins a run with learning.products=bfloat16
     #[arg(long)]
     pub portable: bool,
     /// Environments side by side  [default: 32]

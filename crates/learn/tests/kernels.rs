@@ -3,9 +3,9 @@
 
 mod trajectories;
 
+use hasard_engine::simd::Simd;
 use hasard_learn::config::Convolution;
 use hasard_learn::networks::cpu::network::{CpuActor, CpuLearner};
-use hasard_learn::networks::cpu::simd::Kernels;
 use hasard_learn::networks::{
     ActingNetwork, LearningNetwork, NetworkShape, PixelScale, Place, RecordedLane, Recording, Sequences,
 };
@@ -23,6 +23,11 @@ fn shapes() -> Vec<(&'static str, NetworkShape)> {
     };
     shapes.push(("one row of blocks", one_row));
     shapes
+}
+
+/// Every family, that with products in bfloat16 too.
+fn families() -> impl Iterator<Item = Simd> {
+    Simd::available().into_iter().chain(Simd::bfloat16())
 }
 
 /// A network's weights, and trajectories for it.
@@ -45,7 +50,7 @@ impl Case {
         self.batch.sequences()
     }
 
-    fn learner(&self, kernels: Kernels, threads: usize) -> CpuLearner {
+    fn learner(&self, kernels: Simd, threads: usize) -> CpuLearner {
         let mut learner = CpuLearner::new(kernels, &self.shape, threads);
         learner.load(&self.parameters);
         learner.load_pixels(&self.batch.pixels);
@@ -65,7 +70,7 @@ impl Case {
 fn no_number_of_threads_changes_a_bit() {
     for (name, shape) in shapes() {
         let case = Case::new(&shape, 4, 7);
-        for kernels in Kernels::available() {
+        for kernels in families() {
             let one = case.gradient(&mut case.learner(kernels, 1), &case.sequences());
             for threads in [2, 3, 7, 40] {
                 let many = case.gradient(&mut case.learner(kernels, threads), &case.sequences());
@@ -77,12 +82,37 @@ fn no_number_of_threads_changes_a_bit() {
 
 #[test]
 fn the_fused_families_agree_bit_by_bit() {
-    let fused: Vec<Kernels> = Kernels::available().into_iter().filter(|&kernels| kernels != Kernels::PORTABLE).collect();
+    let fused: Vec<Simd> = Simd::available().into_iter().filter(|&kernels| kernels != Simd::PLAIN).collect();
     for (name, shape) in shapes() {
         let case = Case::new(&shape, 3, 4);
         let results: Vec<_> =
             fused.iter().map(|&kernels| case.gradient(&mut case.learner(kernels, 1), &case.sequences())).collect();
         assert!(results.windows(2).all(|pair| pair[0] == pair[1]), "{name}");
+    }
+}
+
+/// What factors of 8 bits may lose: outputs and the gradient of every block of parameters, as vectors, within 3 % of those of numbers of
+/// 32 bits, but not the same. Where pixels are pooled, another of two that are nearly as large may be taken.
+#[test]
+fn products_in_bfloat16_give_nearly_the_same_gradients() {
+    let Some(rounding) = Simd::bfloat16() else { return };
+    for (name, shape) in shapes() {
+        let case = Case::new(&shape, 6, 8);
+        let [(outputs, gradient), (other_outputs, other_gradient)] =
+            [Simd::widest(), rounding].map(|kernels| case.gradient(&mut case.learner(kernels, 1), &case.sequences()));
+        let apart = |a: &[f32], b: &[f32]| {
+            let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>().sqrt();
+            let difference = norm(&mut a.iter().zip(b).map(|(a, b)| f64::from(*a) - f64::from(*b)));
+            difference / norm(&mut a.iter().map(|&a| f64::from(a)))
+        };
+        let outputs_apart = apart(&outputs, &other_outputs);
+        assert!(outputs_apart > 0.0 && outputs_apart < 0.03, "{name}: outputs {outputs_apart}");
+        for parameter in shape.parameters() {
+            let (a, b) = (&gradient[parameter.range()], &other_gradient[parameter.range()]);
+            let gradients_apart = apart(a, b);
+            let most = if shape.residual.is_empty() { 0.03 } else { 0.4 };
+            assert!(gradients_apart < most, "{name}: {} {gradients_apart}", parameter.name);
+        }
     }
 }
 
@@ -92,7 +122,7 @@ fn the_fused_families_agree_bit_by_bit() {
 fn recordings_replace_the_forward_pass_bit_by_bit() {
     for (name, shape) in shapes() {
         let case = Case::new(&shape, 5, 6);
-        for kernels in Kernels::available() {
+        for kernels in families() {
             let mut learner = case.learner(kernels, 2);
             let plain = case.gradient(&mut learner, &case.sequences());
             let (recording, acted) = case.act(&learner, kernels);
@@ -119,7 +149,7 @@ fn recordings_replace_the_forward_pass_bit_by_bit() {
 
 impl Case {
     /// Acts through the batch with a learner's weights; the recording and the output rows.
-    fn act(&self, learner: &CpuLearner, kernels: Kernels) -> (Recording, Vec<f32>) {
+    fn act(&self, learner: &CpuLearner, kernels: Simd) -> (Recording, Vec<f32>) {
         let (mut actor, mut recording) = (CpuActor::new(kernels, &self.shape), Recording::default());
         actor.load(&learner.publish());
         let (units, width, extra) = (self.shape.state_size(), self.shape.outputs(), self.shape.extra_inputs);

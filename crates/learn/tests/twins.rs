@@ -4,9 +4,9 @@
 mod plain;
 mod trajectories;
 
+use hasard_engine::simd::Simd;
 use hasard_learn::config::Initialisation;
 use hasard_learn::networks::cpu::network::{CpuActor, CpuLearner};
-use hasard_learn::networks::cpu::simd::Kernels;
 use hasard_learn::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights};
 use std::sync::Arc;
 use trajectories::{Case, normals, small_shapes};
@@ -36,7 +36,7 @@ fn outputs_and_gradients_equal_those_of_the_plain_network() {
         let wide: Vec<f64> = parameters.iter().map(|&value| f64::from(value)).collect();
         let expected: Vec<f32> = plain::forward(&shape, &wide, &case.pixels, &batch).iter().map(|&value| value as f32).collect();
         let seeds = normals(expected.len(), 1);
-        let gradients = Kernels::available().into_iter().map(|kernels| {
+        let gradients = Simd::available().into_iter().map(|kernels| {
             let mut learner = CpuLearner::new(kernels, &shape, 2);
             learner.load(&parameters);
             learner.load_pixels(&case.pixels);
@@ -78,7 +78,7 @@ fn passes_do_not_depend_on_threads_or_on_what_was_before() {
         let batch = case.sequences();
         let seeds = normals(batch.rows() * shape.outputs(), 1);
         let passes = [1, 2, 7].map(|threads| {
-            let mut learner = CpuLearner::new(Kernels::available()[0], &shape, threads);
+            let mut learner = CpuLearner::new(Simd::widest(), &shape, threads);
             learner.load(&parameters);
             learner.load_pixels(&case.pixels);
             [(); 2].map(|()| {
@@ -106,7 +106,7 @@ fn outputs_and_gradients_equal_those_of_burn() {
         let seeds = normals(batch.rows() * shape.outputs(), 1);
         let networks: [Box<dyn LearningNetwork>; 2] = [
             Box::new(BurnNetwork::new(&shape, &burn::tensor::Device::flex())),
-            Box::new(CpuLearner::new(Kernels::available()[0], &shape, 2)),
+            Box::new(CpuLearner::new(Simd::widest(), &shape, 2)),
         ];
         let [(there, there_gradient), (here, here_gradient)] = networks.map(|mut network| {
             network.load(&parameters);
@@ -129,13 +129,13 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
     for (name, shape) in shapes() {
         let parameters = shape.initial_parameters(Initialisation::Orthogonal, 6, 0);
         let case = Case::new(&shape, 3, 4);
-        let mut learner = CpuLearner::new(Kernels::available()[0], &shape, 2);
+        let mut learner = CpuLearner::new(Simd::widest(), &shape, 2);
         learner.load(&parameters);
         learner.load_pixels(&case.pixels);
         let expected = learner.forward(&case.sequences());
         let plain = NetworkWeights::Plain { parameters: Arc::new(parameters.clone()), pixels: Arc::new(case.pixels.clone()) };
         // The learner's own packed weights, or those that the actor packs or uploads itself.
-        let actor = || -> Box<dyn ActingNetwork> { Box::new(CpuActor::new(Kernels::available()[0], &shape)) };
+        let actor = || -> Box<dyn ActingNetwork> { Box::new(CpuActor::new(Simd::widest(), &shape)) };
         let own = [(true, learner.publish(), actor()), (true, plain.clone(), actor())];
         for (same_kernels, weights, mut actor) in own.into_iter().chain(portable(&shape, plain)) {
             actor.load(&weights);

@@ -5,7 +5,7 @@ use crate::failure::{Failure, Outcome};
 use crate::settings;
 use hasard_envs::{ObservationKind, VecEnv, bench};
 use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
-use hasard_learn::networks::cpu::simd::Kernels;
+use hasard_engine::simd::Simd;
 use hasard_learn::runs::measure::{Measurement, measure};
 use serde_json::json;
 
@@ -73,11 +73,11 @@ fn learn(args: &BenchArgs) -> Outcome {
     config.check().map_err(Failure::bad)?;
     let options = settings::trained_options(&config.env, args.env_args.elsewhere())?;
     let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
-    let fastest = Kernels::chosen().map_err(Failure::bad)?;
-    let mut families = Kernels::available();
-    if args.portable || fastest != families[0] {
-        families = vec![if args.portable { Kernels::PORTABLE } else { fastest }];
-    }
+    let families: Vec<Simd> = match Simd::forced().map_err(Failure::bad)? {
+        _ if args.portable => vec![Simd::PLAIN],
+        Some(forced) => vec![forced],
+        None => Simd::bfloat16().into_iter().chain(Simd::available().into_iter().rev()).collect(),
+    };
     let mut threads = vec![1, args.threads as usize];
     threads.dedup();
     let rounds = ((args.seconds / ROUND_SECONDS).ceil() as usize).max(LEAST_ROUNDS);
@@ -124,7 +124,7 @@ fn report(args: &BenchArgs, config: &TrainConfig, measured: &Measurement) -> Out
         return Ok(());
     }
     say!(
-        "{:>8}, {} thread(s): {:.0} steps/s; {:.1} GFLOP/s in large products / {:.1} MFLOP forward and backward = {:.0} steps/s: {:.1} % of that",
+        "{:>10}, {} thread(s): {:.0} steps/s; {:.1} GFLOP/s in large products / {:.1} MFLOP forward and backward = {:.0} steps/s: {:.1} % of that",
         measured.kernels.name(),
         measured.threads,
         measured.steps_per_second,

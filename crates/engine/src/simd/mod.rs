@@ -1,4 +1,4 @@
-//! Which vector instructions are used. Every variant gives the same bits; the plain one reads like the formula.
+//! Which vector instructions are used. Every variant of an integer kernel gives the same bits; the plain one reads like the formula.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lookup;
@@ -8,14 +8,30 @@ use std::sync::OnceLock;
 
 /// A family of vector instructions that this processor has: there is no other way to come by one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Simd(Level);
+pub struct Simd {
+    family: Family,
+    level: Level,
+}
 
-/// The families, from narrow to wide.
+/// The families by their names, from narrow to wide: what arithmetic with floating-point numbers is compiled for.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(crate) enum Level {
-    /// Whatever the compiler makes of plain code.
+pub enum Family {
+    /// Whatever the compiler makes of plain code. It rounds every product and every sum.
     Plain,
     /// Vectors of 32 bytes, and sums of products that are rounded once (Haswell and Zen onward).
+    Avx2,
+    /// Vectors of 64 bytes with masks (Skylake's servers and Zen 4 onward): the same bits as those of [`Family::Avx2`].
+    Avx512,
+    /// The same, but that a learner's matrices are multiplied as bfloat16 and summed as 32-bit numbers (Cooper Lake and Zen 4 onward).
+    Avx512Bf16,
+}
+
+/// What integer kernels are compiled for, from narrow to wide. All give the same bits.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Level {
+    /// Plain code.
+    Plain,
+    /// Vectors of 32 bytes.
     Avx2,
     /// Vectors of 64 bytes with masks, and look-ups of 64 bytes at once (Ice Lake and Zen 4 onward).
     Avx512,
@@ -26,68 +42,104 @@ const VARIABLE: &str = "HASARD_SIMD";
 
 impl Simd {
     /// What every processor has.
-    pub const PLAIN: Simd = Simd(Level::Plain);
+    pub const PLAIN: Simd = Simd { family: Family::Plain, level: Level::Plain };
 
-    /// Every family that this processor has, the widest last.
+    /// Every family of this processor that computes with 32-bit numbers, the widest last.
     #[must_use]
     pub fn available() -> Vec<Simd> {
         let mut all = vec![Simd::PLAIN];
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-                all.push(Simd(Level::Avx2));
+                all.push(Simd { family: Family::Avx2, level: Level::Avx2 });
             }
             let wide = is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512bw")
                 && is_x86_feature_detected!("avx512dq")
-                && is_x86_feature_detected!("avx512vl")
-                && is_x86_feature_detected!("avx512vbmi");
+                && is_x86_feature_detected!("avx512vl");
             if wide && all.len() == 2 {
-                all.push(Simd(Level::Avx512));
+                let level = if is_x86_feature_detected!("avx512vbmi") { Level::Avx512 } else { Level::Avx2 };
+                all.push(Simd { family: Family::Avx512, level });
             }
         }
         all
     }
 
-    /// The widest family of this processor, or the one that the variable `HASARD_SIMD` names.
+    /// The widest family, with products in bfloat16, if this processor has it. Nothing chooses it but its name.
+    #[must_use]
+    pub fn bfloat16() -> Option<Simd> {
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx512bf16") {
+            let widest = Simd::widest();
+            return (widest.family == Family::Avx512).then_some(Simd { family: Family::Avx512Bf16, ..widest });
+        }
+        None
+    }
+
+    /// All that have a name on this processor.
+    fn all_named() -> Vec<Simd> {
+        Simd::available().into_iter().chain(Simd::bfloat16()).collect()
+    }
+
+    /// The widest family of this processor that computes with 32-bit numbers, or the one that the variable `HASARD_SIMD` names.
     ///
     /// # Errors
     /// When the variable names none, or one that this processor lacks.
     pub fn chosen() -> Result<Simd, SimdError> {
-        static CHOSEN: OnceLock<Result<Simd, SimdError>> = OnceLock::new();
-        let choose = || match std::env::var_os(VARIABLE) {
-            None => Ok(Simd::widest()),
-            Some(name) => Simd::named(&name.to_string_lossy()),
-        };
-        CHOSEN.get_or_init(choose).clone()
+        Ok(Simd::forced()?.unwrap_or(Simd::widest()))
     }
 
-    /// The widest family of this processor.
+    /// The family that the variable `HASARD_SIMD` names, if it is there.
+    ///
+    /// # Errors
+    /// When it names none, or one that this processor lacks.
+    pub fn forced() -> Result<Option<Simd>, SimdError> {
+        static FORCED: OnceLock<Result<Option<Simd>, SimdError>> = OnceLock::new();
+        let read = || std::env::var_os(VARIABLE).map(|name| Simd::named(&name.to_string_lossy())).transpose();
+        FORCED.get_or_init(read).clone()
+    }
+
+    /// The widest family of this processor that computes with 32-bit numbers.
     #[must_use]
     pub fn widest() -> Simd {
         Simd::available().pop().unwrap_or(Simd::PLAIN)
     }
 
-    /// The family of a name: `plain`, `avx2` or `avx512`.
+    /// The family of a name: `plain` (or `portable`), `avx2`, `avx512` or `avx512bf16`.
     fn named(name: &str) -> Result<Simd, SimdError> {
-        let there = Simd::available().into_iter().find(|simd| simd.name() == name);
+        let known = if name == "portable" { "plain" } else { name };
+        let there = Simd::all_named().into_iter().find(|simd| simd.name() == known);
         there.ok_or_else(|| SimdError { given: name.escape_default().take(40).collect() })
     }
 
     /// Its name.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self.0 {
-            Level::Plain => "plain",
-            Level::Avx2 => "avx2",
-            Level::Avx512 => "avx512",
+        match self.family {
+            Family::Plain => "plain",
+            Family::Avx2 => "avx2",
+            Family::Avx512 => "avx512",
+            Family::Avx512Bf16 => "avx512bf16",
         }
     }
 
-    /// What may be used.
+    /// What arithmetic with floating-point numbers may use.
+    #[inline(always)]
+    #[must_use]
+    pub const fn family(self) -> Family {
+        self.family
+    }
+
+    /// What integer kernels may use.
     #[inline(always)]
     pub(crate) const fn level(self) -> Level {
-        self.0
+        self.level
+    }
+}
+
+impl fmt::Display for Simd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 
@@ -177,7 +229,7 @@ impl SimdError {
     /// What may be asked for.
     #[must_use]
     pub fn allowed() -> String {
-        let names: Vec<&str> = Simd::available().into_iter().map(Simd::name).collect();
+        let names: Vec<&str> = Simd::all_named().into_iter().map(Simd::name).collect();
         format!("one of {} on this processor", names.join(", "))
     }
 }
@@ -196,9 +248,11 @@ mod tests {
 
     #[test]
     fn families_are_named_and_unknown_ones_refused() {
-        for simd in Simd::available() {
+        for simd in Simd::all_named() {
             assert_eq!(Simd::named(simd.name()), Ok(simd));
         }
+        assert_eq!(Simd::named("portable"), Ok(Simd::PLAIN));
+        assert!(Simd::available().iter().all(|simd| simd.family() != Family::Avx512Bf16), "nothing but its name chooses it");
         for name in ["", "AVX2", "sse9", "avx512\n"] {
             assert!(Simd::named(name).unwrap_err().to_string().contains("must be one of plain"));
         }

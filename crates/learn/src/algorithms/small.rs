@@ -3,7 +3,7 @@
 use crate::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
 use crate::learning::learner::Learner;
 use crate::learning::policy::{Policy, Taken};
-use crate::networks::cpu::simd::Kernels;
+use hasard_engine::simd::Simd;
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{ImageShape, ModelShape};
@@ -32,7 +32,7 @@ pub fn learner(config: &TrainConfig) -> (Learner, Rollout) {
     let action = ActionShape { sizes: vec![3, 2], deltas: 1 };
     let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
     let shape = ModelShape::new(image, action, cost_critics, 0, &config.network).unwrap();
-    let learner = Learner::new(config, &shape, &ComputeDevice::Processor(Kernels::PORTABLE));
+    let learner = Learner::new(config, &shape, &ComputeDevice::Processor(Simd::PLAIN));
     let mut stream = Stream::new(3, Purpose::Evaluation, 0, 0);
     let mut part = Part { initial_state: shape.zero_state(LANES), ..Part::default() };
     part.prepare(&shape, STEPS, LANES, 1, config.constraints.len());

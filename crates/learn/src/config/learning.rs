@@ -39,6 +39,19 @@ names! {
     }
 }
 
+names! {
+    /// What the factors of the networks' products are rounded to on their way, on the processor.
+    #[derive(Default)]
+    Products ("products") {
+        /// Nothing: numbers of 32 bits.
+        #[default]
+        Float32 = "float32",
+        /// Numbers of 16 bits with the exponents of those of 32; sums, weights, moments and all else keep 32 bits. It needs a processor
+        /// with AVX512-BF16, and is the default of none.
+        Bfloat16 = "bfloat16",
+    }
+}
+
 /// Samples after which moments have forgotten two thirds of what was before: 400,000 frames.
 fn a_hundred_rollouts() -> f64 {
     100_000.0
@@ -126,6 +139,9 @@ pub struct LearningConfig {
     /// Plain kernels, whose results have the same bits on every machine; otherwise the fastest that the processor has.
     #[serde(default)]
     pub portable: bool,
+    /// What the factors of the networks' products are rounded to; `HASARD_SIMD=avx512bf16` begins runs with `bfloat16`.
+    #[serde(default)]
+    pub products: Products,
 }
 
 impl LearningConfig {

@@ -22,13 +22,14 @@ pub use algorithm::{AlgorithmConfig, AlgorithmKind, MultiplierUpdate};
 pub use constraint::{Constraint, ConstraintStatistic};
 pub use environment::EnvConfig;
 pub use evaluation::EvaluationConfig;
-pub use learning::{CriticInput, Exploration, LearningConfig, ReturnNormaliser};
+pub use learning::{CriticInput, Exploration, LearningConfig, Products, ReturnNormaliser};
 pub use network::{Convolution, Initialisation, NetworkConfig, RecurrentCell};
 pub use reporting::ReportingConfig;
 pub use sampling::SamplingConfig;
 
 use std::fmt;
 
+use hasard_engine::simd::{Family, Simd};
 use serde::{Deserialize, Serialize};
 
 use constraint::find_terms;
@@ -125,6 +126,10 @@ impl TrainConfig {
             Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
         };
         let (sampling, learning) = (&self.sampling, &self.learning);
+        if learning.products == Products::Bfloat16 && (learning.portable || self.device != "cpu") {
+            let where_else = if learning.portable { "with --portable" } else { "on a card" };
+            return refuse("learning.products", &format_args!("bfloat16 {where_else}"), "float32");
+        }
         for (name, given, most) in [
             ("the number of worlds", sampling.lanes, 65_536),
             ("the rollout length", sampling.rollout, 4096),
@@ -270,10 +275,15 @@ impl TrainConfig {
         (frames as f64 / self.learning.schedule_frames.unwrap_or(self.frames) as f64).min(1.0)
     }
 
-    /// Writes down how long the schedules of a run are that begins: as long as the run, unless they were given a length.
+    /// Writes down what a run that begins goes by from then on: how long its schedules are, as long as the run unless they were given a
+    /// length, and what its products are rounded to, if `HASARD_SIMD` names a family that rounds.
     #[must_use]
     pub fn begun(mut self) -> TrainConfig {
         self.learning.schedule_frames.get_or_insert(self.frames);
+        let rounds = |simd: Simd| simd.family() == Family::Avx512Bf16;
+        if Simd::forced().ok().flatten().is_some_and(rounds) && self.device == "cpu" && !self.learning.portable {
+            self.learning.products = Products::Bfloat16;
+        }
         self
     }
 

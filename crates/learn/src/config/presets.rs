@@ -3,7 +3,7 @@
 
 use crate::config::{
     AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig, Exploration, LearningConfig,
-    MultiplierUpdate, NetworkConfig, Preset, ReportingConfig, ReturnNormaliser, SamplingConfig, TrainConfig,
+    MultiplierUpdate, NetworkConfig, Preset, Products, ReportingConfig, ReturnNormaliser, SamplingConfig, TrainConfig,
 };
 use crate::config::{Convolution, Initialisation, RecurrentCell, second_order};
 
@@ -95,6 +95,7 @@ impl TrainConfig {
                 reuse_forward: true,
                 threads: cores,
                 portable: false,
+                products: Products::Float32,
             },
             algorithm_settings: AlgorithmConfig {
                 penalty_scale: scenario.map_or(1.0, |scenario| {

@@ -12,7 +12,7 @@ use crate::learning::normaliser::{CLIP, Moments, PixelNormaliser, PixelSums};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::{Policy, Taken};
 use crate::learning::popart::preserve_outputs;
-use crate::networks::cpu::simd::Kernels;
+use hasard_engine::simd::Simd;
 use crate::networks::cpu::vectors::Vectors;
 use crate::networks::device::ComputeDevice;
 use crate::networks::{ModelSequences, ModelShape, Published, RecordedLane, Sequences, Stack};
@@ -85,7 +85,7 @@ pub struct Learner {
     /// Settings.
     pub config: TrainConfig,
     /// What computes everything but the networks on a card.
-    kernels: Kernels,
+    kernels: Simd,
     gradient: Vec<f32>,
     /// Which networks do not hold the present parameters.
     stale: Vec<bool>,
@@ -146,7 +146,7 @@ impl Learner {
 
     /// The kernels of the processor that compute it, or what comes before and after a card does.
     #[must_use]
-    pub fn kernels(&self) -> Kernels {
+    pub fn kernels(&self) -> Simd {
         self.kernels
     }
 

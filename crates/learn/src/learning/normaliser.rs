@@ -5,7 +5,9 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use crate::networks::PixelScale;
-use crate::networks::cpu::simd::{Kernels, vectorised};
+use hasard_engine::simd::Simd;
+
+use crate::networks::cpu::vectorised::vectorised;
 use crate::networks::cpu::threads::{in_parallel, pieces};
 
 /// Added to variances before their root is taken.
@@ -108,7 +110,7 @@ impl PixelNormaliser {
 
     /// Merges a batch of frames, working on `threads` threads. Sums are whole numbers, so neither the order of frames
     /// nor the number of threads changes a bit.
-    pub fn update(&mut self, kernels: Kernels, frames: &[&[u8]], threads: usize) {
+    pub fn update(&mut self, kernels: Simd, frames: &[&[u8]], threads: usize) {
         self.merge(&PixelSums::of(kernels, frames, self.mean.len(), threads));
     }
 
@@ -146,7 +148,7 @@ pub struct PixelSums(pub Vec<u64>);
 impl PixelSums {
     /// The sums of some frames of so many pixels, worked out on `threads` threads.
     #[must_use]
-    pub fn of(kernels: Kernels, frames: &[&[u8]], pixels: usize, threads: usize) -> PixelSums {
+    pub fn of(kernels: Simd, frames: &[&[u8]], pixels: usize, threads: usize) -> PixelSums {
         const BLOCK: usize = 2048;
         let mut all = vec![0; 2 * pixels + 1];
         all[2 * pixels] = frames.len() as u64;
@@ -243,7 +245,7 @@ mod tests {
         let run = |threads| {
             let mut normaliser = PixelNormaliser::new(pixels);
             for part in [early, late] {
-                normaliser.update(Kernels::PORTABLE, &part.iter().map(Vec::as_slice).collect::<Vec<_>>(), threads);
+                normaliser.update(Simd::PLAIN, &part.iter().map(Vec::as_slice).collect::<Vec<_>>(), threads);
             }
             normaliser
         };

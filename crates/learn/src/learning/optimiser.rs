@@ -2,7 +2,7 @@
 
 use crate::config::LearningConfig;
 use crate::networks::cpu::elementwise::{AdamStep, adam};
-use crate::networks::cpu::simd::Kernels;
+use hasard_engine::simd::Simd;
 use crate::networks::cpu::threads::{in_parallel, pieces};
 
 /// Adam (Kingma and Ba 2015) over a flat parameter vector.
@@ -26,7 +26,7 @@ impl Adam {
     /// One step down `gradient * scale`.
     pub fn step(
         &mut self,
-        kernels: Kernels,
+        kernels: Simd,
         gradient: &[f32],
         parameters: &mut [f32],
         scale: f64,

@@ -3,15 +3,16 @@
 #[cfg(feature = "graphics")]
 use burn::tensor::Device;
 
-use crate::config::TrainConfig;
+use hasard_engine::simd::{Family, Simd};
+
+use crate::config::{Products, TrainConfig};
 use crate::error::LearnError;
-use crate::networks::cpu::simd::Kernels;
 
 /// A place to compute.
 #[derive(Clone, Debug)]
 pub enum ComputeDevice {
     /// The processor, with the kernels of [`crate::networks::cpu`].
-    Processor(Kernels),
+    Processor(Simd),
     /// A device of the `burn` crate.
     #[cfg(feature = "graphics")]
     Burn(Device),
@@ -24,8 +25,10 @@ impl ComputeDevice {
     /// As [`ComputeDevice::named`].
     pub fn of(config: &TrainConfig) -> Result<ComputeDevice, LearnError> {
         match ComputeDevice::named(&config.device)? {
-            ComputeDevice::Processor(_) if config.learning.portable => Ok(ComputeDevice::Processor(Kernels::PORTABLE)),
-            device => Ok(device),
+            ComputeDevice::Processor(_) if config.learning.portable => Ok(ComputeDevice::Processor(Simd::PLAIN)),
+            ComputeDevice::Processor(simd) => with_products(simd, config.learning.products).map(ComputeDevice::Processor),
+            #[cfg(feature = "graphics")]
+            card => Ok(card),
         }
     }
 
@@ -37,11 +40,11 @@ impl ComputeDevice {
 
     /// The kernels that compute what is on the processor: everything, or what comes before and after the networks.
     #[must_use]
-    pub fn kernels(&self) -> Kernels {
+    pub fn kernels(&self) -> Simd {
         match self {
             ComputeDevice::Processor(kernels) => *kernels,
             #[cfg(feature = "graphics")]
-            ComputeDevice::Burn(_) => Kernels::available()[0],
+            ComputeDevice::Burn(_) => Simd::widest(),
         }
     }
 
@@ -57,10 +60,25 @@ impl ComputeDevice {
             .parse()
             .map_err(|_| LearnError::Config(format!("device '{name}' has no number after the colon; write {kind}:0")))?;
         match kind {
-            "cpu" => Ok(ComputeDevice::Processor(Kernels::chosen()?)),
+            "cpu" => Ok(ComputeDevice::Processor(Simd::chosen().map_err(|error| LearnError::Config(error.to_string()))?)),
             "vulkan" | "cuda" | "wgpu" | "flex" => card(kind, name, number),
             _ => Err(LearnError::Config(format!("device '{name}' is unknown; use one of cpu, vulkan, cuda, wgpu"))),
         }
+    }
+}
+
+/// The chosen family, or the one that multiplies as a run's settings say: a run keeps to its own.
+fn with_products(chosen: Simd, products: Products) -> Result<Simd, LearnError> {
+    let rounds = |simd: Simd| simd.family() == Family::Avx512Bf16;
+    let refuse = |why: String| Err(LearnError::Config(format!("learning.products is bfloat16, but {why}")));
+    match products {
+        Products::Float32 if rounds(chosen) => Ok(Simd::widest()),
+        Products::Float32 => Ok(chosen),
+        Products::Bfloat16 => match (Simd::bfloat16(), Simd::forced()) {
+            (None, _) => refuse("this processor has no AVX512-BF16; train on one that has it, or begin a run with float32".into()),
+            (Some(_), Ok(Some(forced))) if !rounds(forced) => refuse(format!("HASARD_SIMD is {forced}; leave it out")),
+            (Some(simd), _) => Ok(simd),
+        },
     }
 }
 
@@ -115,6 +133,30 @@ fn cards(kind: &str) -> Option<Vec<Device>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A run keeps to the products that its settings name, whatever is chosen otherwise, and is refused where there are none.
+    #[test]
+    fn runs_keep_to_their_products() {
+        for simd in Simd::available() {
+            assert_eq!(with_products(simd, Products::Float32).unwrap(), simd);
+        }
+        match Simd::bfloat16() {
+            None => {
+                let refused = with_products(Simd::PLAIN, Products::Bfloat16).unwrap_err().to_string();
+                assert!(refused.contains("no AVX512-BF16"), "{refused}");
+            }
+            Some(rounding) => {
+                assert_eq!(with_products(rounding, Products::Float32).unwrap(), Simd::widest());
+                match Simd::forced().unwrap() {
+                    Some(forced) if forced != rounding => {
+                        let refused = with_products(forced, Products::Bfloat16).unwrap_err().to_string();
+                        assert!(refused.contains("leave it out"), "{refused}");
+                    }
+                    _ => assert_eq!(with_products(Simd::widest(), Products::Bfloat16).unwrap(), rounding),
+                }
+            }
+        }
+    }
 
     #[test]
     fn the_processor_is_always_there_and_unknown_devices_are_refused() {

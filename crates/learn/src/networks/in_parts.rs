@@ -90,7 +90,7 @@ mod tests {
     use crate::algorithms::small;
     use crate::config::AlgorithmKind;
     use crate::networks::cpu::network::CpuLearner;
-    use crate::networks::cpu::simd::Kernels;
+    use hasard_engine::simd::Simd;
 
     /// A5: outputs bit for bit, gradients but for the order of their sums, for parts of one lane, of some, and of three of four.
     #[test]
@@ -102,7 +102,7 @@ mod tests {
         let mut batch = minibatch.batch.sequences.clone();
         batch.initial_state = (0..4 * shape.state_size()).map(|index| (index as f32).sin()).collect();
         batch.reset[5] = true;
-        let network = || -> Box<dyn LearningNetwork> { Box::new(CpuLearner::new(Kernels::PORTABLE, shape, 1)) };
+        let network = || -> Box<dyn LearningNetwork> { Box::new(CpuLearner::new(Simd::PLAIN, shape, 1)) };
         let run = |mut network: Box<dyn LearningNetwork>| {
             network.load(&learner.parameters);
             network.load_pixels(&learner.pixels.scale());

@@ -5,7 +5,7 @@ use std::path::Path;
 use hasard_envs::{CostTerm, Scenario};
 
 use crate::config::constraint::find_terms;
-use crate::config::{ReturnNormaliser, TrainConfig};
+use crate::config::{Products, ReturnNormaliser, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::learning::normaliser::Moments;
@@ -194,8 +194,9 @@ impl TrainedPolicy {
             .with_critic_inputs(Privileged::new(&config).count())?;
         // Before memory is taken for as many weights as the settings speak of.
         check_fits(&shape)?;
-        // Wherever it was trained, it acts on the processor.
+        // Wherever it was trained, and by whatever products, it acts on every processor.
         config.device = "cpu".into();
+        config.learning.products = Products::Float32;
         let device = ComputeDevice::of(&config)?;
         let mut learner = Learner::new(&config, &shape, &device);
         restore(&mut learner)?;

@@ -4,8 +4,9 @@ use std::time::Instant;
 
 use crate::config::TrainConfig;
 use crate::error::LearnError;
-use crate::networks::cpu::product::{Left, Right, Size, multiply};
-use crate::networks::cpu::simd::Kernels;
+use crate::networks::cpu::panels::Panels;
+use crate::networks::cpu::product::{Left, Size, multiply_panels};
+use hasard_engine::simd::Simd;
 use crate::networks::device::ComputeDevice;
 use crate::runs::session::{Beginning, MakeWorlds, Session};
 
@@ -14,13 +15,13 @@ use crate::runs::session::{Beginning, MakeWorlds, Session};
 pub struct Measurement {
     /// Policy steps a second of the whole loop: worlds, inference, learning.
     pub steps_per_second: f64,
-    /// Rate of large products of 32-bit matrices on the same threads, in floating-point operations a second.
+    /// Rate of large products by the same kernels on as many threads, in floating-point operations a second.
     pub product_rate: f64,
     /// Floating-point operations of a policy step: forward once and backward once an epoch, counted from the shape. Acting
     /// costs nothing here, since a learner that takes turns with the samplers need not repeat it.
     pub flop_per_step: f64,
     /// What computed both.
-    pub kernels: Kernels,
+    pub kernels: Simd,
     /// Threads.
     pub threads: usize,
     /// Rounds.
@@ -49,7 +50,7 @@ const SIDE: usize = 1024;
 /// Measures the training loop, about `seconds` in each round, and the products in turns, so that
 /// whatever else the machine does meets both alike. Nothing is written to the disk.
 pub fn measure(
-    kernels: Kernels,
+    kernels: Simd,
     config: &TrainConfig,
     make_worlds: &MakeWorlds<'_>,
     rounds: usize,
@@ -100,18 +101,19 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// Floating-point operations a second of large products, one on each thread.
-fn product_rate(kernels: Kernels, threads: usize) -> f64 {
+fn product_rate(kernels: Simd, threads: usize) -> f64 {
     let left = vec![0.5f32; SIDE * SIDE];
-    let right = vec![0.25f32; SIDE * SIDE];
+    let mut right = Panels::default();
+    right.pack(kernels, &vec![0.25f32; SIDE * SIDE], SIDE, SIDE);
     let start = Instant::now();
     let count: usize = std::thread::scope(|scope| {
         let work = || {
-            let mut out = vec![0.0f32; SIDE * SIDE];
+            let (mut out, mut rounded) = (vec![0.0f32; SIDE * SIDE], Vec::new());
             let mut count = 0;
             while start.elapsed().as_secs_f64() < 0.3 {
                 let size = Size { rows: SIDE, columns: SIDE, inner: SIDE };
                 let factor = Left { data: &left, row_stride: SIDE, inner_stride: 1 };
-                multiply(kernels, size, factor, Right::panels(&right, SIDE), &mut out, SIDE, false);
+                multiply_panels(kernels, size, factor, &right, &mut out, SIDE, false, &mut rounded);
                 count += 1;
             }
             count

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::settings::Elsewhere;
 use hasard_envs::VecEnv;
 use hasard_learn::config::{EnvConfig, TrainConfig};
-use hasard_learn::networks::cpu::simd::Kernels;
+use hasard_engine::simd::Simd;
 use hasard_learn::runs::measure::measure;
 use hasard_sweep::{Job, State};
 use serde_json::{Value, json};
@@ -78,7 +78,7 @@ impl Plan {
             (config.learning.threads, config.sampling.samplers) = (threads, threads);
             let options = crate::settings::trained_options(&config.env, Elsewhere::default())?;
             let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
-            let kernels = Kernels::chosen().map_err(Failure::bad)?;
+            let kernels = Simd::chosen().map_err(Failure::bad)?;
             let seconds = SECONDS / measured as f64;
             let loops = measure(kernels, &config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
             rates.insert(name.clone(), loops.steps_per_second * f64::from(config.env.frame_skip));

@@ -6,7 +6,7 @@
 use super::cells::{gru_gates_backward, lstm_gates_backward};
 use super::elementwise::{add, elu_backward_rows};
 use super::forward::sized;
-use super::product::{Left, Right, Size, multiply};
+use super::product::{Left, Size, multiply_panels};
 use super::tape::TapeLane;
 use super::weights::{Backward, Plan};
 use crate::config::RecurrentCell;
@@ -28,6 +28,7 @@ pub struct RowGradients {
     pub features: Vec<f32>,
     core: Vec<f32>,
     carry: Vec<f32>,
+    rounded: Vec<u16>,
 }
 
 impl RowGradients {
@@ -41,18 +42,19 @@ impl RowGradients {
         let padded = plan.padded_outputs;
         let units = shape.dense[shape.dense.len() - 1];
         let from_outputs = Left { data: &self.outputs, row_stride: padded, inner_stride: 1 };
-        let heads = Right::panels(&back.heads, padded);
         let last = sized(&mut self.dense[shape.dense.len() - 1], rows * units);
         if let Some(cell_units) = shape.recurrent {
             let core = sized(&mut self.core, rows * cell_units);
-            multiply(kernels, Size { rows, columns: cell_units, inner: padded }, from_outputs, heads, core, cell_units, false);
+            let size = Size { rows, columns: cell_units, inner: padded };
+            multiply_panels(kernels, size, from_outputs, &back.heads, core, cell_units, false, &mut self.rounded);
             self.recur(plan, back, lanes, reset, cell_units);
             let (last, columns) = (&mut self.dense[shape.dense.len() - 1], shape.gate_columns());
             let left = Left { data: &self.input_sums, row_stride: columns, inner_stride: 1 };
             let size = Size { rows, columns: units, inner: columns };
-            multiply(kernels, size, left, Right::panels(&back.cell_input, columns), last, units, false);
+            multiply_panels(kernels, size, left, &back.cell_input, last, units, false, &mut self.rounded);
         } else {
-            multiply(kernels, Size { rows, columns: units, inner: padded }, from_outputs, heads, last, units, false);
+            let size = Size { rows, columns: units, inner: padded };
+            multiply_panels(kernels, size, from_outputs, &back.heads, last, units, false, &mut self.rounded);
         }
         for index in (0..shape.dense.len()).rev() {
             let units = shape.dense[index];
@@ -74,7 +76,7 @@ impl RowGradients {
             let to = sized(to, rows * inputs);
             let left = Left { data: sums, row_stride: units, inner_stride: 1 };
             let size = Size { rows, columns: inputs, inner: units };
-            multiply(kernels, size, left, Right::panels(&back.dense[index], units), to, inputs, false);
+            multiply_panels(kernels, size, left, &back.dense[index], to, inputs, false, &mut self.rounded);
         }
     }
 
@@ -110,7 +112,7 @@ impl RowGradients {
             }
             let size = Size { rows: count, columns: units, inner: columns };
             let left = Left { data: state_sums, row_stride: columns, inner_stride: 1 };
-            multiply(kernels, size, left, Right::panels(&back.cell_hidden, columns), carry, width, true);
+            multiply_panels(kernels, size, left, &back.cell_hidden, carry, width, true, &mut self.rounded);
             for (lane, carry) in carry.chunks_exact_mut(width).enumerate() {
                 if reset[lane * steps + step] {
                     carry.fill(0.0);

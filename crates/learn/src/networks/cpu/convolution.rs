@@ -1,21 +1,45 @@
-//! A convolution as products whose rows overlap in memory, so that no patch is ever copied where that can be helped.
+//! A convolution as products whose rows overlap in memory, so that no patch is ever copied.
 //!
 //! Where the kernel is a multiple of the stride, the input is stored as a grid of stride x stride blocks. The patch of
 //! an output pixel is then, for each row of blocks, one contiguous run of numbers, and the runs of neighbouring pixels
 //! start one block apart: a matrix with overlapping rows. At the end of each row of the grid this computes a few pixels
-//! that do not exist; they are cheap, ignored going forward and zero going backward. Other convolutions copy patches.
+//! that do not exist; they are cheap, ignored going forward and zero going backward.
+//!
+//! Others, and all in bfloat16, read their patches out of the image as it is: a patch is a run of numbers in each of some of its rows,
+//! and both the pixels of a row and those runs are as far apart as the shapes say.
 
+use hasard_engine::simd::{Family, Simd};
+
+use super::bfloat16::{Pair, halves, pair_rows, pair_with_distant, pair_with_zeros, round};
 use super::elementwise::NOWHERE;
-use super::product::{Left, Right, Size, multiply};
-use super::simd::Kernels;
+use super::panels::Panels;
+use super::product::{Axis, Factor, Grouped, Left, Right, Size, add_to_overlapping_rows, multiply, multiply_grouped};
 use super::tile::PANEL;
 use crate::config::Convolution;
 use crate::networks::{EncoderLayer, ImageShape};
 
+/// The stored input of a convolution.
+#[derive(Clone, Copy)]
+pub enum Stored<'a> {
+    /// Numbers of 32 bits.
+    Numbers(&'a [f32]),
+    /// Rounded ones, with [`ConvolutionPlan::rounded`] numbers in all.
+    Rounded(&'a [u16]),
+}
+
+/// What is rounded on its way into products; unused by other families.
+#[derive(Default)]
+pub struct Rounded {
+    image: Vec<u16>,
+    image_pairs: Vec<Pair>,
+    gradient: Vec<u16>,
+    gradient_pairs: Vec<Pair>,
+}
+
 /// How an image is stored as the input of a convolution, and the sizes of the products.
 #[derive(Clone, Debug)]
 pub struct ConvolutionPlan {
-    kernels: Kernels,
+    kernels: Simd,
     input: ImageShape,
     output: ImageShape,
     kernel: usize,
@@ -44,10 +68,11 @@ pub struct ConvolutionPlan {
 impl ConvolutionPlan {
     /// The plan for a convolution on an image that it fits on.
     #[must_use]
-    pub fn new(kernels: Kernels, input: ImageShape, convolution: &Convolution) -> ConvolutionPlan {
+    pub fn new(kernels: Simd, input: ImageShape, convolution: &Convolution) -> ConvolutionPlan {
         let output = input.after(convolution).expect("checked shape");
         let Convolution { kernel, stride, .. } = *convolution;
-        let blocks = kernel.is_multiple_of(stride).then_some(kernel / stride);
+        let in_blocks = kernel.is_multiple_of(stride) && kernels.family() != Family::Avx512Bf16;
+        let blocks = in_blocks.then_some(kernel / stride);
         let (grid_width, grid_height) = match blocks {
             Some(side) => (output.width - 1 + side, output.height - 1 + side),
             None => (output.width, output.height),
@@ -114,7 +139,7 @@ impl ConvolutionPlan {
 
     /// The plan of a layer of an encoder: `places` and `runs` speak of its image, without the border of zeros that the stored input has.
     #[must_use]
-    pub fn of(kernels: Kernels, layer: &EncoderLayer) -> ConvolutionPlan {
+    pub fn of(kernels: Simd, layer: &EncoderLayer) -> ConvolutionPlan {
         let (image, border) = (layer.image, layer.border);
         let around = image.bordered(border);
         let mut plan = ConvolutionPlan::new(kernels, around, &layer.convolution);
@@ -151,10 +176,10 @@ impl ConvolutionPlan {
         self.lead() * self.output.channels + self.raw_size()
     }
 
-    /// Numbers of the scratch that patches are copied to; none for a plan in blocks.
+    /// Numbers of a rounded input: what follows the image is read beside weights of zero.
     #[must_use]
-    pub fn patch_size(&self) -> usize {
-        if self.blocks.is_some() { 0 } else { self.output.height * self.output.width * self.depth() }
+    pub fn rounded(&self) -> usize {
+        self.input.size() + self.stride * self.input.channels + 2
     }
 
     fn lead(&self) -> usize {
@@ -176,18 +201,35 @@ impl ConvolutionPlan {
         self.weight_rows.iter().flat_map(|&row| &weights[row * channels..(row + 1) * channels]).copied().collect()
     }
 
-    /// Weights for [`ConvolutionPlan::forward`].
-    pub fn pack_forward(&self, weights: &[f32], packed: &mut [f32]) {
-        super::pack::pack(&self.ordered(weights), self.depth(), self.output.channels, packed);
+    /// Values of a kernel's row.
+    fn run(&self) -> usize {
+        self.kernel * self.input.channels
     }
 
-    /// Weights for [`ConvolutionPlan::input_gradient`]; the same number of values.
-    pub fn pack_backward(&self, weights: &[f32], packed: &mut [f32]) {
+    /// The pixels of the output as they are found in the image, whose numbers are `unit` halves or numbers long.
+    fn pixels(&self, unit: usize) -> Axis {
+        let (across, down) = (self.stride * self.input.channels, self.stride * self.input.width * self.input.channels);
+        Axis { count: self.output.width, stride: unit * across, groups: self.output.height, group_stride: unit * down }
+    }
+
+    /// The numbers of a patch, `count` in each of the kernel's rows.
+    fn patch(&self, count: usize, stride: usize, unit: usize) -> Axis {
+        Axis { count, stride, groups: self.kernel, group_stride: unit * self.input.width * self.input.channels }
+    }
+
+    /// Weights for [`ConvolutionPlan::forward`].
+    pub fn pack_forward(&self, weights: &[f32], packed: &mut Panels) {
+        packed.pack_runs(self.kernels, &self.ordered(weights), self.run(), self.output.channels);
+    }
+
+    /// Weights for [`ConvolutionPlan::input_gradient`].
+    pub fn pack_backward(&self, weights: &[f32], packed: &mut Panels) {
         let ordered = self.ordered(weights);
         let channels = self.output.channels;
         let Some(side) = self.blocks else {
-            return super::pack::pack_transposed(&ordered, channels, self.depth(), packed);
+            return packed.pack_transposed(self.kernels, &ordered, channels, self.depth());
         };
+        let packed = packed.numbers(weights.len());
         // For each row of blocks a matrix from the gradients of `side` neighbouring pixels to one block.
         let block = self.block_size();
         let inner = side * channels;
@@ -204,14 +246,37 @@ impl ConvolutionPlan {
         }
     }
 
+    /// The rounded input: as it is, or made of numbers.
+    fn round<'a>(&self, stored: Stored<'a>, rounded: &'a mut Vec<u16>) -> &'a [u16] {
+        match stored {
+            Stored::Rounded(image) => image,
+            Stored::Numbers(image) => {
+                rounded.resize(self.rounded(), 0);
+                let (numbers, rest) = rounded.split_at_mut(self.input.size());
+                round(self.kernels, &image[..self.input.size()], numbers);
+                rest.fill(0);
+                rounded
+            }
+        }
+    }
+
     /// The raw result, biases and activation still missing.
-    pub fn forward(&self, stored: &[f32], weights: &[f32], patches: &mut [f32], raw: &mut [f32]) {
-        let (channels, depth) = (self.output.channels, self.depth());
+    pub fn forward(&self, stored: Stored<'_>, weights: &Panels, rounded: &mut Rounded, raw: &mut [f32]) {
+        let (kernels, channels, depth) = (self.kernels, self.output.channels, self.depth());
+        let weights = match weights {
+            Panels::Numbers(weights) => weights,
+            Panels::Pairs(weights) => {
+                let run = self.run().div_ceil(2);
+                let data = self.round(stored, &mut rounded.image);
+                let left = Grouped { data, rows: self.pixels(1), inner: self.patch(run, 2, 1) };
+                let right = Right::panels(&weights[..], self.kernel * run);
+                return multiply_grouped(kernels, left, right, channels, raw, channels, false);
+            }
+        };
+        let Stored::Numbers(stored) = stored else { unreachable!("rounded only for pairs") };
         let Some(side) = self.blocks else {
-            self.copy_patches(stored, patches);
-            let size = Size { rows: self.output.height * self.output.width, columns: channels, inner: depth };
-            let left = Left { data: patches, row_stride: depth, inner_stride: 1 };
-            return multiply(self.kernels, size, left, Right::panels(weights, depth), raw, channels, false);
+            let left = Grouped { data: stored, rows: self.pixels(1), inner: self.patch(self.run(), 1, 1) };
+            return multiply_grouped(kernels, left, Right::panels(&weights[..], depth), channels, raw, channels, false);
         };
         let inner = side * self.block_size();
         for part in 0..side {
@@ -222,19 +287,21 @@ impl ConvolutionPlan {
             };
             let right = Right { data: &weights[part * inner * PANEL..], panel_stride: depth * PANEL, inner_stride: PANEL };
             let size = Size { rows: self.rows(), columns: channels, inner };
-            multiply(self.kernels, size, left, right, raw, channels, part > 0);
+            multiply(kernels, size, left, right, raw, channels, part > 0);
         }
     }
 
-    /// Adds the gradient of the weights, in the order of the stored input. `patches` is scratch.
-    pub fn weight_gradient(&self, stored: &[f32], patches: &mut [f32], gradient: &[f32], weights: &mut [f32]) {
-        let (channels, depth) = (self.output.channels, self.depth());
+    /// Adds the gradient of the weights, in the order of the stored input.
+    pub fn weight_gradient(&self, stored: Stored<'_>, gradient: &[f32], rounded: &mut Rounded, weights: &mut [f32]) {
+        let (kernels, channels) = (self.kernels, self.output.channels);
+        if kernels.family() == Family::Avx512Bf16 {
+            return self.weight_gradient_of_pairs(stored, gradient, rounded, weights);
+        }
+        let Stored::Numbers(stored) = stored else { unreachable!("rounded only for pairs") };
         let right = Right::rows(&gradient[self.lead() * channels..], channels);
         let Some(side) = self.blocks else {
-            self.copy_patches(stored, patches);
-            let size = Size { rows: depth, columns: channels, inner: self.output.height * self.output.width };
-            let left = Left { data: patches, row_stride: 1, inner_stride: depth };
-            return multiply(self.kernels, size, left, right, weights, channels, true);
+            let left = Grouped { data: stored, rows: self.patch(self.run(), 1, 1), inner: self.pixels(1) };
+            return multiply_grouped(kernels, left, right, channels, weights, channels, true);
         };
         let rows = side * self.block_size();
         for part in 0..side {
@@ -244,8 +311,34 @@ impl ConvolutionPlan {
                 inner_stride: self.block_size(),
             };
             let size = Size { rows, columns: channels, inner: self.rows() };
-            multiply(self.kernels, size, left, right, &mut weights[part * rows * channels..], channels, true);
+            multiply(kernels, size, left, right, &mut weights[part * rows * channels..], channels, true);
         }
+    }
+
+    /// The inner dimension are the pixels of the output, two that are neighbours in a row together; the last of an odd number has none
+    /// beside it.
+    fn weight_gradient_of_pairs(&self, stored: Stored<'_>, gradient: &[f32], rounded: &mut Rounded, weights: &mut [f32]) {
+        let (kernels, channels, width) = (self.kernels, self.output.channels, self.output.width);
+        let both = width.div_ceil(2);
+        let across = self.stride * self.input.channels;
+        let Rounded { image, image_pairs, gradient_pairs, .. } = rounded;
+        let image = self.round(stored, image);
+        image_pairs.resize(image.len() - across, 0);
+        pair_with_distant(kernels, image, across, image_pairs);
+        gradient_pairs.resize(self.output.height * both * channels, 0);
+        let rows = gradient.chunks_exact(width * channels).zip(gradient_pairs.chunks_exact_mut(both * channels));
+        for (row, pairs) in rows {
+            for (pixels, pairs) in row.chunks(2 * channels).zip(pairs.chunks_exact_mut(channels)) {
+                match pixels.split_at(channels) {
+                    (first, []) => pair_with_zeros(kernels, first, pairs),
+                    (first, second) => pair_rows(kernels, first, second, pairs),
+                }
+            }
+        }
+        let pixels = Axis { count: both, stride: 2 * 2 * across, ..self.pixels(2) };
+        let left = Grouped { data: halves(image_pairs), rows: self.patch(self.run(), 2, 2), inner: pixels };
+        let right = Right::rows(&gradient_pairs[..], channels);
+        multiply_grouped(kernels, left, right, channels, weights, channels, true);
     }
 
     /// Brings a weight gradient back into canonical order, adding it to `canonical`.
@@ -256,14 +349,19 @@ impl ConvolutionPlan {
         }
     }
 
-    /// The gradient of the stored input. `patches` is scratch.
-    pub fn input_gradient(&self, gradient: &[f32], weights: &[f32], patches: &mut [f32], stored: &mut [f32]) {
-        let (channels, depth) = (self.output.channels, self.depth());
+    /// The gradient of the stored input.
+    pub fn input_gradient(&self, gradient: &[f32], weights: &Panels, rounded: &mut Rounded, stored: &mut [f32]) {
+        let channels = self.output.channels;
+        let weights = match weights {
+            Panels::Numbers(weights) => weights,
+            Panels::Pairs(weights) => {
+                rounded.gradient.resize(gradient.len(), 0);
+                round(self.kernels, gradient, &mut rounded.gradient);
+                return self.add_patches::<u16>(&rounded.gradient, weights, channels / 2, 2, stored);
+            }
+        };
         let Some(side) = self.blocks else {
-            let size = Size { rows: self.output.height * self.output.width, columns: depth, inner: channels };
-            let left = Left { data: gradient, row_stride: channels, inner_stride: 1 };
-            multiply(self.kernels, size, left, Right::panels(weights, channels), patches, depth, false);
-            return self.add_patches(patches, stored);
+            return self.add_patches::<f32>(gradient, weights, channels, 1, stored);
         };
         let (inner, block) = (side * channels, self.block_size());
         for part in 0..side {
@@ -283,29 +381,25 @@ impl ConvolutionPlan {
         }
     }
 
-    fn patch_rows(&self) -> impl Iterator<Item = (usize, usize)> {
-        let run = self.kernel * self.input.channels;
-        let (width, channels, kernel, stride) = (self.input.width, self.input.channels, self.kernel, self.stride);
-        let (rows, columns) = (self.output.height, self.output.width);
-        (0..rows * columns * kernel).map(move |index| {
-            let (pixel, ky) = (index / kernel, index % kernel);
-            let (y, x) = (pixel / columns * stride + ky, pixel % columns * stride);
-            ((y * width + x) * channels, index * run)
-        })
-    }
-
-    fn copy_patches(&self, stored: &[f32], patches: &mut [f32]) {
-        let run = self.kernel * self.input.channels;
-        for (from, to) in self.patch_rows() {
-            patches[to..to + run].copy_from_slice(&stored[from..from + run]);
-        }
-    }
-
-    fn add_patches(&self, patches: &[f32], stored: &mut [f32]) {
-        let run = self.kernel * self.input.channels;
-        stored.fill(0.0);
-        for (to, from) in self.patch_rows() {
-            super::elementwise::add(self.kernels, &mut stored[to..to + run], &patches[from..from + run]);
+    /// Adds the gradients of all patches to the image, pixel by pixel of the output.
+    fn add_patches<T: Factor>(
+        &self,
+        gradient: &[T],
+        weights: &[T::Right],
+        inner: usize,
+        inner_stride: usize,
+        stored: &mut [f32],
+    ) {
+        let (channels, run) = (self.output.channels, self.run());
+        let (across, down) = (self.stride * self.input.channels, self.input.width * self.input.channels);
+        stored[..self.input.size()].fill(0.0);
+        for (y, row) in gradient[..self.output.size()].chunks_exact(self.output.width * channels).enumerate() {
+            let (rows, inner) = (Axis::plain(self.output.width, channels), Axis::plain(inner, inner_stride));
+            for (ky, weights) in weights.chunks_exact(run * inner.count).enumerate() {
+                let (left, right) = (Grouped { data: row, rows, inner }, Right::panels(weights, inner.count));
+                let to = &mut stored[(y * self.stride + ky) * down..self.input.size()];
+                add_to_overlapping_rows(self.kernels, left, right, run, to, across);
+            }
         }
     }
 }

@@ -3,7 +3,9 @@
 //! Exponentials are a polynomial of relative error below 2e-7, because the system's are neither vectorised nor equal on
 //! all machines.
 
-use super::simd::{Kernels, vectorised};
+use hasard_engine::simd::Simd;
+
+use super::vectorised::vectorised;
 
 /// e^x for x in about -87..88, clamped outside.
 #[inline(always)]
@@ -151,7 +153,7 @@ vectorised! {
 
 /// Sum of squares, in blocks so that it neither loses small terms nor depends on anything but its input.
 #[must_use]
-pub fn sum_of_squares(kernels: Kernels, values: &[f32]) -> f64 {
+pub fn sum_of_squares(kernels: Simd, values: &[f32]) -> f64 {
     let mut total = 0.0;
     for block in values.chunks(4096) {
         let mut sum = 0.0;
@@ -241,7 +243,7 @@ mod tests {
                 beta2: 0.999,
                 epsilon: 1e-6,
             };
-            adam(Kernels::PORTABLE, step, g, &mut m, &mut v, &mut p);
+            adam(Simd::PLAIN, step, g, &mut m, &mut v, &mut p);
             for i in 0..3 {
                 let g = f64::from(g[i]) * 0.5;
                 em[i] = 0.9 * em[i] + 0.1 * g;

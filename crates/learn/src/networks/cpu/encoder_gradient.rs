@@ -1,9 +1,9 @@
 //! The backward pass through the convolutions, image by image, gathering the gradients of their weights.
 
-use super::convolution::ConvolutionPlan;
+use super::convolution::{ConvolutionPlan, Rounded, Stored};
 use super::elementwise::{add, add_column_sums, elu_backward_gather};
 use super::forward::{output_places, sized};
-use super::pixels::store_pixels;
+use super::pixels::StoredImage;
 use super::residual::ResidualImage;
 use super::tape::TapeLane;
 use super::weights::{Backward, PackedWeights, Plan};
@@ -18,9 +18,8 @@ pub struct EncoderGradient {
 /// Buffers of the pass, one set a thread.
 #[derive(Default)]
 pub struct Scratch {
-    bytes: Vec<u8>,
-    image: Vec<f32>,
-    patches: Vec<f32>,
+    image: StoredImage,
+    rounded: Rounded,
     residual: ResidualImage,
     /// Gradient of each layer's sums, zero around the pixels that exist.
     padded: Vec<Vec<f32>>,
@@ -87,17 +86,15 @@ impl EncoderGradient {
                 let targets = &convolution.gradient_places;
                 elu_backward_gather(kernels, d, output, &places[layer], convolution.channels(), targets, padded);
                 add_column_sums(kernels, padded, biases);
-                let stored: &[f32] = if layer == 0 {
-                    let image = sized(&mut scratch.image, convolution.stored);
-                    store_pixels(kernels, plan.shape.image, convolution, observation, pixels, &mut scratch.bytes, image);
-                    image
+                let stored = if layer == 0 {
+                    scratch.image.store(kernels, plan.shape.image, convolution, observation, pixels)
                 } else {
-                    row(&lane.tape.activations[layer - 1], convolution.stored)
+                    Stored::Numbers(row(&lane.tape.activations[layer - 1], convolution.stored))
                 };
-                let patches = sized(&mut scratch.patches, convolution.patch_size());
-                convolution.weight_gradient(stored, patches, padded, weights);
+                convolution.weight_gradient(stored, padded, &mut scratch.rounded, weights);
                 if layer > 0 {
-                    convolution.input_gradient(padded, &back.convolutions[layer], patches, &mut scratch.stored[layer]);
+                    let received = &mut scratch.stored[layer];
+                    convolution.input_gradient(padded, &back.convolutions[layer], &mut scratch.rounded, received);
                 }
             }
         }

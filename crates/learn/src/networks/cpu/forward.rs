@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::cells::{gru_gates, lstm_gates};
+use super::convolution::{Rounded, Stored};
 use super::elementwise::{bias_elu_rows, bias_elu_scatter, bias_rows, scale_pixels};
-use super::pixels::store_pixels;
-use super::product::{Left, Right, Size, multiply};
+use super::pixels::StoredImage;
+use super::product::{Left, Size, multiply_panels};
 use super::residual::ResidualImage;
 use super::tape::{Rows, Tape};
 use super::weights::{PackedWeights, Plan};
@@ -31,11 +32,11 @@ pub struct Input<'a> {
 /// Buffers of a forward pass that nothing needs afterwards.
 #[derive(Default)]
 pub struct Forward {
-    bytes: Vec<u8>,
-    image: Vec<f32>,
+    image: StoredImage,
     residual: ResidualImage,
     raw: Vec<f32>,
-    patches: Vec<f32>,
+    convolution: Rounded,
+    rows: Vec<u16>,
     state: Vec<f32>,
     from_state: Vec<f32>,
 }
@@ -73,7 +74,7 @@ impl Forward {
         let rows = Rows::new(tape, &steps, &lanes);
         assert_eq!(input.observations.len(), rows.count, "one observation a row");
         self.encode(plan, weights, input, rows, tape);
-        dense(plan, weights, input, rows, tape);
+        dense(plan, weights, input, rows, tape, &mut self.rows);
         if let Some(units) = shape.recurrent {
             self.recur(plan, units, weights, input, steps, lanes, tape);
         }
@@ -82,7 +83,7 @@ impl Forward {
         let left = Left { data: &core[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
         let size = Size { rows: rows.count, columns: padded, inner: inputs };
         let outputs = &mut tape.outputs[rows.span(padded)];
-        multiply(kernels, size, left, Right::panels(&weights.heads, inputs), outputs, rows.stride * padded, false);
+        multiply_panels(kernels, size, left, &weights.heads, outputs, rows.stride * padded, false, &mut self.rows);
         bias_rows(kernels, outputs, rows.stride * padded, &weights.head_biases);
     }
 
@@ -110,17 +111,15 @@ impl Forward {
                 scale_pixels(kernels, observation, &input.pixels.scale, &input.pixels.shift, to);
                 continue;
             };
-            let image = sized(&mut self.image, first.stored);
-            store_pixels(kernels, plan.shape.image, first, observation, input.pixels, &mut self.bytes, image);
+            let image = self.image.store(kernels, plan.shape.image, first, observation, input.pixels);
             for (layer, convolution) in plan.convolutions.iter().enumerate() {
                 let (earlier, rest) = tape.activations.split_at_mut(layer);
-                let stored: &[f32] = match earlier.last() {
-                    None => &self.image[..convolution.stored],
-                    Some(before) => &before[row * convolution.stored..(row + 1) * convolution.stored],
+                let stored = match earlier.last() {
+                    None => image,
+                    Some(before) => Stored::Numbers(&before[row * convolution.stored..(row + 1) * convolution.stored]),
                 };
-                let patches = sized(&mut self.patches, convolution.patch_size());
                 let raw = sized(&mut self.raw, convolution.raw_size());
-                convolution.forward(stored, &weights.convolutions[layer], patches, raw);
+                convolution.forward(stored, &weights.convolutions[layer], &mut self.convolution, raw);
                 let to = match plan.convolutions.get(layer + 1) {
                     Some(next) => &mut rest[0][row * next.stored..(row + 1) * next.stored],
                     None => &mut tape.features[row * features..(row + 1) * features],
@@ -148,7 +147,7 @@ impl Forward {
         let size = Size { rows: rows.count, columns, inner: inputs };
         let left = Left { data: &tape.core_input[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
         let gates = &mut tape.gates[rows.span(columns)];
-        multiply(kernels, size, left, Right::panels(&weights.cell_input, inputs), gates, rows.stride * columns, false);
+        multiply_panels(kernels, size, left, &weights.cell_input, gates, rows.stride * columns, false, &mut self.rows);
         self.state.clear();
         self.state.extend_from_slice(input.state);
         let from_state = sized(&mut self.from_state, lanes.len() * columns);
@@ -161,7 +160,7 @@ impl Forward {
             }
             let size = Size { rows: lanes.len(), columns, inner: units };
             let left = Left { data: &self.state, row_stride: width, inner_stride: 1 };
-            multiply(kernels, size, left, Right::panels(&weights.cell_hidden, units), from_state, columns, false);
+            multiply_panels(kernels, size, left, &weights.cell_hidden, from_state, columns, false, &mut self.rows);
             let each = self.state.chunks_exact_mut(width).zip(from_state.chunks_exact(columns));
             for (lane, (state, from_state)) in lanes.clone().zip(each) {
                 let row = lane * tape.steps + step;
@@ -184,7 +183,7 @@ impl Forward {
 }
 
 /// Dense layers, and the extra inputs behind the last.
-fn dense(plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, tape: &mut Tape) {
+fn dense(plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, tape: &mut Tape, rounded: &mut Vec<u16>) {
     let (kernels, shape) = (plan.kernels, &plan.shape);
     for (index, &units) in shape.dense.iter().enumerate() {
         let (earlier, rest) = tape.dense.split_at_mut(index);
@@ -199,7 +198,7 @@ fn dense(plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, ta
         let size = Size { rows: rows.count, columns: units, inner: inputs };
         let left = Left { data: &from[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
         let (to, stride) = (&mut to[rows.span(width)], rows.stride * width);
-        multiply(kernels, size, left, Right::panels(&weights.dense[index], inputs), to, stride, false);
+        multiply_panels(kernels, size, left, &weights.dense[index], to, stride, false, rounded);
         bias_elu_rows(kernels, to, stride, &weights.dense_biases[index]);
     }
     let (inputs, extra) = (shape.core_inputs(), shape.extra_inputs);

@@ -7,7 +7,7 @@ use super::backward::RowGradients;
 use super::elementwise::add;
 use super::encoder_gradient::{EncoderGradient, Scratch};
 use super::outer::{Workspace, sum_outer_products};
-use super::simd::Kernels;
+use hasard_engine::simd::Simd;
 use super::tape::{Tape, TapeLane};
 use super::threads::{Piece, deal, in_parallel, pieces};
 use super::weights::{Backward, PackedWeights, Plan};
@@ -53,7 +53,7 @@ impl<'a> Factors<'a> {
     /// The gradient of the weights, its rows in so many pieces, and that of the biases.
     fn deal_out<'b>(
         &'b self,
-        kernels: Kernels,
+        kernels: Simd,
         pieces: usize,
         mut weights: &'b mut [f32],
         biases: &'b mut [f32],

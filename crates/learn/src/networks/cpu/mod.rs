@@ -1,6 +1,6 @@
 //! The network on the processor: fused kernels that reach most of what its multiply-add units can do.
 //!
-//! From the bottom up: [`simd`] chooses the kernels, [`tile`], [`product`], [`outer`] and [`pack`] multiply matrices,
+//! From the bottom up: [`tile`], [`bfloat16`], [`product`], [`outer`], [`pack`] and [`panels`] multiply matrices,
 //! [`elementwise`] does the rest of the arithmetic (and [`vectors`] that of the second-order algorithms), [`convolution`] turns
 //! convolutions into products, of which `residual` makes the other encoder; [`forward`] writes a [`tape`] that [`backward`], [`encoder_gradient`] and [`gradient`] read; [`network`] is what the rest of the crate sees.
 //!
@@ -8,6 +8,7 @@
 //! cards are built in, against their twin in the `burn` crate.
 
 pub mod backward;
+pub mod bfloat16;
 mod cells;
 pub mod convolution;
 pub mod elementwise;
@@ -17,13 +18,14 @@ pub mod gradient;
 pub mod network;
 pub mod outer;
 pub mod pack;
+pub mod panels;
 mod pixels;
 pub mod product;
 mod rectified;
 mod residual;
-pub mod simd;
 pub mod tape;
 pub mod threads;
 pub mod tile;
+pub(crate) mod vectorised;
 pub mod vectors;
 pub mod weights;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::backward::RowGradients;
 use super::forward::{Forward, Input};
 use super::gradient::{Finished, ParameterGradients};
-use super::simd::Kernels;
+use hasard_engine::simd::Simd;
 use super::tape::{Tape, TapeLane};
 use super::threads::{Piece, deal, in_parallel, pieces};
 use super::weights::{Backward, PackedWeights, Plan, stored_pixels};
@@ -32,7 +32,7 @@ pub struct CpuLearner {
 impl CpuLearner {
     /// A learner of a checked shape on `threads` threads.
     #[must_use]
-    pub fn new(kernels: Kernels, shape: &NetworkShape, threads: usize) -> CpuLearner {
+    pub fn new(kernels: Simd, shape: &NetworkShape, threads: usize) -> CpuLearner {
         CpuLearner {
             plan: Arc::new(Plan::new(kernels, shape)),
             weights: Arc::default(),
@@ -175,7 +175,7 @@ pub struct CpuActor {
 impl CpuActor {
     /// An actor of a checked shape.
     #[must_use]
-    pub fn new(kernels: Kernels, shape: &NetworkShape) -> CpuActor {
+    pub fn new(kernels: Simd, shape: &NetworkShape) -> CpuActor {
         CpuActor {
             plan: Arc::new(Plan::new(kernels, shape)),
             weights: Arc::default(),

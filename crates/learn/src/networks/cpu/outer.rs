@@ -5,15 +5,25 @@
 
 use std::ops::Range;
 
-use super::product::{block_rows, stretches};
-use super::simd::Kernels;
-use super::tile::{Ahead, PANEL, Tile, tiles};
+use hasard_engine::simd::{Family, Simd};
+
+use super::bfloat16::{Pair, pair_rows, pair_with_zeros};
+use super::product::{Factor, block_rows, stretches};
+use super::tile::{Ahead, Finish, PANEL, Tile, tiles};
 
 /// Memory for repacked factors.
 #[derive(Default)]
 pub struct Workspace {
-    left: Vec<f32>,
-    right: Vec<f32>,
+    numbers: Packed<f32>,
+    pairs: Packed<Pair>,
+    /// Rows of the two factors, paired.
+    paired: [Vec<Pair>; 2],
+}
+
+#[derive(Default)]
+struct Packed<T> {
+    left: Vec<T>,
+    right: Vec<T>,
 }
 
 /// `out[i][j]` = the sum over all rows k of `inputs[k][rows.start + i] * sums[k][j]`; `out` has `columns` columns.
@@ -21,7 +31,7 @@ pub struct Workspace {
 /// # Panics
 /// If a row is too short, the two numbers of rows differ, `out` has another size, or `columns` is no multiple of [`PANEL`].
 pub fn sum_outer_products(
-    kernels: Kernels,
+    kernels: Simd,
     inputs: &[&[f32]],
     rows: Range<usize>,
     sums: &[&[f32]],
@@ -34,29 +44,71 @@ pub fn sum_outer_products(
     if inputs.is_empty() || columns == 0 {
         return out.fill(0.0);
     }
+    if kernels.family() != Family::Avx512Bf16 {
+        return sum_packed(kernels, inputs, rows, sums, columns, out, &mut workspace.numbers, f32::run);
+    }
+    let [left, right] = &mut workspace.paired;
+    let inputs = paired(kernels, inputs, rows.clone(), left);
+    let sums = paired(kernels, sums, 0..columns, right);
+    let run = |tile: Tile, kernels, height, left: *const Pair, right, out| {
+        // A step of the left factor is a pair of halves.
+        let tile = Tile { row_stride: 2 * tile.row_stride, left_inner: 2 * tile.left_inner, ..tile };
+        // SAFETY: as the caller promises.
+        unsafe { u16::run(tile, kernels, height, left.cast(), right, out) }
+    };
+    sum_packed(kernels, &inputs, 0..rows.len(), &sums, columns, out, &mut workspace.pairs, run);
+}
+
+/// Some columns of rows, two rows together.
+fn paired<'a>(kernels: Simd, rows: &[&[f32]], columns: Range<usize>, pairs: &'a mut Vec<Pair>) -> Vec<&'a [Pair]> {
+    let width = columns.len();
+    pairs.resize(rows.len().div_ceil(2) * width, 0);
+    for (rows, pairs) in rows.chunks(2).zip(pairs.chunks_exact_mut(width)) {
+        match rows {
+            [first, second] => pair_rows(kernels, &first[columns.clone()], &second[columns.clone()], pairs),
+            _ => pair_with_zeros(kernels, &rows[0][columns.clone()], pairs),
+        }
+    }
+    pairs.chunks_exact(width).collect()
+}
+
+/// As [`sum_outer_products`], of numbers or of pairs, by a tile of theirs.
+#[allow(clippy::too_many_arguments, reason = "two factors, a result, scratch and what multiplies")]
+fn sum_packed<T: Copy + Default>(
+    kernels: Simd,
+    inputs: &[&[T]],
+    rows: Range<usize>,
+    sums: &[&[T]],
+    columns: usize,
+    out: &mut [f32],
+    packed: &mut Packed<T>,
+    run: unsafe fn(Tile, Simd, usize, *const T, *const T, *mut f32),
+) {
     for (start, length) in stretches(kernels, inputs.len()) {
         let (inputs, sums) = (&inputs[start..start + length], &sums[start..start + length]);
         let block = block_rows(kernels, length);
-        pack_panels(sums, columns, &mut workspace.right);
+        pack_panels(sums, columns, &mut packed.right);
         for (out, first) in out.chunks_mut(block * columns).zip(rows.clone().step_by(block)) {
             let count = out.len() / columns;
-            pack_block(kernels, inputs, first, count, &mut workspace.left);
-            for (panel, right) in workspace.right.chunks_exact(length * PANEL).enumerate() {
+            pack_block(kernels, inputs, first, count, &mut packed.left);
+            for (panel, right) in packed.right.chunks_exact(length * PANEL).enumerate() {
                 for (row, height) in tiles(kernels, count) {
                     let tile = Tile {
                         inner: length,
+                        parts: 1,
+                        left_part: 0,
                         row_stride: 1,
                         left_inner: height,
                         right_inner: PANEL,
                         out_stride: columns,
-                        accumulate: start > 0,
+                        finish: if start > 0 { Finish::Continue } else { Finish::Set },
                         next: length * PANEL,
                         ahead: Ahead::at(row, row + height, count),
                     };
-                    let left = &workspace.left[row * length..][..height * length];
+                    let left = &packed.left[row * length..][..height * length];
                     let out = &mut out[row * columns + panel * PANEL..][..(height - 1) * columns + PANEL];
                     // SAFETY: the three slices are exactly the tile's elements.
-                    unsafe { tile.run(kernels, height, left.as_ptr(), right.as_ptr(), out.as_mut_ptr()) };
+                    unsafe { run(tile, kernels, height, left.as_ptr(), right.as_ptr(), out.as_mut_ptr()) };
                 }
             }
         }
@@ -64,8 +116,8 @@ pub fn sum_outer_products(
 }
 
 /// The rows as [`super::pack::pack`] stores them.
-fn pack_panels(rows: &[&[f32]], columns: usize, packed: &mut Vec<f32>) {
-    packed.resize(rows.len() * columns, 0.0);
+fn pack_panels<T: Copy + Default>(rows: &[&[T]], columns: usize, packed: &mut Vec<T>) {
+    packed.resize(rows.len() * columns, T::default());
     for (k, row) in rows.iter().enumerate() {
         for (panel, values) in row[..columns].chunks_exact(PANEL).enumerate() {
             packed[(panel * rows.len() + k) * PANEL..][..PANEL].copy_from_slice(values);
@@ -74,8 +126,8 @@ fn pack_panels(rows: &[&[f32]], columns: usize, packed: &mut Vec<f32>) {
 }
 
 /// Columns `first..first + count` of the inputs, tile after tile; in a tile one row of numbers after the other.
-fn pack_block(kernels: Kernels, inputs: &[&[f32]], first: usize, count: usize, packed: &mut Vec<f32>) {
-    packed.resize(count * inputs.len(), 0.0);
+fn pack_block<T: Copy + Default>(kernels: Simd, inputs: &[&[T]], first: usize, count: usize, packed: &mut Vec<T>) {
+    packed.resize(count * inputs.len(), T::default());
     let mut all = tiles(kernels, count).peekable();
     // At most two heights occur, the taller first.
     while let Some(&(start, height)) = all.peek() {
@@ -87,7 +139,7 @@ fn pack_block(kernels: Kernels, inputs: &[&[f32]], first: usize, count: usize, p
         macro_rules! heights {
             ($($height:literal)*) => {
                 match height {
-                    $($height => pack_tiles::<$height>(inputs, first + start, part),)*
+                    $($height => pack_tiles::<T, $height>(inputs, first + start, part),)*
                     _ => unreachable!("tile height"),
                 }
             };
@@ -97,7 +149,7 @@ fn pack_block(kernels: Kernels, inputs: &[&[f32]], first: usize, count: usize, p
 }
 
 /// Tiles of a height known when this is compiled, so that a copy is a move or two rather than a call.
-fn pack_tiles<const HEIGHT: usize>(inputs: &[&[f32]], first: usize, packed: &mut [f32]) {
+fn pack_tiles<T: Copy, const HEIGHT: usize>(inputs: &[&[T]], first: usize, packed: &mut [T]) {
     let length = inputs.len() * HEIGHT;
     let count = packed.len() / length;
     for (k, row) in inputs.iter().enumerate() {
@@ -115,7 +167,7 @@ mod tests {
     /// Every family, with more rows than a stretch of the inner dimension and more columns than a block.
     #[test]
     fn sums_equal_plain_loops() {
-        for kernels in Kernels::available() {
+        for kernels in Simd::available() {
             for (count, width, columns, rows) in [(1, 40, 32, 3..40), (5, 300, 64, 0..300), (1100, 50, 96, 7..48)] {
                 let (inputs, sums) = (noise(count * width, 1), noise(count * columns, 2));
                 let (inputs, sums): (Vec<_>, Vec<_>) = (inputs.chunks(width).collect(), sums.chunks(columns).collect());
@@ -135,7 +187,7 @@ mod tests {
     /// The order of summation is that of the rows, wherever the part of the result begins.
     #[test]
     fn parts_of_a_result_have_the_bits_of_the_whole() {
-        for kernels in Kernels::available() {
+        for kernels in Simd::available() {
             let (inputs, sums) = (noise(700 * 70, 1), noise(700 * 32, 2));
             let (inputs, sums): (Vec<_>, Vec<_>) = (inputs.chunks(70).collect(), sums.chunks(32).collect());
             let part = |rows: Range<usize>| {

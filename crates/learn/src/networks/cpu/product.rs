@@ -7,8 +7,37 @@
 //!
 //! [`multiply`] asserts that every address that it will touch lies inside its slices.
 
-use super::simd::{Kernels, Level};
-use super::tile::{Ahead, PANEL, Tile, tallest, tiles};
+use hasard_engine::simd::{Family, Simd};
+
+use super::bfloat16::{self, Pair};
+use super::panels::Panels;
+use super::tile::{Ahead, Finish, PANEL, Tile, tallest, tiles};
+
+/// The way of one index through a factor: `count` steps, and that again for each of `groups`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis {
+    pub count: usize,
+    pub stride: usize,
+    pub groups: usize,
+    pub group_stride: usize,
+}
+
+impl Axis {
+    /// Steps of one length.
+    pub const fn plain(count: usize, stride: usize) -> Axis {
+        Axis { count, stride, groups: 1, group_stride: 0 }
+    }
+
+    /// All steps of all groups.
+    pub const fn length(self) -> usize {
+        self.count * self.groups
+    }
+
+    /// How far the last of them lies behind the first.
+    const fn reach(self) -> usize {
+        (self.count - 1) * self.stride + (self.groups - 1) * self.group_stride
+    }
+}
 
 /// Left factor: element (row, inner) is `data[row * row_stride + inner * inner_stride]`.
 #[derive(Clone, Copy)]
@@ -21,27 +50,28 @@ pub struct Left<'a> {
     pub inner_stride: usize,
 }
 
-/// Right factor: element (inner, 32 panel + column) is `data[panel * panel_stride + inner * inner_stride + column]`.
+/// Right factor: element (inner, 32 panel + column) is `data[panel * panel_stride + inner * inner_stride + column]`. In bfloat16 an
+/// element is a pair of inner indices.
 #[derive(Clone, Copy)]
-pub struct Right<'a> {
+pub struct Right<'a, T = f32> {
     /// The elements.
-    pub data: &'a [f32],
+    pub data: &'a [T],
     /// Distance of two panels of 32 columns.
     pub panel_stride: usize,
     /// Distance of two inner indices.
     pub inner_stride: usize,
 }
 
-impl<'a> Right<'a> {
+impl<'a, T> Right<'a, T> {
     /// A matrix of `width` columns stored row by row.
     #[must_use]
-    pub fn rows(data: &'a [f32], width: usize) -> Right<'a> {
+    pub fn rows(data: &'a [T], width: usize) -> Right<'a, T> {
         Right { data, panel_stride: PANEL, inner_stride: width }
     }
 
     /// A matrix of `inner` rows stored panel after panel, as [`super::pack::pack`] does.
     #[must_use]
-    pub fn panels(data: &'a [f32], inner: usize) -> Right<'a> {
+    pub fn panels(data: &'a [T], inner: usize) -> Right<'a, T> {
         Right { data, panel_stride: inner * PANEL, inner_stride: PANEL }
     }
 }
@@ -61,23 +91,65 @@ pub struct Size {
 const BLOCK_BYTES: usize = 384 * 1024;
 /// Longest stretch of the inner dimension that is walked at once: a panel of so many rows stays in the second-level cache, and
 /// with short registers, which read it twice as often, nearly in the first.
-pub(super) const fn stretch(kernels: Kernels) -> usize {
-    match kernels.level() {
-        Level::Avx512 => 2048,
-        Level::Avx2 | Level::Portable => 512,
+pub(super) const fn stretch(kernels: Simd) -> usize {
+    match kernels.family() {
+        Family::Avx512 | Family::Avx512Bf16 => 2048,
+        Family::Avx2 | Family::Plain => 512,
     }
 }
 
 /// The inner dimension dealt into stretches of nearly equal length, as (first, length).
-pub(super) fn stretches(kernels: Kernels, inner: usize) -> impl Iterator<Item = (usize, usize)> {
+pub(super) fn stretches(kernels: Simd, inner: usize) -> impl Iterator<Item = (usize, usize)> {
     let count = inner.div_ceil(stretch(kernels)).max(1);
     let (length, longer) = (inner / count, inner % count);
     (0..count).map(move |part| (part * length + part.min(longer), length + usize::from(part < longer)))
 }
 
 /// Rows of the left factor in a block, for a stretch of the inner dimension.
-pub(super) fn block_rows(kernels: Kernels, inner: usize) -> usize {
+pub(super) fn block_rows(kernels: Simd, inner: usize) -> usize {
     (BLOCK_BYTES / size_of::<f32>() / inner.clamp(1, stretch(kernels))).next_multiple_of(tallest(kernels))
+}
+
+/// A left factor whose rows and inner indices come in groups, in which a convolution finds its patches without copying them. In
+/// bfloat16 strides count numbers of 16 bits, and an inner index is the pair of two of them that begins there.
+#[derive(Clone, Copy)]
+pub(super) struct Grouped<'a, T> {
+    pub data: &'a [T],
+    pub rows: Axis,
+    pub inner: Axis,
+}
+
+/// What a tile of numbers or of pairs is made of.
+pub(super) trait Factor: Copy {
+    /// Elements of the right factor.
+    type Right: Copy;
+    /// Elements of the left factor that a step of the inner dimension reads.
+    const READ: usize;
+    /// Computes a tile.
+    ///
+    /// # Safety
+    /// All elements of the tile must lie inside the allocations behind the pointers.
+    unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const Self, right: *const Self::Right, out: *mut f32);
+}
+
+impl Factor for f32 {
+    type Right = f32;
+    const READ: usize = 1;
+    #[inline(always)]
+    unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const f32, right: *const f32, out: *mut f32) {
+        // SAFETY: as the caller promised.
+        unsafe { tile.run(kernels, height, left, right, out) }
+    }
+}
+
+impl Factor for u16 {
+    type Right = Pair;
+    const READ: usize = 2;
+    #[inline(always)]
+    unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const u16, right: *const Pair, out: *mut f32) {
+        // SAFETY: as the caller promised.
+        unsafe { bfloat16::run(tile, kernels, height, left, right, out) }
+    }
 }
 
 /// `out = left * right`, or `out += left * right`; row `i` of the result starts at `out[i * out_stride]`.
@@ -85,7 +157,7 @@ pub(super) fn block_rows(kernels: Kernels, inner: usize) -> usize {
 /// # Panics
 /// If the size reaches outside a slice, or `columns` is no multiple of [`PANEL`].
 pub fn multiply(
-    kernels: Kernels,
+    kernels: Simd,
     size: Size,
     left: Left<'_>,
     right: Right<'_>,
@@ -94,51 +166,186 @@ pub fn multiply(
     accumulate: bool,
 ) {
     let Size { rows, columns, inner } = size;
-    if rows == 0 || columns == 0 || inner == 0 {
-        assert!(inner > 0 || accumulate, "an empty sum must be asked for as an accumulation");
+    let (rows, inner) = (Axis::plain(rows, left.row_stride), Axis::plain(inner, left.inner_stride));
+    multiply_grouped(kernels, Grouped { data: left.data, rows, inner }, right, columns, out, out_stride, accumulate);
+}
+
+/// As [`multiply`] with weights as the family reads them; in bfloat16 the rows of the left factor, whose inner indices stand side by
+/// side, are rounded into `rounded` block by block.
+#[allow(clippy::too_many_arguments, reason = "two factors, a result and scratch")]
+pub fn multiply_panels(
+    kernels: Simd,
+    size: Size,
+    left: Left<'_>,
+    right: &Panels,
+    out: &mut [f32],
+    out_stride: usize,
+    accumulate: bool,
+    rounded: &mut Vec<u16>,
+) {
+    let Size { rows, columns, inner } = size;
+    let pairs = match right {
+        Panels::Numbers(data) => {
+            return multiply(kernels, size, left, Right::panels(data, inner), out, out_stride, accumulate);
+        }
+        Panels::Pairs(pairs) => pairs,
+    };
+    assert!(left.inner_stride == 1, "rows that are rounded stand in one piece");
+    let width = inner.next_multiple_of(2);
+    let block = block_rows(kernels, width / 2);
+    rounded.resize(block.min(rows) * width, 0);
+    for first in (0..rows).step_by(block) {
+        let count = block.min(rows - first);
+        for (row, to) in rounded.chunks_exact_mut(width.max(1)).take(count).enumerate() {
+            let from = &left.data[(first + row) * left.row_stride..][..inner];
+            bfloat16::round(kernels, from, &mut to[..inner]);
+            to[inner..].fill(0);
+        }
+        let factor = Grouped { data: &rounded[..], rows: Axis::plain(count, width), inner: Axis::plain(width / 2, 2) };
+        let right = Right::panels(&pairs[..], width / 2);
+        multiply_grouped(kernels, factor, right, columns, &mut out[first * out_stride..], out_stride, accumulate);
+    }
+}
+
+/// As [`multiply`], of a left factor in groups: the rows of all groups follow each other in the result, the inner indices in the right
+/// factor.
+pub(super) fn multiply_grouped<T: Factor>(
+    kernels: Simd,
+    left: Grouped<'_, T>,
+    right: Right<'_, T::Right>,
+    columns: usize,
+    out: &mut [f32],
+    out_stride: usize,
+    accumulate: bool,
+) {
+    let Grouped { data, rows, inner } = left;
+    if rows.length() == 0 || columns == 0 || inner.length() == 0 {
+        assert!(inner.length() > 0 || accumulate, "an empty sum must be asked for as an accumulation");
         return;
     }
     assert!(columns.is_multiple_of(PANEL), "product of {columns} columns, not a multiple of {PANEL}");
-    assert!((rows - 1) * left.row_stride + (inner - 1) * left.inner_stride < left.data.len(), "left factor too short");
+    assert!(rows.reach() + inner.reach() + T::READ <= data.len(), "left factor too short");
     let panels = columns / PANEL;
     assert!(
-        (panels - 1) * right.panel_stride + (inner - 1) * right.inner_stride + PANEL <= right.data.len(),
+        (panels - 1) * right.panel_stride + (inner.length() - 1) * right.inner_stride + PANEL <= right.data.len(),
         "right factor too short"
     );
-    assert!((rows - 1) * out_stride + columns <= out.len() && (rows == 1 || out_stride >= columns), "result too short");
-    for (start, length) in stretches(kernels, inner) {
+    assert!(
+        (rows.length() - 1) * out_stride + columns <= out.len() && (rows.length() == 1 || out_stride >= columns),
+        "result too short"
+    );
+    for Stretch { start, parts, length } in inner.stretches(kernels) {
+        let (part, step) = (start / inner.count, start % inner.count);
         let mut tile = Tile {
             inner: length,
-            row_stride: left.row_stride,
-            left_inner: left.inner_stride,
+            parts,
+            left_part: inner.group_stride,
+            row_stride: rows.stride,
+            left_inner: inner.stride,
             right_inner: right.inner_stride,
             out_stride,
-            accumulate: accumulate || start > 0,
+            finish: if accumulate || start > 0 { Finish::Continue } else { Finish::Set },
             next: right.panel_stride,
             ahead: Ahead::Nothing,
         };
-        let block = block_rows(kernels, length);
-        for first in (0..rows).step_by(block) {
-            let block_rows = block.min(rows - first);
+        let block = block_rows(kernels, length * parts);
+        for (group, first) in (0..rows.groups).flat_map(|group| (0..rows.count).step_by(block).map(move |first| (group, first))) {
+            let block_rows = block.min(rows.count - first);
             for panel in 0..panels {
                 for (row, height) in tiles(kernels, block_rows) {
                     // The last tiles of a panel fetch the next: with few rows, weights come from afar all the time.
                     let is_last = panel + 1 == panels;
                     tile.ahead = if is_last { Ahead::Nothing } else { Ahead::at(row, row + height, block_rows) };
                     let row = first + row;
-                    // SAFETY: the assertions above bound every element of the tile: rows `row..row + height` of the left
-                    // factor and of the result, panel `panel` of the right factor and of the result, and the inner indices
-                    // `start..start + length`.
+                    let from = group * rows.group_stride + row * rows.stride + part * inner.group_stride + step * inner.stride;
+                    let to = (group * rows.count + row) * out_stride + panel * PANEL;
+                    // SAFETY: the assertions above bound every element of the tile: rows `row..row + height` of the group in the
+                    // left factor and in the result, panel `panel` of the right factor and of the result, and the inner indices
+                    // from `start` on, `length` of each of `parts` groups.
                     unsafe {
-                        tile.run(
+                        T::run(
+                            tile,
                             kernels,
                             height,
-                            left.data.as_ptr().add(row * left.row_stride + start * left.inner_stride),
+                            data.as_ptr().add(from),
                             right.data.as_ptr().add(panel * right.panel_stride + start * right.inner_stride),
-                            out.as_mut_ptr().add(row * out_stride + panel * PANEL),
+                            out.as_mut_ptr().add(to),
                         );
                     }
                 }
+            }
+        }
+    }
+}
+
+/// Inner indices that are walked at once: `length` of each of `parts` groups, from the index `start` on.
+struct Stretch {
+    start: usize,
+    parts: usize,
+    length: usize,
+}
+
+impl Axis {
+    /// One group in stretches of its own, several in stretches of whole ones.
+    fn stretches(self, kernels: Simd) -> impl Iterator<Item = Stretch> {
+        let single = self.groups == 1;
+        let at_once = (stretch(kernels) / self.count).max(1);
+        let (one, many) = (if single { self.count } else { 0 }, if single { 0 } else { self.groups });
+        let of_one = stretches(kernels, one).map(|(start, length)| Stretch { start, parts: 1, length });
+        let of_many = (0..many).step_by(at_once).map(move |first| Stretch {
+            start: first * self.count,
+            parts: at_once.min(many - first),
+            length: self.count,
+        });
+        of_one.filter(move |_| single).chain(of_many)
+    }
+}
+
+/// Adds `left * right` to rows that overlap: row `i` of the result starts at `out[i * out_stride]`, and panels of it that meet rows
+/// before are added after those, so that what meets in one number is added up in the order of the rows.
+pub(super) fn add_to_overlapping_rows<T: Factor>(
+    kernels: Simd,
+    left: Grouped<'_, T>,
+    right: Right<'_, T::Right>,
+    columns: usize,
+    out: &mut [f32],
+    out_stride: usize,
+) {
+    let Grouped { data, rows, inner } = left;
+    assert!(columns.is_multiple_of(PANEL) && columns > 0, "product of {columns} columns, not a multiple of {PANEL}");
+    assert!(rows.groups == 1 && inner.groups == 1 && rows.count > 0 && inner.count > 0, "one group of rows");
+    assert!(rows.reach() + inner.reach() + T::READ <= data.len(), "left factor too short");
+    let panels = columns / PANEL;
+    assert!(
+        (panels - 1) * right.panel_stride + (inner.count - 1) * right.inner_stride + PANEL <= right.data.len(),
+        "right factor too short"
+    );
+    assert!((rows.count - 1) * out_stride + columns <= out.len() && out_stride >= PANEL, "result too short");
+    let tile = Tile {
+        inner: inner.count,
+        parts: 1,
+        left_part: 0,
+        row_stride: rows.stride,
+        left_inner: inner.stride,
+        right_inner: right.inner_stride,
+        out_stride,
+        finish: Finish::Add,
+        next: 0,
+        ahead: Ahead::Nothing,
+    };
+    for (row, height) in tiles(kernels, rows.count) {
+        // What lies farther behind in an earlier row lies further ahead in a later one.
+        for panel in (0..panels).rev() {
+            // SAFETY: the assertions above bound every element of the tile.
+            unsafe {
+                T::run(
+                    tile,
+                    kernels,
+                    height,
+                    data.as_ptr().add(row * rows.stride),
+                    right.data.as_ptr().add(panel * right.panel_stride),
+                    out.as_mut_ptr().add(row * out_stride + panel * PANEL),
+                );
             }
         }
     }
@@ -163,7 +370,7 @@ pub(super) mod tests {
     /// Every family, tile height and way of striding equals plain loops.
     #[test]
     fn products_equal_plain_loops() {
-        for kernels in Kernels::available() {
+        for kernels in Simd::available() {
             for rows in [1, 2, 3, 5, 7, 8, 11, 12, 13, 16, 23, 25, 40] {
                 for (columns, inner) in [(32, 1), (64, 9), (96, 130)] {
                     let size = Size { rows, columns, inner };
@@ -215,7 +422,7 @@ pub(super) mod tests {
     fn long_products_end_and_equal_plain_sums() {
         for inner in [2049, 98_305, 136_192, 429_312] {
             let (left, right) = (noise(2 * inner, 1), noise(inner * PANEL, 2));
-            for kernels in Kernels::available() {
+            for kernels in Simd::available() {
                 let mut out = vec![0.0; 2 * PANEL];
                 let factor = Left { data: &left, row_stride: inner, inner_stride: 1 };
                 multiply(
@@ -242,7 +449,7 @@ pub(super) mod tests {
     fn neither_the_width_of_registers_nor_the_number_of_rows_changes_a_bit() {
         let (rows, inner, columns) = (29, 1300, 64);
         let (left, right) = (noise(rows * inner, 1), noise(inner * columns, 2));
-        let product = |kernels: Kernels, parts: &[usize]| {
+        let product = |kernels: Simd, parts: &[usize]| {
             let mut out = vec![0.0; rows * columns];
             let mut first = 0;
             for &rows in parts {
@@ -253,8 +460,8 @@ pub(super) mod tests {
             }
             out
         };
-        let fused: Vec<_> = Kernels::available().into_iter().filter(|&kernels| kernels != Kernels::PORTABLE).collect();
-        for &kernels in fused.iter().chain(&[Kernels::PORTABLE]) {
+        let fused: Vec<_> = Simd::available().into_iter().filter(|&kernels| kernels != Simd::PLAIN).collect();
+        for &kernels in fused.iter().chain(&[Simd::PLAIN]) {
             assert_eq!(product(kernels, &[rows]), product(kernels, &[1, 13, 15]), "{kernels}");
         }
         for pair in fused.windows(2) {
@@ -268,6 +475,6 @@ pub(super) mod tests {
         let size = Size { rows: 4, columns: 32, inner: 8 };
         let (left, right) = (vec![0.0; 31], vec![0.0; 256]);
         let left = Left { data: &left, row_stride: 8, inner_stride: 1 };
-        multiply(Kernels::PORTABLE, size, left, Right::panels(&right, 8), &mut [0.0; 128], 32, false);
+        multiply(Simd::PLAIN, size, left, Right::panels(&right, 8), &mut [0.0; 128], 32, false);
     }
 }

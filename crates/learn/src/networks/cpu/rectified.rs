@@ -3,7 +3,7 @@
 //! Images lie pixel by pixel, all channels of one together; `places`, `sources` and `targets` say where each pixel starts in another
 //! layout.
 
-use super::simd::vectorised;
+use super::vectorised::vectorised;
 use crate::networks::ImageShape;
 
 vectorised! {
@@ -136,12 +136,12 @@ vectorised! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::networks::cpu::simd::Kernels;
+    use hasard_engine::simd::Simd;
 
     /// Pools of an image of 3x4 and of one of 2x2 pixels, by hand; equal values count once, for the first.
     #[test]
     fn pools_take_the_largest_of_nine_and_give_back_to_it() {
-        for kernels in Kernels::available() {
+        for kernels in Simd::available() {
             let image = ImageShape { height: 3, width: 4, channels: 1 };
             let raw = [1.0, 5.0, 2.0, 0.0, -1.0, 3.0, 9.0, 4.0, 7.0, 6.0, 9.0, -2.0];
             let places: Vec<usize> = (0..12).collect();

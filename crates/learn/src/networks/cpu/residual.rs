@@ -6,7 +6,8 @@
 
 use super::elementwise::add_column_sums;
 use super::forward::sized;
-use super::pixels::store_pixels;
+use super::convolution::{Rounded, Stored};
+use super::pixels::StoredImage;
 use super::rectified::{
     add_biased, bias_rectified_scatter, gather, pool, pool_backward, rectified_backward_add, rectified_backward_gather,
     rectified_scatter, scatter,
@@ -21,8 +22,9 @@ const BLOCKS: [usize; 2] = [1, 3];
 /// Buffers of an image on its way through the encoder and back.
 #[derive(Default)]
 pub struct ResidualImage {
-    bytes: Vec<u8>,
-    /// Input of each convolution in its layout, zero around the image.
+    image: StoredImage,
+    rounded: Rounded,
+    /// Input of each convolution but the first in its layout, zero around the image.
     stored: Vec<Vec<f32>>,
     raw: Vec<f32>,
     /// What flows past the blocks, or its gradient.
@@ -53,13 +55,12 @@ impl ResidualImage {
     fn run(&mut self, plan: &Plan, weights: &PackedWeights, pixels: &PixelScale, observation: &[u8]) {
         let kernels = plan.kernels;
         self.stored.resize_with(plan.convolutions.len(), Vec::new);
-        for (stored, convolution) in self.stored.iter_mut().zip(&plan.convolutions) {
+        for (stored, convolution) in self.stored.iter_mut().zip(&plan.convolutions).skip(1) {
             sized(stored, convolution.stored);
         }
         self.largest.resize_with(plan.shape.residual.len(), Vec::new);
         let first = &plan.convolutions[0];
-        let image = &mut self.stored[0][..first.stored];
-        store_pixels(kernels, plan.shape.image, first, observation, pixels, &mut self.bytes, image);
+        self.image.store(kernels, plan.shape.image, first, observation, pixels);
         for (stage, &channels) in plan.shape.residual.iter().enumerate() {
             let first = stage * STAGE;
             self.convolve(plan, weights, first);
@@ -90,7 +91,8 @@ impl ResidualImage {
     fn convolve(&mut self, plan: &Plan, weights: &PackedWeights, layer: usize) {
         let convolution = &plan.convolutions[layer];
         let raw = sized(&mut self.raw, convolution.raw_size());
-        convolution.forward(&self.stored[layer], &weights.convolutions[layer], &mut [], raw);
+        let stored = if layer == 0 { self.image.latest(plan.kernels) } else { Stored::Numbers(&self.stored[layer]) };
+        convolution.forward(stored, &weights.convolutions[layer], &mut self.rounded, raw);
     }
 
     /// Adds the gradients of weights, in the order of the stored inputs, and biases of each convolution for one image, from the
@@ -147,10 +149,11 @@ impl ResidualImage {
         let sums = &self.sums[layer][..convolution.gradient_size()];
         let (weights, biases) = &mut layers[layer];
         add_column_sums(plan.kernels, sums, biases);
-        convolution.weight_gradient(&self.stored[layer], &mut [], sums, weights);
+        let stored = if layer == 0 { self.image.latest(plan.kernels) } else { Stored::Numbers(&self.stored[layer]) };
+        convolution.weight_gradient(stored, sums, &mut self.rounded, weights);
         if layer > 0 {
             let received = sized(&mut self.received, convolution.stored);
-            convolution.input_gradient(sums, &back.convolutions[layer], &mut [], received);
+            convolution.input_gradient(sums, &back.convolutions[layer], &mut self.rounded, received);
         }
     }
 }

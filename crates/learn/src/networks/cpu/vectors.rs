@@ -1,7 +1,9 @@
 //! Sums and products of vectors as long as a network, by which conjugate gradients go. Neither the kernels nor the number of
 //! threads change a bit.
 
-use super::simd::{Kernels, vectorised};
+use hasard_engine::simd::Simd;
+
+use super::vectorised::vectorised;
 use super::threads::in_parallel;
 
 /// Numbers that are added up side by side.
@@ -13,7 +15,7 @@ const STRETCH: usize = 1 << 17;
 #[derive(Clone, Copy, Debug)]
 pub struct Vectors {
     /// Kernels.
-    pub kernels: Kernels,
+    pub kernels: Simd,
     /// Threads.
     pub threads: usize,
 }
@@ -98,11 +100,11 @@ mod tests {
 
     #[test]
     fn kernels_and_threads_agree_to_the_bit_and_with_plain_loops() {
-        let plain = Vectors { kernels: Kernels::PORTABLE, threads: 1 };
+        let plain = Vectors { kernels: Simd::PLAIN, threads: 1 };
         for length in [0, 1, 15, 16, 1003, 2 * STRETCH + 5] {
             let (a, b) = (noise(length, 1), noise(length, 2));
             let expected: f64 = a.iter().zip(&b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum();
-            for (kernels, threads) in Kernels::available().into_iter().flat_map(|kernels| [(kernels, 1), (kernels, 3)]) {
+            for (kernels, threads) in Simd::available().into_iter().flat_map(|kernels| [(kernels, 1), (kernels, 3)]) {
                 let vectors = Vectors { kernels, threads };
                 let found = vectors.dot(&a, &b);
                 assert!((found - expected).abs() < 1e-9, "{vectors:?}, {length}: {found} against {expected}");

@@ -2,8 +2,8 @@
 
 use super::convolution::ConvolutionPlan;
 use super::elementwise::NOWHERE;
-use super::pack::{pack, pack_transposed};
-use super::simd::Kernels;
+use super::panels::Panels;
+use hasard_engine::simd::Simd;
 use super::threads::Piece;
 use super::tile::PANEL;
 use crate::networks::{EncoderLayer, NetworkShape, Parameter, PixelScale};
@@ -12,7 +12,7 @@ use crate::networks::{EncoderLayer, NetworkShape, Parameter, PixelScale};
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// What computes it.
-    pub kernels: Kernels,
+    pub kernels: Simd,
     /// The shape.
     pub shape: NetworkShape,
     /// The convolutions of the encoder.
@@ -30,7 +30,7 @@ pub struct Plan {
 impl Plan {
     /// The plan of a checked shape.
     #[must_use]
-    pub fn new(kernels: Kernels, shape: &NetworkShape) -> Plan {
+    pub fn new(kernels: Simd, shape: &NetworkShape) -> Plan {
         let layers = shape.encoder_layers();
         Plan {
             kernels,
@@ -81,15 +81,15 @@ impl Plan {
 #[derive(Clone, Debug, Default)]
 pub struct PackedWeights {
     /// Convolutions, forward.
-    pub convolutions: Vec<Vec<f32>>,
+    pub convolutions: Vec<Panels>,
     /// Dense layers, forward.
-    pub dense: Vec<Vec<f32>>,
+    pub dense: Vec<Panels>,
     /// Recurrent layer, from its input.
-    pub cell_input: Vec<f32>,
+    pub cell_input: Panels,
     /// Recurrent layer, from its output before.
-    pub cell_hidden: Vec<f32>,
+    pub cell_hidden: Panels,
     /// All heads side by side, columns padded to whole panels.
-    pub heads: Vec<f32>,
+    pub heads: Panels,
     /// Biases: of the convolutions, of the dense layers.
     pub convolution_biases: Vec<Vec<f32>>,
     /// Biases of the dense layers.
@@ -104,20 +104,15 @@ pub struct PackedWeights {
 #[derive(Clone, Debug, Default)]
 pub struct Backward {
     /// Convolutions; the first is empty, for nothing flows into the image.
-    pub convolutions: Vec<Vec<f32>>,
+    pub convolutions: Vec<Panels>,
     /// Dense layers; empty where nothing flows further back.
-    pub dense: Vec<Vec<f32>>,
+    pub dense: Vec<Panels>,
     /// Recurrent layer, to its input (without the extra inputs).
-    pub cell_input: Vec<f32>,
+    pub cell_input: Panels,
     /// Recurrent layer, to its output before.
-    pub cell_hidden: Vec<f32>,
+    pub cell_hidden: Panels,
     /// Heads.
-    pub heads: Vec<f32>,
-}
-
-fn resized(buffer: &mut Vec<f32>, length: usize) -> &mut [f32] {
-    buffer.resize(length, 0.0);
-    buffer
+    pub heads: Panels,
 }
 
 impl PackedWeights {
@@ -128,7 +123,7 @@ impl PackedWeights {
 
     /// The same as pieces of work: one a layer, and one for the heads.
     pub fn loading<'a, S>(&'a mut self, plan: &'a Plan, parameters: &'a [f32]) -> Vec<Piece<'a, S>> {
-        let shape = &plan.shape;
+        let (kernels, shape) = (plan.kernels, &plan.shape);
         let mut pieces: Vec<Piece<'a, S>> = Vec::new();
         if let Some(units) = shape.recurrent {
             let [input, input_bias, hidden, hidden_bias] = plan.cell();
@@ -136,34 +131,29 @@ impl PackedWeights {
             let (from_input, from_hidden) = (&mut self.cell_input, &mut self.cell_hidden);
             copy(&mut self.cell_biases[0], &parameters[input_bias.range()]);
             copy(&mut self.cell_biases[1], &parameters[hidden_bias.range()]);
-            pieces.push(Box::new(move |_| pack(&parameters[input.range()], inputs, columns, resized(from_input, input.size()))));
-            pieces
-                .push(Box::new(move |_| pack(&parameters[hidden.range()], units, columns, resized(from_hidden, hidden.size()))));
+            pieces.push(Box::new(move |_| from_input.pack(kernels, &parameters[input.range()], inputs, columns)));
+            pieces.push(Box::new(move |_| from_hidden.pack(kernels, &parameters[hidden.range()], units, columns)));
         }
-        self.dense.resize_with(shape.dense.len(), Vec::new);
+        self.dense.resize_with(shape.dense.len(), Panels::default);
         self.dense_biases.resize_with(shape.dense.len(), Vec::new);
         for (index, (packed, biases)) in self.dense.iter_mut().zip(&mut self.dense_biases).enumerate() {
             let weights = plan.dense(index);
             copy(biases, &parameters[plan.after(weights).range()]);
             let units = shape.dense[index];
-            pieces.push(Box::new(move |_| {
-                pack(&parameters[weights.range()], weights.inputs, units, resized(packed, weights.size()));
-            }));
+            pieces.push(Box::new(move |_| packed.pack(kernels, &parameters[weights.range()], weights.inputs, units)));
         }
-        self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
+        self.convolutions.resize_with(plan.convolutions.len(), Panels::default);
         self.convolution_biases.resize_with(plan.convolutions.len(), Vec::new);
         let convolutions = self.convolutions.iter_mut().zip(&mut self.convolution_biases).zip(&plan.convolutions);
         for (index, ((packed, biases), convolution)) in convolutions.enumerate() {
             let weights = plan.convolution(index);
             copy(biases, &parameters[plan.after(weights).range()]);
-            pieces.push(Box::new(move |_| {
-                convolution.pack_forward(&parameters[weights.range()], resized(packed, weights.size()));
-            }));
+            pieces.push(Box::new(move |_| convolution.pack_forward(&parameters[weights.range()], packed)));
         }
         let (heads, head_biases) = (&mut self.heads, &mut self.head_biases);
         pieces.push(Box::new(move |_| {
             let joined = joined_heads(plan, parameters);
-            pack(&joined, shape.head_inputs(), plan.padded_outputs, resized(heads, joined.len()));
+            heads.pack(kernels, &joined, shape.head_inputs(), plan.padded_outputs);
             head_biases.clear();
             for index in 0..shape.heads.len() {
                 head_biases.extend_from_slice(&parameters[plan.after(plan.head(index)).range()]);
@@ -194,40 +184,37 @@ pub fn stored_pixels(plan: &Plan, pixels: &PixelScale) -> PixelScale {
 impl Backward {
     /// Packs `parameters`, reusing this value's memory: a piece of work a layer, and one for the heads.
     pub fn loading<'a, S>(&'a mut self, plan: &'a Plan, parameters: &'a [f32]) -> Vec<Piece<'a, S>> {
-        let shape = &plan.shape;
+        let (kernels, shape) = (plan.kernels, &plan.shape);
         let mut pieces: Vec<Piece<'a, S>> = Vec::new();
         if let Some(units) = shape.recurrent {
             let [input, _, hidden, _] = plan.cell();
             let (dense, columns) = (shape.core_inputs() - shape.extra_inputs, shape.gate_columns());
             let rows = &parameters[input.range()][..dense * columns];
             let (to_input, to_hidden) = (&mut self.cell_input, &mut self.cell_hidden);
-            pieces.push(Box::new(move |_| pack_transposed(rows, columns, dense, resized(to_input, rows.len()))));
+            pieces.push(Box::new(move |_| to_input.pack_transposed(kernels, rows, columns, dense)));
             let rows = &parameters[hidden.range()];
-            pieces.push(Box::new(move |_| pack_transposed(rows, columns, units, resized(to_hidden, rows.len()))));
+            pieces.push(Box::new(move |_| to_hidden.pack_transposed(kernels, rows, columns, units)));
         }
-        self.dense.resize_with(shape.dense.len(), Vec::new);
+        self.dense.resize_with(shape.dense.len(), Panels::default);
         for (index, packed) in self.dense.iter_mut().enumerate() {
             if index == 0 && plan.convolutions.is_empty() {
                 continue;
             }
             let (weights, units) = (plan.dense(index), shape.dense[index]);
-            pieces.push(Box::new(move |_| {
-                pack_transposed(&parameters[weights.range()], units, weights.inputs, resized(packed, weights.size()));
-            }));
+            let rows = &parameters[weights.range()];
+            pieces.push(Box::new(move |_| packed.pack_transposed(kernels, rows, units, weights.inputs)));
         }
-        self.convolutions.resize_with(plan.convolutions.len(), Vec::new);
+        self.convolutions.resize_with(plan.convolutions.len(), Panels::default);
         for (index, (packed, convolution)) in self.convolutions.iter_mut().zip(&plan.convolutions).enumerate().skip(1) {
             let weights = plan.convolution(index);
-            pieces.push(Box::new(move |_| {
-                convolution.pack_backward(&parameters[weights.range()], resized(packed, weights.size()));
-            }));
+            pieces.push(Box::new(move |_| convolution.pack_backward(&parameters[weights.range()], packed)));
         }
         let heads = &mut self.heads;
         pieces.push(Box::new(move |_| {
             // Nothing flows into the extra inputs, which without a recurrent layer are the last inputs of the heads.
             let inputs = if shape.recurrent.is_some() { shape.head_inputs() } else { shape.core_inputs() - shape.extra_inputs };
             let rows = &joined_heads(plan, parameters)[..inputs * plan.padded_outputs];
-            pack_transposed(rows, plan.padded_outputs, inputs, resized(heads, rows.len()));
+            heads.pack_transposed(kernels, rows, plan.padded_outputs, inputs);
         }));
         pieces
     }
