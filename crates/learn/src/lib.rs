@@ -9,7 +9,8 @@
 //! 5. [`algorithms`]: an algorithm a file, on top of the learner.
 //! 6. [`runs`]: the trainer, checkpoints, evaluation, reports, measurements.
 //!
-//! A run of several workers is the same run with a [`team::Team`]: what they exchange is there.
+//! Below them all are [`error`], [`random`], [`threads`] and [`statistics`]; and [`team`]: a run of several workers is the same run with a
+//! [`team::Team`], and what they exchange is there.
 
 // They panic where a stream is closed or its disk is full.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
@@ -24,3 +25,4 @@ pub mod runs;
 pub mod sampling;
 pub mod statistics;
 pub mod team;
+pub mod threads;

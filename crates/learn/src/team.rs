@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use crate::error::LearnError;
-use crate::networks::cpu::threads::deal;
+use crate::threads::deal;
 
 /// What carries bytes between the workers of a run.
 pub trait Exchange: Send {

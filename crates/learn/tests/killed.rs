@@ -19,7 +19,7 @@ fn config() -> TrainConfig {
     config.frames = 240 * config.frames_per_rollout();
     // Candidates are written and replaced meanwhile too.
     config.evaluation.every = Some(5 * config.frames_per_rollout());
-    config.evaluation.confirming_episodes = 32;
+    config.evaluation.confirming_episodes = Some(32);
     config
 }
 

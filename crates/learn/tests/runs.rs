@@ -666,7 +666,7 @@ fn two_constraints_are_kept_apart_and_resumed() {
     config.sampling.rollout = 13;
     config.frames = 4 * config.frames_per_rollout();
     config.evaluation.every = Some(2 * config.frames_per_rollout());
-    config.evaluation.confirming_episodes = 32;
+    config.evaluation.confirming_episodes = Some(32);
     let (straight, broken) = (tiny::directory("two-straight"), tiny::directory("two-broken"));
     let (summary, ..) = tiny::run(Start::Fresh(config.clone()), &straight);
     let selected = summary.unwrap().selection.unwrap().selected;

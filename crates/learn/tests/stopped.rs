@@ -16,7 +16,7 @@ fn config() -> TrainConfig {
     let mut config = tiny::config(AlgorithmKind::PpoLag);
     config.frames = 6 * config.frames_per_rollout();
     config.evaluation.every = Some(2 * config.frames_per_rollout());
-    (config.evaluation.episodes, config.evaluation.confirming_episodes) = (40, 40);
+    (config.evaluation.episodes, config.evaluation.confirming_episodes) = (40, Some(40));
     // Kept from the beginning: candidates are confirmed.
     config.constraints[0].budget = 100.0;
     config

@@ -4,9 +4,9 @@
 //! within the budget; or, where no move can reach the budget, the move that lowers the cost fastest. A line search then
 //! verifies reward, cost and divergence. With several constraints the one furthest above its budget rules the step.
 
-use super::surrogate::{centred, standardised};
-use super::trust_region::{TrustRegion, train_critics};
-use super::{Algorithm, Signal};
+use crate::algorithms::surrogate::{centred, standardised};
+use crate::algorithms::trust_region::{TrustRegion, train_critics};
+use crate::algorithms::{Algorithm, Signal};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};

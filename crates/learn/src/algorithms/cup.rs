@@ -6,15 +6,16 @@
 //! multiplier is above zero the policy halfway is its own projection. Both steps end at `target_kl`, the second by its divergence from
 //! the policy halfway, and both train the critics, whose trunk they move.
 
-use super::multiplier::{Lagrange, Multipliers};
-use super::surrogate::{centred, critics_loss, standardised};
-use super::{Algorithm, Signal, Signals, go_through, ppo};
+use crate::algorithms::multiplier::{Lagrange, Multipliers};
+use crate::algorithms::surrogate::{centred, critics_loss, standardised};
+use crate::algorithms::algorithm::{go_through, learn_in_epochs};
+use crate::algorithms::{Algorithm, Signal, Signals, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch, Prepared};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use crate::learning::passes::Passes;
+use crate::learning::epochs::Epochs;
 use crate::learning::policy::Policy;
 
 /// Constrained update projection.
@@ -52,15 +53,11 @@ impl Algorithm for Cup {
         &mut self,
         learner: &mut Learner,
         rollout: &Prepared<'_>,
-        passes: &Passes,
+        epochs: &Epochs,
         signals: &Signals<'_>,
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        self.constrain(&signals(&rollout.mean_costs));
-        let made = go_through(learner, rollout, None, passes, means, |learner, lanes, means| {
-            self.update(learner, &mut learner.minibatch(rollout, lanes), &[], means)
-        })?;
-        means.add("epochs", f64::from(made));
+        learn_in_epochs(self, learner, rollout, epochs, signals, means)?;
         if self.multipliers().iter().all(|&multiplier| multiplier == 0.0) {
             return Ok(());
         }
@@ -68,7 +65,7 @@ impl Algorithm for Cup {
         let all: Vec<usize> = (0..count).collect();
         let halfway = learner.policy(&mut learner.minibatch(rollout, &all));
         let networks = learner.shape().networks.len();
-        let made = go_through(learner, rollout, Some(&halfway), passes, means, |learner, some, means| {
+        let made = go_through(learner, rollout, Some(&halfway), epochs, means, |learner, some, means| {
             let rows = (0..steps).flat_map(|step| some.iter().map(move |number| step * count + number));
             let halfway = halfway.of_rows(rows);
             let projection =
@@ -113,7 +110,7 @@ mod tests {
         let signals = |_: &[f64]| vec![Signal::steady(episode_cost, 5.0, 525.0)];
         for number in 0..3 {
             let prepared = learner.prepare(&rollout);
-            let passes = Passes::new(config, number, small::LANES);
+            let passes = Epochs::new(config, number, small::LANES);
             algorithm.learn(&mut learner, &prepared, &passes, &signals, &mut Means::default()).unwrap();
         }
         learner
@@ -148,7 +145,7 @@ mod tests {
             let mut cup = Cup::new(&config);
             let mut means = Means::default();
             let signals = |_: &[f64]| vec![Signal::steady(1000.0, 5.0, 525.0)];
-            cup.learn(&mut learner, &prepared, &Passes::new(&config, 0, small::LANES), &signals, &mut means).unwrap();
+            cup.learn(&mut learner, &prepared, &Epochs::new(&config, 0, small::LANES), &signals, &mut means).unwrap();
             let steps: Vec<u64> = learner.optimisers.iter().map(|adam| adam.steps).collect();
             assert_eq!(means.get("projection_epochs"), Some(steps[1] as f64));
             steps

@@ -2,18 +2,18 @@
 //!
 //! The best policy within a trust region is known in closed form before it is a network; the network is then drawn
 //! towards it by its gradient: divergence from the policy that acted minus the ratio-weighted advantage over a
-//! temperature, on those samples alone whose divergence is still small.
+//! temperature, on those samples alone whose divergence is still small. As in the paper's algorithm 1, multipliers move once a rollout,
+//! unless the settings say otherwise, and epochs end when the policy has left the trust region.
 
-use super::multiplier::{Lagrange, Multipliers};
-use super::surrogate::{lagrangian_advantages, standardised, total};
-use super::{Algorithm, Signal, Signals, go_through};
+use crate::algorithms::multiplier::{Lagrange, Multipliers};
+use crate::algorithms::surrogate::{lagrangian_advantages, standardised, total};
+use crate::algorithms::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::learning::dual::Dual;
-use crate::learning::learner::{Learner, Minibatch, Prepared};
+use crate::learning::dual_number::DualNumber;
+use crate::learning::learner::{Learner, Minibatch};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use crate::learning::passes::Passes;
 
 /// First-order constrained optimisation in policy space.
 pub struct Focops {
@@ -43,7 +43,7 @@ impl Focops {
             if divergence.value <= self.eta {
                 divergence - ratio * advantages[row] / self.temperature
             } else {
-                Dual::constant(0.0)
+                DualNumber::constant(0.0)
             }
         });
         total(policy_loss, heads, batch, &self.settings, means)
@@ -51,23 +51,6 @@ impl Focops {
 }
 
 impl Algorithm for Focops {
-    /// As in the paper's algorithm 1: the multipliers move once, and the passes end when the policy has left the trust region.
-    fn learn(
-        &mut self,
-        learner: &mut Learner,
-        rollout: &Prepared<'_>,
-        passes: &Passes,
-        signals: &Signals<'_>,
-        means: &mut Means,
-    ) -> Result<(), LearnError> {
-        self.constrain(&signals(&rollout.mean_costs));
-        let made = go_through(learner, rollout, None, passes, means, |learner, lanes, means| {
-            self.update(learner, &mut learner.minibatch(rollout, lanes), &[], means)
-        })?;
-        means.add("epochs", f64::from(made));
-        Ok(())
-    }
-
     fn update(
         &mut self,
         learner: &mut Learner,

@@ -5,8 +5,8 @@
 //! at the same share below every budget, some standard errors of the mean cost below it: nearer, the barrier would be a switch on noise.
 //! Beyond the budget, where there is no barrier (the paper begins within it), the largest penalty rules.
 
-use super::surrogate::{lagrangian_advantages, standardised};
-use super::{Algorithm, Signal, ppo};
+use crate::algorithms::surrogate::{lagrangian_advantages, standardised};
+use crate::algorithms::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};

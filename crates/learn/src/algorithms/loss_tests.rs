@@ -1,7 +1,7 @@
 //! Every loss against one taken from its paper once more, in plain 64-bit arithmetic: value, and gradient in the networks' outputs.
 
-use super::surrogate::standardised;
-use super::{Algorithm, Signal, cup, focops, p3o, ppo};
+use crate::algorithms::surrogate::standardised;
+use crate::algorithms::{Algorithm, Signal, cup, focops, p3o, ppo};
 use crate::config::{AlgorithmKind, EnvConfig, Exploration, Preset, TrainConfig};
 use crate::learning::learner::{Critic, Minibatch};
 use crate::learning::loss::{Heads, Loss};

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::Signal;
+use crate::algorithms::Signal;
 use crate::config::AlgorithmConfig;
 
 /// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess) (Ray et al. 2019, algorithm 1 of their

@@ -8,8 +8,8 @@
 //! budgets here are on sums, whose excess a step is that over the T steps that episodes have.) The released code uses the plain ratio, the excess per step
 //! beside standardised advantages, and kappa 1, which leaves little more than a switch on the sign of the excess.
 
-use super::surrogate::{clip_ratio, standardised, standardised_by};
-use super::{Algorithm, Signal, ppo};
+use crate::algorithms::surrogate::{clip_ratio, standardised, standardised_by};
+use crate::algorithms::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};

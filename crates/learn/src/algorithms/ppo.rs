@@ -1,10 +1,9 @@
 //! PPO: proximal policy optimisation (Schulman et al. 2017, arXiv 1707.06347). Costs are ignored.
 //!
-//! PPOCost and PPOSaute (Sootla et al. 2022, arXiv 2202.06558) are PPO on rewards of another shape, see
-//! [`crate::sampling::shaping`]: reward minus cost, and a safety state that turns the reward bad once the budget is spent.
+//! PPOCost and PPOSaute are PPO on rewards of another shape: [`ppo_cost`](super::ppo_cost), [`ppo_saute`](super::ppo_saute).
 
-use super::surrogate::{clipped_policy_loss, standardised, total};
-use super::{Algorithm, Signal};
+use crate::algorithms::surrogate::{clipped_policy_loss, standardised, total};
+use crate::algorithms::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};

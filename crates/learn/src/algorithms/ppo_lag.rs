@@ -3,9 +3,9 @@
 //! The multiplier grows with the excess over the budget before every update; the advantages are those of the reward
 //! minus those of the costs times the multipliers, mixed in raw units and then standardised.
 
-use super::multiplier::{Lagrange, Multipliers};
-use super::surrogate::{lagrangian_advantages, standardised};
-use super::{Algorithm, Signal, ppo};
+use crate::algorithms::multiplier::{Lagrange, Multipliers};
+use crate::algorithms::surrogate::{lagrangian_advantages, standardised};
+use crate::algorithms::{Algorithm, Signal, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};

@@ -2,8 +2,8 @@
 //!
 //! As PPOLag, but the multiplier also reacts to the excess itself and to its rise.
 
-use super::multiplier::Pid;
-use super::ppo_lag::PpoLag;
+use crate::algorithms::multiplier::Pid;
+use crate::algorithms::ppo_lag::PpoLag;
 use crate::config::TrainConfig;
 
 /// PPOPID with a run's settings.

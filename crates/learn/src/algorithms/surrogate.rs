@@ -1,7 +1,7 @@
 //! Terms that the losses of several algorithms share.
 
 use crate::config::{Exploration, LearningConfig};
-use crate::learning::dual::Dual;
+use crate::learning::dual_number::DualNumber;
 use crate::learning::learner::{Critic, Minibatch};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
@@ -55,7 +55,7 @@ pub fn clipped_policy_loss(heads: &Heads, advantages: &[f64], clip: f64) -> Loss
 
 /// A ratio within 1/(1+clip) and 1+clip.
 #[must_use]
-pub fn clip_ratio(ratio: Dual<1>, clip: f64) -> Dual<1> {
+pub fn clip_ratio(ratio: DualNumber<1>, clip: f64) -> DualNumber<1> {
     ratio.clamp(1.0 / (1.0 + clip), 1.0 + clip)
 }
 

@@ -7,9 +7,9 @@
 //! compares that value with one without the exploration loss (and, with multipliers, of the reward alone), and the cost
 //! critic never learns.
 
-use super::surrogate::{exploration_loss, standardised};
-use super::trust_region::{TrustRegion, train_critics};
-use super::{Algorithm, Signal};
+use crate::algorithms::surrogate::{exploration_loss, standardised};
+use crate::algorithms::trust_region::{TrustRegion, train_critics};
+use crate::algorithms::{Algorithm, Signal};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};

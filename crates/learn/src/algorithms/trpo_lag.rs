@@ -1,9 +1,9 @@
 //! TRPOLag: TRPO with a Lagrange multiplier on each constraint (Ray et al. 2019).
 
-use super::multiplier::{Lagrange, Multipliers};
-use super::surrogate::lagrangian_advantages;
-use super::trpo::Trpo;
-use super::{Algorithm, Signal};
+use crate::algorithms::multiplier::{Lagrange, Multipliers};
+use crate::algorithms::surrogate::lagrangian_advantages;
+use crate::algorithms::trpo::Trpo;
+use crate::algorithms::{Algorithm, Signal};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};

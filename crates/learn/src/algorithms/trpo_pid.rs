@@ -1,7 +1,7 @@
 //! TRPOPID: TRPO with multipliers moved by PID controllers (Stooke et al. 2020, arXiv 2007.03964).
 
-use super::multiplier::Pid;
-use super::trpo_lag::TrpoLag;
+use crate::algorithms::multiplier::Pid;
+use crate::algorithms::trpo_lag::TrpoLag;
 use crate::config::TrainConfig;
 
 /// TRPOPID with a run's settings.

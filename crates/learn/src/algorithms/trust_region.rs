@@ -5,7 +5,7 @@
 //! the difference of the outputs a little way along v from those at the origin, and J' the backward pass there: one pass of
 //! each kind a product, of a share of the trajectories. A test holds the product against a dense Fisher matrix.
 
-use super::surrogate::note_policy;
+use crate::algorithms::surrogate::note_policy;
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::learning::learner::{Learner, Minibatch};

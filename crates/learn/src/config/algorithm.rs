@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::names::names;
+use crate::config::names::names;
 
 names! {
     /// The algorithms, each in a file of its own under `algorithms`.

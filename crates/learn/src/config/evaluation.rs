@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::TrainConfig;
+use crate::config::TrainConfig;
 
 /// When and how long a run's agent is evaluated.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -13,8 +13,9 @@ pub struct EvaluationConfig {
     pub every: Option<u64>,
     /// Episodes of an evaluation.
     pub episodes: usize,
-    /// Further episodes by which a checkpoint must prove itself before the run selects it, and of every closing evaluation.
-    pub confirming_episodes: usize,
+    /// Further episodes by which a checkpoint must prove itself before the run selects it, and of every closing evaluation; `null` for
+    /// 100, or as many as take a twentieth of the run's frames, but no fewer than 10.
+    pub confirming_episodes: Option<usize>,
     /// Checkpoints that are kept to choose from: so many confirmations there may be.
     pub candidates: usize,
     /// Only a checkpoint that is surely within its budgets is selected, where there is one that a confirmation shows to be.
@@ -23,7 +24,7 @@ pub struct EvaluationConfig {
 
 impl Default for EvaluationConfig {
     fn default() -> EvaluationConfig {
-        EvaluationConfig { every: None, episodes: 32, confirming_episodes: 100, candidates: 5, surely: false }
+        EvaluationConfig { every: None, episodes: 32, confirming_episodes: None, candidates: 5, surely: false }
     }
 }
 
@@ -31,7 +32,9 @@ impl Default for EvaluationConfig {
 const EVALUATIONS: u64 = 10;
 /// They take no more than this part of the run's frames.
 const SHARE: u64 = 20;
-/// Frames of a run that is worth them: the episodes that choose, confirm and close are some 500,000 frames themselves.
+/// Further episodes of a run that does not say how many, at most and at least.
+const CONFIRMING: (u64, u64) = (100, 10);
+/// Frames of a run that is worth them.
 const WORTH_EVALUATING: u64 = 400_000;
 
 impl TrainConfig {
@@ -45,13 +48,25 @@ impl TrainConfig {
         if self.frames < WORTH_EVALUATING {
             return false;
         }
-        let episode = u64::from(self.episode_steps) * u64::from(self.env.frame_skip);
-        let each = (self.evaluation.episodes as u64 * episode).max(1);
+        let each = (self.evaluation.episodes as u64 * self.longest_episode()).max(1);
         let count = (self.frames / SHARE / each).clamp(1, EVALUATIONS);
         // Counted from the end, so that it is one of them.
         let every = self.frames.div_ceil(2 * count);
         let left = |frames: u64| self.frames.saturating_sub(frames).div_ceil(every);
         ends || (left(before) > left(frames) && left(frames) < count)
+    }
+
+    /// Frames of the longest episode.
+    fn longest_episode(&self) -> u64 {
+        (u64::from(self.episode_steps) * u64::from(self.env.frame_skip)).max(1)
+    }
+
+    /// Episodes that confirm a checkpoint, and those of every closing evaluation.
+    #[must_use]
+    pub fn confirming_episodes(&self) -> usize {
+        let (most, least) = CONFIRMING;
+        let affordable = (self.frames / SHARE / self.longest_episode()).clamp(least, most);
+        self.evaluation.confirming_episodes.unwrap_or(affordable as usize)
     }
 
     /// Whether the run is evaluated at its end: every run that is evaluated at all.
@@ -96,5 +111,17 @@ mod tests {
         // However little is left of a twentieth, the end is evaluated.
         config.frames = 500_000;
         assert_eq!(evaluated(&config), [rollouts(500_000) * 4096]);
+    }
+
+    /// Two sets of a twentieth of a million frames each, of episodes of 2,100 frames: 23.
+    #[test]
+    fn short_runs_are_confirmed_and_closed_in_proportion() {
+        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        for (frames, episodes) in [(100_000, 10), (400_000, 10), (1_000_000, 23), (4_200_000, 100), (500_000_000, 100)] {
+            config.frames = frames;
+            assert_eq!(config.confirming_episodes(), episodes, "{frames}");
+        }
+        config.evaluation.confirming_episodes = Some(7);
+        assert_eq!(config.confirming_episodes(), 7);
     }
 }

@@ -4,7 +4,7 @@ use hasard_envs::edit_distance;
 
 /// A struct of settings: its place in `config.json`, its name, and the file that declares it.
 const SOURCES: [(&str, &str, &str); 8] = [
-    ("", "TrainConfig", include_str!("mod.rs")),
+    ("", "TrainConfig", include_str!("train_config.rs")),
     ("env.", "EnvConfig", include_str!("environment.rs")),
     ("network.", "NetworkConfig", include_str!("network.rs")),
     ("sampling.", "SamplingConfig", include_str!("sampling.rs")),

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{AlgorithmKind, TrainConfig};
+use crate::config::{AlgorithmKind, TrainConfig};
 
 impl<'de> Deserialize<'de> for TrainConfig {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<TrainConfig, D::Error> {

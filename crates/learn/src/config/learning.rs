@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::names::names;
+use crate::config::names::names;
 
 names! {
     /// What keeps the policy from settling too early.

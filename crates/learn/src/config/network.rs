@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::names::names;
+use crate::config::names::names;
 
 /// The network's layers; heads and inputs follow from the worlds and the algorithm.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
 //! What the presets of second-order algorithms have beside the others'.
 
-use super::{Preset, TrainConfig};
+use crate::config::{Preset, TrainConfig};
 
 /// Steps of each of the 32 worlds between two steps of the policy: 16,384 samples.
 ///

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{TrainConfig, explained};
+use crate::config::{TrainConfig, explained};
 use crate::error::LearnError;
 
 /// Settings that others hang on, and what to use instead: it brings those along.

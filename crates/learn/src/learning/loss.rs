@@ -1,13 +1,13 @@
 //! Losses: means over the samples of formulas in what the networks say, with their gradients in the networks' outputs.
 //!
 //! Three steps of the chain rule, each of which can be read alone: an algorithm writes its loss of a sample in
-//! [`Dual`] numbers; policy and critics know how their numbers change with the outputs ([`Column`]); the networks know
+//! [`DualNumber`] numbers; policy and critics know how their numbers change with the outputs ([`Column`]); the networks know
 //! how their outputs change with the parameters.
 
 use std::ops::{Add, Mul};
 
-use crate::learning::dual::Dual;
-use crate::learning::learner::Minibatch;
+use crate::learning::dual_number::DualNumber;
+use crate::learning::minibatch::Minibatch;
 use crate::learning::policy::{Column, Policy};
 use crate::networks::ModelShape;
 
@@ -38,11 +38,11 @@ impl Heads {
 
     /// The mean over all samples of a formula, given the sample's row and the numbers that it depends on.
     #[must_use]
-    pub fn mean<const N: usize>(&self, columns: [&Column; N], formula: impl Fn(usize, [Dual<N>; N]) -> Dual<N>) -> Loss {
+    pub fn mean<const N: usize>(&self, columns: [&Column; N], formula: impl Fn(usize, [DualNumber<N>; N]) -> DualNumber<N>) -> Loss {
         let rows = self.policy.rows();
         let mut loss = Loss { value: 0.0, gradient: vec![0.0; rows * self.width] };
         for (row, gradient) in loss.gradient.chunks_exact_mut(self.width).enumerate() {
-            let sample = formula(row, std::array::from_fn(|i| Dual::variable(columns[i].values[row], i)));
+            let sample = formula(row, std::array::from_fn(|i| DualNumber::variable(columns[i].values[row], i)));
             loss.value += sample.value / rows as f64;
             for (column, slope) in columns.iter().zip(sample.slopes) {
                 column.add_slopes(row, slope / rows as f64, gradient);

@@ -2,13 +2,13 @@
 //! algorithms steer.
 
 pub mod advantage;
-pub mod dual;
+pub mod dual_number;
+pub mod epochs;
 pub mod learner;
 pub mod loss;
 pub mod metrics;
 pub mod minibatch;
 pub mod normaliser;
 pub mod optimiser;
-pub mod passes;
 pub mod policy;
 pub mod popart;

@@ -8,7 +8,7 @@ use crate::networks::PixelScale;
 use hasard_engine::simd::Simd;
 
 use crate::networks::cpu::vectorised::vectorised;
-use crate::networks::cpu::threads::{in_parallel, pieces};
+use crate::threads::{in_parallel, pieces};
 
 /// Added to variances before their root is taken.
 const EPSILON: f64 = 1e-5;

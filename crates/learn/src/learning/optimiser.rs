@@ -3,7 +3,7 @@
 use crate::config::LearningConfig;
 use crate::networks::cpu::elementwise::{AdamStep, adam};
 use hasard_engine::simd::Simd;
-use crate::networks::cpu::threads::{in_parallel, pieces};
+use crate::threads::{in_parallel, pieces};
 
 /// Adam (Kingma and Ba 2015) over a flat parameter vector.
 #[derive(Clone, PartialEq, Debug)]

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use crate::learning::dual::Dual;
+use crate::learning::dual_number::DualNumber;
 use crate::networks::distribution::{ActionShape, LOG_DEVIATION, LOG_ROOT_TAU};
 
 /// Actions that were taken, a row a sample.
@@ -37,11 +37,11 @@ impl Column {
 
     /// A function of the numbers, given the row as well.
     #[must_use]
-    pub fn map(&self, function: impl Fn(usize, Dual<1>) -> Dual<1>) -> Column {
+    pub fn map(&self, function: impl Fn(usize, DualNumber<1>) -> DualNumber<1>) -> Column {
         let mut mapped = self.clone();
         let width = self.outputs.len();
         for (row, value) in mapped.values.iter_mut().enumerate() {
-            let Dual { value: number, slopes: [derivative] } = function(row, Dual::variable(*value, 0));
+            let DualNumber { value: number, slopes: [derivative] } = function(row, DualNumber::variable(*value, 0));
             *value = number;
             mapped.slopes[row * width..(row + 1) * width].iter_mut().for_each(|slope| *slope *= derivative);
         }

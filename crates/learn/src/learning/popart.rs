@@ -1,6 +1,6 @@
 //! PopArt: heads that keep what they say when the scale of the returns moves (van Hasselt et al. 2016, arXiv 1602.07714).
 
-use super::normaliser::Moments;
+use crate::learning::normaliser::Moments;
 use crate::networks::ModelShape;
 
 /// Changes the weights of a critic's head so that its values in raw units, deviation * output + mean, are under the moments `after`

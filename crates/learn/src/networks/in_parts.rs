@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
-use super::shape::NetworkShape;
+use crate::networks::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
+use crate::networks::shape::NetworkShape;
 
 /// A network of which at most so many rows are computed at once. Of a batch of several parts no activations are kept: its backward pass
 /// computes each part anew, a third more arithmetic, and sums the parts' gradients in their order. What is computed follows from the

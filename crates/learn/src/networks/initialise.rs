@@ -1,6 +1,6 @@
 //! Initial weights.
 
-use super::shape::{NetworkShape, Parameter, ParameterKind};
+use crate::networks::shape::{NetworkShape, Parameter, ParameterKind};
 use crate::config::Initialisation;
 use crate::random::{Purpose, Stream};
 

@@ -1,6 +1,7 @@
 //! The convolutions of an encoder in the order of its parameters: plain ones, or those of a residual network.
 
-use super::shape::{ImageShape, NetworkShape};
+use serde::{Deserialize, Serialize};
+
 use crate::config::Convolution;
 
 /// Convolutions of a residual stage: one before the pooling, two in each of two blocks (Espeholt et al. 2018, arXiv 1802.01561,
@@ -8,6 +9,32 @@ use crate::config::Convolution;
 pub const STAGE: usize = 5;
 /// Zeros around the image of each of them, so that it keeps its size.
 const BORDER: usize = 1;
+
+/// Height, width and channels of an image.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+pub struct ImageShape {
+    /// Rows.
+    pub height: usize,
+    /// Columns.
+    pub width: usize,
+    /// Values of a pixel.
+    pub channels: usize,
+}
+
+impl ImageShape {
+    /// Number of values.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.height * self.width * self.channels
+    }
+
+    /// Shape after a convolution, if the kernel fits.
+    #[must_use]
+    pub fn after(&self, convolution: &Convolution) -> Option<ImageShape> {
+        let side = |length: usize| Some(length.checked_sub(convolution.kernel)? / convolution.stride + 1);
+        Some(ImageShape { height: side(self.height)?, width: side(self.width)?, channels: convolution.channels })
+    }
+}
 
 /// One convolution of an encoder.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -46,48 +73,41 @@ impl ImageShape {
     }
 }
 
-impl NetworkShape {
-    /// The convolutions of a checked shape.
-    #[must_use]
-    pub fn encoder_layers(&self) -> Vec<EncoderLayer> {
-        let mut layers = Vec::new();
-        let mut image = self.image;
-        for (index, convolution) in self.convolutions.iter().enumerate() {
-            let output = image.after(convolution).expect("checked shape");
-            layers.push(EncoderLayer {
-                name: format!("convolution{index}"),
-                convolution: *convolution,
-                image,
-                border: 0,
-                output,
-            });
-            image = output;
-        }
-        for (stage, &channels) in self.residual.iter().enumerate() {
-            let convolution = Convolution { channels, kernel: 2 * BORDER + 1, stride: 1 };
-            for part in 0..STAGE {
-                let name = match part {
-                    0 => format!("stage{stage}.convolution"),
-                    _ => format!("stage{stage}.block{}.convolution{}", (part - 1) / 2, (part - 1) % 2),
-                };
-                let output = ImageShape { channels, ..image };
-                layers.push(EncoderLayer { name, convolution, image, border: BORDER, output });
-                image = if part == 0 { output.pooled() } else { output };
-            }
-        }
-        layers
+/// The convolutions of an encoder: plain ones, or those of a residual one, which has so many channels in each stage.
+#[must_use]
+pub fn encoder_layers(image: ImageShape, convolutions: &[Convolution], residual: &[usize]) -> Vec<EncoderLayer> {
+    let mut layers = Vec::new();
+    let mut image = image;
+    for (index, convolution) in convolutions.iter().enumerate() {
+        let output = image.after(convolution).expect("checked shape");
+        layers.push(EncoderLayer {
+            name: format!("convolution{index}"),
+            convolution: *convolution,
+            image,
+            border: 0,
+            output,
+        });
+        image = output;
     }
-
-    /// Values that the encoder hands to the first dense layer.
-    #[must_use]
-    pub fn features(&self) -> usize {
-        self.encoder_layers().last().map_or(self.image, |layer| layer.output).size()
+    for (stage, &channels) in residual.iter().enumerate() {
+        let convolution = Convolution { channels, kernel: 2 * BORDER + 1, stride: 1 };
+        for part in 0..STAGE {
+            let name = match part {
+                0 => format!("stage{stage}.convolution"),
+                _ => format!("stage{stage}.block{}.convolution{}", (part - 1) / 2, (part - 1) % 2),
+            };
+            let output = ImageShape { channels, ..image };
+            layers.push(EncoderLayer { name, convolution, image, border: BORDER, output });
+            image = if part == 0 { output.pooled() } else { output };
+        }
     }
+    layers
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::networks::NetworkShape;
 
     /// Figure 3, right, on the benchmark's pictures: each stage halves them, and has one convolution before and four behind that.
     #[test]

@@ -14,9 +14,9 @@ mod shape;
 mod shared_network;
 mod stack;
 
-pub use layers::EncoderLayer;
+pub use layers::{EncoderLayer, ImageShape};
 pub use network::{
     ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Place, Published, RecordedLane, Recording, Sequences,
 };
-pub use shape::{ImageShape, NetworkShape, Parameter, ParameterKind};
+pub use shape::{NetworkShape, Parameter, ParameterKind};
 pub use stack::{Actor, ModelSequences, ModelShape, Notes, Stack};

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::shape::NetworkShape;
+use crate::networks::shape::NetworkShape;
 use crate::networks::cpu::tape::Tape;
 use crate::networks::cpu::weights::PackedWeights;
 

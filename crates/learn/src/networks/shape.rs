@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::layers::{EncoderLayer, STAGE};
+use crate::networks::layers::{EncoderLayer, ImageShape, STAGE, encoder_layers};
 use crate::config::{Convolution, RecurrentCell};
 use crate::error::LearnError;
 
@@ -10,32 +10,6 @@ use crate::error::LearnError;
 const WIDEST: usize = 1 << 16;
 const MOST_LAYERS: usize = 64;
 const MOST_PARAMETERS: usize = 1 << 28;
-
-/// Height, width and channels of an image.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
-pub struct ImageShape {
-    /// Rows.
-    pub height: usize,
-    /// Columns.
-    pub width: usize,
-    /// Values of a pixel.
-    pub channels: usize,
-}
-
-impl ImageShape {
-    /// Number of values.
-    #[must_use]
-    pub fn size(&self) -> usize {
-        self.height * self.width * self.channels
-    }
-
-    /// Shape after a convolution, if the kernel fits.
-    #[must_use]
-    pub fn after(&self, convolution: &Convolution) -> Option<ImageShape> {
-        let side = |length: usize| Some(length.checked_sub(convolution.kernel)? / convolution.stride + 1);
-        Some(ImageShape { height: side(self.height)?, width: side(self.width)?, channels: convolution.channels })
-    }
-}
 
 /// One network: convolutions or a residual encoder, dense layers, an optional recurrent layer, and linear heads, all on one 8-bit image.
 ///
@@ -186,6 +160,18 @@ impl NetworkShape {
             ));
         }
         Ok(())
+    }
+
+    /// The convolutions of a checked shape.
+    #[must_use]
+    pub fn encoder_layers(&self) -> Vec<EncoderLayer> {
+        encoder_layers(self.image, &self.convolutions, &self.residual)
+    }
+
+    /// Values that the encoder hands to the first dense layer.
+    #[must_use]
+    pub fn features(&self) -> usize {
+        self.encoder_layers().last().map_or(self.image, |layer| layer.output).size()
     }
 
     /// Numbers of the state carried from step to step.

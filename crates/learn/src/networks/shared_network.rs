@@ -1,7 +1,7 @@
 //! A network that several workers compute together, each on its own lanes.
 
-use super::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
-use super::shape::NetworkShape;
+use crate::networks::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
+use crate::networks::shape::NetworkShape;
 use crate::team::Team;
 
 /// A network of which this worker computes the lanes whose pixels it has: output rows are handed to everyone, gradients are summed over all.

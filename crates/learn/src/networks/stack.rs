@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
-use super::critic_heads::CriticHeads;
-use super::in_parts::InParts;
-use super::network::{
+use crate::networks::critic_heads::CriticHeads;
+use crate::networks::in_parts::InParts;
+use crate::networks::network::{
     ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences, states_of,
 };
-use super::shape::{ImageShape, NetworkShape};
-use super::shared_network::SharedNetwork;
+use crate::networks::layers::ImageShape;
+use crate::networks::shape::NetworkShape;
+use crate::networks::shared_network::SharedNetwork;
 use crate::config::NetworkConfig;
 use crate::error::LearnError;
 #[cfg(feature = "graphics")]

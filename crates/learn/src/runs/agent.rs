@@ -1,9 +1,11 @@
 //! A trained agent, acting.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use hasard_envs::{CostTerm, Scenario};
 
+use crate::algorithms::shaping;
 use crate::config::constraint::find_terms;
 use crate::config::{Products, ReturnNormaliser, TrainConfig};
 use crate::error::LearnError;
@@ -17,7 +19,7 @@ use crate::runs::agent_file::AgentFile;
 use crate::runs::checkpoint::{Loaded, Store};
 use crate::runs::run_directory::{go_on, read_config};
 use crate::sampling::privileged::Privileged;
-use crate::sampling::shaping::Shaping;
+use crate::sampling::shaping::{Shaping, seen};
 
 /// Which checkpoint of a run acts.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -55,7 +57,7 @@ pub struct TrainedPolicy {
 pub struct Agent {
     shape: ModelShape,
     actor: Actor,
-    shaping: Shaping,
+    shaping: Arc<dyn Shaping>,
     watched: Option<usize>,
     choice: Choice,
     state: Vec<Vec<f32>>,
@@ -190,7 +192,7 @@ impl TrainedPolicy {
         config.learning.threads = 1;
         let image = ImageShape { height, width, channels };
         let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
-        let shape = ModelShape::new(image, action, cost_critics, Shaping::new(&config).extra_inputs(), &config.network)?
+        let shape = ModelShape::new(image, action, cost_critics, shaping(&config).extra_inputs(), &config.network)?
             .with_critic_inputs(Privileged::new(&config).count())?;
         // Before memory is taken for as many weights as the settings speak of.
         check_fits(&shape)?;
@@ -228,7 +230,7 @@ impl TrainedPolicy {
             rows: vec![0.0; lanes * self.shape.outputs()],
             shape: self.shape.clone(),
             actor,
-            shaping: Shaping::new(&self.config),
+            shaping: shaping(&self.config),
             watched: self.watched,
             choice,
             units: if self.config.learning.critic_inputs.is_empty() { self.returns.clone() } else { Vec::new() },
@@ -294,7 +296,7 @@ impl Agent {
         let lanes = self.safety.len();
         let extra: Vec<f32> = match self.shape.extra_inputs() {
             0 => Vec::new(),
-            _ => self.safety.iter().map(|&safety| Shaping::seen(safety)).collect(),
+            _ => self.safety.iter().map(|&safety| seen(safety)).collect(),
         };
         // Critics see no more than the policy here, as at an episode's start: nothing acts by them.
         let privileged = vec![0.0; lanes * self.shape.critic_inputs];

@@ -4,7 +4,7 @@ use hasard_envs::Episode;
 use serde::{Deserialize, Serialize};
 
 use crate::config::TrainConfig;
-use crate::runs::evaluate::Trace;
+use crate::runs::evaluation::Trace;
 
 /// Steps of which a time-out may cut off no more than this share of a cost to come that never ends.
 const CUT: f64 = 0.05;

@@ -11,7 +11,8 @@ use crate::networks::device::ComputeDevice;
 use crate::random::{Purpose, Stream};
 use crate::runs::agent::{Choice, TrainedPolicy};
 use crate::runs::checkpoint::{Loaded, Store};
-use crate::runs::evaluate::{Evaluation, Trace, play_traced};
+use crate::runs::evaluate::play_traced;
+use crate::runs::evaluation::{Closing, Evaluation, Trace};
 use crate::runs::selection::{Candidate, Candidates, EpisodeSet, Selection, frames_of, select};
 use crate::runs::session::{MakeWorlds, Session};
 
@@ -20,16 +21,6 @@ pub struct Examiner<'a> {
     make_worlds: &'a MakeWorlds<'a>,
     /// The candidates so far.
     pub candidates: Candidates,
-}
-
-/// Closing episodes of a policy: its frames, whether it is the selected one, the episodes with what its critics expected.
-pub struct Closing {
-    /// Frames after which it was taken.
-    pub frames: u64,
-    /// It is the selected checkpoint; otherwise the last policy.
-    pub selected: bool,
-    /// The episodes.
-    pub played: Vec<(Episode, Trace)>,
 }
 
 impl<'a> Examiner<'a> {
@@ -73,6 +64,7 @@ impl<'a> Examiner<'a> {
         let device = ComputeDevice::of(&config)?;
         let mut loaded: Option<(u64, TrainedPolicy)> = None;
         let mut closings: Vec<Closing> = Vec::new();
+        let mut last_played = None;
         let mut play = |policy: Option<u64>, set: EpisodeSet, episodes: usize| {
             if let Some(frames) = policy
                 && loaded.as_ref().is_none_or(|(known, _)| *known != frames)
@@ -88,6 +80,9 @@ impl<'a> Examiner<'a> {
             let acting = loaded.as_ref().filter(|_| policy.is_some()).map_or(&last, |(_, policy)| policy);
             let Some(played) = self.play(stop, acting, set, episodes)? else { return Ok(None) };
             let only: Vec<Episode> = played.iter().map(|(episode, _)| episode.clone()).collect();
+            if set == EpisodeSet::Closing(0) && policy.is_some() {
+                last_played = Some((frames, played.clone()));
+            }
             if matches!(set, EpisodeSet::Closing(_)) {
                 closings.push(Closing { frames: policy.unwrap_or(frames), selected: policy.is_some(), played });
             }
@@ -95,6 +90,12 @@ impl<'a> Examiner<'a> {
         };
         let Some(selection) = select(&self.candidates, &config, frames, &mut play)? else { return Ok(None) };
         closings.retain(|one| !one.selected || one.frames == selection.selected.frames);
+        // A closing of both is written down for both; one of a last policy that failed there is that policy's alone.
+        if closings.iter().all(|one| one.selected)
+            && let Some((frames, played)) = last_played
+        {
+            closings.push(Closing { frames, selected: false, played });
+        }
         Ok(Some((selection, closings)))
     }
 

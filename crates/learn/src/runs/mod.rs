@@ -7,6 +7,7 @@ pub mod checkpoint;
 pub mod checksum;
 pub mod claim;
 pub mod evaluate;
+pub mod evaluation;
 pub mod examiner;
 pub mod heatmap;
 pub mod measure;

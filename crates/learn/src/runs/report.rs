@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::config::TrainConfig;
 use crate::learning::metrics::Means;
-use crate::runs::evaluate::Evaluation;
+use crate::runs::evaluation::Evaluation;
 use crate::runs::watch::Watch;
 
 /// A report.

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::runs::calibration::{calibrate, predictions};
-use crate::runs::examiner::Closing;
+use crate::runs::evaluation::Closing;
 use crate::runs::selection::Selection;
 use crate::runs::tensorboard::{self, EventFile};
 

@@ -4,7 +4,8 @@
 //! checkpoint. So it is evaluated now and then on episodes of their own, always the same ones, so that candidates are compared on equal
 //! terms. When the run is over, the candidates that kept their budgets are confirmed on further episodes, the one of the highest return
 //! first, and the first that keeps them there too is closed on a third set, which had no part in the choice. A candidate that fails
-//! there gives way to the next one, with new episodes. The last policy is closed as well: it is what a run is without any choice.
+//! there gives way to the next one, with new episodes. The last policy is closed as well: it is what a run is without any choice. Where it
+//! is the selected one, its closing is that of both.
 //!
 //! A checkpoint is *surely* within its budgets if the upper end of its confirmed cost is, at a level shared out over all confirmations that
 //! a run may make (Bonferroni): so the word is wrong for one run in forty at most, however many candidates were tried.
@@ -14,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::config::{AlgorithmKind, Constraint, EvaluationConfig, TrainConfig};
 use crate::error::LearnError;
-use crate::runs::evaluate::Evaluation;
+use crate::runs::evaluation::Evaluation;
 use crate::statistics::upper_bound;
 
 /// Probability that some checkpoint of a run is called surely within its budgets and is not.
@@ -167,7 +168,7 @@ pub fn select(
     let Some(first) = candidates.ranked.first() else { return Ok(None) };
     let (settings, algorithm) = (&config.evaluation, config.algorithm);
     let level = shared_level(settings);
-    let episodes = settings.confirming_episodes;
+    let episodes = config.confirming_episodes();
     let mut spent = candidates.frames;
     let mut go = |policy: Option<u64>, set: EpisodeSet| -> Result<Option<(Vec<Episode>, Evaluation)>, LearnError> {
         let Some(played) = play(policy, set, episodes)? else { return Ok(None) };
@@ -180,6 +181,7 @@ pub fn select(
     };
     let (mut failed, mut selected): (Vec<Candidate>, Option<Candidate>) = (Vec::new(), None);
     let mut attempts = 0;
+    let mut last_closing = None;
     for candidate in candidates.ranked.iter().take(settings.candidates) {
         // One over its budgets is not worth confirming; it is the least evil at best.
         if algorithm.keeps_budgets() && !candidate.chosen_by.within() {
@@ -189,8 +191,12 @@ pub fn select(
         let surely_within = surely_within(&played, &config.constraints, level)?;
         let mut confirmed = Candidate { chosen_by, confirmed: true, surely_within, ..candidate.clone() };
         if kept(&confirmed.chosen_by, surely_within) {
-            attempts += 1;
-            let Some((_, closing)) = go(Some(candidate.frames), EpisodeSet::Closing(attempts))? else { return Ok(None) };
+            // The policy at the end of the run is closed in any case, by episodes that nothing was chosen by: once is enough.
+            let is_last = candidate.frames == frames;
+            attempts += u64::from(!is_last);
+            let set = EpisodeSet::Closing(if is_last { 0 } else { attempts });
+            let Some((_, closing)) = go(Some(candidate.frames), set)? else { return Ok(None) };
+            last_closing = is_last.then(|| closing.clone()).or(last_closing);
             let fine = !algorithm.keeps_budgets() || closing.within();
             confirmed.closing = Some(closing);
             if fine {
@@ -211,13 +217,22 @@ pub fn select(
             let mut best = best.unwrap_or(first).clone();
             failed.retain(|one| one.frames != best.frames);
             if best.closing.is_none() {
-                let Some((_, closing)) = go(Some(best.frames), EpisodeSet::Closing(attempts + 1))? else { return Ok(None) };
+                let is_last = best.frames == frames;
+                let set = EpisodeSet::Closing(if is_last { 0 } else { attempts + 1 });
+                let Some((_, closing)) = go(Some(best.frames), set)? else { return Ok(None) };
+                last_closing = is_last.then(|| closing.clone());
                 best.closing = Some(closing);
             }
             best
         }
     };
-    let Some((_, closing)) = go(None, EpisodeSet::Closing(0))? else { return Ok(None) };
+    let closing = match last_closing {
+        Some(closing) => closing,
+        None => match go(None, EpisodeSet::Closing(0))? {
+            Some((_, closing)) => closing,
+            None => return Ok(None),
+        },
+    };
     let last = LastPolicy { frames, closing };
     Ok(Some(Selection { selected, failed, last: Some(last), level: Some(level), selection_frames: spent }))
 }
@@ -237,7 +252,7 @@ mod tests {
     fn config() -> TrainConfig {
         let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
         config.constraints = vec![Constraint { term: None, budget: 5.0 }];
-        config.evaluation.confirming_episodes = 4;
+        config.evaluation.confirming_episodes = Some(4);
         config.env.frame_skip = 4;
         config
     }
@@ -324,6 +339,27 @@ mod tests {
         // Six sets of four episodes of ten steps of four frames.
         assert_eq!(selection.selection_frames, 1000 + 6 * 160);
         assert!(selection.selected.evaluation().within());
+    }
+
+    /// The policy at the end of the run is closed once, by episodes of its own number, whether it is selected or fails there.
+    #[test]
+    fn the_last_policy_is_closed_once() {
+        let candidates = ranked(&[(9, 20.0, 4.0), (2, 18.0, 4.0)], AlgorithmKind::PpoLag);
+        let (confirm, closing) = (EpisodeSet::Confirmation, EpisodeSet::Closing);
+        for (cost, expected) in [
+            (4.5, vec![(Some(9), confirm), (Some(9), closing(0))]),
+            (5.5, vec![(Some(9), confirm), (Some(9), closing(0)), (Some(2), confirm), (Some(2), closing(1))]),
+        ] {
+            let mut asked = Vec::new();
+            let mut play = |policy: Option<u64>, set: EpisodeSet, count: usize| {
+                asked.push((policy, set));
+                Ok(Some(episodes(11.0, if set == closing(0) { cost } else { 4.5 }, count)))
+            };
+            let selection = select(&candidates, &config(), 9, &mut play).unwrap().unwrap();
+            assert_eq!(asked, expected);
+            assert_eq!(selection.selected.frames, if cost < 5.0 { 9 } else { 2 });
+            assert_eq!(selection.last.unwrap().closing.cost.mean, cost);
+        }
     }
 
     /// Without one that keeps its budgets all the way, the least evil is closed and says so.

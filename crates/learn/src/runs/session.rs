@@ -10,7 +10,7 @@ use crate::config::{EnvConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::learning::learner::Learner;
 use crate::learning::metrics::Means;
-use crate::learning::passes::Passes;
+use crate::learning::epochs::Epochs;
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{Actor, ImageShape, ModelShape};
@@ -21,7 +21,6 @@ use crate::sampling::gather::Gatherer;
 use crate::sampling::privileged::Privileged;
 use crate::sampling::rollout::Rollout;
 use crate::sampling::sampler::{Sampler, SamplerState, dealt_anew};
-use crate::sampling::shaping::Shaping;
 use crate::sampling::shared_rollout::{all_states, complete};
 use crate::team::Team;
 
@@ -86,7 +85,7 @@ pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, 
     let space = worlds.action_space();
     let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
     let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
-    let extra = Shaping::new(config).extra_inputs();
+    let extra = algorithms::shaping(config).extra_inputs();
     let shape = ModelShape::new(ImageShape { height, width, channels }, action, cost_critics, extra, &config.network)?;
     shape.with_critic_inputs(Privileged::new(config).count())
 }
@@ -178,7 +177,7 @@ impl Session {
         let mut samplers = Vec::new();
         for ((worlds, state), share) in worlds.into_iter().zip(states.drain(own_parts.clone())).zip(&shares[own_parts.clone()]) {
             let actor = Actor::new(&shape, device);
-            let shaping = Shaping::new(&config);
+            let shaping = algorithms::shaping(&config);
             let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, share.start, config.seed)?;
             sampler.cut(config.trajectory_steps());
             sampler.show_critics(Privileged::new(&config));
@@ -276,9 +275,9 @@ impl Session {
         for (name, share) in prepared.explained_variances(&self.config) {
             self.means.add(name, share);
         }
-        let passes = Passes::new(&self.config, self.rollouts, rollout.trajectories());
+        let epochs = Epochs::new(&self.config, self.rollouts, rollout.trajectories());
         let signals = |costs: &[f64]| self.watch.signals(&self.config, done, costs);
-        self.algorithm.learn(&mut self.learner, &prepared, &passes, &signals, &mut self.means)?;
+        self.algorithm.learn(&mut self.learner, &prepared, &epochs, &signals, &mut self.means)?;
         self.watch.learned();
         if learning.reuse_forward {
             self.learner.absorb(rollout)?;

@@ -9,7 +9,7 @@ use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::networks::device::ComputeDevice;
 use crate::runs::checkpoint::{Checkpoint, Loaded, Progress, Store};
-use crate::runs::evaluate::Evaluation;
+use crate::runs::evaluation::Evaluation;
 use crate::runs::examiner::Examiner;
 use crate::runs::heatmap::Heatmap;
 use crate::runs::report::Report;

@@ -218,7 +218,6 @@ mod tests {
     /// state is used up, of 1, by the cost that the budget is (Sootla et al. 2022, equation 6, undiscounted).
     #[test]
     fn all_algorithms_aim_at_the_same_share_of_the_budget() {
-        use crate::sampling::shaping::Shaping;
         for &algorithm in AlgorithmKind::ALL {
             for &preset in Preset::ALL {
                 let mut config = TrainConfig::plain(algorithm, preset, EnvConfig::new("test"));
@@ -228,7 +227,7 @@ mod tests {
                 watch.add(&episode(60.0, 0.0), &config.constraints).unwrap();
                 assert_eq!(watch.signals(&config, 0.0, &[0.0])[0].episode_budget, 45.0, "{algorithm} {preset}");
                 if algorithm == AlgorithmKind::PpoSaute {
-                    let shaping = Shaping::new(&config);
+                    let shaping = crate::algorithms::shaping(&config);
                     let within = shaping.step(1.0, 1.0, 44.9);
                     assert!(within.0 == 1.0 && (within.1 - 0.1 / 45.0).abs() < 1e-6, "{within:?}");
                     assert!(shaping.step(1.0, 1.0, 45.1).0 < 0.0);

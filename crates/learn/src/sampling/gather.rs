@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 
 use crate::error::LearnError;
 use crate::networks::Published;
-use crate::networks::cpu::threads::in_parallel;
+use crate::threads::in_parallel;
 use crate::sampling::rollout::{Part, Rollout};
 use crate::sampling::sampler::{Newest, Sampler, SamplerState};
 

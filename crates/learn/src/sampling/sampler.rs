@@ -15,7 +15,7 @@ use crate::networks::{Actor, ModelShape, Notes, Published};
 use crate::random::{Purpose, Stream};
 use crate::sampling::privileged::Privileged;
 use crate::sampling::rollout::Part;
-use crate::sampling::shaping::Shaping;
+use crate::sampling::shaping::{Shaping, seen};
 
 /// Where samplers find the newest weights.
 pub type Newest = RwLock<Arc<Published>>;
@@ -72,7 +72,7 @@ pub struct Sampler {
     shape: ModelShape,
     worlds: VecEnv,
     actor: Actor,
-    shaping: Shaping,
+    shaping: Arc<dyn Shaping>,
     /// Where each constraint's cost is in the cost terms; `None` for the scalar cost.
     constraints: Vec<Option<usize>>,
     /// Number of the first lane among those of all samplers.
@@ -100,7 +100,7 @@ impl Sampler {
         shape: &ModelShape,
         mut worlds: VecEnv,
         actor: Actor,
-        shaping: Shaping,
+        shaping: Arc<dyn Shaping>,
         constraints: &[Constraint],
         first_lane: usize,
         seed: u64,
@@ -289,7 +289,7 @@ impl Sampler {
     fn write_extra(&self, part: &mut Part, step: usize, lanes: std::ops::Range<usize>) {
         if self.shape.extra_inputs() == 1 {
             for lane in lanes {
-                part.extra[step * self.safety.len() + lane] = Shaping::seen(self.safety[lane]);
+                part.extra[step * self.safety.len() + lane] = seen(self.safety[lane]);
             }
         }
     }
@@ -369,7 +369,7 @@ impl Sampler {
                 let units = network.state_size();
                 copy[..units].copy_from_slice(&state[lane * units..(lane + 1) * units]);
             }
-            let seen = [Shaping::seen(self.safety[lane])];
+            let seen = [seen(self.safety[lane])];
             let extra = &seen[..self.shape.extra_inputs()];
             let mut shown = vec![0.0; self.shape.critic_inputs];
             let constraints = self.constraints.len();

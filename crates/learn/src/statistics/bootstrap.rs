@@ -2,7 +2,7 @@
 
 use hasard_engine::math::Rng;
 
-use super::quantiles::{normal_probability, normal_quantile};
+use crate::statistics::quantiles::{normal_probability, normal_quantile};
 
 /// Samples that are drawn anew. Points at a share of one in a thousand still rest on ten of them.
 const RESAMPLES: usize = 10_000;

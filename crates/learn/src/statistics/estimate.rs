@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::bootstrap::bca_interval;
-use super::quantiles::t_quantile;
+use crate::statistics::bootstrap::bca_interval;
+use crate::statistics::quantiles::t_quantile;
 
 /// Skewness of samples beyond which their mean's interval is a bootstrap's: Student's t then covers too little on the long side.
 const SKEWED: f64 = 1.0;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::bootstrap::quantile;
+use crate::statistics::bootstrap::quantile;
 
 /// Share of the episodes that the worst are: the costs of a constraint on tails are theirs.
 const WORST: f64 = 0.1;

@@ -132,7 +132,7 @@ fn tested(job: &Job, config: &TrainConfig) -> u64 {
         None => 0,
     };
     // Candidates are confirmed a few times, and the selected checkpoint closes the run.
-    let further = if during > 0 { 4 * evaluation.confirming_episodes as u64 } else { 0 };
+    let further = if during > 0 { 4 * config.confirming_episodes() as u64 } else { 0 };
     (during * evaluation.episodes as u64 + further + u64::from(job.evaluate)) * EPISODE_TICS
 }
 

@@ -3,12 +3,12 @@
 //! What is a sum over rows, the gradient of weights, comes after ([`super::gradient`]); what is done here for one lane does not
 //! depend on the lanes beside it.
 
-use super::cells::{gru_gates_backward, lstm_gates_backward};
-use super::elementwise::{add, elu_backward_rows};
-use super::forward::sized;
-use super::product::{Left, Size, multiply_panels};
-use super::tape::TapeLane;
-use super::weights::{Backward, Plan};
+use crate::networks::cpu::cells::{gru_gates_backward, lstm_gates_backward};
+use crate::networks::cpu::elementwise::{add, elu_backward_rows};
+use crate::networks::cpu::buffers::sized;
+use crate::networks::cpu::product::{Left, Size, multiply_panels};
+use crate::networks::cpu::tape::TapeLane;
+use crate::networks::cpu::weights::{Backward, Plan};
 use crate::config::RecurrentCell;
 
 /// Gradients of some lanes; rows as in their tape, by lane, then by time, but where something else is said.

@@ -9,10 +9,10 @@
 //! What is rounded is what a product reads: weights, activations and gradients themselves stay numbers of 32 bits, and all other
 //! arithmetic is that of the other families.
 
-use hasard_engine::simd::Simd;
+use hasard_engine::simd::{Family, Simd};
 
-use super::tile::Tile;
-use super::vectorised::vectorised;
+use crate::networks::cpu::tile::Tile;
+use crate::networks::cpu::vectorised::vectorised;
 
 /// Two numbers of 16 bits, the first one in the lower half.
 pub type Pair = u32;
@@ -30,20 +30,93 @@ fn pair(first: f32, second: f32) -> Pair {
     (rounded(first) >> 16) | (rounded(second) & 0xFFFF_0000)
 }
 
+/// Rounds numbers one by one.
+pub fn round(kernels: Simd, from: &[f32], to: &mut [u16]) {
+    #[cfg(target_arch = "x86_64")]
+    if kernels.family() == Family::Avx512Bf16 {
+        // SAFETY: a `Simd` value proves that the processor has the instructions.
+        return unsafe { native::round(from, to) };
+    }
+    round_plainly(kernels, from, to);
+}
+
 vectorised! {
-    /// Rounds numbers one by one.
-    pub fn round(from: &[f32], to: &mut [u16]) {
+    fn round_plainly(from: &[f32], to: &mut [u16]) {
         for (to, from) in to.iter_mut().zip(from) {
             *to = (rounded(*from) >> 16) as u16;
         }
     }
 }
 
+/// 8-bit pixels to normalised and rounded numbers: `clamp(pixel * scale + shift, -5, 5)`.
+pub fn round_pixels(kernels: Simd, pixels: &[u8], scale: &[f32], shift: &[f32], out: &mut [u16]) {
+    #[cfg(target_arch = "x86_64")]
+    if kernels.family() == Family::Avx512Bf16 {
+        // SAFETY: a `Simd` value proves that the processor has the instructions.
+        return unsafe { native::round_pixels(pixels, scale, shift, out) };
+    }
+    round_pixels_plainly(kernels, pixels, scale, shift, out);
+}
+
 vectorised! {
-    /// 8-bit pixels to normalised and rounded numbers: `clamp(pixel * scale + shift, -5, 5)`.
-    pub fn round_pixels(pixels: &[u8], scale: &[f32], shift: &[f32], out: &mut [u16]) {
+    fn round_pixels_plainly(pixels: &[u8], scale: &[f32], shift: &[f32], out: &mut [u16]) {
         for (((out, pixel), scale), shift) in out.iter_mut().zip(pixels).zip(scale).zip(shift) {
-            *out = (rounded((f32::from(*pixel) * *scale + *shift).clamp(-5.0, 5.0)) >> 16) as u16;
+            *out = (rounded(normalised(*pixel, *scale, *shift)) >> 16) as u16;
+        }
+    }
+}
+
+#[inline(always)]
+fn normalised(pixel: u8, scale: f32, shift: f32) -> f32 {
+    (f32::from(pixel) * scale + shift).clamp(-5.0, 5.0)
+}
+
+/// Rounding by the instructions for it, many numbers at a time.
+#[cfg(target_arch = "x86_64")]
+mod native {
+    use std::arch::x86_64::{
+        __m128i, __m256bh, __m256i, __m512bh, __m512i, _mm_loadu_si128, _mm256_storeu_si256, _mm512_add_ps, _mm512_cvtepi32_ps,
+        _mm512_cvtepu8_epi32, _mm512_cvtne2ps_pbh, _mm512_cvtneps_pbh, _mm512_loadu_ps, _mm512_max_ps, _mm512_min_ps,
+        _mm512_mul_ps, _mm512_set1_ps, _mm512_storeu_si512,
+    };
+    use std::mem::transmute;
+
+    use super::{normalised, rounded};
+
+    #[target_feature(enable = "avx512f,avx512bf16")]
+    pub fn round(from: &[f32], to: &mut [u16]) {
+        let ((from, rest), (to, last)) = (from.as_chunks::<32>(), to.as_chunks_mut::<32>());
+        for (from, to) in from.iter().zip(to) {
+            // SAFETY: both halves and the result are whole arrays; a register of rounded numbers is any bits.
+            unsafe {
+                let (low, high) = (_mm512_loadu_ps(from.as_ptr()), _mm512_loadu_ps(from.as_ptr().add(16)));
+                let both = transmute::<__m512bh, __m512i>(_mm512_cvtne2ps_pbh(high, low));
+                _mm512_storeu_si512(to.as_mut_ptr().cast(), both);
+            }
+        }
+        for (from, to) in rest.iter().zip(last) {
+            *to = (rounded(*from) >> 16) as u16;
+        }
+    }
+
+    #[target_feature(enable = "avx512f,avx512bf16,avx512vl")]
+    pub fn round_pixels(pixels: &[u8], scale: &[f32], shift: &[f32], out: &mut [u16]) {
+        let (pixels, (out, last)) = (pixels.as_chunks::<16>(), out.as_chunks_mut::<16>());
+        let (scale, shift) = (scale.as_chunks::<16>(), shift.as_chunks::<16>());
+        let (least, most) = (_mm512_set1_ps(-5.0), _mm512_set1_ps(5.0));
+        for (((out, pixels), scales), shifts) in out.iter_mut().zip(pixels.0).zip(scale.0).zip(shift.0) {
+            // SAFETY: every pointer is that of a whole array; a register of rounded numbers is any bits.
+            unsafe {
+                let pixels = _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(pixels.as_ptr().cast::<__m128i>())));
+                let (scales, shifts) = (_mm512_loadu_ps(scales.as_ptr()), _mm512_loadu_ps(shifts.as_ptr()));
+                let values = _mm512_add_ps(_mm512_mul_ps(pixels, scales), shifts);
+                let values = _mm512_min_ps(_mm512_max_ps(values, least), most);
+                let halves = transmute::<__m256bh, __m256i>(_mm512_cvtneps_pbh(values));
+                _mm256_storeu_si256(out.as_mut_ptr().cast(), halves);
+            }
+        }
+        for (((out, pixel), scale), shift) in last.iter_mut().zip(pixels.1).zip(scale.1).zip(shift.1) {
+            *out = (rounded(normalised(*pixel, *scale, *shift)) >> 16) as u16;
         }
     }
 }
@@ -96,7 +169,7 @@ pub(super) unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const 
     #[cfg(target_arch = "x86_64")]
     {
         use super::tile::Ahead;
-        assert!(kernels.family() == hasard_engine::simd::Family::Avx512Bf16, "a product of pairs by {kernels}");
+        assert!(kernels.family() == Family::Avx512Bf16, "a product of pairs by {kernels}");
         let next = right.wrapping_add(tile.next);
         const LEFT: u8 = Ahead::LeftHalf as u8;
         const RIGHT: u8 = Ahead::RightHalf as u8;
@@ -215,6 +288,14 @@ mod tests {
             round(kernels, &[f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::from_bits(0x7FFF_FFFF)], &mut odd);
             assert_eq!(odd[..3], [0x7F80, 0xFF80, 0x7F80], "infinity stays, and what is nearer to it than to any other becomes it");
             assert!(exact(odd[3].into()).is_nan());
+            let pixels: Vec<u8> = (0..=255).chain(0..33).collect();
+            let (scale, shift) = (&noise(pixels.len(), 8)[..], &noise(pixels.len(), 9)[..]);
+            let mut normalised = vec![0; pixels.len()];
+            round_pixels(kernels, &pixels, scale, shift, &mut normalised);
+            for (place, half) in normalised.iter().enumerate() {
+                let value = (f32::from(pixels[place]) * scale[place] + shift[place]).clamp(-5.0, 5.0);
+                assert_eq!(exact((*half).into()).to_bits(), nearest(value).to_bits(), "{value} by {kernels}");
+            }
             let mut pairs = vec![0; 16];
             pair_rows(kernels, &values[..16], &values[16..32], &mut pairs);
             for (place, pair) in pairs.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The recurrent cells: what becomes of a step's products with the weights, and its gradients.
 
-use super::elementwise::{sigmoid, tanh};
-use super::vectorised::vectorised;
+use crate::networks::cpu::elementwise::{sigmoid, tanh};
+use crate::networks::cpu::vectorised::vectorised;
 
 /// Numbers that a step works on at once, in arrays of their own: slices might overlap for all
 /// that the compiler knows, and would be walked one number at a time.

@@ -5,7 +5,7 @@
 
 use hasard_engine::simd::Simd;
 
-use super::vectorised::vectorised;
+use crate::networks::cpu::vectorised::vectorised;
 
 /// e^x for x in about -87..88, clamped outside.
 #[inline(always)]

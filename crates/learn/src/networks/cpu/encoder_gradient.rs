@@ -1,12 +1,13 @@
 //! The backward pass through the convolutions, image by image, gathering the gradients of their weights.
 
-use super::convolution::{ConvolutionPlan, Rounded, Stored};
-use super::elementwise::{add, add_column_sums, elu_backward_gather};
-use super::forward::{output_places, sized};
-use super::pixels::StoredImage;
-use super::residual::ResidualImage;
-use super::tape::TapeLane;
-use super::weights::{Backward, PackedWeights, Plan};
+use crate::networks::cpu::convolution::{ConvolutionPlan, Rounded, Stored};
+use crate::networks::cpu::elementwise::{add, add_column_sums, elu_backward_gather};
+use crate::networks::cpu::buffers::sized;
+use crate::networks::cpu::forward::output_places;
+use crate::networks::cpu::pixels::StoredImage;
+use crate::networks::cpu::residual::ResidualImage;
+use crate::networks::cpu::tape::TapeLane;
+use crate::networks::cpu::weights::{Backward, PackedWeights, Plan};
 use crate::networks::PixelScale;
 
 /// Gradients of the convolutions' weights and biases over some lanes, weights in the order of the stored inputs.

@@ -4,14 +4,15 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::cells::{gru_gates, lstm_gates};
-use super::convolution::{Rounded, Stored};
-use super::elementwise::{bias_elu_rows, bias_elu_scatter, bias_rows, scale_pixels};
-use super::pixels::StoredImage;
-use super::product::{Left, Size, multiply_panels};
-use super::residual::ResidualImage;
-use super::tape::{Rows, Tape};
-use super::weights::{PackedWeights, Plan};
+use crate::networks::cpu::buffers::sized;
+use crate::networks::cpu::cells::{gru_gates, lstm_gates};
+use crate::networks::cpu::convolution::{Rounded, Stored};
+use crate::networks::cpu::elementwise::{bias_elu_rows, bias_elu_scatter, bias_rows, scale_pixels};
+use crate::networks::cpu::pixels::StoredImage;
+use crate::networks::cpu::product::{Left, Size, multiply_panels};
+use crate::networks::cpu::residual::ResidualImage;
+use crate::networks::cpu::tape::{Rows, Tape};
+use crate::networks::cpu::weights::{PackedWeights, Plan};
 use crate::config::RecurrentCell;
 use crate::networks::PixelScale;
 
@@ -50,13 +51,6 @@ pub(super) fn output_places(plan: &Plan, layer: usize) -> Cow<'_, [usize]> {
             (0..convolution.raw_places.len()).map(|pixel| pixel * convolution.channels()).collect()
         }
     }
-}
-
-pub(super) fn sized<T: Clone + Default>(buffer: &mut Vec<T>, length: usize) -> &mut [T] {
-    if buffer.len() < length {
-        buffer.resize(length, T::default());
-    }
-    &mut buffer[..length]
 }
 
 impl Forward {

@@ -9,6 +9,7 @@
 
 pub mod backward;
 pub mod bfloat16;
+mod buffers;
 mod cells;
 pub mod convolution;
 pub mod elementwise;
@@ -24,7 +25,6 @@ pub mod product;
 mod rectified;
 mod residual;
 pub mod tape;
-pub mod threads;
 pub mod tile;
 pub(crate) mod vectorised;
 pub mod vectors;

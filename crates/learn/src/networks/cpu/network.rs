@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::backward::RowGradients;
-use super::forward::{Forward, Input};
-use super::gradient::{Finished, ParameterGradients};
+use crate::networks::cpu::backward::RowGradients;
+use crate::networks::cpu::forward::{Forward, Input};
+use crate::networks::cpu::gradient::{Finished, ParameterGradients};
 use hasard_engine::simd::Simd;
-use super::tape::{Tape, TapeLane};
-use super::threads::{Piece, deal, in_parallel, pieces};
-use super::weights::{Backward, PackedWeights, Plan, stored_pixels};
+use crate::networks::cpu::tape::{Tape, TapeLane};
+use crate::threads::{Piece, deal, in_parallel, pieces};
+use crate::networks::cpu::weights::{Backward, PackedWeights, Plan, stored_pixels};
 use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, RecordedLane, Sequences};
 
 /// A network that learns on a number of threads. Its results do not depend on the number.

@@ -7,9 +7,9 @@ use std::ops::Range;
 
 use hasard_engine::simd::{Family, Simd};
 
-use super::bfloat16::{Pair, pair_rows, pair_with_zeros};
-use super::product::{Factor, block_rows, stretches};
-use super::tile::{Ahead, Finish, PANEL, Tile, tiles};
+use crate::networks::cpu::bfloat16::{Pair, pair_rows, pair_with_zeros};
+use crate::networks::cpu::product::{Factor, block_rows, stretches};
+use crate::networks::cpu::tile::{Ahead, Finish, PANEL, Tile, tiles};
 
 /// Memory for repacked factors.
 #[derive(Default)]

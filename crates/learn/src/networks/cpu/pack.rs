@@ -1,7 +1,7 @@
 //! Matrices stored panel after panel: a panel is read front to back by a tile; row by row the same reads would be kilobytes
 //! apart.
 
-use super::tile::PANEL;
+use crate::networks::cpu::tile::PANEL;
 
 /// Stores a matrix of `inner` rows and `columns` columns, row by row in `source`, panel after panel in `packed`.
 pub fn pack(source: &[f32], inner: usize, columns: usize, packed: &mut [f32]) {

@@ -2,9 +2,9 @@
 
 use hasard_engine::simd::{Family, Simd};
 
-use super::bfloat16::{Pair, pair_of, pair_rows, pair_with_zeros};
-use super::pack::{pack, pack_transposed};
-use super::tile::PANEL;
+use crate::networks::cpu::bfloat16::{Pair, pair_of, pair_rows, pair_with_zeros};
+use crate::networks::cpu::pack::{pack, pack_transposed};
+use crate::networks::cpu::tile::PANEL;
 
 /// A right factor.
 #[derive(Clone, Debug)]

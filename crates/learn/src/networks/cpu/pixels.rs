@@ -2,10 +2,10 @@
 
 use hasard_engine::simd::{Family, Simd};
 
-use super::bfloat16::round_pixels;
-use super::convolution::{ConvolutionPlan, Stored};
-use super::elementwise::scale_pixels;
-use super::forward::sized;
+use crate::networks::cpu::bfloat16::round_pixels;
+use crate::networks::cpu::convolution::{ConvolutionPlan, Stored};
+use crate::networks::cpu::elementwise::scale_pixels;
+use crate::networks::cpu::buffers::sized;
 use crate::networks::{ImageShape, PixelScale};
 
 /// The stored input of a first convolution.

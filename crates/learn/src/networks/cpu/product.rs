@@ -9,9 +9,9 @@
 
 use hasard_engine::simd::{Family, Simd};
 
-use super::bfloat16::{self, Pair};
-use super::panels::Panels;
-use super::tile::{Ahead, Finish, PANEL, Tile, tallest, tiles};
+use crate::networks::cpu::bfloat16::{self, Pair};
+use crate::networks::cpu::panels::Panels;
+use crate::networks::cpu::tile::{Ahead, Finish, PANEL, Tile, tallest, tiles};
 
 /// The way of one index through a factor: `count` steps, and that again for each of `groups`.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 //! Images lie pixel by pixel, all channels of one together; `places`, `sources` and `targets` say where each pixel starts in another
 //! layout.
 
-use super::vectorised::vectorised;
+use crate::networks::cpu::vectorised::vectorised;
 use crate::networks::ImageShape;
 
 vectorised! {

@@ -4,15 +4,15 @@
 //! each. Nothing is kept for the backward pass: it computes an image's activations again, a quarter of the work, where those of
 //! one 128x72 image would take 1.7 MB.
 
-use super::elementwise::add_column_sums;
-use super::forward::sized;
-use super::convolution::{Rounded, Stored};
-use super::pixels::StoredImage;
-use super::rectified::{
+use crate::networks::cpu::elementwise::add_column_sums;
+use crate::networks::cpu::buffers::sized;
+use crate::networks::cpu::convolution::{Rounded, Stored};
+use crate::networks::cpu::pixels::StoredImage;
+use crate::networks::cpu::rectified::{
     add_biased, bias_rectified_scatter, gather, pool, pool_backward, rectified_backward_add, rectified_backward_gather,
     rectified_scatter, scatter,
 };
-use super::weights::{Backward, PackedWeights, Plan};
+use crate::networks::cpu::weights::{Backward, PackedWeights, Plan};
 use crate::networks::PixelScale;
 use crate::networks::layers::STAGE;
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::weights::Plan;
+use crate::networks::cpu::weights::Plan;
 
 /// Activations of some trajectories. Rows are ordered by lane, then by time: step `t` of lane `l` is row `l * steps + t`.
 #[derive(Clone, Debug, Default)]

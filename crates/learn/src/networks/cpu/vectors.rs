@@ -3,8 +3,8 @@
 
 use hasard_engine::simd::Simd;
 
-use super::vectorised::vectorised;
-use super::threads::in_parallel;
+use crate::networks::cpu::vectorised::vectorised;
+use crate::threads::in_parallel;
 
 /// Numbers that are added up side by side.
 const SIDE: usize = 16;

@@ -1,11 +1,11 @@
 //! Weights in the order that the kernels read them in.
 
-use super::convolution::ConvolutionPlan;
-use super::elementwise::NOWHERE;
-use super::panels::Panels;
+use crate::networks::cpu::convolution::ConvolutionPlan;
+use crate::networks::cpu::elementwise::NOWHERE;
+use crate::networks::cpu::panels::Panels;
 use hasard_engine::simd::Simd;
-use super::threads::Piece;
-use super::tile::PANEL;
+use crate::threads::Piece;
+use crate::networks::cpu::tile::PANEL;
 use crate::networks::{EncoderLayer, NetworkShape, Parameter, PixelScale};
 
 /// What follows from a shape once and for all: plans of the convolutions, places of parameters.

@@ -1,31 +1,31 @@
-//! How often a rollout is gone through, and in which parts.
+//! How often a rollout is gone through, and in which minibatches.
 
 use crate::config::TrainConfig;
 use crate::random::{Purpose, Stream};
 
-/// The passes over one rollout.
+/// The epochs over one rollout.
 #[derive(Clone, Debug)]
-pub struct Passes {
+pub struct Epochs {
     seed: u64,
     /// Number of the rollout.
     rollout: u64,
     lanes: usize,
     /// How many.
-    pub epochs: usize,
+    pub count: usize,
     minibatches: usize,
     target_kl: Option<f64>,
 }
 
-impl Passes {
-    /// The passes over a rollout of a number of lanes, the `rollout`th of the run.
+impl Epochs {
+    /// The epochs over a rollout of a number of lanes, the `rollout`th of the run.
     #[must_use]
-    pub fn new(config: &TrainConfig, rollout: u64, lanes: usize) -> Passes {
+    pub fn new(config: &TrainConfig, rollout: u64, lanes: usize) -> Epochs {
         let learning = &config.learning;
-        let (epochs, minibatches, target_kl) = (learning.epochs, learning.minibatches, learning.target_kl);
-        Passes { seed: config.seed, rollout, lanes, epochs, minibatches, target_kl }
+        let (count, minibatches, target_kl) = (learning.epochs, learning.minibatches, learning.target_kl);
+        Epochs { seed: config.seed, rollout, lanes, count, minibatches, target_kl }
     }
 
-    /// The lanes of each minibatch of a pass: dealt anew every time, unless one minibatch takes them all.
+    /// The lanes of each minibatch of an epoch: dealt anew every time, unless one minibatch takes them all.
     #[must_use]
     pub fn minibatches(&self, epoch: usize) -> Vec<Vec<usize>> {
         let mut lanes: Vec<usize> = (0..self.lanes).collect();
@@ -48,21 +48,21 @@ mod tests {
     use crate::config::{AlgorithmKind, EnvConfig, Preset};
 
     #[test]
-    fn every_lane_is_in_one_minibatch_of_a_pass_and_passes_differ() {
+    fn every_lane_is_in_one_minibatch_of_an_epoch_and_epochs_differ() {
         let mut config = TrainConfig::plain(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("test"));
-        assert_eq!(Passes::new(&config, 3, 4).minibatches(0), [[0, 1, 2, 3]]);
+        assert_eq!(Epochs::new(&config, 3, 4).minibatches(0), [[0, 1, 2, 3]]);
         config.learning.minibatches = 3;
         config.learning.target_kl = Some(0.02);
-        let passes = Passes::new(&config, 3, 8);
-        let (first, second) = (passes.minibatches(0), passes.minibatches(1));
+        let epochs = Epochs::new(&config, 3, 8);
+        let (first, second) = (epochs.minibatches(0), epochs.minibatches(1));
         assert_eq!(first.iter().map(Vec::len).collect::<Vec<_>>(), [3, 3, 2]);
         let mut all = first.concat();
         all.sort_unstable();
         assert_eq!(all, (0..8).collect::<Vec<_>>());
         assert_ne!(first, second);
-        assert_ne!(first, Passes::new(&config, 4, 8).minibatches(0));
-        assert!(passes.end_at(|| 0.03) && !passes.end_at(|| 0.01));
-        let endless = Passes { target_kl: None, ..passes };
+        assert_ne!(first, Epochs::new(&config, 4, 8).minibatches(0));
+        assert!(epochs.end_at(|| 0.03) && !epochs.end_at(|| 0.01));
+        let endless = Epochs { target_kl: None, ..epochs };
         assert!(!endless.end_at(|| panic!("nobody asks")));
     }
 }

@@ -1,0 +1,318 @@
+//! The settings of a run, all of them.
+
+use std::fmt;
+
+use hasard_engine::simd::{Family, Simd};
+use serde::{Deserialize, Serialize};
+
+use crate::config::constraint::find_terms;
+use crate::config::curriculum::Lesson;
+use crate::config::names::names;
+use crate::config::settings::Change;
+use crate::config::{
+    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig, LearningConfig, NetworkConfig,
+    Products, ReportingConfig, ReturnNormaliser, SamplingConfig,
+};
+use crate::error::LearnError;
+
+names! {
+    /// Where the paper and the released code differ, the one side or the other; or a quick start.
+    Preset ("preset") {
+        /// The paper's text made self-consistent.
+        Paper = "paper",
+        /// What the released code does.
+        Released = "released",
+        /// What the code did that made the paper's tables.
+        Tables = "tables",
+        /// The paper's algorithms with settings that learn within minutes on a processor, for first steps.
+        Quick = "quick",
+    }
+}
+
+/// A run.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+// Read by `former`, which knows what older versions wrote.
+#[serde(remote = "Self")]
+pub struct TrainConfig {
+    /// Version of the program that began the run; empty where that did not say.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub version: String,
+    /// The algorithm.
+    pub algorithm: AlgorithmKind,
+    /// The preset that these settings began as.
+    pub preset: Preset,
+    /// The environment.
+    pub env: EnvConfig,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Length of the run in frames (tics): steps times frame skip.
+    pub frames: u64,
+    /// Levels that are trained one after the other; empty for the environment's own level alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curriculum: Vec<Lesson>,
+    /// `cpu`, or a graphics device that this program was built for.
+    pub device: String,
+    /// Steps of the longest episode.
+    pub episode_steps: u32,
+    /// Constraints, each with its budget.
+    pub constraints: Vec<Constraint>,
+    /// Share of each budget that learning aims at, whatever the algorithm: a policy that swings about it still keeps a budget that is a
+    /// little above. Evaluations hold costs against the whole budget.
+    #[serde(default = "whole")]
+    pub budget_share: f64,
+    /// What they are held against.
+    pub constraint_statistic: ConstraintStatistic,
+    /// Layers.
+    pub network: NetworkConfig,
+    /// Gathering.
+    pub sampling: SamplingConfig,
+    /// Learning.
+    pub learning: LearningConfig,
+    /// Numbers of single algorithms.
+    pub algorithm_settings: AlgorithmConfig,
+    /// When the agent is evaluated.
+    #[serde(default)]
+    pub evaluation: EvaluationConfig,
+    /// What is written.
+    pub reporting: ReportingConfig,
+    /// What changed when the run was resumed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<Change>,
+}
+
+/// Learning aims at the whole budget where a file does not say otherwise.
+fn whole() -> f64 {
+    1.0
+}
+
+impl TrainConfig {
+    /// The settings of a preset for an algorithm on an environment.
+    pub fn new(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> Result<TrainConfig, LearnError> {
+        let id = env.env_id()?;
+        let budget = if env.hard { 0.0 } else { id.scenario.safety_budget(env.rule_set()?) };
+        let mut config = TrainConfig::plain(algorithm, preset, env);
+        config.constraints[0].budget = budget;
+        config.check()?;
+        Ok(config)
+    }
+
+    /// Refuses settings that no run can have, naming the setting and what it may be.
+    pub fn check(&self) -> Result<(), LearnError> {
+        let refuse = |name: &str, given: &dyn fmt::Display, allowed: &str| {
+            Err(LearnError::Config(format!("{name} cannot be {given}; it must be {allowed}")))
+        };
+        let (sampling, learning) = (&self.sampling, &self.learning);
+        if learning.products == Products::Bfloat16 && (learning.portable || self.device != "cpu") {
+            let where_else = if learning.portable { "with --portable" } else { "on a card" };
+            return refuse("learning.products", &format_args!("bfloat16 {where_else}"), "float32");
+        }
+        for (name, given, most) in [
+            ("the number of worlds", sampling.lanes, 65_536),
+            ("the rollout length", sampling.rollout, 4096),
+            ("the number of samplers", sampling.samplers, 256),
+            ("the number of groups", sampling.groups, 256),
+            ("the number of accumulated rollouts", sampling.accumulated, 64),
+            ("the number of epochs", learning.epochs, 1000),
+            ("the number of minibatches", learning.minibatches, sampling.lanes),
+            ("the number of learner threads", learning.threads, 256),
+            ("the number of kept checkpoints", self.reporting.keep, 1000),
+            ("the window of episodes", self.reporting.window, 100_000),
+            ("the episodes of an evaluation", self.evaluation.episodes, 100_000),
+            ("the confirming episodes", self.confirming_episodes(), 100_000),
+            ("the steps of the longest episode", self.episode_steps as usize, 100_000),
+            ("the delay of the PID controller", self.algorithm_settings.pid_delay, 100_000),
+            ("the conjugate-gradient iterations", self.algorithm_settings.conjugate_iterations, 1000),
+            ("the steps of the critics", self.algorithm_settings.critic_steps, 100_000),
+            ("the samples of a critic's step", self.algorithm_settings.critic_batch.unwrap_or(1), 1 << 24),
+            ("the recurrence", learning.recurrence.unwrap_or(1), 4096),
+            ("the tries of the line search", self.algorithm_settings.line_search_steps, 1000),
+        ] {
+            if !(1..=most).contains(&given) {
+                return refuse(name, &given, &format!("1 to {most}"));
+            }
+        }
+        if !sampling.rollout.is_multiple_of(self.trajectory_steps()) {
+            let allowed = format!("a multiple of the recurrence ({})", self.trajectory_steps());
+            return refuse("the rollout length", &sampling.rollout, &allowed);
+        }
+        if sampling.world_threads > 256 {
+            return refuse("the number of world threads", &sampling.world_threads, "0 to 256");
+        }
+        // Alone, samplers share out any number of worlds; groups are all of one size.
+        if sampling.groups > 1 && !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
+            let parts = sampling.samplers * sampling.groups;
+            return refuse("the number of worlds", &sampling.lanes, &format!("a multiple of samplers times groups ({parts})"));
+        }
+        for (name, given, low, high) in [
+            ("gamma", learning.gamma, 0.0, 1.0),
+            ("lambda of the advantages", learning.gae_lambda, 0.0, 1.0),
+            ("the learning rate", learning.rate, 0.0, 10.0),
+            ("the final learning rate", learning.final_rate.unwrap_or(0.0), 0.0, 10.0),
+            ("the target divergence", learning.target_kl.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the learning rate of the critics", learning.critic_rate.unwrap_or(0.0), 0.0, 10.0),
+            ("the samples that PopArt remembers", learning.normaliser_horizon, 1.0, f64::MAX),
+            ("gamma of the costs", learning.cost_gamma.unwrap_or(0.0), 0.0, 1.0),
+            ("the final exploration coefficient", learning.final_exploration_coefficient.unwrap_or(0.0), 0.0, 1e3),
+            ("the largest multiplier", self.algorithm_settings.multiplier_limit.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the share of the Fisher matrix", self.algorithm_settings.fisher_fraction, 0.0, 1.0),
+            ("the largest gradient norm", learning.max_gradient_norm, 0.0, f64::MAX),
+            ("the ratio clip", learning.clip_ratio, 0.0, 10.0),
+            ("the value clip", learning.clip_value, 0.0, f64::MAX),
+            ("the exploration coefficient", learning.exploration_coefficient, 0.0, 1e3),
+            ("the seconds between reports", self.reporting.report_seconds, 0.0, f64::MAX),
+            ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
+            ("the share of the budget", self.budget_share, 0.0, 2.0),
+            ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
+            ("the reference budget of the PID", self.algorithm_settings.pid_reference_budget.unwrap_or(0.0), 0.0, f64::MAX),
+            ("the decay of the PID's averages", self.algorithm_settings.pid_decay, 0.0, 1.0),
+            ("the weight of P3O's penalty", self.algorithm_settings.p3o_kappa, 0.0, f64::MAX),
+            ("the weight of IPO's barrier", self.algorithm_settings.ipo_kappa, 0.0, f64::MAX),
+            ("IPO's largest penalty", self.algorithm_settings.ipo_limit, 0.0, f64::MAX),
+            ("the penalty scale", self.algorithm_settings.penalty_scale, 0.0, f64::MAX),
+        ] {
+            if !(low..=high).contains(&given) {
+                return refuse(name, &given, &format!("a number from {low} to {high}"));
+            }
+        }
+        if self.algorithm.separates_networks() && !self.network.separate {
+            return refuse(
+                "separate networks",
+                &"off",
+                &format!("on for {}, whose steps are the policy's alone", self.algorithm),
+            );
+        }
+        if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
+            return refuse("the learning rate of the critics", &rate, "null unless network.separate is on");
+        }
+        if learning.normaliser == ReturnNormaliser::PopArt && !sampling.synchronous {
+            let allowed = "running unless sampling.synchronous is on: actors beside the learner have heads of another scale";
+            return refuse("the normaliser of returns", &learning.normaliser, allowed);
+        }
+        if learning.normaliser == ReturnNormaliser::PopArt && learning.cost_uses_reward_normaliser {
+            return refuse("the normaliser of returns", &learning.normaliser, "running where costs use that of the rewards");
+        }
+        let seen = &learning.critic_inputs;
+        if let Some(twice) = (1..seen.len()).find(|&index| seen[..index].contains(&seen[index])) {
+            return refuse("an input of the critics", &format!("'{}' twice", seen[twice]), "named once");
+        }
+        if self.frames == 0 {
+            return refuse("the number of frames", &self.frames, "at least 1");
+        }
+        if learning.schedule_frames == Some(0) {
+            return refuse("the length of the schedules", &0, "at least 1 frame, or null for that of the run");
+        }
+        if let ConstraintStatistic::Cvar(share) = self.constraint_statistic {
+            if !(share > 0.0 && share <= 1.0) {
+                return refuse("the share of the CVaR", &share, "above 0 and at most 1, such as cvar:0.1");
+            }
+            if !self.algorithm.has_multipliers() {
+                let allowed = format!("episode-mean or step-mean for {}, which has no multiplier to move", self.algorithm);
+                return refuse("the constraint statistic", &self.constraint_statistic, &allowed);
+            }
+        }
+        if self.constraints.is_empty() || self.constraints.len() > 8 {
+            return refuse("the number of constraints", &self.constraints.len(), "1 to 8");
+        }
+        for constraint in &self.constraints {
+            if !constraint.budget.is_finite() || constraint.budget < 0.0 {
+                return refuse("a budget", &constraint.budget, "a number of at least 0");
+            }
+        }
+        // Ids that are not registered, such as those of tests, tell when their worlds are made.
+        if let Some(scenario) = self.env.scenario() {
+            find_terms(scenario.cost_terms(), &self.constraints)?;
+        }
+        let one_cost = matches!(self.algorithm, AlgorithmKind::PpoSaute | AlgorithmKind::PpoCost);
+        if one_cost && self.constraints.len() > 1 {
+            let allowed = format!("1 for {}, which shapes the reward by a single cost", self.algorithm);
+            return refuse("the number of constraints", &self.constraints.len(), &allowed);
+        }
+        if self.algorithm == AlgorithmKind::PpoSaute && self.constraints.iter().any(|c| c.budget == 0.0) {
+            return refuse("the budget of PPOSaute", &0, "above 0, for what is left of it is measured in its units");
+        }
+        Ok(())
+    }
+
+    /// Steps of the trajectories that are learned from.
+    #[must_use]
+    pub fn trajectory_steps(&self) -> usize {
+        self.learning.recurrence.unwrap_or(usize::MAX).min(self.sampling.rollout)
+    }
+
+    /// Cost of an episode that learning aims at, for one of the constraints: the same for every algorithm.
+    #[must_use]
+    pub fn aim(&self, constraint: usize) -> f64 {
+        self.constraints[constraint].budget * self.budget_share
+    }
+
+    /// Share of the schedules that is over after so many frames, 0 to 1.
+    #[must_use]
+    pub fn progress(&self, frames: u64) -> f64 {
+        (frames as f64 / self.learning.schedule_frames.unwrap_or(self.frames) as f64).min(1.0)
+    }
+
+    /// Writes down what a run that begins goes by from then on: how long its schedules are, as long as the run unless they were given a
+    /// length, and what its products are rounded to, if `HASARD_SIMD` names a family that rounds.
+    #[must_use]
+    pub fn begun(mut self) -> TrainConfig {
+        self.learning.schedule_frames.get_or_insert(self.frames);
+        let rounds = |simd: Simd| simd.family() == Family::Avx512Bf16;
+        if Simd::forced().ok().flatten().is_some_and(rounds) && self.device == "cpu" && !self.learning.portable {
+            self.learning.products = Products::Bfloat16;
+        }
+        self
+    }
+
+    /// Frames that a run was begun with, if it was given more when it was resumed.
+    #[must_use]
+    pub fn extended_from(&self) -> Option<u64> {
+        let first = self.changes.iter().find(|change| change.setting == "frames")?.from.as_u64()?;
+        (self.frames > first).then_some(first)
+    }
+
+    /// Frames of one rollout of all worlds.
+    #[must_use]
+    pub fn frames_per_rollout(&self) -> u64 {
+        (self.sampling.lanes * self.sampling.rollout) as u64 * u64::from(self.env.frame_skip)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::CriticInput;
+
+    #[test]
+    fn bad_settings_are_refused_by_name() {
+        let good = TrainConfig::new(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("RemedyRushLevel1-v0")).unwrap();
+        let refuse = |change: fn(&mut TrainConfig), word: &str| {
+            let mut config = good.clone();
+            change(&mut config);
+            let message = config.check().unwrap_err().to_string();
+            assert!(message.contains(word), "{message}");
+        };
+        refuse(|c| (c.sampling.lanes, c.sampling.groups) = (33, 2), "number of worlds");
+        refuse(|c| c.learning.gamma = 1.5, "gamma");
+        refuse(|c| c.learning.rate = f64::NAN, "learning rate");
+        refuse(|c| c.constraints[0].budget = -1.0, "budget");
+        refuse(|c| c.frames = 0, "frames");
+        refuse(
+            |c| (c.learning.normaliser, c.sampling.synchronous) = (ReturnNormaliser::PopArt, false),
+            "normaliser of returns cannot be popart",
+        );
+        refuse(|c| c.learning.critic_inputs = vec![CriticInput::TimeLeft; 2], "'time-left' twice");
+        refuse(|c| (c.sampling.rollout, c.learning.recurrence) = (48, Some(32)), "multiple of the recurrence (32)");
+        refuse(|c| c.algorithm_settings.critic_steps = 0, "steps of the critics");
+        for algorithm in [AlgorithmKind::PpoSaute, AlgorithmKind::PpoCost] {
+            let mut config = TrainConfig { algorithm, ..good.clone() };
+            config.constraints.push(config.constraints[0].clone());
+            let message = config.check().unwrap_err().to_string();
+            assert!(message.contains("number of constraints cannot be 2") && message.contains(algorithm.name()), "{message}");
+        }
+        refuse(|c| c.constraints[0].term = Some("rain".into()), "harmful_items");
+        assert!("ppolag".parse::<AlgorithmKind>().is_ok());
+        let message = "PPOLagg".parse::<AlgorithmKind>().unwrap_err().to_string();
+        assert!(message.contains("PPOLagg") && message.contains("P3O"), "{message}");
+        assert!(TrainConfig::new(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("Nonsense-v0")).is_err());
+    }
+}
