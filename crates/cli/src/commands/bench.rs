@@ -3,9 +3,9 @@
 use crate::args::{BenchArgs, Size};
 use crate::failure::{Failure, Outcome};
 use crate::settings;
+use hasard_engine::simd::Simd;
 use hasard_envs::{ObservationKind, VecEnv, bench};
 use hasard_learn::config::{EnvConfig, Preset, TrainConfig};
-use hasard_engine::simd::Simd;
 use hasard_learn::runs::measure::{Measurement, measure};
 use serde_json::json;
 

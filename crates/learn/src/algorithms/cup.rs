@@ -6,16 +6,16 @@
 //! multiplier is above zero the policy halfway is its own projection. Both steps end at `target_kl`, the second by its divergence from
 //! the policy halfway, and both train the critics, whose trunk they move.
 
+use crate::algorithms::algorithm::{go_through, learn_in_epochs};
 use crate::algorithms::multiplier::{Lagrange, Multipliers};
 use crate::algorithms::surrogate::{centred, critics_loss, standardised};
-use crate::algorithms::algorithm::{go_through, learn_in_epochs};
 use crate::algorithms::{Algorithm, Signal, Signals, ppo};
 use crate::config::{LearningConfig, TrainConfig};
 use crate::error::LearnError;
+use crate::learning::epochs::Epochs;
 use crate::learning::learner::{Learner, Minibatch, Prepared};
 use crate::learning::loss::{Heads, Loss};
 use crate::learning::metrics::Means;
-use crate::learning::epochs::Epochs;
 use crate::learning::policy::Policy;
 
 /// Constrained update projection.

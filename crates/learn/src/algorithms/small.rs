@@ -3,12 +3,12 @@
 use crate::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
 use crate::learning::learner::Learner;
 use crate::learning::policy::{Policy, Taken};
-use hasard_engine::simd::Simd;
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
 use crate::networks::{ImageShape, ModelShape};
 use crate::random::{Purpose, Stream};
 use crate::sampling::rollout::{Part, Rollout};
+use hasard_engine::simd::Simd;
 
 /// Steps and lanes of the rollout.
 pub const STEPS: usize = 3;

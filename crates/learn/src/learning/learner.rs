@@ -12,12 +12,12 @@ use crate::learning::normaliser::{CLIP, Moments, PixelNormaliser, PixelSums};
 use crate::learning::optimiser::Adam;
 use crate::learning::policy::{Policy, Taken};
 use crate::learning::popart::preserve_outputs;
-use hasard_engine::simd::Simd;
 use crate::networks::cpu::vectors::Vectors;
 use crate::networks::device::ComputeDevice;
 use crate::networks::{ModelSequences, ModelShape, Published, RecordedLane, Sequences, Stack};
 use crate::sampling::rollout::Rollout;
 use crate::team::Team;
+use hasard_engine::simd::Simd;
 
 /// Rows that a network of a learner of long rollouts computes at once: it bounds the memory of activations, some 50 kB a row of the
 /// smallest network of the presets and 110 kB of the largest.

@@ -38,7 +38,11 @@ impl Heads {
 
     /// The mean over all samples of a formula, given the sample's row and the numbers that it depends on.
     #[must_use]
-    pub fn mean<const N: usize>(&self, columns: [&Column; N], formula: impl Fn(usize, [DualNumber<N>; N]) -> DualNumber<N>) -> Loss {
+    pub fn mean<const N: usize>(
+        &self,
+        columns: [&Column; N],
+        formula: impl Fn(usize, [DualNumber<N>; N]) -> DualNumber<N>,
+    ) -> Loss {
         let rows = self.policy.rows();
         let mut loss = Loss { value: 0.0, gradient: vec![0.0; rows * self.width] };
         for (row, gradient) in loss.gradient.chunks_exact_mut(self.width).enumerate() {

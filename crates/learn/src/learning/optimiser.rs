@@ -2,8 +2,8 @@
 
 use crate::config::LearningConfig;
 use crate::networks::cpu::elementwise::{AdamStep, adam};
-use hasard_engine::simd::Simd;
 use crate::threads::{in_parallel, pieces};
+use hasard_engine::simd::Simd;
 
 /// Adam (Kingma and Ba 2015) over a flat parameter vector.
 #[derive(Clone, PartialEq, Debug)]

@@ -35,7 +35,7 @@ impl ComputeDevice {
     /// The processor with the plain kernels, whose bits are those of every machine.
     #[must_use]
     pub fn plain() -> ComputeDevice {
-        ComputeDevice::Processor(Kernels::PORTABLE)
+        ComputeDevice::Processor(Simd::PLAIN)
     }
 
     /// The kernels that compute what is on the processor: everything, or what comes before and after the networks.
@@ -75,7 +75,9 @@ fn with_products(chosen: Simd, products: Products) -> Result<Simd, LearnError> {
         Products::Float32 if rounds(chosen) => Ok(Simd::widest()),
         Products::Float32 => Ok(chosen),
         Products::Bfloat16 => match (Simd::bfloat16(), Simd::forced()) {
-            (None, _) => refuse("this processor has no AVX512-BF16; train on one that has it, or begin a run with float32".into()),
+            (None, _) => {
+                refuse("this processor has no AVX512-BF16; train on one that has it, or begin a run with float32".into())
+            }
             (Some(_), Ok(Some(forced))) if !rounds(forced) => refuse(format!("HASARD_SIMD is {forced}; leave it out")),
             (Some(simd), _) => Ok(simd),
         },

@@ -1,7 +1,7 @@
 //! Initial weights.
 
-use crate::networks::shape::{NetworkShape, Parameter, ParameterKind};
 use crate::config::Initialisation;
+use crate::networks::shape::{NetworkShape, Parameter, ParameterKind};
 use crate::random::{Purpose, Stream};
 
 impl NetworkShape {

@@ -80,13 +80,7 @@ pub fn encoder_layers(image: ImageShape, convolutions: &[Convolution], residual:
     let mut image = image;
     for (index, convolution) in convolutions.iter().enumerate() {
         let output = image.after(convolution).expect("checked shape");
-        layers.push(EncoderLayer {
-            name: format!("convolution{index}"),
-            convolution: *convolution,
-            image,
-            border: 0,
-            output,
-        });
+        layers.push(EncoderLayer { name: format!("convolution{index}"), convolution: *convolution, image, border: 0, output });
         image = output;
     }
     for (stage, &channels) in residual.iter().enumerate() {

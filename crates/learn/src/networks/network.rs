@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::networks::shape::NetworkShape;
 use crate::networks::cpu::tape::Tape;
 use crate::networks::cpu::weights::PackedWeights;
+use crate::networks::shape::NetworkShape;
 
 /// What turns an 8-bit pixel into the network's input: `clamp(pixel * scale + shift, -5, 5)`, in the image's order.
 #[derive(Clone, PartialEq, Debug)]

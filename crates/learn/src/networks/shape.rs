@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::networks::layers::{EncoderLayer, ImageShape, STAGE, encoder_layers};
 use crate::config::{Convolution, RecurrentCell};
 use crate::error::LearnError;
+use crate::networks::layers::{EncoderLayer, ImageShape, STAGE, encoder_layers};
 
 /// Bounds on networks, a hundred times the original's: beyond them a number in a settings file is surely a slip.
 const WIDEST: usize = 1 << 16;

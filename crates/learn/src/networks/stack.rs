@@ -2,21 +2,21 @@
 
 use std::ops::Range;
 
-use crate::networks::critic_heads::CriticHeads;
-use crate::networks::in_parts::InParts;
-use crate::networks::network::{
-    ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences, states_of,
-};
-use crate::networks::layers::ImageShape;
-use crate::networks::shape::NetworkShape;
-use crate::networks::shared_network::SharedNetwork;
 use crate::config::NetworkConfig;
 use crate::error::LearnError;
 #[cfg(feature = "graphics")]
 use crate::networks::burn_network::BurnNetwork;
 use crate::networks::cpu::network::{CpuActor, CpuLearner};
+use crate::networks::critic_heads::CriticHeads;
 use crate::networks::device::ComputeDevice;
 use crate::networks::distribution::ActionShape;
+use crate::networks::in_parts::InParts;
+use crate::networks::layers::ImageShape;
+use crate::networks::network::{
+    ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences, states_of,
+};
+use crate::networks::shape::NetworkShape;
+use crate::networks::shared_network::SharedNetwork;
 use crate::team::Team;
 
 /// Shape of a policy with its critics. An output row holds the policy's numbers, the value, and the value of each cost,

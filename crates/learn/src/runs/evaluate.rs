@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hasard_envs::{Autoreset, Episode, LaneState, VecEnv, VecOptions};
 
-use crate::config::constraint::find_terms;
 use crate::config::ReturnNormaliser;
+use crate::config::constraint::find_terms;
 use crate::error::LearnError;
 use crate::learning::normaliser::Moments;
 use crate::runs::agent::TrainedPolicy;

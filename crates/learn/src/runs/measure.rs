@@ -6,9 +6,9 @@ use crate::config::TrainConfig;
 use crate::error::LearnError;
 use crate::networks::cpu::panels::Panels;
 use crate::networks::cpu::product::{Left, Size, multiply_panels};
-use hasard_engine::simd::Simd;
 use crate::networks::device::ComputeDevice;
 use crate::runs::session::{Beginning, MakeWorlds, Session};
+use hasard_engine::simd::Simd;
 
 /// A measurement: medians over its rounds.
 #[derive(Clone, Debug)]

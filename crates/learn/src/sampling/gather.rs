@@ -9,9 +9,9 @@ use std::thread::JoinHandle;
 
 use crate::error::LearnError;
 use crate::networks::Published;
-use crate::threads::in_parallel;
 use crate::sampling::rollout::{Part, Rollout};
 use crate::sampling::sampler::{Newest, Sampler, SamplerState};
+use crate::threads::in_parallel;
 
 enum Ask {
     Fill(Box<Part>),

@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::settings::Elsewhere;
+use hasard_engine::simd::Simd;
 use hasard_envs::VecEnv;
 use hasard_learn::config::{EnvConfig, TrainConfig};
-use hasard_engine::simd::Simd;
 use hasard_learn::runs::measure::measure;
 use hasard_sweep::{Job, State};
 use serde_json::{Value, json};

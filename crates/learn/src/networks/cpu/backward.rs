@@ -3,13 +3,13 @@
 //! What is a sum over rows, the gradient of weights, comes after ([`super::gradient`]); what is done here for one lane does not
 //! depend on the lanes beside it.
 
+use crate::config::RecurrentCell;
+use crate::networks::cpu::buffers::sized;
 use crate::networks::cpu::cells::{gru_gates_backward, lstm_gates_backward};
 use crate::networks::cpu::elementwise::{add, elu_backward_rows};
-use crate::networks::cpu::buffers::sized;
 use crate::networks::cpu::product::{Left, Size, multiply_panels};
 use crate::networks::cpu::tape::TapeLane;
 use crate::networks::cpu::weights::{Backward, Plan};
-use crate::config::RecurrentCell;
 
 /// Gradients of some lanes; rows as in their tape, by lane, then by time, but where something else is said.
 #[derive(Default)]

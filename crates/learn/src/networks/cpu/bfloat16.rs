@@ -286,7 +286,11 @@ mod tests {
             }
             let mut odd = [0; 4];
             round(kernels, &[f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::from_bits(0x7FFF_FFFF)], &mut odd);
-            assert_eq!(odd[..3], [0x7F80, 0xFF80, 0x7F80], "infinity stays, and what is nearer to it than to any other becomes it");
+            assert_eq!(
+                odd[..3],
+                [0x7F80, 0xFF80, 0x7F80],
+                "infinity stays, and what is nearer to it than to any other becomes it"
+            );
             assert!(exact(odd[3].into()).is_nan());
             let pixels: Vec<u8> = (0..=255).chain(0..33).collect();
             let (scale, shift) = (&noise(pixels.len(), 8)[..], &noise(pixels.len(), 9)[..]);
@@ -362,7 +366,10 @@ mod tests {
     fn products_in_groups_and_over_overlapping_rows_are_what_is_defined() {
         let Some(kernels) = Simd::bfloat16() else { return };
         let (image, columns) = (noise(400, 5), 64);
-        let (rows, inner) = (Axis { count: 5, stride: 6, groups: 3, group_stride: 80 }, Axis { count: 4, stride: 2, groups: 3, group_stride: 40 });
+        let (rows, inner) = (
+            Axis { count: 5, stride: 6, groups: 3, group_stride: 80 },
+            Axis { count: 4, stride: 2, groups: 3, group_stride: 40 },
+        );
         let matrix = noise(24 * columns, 6);
         let mut halves = vec![0; image.len()];
         round(kernels, &image, &mut halves);
@@ -384,7 +391,14 @@ mod tests {
         let (rows, inner) = (Axis::plain(15, 10), Axis::plain(4, 2));
         let mut out = noise(14 * 32 + columns, 7);
         let mut expected = out.clone();
-        add_to_overlapping_rows(kernels, Grouped { data: &halves[..], rows, inner }, Right::rows(&pairs, columns), columns, &mut out, 32);
+        add_to_overlapping_rows(
+            kernels,
+            Grouped { data: &halves[..], rows, inner },
+            Right::rows(&pairs, columns),
+            columns,
+            &mut out,
+            32,
+        );
         for row in 0..15 {
             for column in 0..columns {
                 let terms: Vec<(f32, f32)> = (0..8).map(|k| (image[row * 10 + k], matrix[k * columns + column])).collect();

@@ -10,12 +10,14 @@
 
 use hasard_engine::simd::{Family, Simd};
 
+use crate::config::Convolution;
 use crate::networks::cpu::bfloat16::{Pair, halves, pair_rows, pair_with_distant, pair_with_zeros, round};
 use crate::networks::cpu::elementwise::NOWHERE;
 use crate::networks::cpu::panels::Panels;
-use crate::networks::cpu::product::{Axis, Factor, Grouped, Left, Right, Size, add_to_overlapping_rows, multiply, multiply_grouped};
+use crate::networks::cpu::product::{
+    Axis, Factor, Grouped, Left, Right, Size, add_to_overlapping_rows, multiply, multiply_grouped,
+};
 use crate::networks::cpu::tile::PANEL;
-use crate::config::Convolution;
 use crate::networks::{EncoderLayer, ImageShape};
 
 /// The stored input of a convolution.

@@ -1,14 +1,14 @@
 //! The backward pass through the convolutions, image by image, gathering the gradients of their weights.
 
+use crate::networks::PixelScale;
+use crate::networks::cpu::buffers::sized;
 use crate::networks::cpu::convolution::{ConvolutionPlan, Rounded, Stored};
 use crate::networks::cpu::elementwise::{add, add_column_sums, elu_backward_gather};
-use crate::networks::cpu::buffers::sized;
 use crate::networks::cpu::forward::output_places;
 use crate::networks::cpu::pixels::StoredImage;
 use crate::networks::cpu::residual::ResidualImage;
 use crate::networks::cpu::tape::TapeLane;
 use crate::networks::cpu::weights::{Backward, PackedWeights, Plan};
-use crate::networks::PixelScale;
 
 /// Gradients of the convolutions' weights and biases over some lanes, weights in the order of the stored inputs.
 #[derive(Default)]

@@ -4,6 +4,8 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use crate::config::RecurrentCell;
+use crate::networks::PixelScale;
 use crate::networks::cpu::buffers::sized;
 use crate::networks::cpu::cells::{gru_gates, lstm_gates};
 use crate::networks::cpu::convolution::{Rounded, Stored};
@@ -13,8 +15,6 @@ use crate::networks::cpu::product::{Left, Size, multiply_panels};
 use crate::networks::cpu::residual::ResidualImage;
 use crate::networks::cpu::tape::{Rows, Tape};
 use crate::networks::cpu::weights::{PackedWeights, Plan};
-use crate::config::RecurrentCell;
-use crate::networks::PixelScale;
 
 /// What the rows of a forward pass read, ordered by lane, then by time.
 pub struct Input<'a> {

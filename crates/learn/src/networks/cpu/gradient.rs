@@ -3,15 +3,15 @@
 //! Threads share out the numbers of a dense layer's gradient, each of them summed over all rows in order, and the lanes of
 //! the convolutions' in a number of groups that follows from the batch alone. So no bit depends on the number of threads.
 
+use crate::networks::PixelScale;
 use crate::networks::cpu::backward::RowGradients;
 use crate::networks::cpu::elementwise::add;
 use crate::networks::cpu::encoder_gradient::{EncoderGradient, Scratch};
 use crate::networks::cpu::outer::{Workspace, sum_outer_products};
-use hasard_engine::simd::Simd;
 use crate::networks::cpu::tape::{Tape, TapeLane};
-use crate::threads::{Piece, deal, in_parallel, pieces};
 use crate::networks::cpu::weights::{Backward, PackedWeights, Plan};
-use crate::networks::PixelScale;
+use crate::threads::{Piece, deal, in_parallel, pieces};
+use hasard_engine::simd::Simd;
 
 /// Most groups that lanes are dealt into, which bounds memory and the threads that convolutions keep busy.
 const MOST_GROUPS: usize = 16;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use crate::networks::cpu::backward::RowGradients;
 use crate::networks::cpu::forward::{Forward, Input};
 use crate::networks::cpu::gradient::{Finished, ParameterGradients};
-use hasard_engine::simd::Simd;
 use crate::networks::cpu::tape::{Tape, TapeLane};
-use crate::threads::{Piece, deal, in_parallel, pieces};
 use crate::networks::cpu::weights::{Backward, PackedWeights, Plan, stored_pixels};
 use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, RecordedLane, Sequences};
+use crate::threads::{Piece, deal, in_parallel, pieces};
+use hasard_engine::simd::Simd;
 
 /// A network that learns on a number of threads. Its results do not depend on the number.
 pub struct CpuLearner {

@@ -97,8 +97,10 @@ mod tests {
         for kernels in Simd::available().into_iter().chain(Simd::bfloat16()) {
             for inner in [1, 2, 7, 18] {
                 let (columns, matrix) = (64, noise(inner * 64, 1));
-                let transpose: Vec<f32> =
-                    (0..columns).flat_map(|column| (0..inner).map(move |row| row * columns + column)).map(|at| matrix[at]).collect();
+                let transpose: Vec<f32> = (0..columns)
+                    .flat_map(|column| (0..inner).map(move |row| row * columns + column))
+                    .map(|at| matrix[at])
+                    .collect();
                 let (mut one, mut other) = (Panels::default(), Panels::default());
                 one.pack(kernels, &matrix, inner, columns);
                 other.pack_transposed(kernels, &transpose, inner, columns);

@@ -3,9 +3,9 @@
 use hasard_engine::simd::{Family, Simd};
 
 use crate::networks::cpu::bfloat16::round_pixels;
+use crate::networks::cpu::buffers::sized;
 use crate::networks::cpu::convolution::{ConvolutionPlan, Stored};
 use crate::networks::cpu::elementwise::scale_pixels;
-use crate::networks::cpu::buffers::sized;
 use crate::networks::{ImageShape, PixelScale};
 
 /// The stored input of a first convolution.

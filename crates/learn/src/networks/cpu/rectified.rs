@@ -3,8 +3,8 @@
 //! Images lie pixel by pixel, all channels of one together; `places`, `sources` and `targets` say where each pixel starts in another
 //! layout.
 
-use crate::networks::cpu::vectorised::vectorised;
 use crate::networks::ImageShape;
+use crate::networks::cpu::vectorised::vectorised;
 
 vectorised! {
     /// Writes what is above zero of an image to `places`, and zero for the rest.

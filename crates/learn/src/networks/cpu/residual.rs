@@ -4,16 +4,16 @@
 //! each. Nothing is kept for the backward pass: it computes an image's activations again, a quarter of the work, where those of
 //! one 128x72 image would take 1.7 MB.
 
-use crate::networks::cpu::elementwise::add_column_sums;
+use crate::networks::PixelScale;
 use crate::networks::cpu::buffers::sized;
 use crate::networks::cpu::convolution::{Rounded, Stored};
+use crate::networks::cpu::elementwise::add_column_sums;
 use crate::networks::cpu::pixels::StoredImage;
 use crate::networks::cpu::rectified::{
     add_biased, bias_rectified_scatter, gather, pool, pool_backward, rectified_backward_add, rectified_backward_gather,
     rectified_scatter, scatter,
 };
 use crate::networks::cpu::weights::{Backward, PackedWeights, Plan};
-use crate::networks::PixelScale;
 use crate::networks::layers::STAGE;
 
 /// Convolutions of a stage that begin a block.

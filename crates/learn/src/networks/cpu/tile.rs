@@ -129,7 +129,8 @@ unsafe fn avx512<const ROWS: usize, const AHEAD: u8>(
     out: *mut f32,
 ) {
     use std::arch::x86_64::{
-        _MM_HINT_T1, _mm_prefetch, _mm512_add_ps, _mm512_fmadd_ps, _mm512_loadu_ps, _mm512_set1_ps, _mm512_setzero_ps, _mm512_storeu_ps,
+        _MM_HINT_T1, _mm_prefetch, _mm512_add_ps, _mm512_fmadd_ps, _mm512_loadu_ps, _mm512_set1_ps, _mm512_setzero_ps,
+        _mm512_storeu_ps,
     };
     // SAFETY: see `Tile::run`; a prefetch of any address is harmless.
     unsafe {
@@ -184,7 +185,8 @@ unsafe fn avx2<const ROWS: usize, const AHEAD: u8>(
     out: *mut f32,
 ) {
     use std::arch::x86_64::{
-        _MM_HINT_T1, _mm_prefetch, _mm256_add_ps, _mm256_fmadd_ps, _mm256_loadu_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_storeu_ps,
+        _MM_HINT_T1, _mm_prefetch, _mm256_add_ps, _mm256_fmadd_ps, _mm256_loadu_ps, _mm256_set1_ps, _mm256_setzero_ps,
+        _mm256_storeu_ps,
     };
     // SAFETY: see `Tile::run`; a prefetch of any address is harmless.
     unsafe {

@@ -3,10 +3,10 @@
 use crate::networks::cpu::convolution::ConvolutionPlan;
 use crate::networks::cpu::elementwise::NOWHERE;
 use crate::networks::cpu::panels::Panels;
-use hasard_engine::simd::Simd;
-use crate::threads::Piece;
 use crate::networks::cpu::tile::PANEL;
 use crate::networks::{EncoderLayer, NetworkShape, Parameter, PixelScale};
+use crate::threads::Piece;
+use hasard_engine::simd::Simd;
 
 /// What follows from a shape once and for all: plans of the convolutions, places of parameters.
 #[derive(Clone, Debug)]
