@@ -72,6 +72,14 @@ pub enum Command {
     Completions(CompletionsArgs),
 }
 
+/// `--seed` of a command that draws nothing by chance: scripts give it to all alike.
+#[derive(Args, Debug, Clone, Default)]
+pub struct UnusedSeed {
+    /// Accepted for uniformity; nothing depends on it
+    #[arg(long = "seed", value_name = "SEED", hide = true, default_value_t = 0)]
+    _seed: u64,
+}
+
 /// Options of every command that makes an environment.
 #[derive(Args, Debug, Clone)]
 #[command(next_help_heading = "Environment")]
@@ -230,9 +238,9 @@ pub struct EnvsArgs {
     /// Constants of the paper, or of the published package
     #[arg(long, value_enum, default_value_t = Rules::Paper)]
     pub rules: Rules,
-    /// Accepted for uniformity; the list does not depend on it
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard new`.
@@ -246,9 +254,9 @@ pub struct NewArgs {
     /// One JSON object about the file
     #[arg(long)]
     pub json: bool,
-    /// Accepted for uniformity; nothing is drawn by chance
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard check`.
@@ -656,9 +664,9 @@ pub struct ReplayArgs {
     /// What is shown
     #[command(flatten)]
     pub film: FilmArgs,
-    /// Accepted for uniformity; the file holds its seed
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard report`.
@@ -679,9 +687,9 @@ pub struct ReportArgs {
     /// One JSON object about what was written
     #[arg(long)]
     pub json: bool,
-    /// Accepted for uniformity; bootstrap intervals have a fixed seed
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard serve`.
@@ -759,9 +767,9 @@ pub struct SweepArgs {
     /// One JSON object a job
     #[arg(long)]
     pub json: bool,
-    /// Accepted for uniformity; a sweep lists its seeds
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard export-agent`.
@@ -775,9 +783,9 @@ pub struct ExportAgentArgs {
     /// One JSON object about the file
     #[arg(long)]
     pub json: bool,
-    /// Accepted for uniformity; nothing is drawn by chance
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard claim`.
@@ -804,6 +812,9 @@ pub struct ClaimArgs {
     /// One JSON object about the claim
     #[arg(long)]
     pub json: bool,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard verify`.
@@ -818,6 +829,9 @@ pub struct VerifyArgs {
     /// One JSON object a claim
     #[arg(long)]
     pub json: bool,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard scoreboard`.
@@ -831,6 +845,9 @@ pub struct ScoreboardArgs {
     /// One JSON object about the page
     #[arg(long)]
     pub json: bool,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard export-wad`.
@@ -848,9 +865,9 @@ pub struct ExportWadArgs {
     /// The hard constraint's map
     #[arg(long)]
     pub hard: bool,
-    /// Accepted for uniformity; maps do not depend on it
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard contact-sheet`.
@@ -892,9 +909,9 @@ pub struct SettingsArgs {
     /// One JSON object a setting
     #[arg(long)]
     pub json: bool,
-    /// Accepted for uniformity; nothing is drawn by chance
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard metrics`.
@@ -903,9 +920,9 @@ pub struct MetricsArgs {
     /// One JSON object a key
     #[arg(long)]
     pub json: bool,
-    /// Accepted for uniformity; nothing is drawn by chance
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }
 
 /// `hasard completions`.
@@ -914,7 +931,7 @@ pub struct CompletionsArgs {
     /// The shell; for bash: hasard completions bash > ~/.local/share/bash-completion/completions/hasard
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
-    /// Accepted for uniformity; nothing is drawn by chance
-    #[arg(long, hide = true, default_value_t = 0)]
-    pub seed: u64,
+    /// Takes a seed as every command does
+    #[command(flatten)]
+    pub seed: UnusedSeed,
 }

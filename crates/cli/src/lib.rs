@@ -143,7 +143,7 @@ pub fn evaluate(
     seeds: &[u64],
     mut interrupted: impl FnMut() -> bool,
 ) -> Result<Vec<Value>, Option<String>> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = settings::cores();
     let (config, mut rows, mut all) = (policy.config(), Vec::new(), Vec::new());
     let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, options, worlds);
     for some in seeds.chunks(8 * threads) {

@@ -123,6 +123,11 @@ fn place<'a>(kept: Option<&'a Path>, elsewhere: Option<&'a Path>, flag: &str) ->
     }
 }
 
+/// Cores that this process may use.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 /// The options of the environment that a run was trained in, its maps and pictures among them.
 pub fn trained_options(env: &EnvConfig, elsewhere: Elsewhere<'_>) -> Result<EnvOptions, Failure> {
     let options = env.options().map_err(Failure::bad)?;

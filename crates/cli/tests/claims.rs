@@ -15,8 +15,8 @@ fn claimed(name: &str) -> (Folder, String, Value) {
     folder.ok(&format!("train RemedyRushLevel1-v0 --out run --seed 1 {SMALL}"));
     folder.ok(&format!("train RemedyRushLevel1-v0 --out other --seed 2 {SMALL}"));
     folder.ok("export-agent other -o other.agent");
-    let told = folder.ok("claim run --name mine --episodes 2 -o board --json");
-    let path = serde_json::from_str::<Value>(&told).unwrap()["claim"].as_str().unwrap().to_string();
+    let printed = folder.ok("claim run --name mine --episodes 2 -o board --json");
+    let path = serde_json::from_str::<Value>(&printed).unwrap()["claim"].as_str().unwrap().to_string();
     let claim = serde_json::from_slice(&folder.read(&path)).unwrap();
     (folder, path, claim)
 }
@@ -28,10 +28,10 @@ fn a_claim_holds_on_all_kernels_and_threads() {
     for simd in ["plain", "avx2", "avx512"] {
         for threads in [1, 2] {
             let output = folder.run_with(&format!("verify {path} --threads {threads}"), &[("HASARD_SIMD", simd)]);
-            let told = String::from_utf8_lossy(&output.stdout).into_owned();
+            let printed = String::from_utf8_lossy(&output.stdout).into_owned();
             // A processor without the instructions refuses the variable.
             let lacks = simd != "plain" && String::from_utf8_lossy(&output.stderr).contains("HASARD_SIMD");
-            assert!(lacks || (output.status.success() && told.contains("holds")), "{simd}, {threads}: {told}");
+            assert!(lacks || (output.status.success() && printed.contains("holds")), "{simd}, {threads}: {printed}");
         }
     }
     // Under other rules the same agent makes another claim.
@@ -67,9 +67,9 @@ fn forged_claims_are_refused() {
         forged[*field] = value.clone();
         folder.file("board/forged.claim.json", forged.to_string().as_bytes());
         let output = folder.run("verify board/forged.claim.json");
-        let told = String::from_utf8_lossy(&output.stdout).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{field} {value}: {told}");
-        assert!(told.contains("does not hold") && told.contains(word), "{field} {value}: {told}");
+        let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{field} {value}: {printed}");
+        assert!(printed.contains("does not hold") && printed.contains(word), "{field} {value}: {printed}");
     }
     // Weights swapped, with and without their own digest.
     folder.file(&format!("board/{agent}"), &other);
@@ -91,9 +91,9 @@ fn a_scoreboard_lists_what_holds_and_says_what_does_not() {
     let (folder, path, claim) = claimed("claim_board");
     // Two episodes are too few to be listed.
     let output = folder.run("scoreboard board --json");
-    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((output.status.code(), &told["hold"]), (Some(1), &json!(0)), "{told}");
-    assert!(told["refused"][0]["why"].as_str().unwrap().contains("200"), "{told}");
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((output.status.code(), &printed["hold"]), (Some(1), &json!(0)), "{printed}");
+    assert!(printed["refused"][0]["why"].as_str().unwrap().contains("200"), "{printed}");
     let page = String::from_utf8(folder.read("board/index.html")).unwrap();
     assert!(page.contains("Not listed"), "the page says why");
     let _ = (path, claim);

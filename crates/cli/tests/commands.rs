@@ -239,6 +239,15 @@ fn an_agent_is_evaluated_under_other_rules() {
         assert!(lines[0]["costs"]["discard"].as_f64().unwrap() > 0.0, "{told}");
         assert_eq!(lines[1]["summary"]["constraints"][0]["budget"], budget, "{told}");
     }
+    // In Remedy Rush SPEED and JUMP change places; the agent presses what it was trained to press, as in a rollout.
+    folder.ok(&format!("train RemedyRushLevel1-v0 --out rush {small}"));
+    let evaluated = folder.ok("eval rush --episodes 1 --seed 5 --rules tables --json");
+    let rolled = folder.ok("rollout RemedyRushLevel1-v0 --policy run:rush --episodes 1 --seed 5 --rules tables --json");
+    let first = |text: &str| serde_json::from_str::<Value>(text.lines().next().unwrap()).unwrap();
+    let (evaluated, rolled) = (first(&evaluated), first(&rolled));
+    for what in ["return", "cost", "length", "stats"] {
+        assert_eq!(evaluated[what], rolled[what], "{what}");
+    }
     let told = folder.ok("eval usual --latest --episodes 1 --json");
     assert!(told.contains("\"budget\":50.0") && told.contains("\"discard\":0.0"), "{told}");
 }

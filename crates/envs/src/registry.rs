@@ -231,6 +231,12 @@ impl EnvId {
         self.level as usize - 1
     }
 
+    /// The cost that an episode may have under a rule set and a constraint: 0 under the hard one.
+    #[must_use]
+    pub const fn safety_budget(self, rules: RuleSet, hard: bool) -> f64 {
+        if hard { 0.0 } else { self.scenario.safety_budget(rules) }
+    }
+
     /// Its world under a rule set and a constraint.
     #[must_use]
     pub const fn setting(self, rules: RuleSet, hard: bool) -> Setting {

@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let config = run_config(path.as_ref())?;
     let options = config.env.options()?;
     let env = Env::new(&config.env.id, &options)?;
-    let action = ActionShape { sizes: env.action_space().sizes(), deltas: env.action_space().deltas.len() };
+    let action = ActionShape::from(env.action_space());
     let mut warn = |warning: String| eprintln!("{warning}");
     let policy = TrainedPolicy::load(path.as_ref(), Which::Selected, env.observation_shape(), action, &mut warn)?;
     let make_envs = |_: &_, lanes| VecEnv::new(&config.env.id, &options, lanes);

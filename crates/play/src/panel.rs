@@ -1,7 +1,6 @@
 //! The episode's panel below the game.
 
 use crate::Stage;
-use hasard_envs::RuleSet;
 use hasard_media::{Picture, text};
 
 const GROUND: [u8; 3] = [20, 22, 26];
@@ -35,8 +34,7 @@ impl Panel {
     pub fn of(stage: &Stage, message: impl Into<String>) -> Panel {
         let env = stage.env();
         let episode = env.episode();
-        let rules: RuleSet = env.options().rules;
-        let budget = if env.options().hard { 0.0 } else { env.id().scenario.safety_budget(rules) };
+        let budget = env.id().safety_budget(env.options().rules, env.options().hard);
         Panel {
             seconds: f64::from(episode.length * env.options().frame_skip) / 35.0,
             episode_return: episode.episode_return,

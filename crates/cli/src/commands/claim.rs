@@ -2,13 +2,14 @@
 
 use crate::args::ClaimArgs;
 use crate::failure::{Failure, Outcome};
+use crate::settings::cores;
 use crate::zoo;
 use hasard_learn::runs::agent::run_config;
-use hasard_learn::runs::agent_file;
+use hasard_learn::runs::agent_file::{AgentFile, export};
 use hasard_learn::runs::claim::{Claim, measure};
 use hasard_media::files::write_whole;
 use serde_json::json;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Ending of a claim's file.
 pub const ENDING: &str = "claim.json";
@@ -17,7 +18,8 @@ pub const ENDING: &str = "claim.json";
 pub fn run(args: &ClaimArgs) -> Outcome {
     let agent = zoo::find(&args.agent)?;
     let config = run_config(&agent).map_err(Failure::bad)?;
-    let bytes = if agent.is_dir() { agent_file::export(&agent) } else { agent_file::bytes(&agent) }.map_err(Failure::bad)?;
+    let bytes = if agent.is_dir() { export(&agent) } else { AgentFile::read_whole(&agent).map(|(bytes, _)| bytes) };
+    let bytes = bytes.map_err(Failure::bad)?;
     let rules = args.rules.map(hasard_envs::RuleSet::from);
     let under = rules.map_or(config.env.rules.as_str(), |rules| rules.name()).to_string();
     let id = config.env.id.trim_end_matches("-v0").to_string();
@@ -25,9 +27,14 @@ pub fn run(args: &ClaimArgs) -> Outcome {
     let (file, path) = (format!("{stem}.{}", zoo::ENDING), args.out.join(format!("{stem}.{ENDING}")));
     // The agent first: what is claimed is measured from the very file that is given away.
     let kept = args.out.join(&file);
+    let was_there = kept.exists();
     write_whole(&kept, &bytes).map_err(Failure::bad)?;
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let measured = measure(&kept, rules, args.episodes, threads).map_err(Failure::bad)?;
+    let measured = measure(&kept, rules, args.episodes, cores()).map_err(|error| {
+        if !was_there {
+            let _ = std::fs::remove_file(&kept);
+        }
+        Failure::bad(error)
+    })?;
     let how = args.how.clone().unwrap_or_else(|| command(&config));
     let claim = Claim::new(&args.name, &file, &bytes, &how, &measured);
     write_whole(&path, format!("{:#}\n", json!(claim)).as_bytes()).map_err(Failure::bad)?;
@@ -62,12 +69,14 @@ fn command(config: &hasard_learn::config::TrainConfig) -> String {
     words
 }
 
-/// The claims of a folder, by name.
-pub fn claims(folder: &Path) -> Result<Vec<std::path::PathBuf>, Failure> {
-    let listed =
-        std::fs::read_dir(folder).map_err(|error| Failure::bad(format!("{}: cannot be read: {error}", folder.display())))?;
-    let mut found: Vec<_> = listed.flatten().map(|entry| entry.path()).collect();
+/// The claims of a folder, by name; one without any is refused.
+pub fn claims(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let unread = |error| Failure::bad(format!("{}: cannot be read: {error}", folder.display()));
+    let mut found: Vec<PathBuf> = std::fs::read_dir(folder).map_err(unread)?.flatten().map(|entry| entry.path()).collect();
     found.retain(|path| path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(&format!(".{ENDING}"))));
     found.sort();
+    if found.is_empty() {
+        return Err(Failure::bad(format!("{}: has no file that ends in .{ENDING}; `hasard claim` writes one", folder.display())));
+    }
     Ok(found)
 }

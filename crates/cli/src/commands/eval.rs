@@ -7,7 +7,7 @@ use crate::episode_lines::EpisodeLines;
 use crate::failure::{Failure, Outcome};
 use crate::places;
 use crate::ticker::Ticker;
-use hasard_envs::{ActionSpace, Env, EnvId, EnvOptions, Episode, RuleSet, VecEnv};
+use hasard_envs::{Env, EnvOptions, Episode, RuleSet, VecEnv};
 use hasard_learn::config::{Constraint, TrainConfig};
 use hasard_learn::networks::distribution::ActionShape;
 use hasard_learn::runs::agent::{Agent, Choice, TrainedPolicy, Which, run_config};
@@ -32,14 +32,12 @@ pub fn run(args: &EvalArgs) -> Outcome {
     }
     let run = places::run(&args.run)?;
     let mut config = run_config(&run).map_err(Failure::bad)?;
-    if let Some(rules) = args.rules {
-        play_under(&mut config, rules.into())?;
-    }
+    let actions_of = args.rules.map(|rules| play_under(&mut config, rules.into())).transpose()?;
     let config = config;
     let mut lines = EpisodeLines::new(args.json);
     lines.hold_against(&config.constraints);
     let options = crate::settings::trained_options(&config.env, args.places.elsewhere())?;
-    let options = EnvOptions { test_seeds: args.test_seeds, ..options };
+    let options = EnvOptions { test_seeds: args.test_seeds, actions_of, ..options };
     let player = Player {
         run: &run,
         which: if args.latest { Which::Latest } else { Which::Selected },
@@ -85,25 +83,18 @@ pub fn run(args: &EvalArgs) -> Outcome {
 }
 
 /// Puts a run's environment under another rule set. A budget that its own rules had by default becomes that of these; one that was
-/// asked for stays.
-fn play_under(config: &mut TrainConfig, rules: RuleSet) -> Outcome {
-    let id = config.env.id.parse::<EnvId>().map_err(Failure::bad)?;
+/// asked for stays. Gives whose buttons the agent keeps.
+fn play_under(config: &mut TrainConfig, rules: RuleSet) -> Result<(RuleSet, bool), Failure> {
+    let id = config.env.env_id().map_err(Failure::bad)?;
     let own = config.env.options().map_err(Failure::bad)?;
-    let before = id.scenario.safety_budget(own.rules);
+    let before = id.safety_budget(own.rules, own.hard);
     config.env.rules = rules.name().into();
     for constraint in &mut config.constraints {
         if constraint.term.is_none() && constraint.budget == before {
-            constraint.budget = id.scenario.safety_budget(rules);
+            constraint.budget = id.safety_budget(rules, own.hard);
         }
     }
-    let space = |rules| ActionSpace::of(id, rules, own.hard, own.full_actions);
-    if space(rules) != space(own.rules) {
-        let (rules, own) = (rules.name(), own.rules.name());
-        note!(
-            "hasard: under {rules} the sub-actions of {id} are others than under {own}: the agent presses what stands in their places"
-        );
-    }
-    Ok(())
+    Ok((own.rules, own.hard))
 }
 
 /// The most costly episodes under a constraint, the worst first.
@@ -184,8 +175,7 @@ pub struct Player<'a> {
 impl Player<'_> {
     /// Its policy, for worlds like this one.
     fn policy(&self, env: &Env) -> Result<TrainedPolicy, Failure> {
-        let space = env.action_space();
-        let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
+        let action = ActionShape::from(env.action_space());
         let mut warn = |text: String| note!("hasard: {text}");
         TrainedPolicy::load(self.run, self.which, env.observation_shape(), action, &mut warn).map_err(Failure::bad)
     }
@@ -212,7 +202,7 @@ impl Player<'_> {
     ) -> Outcome {
         let env = Env::new(id, options).map_err(Failure::bad)?;
         let policy = self.policy(&env)?;
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = crate::settings::cores();
         let numbers: Vec<u32> = (0..episodes).collect();
         let mut ticker = Ticker::new(episodes.into(), "episodes");
         for some in numbers.chunks(AT_ONCE as usize) {

@@ -1,8 +1,9 @@
 //! `hasard scoreboard`: a page of all claims of a folder that hold.
 
-use super::claim::{ENDING, claims};
+use super::claim::claims;
 use crate::args::ScoreboardArgs;
 use crate::failure::{Failure, Outcome};
+use crate::settings::cores;
 use hasard_learn::runs::claim::{Claim, LISTED_EPISODES, Verdict};
 use hasard_report::scoreboard::{Entry, write_scoreboard};
 use serde_json::json;
@@ -10,11 +11,6 @@ use serde_json::json;
 /// Runs the command.
 pub fn run(args: &ScoreboardArgs) -> Outcome {
     let paths = claims(&args.folder)?;
-    if paths.is_empty() {
-        let problem = format!("{}: has no file that ends in .{ENDING}; `hasard claim` writes one", args.folder.display());
-        return Err(Failure::bad(problem));
-    }
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let (mut entries, mut refused) = (Vec::new(), Vec::new());
     for (number, path) in paths.iter().enumerate() {
         if !args.json {
@@ -35,7 +31,7 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
             ));
             continue;
         }
-        match claim.check(&args.folder, threads) {
+        match claim.check(&args.folder, cores()) {
             Ok(Verdict::Holds(measured)) => {
                 let (evaluation, budget) = (&measured.evaluation, measured.budget);
                 let tails = evaluation.constraints.first().map(|one| one.tails).unwrap_or_default();

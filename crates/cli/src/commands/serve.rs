@@ -95,8 +95,7 @@ mod trained {
         }
 
         fn load(&self, run: &Path, best: bool, choice: Choice, env: &Env) -> Result<Agent, String> {
-            let space = env.action_space();
-            let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
+            let action = ActionShape::from(env.action_space());
             let which = if best { Which::Selected } else { Which::Latest };
             let mut warn = |text: String| note!("hasard: {text}");
             Agent::load(run, which, choice, 1, env.observation_shape(), action, &mut warn).map_err(|error| error.to_string())

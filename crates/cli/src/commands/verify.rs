@@ -1,20 +1,21 @@
 //! `hasard verify`: does a claim hold? Its episodes are played again, to the bit.
 
-use super::claim::{ENDING, claims};
+use super::claim::claims;
 use crate::args::VerifyArgs;
 use crate::failure::{Failure, Outcome};
+use crate::settings::cores;
 use hasard_learn::runs::claim::{Claim, Verdict};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Runs the command.
 pub fn run(args: &VerifyArgs) -> Outcome {
     let mut refused = 0;
-    let paths = paths(&args.claim)?;
+    let paths = if args.claim.is_dir() { claims(&args.claim)? } else { vec![args.claim.clone()] };
+    let threads = args.threads.map_or_else(cores, usize::from);
     for path in &paths {
         let claim = Claim::read(path).map_err(Failure::bad)?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let threads = args.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
         let verdict = claim.check(folder, threads).map_err(Failure::bad)?;
         let problems = match &verdict {
             Verdict::Holds(_) => Vec::new(),
@@ -41,16 +42,4 @@ pub fn run(args: &VerifyArgs) -> Outcome {
         0 => Ok(()),
         _ => Err(Failure::Negative(format!("{refused} of {} claims do not hold", paths.len()))),
     }
-}
-
-/// The claim, or those of the folder.
-fn paths(given: &Path) -> Result<Vec<PathBuf>, Failure> {
-    if !given.is_dir() {
-        return Ok(vec![given.to_path_buf()]);
-    }
-    let found = claims(given)?;
-    if found.is_empty() {
-        return Err(Failure::bad(format!("{}: has no file that ends in .{ENDING}; `hasard claim` writes one", given.display())));
-    }
-    Ok(found)
 }

@@ -35,10 +35,15 @@ impl Folder {
 
     /// Standard output of a command that must succeed.
     pub fn ok(&self, line: &str) -> String {
+        self.both(line).0
+    }
+
+    /// Standard output and standard error of a command that must succeed.
+    pub fn both(&self, line: &str) -> (String, String) {
         let output = self.run(line);
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{line}: {error}");
-        String::from_utf8(output.stdout).unwrap()
+        (String::from_utf8(output.stdout).unwrap(), error)
     }
 
     /// The one line of a command that must be refused.
@@ -49,6 +54,13 @@ impl Folder {
         assert_eq!(error.lines().count(), 1, "{line}: {error}");
         assert!(error.starts_with("hasard: ") && !error.contains("panicked"), "{line}: {error}");
         error
+    }
+
+    /// Puts a text in the place of another in a file, which has it.
+    pub fn replace(&self, name: &str, from: &str, to: &str) {
+        let text = String::from_utf8(self.read(name)).unwrap();
+        assert!(text.contains(from));
+        self.file(name, text.replace(from, to).as_bytes());
     }
 
     pub fn file(&self, name: &str, bytes: &[u8]) {

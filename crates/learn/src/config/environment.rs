@@ -104,7 +104,7 @@ impl EnvConfig {
         })
     }
 
-    pub(super) fn rule_set(&self) -> Result<RuleSet, LearnError> {
+    pub(crate) fn rule_set(&self) -> Result<RuleSet, LearnError> {
         let unknown = |_| LearnError::Config(format!("rules '{}' are unknown; use one of {}", self.rules, RuleSet::names()));
         self.rules.parse().map_err(unknown)
     }
@@ -114,7 +114,7 @@ impl EnvConfig {
     }
 
     /// The environment that the id names, in the own scenario if there is one.
-    pub(super) fn env_id(&self) -> Result<EnvId, LearnError> {
+    pub fn env_id(&self) -> Result<EnvId, LearnError> {
         EnvId::within(self.scenario_file.map(OwnScenario::scenario), &self.id)
             .map_err(|error| LearnError::Config(error.to_string()))
     }

@@ -89,7 +89,7 @@ impl TrainConfig {
     /// The settings of a preset for an algorithm on an environment.
     pub fn new(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> Result<TrainConfig, LearnError> {
         let id = env.env_id()?;
-        let budget = if env.hard { 0.0 } else { id.scenario.safety_budget(env.rule_set()?) };
+        let budget = id.safety_budget(env.rule_set()?, env.hard);
         let mut config = TrainConfig::plain(algorithm, preset, env);
         config.constraints[0].budget = budget;
         config.check()?;

@@ -3,6 +3,7 @@
 //! A row of policy outputs holds the logits of each categorical one after the other, then mean and logarithm of the
 //! deviation of each normal. Here is what acting needs of it; what losses need is in [`crate::learning::policy`].
 
+use hasard_envs::ActionSpace;
 use serde::{Deserialize, Serialize};
 
 use crate::random::Stream;
@@ -14,6 +15,12 @@ pub struct ActionShape {
     pub sizes: Vec<usize>,
     /// Number of normals.
     pub deltas: usize,
+}
+
+impl From<&ActionSpace> for ActionShape {
+    fn from(space: &ActionSpace) -> ActionShape {
+        ActionShape { sizes: space.sizes(), deltas: space.deltas.len() }
+    }
 }
 
 /// Half of the logarithm of two pi.

@@ -167,38 +167,36 @@ fn misfit(name: &str) -> LearnError {
     LearnError::Config(format!("the agent's file does not fit its own settings: {name}"))
 }
 
-/// The bytes of the agent's file at a place: a file, or `zoo:NAME`.
-///
-/// # Errors
-/// When it is no agent's file.
-pub fn bytes(place: &Path) -> Result<Vec<u8>, LearnError> {
-    if let Some(bytes) = zoo::bytes(place) {
-        return Ok(bytes.to_vec());
-    }
-    AgentFile::read(place)?;
-    fs::read(place).map_err(LearnError::file(place, "read"))
-}
-
 impl AgentFile {
     /// The agent's file at a place: a file, or `zoo:NAME`, one that is part of the program. `None` for anything else, such as a
     /// run's directory.
     pub fn at(place: &Path) -> Result<Option<AgentFile>, LearnError> {
-        match zoo::bytes(place) {
-            Some(bytes) => AgentFile::parse(bytes).map(Some).map_err(|problem| LearnError::content(place, problem)),
-            None => place.is_file().then(|| AgentFile::read(place)).transpose(),
-        }
+        (zoo::bytes(place).is_some() || place.is_file()).then(|| AgentFile::read(place)).transpose()
     }
 
     /// Reads an agent's file.
     pub fn read(path: &Path) -> Result<AgentFile, LearnError> {
+        AgentFile::read_whole(path).map(|(_, file)| file)
+    }
+
+    /// Reads an agent's file, `zoo:NAME` among them, with its bytes.
+    ///
+    /// # Errors
+    /// When it is no agent's file.
+    pub fn read_whole(path: &Path) -> Result<(Vec<u8>, AgentFile), LearnError> {
+        if let Some(bytes) = zoo::bytes(path) {
+            let file = AgentFile::parse(bytes).map_err(|problem| LearnError::content(path, problem))?;
+            return Ok((bytes.to_vec(), file));
+        }
         let size = fs::metadata(path).map_err(LearnError::file(path, "read"))?.len();
         if size > LARGEST {
             return Err(LearnError::content(path, "too large for an agent's file; give one that `hasard export-agent` wrote"));
         }
         let bytes = fs::read(path).map_err(LearnError::file(path, "read"))?;
-        AgentFile::parse(&bytes).map_err(|problem| {
+        let file = AgentFile::parse(&bytes).map_err(|problem| {
             LearnError::content(path, format!("no agent's file ({problem}); give one that `hasard export-agent` wrote"))
-        })
+        })?;
+        Ok((bytes, file))
     }
 
     /// Understands the bytes of an agent's file.

@@ -3,18 +3,17 @@
 //! A claim is checked by playing its episodes again. The network is computed by the plain kernels, whose bits are those of every processor,
 //! and the engine's kernels all agree: so a claim holds to the last bit, or it does not hold.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use hasard_envs::{Env, EnvId, Episode, RuleSet, VecEnv};
+use hasard_envs::{Env, EnvOptions, Episode, RuleSet, VecEnv};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::config::{Constraint, TrainConfig};
+use crate::config::{Constraint, EnvConfig, TrainConfig};
 use crate::error::LearnError;
 use crate::networks::distribution::ActionShape;
 use crate::runs::agent::{Choice, TrainedPolicy, Which, run_config};
-use crate::runs::agent_file;
+use crate::runs::agent_file::AgentFile;
 use crate::runs::evaluate::{Evaluation, play};
 
 /// Seed of the first episode of every claim. Trainings and evaluations draw theirs elsewhere, and nobody can choose lucky ones.
@@ -110,30 +109,37 @@ fn digest(episodes: &[Episode]) -> String {
     sha256(text.as_bytes())
 }
 
+/// What makes an agent's task another than its id names; its file says so, and could be made to say what is easier.
+fn unusual(env: &EnvConfig) -> Option<&'static str> {
+    if env.maps.is_some() || env.iwad.is_some() {
+        return Some("was trained in maps or pictures that are not part of the program; a claim is about those that are");
+    }
+    let other = env.frame_skip != 4 || env.early_creatures;
+    other.then_some("plays another task than its id names: a claim's has a frame_skip of 4, and no early_creatures")
+}
+
 /// Plays an agent's claim episodes under a rule set, by default its own.
 ///
 /// # Errors
-/// When the agent cannot be read, or was trained in maps or pictures that are not part of the program.
+/// When the agent cannot be read, or plays another task than its id names.
 pub fn measure(agent: &Path, rules: Option<RuleSet>, episodes: u32, threads: usize) -> Result<Measured, LearnError> {
     let mut config = run_config(agent)?;
-    if config.env.maps.is_some() || config.env.iwad.is_some() {
-        let problem = "was trained in maps or pictures that are not part of the program; a claim is about those that are";
+    if let Some(problem) = unusual(&config.env) {
         return Err(LearnError::content(agent, problem));
     }
-    if let Some(rules) = rules {
-        config.env.rules = rules.name().into();
-    }
+    let own = config.env.rule_set()?;
+    config.env.rules = rules.unwrap_or(own).name().into();
     let worlds = |error: hasard_envs::EnvError| LearnError::Worlds(error.to_string());
-    let options = config.env.options()?;
-    let id: EnvId = config.env.id.parse().map_err(worlds)?;
+    // Under other rules the agent keeps the buttons that it was trained with.
+    let options = EnvOptions { actions_of: Some((own, config.env.hard)), ..config.env.options()? };
+    let id = config.env.env_id()?;
     let env = Env::new(&config.env.id, &options).map_err(worlds)?;
-    let space = env.action_space();
-    let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
+    let action = ActionShape::from(env.action_space());
     let policy = TrainedPolicy::load(agent, Which::Selected, env.observation_shape(), action, &mut |_| {})?.on_plain_kernels();
     let make = |_: &_, lanes| VecEnv::new(&config.env.id, &options, lanes);
     let seeds: Vec<u64> = (0..u64::from(episodes)).map(|number| FIRST_SEED + number).collect();
     let played = play(&policy, Choice::Sampled, &make, &seeds, threads)?;
-    let budget = if options.hard { 0.0 } else { id.scenario.safety_budget(options.rules) };
+    let budget = id.safety_budget(options.rules, options.hard);
     let evaluation = Evaluation::of(&played, &[Constraint { term: None, budget }])?;
     Ok(Measured { digest: digest(&played), config, budget, evaluation })
 }
@@ -197,19 +203,19 @@ impl Claim {
             wrong.push(format!("it has {} episodes; a claim has 1 to {MOST_EPISODES}", self.episodes));
         }
         let path = folder.join(&self.agent);
-        let bytes = agent_file::bytes(&path)?;
+        let (bytes, file) = AgentFile::read_whole(&path)?;
         let found = sha256(&bytes);
         if found != self.agent_sha256 {
             wrong.push(format!("{} is another agent: its SHA-256 is {found}", self.agent));
         }
-        let config = run_config(&path)?;
-        let own = BTreeMap::from([
-            ("environment", (self.environment.clone(), config.env.id.clone())),
-            ("hard", (self.hard.to_string(), config.env.hard.to_string())),
-            ("algorithm", (self.algorithm.clone(), config.algorithm.to_string())),
-            ("frames", (self.frames.to_string(), config.frames.to_string())),
-        ]);
-        for (what, (claimed, agents)) in own {
+        let config = &file.card.config;
+        wrong.extend(unusual(&config.env).map(|problem| format!("its agent {problem}")));
+        for (what, claimed, agents) in [
+            ("environment", self.environment.clone(), config.env.id.clone()),
+            ("hard", self.hard.to_string(), config.env.hard.to_string()),
+            ("algorithm", self.algorithm.clone(), config.algorithm.to_string()),
+            ("frames", self.frames.to_string(), config.frames.to_string()),
+        ] {
             if claimed != agents {
                 wrong.push(format!("it says {what} {claimed}, the agent {agents}"));
             }

@@ -106,11 +106,12 @@ impl Evaluation {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use hasard_envs::{Scenario, episode_costs};
 
-    fn episode(cost: f64, jumps: f64) -> Episode {
+    /// An episode of Volcanic Venture.
+    pub(in crate::runs) fn episode(cost: f64, jumps: f64) -> Episode {
         Episode {
             lane: 0,
             seed: 0,

@@ -28,7 +28,12 @@ pub const METRICS: &[Metric] = &[
     metric("frames", "frames", "", "Frames learned from so far. 1 step is frame_skip frames."),
     metric("level", "", "curricula", "Level of the lesson at present."),
     metric("updates", "", "", "Steps of the optimiser so far."),
-    metric("kernels", "", "", "Instructions that the networks were computed with: avx512bf16, avx512, avx2 or plain; or the device."),
+    metric(
+        "kernels",
+        "",
+        "",
+        "Instructions that the networks were computed with: avx512bf16, avx512, avx2 or plain; or the device.",
+    ),
     metric("threads", "threads", "", "Threads of learner and samplers."),
     metric("wall_s", "s", "", "Seconds of work so far, those before a resume included."),
     metric("fps", "frames/s", "", "Frames per second since the row before."),

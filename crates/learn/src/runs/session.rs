@@ -82,8 +82,7 @@ pub struct Session {
 /// The model that an algorithm wants for some worlds.
 pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, LearnError> {
     let [height, width, channels] = worlds.observation_shape();
-    let space = worlds.action_space();
-    let action = ActionShape { sizes: space.sizes(), deltas: space.deltas.len() };
+    let action = ActionShape::from(worlds.action_space());
     let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
     let extra = algorithms::shaping(config).extra_inputs();
     let shape = ModelShape::new(ImageShape { height, width, channels }, action, cost_critics, extra, &config.network)?;

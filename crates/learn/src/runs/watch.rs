@@ -175,20 +175,10 @@ impl Watch {
 mod tests {
     use super::*;
     use crate::config::{AlgorithmKind, EnvConfig, Preset};
-    use hasard_envs::{Scenario, episode_costs};
+    use crate::runs::evaluation::tests::episode as plain;
 
     fn episode(cost: f64, jumps: f64) -> Episode {
-        Episode {
-            lane: 0,
-            seed: 0,
-            episode_return: 1.0,
-            cost,
-            costs: episode_costs(Scenario::VolcanicVenture.cost_terms(), &[cost, jumps]),
-            length: 10,
-            terminated: true,
-            truncated: false,
-            stats: vec![("deaths", 1.0)],
-        }
+        Episode { stats: vec![("deaths", 1.0)], ..plain(cost, jumps) }
     }
 
     #[test]

@@ -181,8 +181,7 @@ impl Rehearsal {
         let space = self.env.action_space();
         let groups: Vec<Vec<&str>> =
             space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect();
-        let scenario = self.env.id().scenario;
-        let budget = if self.options.hard { 0.0 } else { scenario.safety_budget(self.options.rules) };
+        let budget = self.env.id().safety_budget(self.options.rules, self.options.hard);
         json!({
             "kind": "scene", "env": self.id, "seed": self.seed, "budget": budget, "groups": groups,
             "terms": self.env.cost_terms().iter().map(|term| term.name).collect::<Vec<_>>(),

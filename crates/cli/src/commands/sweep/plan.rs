@@ -48,7 +48,7 @@ fn kind(config: &TrainConfig) -> String {
 impl Plan {
     /// Counts what is to do, and measures for some seconds how fast it goes when `measures`.
     pub fn of(jobs: &[(Job, TrainConfig)], parallel: usize, measures: bool) -> Result<Plan, Failure> {
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let cores = crate::settings::cores();
         let at_once = parallel.clamp(1, jobs.len().max(1));
         let threads = (cores / at_once).max(1);
         let mut plan = Plan { runs: jobs.len(), ..Plan::default() };
