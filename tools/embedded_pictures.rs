@@ -1,5 +1,7 @@
-//! Writes every embedded picture to contact sheets, to be looked at: `cargo run --release -p hasard-engine --example
-//! embedded_pictures -- OUTDIR [ZOOM [NAMES [FRAMES]]]`, NAMES beginnings of names joined by commas. Textures are shown tiled twice across and down, sprites by frame and rotation.
+//! Writes every embedded picture to contact sheets, to be looked at: `cargo run --release -p
+//! hasard-engine --example embedded_pictures -- OUTDIR [ZOOM [NAMES [FRAMES]]]`, NAMES beginnings
+//! of names joined by commas. Textures are shown tiled twice across and down, sprites by frame and
+//! rotation.
 
 use hasard_engine::assets::{Assets, Image, SPRITE_NAMES};
 use std::path::Path;
@@ -59,7 +61,8 @@ impl Sheet {
             return;
         }
         let file = std::fs::File::create(path).expect("the output folder is writable");
-        let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), self.width as u32, height as u32);
+        let mut encoder =
+            png::Encoder::new(std::io::BufWriter::new(file), self.width as u32, height as u32);
         encoder.set_color(png::ColorType::Rgb);
         let mut writer = encoder.write_header().expect("a PNG header can be written");
         writer.write_image_data(&self.rgb).expect("the pixels can be written");
@@ -86,7 +89,9 @@ struct Screen {
 impl Screen {
     fn new() -> Screen {
         let pixels = vec![9; 320 * 200].into();
-        Screen { image: Image { width: 320, height: 200, offset_x: 0, offset_y: 0, pixels, mask: None } }
+        Screen {
+            image: Image { width: 320, height: 200, offset_x: 0, offset_y: 0, pixels, mask: None },
+        }
     }
 
     fn lay(&mut self, image: &Image, left: i32, top: i32) {
@@ -102,9 +107,11 @@ impl Screen {
         }
     }
 
-    /// Lays a view weapon where it rests; the view is centred 16 rows higher than the screen, as with the status bar.
+    /// Lays a view weapon where it rests; the view is centred 16 rows higher than the screen, as
+    /// with the status bar.
     fn weapon(&mut self, assets: &Assets, name: &str, frame: usize) {
-        let sprite = &assets.sprites[SPRITE_NAMES.iter().position(|&n| n == name).expect("a listed sprite")];
+        let sprite =
+            &assets.sprites[SPRITE_NAMES.iter().position(|&n| n == name).expect("a listed sprite")];
         if let Some(frame) = sprite.frames.get(frame) {
             let image = &assets.images[frame.images[0] as usize];
             self.lay(image, 1 - i32::from(image.offset_x), 32 - 16 - i32::from(image.offset_y));
@@ -151,9 +158,14 @@ fn main() {
     std::fs::create_dir_all(out).expect("the output folder can be made");
     let start = std::time::Instant::now();
     let assets = Assets::embedded();
-    println!("painted {} pictures in {:.1} ms", assets.images.len(), start.elapsed().as_secs_f64() * 1e3);
+    println!(
+        "painted {} pictures in {:.1} ms",
+        assets.images.len(),
+        start.elapsed().as_secs_f64() * 1e3
+    );
 
-    let chosen = |name: &str| only.is_none_or(|only| only.split(',').any(|part| name.starts_with(part)));
+    let chosen =
+        |name: &str| only.is_none_or(|only| only.split(',').any(|part| name.starts_with(part)));
     let mut textures = Sheet::new(1400, zoom.min(2));
     for (name, entry) in assets.textures.iter().filter(|(name, _)| chosen(name.as_str())) {
         let image = &assets.images[entry.first as usize];
@@ -162,7 +174,13 @@ fn main() {
             (0..3).for_each(|c| sum[c] += assets.palette[pixel as usize][c] as usize);
         }
         let mean = sum.map(|s| s / image.pixels.len());
-        println!("{:8} {}x{} frames {} mean {mean:?}", name.as_str(), image.width, image.height, entry.frames);
+        println!(
+            "{:8} {}x{} frames {} mean {mean:?}",
+            name.as_str(),
+            image.width,
+            image.height,
+            entry.frames
+        );
         textures.put(&assets, image, false, if image.width <= 64 { 2 } else { 1 });
     }
     textures.save(&out.join("textures.png"));
@@ -205,7 +223,14 @@ fn main() {
 
     let mut palette = Sheet::new(16 * 16 * 4, 16);
     for index in 0..=255u8 {
-        let swatch = Image { width: 1, height: 1, offset_x: 0, offset_y: 0, pixels: Box::new([index]), mask: None };
+        let swatch = Image {
+            width: 1,
+            height: 1,
+            offset_x: 0,
+            offset_y: 0,
+            pixels: Box::new([index]),
+            mask: None,
+        };
         palette.put(&assets, &swatch, false, 1);
     }
     palette.save(&out.join("palette.png"));

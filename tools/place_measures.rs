@@ -1,8 +1,9 @@
-//! What a map is like to be in, for holding our own town and terrain against the published ones: ground by clearance, sight,
-//! ways between places, and what fixed policies earn.
+//! What a map is like to be in, for holding our own town and terrain against the published ones:
+//! ground by clearance, sight, ways between places, and what fixed policies earn.
 //!
-//! `cargo run --release -p hasard-envs --example place_measures -- ENV EPISODES [WAD [PICTURE.pgm]]`: with a WAD its map is played in
-//! place of ours. The picture has a pixel for every 16 map units: dark where a body cannot stand.
+//! `cargo run --release -p hasard-envs --example place_measures -- ENV EPISODES [WAD
+//! [PICTURE.pgm]]`: with a WAD its map is played in place of ours. The picture has a pixel for
+//! every 16 map units: dark where a body cannot stand.
 
 use hasard_engine::map::udmf;
 use hasard_engine::math::Fixed;
@@ -20,7 +21,9 @@ const CLIMB: i32 = 60;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [id, episodes, files @ ..] = &arguments[..] else { return Err("give ENV EPISODES [WAD [PICTURE.pgm]]".into()) };
+    let [id, episodes, files @ ..] = &arguments[..] else {
+        return Err("give ENV EPISODES [WAD [PICTURE.pgm]]".into());
+    };
     let mut options = EnvOptions { rules: RuleSet::Released, ..EnvOptions::default() };
     if let Some(file) = files.first().filter(|file| *file != "-") {
         let bytes = std::fs::read(file)?;
@@ -40,7 +43,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let policies: &[&str] = if env.id().scenario == Scenario::DetonatorsDilemma {
         &["random", "sticky:10", "hold:ATTACK+TURN_LEFT", "hold:MOVE_FORWARD+ATTACK"]
     } else {
-        &["random", "sticky:10", "hold:MOVE_FORWARD", "hold:MOVE_FORWARD+SPEED", "hold:MOVE_FORWARD+TURN_LEFT"]
+        &[
+            "random",
+            "sticky:10",
+            "hold:MOVE_FORWARD",
+            "hold:MOVE_FORWARD+SPEED",
+            "hold:MOVE_FORWARD+TURN_LEFT",
+        ]
     };
     for policy in policies {
         let policy_at: Policy = policy.parse()?;
@@ -56,14 +65,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints where the items of Remedy Rush can appear: 20 units above floor 0 in the rectangle of its supplies.
+/// Prints where the items of Remedy Rush can appear: 20 units above floor 0 in the rectangle of its
+/// supplies.
 fn places(world: &mut World, ground: &Ground) {
     let (mut free, mut near, mut tried) = (0u32, 0u32, 0u32);
     for x in (-604..1056).step_by(8) {
         for y in (-220..1312).step_by(8) {
             tried += 1;
             let [fixed_x, fixed_y] = [x, y].map(Fixed::from_int);
-            if let Some(item) = world.spawn_checked(ActorKind::HealthBonus, fixed_x, fixed_y, Fixed::from_int(20), 0) {
+            if let Some(item) = world.spawn_checked(
+                ActorKind::HealthBonus,
+                fixed_x,
+                fixed_y,
+                Fixed::from_int(20),
+                0,
+            ) {
                 world.remove(item);
                 free += 1;
                 near += u32::from(ground.is_reached(x, y));
@@ -71,7 +87,11 @@ fn places(world: &mut World, ground: &Ground) {
         }
     }
     let share = |part: u32, whole: u32| 100.0 * f64::from(part) / f64::from(whole);
-    println!("items: {:.2} % of their rectangle takes them, {:.2} % of that within reach", share(free, tried), share(near, free));
+    println!(
+        "items: {:.2} % of their rectangle takes them, {:.2} % of that within reach",
+        share(free, tried),
+        share(near, free)
+    );
 }
 
 /// A mean with its standard error.
@@ -110,14 +130,19 @@ struct Ground {
 
 impl Ground {
     fn of(world: &World) -> Ground {
-        let bounds = world.map.lines.iter().fold([i32::MAX, i32::MAX, i32::MIN, i32::MIN], |b, line| {
-            let (x, y) = (line.v1.x.0 >> 16, line.v1.y.0 >> 16);
-            [b[0].min(x), b[1].min(y), b[2].max(x), b[3].max(y)]
-        });
-        let (west, south) = (bounds[0].div_euclid(PITCH) * PITCH, bounds[1].div_euclid(PITCH) * PITCH);
-        let (columns, rows) = (((bounds[2] - west) / PITCH) as usize + 1, ((bounds[3] - south) / PITCH) as usize + 1);
+        let bounds =
+            world.map.lines.iter().fold([i32::MAX, i32::MAX, i32::MIN, i32::MIN], |b, line| {
+                let (x, y) = (line.v1.x.0 >> 16, line.v1.y.0 >> 16);
+                [b[0].min(x), b[1].min(y), b[2].max(x), b[3].max(y)]
+            });
+        let (west, south) =
+            (bounds[0].div_euclid(PITCH) * PITCH, bounds[1].div_euclid(PITCH) * PITCH);
+        let (columns, rows) =
+            (((bounds[2] - west) / PITCH) as usize + 1, ((bounds[3] - south) / PITCH) as usize + 1);
         let slot = usize::from(world.players[0].actor.slot);
-        let at = |index: usize| ((west + (index % columns) as i32 * PITCH), (south + (index / columns) as i32 * PITCH));
+        let at = |index: usize| {
+            ((west + (index % columns) as i32 * PITCH), (south + (index / columns) as i32 * PITCH))
+        };
         let floors: Vec<_> = (0..columns * rows)
             .map(|index| {
                 let (x, y) = at(index);
@@ -127,7 +152,8 @@ impl Ground {
             })
             .collect();
         let body = &world.actors[slot];
-        let start = (((body.y.0 >> 16) - south) / PITCH) as usize * columns + (((body.x.0 >> 16) - west) / PITCH) as usize;
+        let start = (((body.y.0 >> 16) - south) / PITCH) as usize * columns
+            + (((body.x.0 >> 16) - west) / PITCH) as usize;
         let mut reached = vec![None; floors.len()];
         reached[start] = Some(0);
         let mut queue = VecDeque::from([start]);
@@ -159,17 +185,22 @@ impl Ground {
                 *by_floor.entry(*floor).or_default() += cell;
             }
         }
-        let text: Vec<_> = by_floor.iter().map(|(floor, area)| format!("{floor}: {area:.0}")).collect();
+        let text: Vec<_> =
+            by_floor.iter().map(|(floor, area)| format!("{floor}: {area:.0}")).collect();
         println!("by height of the floor: {}", text.join(", "));
     }
 
     /// Whether a body within reach can touch a point.
     fn is_reached(&self, x: i32, y: i32) -> bool {
-        let (column, row) = ((x - self.west + PITCH / 2) / PITCH, (y - self.south + PITCH / 2) / PITCH);
+        let (column, row) =
+            ((x - self.west + PITCH / 2) / PITCH, (y - self.south + PITCH / 2) / PITCH);
         (-2..=2).any(|up| {
             (-2..=2).any(|right| {
                 let (column, row) = (column + right, row + up);
-                let inside = column >= 0 && row >= 0 && column < self.columns as i32 && row < self.rows as i32;
+                let inside = column >= 0
+                    && row >= 0
+                    && column < self.columns as i32
+                    && row < self.rows as i32;
                 inside && self.reached[row as usize * self.columns + column as usize].is_some()
             })
         })

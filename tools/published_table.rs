@@ -1,7 +1,9 @@
-//! Plays the fixed policies of the published measurements under the rules that were measured, and prints both side by side.
+//! Plays the fixed policies of the published measurements under the rules that were measured, and
+//! prints both side by side.
 //!
-//! `cargo run --release -p hasard-envs --example published_table -- [EPISODES] [START-OF-ID] [RULES]`; 200 episodes of every
-//! environment under `released` by default; the other measured rules are `tables`. Deviations are in standard errors of both measurements together.
+//! `cargo run --release -p hasard-envs --example published_table -- [EPISODES] [START-OF-ID]
+//! [RULES]`; 200 episodes of every environment under `released` by default; the other measured
+//! rules are `tables`. Deviations are in standard errors of both measurements together.
 
 #[path = "../crates/envs/tests/published_figures/mod.rs"]
 mod published_figures;
@@ -15,7 +17,9 @@ fn main() {
         None => 200,
         Some(Ok(episodes)) if (1..=1_000_000).contains(&episodes) => episodes,
         Some(_) => {
-            eprintln!("the first argument is the number of episodes, 1..=1000000; then, perhaps, how an id begins");
+            eprintln!(
+                "the first argument is the number of episodes, 1..=1000000; then, perhaps, how an id begins"
+            );
             std::process::exit(2);
         }
     };
@@ -37,7 +41,8 @@ fn main() {
             let bound = allowed(theirs, row.episodes, mine, episodes as f64);
             let difference = mine[0] - theirs[0];
             let error = standard_error(theirs, row.episodes, mine, episodes as f64);
-            let deviation = if error > 0.0 { format!("{:+.1}", difference / error) } else { "0".to_string() };
+            let deviation =
+                if error > 0.0 { format!("{:+.1}", difference / error) } else { "0".to_string() };
             let within = difference.abs() <= bound;
             compared += 1;
             outside += usize::from(!within);
@@ -60,5 +65,7 @@ fn main() {
             );
         }
     }
-    println!("\n{compared} figures, {outside} of them not within three standard errors or a tenth.");
+    println!(
+        "\n{compared} figures, {outside} of them not within three standard errors or a tenth."
+    );
 }

@@ -1,11 +1,12 @@
-//! Do the worlds last? `cargo run --release -p hasard-envs --example soak -- [STEPS] [LANES] [THREADS] [FILE]` (Linux; 1,000,000
-//! steps in all, 8 worlds of each environment, 1 thread).
+//! Do the worlds last? `cargo run --release -p hasard-envs --example soak -- [STEPS] [LANES]
+//! [THREADS] [FILE]` (Linux; 1,000,000 steps in all, 8 worlds of each environment, 1 thread).
 //!
-//! Steps batches of all 18 environments in turn with random actions, and prints ten times on the way the memory of the process and a
-//! fingerprint of what has come out: every reward, cost and flag, and every sixteenth observation. Runs that were given the
-//! same steps and lanes print the same fingerprints, whatever their threads, and their memory stays where it is.
-//! With a FILE where it stands is kept a hundred times on the way, and what finds such a file goes on from there: to the same
-//! fingerprints.
+//! Steps batches of all 18 environments in turn with random actions, and prints ten times on the
+//! way the memory of the process and a fingerprint of what has come out: every reward, cost and
+//! flag, and every sixteenth observation. Runs that were given the same steps and lanes print the
+//! same fingerprints, whatever their threads, and their memory stays where it is. With a FILE where
+//! it stands is kept a hundred times on the way, and what finds such a file goes on from there: to
+//! the same fingerprints.
 
 use hasard_engine::math::Rng;
 use hasard_envs::{Batch, EnvId, EnvOptions, FrameSize, LaneState, VecEnv, VecOptions};
@@ -21,7 +22,9 @@ const TOLD: u64 = 16;
 fn tell(hash: u64, bytes: &[u8]) -> u64 {
     let (words, rest) = bytes.as_chunks::<8>();
     let words = words.iter().map(|&word| u64::from_le_bytes(word));
-    words.chain(rest.iter().map(|&byte| u64::from(byte))).fold(hash, |hash, word| (hash ^ word).wrapping_mul(0x100_0000_01B3))
+    words
+        .chain(rest.iter().map(|&byte| u64::from(byte)))
+        .fold(hash, |hash, word| (hash ^ word).wrapping_mul(0x100_0000_01B3))
 }
 
 struct Worlds {
@@ -43,7 +46,12 @@ impl Worlds {
     }
 
     /// A step of every lane; returns the fingerprint with what came of it.
-    fn step(&mut self, rng: &mut Rng, mut hash: u64, told: bool) -> Result<u64, hasard_envs::EnvError> {
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        mut hash: u64,
+        told: bool,
+    ) -> Result<u64, hasard_envs::EnvError> {
         let (lanes, batch) = (self.batch.lanes(), &mut self.batch);
         for (action, &size) in batch.actions.iter_mut().zip(self.sizes.iter().cycle()) {
             *action = rng.below(size as u32) as u8;
@@ -51,7 +59,11 @@ impl Worlds {
         self.worlds.step(batch)?;
         for lane in 0..lanes {
             let flags = [u8::from(batch.terminated[lane]), u8::from(batch.truncated[lane])];
-            hash = tell(hash, &[&batch.rewards[lane].to_le_bytes()[..], &batch.costs[lane].to_le_bytes(), &flags].concat());
+            hash = tell(
+                hash,
+                &[&batch.rewards[lane].to_le_bytes()[..], &batch.costs[lane].to_le_bytes(), &flags]
+                    .concat(),
+            );
         }
         Ok(if told { tell(hash, &batch.observations) } else { hash })
     }
@@ -74,7 +86,8 @@ struct Standing {
 }
 
 impl Standing {
-    /// Three words, then for each environment the number of its bytes and the bytes of its lanes, little-endian.
+    /// Three words, then for each environment the number of its bytes and the bytes of its lanes,
+    /// little-endian.
     fn keep(&self, all: &mut [Worlds], file: &Path) -> Any<()> {
         let mut bytes = [self.round, self.rng.state(), self.hash].map(u64::to_le_bytes).concat();
         for worlds in all {
@@ -91,7 +104,11 @@ impl Standing {
     fn find(all: &mut [Worlds], file: &Path) -> Any<Standing> {
         let bytes = std::fs::read(file)?;
         let mut rest = &bytes[..];
-        let standing = Standing { round: word(&mut rest)?, rng: Rng::from_state(word(&mut rest)?), hash: word(&mut rest)? };
+        let standing = Standing {
+            round: word(&mut rest)?,
+            rng: Rng::from_state(word(&mut rest)?),
+            hash: word(&mut rest)?,
+        };
         for worlds in all {
             let length = usize::try_from(word(&mut rest)?)?;
             let (lanes, after) = rest.split_at_checked(length).ok_or(EARLY)?;
@@ -105,22 +122,28 @@ impl Standing {
 /// Mebibytes of memory that the process holds.
 fn memory() -> f64 {
     let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
-    let pages: f64 = text.split(' ').nth(1).and_then(|pages| pages.parse().ok()).expect("/proc/self/statm is needed (Linux)");
+    let pages: f64 = text
+        .split(' ')
+        .nth(1)
+        .and_then(|pages| pages.parse().ok())
+        .expect("/proc/self/statm is needed (Linux)");
     pages * 4096.0 / f64::from(1 << 20)
 }
 
 fn main() -> Any<()> {
     let mut given = std::env::args().skip(1);
-    let mut number = |usual: u64| match given.next().map(|text| text.parse::<u64>().map_err(|_| text)) {
-        None => Ok(usual),
-        Some(number) => {
-            number.map(|number| number.max(1)).map_err(|text| format!("{text} is no number of steps, lanes or threads"))
-        }
-    };
+    let mut number =
+        |usual: u64| match given.next().map(|text| text.parse::<u64>().map_err(|_| text)) {
+            None => Ok(usual),
+            Some(number) => number
+                .map(|number| number.max(1))
+                .map_err(|text| format!("{text} is no number of steps, lanes or threads")),
+        };
     let (steps, lanes, threads) = (number(1_000_000)?, number(8)? as usize, number(1)? as usize);
     let file = given.next();
     let file = file.as_ref().map(Path::new);
-    let mut all = EnvId::all().map(|id| Worlds::new(id, lanes, threads)).collect::<Result<Vec<_>, _>>()?;
+    let mut all =
+        EnvId::all().map(|id| Worlds::new(id, lanes, threads)).collect::<Result<Vec<_>, _>>()?;
     let mut at = match file {
         Some(file) if file.exists() => Standing::find(&mut all, file)?,
         _ => Standing { round: 0, rng: Rng::new(0), hash: 0xCBF2_9CE4_8422_2325 },
@@ -129,13 +152,19 @@ fn main() -> Any<()> {
     let rounds = steps.div_ceil(a_round);
     while at.round < rounds {
         at.round += 1;
-        let ends_part_of = |parts: u64| at.round * parts / rounds != (at.round - 1) * parts / rounds;
+        let ends_part_of =
+            |parts: u64| at.round * parts / rounds != (at.round - 1) * parts / rounds;
         let (tells, keeps) = (ends_part_of(10), ends_part_of(100));
         for worlds in &mut all {
             at.hash = worlds.step(&mut at.rng, at.hash, at.round % TOLD == 0)?;
         }
         if tells {
-            println!("{} steps, fingerprint {:016x}, {:.1} MiB", at.round * a_round, at.hash, memory());
+            println!(
+                "{} steps, fingerprint {:016x}, {:.1} MiB",
+                at.round * a_round,
+                at.hash,
+                memory()
+            );
         }
         if let Some(file) = file.filter(|_| keeps) {
             at.keep(&mut all, file)?;

@@ -1,9 +1,11 @@
-//! How fast the worlds of every scenario and level step on one thread, in processor time, which other programs do not spoil:
-//! `cargo run --release -p hasard-envs --example speed_table -- [STEPS] [ROUNDS] [NAME PART]` (Linux).
+//! How fast the worlds of every scenario and level step on one thread, in processor time, which
+//! other programs do not spoil: `cargo run --release -p hasard-envs --example speed_table --
+//! [STEPS] [ROUNDS] [NAME PART]` (Linux).
 //!
-//! Steps of frame skip 4 with random actions and auto-reset, 32 worlds in turn, 128x72: once with colours, once with colours,
-//! depth and labels; and the time of a reset. Median of the rounds, which alternate between the two. On virtual machines the
-//! clock of processor time may tick every 4 ms: 40,000 steps a round tell a per cent, some hundred say nothing.
+//! Steps of frame skip 4 with random actions and auto-reset, 32 worlds in turn, 128x72: once with
+//! colours, once with colours, depth and labels; and the time of a reset. Median of the rounds,
+//! which alternate between the two. On virtual machines the clock of processor time may tick every
+//! 4 ms: 40,000 steps a round tell a per cent, some hundred say nothing.
 
 use hasard_engine::math::Rng;
 use hasard_engine::render::Buffers;
@@ -12,7 +14,10 @@ use hasard_envs::{Env, EnvId, EnvOptions, FrameSize};
 /// Nanoseconds that this thread has been running on a processor.
 fn processor_time() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    text.split(' ').next().and_then(|first| first.parse().ok()).expect("/proc/thread-self/schedstat is needed (Linux)")
+    text.split(' ')
+        .next()
+        .and_then(|first| first.parse().ok())
+        .expect("/proc/thread-self/schedstat is needed (Linux)")
 }
 
 struct Worlds {
@@ -82,9 +87,13 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let number = |i: usize, default: usize| arguments.get(i).map_or(default, |text| text.parse().expect("a number"));
+    let number = |i: usize, default: usize| {
+        arguments.get(i).map_or(default, |text| text.parse().expect("a number"))
+    };
     let (steps, rounds) = (number(0, 8000), number(1, 3));
-    println!("| environment | steps/s | all buffers, steps/s | more time | reset, ms |\n|---|---:|---:|---:|---:|");
+    println!(
+        "| environment | steps/s | all buffers, steps/s | more time | reset, ms |\n|---|---:|---:|---:|---:|"
+    );
     for id in EnvId::all().map(|id| id.to_string()) {
         if arguments.get(2).is_some_and(|part| !id.contains(part.as_str())) {
             continue;

@@ -4,8 +4,8 @@
 //! cargo run --release -p hasard-fuzz --example spoiled_levels -- COUNT SEED FILE...
 //! ```
 //!
-//! The files are the user's own copies; prints how many copies were read, were refused in one line, or did harm (panic, more than
-//! 3 s, memory beyond the format's bound).
+//! The files are the user's own copies; prints how many copies were read, were refused in one line,
+//! or did harm (panic, more than 3 s, memory beyond the format's bound).
 
 use hasard_engine::math::Rng;
 use hasard_engine::wad::{self, Lump, Wad, WadKind};
@@ -14,8 +14,8 @@ use hasard_fuzz::targets;
 use hasard_fuzz::verdict::{Verdict, listen, try_input};
 use std::process::ExitCode;
 
-/// A copy with faults: in its bytes as they lie in one of four; otherwise within one lump, in a file that is sound around it. The texts
-/// are chosen as often as all pictures.
+/// A copy with faults: in its bytes as they lie in one of four; otherwise within one lump, in a
+/// file that is sound around it. The texts are chosen as often as all pictures.
 fn spoiled(rng: &mut Rng, bytes: &[u8], words: &[&str]) -> Vec<u8> {
     let Ok(file) = Wad::read(bytes) else { return mutated(rng, bytes, words, &[]) };
     if rng.below(4) == 0 {
@@ -24,9 +24,12 @@ fn spoiled(rng: &mut Rng, bytes: &[u8], words: &[&str]) -> Vec<u8> {
     let is_text = |lump: &Lump<'_>| TEXTS.contains(&lump.name.as_str());
     let texts = rng.below(2) == 0;
     let full = |lump: &Lump<'_>| !lump.bytes.is_empty();
-    let chosen: Vec<usize> =
-        (0..file.lumps.len()).filter(|&i| full(&file.lumps[i]) && is_text(&file.lumps[i]) == texts).collect();
-    let Some(&at) = chosen.get(rng.below(chosen.len().max(1) as u32) as usize) else { return mutated(rng, bytes, words, &[]) };
+    let chosen: Vec<usize> = (0..file.lumps.len())
+        .filter(|&i| full(&file.lumps[i]) && is_text(&file.lumps[i]) == texts)
+        .collect();
+    let Some(&at) = chosen.get(rng.below(chosen.len().max(1) as u32) as usize) else {
+        return mutated(rng, bytes, words, &[]);
+    };
     let fault = mutated(rng, file.lumps[at].bytes, words, &[]);
     let mut lumps = file.lumps.clone();
     lumps[at].bytes = &fault;
@@ -38,9 +41,14 @@ const TEXTS: [&str; 4] = ["TEXTMAP", "TEXTURES", "ANIMDEFS", "MAPINFO"];
 
 fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [count, seed, files @ ..] = words.as_slice() else { return Err("give COUNT SEED FILE...".into()) };
+    let [count, seed, files @ ..] = words.as_slice() else {
+        return Err("give COUNT SEED FILE...".into());
+    };
     let (count, mut rng): (usize, Rng) = (count.parse()?, Rng::new(seed.parse()?));
-    let target = targets::ALL.iter().find(|target| target.name == "level").ok_or("no target of that name")?;
+    let target = targets::ALL
+        .iter()
+        .find(|target| target.name == "level")
+        .ok_or("no target of that name")?;
     let files = files.iter().map(std::fs::read).collect::<Result<Vec<_>, _>>()?;
     if files.is_empty() {
         return Err("name the files to spoil".into());
@@ -58,6 +66,9 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
             }
         }
     }
-    println!("{count} spoiled copies of {} files: {read} read, {refused} refused, {harmful} did harm", files.len());
+    println!(
+        "{count} spoiled copies of {} files: {read} read, {refused} refused, {harmful} did harm",
+        files.len()
+    );
     Ok(if harmful == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -1,10 +1,13 @@
-//! What a policy step costs: `step_cost ENVIRONMENT STEPS LANES [observe|step|hash] [WARM-UP STEPS] [--maps]` (Linux).
+//! What a policy step costs: `step_cost ENVIRONMENT STEPS LANES [observe|step|hash] [WARM-UP STEPS]
+//! [--maps]` (Linux).
 //!
-//! Steps worlds in turn (frame skip 4, random actions, resets included) and prints the nanoseconds of a step, first of
-//! processor time, then of wall time; `1s` for STEPS takes as many as fit a second. `observe` (the default) draws 128x72 RGB after every step, `step` draws nothing, `hash` prints a fingerprint
-//! of all frames and of the state after every step: two builds that print the same did the same work. `ab.py` beside it
-//! runs two builds in turn, and valgrind counts the instructions of one (`--tool=callgrind`). With `--maps` the worlds are the
-//! published ones, from the Python packages `hasard` and `vizdoom`.
+//! Steps worlds in turn (frame skip 4, random actions, resets included) and prints the nanoseconds
+//! of a step, first of processor time, then of wall time; `1s` for STEPS takes as many as fit a
+//! second. `observe` (the default) draws 128x72 RGB after every step, `step` draws nothing, `hash`
+//! prints a fingerprint of all frames and of the state after every step: two builds that print the
+//! same did the same work. `ab.py` beside it runs two builds in turn, and valgrind counts the
+//! instructions of one (`--tool=callgrind`). With `--maps` the worlds are the published ones, from
+//! the Python packages `hasard` and `vizdoom`.
 
 use hasard_engine::math::Rng;
 use hasard_envs::maps::{Maps, find_iwad, find_maps};
@@ -50,7 +53,10 @@ struct Worlds {
 impl Worlds {
     fn new(id: &str, lanes: usize, published: bool) -> Result<Worlds, String> {
         let maps = || Ok(Arc::new(Maps::new(&find_maps()?, Some(&find_iwad(true)?))));
-        let maps = published.then(maps).transpose().map_err(|error: hasard_envs::EnvError| error.to_string())?;
+        let maps = published
+            .then(maps)
+            .transpose()
+            .map_err(|error: hasard_envs::EnvError| error.to_string())?;
         let options = EnvOptions { size: FrameSize::LEARNER, maps, ..EnvOptions::default() };
         let first = Env::new(id, &options).map_err(|error| error.to_string())?;
         let mut envs: Vec<Env> = (0..lanes).map(|_| first.sibling()).collect();
@@ -90,17 +96,24 @@ impl Worlds {
 /// Nanoseconds that this thread has been running on a processor.
 fn processor_time() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    text.split(' ').next().and_then(|first| first.parse().ok()).expect("/proc/thread-self/schedstat is needed (Linux)")
+    text.split(' ')
+        .next()
+        .and_then(|first| first.parse().ok())
+        .expect("/proc/thread-self/schedstat is needed (Linux)")
 }
 
 fn run(arguments: &[String]) -> Result<(), String> {
     let published = arguments.iter().any(|argument| argument == "--maps");
-    let arguments: Vec<&String> = arguments.iter().filter(|argument| *argument != "--maps").collect();
+    let arguments: Vec<&String> =
+        arguments.iter().filter(|argument| *argument != "--maps").collect();
     let [id, steps, lanes, rest @ ..] = &arguments[..] else {
         return Err("which environment, how many steps, how many lanes? e.g. VolcanicVentureLevel3-v0 3000 8".into());
     };
-    let number = |text: &&String| text.parse::<usize>().map_err(|_| format!("{text} is no number of steps or lanes"));
-    let amount = Amount::of(steps).ok_or_else(|| format!("{steps} is no number of steps, and no time such as 1s"))?;
+    let number = |text: &&String| {
+        text.parse::<usize>().map_err(|_| format!("{text} is no number of steps or lanes"))
+    };
+    let amount = Amount::of(steps)
+        .ok_or_else(|| format!("{steps} is no number of steps, and no time such as 1s"))?;
     let lanes = number(lanes)?.max(1);
     let mode = match rest.first().map(|mode| mode.as_str()) {
         None | Some("observe") => Mode::Observe,

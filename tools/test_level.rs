@@ -1,9 +1,12 @@
-//! Draws views of a small test level, to be looked at: `cargo run --release -p hasard-engine --example test_level -- OUTDIR`.
+//! Draws views of a small test level, to be looked at: `cargo run --release -p
+//! hasard-engine --example test_level -- OUTDIR`.
 
 use hasard_engine::assets::{Assets, sprite_index};
 use hasard_engine::map::{Map, MapBuilder, Mark, SectorId, Style, TileGrid};
 use hasard_engine::math::{Angle, Fixed, Rng};
-use hasard_engine::render::{Buffers, FrameScratch, FrameSize, Renderer, Scene, SegmentationColours, TopDown, View};
+use hasard_engine::render::{
+    Buffers, FrameScratch, FrameSize, Renderer, Scene, SegmentationColours, TopDown, View,
+};
 use hasard_engine::world::{ActorKind, PlayerSprite, Weapon, World};
 use std::path::Path;
 use std::sync::Arc;
@@ -42,13 +45,29 @@ fn yard() -> Map {
     };
     let mut builder = MapBuilder::new();
     builder.rectangle(style, -600, -300, 1700, 1500);
-    let tile = |column: usize, row: usize| Style { floor: ((column * 7 + row * 5) % 6) as i32 * 8, ..style };
+    let tile = |column: usize, row: usize| Style {
+        floor: ((column * 7 + row * 5) % 6) as i32 * 8,
+        ..style
+    };
     TileGrid::new((0, 0), 128, 8, 8, tile).paint(&mut builder);
-    let gallery = Style { ceiling: 96, light: 120, ceiling_texture: "FLAT5_5", floor_texture: "FLOOR0_5", ..style };
+    let gallery = Style {
+        ceiling: 96,
+        light: 120,
+        ceiling_texture: "FLAT5_5",
+        floor_texture: "FLOOR0_5",
+        ..style
+    };
     builder.rectangle(gallery, 1100, 100, 1500, 700);
-    builder.rectangle(Style { floor: -64, light: 100, floor_texture: "LAVA1", ..style }, -500, 0, -200, 300);
+    builder.rectangle(
+        Style { floor: -64, light: 100, floor_texture: "LAVA1", ..style },
+        -500,
+        0,
+        -200,
+        300,
+    );
     builder.solid(&[(-300, 900), (-200, 800), (-100, 900), (-200, 1000)]);
-    let fence = Mark { middle: Some("MIDBARS3"), blocking: true, lower_unpegged: true, ..Mark::default() };
+    let fence =
+        Mark { middle: Some("MIDBARS3"), blocking: true, lower_unpegged: true, ..Mark::default() };
     builder.mark(fence, &[(-500, 600), (-100, 600)]);
     Map::build(&builder.finish().unwrap(), "yard", &[]).unwrap()
 }
@@ -62,7 +81,8 @@ fn world(map: &Arc<Map>) -> World {
 fn items(world: &mut World, seed: u64, count: usize, kinds: &[ActorKind]) {
     let mut rng = Rng::new(seed);
     for i in 0..count {
-        let (x, y) = (Fixed::from_int(rng.between(20, 2150)), Fixed::from_int(rng.between(84, 2220)));
+        let (x, y) =
+            (Fixed::from_int(rng.between(20, 2150)), Fixed::from_int(rng.between(84, 2220)));
         let id = world.spawn(kinds[i % kinds.len()], x, y, Fixed::ZERO);
         let actor = world.get_mut(id).unwrap();
         (actor.z, actor.angle) = (actor.floor_z, Angle(rng.next_u64() as u32));
@@ -94,7 +114,11 @@ fn place(world: &mut World, x: i32, y: i32, degrees: f64, pitch: f64) {
 
 fn save(path: &Path, size: FrameSize, colour: png::ColorType, data: &[u8]) {
     let file = std::fs::File::create(path).expect("the output folder is writable");
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), u32::from(size.width), u32::from(size.height));
+    let mut encoder = png::Encoder::new(
+        std::io::BufWriter::new(file),
+        u32::from(size.width),
+        u32::from(size.height),
+    );
     encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.write_header().unwrap().write_image_data(data).unwrap();
@@ -135,7 +159,8 @@ fn main() {
         y: Fixed::from_f64(32.375),
     };
     player.sprites = [Some(weapon("PISG", false)), Some(weapon("PISF", true))];
-    (player.weapon, player.weapons, player.ammo[0], player.keys) = (Some(Weapon::Pistol), 255, 142, 3);
+    (player.weapon, player.weapons, player.ammo[0], player.keys) =
+        (Some(Weapon::Pistol), 255, 142, 3);
     let views = [
         ("yard", -550, -250, 45.0, 0.0),
         ("gallery", 800, 500, 0.0, -10.0),
@@ -155,19 +180,39 @@ fn draw_top_down(path: &Path, scene: &Arc<Scene>, world: &World) {
     save(path, size, png::ColorType::Rgb, &rgb);
 }
 
-fn draw(folder: &Path, scene: &Arc<Scene>, world: &mut World, views: &[(&str, i32, i32, f64, f64)]) {
+fn draw(
+    folder: &Path,
+    scene: &Arc<Scene>,
+    world: &mut World,
+    views: &[(&str, i32, i32, f64, f64)],
+) {
     for &(name, x, y, angle, pitch) in views {
         place(world, x, y, angle, pitch);
         for (width, height) in [(128, 72), (160, 120), (320, 240), (640, 480)] {
             let size = FrameSize { width, height };
             let mut renderer = Renderer::new(scene.clone(), Arc::new(View::new(size).unwrap()));
-            renderer.render(&mut FrameScratch::default(), world, 0, Buffers { depth: true, labels: true });
+            renderer.render(
+                &mut FrameScratch::default(),
+                world,
+                0,
+                Buffers { depth: true, labels: true },
+            );
             let mut rgb = vec![0; size.pixels() * 3];
             renderer.write_rgb_hwc(&mut rgb);
             save(&folder.join(format!("{name}_{width}.png")), size, png::ColorType::Rgb, &rgb);
             renderer.write_segmented_hwc(&SegmentationColours::distinct(), &mut rgb);
-            save(&folder.join(format!("{name}_{width}_classes.png")), size, png::ColorType::Rgb, &rgb);
-            save(&folder.join(format!("{name}_{width}_depth.png")), size, png::ColorType::Grayscale, renderer.depth());
+            save(
+                &folder.join(format!("{name}_{width}_classes.png")),
+                size,
+                png::ColorType::Rgb,
+                &rgb,
+            );
+            save(
+                &folder.join(format!("{name}_{width}_depth.png")),
+                size,
+                png::ColorType::Grayscale,
+                renderer.depth(),
+            );
         }
     }
 }

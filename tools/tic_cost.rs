@@ -1,4 +1,5 @@
-//! Prints what a world costs: four tics of a hall with a hundred items, a reset by copying, a fingerprint.
+//! Prints what a world costs: four tics of a hall with a hundred items, a reset by copying, a
+//! fingerprint.
 //!
 //! `cargo run --release -p hasard-engine --example tic_cost`
 
@@ -29,7 +30,13 @@ fn hall() -> World {
     let mut items = 0;
     while items < 100 {
         let (x, y) = (world.rng.between(32, 1888), world.rng.between(32, 1888));
-        let spawned = world.spawn_checked(ActorKind::ArmorBonus, Fixed::from_int(x), Fixed::from_int(y), Fixed::from_int(20), 0);
+        let spawned = world.spawn_checked(
+            ActorKind::ArmorBonus,
+            Fixed::from_int(x),
+            Fixed::from_int(y),
+            Fixed::from_int(20),
+            0,
+        );
         items += i32::from(spawned.is_some());
     }
     world

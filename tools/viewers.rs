@@ -1,7 +1,9 @@
-//! Viewers that measure a running `hasard serve`: `cargo run --release -p hasard-serve --example viewers -- ADDRESS VIEWERS SIZE SECONDS`.
+//! Viewers that measure a running `hasard serve`: `cargo run --release -p hasard-serve --example
+//! viewers -- ADDRESS VIEWERS SIZE SECONDS`.
 //!
-//! Prints frames a second of each viewer and, playing, the time from a key to the first changed picture. With `soak` as a
-//! fifth word, so many at a time come and go instead: some read, some never do, some send rubbish.
+//! Prints frames a second of each viewer and, playing, the time from a key to the first changed
+//! picture. With `soak` as a fifth word, so many at a time come and go instead: some read, some
+//! never do, some send rubbish.
 
 use serde_json::Value;
 use std::net::TcpStream;
@@ -14,7 +16,8 @@ fn connect(address: &str, path: &str) -> Option<WebSocket<TcpStream>> {
     tungstenite::client(format!("ws://{address}{path}"), stream).ok().map(|(socket, _)| socket)
 }
 
-/// Reads until a frame and says that it was seen, and asks for the next episode when this one has ended; its pictures.
+/// Reads until a frame and says that it was seen, and asks for the next episode when this one has
+/// ended; its pictures.
 fn frame(socket: &mut WebSocket<TcpStream>) -> Option<Vec<u8>> {
     loop {
         if let Message::Binary(bytes) = socket.read().ok()? {
@@ -30,8 +33,16 @@ fn frame(socket: &mut WebSocket<TcpStream>) -> Option<Vec<u8>> {
 }
 
 fn watch(address: &str, size: &str, seconds: f64, seed: usize) -> f64 {
-    let envs = ["VolcanicVentureLevel1-v0", "RemedyRushLevel2-v0", "DetonatorsDilemmaLevel3-v0", "ArmamentBurdenLevel1-v0"];
-    let path = format!("/api/watch?env={}&agent=sticky:10&seed={seed}&size={size}", envs[seed % envs.len()]);
+    let envs = [
+        "VolcanicVentureLevel1-v0",
+        "RemedyRushLevel2-v0",
+        "DetonatorsDilemmaLevel3-v0",
+        "ArmamentBurdenLevel1-v0",
+    ];
+    let path = format!(
+        "/api/watch?env={}&agent=sticky:10&seed={seed}&size={size}",
+        envs[seed % envs.len()]
+    );
     let Some(mut socket) = connect(address, &path) else { return 0.0 };
     frame(&mut socket);
     let (begun, mut frames) = (Instant::now(), 0);
@@ -43,7 +54,8 @@ fn watch(address: &str, size: &str, seconds: f64, seed: usize) -> f64 {
 
 /// Milliseconds from a key to the first picture that shows it, some times over.
 fn delays(address: &str, size: &str) -> Option<Vec<f64>> {
-    let mut socket = connect(address, &format!("/api/play?env=ArmamentBurdenLevel1-v0&size={size}"))?;
+    let mut socket =
+        connect(address, &format!("/api/play?env=ArmamentBurdenLevel1-v0&size={size}"))?;
     frame(&mut socket)?;
     socket.send(Message::text("{\"do\":\"go\"}")).ok()?;
     let mut all = Vec::new();
@@ -76,7 +88,9 @@ fn soak(address: &str, seconds: f64, first: usize) -> usize {
             // One that never reads: a few of these stay.
             0 => mute.push(connect(address, "/api/watch?env=RemedyRushLevel1-v0&size=320x240")),
             5 => {
-                if let Some(mut socket) = connect(address, "/api/watch?env=RemedyRushLevel1-v0&size=64x48") {
+                if let Some(mut socket) =
+                    connect(address, "/api/watch?env=RemedyRushLevel1-v0&size=64x48")
+                {
                     let _ = socket.send(Message::binary(vec![7; 1000]));
                 }
             }
@@ -95,16 +109,21 @@ fn main() {
         eprintln!("ADDRESS VIEWERS SIZE SECONDS [soak]");
         std::process::exit(2);
     };
-    let (viewers, seconds): (usize, f64) = (viewers.parse().unwrap_or(1), seconds.parse().unwrap_or(5.0));
+    let (viewers, seconds): (usize, f64) =
+        (viewers.parse().unwrap_or(1), seconds.parse().unwrap_or(5.0));
     if !rest.is_empty() {
         let visitors: usize = std::thread::scope(|scope| {
-            let all: Vec<_> = (0..viewers).map(|first| scope.spawn(move || soak(address, seconds, first))).collect();
+            let all: Vec<_> = (0..viewers)
+                .map(|first| scope.spawn(move || soak(address, seconds, first)))
+                .collect();
             all.into_iter().map(|one| one.join().unwrap_or(0)).sum()
         });
         return println!("{visitors} visitors in {seconds:.0} s, {viewers} at a time");
     }
     let rates: Vec<f64> = std::thread::scope(|scope| {
-        let all: Vec<_> = (0..viewers).map(|seed| scope.spawn(move || watch(address, size, seconds, seed))).collect();
+        let all: Vec<_> = (0..viewers)
+            .map(|seed| scope.spawn(move || watch(address, size, seconds, seed)))
+            .collect();
         all.into_iter().map(|one| one.join().unwrap_or(0.0)).collect()
     });
     println!("frames/s of {viewers} viewers at {size}: {rates:.1?}");

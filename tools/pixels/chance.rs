@@ -1,8 +1,10 @@
-//! What chance gave the squares of rockets in the published engine (docs/results/pixels.md, "Squares").
+//! What chance gave the squares of rockets in the published engine (docs/results/pixels.md,
+//! "Squares").
 //!
-//! Its pictures have a stream of chance of their own, begun anew with every episode, whose bytes only the squares and the face in the
-//! status bar take: every rocket that flies 75 a tic, in the order in which they were thrown, and the face one whenever it is chosen,
-//! which is after a tic, when a frame is drawn. So who knows when rockets flew knows what each square got.
+//! Its pictures have a stream of chance of their own, begun anew with every episode, whose bytes
+//! only the squares and the face in the status bar take: every rocket that flies 75 a tic, in the
+//! order in which they were thrown, and the face one whenever it is chosen, which is after a tic,
+//! when a frame is drawn. So who knows when rockets flew knows what each square got.
 
 use crate::dump::Moment;
 use hasard_engine::world::{Lots, SQUARES};
@@ -15,7 +17,8 @@ const FIRST_EPISODE_FRAME: u32 = 1;
 /// Fewest tics that a glance lasts, and a grimace.
 const GLANCE_TICS: u32 = 18;
 const GRIMACE_TICS: u32 = 2;
-/// Tics of a shot before the rocket flies and after, and of shooting after which the face is drawn in anger.
+/// Tics of a shot before the rocket flies and after, and of shooting after which the face is drawn
+/// in anger.
 const BEFORE_FLIGHT: u32 = 8;
 const AFTER_FLIGHT: u32 = 12;
 const ANGER_TICS: u32 = 70;
@@ -25,14 +28,18 @@ pub fn lots(seed: u32, moment: &Moment) -> Vec<Vec<[Lots; SQUARES as usize]>> {
     let mut stream = Sfmt607::new(&[0, seed]);
     let mut lots: Vec<Vec<_>> = moment.flights.iter().map(|_| Vec::new()).collect();
     let is_first = moment.episode == 0;
-    let (mut chosen_next, mut angry) = (if is_first { FIRST_EPISODE_FRAME } else { FIRST_FRAME }, false);
+    let (mut chosen_next, mut angry) =
+        (if is_first { FIRST_EPISODE_FRAME } else { FIRST_FRAME }, false);
     for tic in 1..=moment.tic {
         for (flight, lots) in moment.flights.iter().zip(&mut lots) {
-            if (flight.tic..flight.tic + flight.tics.unwrap_or(u32::MAX - flight.tic)).contains(&tic) {
+            if (flight.tic..flight.tic + flight.tics.unwrap_or(u32::MAX - flight.tic))
+                .contains(&tic)
+            {
                 lots.push(Lots::of_tic(|| stream.next() as u8));
             }
         }
-        let is_drawn = tic >= FIRST_FRAME && tic % FRAME_TICS == 0 || is_first && tic == FIRST_EPISODE_FRAME;
+        let is_drawn =
+            tic >= FIRST_FRAME && tic % FRAME_TICS == 0 || is_first && tic == FIRST_EPISODE_FRAME;
         let grimaces = is_angry(moment, tic);
         if is_drawn && (tic >= chosen_next || grimaces && !angry) {
             stream.next();
@@ -47,7 +54,12 @@ pub fn lots(seed: u32, moment: &Moment) -> Vec<Vec<[Lots; SQUARES as usize]>> {
 fn is_angry(moment: &Moment, tic: u32) -> bool {
     let mut since = None;
     let mut last = 0;
-    for shot in moment.flights.iter().map(|flight| flight.tic).filter(|shot| shot.saturating_sub(BEFORE_FLIGHT) <= tic) {
+    for shot in moment
+        .flights
+        .iter()
+        .map(|flight| flight.tic)
+        .filter(|shot| shot.saturating_sub(BEFORE_FLIGHT) <= tic)
+    {
         if since.is_none() || shot - last > BEFORE_FLIGHT + AFTER_FLIGHT {
             since = Some(shot.saturating_sub(BEFORE_FLIGHT));
         }
@@ -56,8 +68,8 @@ fn is_angry(moment: &Moment, tic: u32) -> bool {
     since.is_some_and(|since| tic >= since + ANGER_TICS && tic <= last + AFTER_FLIGHT)
 }
 
-/// The generator SFMT with the period 2^607 - 1: Saito and Matsumoto, *SIMD-oriented Fast Mersenne Twister* (MCQMC 2006), section 2 and
-/// the authors' table of parameters.
+/// The generator SFMT with the period 2^607 - 1: Saito and Matsumoto, *SIMD-oriented Fast Mersenne
+/// Twister* (MCQMC 2006), section 2 and the authors' table of parameters.
 struct Sfmt607 {
     /// Words of 128 bits, the lowest 32 first.
     state: [u128; 5],
@@ -89,7 +101,8 @@ impl Sfmt607 {
                 words[far] = words[far].wrapping_add(second);
                 words[at] = second;
             } else {
-                let first = mixed(words[at].wrapping_add(words[other]).wrapping_add(before), 1_566_083_941);
+                let first =
+                    mixed(words[at].wrapping_add(words[other]).wrapping_add(before), 1_566_083_941);
                 let second = first.wrapping_sub(at as u32);
                 words[other] ^= first;
                 words[far] ^= second;
@@ -101,7 +114,9 @@ impl Sfmt607 {
             mix(at, Some(key.get(at - 1).copied().unwrap_or(0).wrapping_add(at as u32)));
         }
         (0..SIZE).for_each(|at| mix(at, None));
-        let word = |at: usize| (0..4).rev().fold(0, |word, part| word << 32 | u128::from(words[4 * at + part]));
+        let word = |at: usize| {
+            (0..4).rev().fold(0, |word, part| word << 32 | u128::from(words[4 * at + part]))
+        };
         let mut state = [0, 1, 2, 3, 4].map(word);
         if (state[0] & PARITY).count_ones().is_multiple_of(2) {
             state[0] ^= PARITY & PARITY.wrapping_neg();
@@ -120,7 +135,9 @@ impl Sfmt607 {
     /// The recursion (2) of the paper, for all words.
     fn go_on(&mut self) {
         let each = |word: u128, shifted: fn(u32) -> u32| {
-            (0..4).fold(0, |all, part| all | u128::from(shifted((word >> (32 * part)) as u32)) << (32 * part))
+            (0..4).fold(0, |all, part| {
+                all | u128::from(shifted((word >> (32 * part)) as u32)) << (32 * part)
+            })
         };
         let count = self.state.len();
         for at in 0..count {
@@ -149,21 +166,37 @@ mod tests {
     fn moment(tic: u32, flights: Vec<Flight>) -> Moment {
         let (variables, labels) = (BTreeMap::new(), Vec::new());
         let (floors, ceilings, bursts) = (Vec::new(), Vec::new(), Vec::new());
-        Moment { number: 0, tic, variables, floors, ceilings, chance: Some(FIRST), episode: 0, bursts, flights, labels }
+        Moment {
+            number: 0,
+            tic,
+            variables,
+            floors,
+            ceilings,
+            chance: Some(FIRST),
+            episode: 0,
+            bursts,
+            flights,
+            labels,
+        }
     }
 
     #[test]
     fn the_stream_is_what_squares_and_faces_told() {
         let mut stream = Sfmt607::new(&[0, FIRST]);
         let bytes: Vec<u8> = (0..150).map(|_| stream.next() as u8).collect();
-        // Where the face looked in tics 20, 40, 60 and 80 of Collateral Damage 1, after a first choice that nobody saw.
+        // Where the face looked in tics 20, 40, 60 and 80 of Collateral Damage 1, after a first
+        // choice that nobody saw.
         assert_eq!([1, 2, 3, 4].map(|choice| bytes[choice] % 3), [1, 0, 1, 1]);
-        // In a bare room without a status bar, what squares of a rocket's second tic lay back and above, as seen on the screen:
-        // the yellow one, and the grey ones.
+        // In a bare room without a status bar, what squares of a rocket's second tic lay back and
+        // above, as seen on the screen: the yellow one, and the grey ones.
         let seen = [[125, 0], [177, 205], [126, 217], [235, 233], [86, 113], [47, 255], [211, 69]];
         let mut draws = bytes[75..].iter().copied();
-        for (lots, [back, up]) in Lots::of_tic(|| draws.next().unwrap_or_default()).iter().zip(seen) {
-            assert!(lots.back.abs_diff(back) <= 2 && lots.up.abs_diff(up) <= 2, "{lots:?}, not {back} and {up}");
+        for (lots, [back, up]) in Lots::of_tic(|| draws.next().unwrap_or_default()).iter().zip(seen)
+        {
+            assert!(
+                lots.back.abs_diff(back) <= 2 && lots.up.abs_diff(up) <= 2,
+                "{lots:?}, not {back} and {up}"
+            );
         }
         assert_eq!(draws.len(), 0);
     }
@@ -186,11 +219,16 @@ mod tests {
 
     #[test]
     fn who_shoots_on_and_on_is_angry_from_70_tics_until_the_last_shot_is_over() {
-        let flights =
-            [1017, 1037, 1057, 1077, 1161].map(|tic| Flight { tic, place: [0.0; 3], velocity: [0.0; 3], tics: Some(0) });
+        let flights = [1017, 1037, 1057, 1077, 1161].map(|tic| Flight {
+            tic,
+            place: [0.0; 3],
+            velocity: [0.0; 3],
+            tics: Some(0),
+        });
         let moment = moment(0, flights.into());
         // As seen: in the frames of tics 1080, 1084 and 1088.
-        let angry: Vec<u32> = (1000..1300).step_by(4).filter(|&tic| is_angry(&moment, tic)).collect();
+        let angry: Vec<u32> =
+            (1000..1300).step_by(4).filter(|&tic| is_angry(&moment, tic)).collect();
         assert_eq!(angry, [1080, 1084, 1088]);
     }
 }

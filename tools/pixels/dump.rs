@@ -32,7 +32,8 @@ pub struct Moment {
     /// Of each sector.
     pub floors: Vec<f64>,
     pub ceilings: Vec<f64>,
-    /// What the published engine's own chance began with in the episode, if it was noted, and the number of the episode.
+    /// What the published engine's own chance began with in the episode, if it was noted, and the
+    /// number of the episode.
     #[serde(default)]
     pub chance: Option<u32>,
     #[serde(default)]
@@ -73,7 +74,8 @@ impl Level {
     pub fn read(folder: &Path) -> Any<Level> {
         let path = folder.join("scenes.json");
         let bytes = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        Ok(serde_json::from_slice(&bytes).map_err(|error| format!("{}: {error}", path.display()))?)
+        Ok(serde_json::from_slice(&bytes)
+            .map_err(|error| format!("{}: {error}", path.display()))?)
     }
 }
 
@@ -93,8 +95,8 @@ pub struct Pictures {
 
 impl Pictures {
     pub fn read(folder: &Path, number: usize) -> Any<Pictures> {
-        let [rgb, labels, depth] =
-            ["rgb", "labels", "depth"].map(|kind| read_png(&folder.join(format!("{number:02}_{kind}.png"))));
+        let [rgb, labels, depth] = ["rgb", "labels", "depth"]
+            .map(|kind| read_png(&folder.join(format!("{number:02}_{kind}.png"))));
         Ok(Pictures { rgb: rgb?, labels: labels?, depth: depth? })
     }
 }

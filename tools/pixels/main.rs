@@ -1,16 +1,19 @@
-//! The same moments as the published engine draws them and as this one does: how many pixels are equal.
+//! The same moments as the published engine draws them and as this one does: how many pixels are
+//! equal.
 //!
 //! ```sh
 //! python tools/dump_published_scenes.py SCENES --levels 1,2,3 --moments 40
 //! cargo run --release -p hasard-envs --example pixels -- SCENES/* [--out DIR] [--list]
 //! ```
 //!
-//! A folder of scenes holds `scenes.json` and the pictures of one level. Map and art are those that the published packages
-//! use, named in that file. `--out` writes a picture of every moment, theirs, ours and the difference beside one another;
-//! `--list` prints a line for every moment. Pixels are compared by what the published label says of them: 0 and 1 are the
-//! world, 255 the weapon, others things. What the published engine does not tell of a moment is found by trying.
+//! A folder of scenes holds `scenes.json` and the pictures of one level. Map and art are those that
+//! the published packages use, named in that file. `--out` writes a picture of every moment,
+//! theirs, ours and the difference beside one another; `--list` prints a line for every moment.
+//! Pixels are compared by what the published label says of them: 0 and 1 are the world, 255 the
+//! weapon, others things. What the published engine does not tell of a moment is found by trying.
 //!
-//! Squares that rockets shed lie where the published engine's chance has them, if the scenes tell what that began with.
+//! Squares that rockets shed lie where the published engine's chance has them, if the scenes tell
+//! what that began with.
 
 mod chance;
 mod dump;
@@ -44,7 +47,9 @@ fn main() -> Any<()> {
     if let Some(out) = &out {
         std::fs::create_dir_all(out)?;
     }
-    println!("| level | pixels of | number | equal % | within 8 % | mean difference |\n|---|---|--:|--:|--:|--:|");
+    println!(
+        "| level | pixels of | number | equal % | within 8 % | mean difference |\n|---|---|--:|--:|--:|--:|"
+    );
     let mut whole = Tallies::default();
     for folder in &folders {
         let tallies = level(folder, out.as_deref(), list)?;
@@ -70,11 +75,22 @@ fn level(folder: &Path, out: Option<&Path>, list: bool) -> Any<Tallies> {
         let mut posed = stage.pose(&level, moment);
         let guess = untold::find(&mut stage, &mut posed, &theirs, &level.scenario, moment);
         leave_trails(&mut posed.world, moment);
-        stage.renderer.render(&mut stage.scratch, &posed.world, 0, Buffers { depth: true, labels: true });
+        stage.renderer.render(
+            &mut stage.scratch,
+            &posed.world,
+            0,
+            Buffers { depth: true, labels: true },
+        );
         stage.renderer.write_rgb_hwc(&mut stage.rgb);
         let own = compare(&stage, &posed, &theirs, moment, &level.scenario);
         if list {
-            println!("{} {:2} tic {:5}: {guess}; {}", name(folder), moment.number, moment.tic, own.summary());
+            println!(
+                "{} {:2} tic {:5}: {guess}; {}",
+                name(folder),
+                moment.number,
+                moment.tic,
+                own.summary()
+            );
         }
         if let Some(out) = out {
             let path = out.join(format!("{}_{:02}.png", name(folder), moment.number));
@@ -86,12 +102,20 @@ fn level(folder: &Path, out: Option<&Path>, list: bool) -> Any<Tallies> {
 }
 
 /// Counts the pixels of a moment.
-fn compare(stage: &Stage, posed: &pose::Posed, theirs: &dump::Pictures, moment: &dump::Moment, scenario: &str) -> Tallies {
+fn compare(
+    stage: &Stage,
+    posed: &pose::Posed,
+    theirs: &dump::Pictures,
+    moment: &dump::Moment,
+    scenario: &str,
+) -> Tallies {
     let mut own = Tallies::default();
     let (classes, depth) = (stage.renderer.classes(), stage.renderer.depth());
     let view = stage.renderer.view().view_rows() * stage.size[0];
     if stage.size == [160, 120] {
-        for at in (0..72).flat_map(|row| (0..128).map(move |column| row * 120 / 72 * 160 + column * 160 / 128)) {
+        for at in (0..72)
+            .flat_map(|row| (0..128).map(move |column| row * 120 / 72 * 160 + column * 160 / 128))
+        {
             own.add(Kind::Learner, &theirs.rgb[3 * at..][..3], &stage.rgb[3 * at..][..3]);
         }
     }
@@ -106,7 +130,11 @@ fn compare(stage: &Stage, posed: &pose::Posed, theirs: &dump::Pictures, moment: 
             }
         } else if label > 1 {
             if posed.actors.iter().any(|&(value, _)| value == label) {
-                let name = moment.labels.iter().find(|thing| thing.value == label).map_or("", |thing| &thing.name);
+                let name = moment
+                    .labels
+                    .iter()
+                    .find(|thing| thing.value == label)
+                    .map_or("", |thing| &thing.name);
                 own.add_thing(name, a, b);
             }
         } else if classes[at] < class::FIRST_ACTOR && classes[at] != class::WEAPON {

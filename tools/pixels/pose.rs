@@ -51,7 +51,8 @@ impl Stage {
         let map = Arc::new(Map::build(&source, &level.scenario, &SCRIPTED_TEXTURES)?);
         let engine = pictures_beside(Path::new(&level.iwad))?;
         let additions: Vec<&[u8]> = engine.as_deref().into_iter().chain([&pwad[..]]).collect();
-        let assets = Arc::new(Assets::from_wads(&iwad, &additions, &|name| map.textures.contains(&name))?);
+        let assets =
+            Arc::new(Assets::from_wads(&iwad, &additions, &|name| map.textures.contains(&name))?);
         let scene = Arc::new(Scene::new(&map, assets));
         let size = FrameSize { width: level.width, height: level.height };
         let mut renderer = Renderer::new(scene, Arc::new(View::new(size)?));
@@ -122,7 +123,8 @@ impl Stage {
 /// Speed of rockets, map units a tic.
 const ROCKET_SPEED: i32 = 20;
 
-/// Leaves the soot of a rocket that has burst at a place: it bursts there once more if a wall was in its way.
+/// Leaves the soot of a rocket that has burst at a place: it bursts there once more if a wall was
+/// in its way.
 fn leave_soot(world: &mut World, [x, y, z, angle]: [f64; 4]) {
     let mut again = world.clone();
     let place = [x, y, z].map(fixed);
@@ -139,12 +141,14 @@ fn leave_soot(world: &mut World, [x, y, z, angle]: [f64; 4]) {
     }
 }
 
-/// Leaves the trails of the rockets that have flown, with the squares that chance gave them there, if that was noted.
+/// Leaves the trails of the rockets that have flown, with the squares that chance gave them there,
+/// if that was noted.
 pub fn leave_trails(world: &mut World, moment: &Moment) {
     let lots = moment.chance.map_or_else(Vec::new, |seed| chance::lots(seed, moment));
     for (flight, lots) in moment.flights.iter().zip(lots) {
         let [place, velocity] = [flight.place, flight.velocity].map(|vector| vector.map(fixed));
-        // Ours counts tics from nought; and the world's clock may be ahead, where textures are animated.
+        // Ours counts tics from nought; and the world's clock may be ahead, where textures are
+        // animated.
         let begun = world.tic + flight.tic - 1 - moment.tic;
         let (id, sector) = (world.players[0].actor, world.map.sector_at(place[0], place[1]));
         let mut trail = Trail::new(id, place, velocity, begun, sector, Chance::Told(lots.into()));
@@ -153,7 +157,8 @@ pub fn leave_trails(world: &mut World, moment: &Moment) {
     }
 }
 
-/// What the scripts of Precipice Plunge do to light at the start of a level; no other scenario's do.
+/// What the scripts of Precipice Plunge do to light at the start of a level; no other scenario's
+/// do.
 fn light_by_script(level: &Level, world: &mut World) {
     if level.scenario != "precipice_plunge" {
         return;
@@ -161,7 +166,8 @@ fn light_by_script(level: &Level, world: &mut World) {
     let (first, tiles) = (127, if level.level == 1 { 35 * 7 } else { 57 * 7 });
     let tags: Vec<i32> = world.map.sectors.iter().map(|sector| sector.tag).collect();
     for tag in tags.into_iter().filter(|&tag| tag > first && tag <= first + tiles) {
-        let light = if level.level == 1 { 255 + (first - tag) / 2 } else { 255 - 155 * tag / tiles };
+        let light =
+            if level.level == 1 { 255 + (first - tag) / 2 } else { 255 - 155 * tag / tiles };
         // How far tiles glow up and down from there.
         let glow = if level.level == 3 { 50 } else { 30 };
         world.light_change_to_value(tag, light);
@@ -171,8 +177,10 @@ fn light_by_script(level: &Level, world: &mut World) {
 
 fn set_player(world: &mut World, moment: &Moment) {
     let value = |name: &str| moment.value(name);
-    let [x, y, z] = ["CAMERA_POSITION_X", "CAMERA_POSITION_Y", "POSITION_Z"].map(|name| fixed(value(name)));
-    let [angle, pitch] = ["CAMERA_ANGLE", "CAMERA_PITCH"].map(|name| Angle::from_degrees(value(name)));
+    let [x, y, z] =
+        ["CAMERA_POSITION_X", "CAMERA_POSITION_Y", "POSITION_Z"].map(|name| fixed(value(name)));
+    let [angle, pitch] =
+        ["CAMERA_ANGLE", "CAMERA_PITCH"].map(|name| Angle::from_degrees(value(name)));
     world.place_player(0, x, y, z, angle, pitch.0 as i32);
     let player = &mut world.players[0];
     player.view_z = fixed(value("CAMERA_POSITION_Z"));
@@ -192,5 +200,11 @@ fn set_player(world: &mut World, moment: &Moment) {
 }
 
 /// By published slot, from 2.
-const WEAPONS: [Weapon; 6] =
-    [Weapon::Pistol, Weapon::Shotgun, Weapon::Chaingun, Weapon::RocketLauncher, Weapon::PlasmaRifle, Weapon::Bfg9000];
+const WEAPONS: [Weapon; 6] = [
+    Weapon::Pistol,
+    Weapon::Shotgun,
+    Weapon::Chaingun,
+    Weapon::RocketLauncher,
+    Weapon::PlasmaRifle,
+    Weapon::Bfg9000,
+];

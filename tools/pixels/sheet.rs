@@ -6,10 +6,12 @@ use std::path::Path;
 /// Differences are this many times as bright as they are large.
 const BRIGHTER: u8 = 4;
 
-/// Writes two pictures of a size and their difference beside one another; small ones four times as large.
+/// Writes two pictures of a size and their difference beside one another; small ones four times as
+/// large.
 pub fn write(path: &Path, [width, height]: [usize; 2], [theirs, ours]: [&[u8]; 2]) -> Any<()> {
     let scale = if width < 320 { 4 } else { 1 };
-    let difference: Vec<u8> = theirs.iter().zip(ours).map(|(a, b)| a.abs_diff(*b).saturating_mul(BRIGHTER)).collect();
+    let difference: Vec<u8> =
+        theirs.iter().zip(ours).map(|(a, b)| a.abs_diff(*b).saturating_mul(BRIGHTER)).collect();
     let mut sheet = Vec::with_capacity(3 * width * height * scale * scale * 3);
     for y in 0..height * scale {
         for picture in [theirs, ours, &difference] {

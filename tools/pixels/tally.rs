@@ -19,8 +19,19 @@ pub enum Kind {
     Learner,
 }
 
-const NAMES: [&str; 11] =
-    ["wall", "floor", "ceiling", "sky", "world", "status bar", "weapon", "sprites", "depth", "labels", "learner's frame"];
+const NAMES: [&str; 11] = [
+    "wall",
+    "floor",
+    "ceiling",
+    "sky",
+    "world",
+    "status bar",
+    "weapon",
+    "sprites",
+    "depth",
+    "labels",
+    "learner's frame",
+];
 
 /// Counts of one kind.
 #[derive(Clone, Copy, Default)]
@@ -54,7 +65,12 @@ impl Tally {
     fn print(&self, level: &str, name: &str) {
         let part = |of: u64| 100.0 * of as f64 / self.pixels as f64;
         let mean = self.sum as f64 / self.channels as f64;
-        println!("| {level} | {name} | {} | {:.2} | {:.2} | {mean:.2} |", self.pixels, part(self.equal), part(self.near));
+        println!(
+            "| {level} | {name} | {} | {:.2} | {:.2} | {mean:.2} |",
+            self.pixels,
+            part(self.equal),
+            part(self.near)
+        );
     }
 }
 
@@ -97,7 +113,9 @@ impl Tallies {
     /// The equal parts of every kind in a line.
     pub fn summary(&self) -> String {
         let counted = self.kinds.iter().zip(NAMES).filter(|(tally, _)| tally.pixels > 0);
-        let parts = counted.map(|(tally, name)| format!("{name} {:.2}", 100.0 * tally.equal as f64 / tally.pixels as f64));
+        let parts = counted.map(|(tally, name)| {
+            format!("{name} {:.2}", 100.0 * tally.equal as f64 / tally.pixels as f64)
+        });
         parts.collect::<Vec<_>>().join(", ")
     }
 }

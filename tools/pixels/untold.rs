@@ -20,7 +20,13 @@ const LASTING: u32 = 1000;
 const AT_REST: [Fixed; 2] = [Fixed::ZERO, Fixed((32 << 16) + 24_576)];
 
 /// Finds everything, part by part, and tells it in a line.
-pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &str, moment: &Moment) -> String {
+pub fn find(
+    stage: &mut Stage,
+    posed: &mut Posed,
+    theirs: &Pictures,
+    scenario: &str,
+    moment: &Moment,
+) -> String {
     let view = stage.renderer.view().view_rows() * stage.size[0];
     let bar = |at: usize| at >= view;
     let world = |at: usize| at < view && theirs.labels[at] <= 1;
@@ -33,8 +39,18 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
     let damage = (1..=100).map(|count| flash(0, count, 0));
     let suit = (0..=6).map(|count| flash(count, 0, LASTING));
     try_all(posed, bonus.chain(damage).chain(suit).collect(), &bar);
-    let faces = [Face::Glance(1), Face::Glance(0), Face::Glance(2), Face::Ouch, Face::Grin, Face::Rage, Face::Dead];
-    let show = |face| -> Change { Box::new(move |world: &mut World| world.players[0].face_state.shown = face) };
+    let faces = [
+        Face::Glance(1),
+        Face::Glance(0),
+        Face::Glance(2),
+        Face::Ouch,
+        Face::Grin,
+        Face::Rage,
+        Face::Dead,
+    ];
+    let show = |face| -> Change {
+        Box::new(move |world: &mut World| world.players[0].face_state.shown = face)
+    };
     try_all(posed, faces.into_iter().map(show).collect(), &bar);
     let spent = |rounds: i32| -> Change {
         Box::new(move |world: &mut World| {
@@ -49,7 +65,9 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
         let variants = darkness(&posed.world);
         try_all(posed, variants, &world);
     }
-    let muzzle = |light| -> Change { Box::new(move |world: &mut World| world.players[0].extra_light = light) };
+    let muzzle = |light| -> Change {
+        Box::new(move |world: &mut World| world.players[0].extra_light = light)
+    };
     try_all(posed, (0..=2).map(muzzle).collect(), &world);
     let clock = |tics: u32| -> Change {
         let tic = moment.tic + tics;
@@ -68,13 +86,19 @@ pub fn find(stage: &mut Stage, posed: &mut Posed, theirs: &Pictures, scenario: &
         try_all(posed, turned(&[one, other]), &world);
     }
     let things = |at: usize| at < view && !matches!(theirs.labels[at], 0 | 1 | 255);
-    // What shines through is told only together with what is behind it: another round, by the pixels of all things.
+    // What shines through is told only together with what is behind it: another round, by the
+    // pixels of all things.
     for again in [false, true] {
         for (label, id) in posed.actors.clone() {
             let slot = usize::from(id.slot);
-            let dead = moment.labels.iter().any(|thing| thing.value == label && thing.name.starts_with("Dead"));
+            let dead = moment
+                .labels
+                .iter()
+                .any(|thing| thing.value == label && thing.name.starts_with("Dead"));
             let variants = frames(&posed.world, slot, dead);
-            try_all(posed, variants, &|at| if again { things(at) } else { at < view && theirs.labels[at] == label });
+            try_all(posed, variants, &|at| {
+                if again { things(at) } else { at < view && theirs.labels[at] == label }
+            });
         }
         for mark in 0..marks {
             try_all(posed, turned(&[mark]), &everywhere);
@@ -105,8 +129,10 @@ fn flash(bonus: u8, damage: u8, suit: u32) -> Change {
 
 /// Light as it is in the map, light and darkness as the scripts switch them, and each with goggles.
 fn darkness(world: &World) -> Vec<Change> {
-    let sectors = (0..).zip(&world.map.sectors).filter(|(_, sector)| DARKENED_TAGS.contains(&sector.tag));
-    let lit: Vec<_> = sectors.map(|(id, _)| (SectorId(id), world.sector(SectorId(id)).light)).collect();
+    let sectors =
+        (0..).zip(&world.map.sectors).filter(|(_, sector)| DARKENED_TAGS.contains(&sector.tag));
+    let lit: Vec<_> =
+        sectors.map(|(id, _)| (SectorId(id), world.sector(SectorId(id)).light)).collect();
     let variant = |scripted: Option<i16>, goggles: bool| -> Change {
         let lit = lit.clone();
         Box::new(move |world: &mut World| {
@@ -117,7 +143,10 @@ fn darkness(world: &World) -> Vec<Change> {
         })
     };
     let lights = [None, Some(SCRIPTED_LIGHTS[0]), Some(SCRIPTED_LIGHTS[1])];
-    lights.into_iter().flat_map(|light| [false, true].map(|goggles| variant(light, goggles))).collect()
+    lights
+        .into_iter()
+        .flat_map(|light| [false, true].map(|goggles| variant(light, goggles)))
+        .collect()
 }
 
 /// Marks of soot, each every way round.
@@ -128,7 +157,8 @@ fn turned(marks: &[usize]) -> Vec<Change> {
         Box::new(move |world: &mut World| {
             for (place, &mark) in marks.iter().enumerate() {
                 let way = way >> (2 * place);
-                (world.soot[mark].mirrored, world.soot[mark].upturned) = (way & 1 != 0, way & 2 != 0);
+                (world.soot[mark].mirrored, world.soot[mark].upturned) =
+                    (way & 1 != 0, way & 2 != 0);
             }
         })
     };
@@ -152,7 +182,8 @@ fn launcher() -> Vec<Change> {
     variants
 }
 
-/// Every frame of an actor's animations; the published name tells the dying from the others, but of missiles.
+/// Every frame of an actor's animations; the published name tells the dying from the others, but of
+/// missiles.
 fn frames(world: &World, slot: usize, dead: bool) -> Vec<Change> {
     let set = |phase: Phase, step: u8, spawn_tic: u32| -> Change {
         Box::new(move |world: &mut World| {
@@ -161,7 +192,8 @@ fn frames(world: &World, slot: usize, dead: bool) -> Vec<Change> {
         })
     };
     let kind = world.actors[slot].kind;
-    let steps = |phase| (0..animation(kind, phase).frames.len() as u8).map(move |step| (phase, step));
+    let steps =
+        |phase| (0..animation(kind, phase).frames.len() as u8).map(move |step| (phase, step));
     if dead {
         return steps(Phase::Death).map(|(phase, step)| set(phase, step, 0)).collect();
     }
@@ -172,8 +204,15 @@ fn frames(world: &World, slot: usize, dead: bool) -> Vec<Change> {
     phases.into_iter().flat_map(steps).map(|(phase, step)| set(phase, step, 0)).collect()
 }
 
-/// Leaves the world with that change, the first of equals, by which most of the pixels that count are equal.
-fn best(stage: &mut Stage, world: &mut World, theirs: &Pictures, variants: Vec<Change>, counts: &dyn Fn(usize) -> bool) {
+/// Leaves the world with that change, the first of equals, by which most of the pixels that count
+/// are equal.
+fn best(
+    stage: &mut Stage,
+    world: &mut World,
+    theirs: &Pictures,
+    variants: Vec<Change>,
+    counts: &dyn Fn(usize) -> bool,
+) {
     let mut most = None;
     for (index, change) in variants.iter().enumerate() {
         change(world);

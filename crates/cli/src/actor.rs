@@ -27,8 +27,8 @@ pub struct Performance {
 }
 
 impl Performance {
-    /// An environment and a policy by its text: `run:DIR` or one that looks at nothing. `looks` is the task and what the
-    /// audience sees of it; an agent sees what it was trained to see.
+    /// An environment and a policy by its text: `run:DIR` or one that looks at nothing. `looks` is
+    /// the task and what the audience sees of it; an agent sees what it was trained to see.
     pub fn new(
         id: &str,
         policy: &OsStr,
@@ -38,24 +38,45 @@ impl Performance {
     ) -> Result<Performance, Failure> {
         if let Some(run) = agent_of(policy)? {
             // The task that was named, whatever file of that name the run was trained on.
-            let looks = &EnvOptions { scenario: Some(settings::env_id(id)?.scenario), ..looks.clone() };
-            return Performance::of_agent(id, &run, &agent_options(id, &run, looks, elsewhere)?, looks, seed);
+            let looks =
+                &EnvOptions { scenario: Some(settings::env_id(id)?.scenario), ..looks.clone() };
+            return Performance::of_agent(
+                id,
+                &run,
+                &agent_options(id, &run, looks, elsewhere)?,
+                looks,
+                seed,
+            );
         }
         let policy = settings::policy(policy)?;
         let mut stage = Stage::new(id, looks).map_err(Failure::bad)?;
         stage.reset(seed);
-        let actor = Actor::Fixed(Box::new(PolicyRun::new(policy, stage.env(), seed).map_err(Failure::bad)?));
+        let actor = Actor::Fixed(Box::new(
+            PolicyRun::new(policy, stage.env(), seed).map_err(Failure::bad)?,
+        ));
         Ok(Performance { stage, actor })
     }
 
     /// The agent of a run in the environment that it was trained in.
-    pub fn of_run(run: &Path, looks: &EnvOptions, elsewhere: Elsewhere<'_>, seed: u64) -> Result<Performance, Failure> {
+    pub fn of_run(
+        run: &Path,
+        looks: &EnvOptions,
+        elsewhere: Elsewhere<'_>,
+        seed: u64,
+    ) -> Result<Performance, Failure> {
         let config = run_config(run).map_err(Failure::bad)?;
-        let options = settings::trained_options(&config.env, pictures_kept(elsewhere, &config.env))?;
+        let options =
+            settings::trained_options(&config.env, pictures_kept(elsewhere, &config.env))?;
         Performance::of_agent(&config.env.id, run, &options, looks, seed)
     }
 
-    fn of_agent(id: &str, run: &Path, options: &EnvOptions, looks: &EnvOptions, seed: u64) -> Result<Performance, Failure> {
+    fn of_agent(
+        id: &str,
+        run: &Path,
+        options: &EnvOptions,
+        looks: &EnvOptions,
+        seed: u64,
+    ) -> Result<Performance, Failure> {
         let player = Player { run, which: Which::Selected, choice: Choice::Sampled };
         Performance::of_player(&player, id, options, looks, seed)
     }
@@ -84,8 +105,8 @@ impl Performance {
         }
     }
 
-    /// Goes on by a tic, choosing an action where the stage wants one and noting it in `recorder`. Gives what a step
-    /// brought at its end.
+    /// Goes on by a tic, choosing an action where the stage wants one and noting it in `recorder`.
+    /// Gives what a step brought at its end.
     pub fn tic(&mut self, recorder: Option<&mut Recorder>) -> Result<Option<Step>, Failure> {
         if self.stage.wants_action() {
             self.choose(recorder)?;
@@ -123,7 +144,8 @@ impl Performance {
     }
 }
 
-/// The run directory or file of the agent that a policy's text names: `run:DIR`, `run:FILE.agent` or `zoo:NAME`.
+/// The run directory or file of the agent that a policy's text names: `run:DIR`, `run:FILE.agent`
+/// or `zoo:NAME`.
 pub fn agent_of(policy: &OsStr) -> Result<Option<PathBuf>, Failure> {
     if zoo::after(policy, "zoo:").is_some() {
         return zoo::find(policy).map(Some);
@@ -131,22 +153,29 @@ pub fn agent_of(policy: &OsStr) -> Result<Option<PathBuf>, Failure> {
     Ok(zoo::after(policy, "run:"))
 }
 
-/// What a command that films says of places: its maps are those that are played in, but its pictures are the audience's, and the
-/// agent's only where its own are lost.
+/// What a command that films says of places: its maps are those that are played in, but its
+/// pictures are the audience's, and the agent's only where its own are lost.
 fn pictures_kept<'a>(elsewhere: Elsewhere<'a>, env: &EnvConfig) -> Elsewhere<'a> {
     Elsewhere { maps: elsewhere.maps, ..elsewhere.where_missing(env) }
 }
 
-/// What the agent of a run is to see in an environment: as it was trained, under the rules and constraint of `task`, with the buttons that
-/// it knows. Says so where it was trained in another scenario.
-pub fn agent_options(id: &str, run: &Path, task: &EnvOptions, elsewhere: Elsewhere<'_>) -> Result<EnvOptions, Failure> {
+/// What the agent of a run is to see in an environment: as it was trained, under the rules and
+/// constraint of `task`, with the buttons that it knows. Says so where it was trained in another
+/// scenario.
+pub fn agent_options(
+    id: &str,
+    run: &Path,
+    task: &EnvOptions,
+    elsewhere: Elsewhere<'_>,
+) -> Result<EnvOptions, Failure> {
     let env = run_config(run).map_err(Failure::bad)?.env;
     if scenario_of(&env.id) != scenario_of(id) {
         note!("hasard: {}: was trained in {}, not in {id}", run.display(), env.id);
     }
     let trained = settings::trained_options(&env, pictures_kept(elsewhere, &env))?;
     let actions_of = Some((trained.rules, trained.hard));
-    let (rules, hard, early_creatures, test_seeds) = (task.rules, task.hard, task.early_creatures, task.test_seeds);
+    let (rules, hard, early_creatures, test_seeds) =
+        (task.rules, task.hard, task.early_creatures, task.test_seeds);
     let scenario = task.scenario.or(trained.scenario);
     Ok(EnvOptions { scenario, rules, hard, early_creatures, test_seeds, actions_of, ..trained })
 }

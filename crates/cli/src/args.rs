@@ -87,7 +87,8 @@ pub struct EnvArgs {
     /// Constants of the paper, of the published package, or of the code behind the paper's tables
     #[arg(long, value_enum, default_value_t = Rules::Paper)]
     pub rules: Rules,
-    /// Detonator's Dilemma 1 under `--rules tables`: the creatures of the first runs (PPO, PPOCost, PPOLag), not of the later
+    /// Detonator's Dilemma 1 under `--rules tables`: the creatures of the first runs (PPO, PPOCost,
+    /// PPOLag), not of the later
     #[arg(long)]
     pub early_creatures: bool,
     /// Hard constraint: harm ends the episode
@@ -99,23 +100,29 @@ pub struct EnvArgs {
     /// Tics (1/35 s) that each action is held
     #[arg(long, value_name = "TICS", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=35))]
     pub frame_skip: u32,
-    /// Frame size, 64x48 to 1920x1080; if absent 128x72 for learners (the nearest-neighbour reduction of 160x120), 640x480
-    /// to play and render, 320x240 to record, 160x120 as .gif
+    /// Frame size, 64x48 to 1920x1080; if absent 128x72 for learners (the nearest-neighbour
+    /// reduction of 160x120), 640x480 to play and render, 320x240 to record, 160x120 as .gif
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the
+    /// one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
-    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
-    /// `hasard` of the python3 on the path
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a
+    /// WAD, or `auto` for the package `hasard` of the python3 on the path
     #[arg(long, value_name = "DIR")]
     pub maps: Option<PathBuf>,
 }
 
 impl EnvArgs {
-    /// Whether rules or actions differ from the usual ones; size, pictures and maps are another matter.
+    /// Whether rules or actions differ from the usual ones; size, pictures and maps are another
+    /// matter.
     pub fn changes_rules(&self) -> bool {
-        self.rules != Rules::Paper || self.early_creatures || self.hard || self.full_actions || self.frame_skip != 4
+        self.rules != Rules::Paper
+            || self.early_creatures
+            || self.hard
+            || self.full_actions
+            || self.frame_skip != 4
     }
 
     /// Where the maps and pictures of an agent's run are.
@@ -127,7 +134,8 @@ impl EnvArgs {
 /// Where a run's files are now.
 #[derive(Args, Debug, Clone, Default)]
 pub struct PlaceArgs {
-    /// Where the run's maps are now, if elsewhere than when it was trained; or other maps to play in
+    /// Where the run's maps are now, if elsewhere than when it was trained; or other maps to play
+    /// in
     #[arg(long, value_name = "DIR")]
     pub maps: Option<PathBuf>,
     /// Where the IWAD of the run's pictures is now
@@ -160,7 +168,8 @@ pub struct ObservationArgs {
 /// Options of how depth and segmentation look.
 #[derive(Args, Debug, Clone, Default)]
 pub struct LooksArgs {
-    /// Depth of walls, things and sky ends at 255 * rows / 480, as in the published engine, not at 255
+    /// Depth of walls, things and sky ends at 255 * rows / 480, as in the published engine, not at
+    /// 255
     #[arg(long)]
     pub published_depth: bool,
     /// Segment in the published colours, some of which several classes share
@@ -212,7 +221,10 @@ impl std::str::FromStr for Size {
     fn from_str(text: &str) -> Result<Size, String> {
         let remedy = "write WIDTHxHEIGHT such as 160x120, from 64x48 to 1920x1080";
         let (width, height) = text.split_once(['x', 'X']).ok_or(remedy)?;
-        let size = Size { width: width.parse().map_err(|_| remedy)?, height: height.parse().map_err(|_| remedy)? };
+        let size = Size {
+            width: width.parse().map_err(|_| remedy)?,
+            height: height.parse().map_err(|_| remedy)?,
+        };
         if !(64..=1920).contains(&size.width) || !(48..=1080).contains(&size.height) {
             return Err(remedy.into());
         }
@@ -284,7 +296,8 @@ pub struct RolloutArgs {
     /// Environment id, see `hasard envs`
     #[arg(value_parser = env_id)]
     pub env: String,
-    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, shuttle, carrier, run:DIR, zoo:NAME; `hasard envs --json` lists the buttons
+    /// random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, shuttle, carrier, run:DIR,
+    /// zoo:NAME; `hasard envs --json` lists the buttons
     #[arg(long, default_value = "random")]
     pub policy: OsString,
     /// Number of episodes
@@ -313,7 +326,8 @@ pub struct TraceArgs {
     /// Environment id
     #[arg(value_parser = env_id)]
     pub env: String,
-    /// Where the player is placed, at rest, in map units and degrees; the episode's own start if absent
+    /// Where the player is placed, at rest, in map units and degrees; the episode's own start if
+    /// absent
     #[arg(long, value_name = "X,Y,Z,ANGLE[,PITCH]", allow_hyphen_values = true)]
     pub start: Option<String>,
     /// No-op tics before the player is placed
@@ -351,8 +365,8 @@ pub struct BenchArgs {
     /// Seconds to measure
     #[arg(long, default_value_t = 5.0)]
     pub seconds: f64,
-    /// Measure the whole training loop (worlds, inference, learning; one epoch) and what the processor's matrix products
-    /// would allow, in turns
+    /// Measure the whole training loop (worlds, inference, learning; one epoch) and what the
+    /// processor's matrix products would allow, in turns
     #[arg(long)]
     pub learn: bool,
     /// With --learn: the algorithm
@@ -361,10 +375,12 @@ pub struct BenchArgs {
     /// With --learn: the preset, but for its epochs and minibatches
     #[arg(long, default_value = "paper", requires = "learn")]
     pub preset: String,
-    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512|avx512bf16 chooses others
+    /// With --learn: only with plain kernels; HASARD_SIMD=plain|avx2|avx512|avx512bf16 chooses
+    /// others
     #[arg(long, requires = "learn")]
     pub portable: bool,
-    /// With --learn: any setting of config.json but threads, such as learning.reuse_forward=true; may be given several times
+    /// With --learn: any setting of config.json but threads, such as learning.reuse_forward=true;
+    /// may be given several times
     #[arg(long, value_name = "NAME=VALUE", requires = "learn")]
     pub set: Vec<String>,
     /// Seed
@@ -381,7 +397,8 @@ pub struct BenchArgs {
     pub observation: ObservationArgs,
 }
 
-/// A view of a moment: what `hasard render` draws, and what stands beside the player's view in a video.
+/// A view of a moment: what `hasard render` draws, and what stands beside the player's view in a
+/// video.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
     /// What the player sees
@@ -391,7 +408,8 @@ pub enum View {
     Depth,
     /// One colour for each class of things, and for walls, floor, ceiling and sky
     Segmented,
-    /// Raw labels: 0 for surfaces, n * 255 / (N + 1) for the n-th of N things drawn, 255 for the weapon
+    /// Raw labels: 0 for surfaces, n * 255 / (N + 1) for the n-th of N things drawn, 255 for the
+    /// weapon
     Labels,
     /// Luminance
     #[value(alias = "gray")]
@@ -411,7 +429,8 @@ pub struct PlayArgs {
     /// Environment id, see `hasard envs`
     #[arg(value_parser = env_id)]
     pub env: String,
-    /// Folder in which every finished episode is kept; `hasard report FOLDER` counts them as results
+    /// Folder in which every finished episode is kept; `hasard report FOLDER` counts them as
+    /// results
     #[arg(short, long, value_name = "DIR", default_value = "human")]
     pub out: PathBuf,
     /// Keep no episodes
@@ -443,7 +462,8 @@ pub struct RenderArgs {
     /// Other views beside it, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', value_name = "VIEW,...")]
     pub beside: Vec<View>,
-    /// Who acts before the picture: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME
+    /// Who acts before the picture: random, sticky:K, noop, hold:BUTTON+BUTTON,
+    /// hold-after:K:BUTTON, run:DIR, zoo:NAME
     #[arg(long, default_value = "random")]
     pub policy: OsString,
     /// Policy steps before the picture
@@ -472,47 +492,54 @@ pub struct TrainArgs {
     /// PPO, PPOCost, PPOLag, PPOSaute, PPOPID, P3O, TRPO, TRPOLag, TRPOPID, CPO, FOCOPS, CUP, IPO
     #[arg(long, default_value = "PPOPID")]
     pub algo: String,
-    /// quick: settings that learn within minutes on a CPU; paper, released, tables: 500 million frames with the settings of the
-    /// paper's text, of the published code, or of the code that made the paper's tables (with its rules, unless --rules says others)
+    /// quick: settings that learn within minutes on a CPU; paper, released, tables: 500 million
+    /// frames with the settings of the paper's text, of the published code, or of the code that
+    /// made the paper's tables (with its rules, unless --rules says others)
     #[arg(long, default_value = "quick")]
     pub preset: String,
-    /// Length of the run in frames (game tics: policy steps times frame skip), such as 2M or 1e6  [default: 10M with quick, 500M
-    /// with the other presets]
+    /// Length of the run in frames (game tics: policy steps times frame skip), such as 2M or 1e6
+    /// [default: 10M with quick, 500M with the other presets]
     #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     pub frames: Option<u64>,
     /// Run directory  [default: runs/ENV-ALGO-seedSEED]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Go on from the last checkpoint in the run directory, if there is one; --frames, --seed, --threads and --set of the
-    /// learning rate may differ from before
+    /// Go on from the last checkpoint in the run directory, if there is
+    /// one; --frames, --seed, --threads and --set of the learning rate may differ from before
     #[arg(long)]
     pub resume: bool,
-    /// Frames between evaluations on episodes of their own, by which the run selects a checkpoint; ten in its second half if
-    /// absent, fewer where they would take more than a twentieth of its frames, none in a run of fewer than 400000; 0 for none
+    /// Frames between evaluations on episodes of their own, by which the run selects a checkpoint;
+    /// ten in its second half if absent, fewer where they would take more than a twentieth of its
+    /// frames, none in a run of fewer than 400000; 0 for none
     #[arg(long, value_name = "FRAMES", value_parser = whole, allow_negative_numbers = true)]
     pub eval_every: Option<u64>,
-    /// Levels in turn, weights and normalisers carried over: 1,2,3 shares the frames equally, 1:400000,2:600000 gives each
-    /// its own; the run ends in the last level, whatever level ENV names
+    /// Levels in turn, weights and normalisers carried over: 1,2,3 shares the frames equally,
+    /// 1:400000,2:600000 gives each its own; the run ends in the last level, whatever level ENV
+    /// names
     #[arg(long, value_name = "LEVELS")]
     pub curriculum: Option<String>,
     /// Begin with the weights and normalisers of another run
     #[arg(long, value_name = "RUN", conflicts_with = "resume")]
     pub init_from: Option<PathBuf>,
-    /// Cost that an episode may have; TERM=COST for one named cost term, several times for several constraints
+    /// Cost that an episode may have; TERM=COST for one named cost term, several times for several
+    /// constraints
     #[arg(long, value_name = "COST", aliases = ["budget", "cost-limit"])]
     pub safety_budget: Vec<String>,
-    /// What budgets are held against: episode-mean, step-mean, or cvar:SHARE for the mean of the worst share of the latest episodes,
-    /// such as cvar:0.1 for the worst tenth (algorithms with multipliers); the preset's if absent
+    /// What budgets are held against: episode-mean, step-mean, or cvar:SHARE for the mean of the
+    /// worst share of the latest episodes, such as cvar:0.1 for the worst tenth (algorithms with
+    /// multipliers); the preset's if absent
     #[arg(long, value_name = "STATISTIC")]
     pub constraint_statistic: Option<String>,
     /// PPOCost: factor of the cost in the reward
     #[arg(long, value_name = "FACTOR")]
     pub cost_scale: Option<f64>,
-    /// cpu; vulkan, cuda or wgpu where the program was built with that feature; vulkan:1 is the second card. Such builds also
-    /// have flex, the graphics interface computed on the CPU, for comparisons
+    /// cpu; vulkan, cuda or wgpu where the program was built with that feature; vulkan:1 is the
+    /// second card. Such builds also have flex, the graphics interface computed on the CPU, for
+    /// comparisons
     #[arg(long, default_value = "cpu")]
     pub device: String,
-    /// Sampling and learning take turns, bit-reproducibly; the default on the CPU, where both want the same cores
+    /// Sampling and learning take turns, bit-reproducibly; the default on the CPU, where both want
+    /// the same cores
     #[arg(long)]
     pub sync: bool,
     /// Sampling and learning run side by side; the default on a graphics card
@@ -521,8 +548,9 @@ pub struct TrainArgs {
     /// Threads; results do not depend on their number  [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
-    /// Plain kernels: the same bits on every machine, some six times slower. HASARD_SIMD=plain|avx2|avx512 forces a family
-    /// without leaving a trace in the settings; avx512bf16 begins a run with learning.products=bfloat16
+    /// Plain kernels: the same bits on every machine, some six times slower.
+    /// HASARD_SIMD=plain|avx2|avx512 forces a family without leaving a trace in the settings;
+    /// avx512bf16 begins a run with learning.products=bfloat16
     #[arg(long)]
     pub portable: bool,
     /// Environments side by side  [default: 32]
@@ -570,7 +598,8 @@ pub struct EvalArgs {
     /// The latest checkpoint instead of the one that the run selected
     #[arg(long)]
     pub latest: bool,
-    /// Play under this rule set instead of the run's; a budget that was the default of the run's rules becomes that of these
+    /// Play under this rule set instead of the run's; a budget that was the default of the run's
+    /// rules becomes that of these
     #[arg(long, value_enum)]
     pub rules: Option<Rules>,
     /// Film so many of the worst episodes, those that cost most, one after the other
@@ -600,7 +629,8 @@ pub struct FilmArgs {
     /// Tics (1/35 s) from one frame to the next; 1 for .mp4 and 5 for .gif if absent
     #[arg(long, value_name = "TICS", value_parser = clap::value_parser!(u32).range(1..=350))]
     pub frame_every: Option<u32>,
-    /// How exact an .mp4 is, 0 to 100: every frame alike, the size follows; a .gif takes no notice of it  [default: 55]
+    /// How exact an .mp4 is, 0 to 100: every frame alike, the size follows; a .gif takes no notice
+    /// of it [default: 55]
     #[arg(long, value_name = "QUALITY")]
     pub quality: Option<Quality>,
     /// How depth and segmentation look
@@ -617,7 +647,8 @@ pub struct RecordArgs {
     /// File to write: .mp4, .gif or .episode
     #[arg(short, long, value_name = "FILE", default_value = "episode.mp4")]
     pub out: PathBuf,
-    /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR, zoo:NAME  [default: random]
+    /// Who acts in ENV: random, sticky:K, noop, hold:BUTTON+BUTTON, hold-after:K:BUTTON, run:DIR,
+    /// zoo:NAME [default: random]
     #[arg(long)]
     pub policy: Option<OsString>,
     /// Most policy steps that are taken; to the episode's end if absent
@@ -651,11 +682,12 @@ pub struct ReplayArgs {
     /// Frame size; 640x480 if absent, 160x120 as .gif
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the
+    /// one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
-    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
-    /// `hasard` of the python3 on the path
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a
+    /// WAD, or `auto` for the package `hasard` of the python3 on the path
     #[arg(long, value_name = "DIR")]
     pub maps: Option<PathBuf>,
     /// One JSON object about the episode
@@ -672,7 +704,8 @@ pub struct ReplayArgs {
 /// `hasard report`.
 #[derive(Args, Debug)]
 pub struct ReportArgs {
-    /// Run directories or folders that hold them, .episode files, and .jsonl files of `hasard rollout --json`
+    /// Run directories or folders that hold them, .episode files, and .jsonl files of `hasard
+    /// rollout --json`
     #[arg(required = true)]
     pub runs: Vec<PathBuf>,
     /// Folder to write
@@ -695,7 +728,8 @@ pub struct ReportArgs {
 /// `hasard serve`.
 #[derive(Args, Debug)]
 pub struct ServeArgs {
-    /// Folders below which runs are looked for, while they run too; `runs` if absent. Files of own tasks, which can be watched and played
+    /// Folders below which runs are looked for, while they run too; `runs` if absent. Files of own
+    /// tasks, which can be watched and played
     #[arg(value_name = "RUNS")]
     pub runs: Vec<PathBuf>,
     /// Address to listen at; beyond this machine only with the token that is printed
@@ -721,9 +755,10 @@ pub struct ServeArgs {
 /// `hasard sweep`.
 #[derive(Args, Debug)]
 pub struct SweepArgs {
-    /// TOML file, or an experiment: main, safety-bounds, curriculum, segmentation, depth, heatmaps, trpo, cost-scale, hard,
-    /// full-actions, efficiency, human, behaviour, witness (tables and figures of the paper), all-algorithms, or quick, quick-all,
-    /// quick-algorithms with the quick preset. docs/guide/reproduce.md says what each fills and how long it takes
+    /// TOML file, or an experiment: main, safety-bounds, curriculum, segmentation, depth, heatmaps,
+    /// trpo, cost-scale, hard, full-actions, efficiency, human, behaviour, witness (tables and
+    /// figures of the paper), all-algorithms, or quick, quick-all, quick-algorithms with the quick
+    /// preset. docs/guide/reproduce.md says what each fills and how long it takes
     pub what: OsString,
     /// Folder of the runs
     #[arg(short, long, value_name = "DIR")]
@@ -749,16 +784,20 @@ pub struct SweepArgs {
     /// Frames of every run, such as 2M; changes nothing else
     #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     pub frames: Option<u64>,
-    /// Frames of every run times this, to try an experiment in small; the rates of multipliers grow as runs shrink
+    /// Frames of every run times this, to try an experiment in small; the rates of multipliers grow
+    /// as runs shrink
     #[arg(long, value_name = "FACTOR")]
     pub scale: Option<f64>,
-    /// Episodes that the agent of each finished run is evaluated on, kept in its directory as eval.jsonl
+    /// Episodes that the agent of each finished run is evaluated on, kept in its directory as
+    /// eval.jsonl
     #[arg(long, value_name = "EPISODES")]
     pub evaluate: Option<u32>,
-    /// Another option of hasard train for every run, such as rules=tables or hard; several times for several
+    /// Another option of hasard train for every run, such as rules=tables or hard; several times
+    /// for several
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub option: Vec<String>,
-    /// Run whatever it takes; without it, --scale or --frames, a sweep of more than 48 hours is not begun
+    /// Run whatever it takes; without it, --scale or --frames, a sweep of more than 48 hours is not
+    /// begun
     #[arg(long)]
     pub yes: bool,
     /// Print the command lines and run nothing
@@ -879,14 +918,16 @@ pub struct ContactSheetArgs {
     /// Folder to write: for each scenario its sheet, and one moment of it at 640x480
     #[arg(short, long, value_name = "DIR", default_value = "sheets")]
     pub out: PathBuf,
-    /// Added to the seed of every moment; 0 draws the moments that were chosen for the documentation
+    /// Added to the seed of every moment; 0 draws the moments that were chosen for the
+    /// documentation
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the one in Python's `vizdoom`
+    /// Draw with the art of an IWAD such as Freedoom: a file, or `auto` for Debian's package or the
+    /// one in Python's `vizdoom`
     #[arg(long, value_name = "FILE")]
     pub iwad: Option<PathBuf>,
-    /// Play in the published maps, or your own: a folder laid out as the published package's, a WAD, or `auto` for the package
-    /// `hasard` of the python3 on the path
+    /// Play in the published maps, or your own: a folder laid out as the published package's, a
+    /// WAD, or `auto` for the package `hasard` of the python3 on the path
     #[arg(long, value_name = "DIR")]
     pub maps: Option<PathBuf>,
     /// One JSON object a file
@@ -928,7 +969,8 @@ pub struct MetricsArgs {
 /// `hasard completions`.
 #[derive(Args, Debug)]
 pub struct CompletionsArgs {
-    /// The shell; for bash: hasard completions bash > ~/.local/share/bash-completion/completions/hasard
+    /// The shell; for bash: hasard completions bash >
+    /// ~/.local/share/bash-completion/completions/hasard
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
     /// Takes a seed as every command does

@@ -3,7 +3,8 @@
 use crate::help::program;
 use std::path::{Path, PathBuf};
 
-/// Pages for users: the README and the documentation, without raw results, which keep the commands of their day.
+/// Pages for users: the README and the documentation, without raw results, which keep the commands
+/// of their day.
 fn pages() -> Vec<PathBuf> {
     fn gather(folder: &Path, into: &mut Vec<PathBuf>) {
         for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
@@ -20,7 +21,8 @@ fn pages() -> Vec<PathBuf> {
     all
 }
 
-/// The commands of a page's blocks of shell: comments and redirections left out, continued lines joined.
+/// The commands of a page's blocks of shell: comments and redirections left out, continued lines
+/// joined.
 fn shell_commands(page: &str) -> Vec<String> {
     let mut commands = Vec::new();
     let mut shell = false;
@@ -39,7 +41,12 @@ fn shell_commands(page: &str) -> Vec<String> {
             continue;
         }
         let whole = std::mem::take(&mut continued) + line;
-        commands.extend(whole.split("&&").flat_map(|part| part.split(" | ")).map(|part| part.trim().to_string()));
+        commands.extend(
+            whole
+                .split("&&")
+                .flat_map(|part| part.split(" | "))
+                .map(|part| part.trim().to_string()),
+        );
     }
     commands
 }
@@ -52,7 +59,10 @@ fn words(command: &str) -> Option<Vec<String>> {
         .or_else(|| command.strip_prefix("cargo run --release -p hasard -- "))
         .or_else(|| command.strip_prefix("nohup hasard "))?;
     Some(
-        std::iter::once("hasard").chain(rest.split_whitespace()).map(|word| word.trim_matches(['\'', '"']).to_string()).collect(),
+        std::iter::once("hasard")
+            .chain(rest.split_whitespace())
+            .map(|word| word.trim_matches(['\'', '"']).to_string())
+            .collect(),
     )
 }
 
@@ -79,6 +89,10 @@ fn commands_of_the_pages_are_understood() {
 #[test]
 fn commands_are_found_in_shell_blocks() {
     let page = "```sh\nhasard a \\\n  --b   # why\nHASARD_SIMD=avx2 hasard c && hasard d | head\n```\n```text\nhasard e\n```";
-    let found: Vec<_> = shell_commands(page).iter().filter_map(|command| words(command)).map(|words| words.join(" ")).collect();
+    let found: Vec<_> = shell_commands(page)
+        .iter()
+        .filter_map(|command| words(command))
+        .map(|words| words.join(" "))
+        .collect();
     assert_eq!(found, ["hasard a --b", "hasard d"]);
 }

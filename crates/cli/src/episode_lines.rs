@@ -27,7 +27,8 @@ impl EpisodeLines {
         self.constraints = constraints.to_vec();
     }
 
-    /// The rule set, and whether under the hard constraint: files of episodes say it, so that a report compares like with like.
+    /// The rule set, and whether under the hard constraint: files of episodes say it, so that a
+    /// report compares like with like.
     pub fn played_under(&mut self, options: &EnvOptions) {
         self.rules = Some((options.rules.name(), options.hard));
     }
@@ -45,21 +46,27 @@ impl EpisodeLines {
         } else {
             if self.episodes.is_empty() {
                 writeln!(out, "{env}")?;
-                writeln!(out, "{:>7} {:>12} {:>10} {:>10} {:>7}  end", "episode", "seed", "return", "cost", "length")?;
+                writeln!(
+                    out,
+                    "{:>7} {:>12} {:>10} {:>10} {:>7}  end",
+                    "episode", "seed", "return", "cost", "length"
+                )?;
             }
             let end = match (episode.terminated, episode.truncated) {
                 (true, _) => "terminated",
                 (_, true) => "timeout",
                 _ => "-",
             };
-            let (seed, value, cost, length) = (episode.seed, episode.episode_return, episode.cost, episode.length);
+            let (seed, value, cost, length) =
+                (episode.seed, episode.episode_return, episode.cost, episode.length);
             writeln!(out, "{number:>7} {seed:>12} {value:>10.3} {cost:>10.3} {length:>7}  {end}")?;
         }
         self.episodes.push(episode);
         Ok(())
     }
 
-    /// Prints means and their 95 % confidence half-widths: always for people; as an object with `"summary"` if asked.
+    /// Prints means and their 95 % confidence half-widths: always for people; as an object with
+    /// `"summary"` if asked.
     pub fn summary(&self, as_json: bool) -> Outcome {
         self.summary_with(as_json, &[])
     }
@@ -92,7 +99,12 @@ impl EpisodeLines {
         )?;
         writeln!(out, "cost of an episode: {}", tails_text(&all.tails, None))?;
         for one in &all.constraints {
-            writeln!(out, "{}: {}", one.term.as_deref().unwrap_or("under the budget"), tails_text(&one.tails, Some(one.budget)))?;
+            writeln!(
+                out,
+                "{}: {}",
+                one.term.as_deref().unwrap_or("under the budget"),
+                tails_text(&one.tails, Some(one.budget))
+            )?;
         }
         let stats: Vec<String> = mean_stats(&self.episodes)
             .as_object()
@@ -112,7 +124,8 @@ fn mean_stats(episodes: &[Episode]) -> Value {
     let names = episodes.first().map_or(&[][..], |first| &first.stats);
     let mean = |name: &str| {
         let values = episodes.iter().flat_map(|one| &one.stats).filter(|(own, _)| *own == name);
-        let (count, sum) = values.fold((0.0, 0.0), |(count, sum), (_, value)| (count + 1.0, sum + value));
+        let (count, sum) =
+            values.fold((0.0, 0.0), |(count, sum), (_, value)| (count + 1.0, sum + value));
         sum / count
     };
     named(names.iter().map(|&(name, _)| (name, mean(name))))
@@ -133,7 +146,9 @@ fn spread(tails: &Tails) -> Value {
 /// How costs spread, for people.
 fn tails_text(tails: &Tails, budget: Option<f64>) -> String {
     let over = match (tails.over_budget, budget) {
-        (Some(share), Some(budget)) => format!(", {:.0} % of episodes over the budget of {budget}", 100.0 * share),
+        (Some(share), Some(budget)) => {
+            format!(", {:.0} % of episodes over the budget of {budget}", 100.0 * share)
+        }
         _ => String::new(),
     };
     format!(
@@ -179,15 +194,20 @@ pub fn summary_row(all: &Evaluation, episodes: &[Episode]) -> Value {
 /// Return and costs with their half-widths, each constraint beside its budget, for people.
 pub fn worth(all: &Evaluation) -> String {
     let (returns, cost) = (all.episode_return, all.cost);
-    let mut text =
-        format!("return {:.3} +- {:.3}, cost {:.3} +- {:.3}", returns.mean, returns.half_width, cost.mean, cost.half_width);
+    let mut text = format!(
+        "return {:.3} +- {:.3}, cost {:.3} +- {:.3}",
+        returns.mean, returns.half_width, cost.mean, cost.half_width
+    );
     for one in &all.constraints {
         let kept = if one.within() { "within" } else { "over" };
         match &one.term {
             None => text += &format!(" ({kept} the budget of {})", one.budget),
             Some(term) => {
                 let (mean, half) = (one.cost.mean, one.cost.half_width);
-                text += &format!(", {term} {mean:.3} +- {half:.3} ({kept} its budget of {})", one.budget);
+                text += &format!(
+                    ", {term} {mean:.3} +- {half:.3} ({kept} its budget of {})",
+                    one.budget
+                );
             }
         }
     }
@@ -204,5 +224,7 @@ pub fn judgement(one: &Judgement) -> Value {
 }
 
 fn named(values: impl Iterator<Item = (&'static str, f64)>) -> Value {
-    Value::Object(values.map(|(name, value)| (name.to_string(), json!(value))).collect::<Map<_, _>>())
+    Value::Object(
+        values.map(|(name, value)| (name.to_string(), json!(value))).collect::<Map<_, _>>(),
+    )
 }

@@ -4,8 +4,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
 use std::io;
 
-/// Prints a line on standard error. Where that cannot be written (a full disk, a terminal that is gone) the line is lost and the
-/// work goes on: unlike `eprintln!`, no panic.
+/// Prints a line on standard error. Where that cannot be written (a full disk, a terminal that is
+/// gone) the line is lost and the work goes on: unlike `eprintln!`, no panic.
 macro_rules! note {
     ($($argument:tt)*) => { $crate::failure::write_note(format!($($argument)*)) };
 }
@@ -24,8 +24,8 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Bad input, from anything that prints as one line. What it quotes may come from a file or a name by anyone: nothing in it
-    /// commands the terminal.
+    /// Bad input, from anything that prints as one line. What it quotes may come from a file or a
+    /// name by anyone: nothing in it commands the terminal.
     pub fn bad(message: impl std::fmt::Display) -> Failure {
         Failure::BadInput(presentable(&message.to_string()))
     }
@@ -76,15 +76,19 @@ impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Failure {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Failure::OutputClosed,
-            _ => Failure::BadInput(format!("standard output cannot be written: {error}; make room, or send it elsewhere")),
+            _ => Failure::BadInput(format!(
+                "standard output cannot be written: {error}; make room, or send it elsewhere"
+            )),
         }
     }
 }
 
-/// Prints `--help` and `--version` as they are, and a usage error as one line, whose hint names the command if the first word after
-/// the program's name is one; gives the exit code.
+/// Prints `--help` and `--version` as they are, and a usage error as one line, whose hint names the
+/// command if the first word after the program's name is one; gives the exit code.
 pub fn report_usage(error: &clap::Error, first: Option<&OsString>) -> u8 {
-    if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+    if !error.use_stderr()
+        || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+    {
         return match error.print() {
             Ok(()) if !error.use_stderr() => 0,
             Err(problem) if !error.use_stderr() => Failure::from(problem).report(),
@@ -100,15 +104,22 @@ pub fn usage_line(error: &clap::Error) -> String {
     // A flag that is a setting of `config.json`, by our name or another program's: `--lr`.
     if error.kind() == ErrorKind::UnknownArgument
         && let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg)
-        && let Some(setting) = hasard_learn::config::explained::named(&flag.trim_start_matches('-').replace('-', "_"))
+        && let Some(setting) =
+            hasard_learn::config::explained::named(&flag.trim_start_matches('-').replace('-', "_"))
     {
-        return presentable(&format!("there is no {flag}; of a training that is --set {setting}=VALUE"));
+        return presentable(&format!(
+            "there is no {flag}; of a training that is --set {setting}=VALUE"
+        ));
     }
     let text = error.render().to_string();
     let parts: Vec<&str> = text
         .lines()
         .map(str::trim)
-        .filter(|line| !line.is_empty() && !line.starts_with("Usage:") && !line.starts_with("For more information"))
+        .filter(|line| {
+            !line.is_empty()
+                && !line.starts_with("Usage:")
+                && !line.starts_with("For more information")
+        })
         .collect();
     let line = presentable(&parts.join("; ").replace(":; ", ": "));
     // The standard library's words for what is no number without a sign.
@@ -125,8 +136,8 @@ fn command(first: Option<&OsString>) -> String {
     }
 }
 
-/// Prints a line on standard output and returns from the calling command if that cannot be done: unlike `println!`, no panic
-/// when the reader has gone away.
+/// Prints a line on standard output and returns from the calling command if that cannot be done:
+/// unlike `println!`, no panic when the reader has gone away.
 #[macro_export]
 macro_rules! say {
     ($($argument:tt)*) => {

@@ -14,7 +14,13 @@ const GROUPS: [(&str, &[&str]); 5] = [
 
 /// What is typed for each command, and what comes of it.
 const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
-    ("envs", &[("hasard envs", "ids, budgets, actions"), ("hasard envs --json", "the same with the names of the buttons")]),
+    (
+        "envs",
+        &[
+            ("hasard envs", "ids, budgets, actions"),
+            ("hasard envs --json", "the same with the names of the buttons"),
+        ],
+    ),
     ("new", &[("hasard new my_task", "my_task.toml, which every command takes in place of an id")]),
     (
         "check",
@@ -28,7 +34,10 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "rollout",
         &[
             ("hasard rollout VolcanicVentureLevel1 --episodes 20", "a random policy"),
-            ("hasard rollout VolcanicVentureLevel1 --policy zoo:VolcanicVentureLevel1", "a trained agent"),
+            (
+                "hasard rollout VolcanicVentureLevel1 --policy zoo:VolcanicVentureLevel1",
+                "a trained agent",
+            ),
         ],
     ),
     (
@@ -41,31 +50,55 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "bench",
         &[
-            ("hasard bench VolcanicVentureLevel1 --envs 32 --threads 2", "steps/s of the environments"),
-            ("hasard bench VolcanicVentureLevel1 --learn --threads 2", "steps/s of the whole training loop"),
+            (
+                "hasard bench VolcanicVentureLevel1 --envs 32 --threads 2",
+                "steps/s of the environments",
+            ),
+            (
+                "hasard bench VolcanicVentureLevel1 --learn --threads 2",
+                "steps/s of the whole training loop",
+            ),
         ],
     ),
     (
         "render",
         &[
-            ("hasard render VolcanicVentureLevel1 --step 50 -o frame.png", "what the agent sees, in large"),
-            ("hasard render RemedyRushLevel1 --beside depth,segmented,automap", "the same moment in every view"),
+            (
+                "hasard render VolcanicVentureLevel1 --step 50 -o frame.png",
+                "what the agent sees, in large",
+            ),
+            (
+                "hasard render RemedyRushLevel1 --beside depth,segmented,automap",
+                "the same moment in every view",
+            ),
         ],
     ),
     (
         "train",
         &[
             ("hasard train VolcanicVentureLevel1 --out runs/vv1", "PPOPID for 10 million frames"),
-            ("hasard train VolcanicVentureLevel1 --resume --out runs/vv1 --frames 20M", "go on with it"),
-            ("hasard train RemedyRushLevel1 --algo P3O --safety-budget 10 --seed 2", "another algorithm, budget and seed"),
-            ("hasard train VolcanicVentureLevel1 --algo PPOLag --preset paper", "the paper's settings: 500 million frames"),
+            (
+                "hasard train VolcanicVentureLevel1 --resume --out runs/vv1 --frames 20M",
+                "go on with it",
+            ),
+            (
+                "hasard train RemedyRushLevel1 --algo P3O --safety-budget 10 --seed 2",
+                "another algorithm, budget and seed",
+            ),
+            (
+                "hasard train VolcanicVentureLevel1 --algo PPOLag --preset paper",
+                "the paper's settings: 500 million frames",
+            ),
         ],
     ),
     (
         "eval",
         &[
             ("hasard eval zoo:VolcanicVentureLevel1", "an agent that comes with the program"),
-            ("hasard eval runs/vv1 --episodes 100 --worst 3 -o worst.mp4", "a run's agent, and a film of its worst episodes"),
+            (
+                "hasard eval runs/vv1 --episodes 100 --worst 3 -o worst.mp4",
+                "a run's agent, and a film of its worst episodes",
+            ),
         ],
     ),
     (
@@ -82,20 +115,38 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("hasard replay agent.episode --size 1280x720 -o large.mp4", "draw it at another size"),
         ],
     ),
-    ("report", &[("hasard report runs -o report", "one page of all runs below a folder: report/index.html")]),
+    (
+        "report",
+        &[(
+            "hasard report runs -o report",
+            "one page of all runs below a folder: report/index.html",
+        )],
+    ),
     ("serve", &[("hasard serve runs", "http://127.0.0.1:8350: follow runs, watch agents, play")]),
     (
         "sweep",
         &[
-            ("hasard sweep main --dry-run", "what an experiment of the paper would run, and how long"),
-            ("hasard sweep main --preset quick --levels 1 --seeds 1-3 --frames 8M", "a part of it with the quick preset"),
+            (
+                "hasard sweep main --dry-run",
+                "what an experiment of the paper would run, and how long",
+            ),
+            (
+                "hasard sweep main --preset quick --levels 1 --seeds 1-3 --frames 8M",
+                "a part of it with the quick preset",
+            ),
             ("hasard sweep my.toml", "a sweep of your own"),
         ],
     ),
-    ("export-agent", &[("hasard export-agent runs/vv1 -o zoo/Mine.agent", "then: hasard eval zoo:Mine")]),
+    (
+        "export-agent",
+        &[("hasard export-agent runs/vv1 -o zoo/Mine.agent", "then: hasard eval zoo:Mine")],
+    ),
     (
         "claim",
-        &[("hasard claim runs/vv1 --name mine -o scoreboard", "200 episodes that everybody plays; writes claim and agent")],
+        &[(
+            "hasard claim runs/vv1 --name mine -o scoreboard",
+            "200 episodes that everybody plays; writes claim and agent",
+        )],
     ),
     (
         "verify",
@@ -104,20 +155,38 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("hasard verify theirs.claim.json", "one claim, its agent beside it"),
         ],
     ),
-    ("scoreboard", &[("hasard scoreboard scoreboard", "a page of the claims that hold: scoreboard/index.html")]),
-    ("export-wad", &[("hasard export-wad VolcanicVentureLevel1 -o vv1.wad", "a map for any UDMF editor")]),
-    ("contact-sheet", &[("hasard contact-sheet RemedyRush", "every level in every view, in the folder sheets")]),
+    (
+        "scoreboard",
+        &[(
+            "hasard scoreboard scoreboard",
+            "a page of the claims that hold: scoreboard/index.html",
+        )],
+    ),
+    (
+        "export-wad",
+        &[("hasard export-wad VolcanicVentureLevel1 -o vv1.wad", "a map for any UDMF editor")],
+    ),
+    (
+        "contact-sheet",
+        &[("hasard contact-sheet RemedyRush", "every level in every view, in the folder sheets")],
+    ),
     (
         "settings",
         &[
             ("hasard settings", "of what hasard train does without options"),
-            ("hasard settings RemedyRushLevel1 --algo P3O --preset paper", "of another algorithm and preset"),
+            (
+                "hasard settings RemedyRushLevel1 --algo P3O --preset paper",
+                "of another algorithm and preset",
+            ),
         ],
     ),
     ("metrics", &[("hasard metrics", "every key of a run's metrics.jsonl")]),
     (
         "completions",
-        &[("hasard completions bash > ~/.local/share/bash-completion/completions/hasard", "complete commands and flags by Tab")],
+        &[(
+            "hasard completions bash > ~/.local/share/bash-completion/completions/hasard",
+            "complete commands and flags by Tab",
+        )],
     ),
 ];
 
@@ -128,18 +197,25 @@ const WIDTH: usize = 80;
 pub fn program() -> Command {
     let program = Cli::command();
     let list = list(&program);
-    let template = format!("{{about-with-newline}}\n{{usage-heading}} {{usage}}\n{list}\nOptions:\n{{options}}{{after-help}}");
+    let template = format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n{list}\nOptions:\n{{options}}{{after-help}}"
+    );
     program.help_template(template).mut_subcommands(|command| {
         let examples = examples(command.get_name());
         let before = command.get_after_help().map(|text| format!("{text}\n\n")).unwrap_or_default();
-        if examples.is_empty() { command } else { command.after_help(format!("{before}{examples}")) }
+        if examples.is_empty() {
+            command
+        } else {
+            command.after_help(format!("{before}{examples}"))
+        }
     })
 }
 
 /// The commands, group by group; what is in no group stands in a last one.
 fn list(program: &Command) -> String {
     let about = |name: &str| {
-        let command = program.get_subcommands().find(|one| one.get_name() == name && !one.is_hide_set())?;
+        let command =
+            program.get_subcommands().find(|one| one.get_name() == name && !one.is_hide_set())?;
         Some((name.to_string(), command.get_about().map(ToString::to_string).unwrap_or_default()))
     };
     let grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
@@ -175,8 +251,11 @@ fn wrapped(head: &str, text: &str) -> String {
 }
 
 fn examples(name: &str) -> String {
-    let Some((_, examples)) = EXAMPLES.iter().find(|(known, _)| *known == name) else { return String::new() };
-    let lines: Vec<String> = examples.iter().map(|(line, what)| format!("  {line}\n      {what}")).collect();
+    let Some((_, examples)) = EXAMPLES.iter().find(|(known, _)| *known == name) else {
+        return String::new();
+    };
+    let lines: Vec<String> =
+        examples.iter().map(|(line, what)| format!("  {line}\n      {what}")).collect();
     format!("Examples:\n{}", lines.join("\n"))
 }
 
@@ -189,13 +268,24 @@ mod tests {
     fn commands_are_listed_once_and_have_examples_that_parse() {
         let program = program();
         let list = list(&program);
-        for command in program.get_subcommands().map(Command::get_name).filter(|name| *name != "help") {
-            assert_eq!(list.lines().filter(|line| line.starts_with(&format!("  {command} "))).count(), 1, "{command}: {list}");
-            let examples =
-                EXAMPLES.iter().find(|(name, _)| *name == command).unwrap_or_else(|| panic!("{command} has no example")).1;
+        for command in
+            program.get_subcommands().map(Command::get_name).filter(|name| *name != "help")
+        {
+            assert_eq!(
+                list.lines().filter(|line| line.starts_with(&format!("  {command} "))).count(),
+                1,
+                "{command}: {list}"
+            );
+            let examples = EXAMPLES
+                .iter()
+                .find(|(name, _)| *name == command)
+                .unwrap_or_else(|| panic!("{command} has no example"))
+                .1;
             for (line, _) in examples {
                 let words = line.split(" > ").next().unwrap().split_whitespace();
-                let parsed = super::program().try_get_matches_from(words).unwrap_or_else(|error| panic!("{line}: {error}"));
+                let parsed = super::program()
+                    .try_get_matches_from(words)
+                    .unwrap_or_else(|error| panic!("{line}: {error}"));
                 assert_eq!(parsed.subcommand_name(), Some(command), "{line}");
             }
         }

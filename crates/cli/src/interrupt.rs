@@ -1,8 +1,9 @@
 //! Ctrl-C, SIGTERM and the end of a terminal: how a command ends before its time.
 //!
-//! A command ends by the very signal that it got, so that a shell sees 130 or 143 and its loops end too. Most end at once, without
-//! leaving the files that were in the making; a training and a sweep first come to a good end, and give up at the next signal.
-//! A process that a sweep started hears of the sweep's end, whatever it ended by, at its standard input.
+//! A command ends by the very signal that it got, so that a shell sees 130 or 143 and its loops end
+//! too. Most end at once, without leaving the files that were in the making; a training and a sweep
+//! first come to a good end, and give up at the next signal. A process that a sweep started hears
+//! of the sweep's end, whatever it ended by, at its standard input.
 
 use crate::failure::Failure;
 use hasard_sweep::STOPS_WITH_INPUT;
@@ -67,7 +68,9 @@ fn heard(signal: i32) {
     if !STOP.swap(true, Ordering::SeqCst) {
         match manner == Manner::Parent as u8 {
             true => note!("stopping the runs, each with a checkpoint; once more to give them up"),
-            false => note!("stopping after this rollout, with a checkpoint; once more to stop at once"),
+            false => {
+                note!("stopping after this rollout, with a checkpoint; once more to stop at once")
+            }
         }
     } else if manner != Manner::Parent as u8 || GIVE_UP.swap(true, Ordering::SeqCst) {
         end_by(signal);
@@ -114,9 +117,11 @@ fn listen() {
 /// Whether whoever started this process had a signal ignored.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
-    // SAFETY: `sigaction` is plain data for which zeros are valid, and with a null action the call only fills it.
+    // SAFETY: `sigaction` is plain data for which zeros are valid, and with a null action the call
+    // only fills it.
     unsafe {
         let mut now: libc::sigaction = std::mem::zeroed();
-        libc::sigaction(signal, std::ptr::null(), &raw mut now) == 0 && now.sa_sigaction == libc::SIG_IGN
+        libc::sigaction(signal, std::ptr::null(), &raw mut now) == 0
+            && now.sa_sigaction == libc::SIG_IGN
     }
 }

@@ -1,4 +1,5 @@
-//! The program `hasard` as a library: glue between the command line and the libraries. `main.rs` and the Python package run it.
+//! The program `hasard` as a library: glue between the command line and the libraries. `main.rs`
+//! and the Python package run it.
 
 // They panic where a stream is closed or its disk is full.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
@@ -41,7 +42,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 fn parse(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, ArgMatches), clap::Error> {
-    // A negative number is a value, wrong as it may be, and no flag of that name: else the hint is about flags.
+    // A negative number is a value, wrong as it may be, and no flag of that name: else the hint is
+    // about flags.
     let value = |flag: clap::Arg| {
         let takes = !flag.is_positional() && flag.get_action().takes_values();
         if takes { flag.allow_negative_numbers(true) } else { flag }
@@ -92,8 +94,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
     code
 }
 
-/// Trains as `hasard train` with these words does, but tells the caller and not the terminal; as the first of a team whose others
-/// [`follow`]. Gives the run's directory and how it ended.
+/// Trains as `hasard train` with these words does, but tells the caller and not the terminal; as
+/// the first of a team whose others [`follow`]. Gives the run's directory and how it ended.
 ///
 /// # Errors
 /// One line that names the input and the remedy.
@@ -103,12 +105,13 @@ pub fn train(
     hooks: &mut Hooks<'_>,
 ) -> Result<(PathBuf, Summary), String> {
     let program = ["hasard", "train"].map(OsString::from);
-    let (cli, matches) = parse(program.into_iter().chain(words)).map_err(|error| failure::usage_line(&error))?;
+    let (cli, matches) =
+        parse(program.into_iter().chain(words)).map_err(|error| failure::usage_line(&error))?;
     let typed = matches.subcommand().map_or(&matches, |(_, typed)| typed);
     match cli.command {
-        Command::Train(args) => {
-            commands::train::begin(&args, typed).and_then(|begun| begun.train(team, hooks)).map_err(Failure::line)
-        }
+        Command::Train(args) => commands::train::begin(&args, typed)
+            .and_then(|begun| begun.train(team, hooks))
+            .map_err(Failure::line),
         _ => Err("these words are another command's".to_string()),
     }
 }
@@ -119,8 +122,11 @@ pub fn train(
 /// One line that names the input and the remedy.
 pub fn follow(team: Team, warn: &mut dyn FnMut(String)) -> Result<(), String> {
     let invitation = Invitation::hear(team).map_err(|error| error.to_string())?;
-    let options = settings::trained_options(&invitation.config.env, Elsewhere::default()).map_err(Failure::line)?;
-    invitation.follow(&|env, worlds| VecEnv::new(&env.id, &options, worlds), warn).map_err(|error| error.to_string())
+    let options = settings::trained_options(&invitation.config.env, Elsewhere::default())
+        .map_err(Failure::line)?;
+    invitation
+        .follow(&|env, worlds| VecEnv::new(&env.id, &options, worlds), warn)
+        .map_err(|error| error.to_string())
 }
 
 /// The run directory or agent file that a text names: a path, or `zoo:NAME`.
@@ -131,8 +137,8 @@ pub fn agent_place(text: &Path) -> Result<PathBuf, String> {
     zoo::find(text.as_os_str()).map_err(Failure::line)
 }
 
-/// Plays an episode of each seed with a policy and gives what `hasard eval --json` prints: a row an episode, then the summary. `interrupted` is
-/// asked between some episodes and others.
+/// Plays an episode of each seed with a policy and gives what `hasard eval --json` prints: a row an
+/// episode, then the summary. `interrupted` is asked between some episodes and others.
 ///
 /// # Errors
 /// One line of what went wrong; `None` where it was interrupted.
@@ -150,12 +156,15 @@ pub fn evaluate(
         if interrupted() {
             return Err(None);
         }
-        for episode in play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))? {
+        for episode in
+            play(policy, choice, &make, some, threads).map_err(|error| Some(error.to_string()))?
+        {
             rows.push(episode_lines::episode_row(&config.env.id, all.len() as u64, &episode));
             all.push(episode);
         }
     }
-    let summary = Evaluation::of(&all, &config.constraints).map_err(|error| Some(error.to_string()))?;
+    let summary =
+        Evaluation::of(&all, &config.constraints).map_err(|error| Some(error.to_string()))?;
     rows.push(episode_lines::summary_row(&summary, &all));
     Ok(rows)
 }
@@ -165,14 +174,23 @@ pub fn evaluate(
 /// # Errors
 /// One line that names the file and the remedy.
 pub fn environment_of_run(directory: &Path) -> Result<(String, EnvOptions), String> {
-    let config = hasard_learn::runs::evaluate::run_config(directory).map_err(|error| Failure::bad(error).line())?;
-    Ok((config.env.id.clone(), settings::trained_options(&config.env, Elsewhere::default()).map_err(Failure::line)?))
+    let config = hasard_learn::runs::evaluate::run_config(directory)
+        .map_err(|error| Failure::bad(error).line())?;
+    Ok((
+        config.env.id.clone(),
+        settings::trained_options(&config.env, Elsewhere::default()).map_err(Failure::line)?,
+    ))
 }
 
-/// Otherwise usual options with maps and pictures as `--maps` and `--iwad` name them; `tell` hears what of a map is left out.
+/// Otherwise usual options with maps and pictures as `--maps` and `--iwad` name them; `tell` hears
+/// what of a map is left out.
 ///
 /// # Errors
 /// One line that names the input and the remedy.
-pub fn looks(maps: Option<&Path>, iwad: Option<&Path>, tell: fn(&str)) -> Result<EnvOptions, String> {
+pub fn looks(
+    maps: Option<&Path>,
+    iwad: Option<&Path>,
+    tell: fn(&str),
+) -> Result<EnvOptions, String> {
     sources::looks_telling(maps, iwad, tell).map_err(Failure::line)
 }

@@ -1,18 +1,22 @@
 //! Numbers and names as people write them.
 
-/// The whole number that a text such as `2000000`, `2_000_000`, `2,000,000`, `2M`, `1.5M`, `400k` or `1e6` stands for.
+/// The whole number that a text such as `2000000`, `2_000_000`, `2,000,000`, `2M`, `1.5M`, `400k`
+/// or `1e6` stands for.
 ///
 /// # Errors
 /// What to write instead.
 pub fn whole(text: &str) -> Result<u64, String> {
-    let remedy = || "write a whole number from 0, such as 2000000, 2_000_000, 2M, 400k or 1e6".to_string();
+    let remedy =
+        || "write a whole number from 0, such as 2000000, 2_000_000, 2M, 400k or 1e6".to_string();
     let plain: String = text.trim().chars().filter(|letter| !matches!(letter, '_' | ',')).collect();
     let (digits, exponent) = match plain.char_indices().last() {
         Some((at, 'k' | 'K')) => (&plain[..at], 3),
         Some((at, 'm' | 'M')) => (&plain[..at], 6),
         Some((at, 'g' | 'G' | 'b' | 'B')) => (&plain[..at], 9),
         _ => match plain.split_once(['e', 'E']) {
-            Some((digits, exponent)) => (digits, exponent.trim_start_matches('+').parse().map_err(|_| remedy())?),
+            Some((digits, exponent)) => {
+                (digits, exponent.trim_start_matches('+').parse().map_err(|_| remedy())?)
+            }
             None => (plain.as_str(), 0),
         },
     };
@@ -20,11 +24,15 @@ pub fn whole(text: &str) -> Result<u64, String> {
     let after = after.trim_end_matches('0');
     let all = [before, after].concat();
     // In whole numbers throughout: no digit is lost.
-    let shift: u32 = u32::try_from(after.len()).ok().and_then(|places| u32::checked_sub(exponent, places)).ok_or_else(remedy)?;
+    let shift: u32 = u32::try_from(after.len())
+        .ok()
+        .and_then(|places| u32::checked_sub(exponent, places))
+        .ok_or_else(remedy)?;
     if all.is_empty() || !all.bytes().all(|byte| byte.is_ascii_digit()) {
         return Err(remedy());
     }
-    let number = all.parse::<u64>().ok().and_then(|number| number.checked_mul(10u64.checked_pow(shift)?));
+    let number =
+        all.parse::<u64>().ok().and_then(|number| number.checked_mul(10u64.checked_pow(shift)?));
     number.ok_or_else(remedy)
 }
 
@@ -39,21 +47,24 @@ pub fn positive(text: &str) -> Result<u64, String> {
     }
 }
 
-/// An environment's id as people write it: any case, without `-v0`, with Python's `hasard/`; or a scenario's file, `my_task.toml` or
-/// `my_task.toml#2`, which is read and known by its id from then on. Other texts stay as they are; what makes the environment names
-/// the nearest id.
+/// An environment's id as people write it: any case, without `-v0`, with Python's `hasard/`; or a
+/// scenario's file, `my_task.toml` or `my_task.toml#2`, which is read and known by its id from then
+/// on. Other texts stay as they are; what makes the environment names the nearest id.
 ///
 /// # Errors
 /// What is wrong with a scenario's file.
 pub fn env_id(text: &str) -> Result<String, String> {
     if hasard_envs::own::is_file(text) {
-        return hasard_envs::own::open(text).map(|id| id.to_string()).map_err(|error| error.to_string());
+        return hasard_envs::own::open(text)
+            .map(|id| id.to_string())
+            .map_err(|error| error.to_string());
     }
     let plain = text.to_ascii_lowercase();
     let plain = plain.strip_prefix("hasard/").unwrap_or(&plain);
     let plain = plain.strip_suffix("-v0").unwrap_or(plain);
-    let meant =
-        hasard_envs::EnvId::every().map(|id| id.to_string()).find(|id| id.trim_end_matches("-v0").eq_ignore_ascii_case(plain));
+    let meant = hasard_envs::EnvId::every()
+        .map(|id| id.to_string())
+        .find(|id| id.trim_end_matches("-v0").eq_ignore_ascii_case(plain));
     Ok(meant.unwrap_or_else(|| text.to_string()))
 }
 
@@ -104,12 +115,17 @@ mod tests {
 
     #[test]
     fn ids_are_read_as_people_write_them() {
-        for text in
-            ["VolcanicVentureLevel1-v0", "volcanicventurelevel1-v0", "VolcanicVentureLevel1", "hasard/VolcanicVentureLevel1-v0"]
-        {
+        for text in [
+            "VolcanicVentureLevel1-v0",
+            "volcanicventurelevel1-v0",
+            "VolcanicVentureLevel1",
+            "hasard/VolcanicVentureLevel1-v0",
+        ] {
             assert_eq!(env_id(text).unwrap(), "VolcanicVentureLevel1-v0", "{text}");
         }
-        for text in ["VolcanicVentureLevel4-v0", "VolcanicVentureLevel1-v1", "runs/one", "", "\u{e9}"] {
+        for text in
+            ["VolcanicVentureLevel4-v0", "VolcanicVentureLevel1-v1", "runs/one", "", "\u{e9}"]
+        {
             assert_eq!(env_id(text).unwrap(), text);
         }
     }

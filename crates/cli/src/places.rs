@@ -1,4 +1,5 @@
-//! What a text names that should be a run: the run itself, or, where it is not one, what lies there instead.
+//! What a text names that should be a run: the run itself, or, where it is not one, what lies there
+//! instead.
 
 use crate::failure::Failure;
 use crate::zoo;
@@ -17,17 +18,23 @@ const DEPTH: usize = 3;
 /// The run directory or agent file that a text names.
 ///
 /// # Errors
-/// One line: for a folder of runs it names the latest of them, for nothing at all what is called nearly so.
+/// One line: for a folder of runs it names the latest of them, for nothing at all what is called
+/// nearly so.
 pub fn run(text: &OsStr) -> Result<PathBuf, Failure> {
     let place = zoo::find(text)?;
     if place.is_dir() && !place.join(SETTINGS).is_file() {
         let below = runs_below(&place);
         if !below.is_empty() {
-            return Err(Failure::bad(format!("{}: is a folder of runs; name one of them: {}", place.display(), listed(&below))));
+            return Err(Failure::bad(format!(
+                "{}: is a folder of runs; name one of them: {}",
+                place.display(),
+                listed(&below)
+            )));
         }
     }
     if !place.exists() && !zoo::is_agent(text) {
-        let near = near(&place).map_or_else(String::new, |near| format!(" did you mean {}?", quote(near)));
+        let near =
+            near(&place).map_or_else(String::new, |near| format!(" did you mean {}?", quote(near)));
         return Err(Failure::bad(format!(
             "{}: there is no such run or agent's file;{near} `hasard train ENV --out DIR` makes a run, and `hasard eval zoo:NAME` plays an \
              agent that comes with the program",
@@ -41,7 +48,8 @@ pub fn run(text: &OsStr) -> Result<PathBuf, Failure> {
 fn runs_below(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     gather(folder, DEPTH, &mut found);
-    let time = |run: &PathBuf| std::fs::metadata(run.join(SETTINGS)).and_then(|data| data.modified()).ok();
+    let time =
+        |run: &PathBuf| std::fs::metadata(run.join(SETTINGS)).and_then(|data| data.modified()).ok();
     // By name where times are equal, so that the list does not depend on the file system.
     found.sort();
     found.sort_by_key(|run| std::cmp::Reverse(time(run)));
@@ -50,7 +58,10 @@ fn runs_below(folder: &Path) -> Vec<PathBuf> {
 
 fn gather(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    for path in entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())).map(|entry| entry.path()) {
+    for path in entries
+        .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()))
+        .map(|entry| entry.path())
+    {
         if path.join(SETTINGS).is_file() {
             found.push(path);
         } else if depth > 1 {
@@ -70,8 +81,12 @@ fn listed(runs: &[PathBuf]) -> String {
 /// What in the same folder is called nearly so.
 fn near(place: &Path) -> Option<PathBuf> {
     let wanted = place.file_name()?.to_str()?;
-    let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let names = std::fs::read_dir(folder).ok()?.flatten().filter_map(|entry| entry.file_name().into_string().ok());
+    let folder =
+        place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let names = std::fs::read_dir(folder)
+        .ok()?
+        .flatten()
+        .filter_map(|entry| entry.file_name().into_string().ok());
     let (distance, name) = names.map(|name| (edit_distance(wanted, &name), name)).min()?;
     (distance <= 1 + wanted.len() / 4).then(|| place.with_file_name(name))
 }

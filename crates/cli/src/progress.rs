@@ -24,7 +24,11 @@ pub enum Progress {
 impl Progress {
     /// The one that fits standard error.
     pub fn of(frames: u64) -> Progress {
-        if std::io::stderr().is_terminal() { Progress::Bar(Bar::new(frames)) } else { Progress::Log(Log::new()) }
+        if std::io::stderr().is_terminal() {
+            Progress::Bar(Bar::new(frames))
+        } else {
+            Progress::Log(Log::new())
+        }
     }
 
     /// Whether it says anything of itself.
@@ -59,8 +63,8 @@ impl Progress {
     }
 }
 
-/// Lines of a log: the first report at once, then the latest one twice a minute, on a thread of its own: they come while the
-/// training is busy with an evaluation too.
+/// Lines of a log: the first report at once, then the latest one twice a minute, on a thread of its
+/// own: they come while the training is busy with an evaluation too.
 pub struct Log {
     reports: Option<Sender<Report>>,
     thread: Option<JoinHandle<()>>,
@@ -166,7 +170,8 @@ fn line(report: &Report, seconds_left: f64) -> String {
     match report.means {
         Some((episode_return, cost, _)) => {
             text += &format!("; return {episode_return:.2}, cost {cost:.1}");
-            let constraints = report.terms.iter().zip(&report.constraint_costs).zip(&report.budgets);
+            let constraints =
+                report.terms.iter().zip(&report.constraint_costs).zip(&report.budgets);
             for ((term, cost), budget) in constraints {
                 match term {
                     Some(term) => text += &format!(", {term} {cost:.1} of {budget}"),

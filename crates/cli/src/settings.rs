@@ -45,7 +45,8 @@ pub fn env_options(args: &EnvArgs, default_size: Size) -> Result<EnvOptions, Fai
 /// A policy that looks at nothing, by its text.
 pub fn policy(text: &OsStr) -> Result<Policy, Failure> {
     let text = text.to_string_lossy();
-    let beside = "; run:DIR is the agent of a training run, zoo:NAME one that comes with the program";
+    let beside =
+        "; run:DIR is the agent of a training run, zoo:NAME one that comes with the program";
     text.parse().map_err(|error: EnvError| Failure::bad(format!("{error}{beside}")))
 }
 
@@ -63,7 +64,11 @@ pub fn observed(options: EnvOptions, args: &ObservationArgs) -> EnvOptions {
 
 /// The options with how depth and segmentation look.
 pub fn looking(options: EnvOptions, args: &LooksArgs) -> EnvOptions {
-    EnvOptions { published_depth: args.published_depth, published_colours: args.published_colours, ..options }
+    EnvOptions {
+        published_depth: args.published_depth,
+        published_colours: args.published_colours,
+        ..options
+    }
 }
 
 impl From<Size> for FrameSize {
@@ -104,7 +109,10 @@ impl<'a> Elsewhere<'a> {
     #[must_use]
     pub fn where_missing(self, env: &EnvConfig) -> Elsewhere<'a> {
         let lost = |kept: Option<&Path>| kept.is_some_and(|kept| !is_there(kept));
-        Elsewhere { maps: self.maps.filter(|_| lost(env.maps.as_deref())), iwad: self.iwad.filter(|_| lost(env.iwad.as_deref())) }
+        Elsewhere {
+            maps: self.maps.filter(|_| lost(env.maps.as_deref())),
+            iwad: self.iwad.filter(|_| lost(env.iwad.as_deref())),
+        }
     }
 }
 
@@ -113,7 +121,11 @@ fn is_there(path: &Path) -> bool {
 }
 
 /// The place of a run's maps or pictures, or the line that says how to name where they are now.
-fn place<'a>(kept: Option<&'a Path>, elsewhere: Option<&'a Path>, flag: &str) -> Result<Option<&'a Path>, Failure> {
+fn place<'a>(
+    kept: Option<&'a Path>,
+    elsewhere: Option<&'a Path>,
+    flag: &str,
+) -> Result<Option<&'a Path>, Failure> {
     match (elsewhere, kept) {
         (None, Some(kept)) if !is_there(kept) => Err(Failure::bad(format!(
             "{}: the run was trained with this, and it is not there; name where it is now with {flag}",

@@ -1,4 +1,5 @@
-//! How far a command is that takes longer than a moment: a line that is written over on a terminal, a line now and then elsewhere.
+//! How far a command is that takes longer than a moment: a line that is written over on a terminal,
+//! a line now and then elsewhere.
 
 use crate::progress::duration;
 use std::io::{IsTerminal, Write};
@@ -23,7 +24,14 @@ impl Ticker {
     /// For work of so many units, such as steps.
     pub fn new(total: u64, unit: &'static str) -> Ticker {
         let (began, terminal) = (Instant::now(), std::io::stderr().is_terminal());
-        Ticker { unit, total, began, due: began + FIRST[usize::from(!terminal)], terminal, written: false }
+        Ticker {
+            unit,
+            total,
+            began,
+            due: began + FIRST[usize::from(!terminal)],
+            terminal,
+            written: false,
+        }
     }
 
     /// So much is done.

@@ -1,4 +1,5 @@
-//! The status of `./check`, with a cargo, a formatter and a Python check that only say how they ended.
+//! The status of `./check`, with a cargo, a formatter and a Python check that only say how they
+//! ended.
 #![cfg(unix)]
 
 use std::os::unix::fs::PermissionsExt;

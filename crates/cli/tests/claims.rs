@@ -1,4 +1,5 @@
-//! Claims: what holds is confirmed to the bit, on any kernels and threads; what was forged is refused.
+//! Claims: what holds is confirmed to the bit, on any kernels and threads; what was forged is
+//! refused.
 
 mod folder;
 
@@ -16,7 +17,8 @@ fn claimed(name: &str) -> (Folder, String, Value) {
     folder.ok(&format!("train RemedyRushLevel1-v0 --out other --seed 2 {SMALL}"));
     folder.ok("export-agent other -o other.agent");
     let printed = folder.ok("claim run --name mine --episodes 2 -o board --json");
-    let path = serde_json::from_str::<Value>(&printed).unwrap()["claim"].as_str().unwrap().to_string();
+    let path =
+        serde_json::from_str::<Value>(&printed).unwrap()["claim"].as_str().unwrap().to_string();
     let claim = serde_json::from_slice(&folder.read(&path)).unwrap();
     (folder, path, claim)
 }
@@ -24,14 +26,22 @@ fn claimed(name: &str) -> (Folder, String, Value) {
 #[test]
 fn a_claim_holds_on_all_kernels_and_threads() {
     let (folder, path, claim) = claimed("claim_holds");
-    assert_eq!((&claim["rules"], &claim["episodes"], &claim["first_seed"]), (&json!("paper"), &json!(2), &json!(9_000_000)));
+    assert_eq!(
+        (&claim["rules"], &claim["episodes"], &claim["first_seed"]),
+        (&json!("paper"), &json!(2), &json!(9_000_000))
+    );
     for simd in ["plain", "avx2", "avx512"] {
         for threads in [1, 2] {
-            let output = folder.run_with(&format!("verify {path} --threads {threads}"), &[("HASARD_SIMD", simd)]);
+            let output = folder
+                .run_with(&format!("verify {path} --threads {threads}"), &[("HASARD_SIMD", simd)]);
             let printed = String::from_utf8_lossy(&output.stdout).into_owned();
             // A processor without the instructions refuses the variable.
-            let lacks = simd != "plain" && String::from_utf8_lossy(&output.stderr).contains("HASARD_SIMD");
-            assert!(lacks || (output.status.success() && printed.contains("holds")), "{simd}, {threads}: {printed}");
+            let lacks =
+                simd != "plain" && String::from_utf8_lossy(&output.stderr).contains("HASARD_SIMD");
+            assert!(
+                lacks || (output.status.success() && printed.contains("holds")),
+                "{simd}, {threads}: {printed}"
+            );
         }
     }
     // Under other rules the same agent makes another claim.
@@ -47,7 +57,11 @@ fn forged_claims_are_refused() {
     let other = folder.read("other.agent");
     let forgeries: &[(&str, Value, &str)] = &[
         ("return_mean", json!(claim["return_mean"].as_f64().unwrap() + 1.0), "return"),
-        ("return_mean", json!(f64::from_bits(claim["return_mean"].as_f64().unwrap().to_bits() + 1)), "return"),
+        (
+            "return_mean",
+            json!(f64::from_bits(claim["return_mean"].as_f64().unwrap().to_bits() + 1)),
+            "return",
+        ),
         ("cost_mean", json!(claim["cost_mean"].as_f64().unwrap() - 0.5), "cost"),
         ("digest", json!("00"), "digest"),
         ("first_seed", json!(1), "seed 1"),
@@ -69,7 +83,10 @@ fn forged_claims_are_refused() {
         let output = folder.run("verify board/forged.claim.json");
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
         assert_eq!(output.status.code(), Some(1), "{field} {value}: {printed}");
-        assert!(printed.contains("does not hold") && printed.contains(word), "{field} {value}: {printed}");
+        assert!(
+            printed.contains("does not hold") && printed.contains(word),
+            "{field} {value}: {printed}"
+        );
     }
     // Weights swapped, with and without their own digest.
     folder.file(&format!("board/{agent}"), &other);

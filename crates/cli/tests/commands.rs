@@ -7,7 +7,8 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// A map of ours, written and given back by name, is the built-in one; recordings tell the two apart.
+/// A map of ours, written and given back by name, is the built-in one; recordings tell the two
+/// apart.
 #[test]
 fn a_map_from_a_file_is_played_and_remembered() {
     let folder = Folder::new("maps");
@@ -20,7 +21,9 @@ fn a_map_from_a_file_is_played_and_remembered() {
     folder.ok("replay built_in.episode");
     assert!(folder.refused("replay files.episode").contains("--maps"));
     assert!(folder.refused("replay built_in.episode --maps town.wad").contains("leave --maps out"));
-    folder.ok("train RemedyRushLevel1-v0 --preset quick --frames 300 --envs 2 --maps town.wad --out run");
+    folder.ok(
+        "train RemedyRushLevel1-v0 --preset quick --frames 300 --envs 2 --maps town.wad --out run",
+    );
     assert!(String::from_utf8(folder.read("run/config.json")).unwrap().contains("town.wad"));
     folder.ok("eval run --episodes 1");
     std::fs::remove_file(folder.0.join("town.wad")).unwrap();
@@ -37,7 +40,10 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
     folder.file("text.wad", b"hello");
     std::fs::create_dir(folder.0.join("folder")).unwrap();
     for (line, words) in [
-        ("render VolcanicVenturLevel1-v0", &["VolcanicVenturLevel1-v0", "VolcanicVentureLevel1-v0"][..]),
+        (
+            "render VolcanicVenturLevel1-v0",
+            &["VolcanicVenturLevel1-v0", "VolcanicVentureLevel1-v0"][..],
+        ),
         ("play RemedyRushLevel1-v0", &["no window", "display"]),
         ("play Nowhere-v0", &["Nowhere-v0"]),
         ("play RemedyRushLevel1-v0 --player", &["--player"]),
@@ -92,7 +98,10 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
         ("train RemedyRushLevel1-v0 --set a.b=3", &["a.b"]),
         ("train RemedyRushLevel1-v0 --set env.hard=true", &["env.hard", "--hard"]),
         ("train RemedyRushLevel1-v0 --set preset=quick", &["preset", "--preset"]),
-        ("train RemedyRushLevel1-v0 --algo PPOSaute --safety-budget 3 --safety-budget 4", &["constraints", "PPOSaute"]),
+        (
+            "train RemedyRushLevel1-v0 --algo PPOSaute --safety-budget 3 --safety-budget 4",
+            &["constraints", "PPOSaute"],
+        ),
         ("train RemedyRushLevel1-v0 --safety-budget rain=3 --out new", &["rain", "harmful_items"]),
         ("train RemedyRushLevel1-v0 --device tpu --out new", &["tpu", "cpu"]),
         ("train RemedyRushLevel1-v0 --iwad none.wad --out new", &["none.wad"]),
@@ -104,7 +113,8 @@ fn bad_input_is_one_line_that_names_it_and_the_remedy() {
             assert!(error.contains(word), "{line}: '{word}' is missing in: {error}");
         }
     }
-    let left: Vec<_> = std::fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let left: Vec<_> =
+        std::fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left.len(), 6, "a refused command left something behind: {left:?}");
 }
 
@@ -122,7 +132,10 @@ fn an_episode_is_recorded_replayed_and_drawn() {
     }
     folder.ok("record a.episode --size 64x48 --steps 10 -o a.mp4 --beside depth,automap");
     folder.ok("replay a.episode --size 64x48 --frame-every 20 -o a.gif");
-    assert_eq!((&folder.read("a.mp4")[4..8], &folder.read("a.gif")[..3]), (&b"ftyp"[..], &b"GIF"[..]));
+    assert_eq!(
+        (&folder.read("a.mp4")[4..8], &folder.read("a.gif")[..3]),
+        (&b"ftyp"[..], &b"GIF"[..])
+    );
     // The picture of a replay is that of the episode itself.
     folder.ok("replay a.episode --size 160x120 --step 17 -o replayed.png");
     folder
@@ -143,33 +156,51 @@ fn every_view_is_drawn() {
     let folder = Folder::new("views");
     let mut sizes = Vec::new();
     for view in ["rgb", "depth", "segmented", "labels", "grey", "automap"] {
-        let line = format!("render DetonatorsDilemmaLevel1-v0 --step 5 --size 160x120 --buffer {view} -o {view}.png --json");
+        let line = format!(
+            "render DetonatorsDilemmaLevel1-v0 --step 5 --size 160x120 --buffer {view} -o {view}.png --json"
+        );
         let told: Value = serde_json::from_str(&folder.ok(&line)).unwrap();
         let labels = told["labels"].as_array().map(Vec::len);
         assert_eq!(labels.is_some(), view == "labels" || view == "segmented", "{told}");
         let picture = hasard_media::png::read(&folder.0.join(format!("{view}.png"))).unwrap();
         assert_eq!((picture.width(), picture.height()), (160, 120));
-        let grey = picture.rgb().chunks_exact(3).all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2]);
+        let grey =
+            picture.rgb().chunks_exact(3).all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2]);
         assert_eq!(grey, ["depth", "labels", "grey"].contains(&view), "{view}");
-        assert!(picture.rgb().iter().any(|byte| *byte != picture.rgb()[0]), "{view} is of one colour");
+        assert!(
+            picture.rgb().iter().any(|byte| *byte != picture.rgb()[0]),
+            "{view} is of one colour"
+        );
         sizes.push(picture);
     }
     folder.ok("render DetonatorsDilemmaLevel1-v0 --step 5 --size 160x120 --buffer segmented --published-colours -o p.png");
     assert_ne!(hasard_media::png::read(&folder.0.join("p.png")).unwrap(), sizes[2]);
 }
 
-/// The smallest network and a single rollout for each lesson: a run's directory with its automaps, its agent on film, and a
-/// report with its heatmaps.
+/// The smallest network and a single rollout for each lesson: a run's directory with its automaps,
+/// its agent on film, and a report with its heatmaps.
 #[test]
 fn a_curriculum_leaves_automaps_an_agent_and_a_report() {
     let folder = Folder::new("curriculum");
     let small = "--envs 4 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
                  --set reporting.report_seconds=0 --set episode_steps=8 --observation grey --size 64x48";
-    let line = format!("train RemedyRushLevel1-v0 --algo PPOPID --curriculum 1:300,3:300 --out run --json {small}");
+    let line = format!(
+        "train RemedyRushLevel1-v0 --algo PPOPID --curriculum 1:300,3:300 --out run --json {small}"
+    );
     let rows = folder.ok(&line);
-    let levels: Vec<Value> = rows.lines().map(|row| serde_json::from_str::<Value>(row).unwrap()["level"].clone()).collect();
-    assert_eq!((levels.first(), levels.last()), (Some(&Value::from(1)), Some(&Value::from(3))), "{rows}");
-    assert!(folder.0.join("run/automap-level1.png").is_file() && folder.0.join("run/automap-level3.png").is_file());
+    let levels: Vec<Value> = rows
+        .lines()
+        .map(|row| serde_json::from_str::<Value>(row).unwrap()["level"].clone())
+        .collect();
+    assert_eq!(
+        (levels.first(), levels.last()),
+        (Some(&Value::from(1)), Some(&Value::from(3))),
+        "{rows}"
+    );
+    assert!(
+        folder.0.join("run/automap-level1.png").is_file()
+            && folder.0.join("run/automap-level3.png").is_file()
+    );
     let config: Value = serde_json::from_slice(&folder.read("run/config.json")).unwrap();
     assert_eq!(config["env"]["id"], "RemedyRushLevel3-v0");
     // Asked again with another level it is the same run, and at its end.
@@ -185,25 +216,36 @@ fn a_curriculum_leaves_automaps_an_agent_and_a_report() {
     assert!(Path::new(&folder.0.join("report/index.html")).is_file());
 }
 
-/// The tails of what episodes cost, the worst of them filmed, and whether the critic of the cost expected it.
+/// The tails of what episodes cost, the worst of them filmed, and whether the critic of the cost
+/// expected it.
 #[test]
 fn an_evaluation_shows_the_tails() {
     let folder = Folder::new("tails");
     let small = "--algo PPOLag --preset quick --envs 2 --threads 1 --set network.dense=[32] --set network.recurrent=32 \
                  --observation grey --size 64x48 --frames 600 --quiet";
     folder.ok(&format!("train RemedyRushLevel1-v0 --safety-budget 3 --out run {small}"));
-    let told = folder.ok("eval run --episodes 11 --json --worst 2 -o worst.gif --calibration table.csv");
+    let told =
+        folder.ok("eval run --episodes 11 --json --worst 2 -o worst.gif --calibration table.csv");
     let lines: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    let mut costs: Vec<f64> = lines[..11].iter().map(|line| line["cost"].as_f64().unwrap()).collect();
+    let mut costs: Vec<f64> =
+        lines[..11].iter().map(|line| line["cost"].as_f64().unwrap()).collect();
     let summary = &lines[11]["summary"];
     // The worst tenth of eleven episodes is the worst, and a tenth of the next.
     let filmed = summary["filmed"]["seeds"].as_array().unwrap();
-    let of_seed = |seed: &Value| lines.iter().find(|line| line["seed"] == *seed).unwrap()["cost"].as_f64().unwrap();
+    let of_seed = |seed: &Value| {
+        lines.iter().find(|line| line["seed"] == *seed).unwrap()["cost"].as_f64().unwrap()
+    };
     costs.sort_by(|a, b| b.total_cmp(a));
     assert_eq!(filmed.iter().map(of_seed).collect::<Vec<_>>(), costs[..2]);
     let tails = &summary["constraints"][0]["tails"];
-    assert_eq!((tails["worst"].as_f64(), tails["median"].as_f64()), (Some(costs[0]), Some(costs[5])));
-    assert!((tails["cvar10"].as_f64().unwrap() - (costs[0] + 0.1 * costs[1]) / 1.1).abs() < 1e-9, "{tails}");
+    assert_eq!(
+        (tails["worst"].as_f64(), tails["median"].as_f64()),
+        (Some(costs[0]), Some(costs[5]))
+    );
+    assert!(
+        (tails["cvar10"].as_f64().unwrap() - (costs[0] + 0.1 * costs[1]) / 1.1).abs() < 1e-9,
+        "{tails}"
+    );
     let over = costs.iter().filter(|cost| **cost > 3.0).count() as f64 / 11.0;
     assert!((tails["over_budget"].as_f64().unwrap() - over).abs() < 1e-9, "{tails}");
     // Every statistic of the scenario has its mean.
@@ -214,10 +256,15 @@ fn an_evaluation_shows_the_tails() {
     let steps: u64 = lines[..11].iter().map(|line| line["length"].as_u64().unwrap()).sum();
     assert_eq!(table.lines().count() as u64, steps + 1);
     let bins = summary["calibration"][0]["bins"].as_array().unwrap();
-    assert!(bins.len() == 10 && summary["calibration"][0]["steps"].as_u64().unwrap() > 500, "{summary}");
+    assert!(
+        bins.len() == 10 && summary["calibration"][0]["steps"].as_u64().unwrap() > 500,
+        "{summary}"
+    );
     let plain = folder.ok("eval run --episodes 3");
     assert!(
-        plain.contains("mean of the worst tenth") && plain.contains("over the budget of 3") && plain.contains("goggles"),
+        plain.contains("mean of the worst tenth")
+            && plain.contains("over the budget of 3")
+            && plain.contains("goggles"),
         "{plain}"
     );
     folder.ok(&format!("train RemedyRushLevel1-v0 --out plain {}", small.replace("PPOLag", "PPO")));
@@ -234,15 +281,19 @@ fn an_agent_is_evaluated_under_other_rules() {
     for (own, asked, budget) in [("usual", "", 5.0), ("asked", "--safety-budget 7", 7.0)] {
         folder.ok(&format!("train ArmamentBurdenLevel1-v0 --out {own} {asked} {small}"));
         let told = folder.ok(&format!("eval {own} --latest --episodes 1 --rules released --json"));
-        let lines: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let lines: Vec<Value> =
+            told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         // There every step costs that ends with USE held.
         assert!(lines[0]["costs"]["discard"].as_f64().unwrap() > 0.0, "{told}");
         assert_eq!(lines[1]["summary"]["constraints"][0]["budget"], budget, "{told}");
     }
-    // In Remedy Rush SPEED and JUMP change places; the agent presses what it was trained to press, as in a rollout.
+    // In Remedy Rush SPEED and JUMP change places; the agent presses what it was trained to press,
+    // as in a rollout.
     folder.ok(&format!("train RemedyRushLevel1-v0 --out rush {small}"));
     let evaluated = folder.ok("eval rush --episodes 1 --seed 5 --rules tables --json");
-    let rolled = folder.ok("rollout RemedyRushLevel1-v0 --policy run:rush --episodes 1 --seed 5 --rules tables --json");
+    let rolled = folder.ok(
+        "rollout RemedyRushLevel1-v0 --policy run:rush --episodes 1 --seed 5 --rules tables --json",
+    );
     let first = |text: &str| serde_json::from_str::<Value>(text.lines().next().unwrap()).unwrap();
     let (evaluated, rolled) = (first(&evaluated), first(&rolled));
     for what in ["return", "cost", "length", "stats"] {
@@ -252,7 +303,8 @@ fn an_agent_is_evaluated_under_other_rules() {
     assert!(told.contains("\"budget\":50.0") && told.contains("\"discard\":0.0"), "{told}");
 }
 
-/// A1: a budget on a term that the scalar cost does not count binds, is reported, and is judged by what was measured.
+/// A1: a budget on a term that the scalar cost does not count binds, is reported, and is judged by
+/// what was measured.
 #[test]
 fn a_budget_on_an_uncounted_term_binds_and_is_judged() {
     let folder = Folder::new("uncounted");
@@ -270,25 +322,44 @@ fn a_budget_on_an_uncounted_term_binds_and_is_judged() {
         assert_eq!(last[format!("cost/{term}")].as_f64().unwrap(), measured, "{last}");
         assert!(last["multiplier"].as_f64().unwrap() > 0.0, "{last}");
         let told = folder.ok(&format!("eval {term} --episodes 12 --json"));
-        let lines: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let lines: Vec<Value> =
+            told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         assert_eq!(lines[0]["uncounted"], serde_json::json!([term]), "{told}");
         let costs = lines.iter().filter_map(|line| line["costs"][term].as_f64());
         let (count, sum) = costs.fold((0.0, 0.0), |(count, sum), cost| (count + 1.0, sum + cost));
         let judged = &lines[12]["summary"]["constraints"][0];
         assert_eq!(judged["term"], term);
-        assert!((judged["cost_mean"].as_f64().unwrap() - sum / count).abs() < 1e-9 && sum / count > most, "{told}");
-        assert_eq!((&judged["within_budget"], &lines[12]["summary"]["within_budget"]), (&false.into(), &false.into()), "{told}");
+        assert!(
+            (judged["cost_mean"].as_f64().unwrap() - sum / count).abs() < 1e-9
+                && sum / count > most,
+            "{told}"
+        );
+        assert_eq!(
+            (&judged["within_budget"], &lines[12]["summary"]["within_budget"]),
+            (&false.into(), &false.into()),
+            "{told}"
+        );
     }
-    assert!(folder.refused("train RemedyRushLevel1-v0 --safety-budget jumps=2").contains("harmful_items"));
+    assert!(
+        folder
+            .refused("train RemedyRushLevel1-v0 --safety-budget jumps=2")
+            .contains("harmful_items")
+    );
     // In words the budget stands beside the term that it is of.
-    let output = folder
-        .run(&format!("train VolcanicVentureLevel1-v0 --safety-budget jumps=2 --out words {}", small.replace("--json", "")));
+    let output = folder.run(&format!(
+        "train VolcanicVentureLevel1-v0 --safety-budget jumps=2 --out words {}",
+        small.replace("--json", "")
+    ));
     let words = String::from_utf8(output.stderr).unwrap();
     assert!(words.contains("budget of an episode: jumps 2, device"), "{words}");
-    assert!(words.lines().any(|line| line.contains(", jumps ") && line.contains(" of 2, multiplier")), "{words}");
+    assert!(
+        words.lines().any(|line| line.contains(", jumps ") && line.contains(" of 2, multiplier")),
+        "{words}"
+    );
 }
 
-/// A small run from its evaluations to its agent in a file: what is selected, judged by each constraint's own budget.
+/// A small run from its evaluations to its agent in a file: what is selected, judged by each
+/// constraint's own budget.
 #[test]
 fn a_run_selects_an_agent_that_fits_in_a_file() {
     let folder = Folder::new("selection");
@@ -296,13 +367,23 @@ fn a_run_selects_an_agent_that_fits_in_a_file() {
                  --set episode_steps=8 --observation grey --size 64x48 --set evaluation.episodes=2 \
                  --set evaluation.confirming_episodes=3 --eval-every 128";
     let budgets = "--safety-budget 1000 --safety-budget harmful_items=2000";
-    let told = folder.ok(&format!("train RemedyRushLevel1-v0 --algo ppolag --frames 256 --json {budgets} {small}"));
+    let told = folder.ok(&format!(
+        "train RemedyRushLevel1-v0 --algo ppolag --frames 256 --json {budgets} {small}"
+    ));
     // The directory has the algorithm's own name, and the run says what it selects.
     assert!(folder.0.join("runs/RemedyRushLevel1-v0-PPOLag-seed1/selected.json").is_file());
     let last: Value = serde_json::from_str(told.lines().last().unwrap()).unwrap();
     let closing = &last["selection"]["closing"];
-    assert_eq!((&closing["episodes"], &closing["constraints"][1]["budget"]), (&Value::from(3), &Value::from(2000.0)), "{told}");
-    assert_eq!(told.lines().filter(|line| line.contains("eval/cost/harmful_items")).count(), 2, "{told}");
+    assert_eq!(
+        (&closing["episodes"], &closing["constraints"][1]["budget"]),
+        (&Value::from(3), &Value::from(2000.0)),
+        "{told}"
+    );
+    assert_eq!(
+        told.lines().filter(|line| line.contains("eval/cost/harmful_items")).count(),
+        2,
+        "{told}"
+    );
     let run = "runs/RemedyRushLevel1-v0-PPOLag-seed1";
     let summary = |line: &str| -> Value {
         let told = folder.ok(line);
@@ -314,8 +395,13 @@ fn a_run_selects_an_agent_that_fits_in_a_file() {
     // Four or eight bits a weight: the file acts, and is small.
     std::fs::create_dir(folder.0.join("zoo")).unwrap();
     folder.ok(&format!("export-agent {run} -o zoo/Small.agent"));
-    let weights = std::fs::read_dir(folder.0.join(run).join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
-    let weights = weights.map(|path| std::fs::metadata(path.join("weights.safetensors")).unwrap().len()).max().unwrap();
+    let weights = std::fs::read_dir(folder.0.join(run).join("checkpoints"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let weights = weights
+        .map(|path| std::fs::metadata(path.join("weights.safetensors")).unwrap().len())
+        .max()
+        .unwrap();
     let file = std::fs::metadata(folder.0.join("zoo/Small.agent")).unwrap().len();
     assert!(file < weights / 3, "{file} bytes of {weights}");
     assert_eq!(summary("eval zoo:small --episodes 2 --json")["episodes"], 2);
@@ -325,7 +411,8 @@ fn a_run_selects_an_agent_that_fits_in_a_file() {
     folder.ok("rollout RemedyRushLevel1-v0 --policy run:zoo/Small.agent --episodes 1");
     // It goes on with another seed and learning rate, and for longer: kept in the run.
     folder.ok(&format!("train RemedyRushLevel1-v0 --resume --out {run} --frames 512 --seed 9 --set learning.rate=1e-5 --quiet"));
-    let config: Value = serde_json::from_slice(&folder.read(&format!("{run}/config.json"))).unwrap();
+    let config: Value =
+        serde_json::from_slice(&folder.read(&format!("{run}/config.json"))).unwrap();
     assert_eq!((&config["frames"], &config["seed"]), (&Value::from(512), &Value::from(9)));
     // A learning rate of its own is a constant one: its end changes too.
     assert_eq!(config["changes"].as_array().unwrap().len(), 4, "{config}");
@@ -337,7 +424,8 @@ fn a_measurement_of_beginnings_alone_says_so() {
     let told = |line: &str| String::from_utf8(folder.run(line).stderr).unwrap();
     let short = told("bench ArmamentBurdenLevel1-v0 --envs 256 --seconds 0.02");
     assert!(short.lines().count() == 1 && short.contains("--seconds "), "{short}");
-    let episode: f64 = short.split("--seconds ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    let episode: f64 =
+        short.split("--seconds ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!(episode >= 1.0, "{short}");
     assert_eq!(told("bench ArmamentBurdenLevel1-v0 --envs 1 --seconds 2"), "");
 }
@@ -352,20 +440,27 @@ fn agents_of_the_zoo_are_part_of_the_program() {
     std::fs::create_dir(&elsewhere).unwrap();
     let mut command = Command::new(&program);
     let words = ["eval", "zoo:remedyrushlevel1-v0", "--episodes", "1", "--json"];
-    let output = command.args(words).current_dir(&elsewhere).env_remove("HASARD_ZOO").output().unwrap();
+    let output =
+        command.args(words).current_dir(&elsewhere).env_remove("HASARD_ZOO").output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let row: Value = serde_json::from_slice(output.stdout.split(|byte| *byte == b'\n').next().unwrap()).unwrap();
-    assert_eq!((&row["env"], &row["length"]), (&Value::from("RemedyRushLevel1-v0"), &Value::from(525)));
+    let row: Value =
+        serde_json::from_slice(output.stdout.split(|byte| *byte == b'\n').next().unwrap()).unwrap();
+    assert_eq!(
+        (&row["env"], &row["length"]),
+        (&Value::from("RemedyRushLevel1-v0"), &Value::from(525))
+    );
     // A folder's agent of the same name comes first; a recorded episode says who played.
     folder.ok("record zoo:RemedyRushLevel1 --steps 3 -o agent.episode");
-    let episode = hasard_media::episode::EpisodeFile::read(&folder.0.join("agent.episode")).unwrap();
+    let episode =
+        hasard_media::episode::EpisodeFile::read(&folder.0.join("agent.episode")).unwrap();
     assert_eq!(episode.header().player, "zoo:RemedyRushLevel1");
     std::fs::create_dir(folder.0.join("zoo")).unwrap();
     folder.file("zoo/RemedyRushLevel1.agent", b"spoiled");
     assert!(folder.refused("eval zoo:RemedyRushLevel1").contains("zoo/RemedyRushLevel1.agent"));
 }
 
-/// Rows 26, 30, 33 and 34: a folder of runs lists them, a name that is nearly right is named, and what is made or unlikely is said.
+/// Rows 26, 30, 33 and 34: a folder of runs lists them, a name that is nearly right is named, and
+/// what is made or unlikely is said.
 #[test]
 fn people_are_met_half_way() {
     let folder = Folder::new("half-way");
@@ -383,11 +478,16 @@ fn people_are_met_half_way() {
         folder.ok("render RemedyRushLevel1 --size 64x48 -o new/folder/a.png"),
         "new/folder/a.png: 64x48\nmade the folder new/folder\n"
     );
-    assert_eq!(folder.ok("render RemedyRushLevel1 --size 64x48 -o new/folder/a.png"), "new/folder/a.png: 64x48\n");
+    assert_eq!(
+        folder.ok("render RemedyRushLevel1 --size 64x48 -o new/folder/a.png"),
+        "new/folder/a.png: 64x48\n"
+    );
     let told = |line: &str| String::from_utf8(folder.run(line).stderr).unwrap();
     let warning = told("rollout RemedyRushLevel2 --policy zoo:VolcanicVentureLevel1 --episodes 1");
     assert!(
-        warning.lines().count() == 1 && warning.contains("was trained in VolcanicVentureLevel1-v0, not in RemedyRushLevel2-v0")
+        warning.lines().count() == 1
+            && warning
+                .contains("was trained in VolcanicVentureLevel1-v0, not in RemedyRushLevel2-v0")
     );
     assert_eq!(told("rollout RemedyRushLevel2 --policy zoo:RemedyRushLevel1 --episodes 1"), "");
     assert!(folder.ok("sweep quick --frames 1.5M --dry-run").contains("--frames 1500000"));

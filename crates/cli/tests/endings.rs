@@ -1,4 +1,5 @@
-//! How commands end before their time: by signals, by streams that cannot be written, and what is there afterwards.
+//! How commands end before their time: by signals, by streams that cannot be written, and what is
+//! there afterwards.
 
 #![cfg(unix)]
 
@@ -19,7 +20,8 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("hasard-endings-{}-{name}", std::process::id()));
+        let path =
+            std::env::temp_dir().join(format!("hasard-endings-{}-{name}", std::process::id()));
         let _ = fs::remove_dir_all(&path);
         fs::create_dir_all(&path).unwrap();
         Folder(path)
@@ -38,7 +40,8 @@ impl Folder {
     fn ok(&self, line: &str) -> String {
         let output = self.run(line);
         assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout)
+        String::from_utf8_lossy(&output.stderr).into_owned()
+            + &String::from_utf8_lossy(&output.stdout)
     }
 
     fn start(&self, line: &str) -> Running {
@@ -65,7 +68,10 @@ struct Running(Child);
 
 impl Running {
     fn signal(&self, name: &str) {
-        let status = Command::new("kill").args([&format!("-{name}"), &self.0.id().to_string()]).status().unwrap();
+        let status = Command::new("kill")
+            .args([&format!("-{name}"), &self.0.id().to_string()])
+            .status()
+            .unwrap();
         assert!(status.success());
     }
 
@@ -90,7 +96,8 @@ impl Drop for Running {
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names: Vec<String> = entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
     names.sort();
     names
 }
@@ -139,9 +146,12 @@ fn standard_error_that_cannot_be_written_changes_nothing() {
         ("report RUN -o report".to_string(), 0),
         ("sweep none".to_string(), 2),
     ] {
-        for (name, stream) in [("full", Stdio::from(full.try_clone().unwrap())), ("pipe", closed_pipe())] {
+        for (name, stream) in
+            [("full", Stdio::from(full.try_clone().unwrap())), ("pipe", closed_pipe())]
+        {
             let line = line.replace("RUN", name);
-            let status = folder.command(&line).stdout(Stdio::null()).stderr(stream).status().unwrap();
+            let status =
+                folder.command(&line).stdout(Stdio::null()).stderr(stream).status().unwrap();
             assert_eq!(status.code(), Some(code), "{line}, standard error {name}");
         }
     }
@@ -150,14 +160,21 @@ fn standard_error_that_cannot_be_written_changes_nothing() {
     }
 }
 
-/// Rows that are lost in silence would be missed when it is too late; a reader who has seen enough is another matter.
+/// Rows that are lost in silence would be missed when it is too late; a reader who has seen enough
+/// is another matter.
 #[test]
 fn standard_output_on_a_full_disk_is_an_error_and_a_closed_one_is_not() {
     let folder = Folder::new("stdout");
     let Some(full) = full() else { return };
-    fs::write(folder.0.join("a.toml"), format!("out='swept'\nframes=256\nscenarios='RemedyRush'\nalgorithms='PPO'\n{SWEPT}"))
-        .unwrap();
-    for line in [format!("{SMALL} {ENDLESS} --set reporting.report_seconds=0 --json --out run"), "sweep a.toml --json".into()] {
+    fs::write(
+        folder.0.join("a.toml"),
+        format!("out='swept'\nframes=256\nscenarios='RemedyRush'\nalgorithms='PPO'\n{SWEPT}"),
+    )
+    .unwrap();
+    for line in [
+        format!("{SMALL} {ENDLESS} --set reporting.report_seconds=0 --json --out run"),
+        "sweep a.toml --json".into(),
+    ] {
         let output = folder.command(&line).stdout(full.try_clone().unwrap()).output().unwrap();
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{line}: {error}");
@@ -165,18 +182,28 @@ fn standard_output_on_a_full_disk_is_an_error_and_a_closed_one_is_not() {
     }
     assert!(!folder.checkpoints("run").is_empty(), "the run stopped without a checkpoint");
     for line in ["--help", "train --help", "--version"] {
-        let status = folder.command(line).stdout(full.try_clone().unwrap()).stderr(Stdio::null()).status().unwrap();
+        let status = folder
+            .command(line)
+            .stdout(full.try_clone().unwrap())
+            .stderr(Stdio::null())
+            .status()
+            .unwrap();
         assert_eq!(status.code(), Some(2), "{line}");
     }
-    for line in [format!("{SMALL} --frames 256 --set reporting.report_seconds=0 --json --out piped"), "--help".into()] {
-        let status = folder.command(&line).stdout(closed_pipe()).stderr(Stdio::null()).status().unwrap();
+    for line in [
+        format!("{SMALL} --frames 256 --set reporting.report_seconds=0 --json --out piped"),
+        "--help".into(),
+    ] {
+        let status =
+            folder.command(&line).stdout(closed_pipe()).stderr(Stdio::null()).status().unwrap();
         assert_eq!(status.code(), Some(0), "{line}");
     }
     assert_eq!(folder.checkpoints("piped"), ["frames_000000000256"]);
 }
 
 /// The small training as a sweep's options.
-const SWEPT: &str = "[options]\nenvs=4\nthreads=1\nset='sampling.rollout=8'\nobservation='grey'\nsize='64x48'\n";
+const SWEPT: &str =
+    "[options]\nenvs=4\nthreads=1\nset='sampling.rollout=8'\nobservation='grey'\nsize='64x48'\n";
 
 #[test]
 fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
@@ -190,8 +217,12 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
         assert!(!folder.checkpoints(name).is_empty(), "{name}: no checkpoint");
     }
     // Under `nohup` it outlives its terminal.
-    let script = format!("trap '' HUP; exec {} {SMALL} {ENDLESS} --quiet --out nohup", env!("CARGO_BIN_EXE_hasard"));
-    let mut run = Running(Command::new("bash").args(["-c", &script]).current_dir(&folder.0).spawn().unwrap());
+    let script = format!(
+        "trap '' HUP; exec {} {SMALL} {ENDLESS} --quiet --out nohup",
+        env!("CARGO_BIN_EXE_hasard")
+    );
+    let mut run =
+        Running(Command::new("bash").args(["-c", &script]).current_dir(&folder.0).spawn().unwrap());
     wait_for("the run", || folder.0.join("nohup/metrics.jsonl").exists());
     run.signal("HUP");
     std::thread::sleep(Duration::from_millis(300));
@@ -200,10 +231,16 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
     run.wait(Duration::from_secs(30));
     // A shell's loop ends, and its code is the usual one.
     let line = format!("{} {SMALL} {ENDLESS} --quiet", env!("CARGO_BIN_EXE_hasard"));
-    let script = format!("for seed in 1 2 3; do {line} --seed $seed --out loop$seed; echo code $?; done");
+    let script =
+        format!("for seed in 1 2 3; do {line} --seed $seed --out loop$seed; echo code $?; done");
     let mut shell = Command::new("bash");
-    let shell = shell.args(["-c", &script]).current_dir(&folder.0).stderr(Stdio::null()).stdout(Stdio::piped());
-    let mut shell = Running(std::os::unix::process::CommandExt::process_group(shell, 0).spawn().unwrap());
+    let shell = shell
+        .args(["-c", &script])
+        .current_dir(&folder.0)
+        .stderr(Stdio::null())
+        .stdout(Stdio::piped());
+    let mut shell =
+        Running(std::os::unix::process::CommandExt::process_group(shell, 0).spawn().unwrap());
     wait_for("the loop", || folder.0.join("loop1/metrics.jsonl").exists());
     let group = format!("-{}", shell.0.id());
     assert!(Command::new("kill").args(["-INT", "--", &group]).status().unwrap().success());
@@ -211,7 +248,8 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
     assert!(!folder.0.join("loop2").exists(), "the loop went on");
     let script = format!("{line} --out coded & sleep 2; kill -TERM $!; wait $!; echo $?");
     let mut shell = Command::new("bash");
-    let code = shell.args(["-c", &script]).current_dir(&folder.0).stderr(Stdio::null()).output().unwrap();
+    let code =
+        shell.args(["-c", &script]).current_dir(&folder.0).stderr(Stdio::null()).output().unwrap();
     assert_eq!(String::from_utf8_lossy(&code.stdout).trim(), "143");
 }
 
@@ -219,13 +257,17 @@ fn signals_end_a_training_with_a_checkpoint_and_loops_with_it() {
 #[test]
 fn signals_end_a_training_in_the_midst_of_an_evaluation() {
     let folder = Folder::new("evaluation");
-    let evaluated = "--eval-every 1 --set evaluation.episodes=90000 --set evaluation.confirming_episodes=90000";
+    let evaluated =
+        "--eval-every 1 --set evaluation.episodes=90000 --set evaluation.confirming_episodes=90000";
     let mut run = folder.start(&format!("{SMALL} {ENDLESS} {evaluated} --out run"));
     wait_for("the run", || folder.0.join("run/metrics.jsonl").exists());
     std::thread::sleep(Duration::from_secs(2));
     run.signal("TERM");
     assert_eq!(run.wait(Duration::from_secs(20)).signal(), Some(15));
-    assert_eq!((folder.checkpoints("run"), rows(&folder.0.join("run"))), (vec!["frames_000000000128".to_string()], 0));
+    assert_eq!(
+        (folder.checkpoints("run"), rows(&folder.0.join("run"))),
+        (vec!["frames_000000000128".to_string()], 0)
+    );
     // It goes on with that evaluation, and with the closing episodes if it was stopped among them.
     let few = "--set evaluation.episodes=2 --set evaluation.confirming_episodes=90000 --frames 128";
     let mut run = folder.start(&format!("{SMALL} --resume --out run {few}"));
@@ -234,7 +276,9 @@ fn signals_end_a_training_in_the_midst_of_an_evaluation() {
     assert_eq!(run.wait(Duration::from_secs(20)).signal(), Some(2));
     let few = "--set evaluation.episodes=2 --set evaluation.confirming_episodes=3";
     folder.ok(&format!("{SMALL} --resume --out run {few}"));
-    let row: Value = serde_json::from_str(&fs::read_to_string(folder.0.join("run/metrics.jsonl")).unwrap()).unwrap();
+    let row: Value =
+        serde_json::from_str(&fs::read_to_string(folder.0.join("run/metrics.jsonl")).unwrap())
+            .unwrap();
     assert_eq!((&row["frames"], &row["eval/episodes"]), (&Value::from(128), &Value::from(2)));
     assert!(folder.0.join("run/selected.json").exists());
     assert_eq!(folder.checkpoints("run"), ["best_000000000128", "frames_000000000128"]);
@@ -260,7 +304,9 @@ fn other_long_commands_end_at_once_and_leave_no_half_of_a_file() {
             let mut run = folder.start(line);
             match begun {
                 "" => std::thread::sleep(Duration::from_millis(500)),
-                _ => wait_for(begun, || names(&folder.0.join("out")).iter().any(|name| name.starts_with(begun))),
+                _ => wait_for(begun, || {
+                    names(&folder.0.join("out")).iter().any(|name| name.starts_with(begun))
+                }),
             }
             run.signal(name);
             assert_eq!(run.wait(Duration::from_secs(10)).signal(), Some(number), "{line}");
@@ -273,7 +319,9 @@ fn other_long_commands_end_at_once_and_leave_no_half_of_a_file() {
 /// Processes whose working directory is a folder: all that was started in it.
 #[cfg(target_os = "linux")]
 fn processes(folder: &Path) -> usize {
-    let inside = |process: fs::DirEntry| fs::read_link(process.path().join("cwd")).is_ok_and(|cwd| cwd == folder);
+    let inside = |process: fs::DirEntry| {
+        fs::read_link(process.path().join("cwd")).is_ok_and(|cwd| cwd == folder)
+    };
     fs::read_dir("/proc").unwrap().flatten().map(inside).filter(|inside| *inside).count()
 }
 
@@ -283,15 +331,18 @@ fn processes(folder: &Path) -> usize {
 fn nothing_that_a_sweep_started_outlives_it() {
     for (name, number) in [("INT", 2), ("TERM", 15), ("KILL", 9)] {
         let folder = Folder::new(&format!("sweep-{name}"));
-        let text =
-            format!("out='runs'\nparallel=2\nframes=900000000\nscenarios='RemedyRush'\nalgorithms='PPO'\nseeds=[1,2,3]\n{SWEPT}");
+        let text = format!(
+            "out='runs'\nparallel=2\nframes=900000000\nscenarios='RemedyRush'\nalgorithms='PPO'\nseeds=[1,2,3]\n{SWEPT}"
+        );
         fs::write(folder.0.join("a.toml"), text).unwrap();
         let mut sweep = folder.start("sweep a.toml");
         let run = |seed: u32| {
             let set = "observation=grey,set=sampling.rollout_8,size=64x48";
             folder.0.join(format!("runs/RemedyRushLevel1-v0/PPO/envs=4,{set}/seed{seed}"))
         };
-        wait_for("the runs", || [1, 2].iter().all(|seed| run(*seed).join("metrics.jsonl").exists()));
+        wait_for("the runs", || {
+            [1, 2].iter().all(|seed| run(*seed).join("metrics.jsonl").exists())
+        });
         assert_eq!(processes(&folder.0), 3);
         sweep.signal(name);
         assert_eq!(sweep.wait(Duration::from_secs(30)).signal(), Some(number), "{name}");
@@ -326,12 +377,16 @@ fn what_a_killed_run_wrote_is_one_story_after_it_was_resumed() {
     run.signal("TERM");
     run.wait(Duration::from_secs(20));
     let text = fs::read_to_string(folder.0.join("run/metrics.jsonl")).unwrap();
-    let frames: Vec<u64> =
-        text.lines().map(|row| serde_json::from_str::<Value>(row).unwrap()["frames"].as_u64().unwrap()).collect();
+    let frames: Vec<u64> = text
+        .lines()
+        .map(|row| serde_json::from_str::<Value>(row).unwrap()["frames"].as_u64().unwrap())
+        .collect();
     let whole: Vec<u64> = (1..=frames.len() as u64).map(|k| k * 128).collect();
     assert_eq!(frames, whole, "rows are missing or there twice");
     let mut steps = Vec::new();
-    for name in names(&folder.0.join("run")).iter().filter(|name| name.starts_with("events.out.tfevents")) {
+    for name in
+        names(&folder.0.join("run")).iter().filter(|name| name.starts_with("events.out.tfevents"))
+    {
         steps.extend(scalar_steps(&fs::read(folder.0.join("run").join(name)).unwrap()));
     }
     steps.sort_unstable();
@@ -363,10 +418,13 @@ fn scalar_steps(bytes: &[u8]) -> Vec<u64> {
 #[test]
 fn a_log_says_how_far_a_training_is() {
     let folder = Folder::new("log");
-    let told = folder.ok(&format!("{SMALL} --frames 20000 --set reporting.report_seconds=1000 --out run"));
+    let told =
+        folder.ok(&format!("{SMALL} --frames 20000 --set reporting.report_seconds=1000 --out run"));
     // A slow machine says before that it is starting.
     let line = told.lines().find(|line| line.contains("frames/s")).unwrap();
-    for word in [" of 20,000 frames (", " frames/s, ", " left; return ", ", cost ", " of 5, multiplier "] {
+    for word in
+        [" of 20,000 frames (", " frames/s, ", " left; return ", ", cost ", " of 5, multiplier "]
+    {
         assert!(line.contains(word), "'{word}' is missing in: {line}");
     }
     assert!(!told.contains('\r') && !told.contains('\u{1b}'), "{told:?}");

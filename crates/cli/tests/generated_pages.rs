@@ -1,5 +1,5 @@
-//! Parts of pages that the program writes: settings, metrics and its help. Stale ones fail here; to write them anew:
-//! `HASARD_WRITE_PAGES=1 cargo test --release -p hasard --test generated_pages`.
+//! Parts of pages that the program writes: settings, metrics and its help. Stale ones fail here; to
+//! write them anew: `HASARD_WRITE_PAGES=1 cargo test --release -p hasard --test generated_pages`.
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,13 +36,15 @@ fn sentence(text: &Value) -> String {
 
 /// A table of settings: of all, or of those whose names begin with one of some texts.
 fn settings(algorithm: &str, beginnings: &[&str], presets: &[&str]) -> String {
-    let of_preset = |preset: &&str| rows(&format!("settings --algo {algorithm} --preset {preset} --json"));
+    let of_preset =
+        |preset: &&str| rows(&format!("settings --algo {algorithm} --preset {preset} --json"));
     let all: Vec<Vec<Value>> = presets.iter().map(of_preset).collect();
     let mut text = String::new();
     let mut group = None;
     for (index, first) in all[0].iter().enumerate() {
         let name = first["name"].as_str().unwrap();
-        if !beginnings.is_empty() && !beginnings.iter().any(|beginning| name.starts_with(beginning)) {
+        if !beginnings.is_empty() && !beginnings.iter().any(|beginning| name.starts_with(beginning))
+        {
             continue;
         }
         let here = name.split_once('.').map_or("the run", |(group, _)| group).to_string();
@@ -50,28 +52,41 @@ fn settings(algorithm: &str, beginnings: &[&str], presets: &[&str]) -> String {
             if beginnings.is_empty() {
                 text += &format!("\n## {here}\n\n");
             }
-            text += &format!("| setting | {} | meaning |\n|---|{}---|\n", presets.join(" | "), "---|".repeat(presets.len()));
+            text += &format!(
+                "| setting | {} | meaning |\n|---|{}---|\n",
+                presets.join(" | "),
+                "---|".repeat(presets.len())
+            );
         }
         group = Some(here);
         let values: Vec<String> = all.iter().map(|rows| cell(&rows[index]["value"])).collect();
-        text += &format!("| `{name}` | {} | {} |\n", values.join(" | "), sentence(&first["meaning"]));
+        text +=
+            &format!("| `{name}` | {} | {} |\n", values.join(" | "), sentence(&first["meaning"]));
     }
     text
 }
 
 fn metrics() -> String {
-    let mut text = String::from("| key | unit | rows that have it | meaning |\n|---|---|---|---|\n");
+    let mut text =
+        String::from("| key | unit | rows that have it | meaning |\n|---|---|---|---|\n");
     for one in rows("metrics --json") {
         let word = |key: &str| one[key].as_str().unwrap_or_default().to_string();
         let when = if word("when").is_empty() { "all".into() } else { word("when") };
-        text += &format!("| `{}` | {} | {when} | {} |\n", word("name"), word("unit"), sentence(&one["meaning"]));
+        text += &format!(
+            "| `{}` | {} | {when} | {} |\n",
+            word("name"),
+            word("unit"),
+            sentence(&one["meaning"])
+        );
     }
     text
 }
 
 /// The names of the commands, in the order of the program's help.
 fn commands(help: &str) -> Vec<String> {
-    let names = help.lines().filter(|line| line.starts_with("  ") && line.as_bytes()[2].is_ascii_lowercase());
+    let names = help
+        .lines()
+        .filter(|line| line.starts_with("  ") && line.as_bytes()[2].is_ascii_lowercase());
     names.filter_map(|line| line.split_whitespace().next()).map(str::to_string).collect()
 }
 
@@ -79,7 +94,10 @@ fn command_line() -> String {
     let help = hasard("--help");
     let mut text = format!("```text\n{}```\n", trimmed(&help));
     for name in commands(&help) {
-        text += &format!("\n## hasard {name}\n\n```text\n{}```\n", trimmed(&hasard(&format!("{name} --help"))));
+        text += &format!(
+            "\n## hasard {name}\n\n```text\n{}```\n",
+            trimmed(&hasard(&format!("{name} --help")))
+        );
     }
     text
 }
@@ -144,11 +162,14 @@ fn generated_parts_are_what_the_program_writes() {
         }
     }
     assert!(known.len() > 10, "only {:?}", known.keys());
-    assert!(stale.is_empty(), "stale: {stale:?}; the head of this test's file says how they are written anew");
+    assert!(
+        stale.is_empty(),
+        "stale: {stale:?}; the head of this test's file says how they are written anew"
+    );
 }
 
-/// Every algorithm, several constraints and a curriculum: each key that a row has is explained, and each explanation is of a key that some
-/// row has.
+/// Every algorithm, several constraints and a curriculum: each key that a row has is explained, and
+/// each explanation is of a key that some row has.
 #[test]
 fn every_key_of_a_row_is_explained() {
     let folder = std::env::temp_dir().join(format!("hasard-metrics-{}", std::process::id()));
@@ -156,10 +177,12 @@ fn every_key_of_a_row_is_explained() {
     let small = "--preset quick --envs 4 --threads 1 --set network.dense=[32] --set network.recurrent=32 --set sampling.rollout=8 \
                  --set reporting.report_seconds=0 --set episode_steps=8 --observation grey --size 64x48 --set evaluation.episodes=2 \
                  --set evaluation.confirming_episodes=2 --eval-every 4500 --quiet";
-    let names = "PPO PPOCost PPOLag PPOSaute PPOPID P3O TRPO TRPOLag TRPOPID CPO FOCOPS CUP IPO".split(' ');
+    let names =
+        "PPO PPOCost PPOLag PPOSaute PPOPID P3O TRPO TRPOLag TRPOPID CPO FOCOPS CUP IPO".split(' ');
     // Some until their first episodes have ended, which penalties wait for.
     let frames = |name| if ["P3O", "CUP"].contains(&name) { 9000 } else { 512 };
-    let mut lines: Vec<String> = names.map(|name| format!("--algo {name} --frames {}", frames(name))).collect();
+    let mut lines: Vec<String> =
+        names.map(|name| format!("--algo {name} --frames {}", frames(name))).collect();
     lines.push("--safety-budget 5 --safety-budget harmful_items=5 --frames 512".into());
     lines.push("--curriculum 1,2 --frames 512".into());
     let mut keys = BTreeSet::new();
@@ -172,7 +195,9 @@ fn every_key_of_a_row_is_explained() {
         }
     }
     std::fs::remove_dir_all(&folder).unwrap();
-    let explained = |key: &String| hasard_learn::runs::metrics_explained::explain(key).map(|metric| metric.name);
+    let explained = |key: &String| {
+        hasard_learn::runs::metrics_explained::explain(key).map(|metric| metric.name)
+    };
     let unexplained: Vec<&String> = keys.iter().filter(|key| explained(key).is_none()).collect();
     assert!(unexplained.is_empty(), "{unexplained:?}");
     let written: BTreeSet<&str> = keys.iter().filter_map(explained).collect();

@@ -1,4 +1,5 @@
-//! Every command against everything that is not what it wants: one line that names it, exit code 2, nothing left behind.
+//! Every command against everything that is not what it wants: one line that names it, exit code 2,
+//! nothing left behind.
 
 use hasard_learn::config::{AlgorithmKind, EnvConfig, Preset, TrainConfig};
 use std::collections::BTreeMap;
@@ -12,12 +13,14 @@ struct Den(PathBuf);
 
 impl Den {
     fn new(name: &str) -> Den {
-        let path = std::env::temp_dir().join(format!("hasard-hostile-{}-{name}", std::process::id()));
+        let path =
+            std::env::temp_dir().join(format!("hasard-hostile-{}-{name}", std::process::id()));
         let _ = std::fs::remove_dir_all(&path);
         std::fs::create_dir_all(path.join("folder")).unwrap();
         let den = Den(path);
         den.file("empty", b"");
-        let garbage: Vec<u8> = (0..5000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        let garbage: Vec<u8> =
+            (0..5000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
         den.file("garbage", &garbage);
         den.file("text", b"to be, or not to be\n");
         den.file("actions.csv", b"action\nnoop\n");
@@ -28,10 +31,15 @@ impl Den {
         den.file("run_garbage/config.json", &garbage);
         den.file("run_other/config.json", b"{\"algorithm\": \"PPO\"}");
         den.file("run_nested/config.json", "{\"a\":".repeat(100_000).as_bytes());
-        let settings = TrainConfig::new(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new(ENV)).unwrap();
+        let settings =
+            TrainConfig::new(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new(ENV)).unwrap();
         let mut settings = serde_json::to_value(&settings).unwrap();
         den.file("run_unbegun/config.json", settings.to_string().as_bytes());
-        for (file, bytes) in [("state.json", &garbage[..]), ("weights.safetensors", b""), ("training.safetensors", b"{}")] {
+        for (file, bytes) in [
+            ("state.json", &garbage[..]),
+            ("weights.safetensors", b""),
+            ("training.safetensors", b"{}"),
+        ] {
             den.file(&format!("run_damaged/checkpoints/frames_000000004096/{file}"), bytes);
         }
         den.file("run_damaged/config.json", settings.to_string().as_bytes());
@@ -88,7 +96,8 @@ fn one_line(output: &Output, line: &str) -> String {
     assert_eq!(output.status.code(), Some(2), "{line}: {error}");
     let text = error.strip_suffix('\n').unwrap_or(&error);
     // Each damaged checkpoint that is passed over is told of before.
-    let text = text.rsplit_once("going back to the checkpoint before it\n").map_or(text, |(_, last)| last);
+    let text =
+        text.rsplit_once("going back to the checkpoint before it\n").map_or(text, |(_, last)| last);
     assert!(text.starts_with("hasard: ") && text.len() < 2000, "{line}: {error}");
     assert!(!text.contains(char::is_control), "{line}: {}", error.escape_debug());
     assert!(!text.contains("panicked") && output.stdout.is_empty(), "{line}: {error}");
@@ -99,12 +108,24 @@ fn one_line(output: &Output, line: &str) -> String {
 fn no_command_knows_an_unknown_environment() {
     let den = Den::new("environments");
     let before = den.contents();
-    for command in ["rollout", "trace --actions actions.csv", "bench", "play", "render", "train", "record", "export-wad"] {
+    for command in [
+        "rollout",
+        "trace --actions actions.csv",
+        "bench",
+        "play",
+        "render",
+        "train",
+        "record",
+        "export-wad",
+    ] {
         for env in ["RemedyRushLevel4-v0", "remedy", "\u{1b}[31m", "é", "--", "-1"] {
             let mut words: Vec<&str> = command.split(' ').collect();
             words.insert(1, env);
             let error = den.refused(&words);
-            assert!(error.contains("RemedyRushLevel") || !env.starts_with("Remedy"), "{command} {env}: {error}");
+            assert!(
+                error.contains("RemedyRushLevel") || !env.starts_with("Remedy"),
+                "{command} {env}: {error}"
+            );
         }
     }
     assert_eq!(den.contents(), before, "a refused command left something behind");
@@ -114,7 +135,17 @@ fn no_command_knows_an_unknown_environment() {
 fn what_cannot_be_read_is_named() {
     let den = Den::new("inputs");
     let before = den.contents();
-    let files = ["none", "folder", "empty", "garbage", "text", "nested", "\u{1b}[31mred", "empty/below", "/proc/self/mem"];
+    let files = [
+        "none",
+        "folder",
+        "empty",
+        "garbage",
+        "text",
+        "nested",
+        "\u{1b}[31mred",
+        "empty/below",
+        "/proc/self/mem",
+    ];
     for command in [
         "render ENV -o a.png --iwad",
         "rollout ENV --episodes 1 --iwad",
@@ -137,12 +168,28 @@ fn what_cannot_be_read_is_named() {
             assert!(error.contains(named), "{line} {file}: the file is not named: {error}");
         }
     }
-    for run in ["folder", "run_garbage", "run_other", "run_nested", "run_unbegun", "run_damaged", "run_giant", "garbage", "none"]
-    {
+    for run in [
+        "folder",
+        "run_garbage",
+        "run_other",
+        "run_nested",
+        "run_unbegun",
+        "run_damaged",
+        "run_giant",
+        "garbage",
+        "none",
+    ] {
         let policy = format!("run:{run}");
-        for words in [&["eval", run][..], &["record", run, "-o", "a.mp4"], &["rollout", ENV, "--policy", &policy]] {
+        for words in [
+            &["eval", run][..],
+            &["record", run, "-o", "a.mp4"],
+            &["rollout", ENV, "--policy", &policy],
+        ] {
             let error = den.refused(words);
-            assert!(error.contains(run) || run == "run_giant", "{words:?}: the run is not named: {error}");
+            assert!(
+                error.contains(run) || run == "run_giant",
+                "{words:?}: the run is not named: {error}"
+            );
         }
     }
     for run in ["run_garbage", "run_other", "run_nested"] {
@@ -156,7 +203,12 @@ fn what_cannot_be_read_is_named() {
 fn what_cannot_be_written_is_named() {
     let den = Den::new("outputs");
     let before = den.contents();
-    for command in ["render ENV -o", "record ENV --steps 1 -o", "export-wad ENV -o", "train ENV --frames 1 --quiet --out"] {
+    for command in [
+        "render ENV -o",
+        "record ENV --steps 1 -o",
+        "export-wad ENV -o",
+        "train ENV --frames 1 --quiet --out",
+    ] {
         let ends = match command.split(' ').next() {
             Some("render") => &[".png"][..],
             Some("record") => &[".mp4", ".gif", ".episode"],
@@ -187,13 +239,19 @@ fn a_full_standard_output_is_told() {
     };
     for line in ["envs --json", "rollout RemedyRushLevel1-v0 --policy noop --episodes 1 --json"] {
         let words: Vec<&str> = line.split(' ').collect();
-        let output = den.command(&words).stdout(Stdio::from(full.try_clone().unwrap())).stderr(Stdio::piped()).output().unwrap();
+        let output = den
+            .command(&words)
+            .stdout(Stdio::from(full.try_clone().unwrap()))
+            .stderr(Stdio::piped())
+            .output()
+            .unwrap();
         let error = one_line(&output, line);
         assert!(error.contains("standard output"), "{line}: {error}");
     }
 }
 
-/// The files that fuzzing and hand have made to do harm, given to the commands that read their kind.
+/// The files that fuzzing and hand have made to do harm, given to the commands that read their
+/// kind.
 #[test]
 fn hostile_files_are_turned_away_at_the_door() {
     let den = Den::new("samples");

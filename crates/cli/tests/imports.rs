@@ -1,9 +1,11 @@
-//! Folders stand in an order, and each imports only from those before it: read from the paths that the sources name.
+//! Folders stand in an order, and each imports only from those before it: read from the paths that
+//! the sources name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// A tree of modules whose first level stands in an order: where its sources are, the path that names it, and the order.
+/// A tree of modules whose first level stands in an order: where its sources are, the path that
+/// names it, and the order.
 struct House {
     sources: &'static str,
     path: &'static str,
@@ -11,7 +13,11 @@ struct House {
 }
 
 const HOUSES: [House; 3] = [
-    House { sources: "crates/engine/src", path: "crate", order: &["math", "simd", "map", "wad", "assets", "world", "render"] },
+    House {
+        sources: "crates/engine/src",
+        path: "crate",
+        order: &["math", "simd", "map", "wad", "assets", "world", "render"],
+    },
     House {
         sources: "crates/engine/src/render",
         path: "crate::render",
@@ -59,7 +65,8 @@ fn root() -> PathBuf {
 
 /// All sources below a folder, as paths from it.
 fn sources(folder: &Path, below: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<_> = std::fs::read_dir(folder.join(below)).expect("the folder is there").flatten().collect();
+    let mut entries: Vec<_> =
+        std::fs::read_dir(folder.join(below)).expect("the folder is there").flatten().collect();
     entries.sort_by_key(std::fs::DirEntry::file_name);
     for entry in entries {
         let path = below.join(entry.file_name());
@@ -73,16 +80,26 @@ fn sources(folder: &Path, below: &Path, found: &mut Vec<PathBuf>) {
 
 /// Whether a file holds tests alone, which may look at anything.
 fn is_tests(path: &Path) -> bool {
-    path.file_stem().is_some_and(|stem| stem.to_string_lossy().ends_with("tests") || stem == "mutation" || stem == "small")
+    path.file_stem().is_some_and(|stem| {
+        stem.to_string_lossy().ends_with("tests") || stem == "mutation" || stem == "small"
+    })
 }
 
 /// The source without comments and without its module of tests.
 fn code(text: &str) -> String {
-    let end = text.find("\n#[cfg(test)]\nmod tests {").or_else(|| text.find("\n#[cfg(all(test")).unwrap_or(text.len());
-    text[..end].lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+    let end = text
+        .find("\n#[cfg(test)]\nmod tests {")
+        .or_else(|| text.find("\n#[cfg(all(test"))
+        .unwrap_or(text.len());
+    text[..end]
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
-/// What follows `path::` wherever the code names it: chains of modules, as far as they are written as a chain or as lists of chains.
+/// What follows `path::` wherever the code names it: chains of modules, as far as they are written
+/// as a chain or as lists of chains.
 fn named(code: &str, path: &str) -> BTreeSet<Vec<String>> {
     let prefix = format!("{path}::");
     let mut found = BTreeSet::new();
@@ -110,7 +127,8 @@ fn chains<'a>(text: &'a str, before: &[String], found: &mut BTreeSet<Vec<String>
         }
     }
     let end = text.find(|c| !is_of_name(c)).unwrap_or(text.len());
-    let chain: Vec<String> = before.iter().cloned().chain((end > 0).then(|| text[..end].to_string())).collect();
+    let chain: Vec<String> =
+        before.iter().cloned().chain((end > 0).then(|| text[..end].to_string())).collect();
     match text[end..].strip_prefix("::") {
         Some(rest) if end > 0 => chains(rest, &chain, found),
         _ => {
@@ -131,7 +149,8 @@ fn folders_import_only_from_those_before_them() {
         let place = |name: &str| order.iter().position(|known| *known == name);
         let mut checked = 0;
         for file in files.iter().filter(|file| !is_tests(file)) {
-            let first = file.iter().next().expect("a file has a name").to_string_lossy().replace(".rs", "");
+            let first =
+                file.iter().next().expect("a file has a name").to_string_lossy().replace(".rs", "");
             let Some(own) = place(&first) else {
                 assert!(
                     ["mod", "lib"].contains(&first.as_str()) || is_tests(file),
@@ -142,7 +161,12 @@ fn folders_import_only_from_those_before_them() {
             let text = std::fs::read_to_string(folder.join(file)).expect("the source is text");
             for chain in named(&code(&text), path) {
                 if let Some(other) = chain.first().and_then(|first| place(first)) {
-                    assert!(other <= own, "{}: {path}::{} comes after it", folder.join(file).display(), chain.join("::"));
+                    assert!(
+                        other <= own,
+                        "{}: {path}::{} comes after it",
+                        folder.join(file).display(),
+                        chain.join("::")
+                    );
                     checked += 1;
                 }
             }
@@ -194,7 +218,8 @@ fn no_circle_in(House { sources: folder, path, .. }: &House) {
 #[test]
 fn no_folder_of_the_renderer_is_a_heap() {
     fn check(folder: &Path) {
-        let entries: Vec<_> = std::fs::read_dir(folder).expect("the folder is there").flatten().collect();
+        let entries: Vec<_> =
+            std::fs::read_dir(folder).expect("the folder is there").flatten().collect();
         let files = entries.iter().filter(|entry| entry.path().is_file()).count();
         assert!(files <= 17, "{} holds {files} files", folder.display());
         entries.iter().filter(|entry| entry.path().is_dir()).for_each(|entry| check(&entry.path()));

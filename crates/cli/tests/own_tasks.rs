@@ -13,11 +13,17 @@ fn a_task_is_written_checked_and_taken_by_every_command() {
     let folder = Folder::new("all");
     assert!(folder.ok("new lava_garden").contains("lava_garden.toml: the task LavaGarden"));
     assert!(folder.refused("new lava_garden").contains("is there already"));
-    assert!(folder.ok("check lava_garden.toml -o map.png").contains("can be played as LavaGarden-v0"));
+    assert!(
+        folder.ok("check lava_garden.toml -o map.png").contains("can be played as LavaGarden-v0")
+    );
     assert!(folder.0.join("map.png").metadata().unwrap().len() > 1000);
     assert!(folder.ok("envs lava_garden.toml").contains("LavaGarden-v0"));
     let episodes = folder.ok("rollout lava_garden.toml --policy sticky:10 --episodes 2 --json");
-    assert!(episodes.contains("\"env\":\"LavaGarden-v0\"") && episodes.contains("\"vials\":") && episodes.contains("\"lava\":"));
+    assert!(
+        episodes.contains("\"env\":\"LavaGarden-v0\"")
+            && episodes.contains("\"vials\":")
+            && episodes.contains("\"lava\":")
+    );
     folder.ok("render lava_garden.toml -o frame.png");
     folder.ok("bench lava_garden.toml --seconds 0.2 --envs 2 --threads 1");
     folder.ok("record lava_garden.toml --policy sticky:10 --seed 3 -o one.episode");
@@ -52,7 +58,9 @@ fn a_run_keeps_its_task_and_says_when_the_file_has_changed() {
     folder.replace("garden.toml", "reward = 1.0", "reward = 7.0");
     let (second, said) = folder.both("eval run --episodes 2 --json");
     assert!(said.contains("garden.toml: has changed since the run began"), "{said}");
-    let rows = |text: &str| text.lines().filter(|line| !line.contains("summary")).map(str::to_owned).collect::<Vec<_>>();
+    let rows = |text: &str| {
+        text.lines().filter(|line| !line.contains("summary")).map(str::to_owned).collect::<Vec<_>>()
+    };
     assert_eq!(rows(&first), rows(&second));
     std::fs::remove_file(folder.0.join("garden.toml")).unwrap();
     folder.ok("eval run --episodes 1");
@@ -72,7 +80,10 @@ fn bad_files_are_refused_in_a_line_and_checked_in_full() {
     folder.replace("bad.toml", "kind = \"HealthBonus\"", "kind = \"HealthBonsu\"");
     folder.replace("bad.toml", "event = \"damage\"", "event = \"damaged\"");
     let line = folder.refused("rollout bad.toml");
-    assert!(line.contains("bad.toml:") && line.contains("HealthBonus") && line.contains("1 more"), "{line}");
+    assert!(
+        line.contains("bad.toml:") && line.contains("HealthBonus") && line.contains("1 more"),
+        "{line}"
+    );
     let output = folder.run("check bad.toml");
     assert_eq!(output.status.code(), Some(1));
     let listed = String::from_utf8(output.stdout).unwrap();

@@ -1,4 +1,5 @@
-//! Where things lie: runs and maps in other folders than before, names that no text holds, commands that are to be pasted.
+//! Where things lie: runs and maps in other folders than before, names that no text holds, commands
+//! that are to be pasted.
 
 #![cfg(unix)]
 
@@ -18,7 +19,8 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("hasard-places-{}-{name}", std::process::id()));
+        let path =
+            std::env::temp_dir().join(format!("hasard-places-{}-{name}", std::process::id()));
         let _ = fs::remove_dir_all(&path);
         fs::create_dir_all(&path).unwrap();
         Folder(path)
@@ -27,13 +29,19 @@ impl Folder {
     /// Runs a command in a folder below; words that a text cannot hold come after it.
     fn run(&self, below: &str, line: &str, words: &[&OsStr]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_hasard"));
-        command.args(line.split_whitespace()).args(words).current_dir(self.0.join(below)).output().unwrap()
+        command
+            .args(line.split_whitespace())
+            .args(words)
+            .current_dir(self.0.join(below))
+            .output()
+            .unwrap()
     }
 
     /// What a command that must succeed prints.
     fn ok(&self, below: &str, line: &str, words: &[&OsStr]) -> String {
         let output = self.run(below, line, words);
-        let told = String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned()
+            + &String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success(), "{line} {words:?}: {told}");
         told
     }
@@ -49,7 +57,8 @@ impl Folder {
     /// Pastes a command into a shell.
     fn pasted(&self, command: &str) {
         let command = command.replacen("hasard ", &format!("{} ", env!("CARGO_BIN_EXE_hasard")), 1);
-        let output = Command::new("bash").args(["-c", &command]).current_dir(&self.0).output().unwrap();
+        let output =
+            Command::new("bash").args(["-c", &command]).current_dir(&self.0).output().unwrap();
         assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
     }
 
@@ -74,8 +83,17 @@ fn a_run_is_not_bound_to_the_folder_that_it_was_started_in() {
     folder.ok("", &format!("eval {run} --episodes 1"), &[]);
     folder.ok("", &format!("{SMALL} --resume --out {run} --frames 256"), &[]);
     // The same words from the same folder name the same map.
-    folder.ok("project", &format!("{SMALL} --resume --out runs/one --frames 384 --maps maps/mine.wad"), &[]);
-    assert!(folder.config(run).get("changes").is_some_and(|changes| !changes.to_string().contains("env.maps")));
+    folder.ok(
+        "project",
+        &format!("{SMALL} --resume --out runs/one --frames 384 --maps maps/mine.wad"),
+        &[],
+    );
+    assert!(
+        folder
+            .config(run)
+            .get("changes")
+            .is_some_and(|changes| !changes.to_string().contains("env.maps"))
+    );
 }
 
 #[test]
@@ -156,7 +174,10 @@ fn names_that_are_not_text_are_taken_by_every_command() {
     fs::write(folder.0.join(file), sweep).unwrap();
     let swept = OsStr::from_bytes(b"\xe4_runs");
     folder.ok("", "sweep", &[file, OsStr::new("--out"), swept]);
-    let below = folder.0.join(swept).join("VolcanicVentureLevel1-v0/PPO/envs=4,set=sampling.rollout_8/seed1");
+    let below = folder
+        .0
+        .join(swept)
+        .join("VolcanicVentureLevel1-v0/PPO/envs=4,set=sampling.rollout_8/seed1");
     assert!(below.join("eval.jsonl").is_file() && below.join("checkpoints").is_dir());
     let line = folder.ok("", "sweep --dry-run", &[file, OsStr::new("--out"), swept]);
     assert!(line.contains("--out $'\\xe4_runs/"), "{line}");
@@ -166,7 +187,8 @@ fn names_that_are_not_text_are_taken_by_every_command() {
 fn commands_in_hints_can_be_pasted() {
     let folder = Folder::new("hints");
     let run = OsStr::new("my runs/it's one");
-    // A short run was never evaluated: there is no agent to export yet, and the command that is named makes one.
+    // A short run was never evaluated: there is no agent to export yet, and the command that is
+    // named makes one.
     let told = folder.ok("", &format!("{SMALL} --frames 128 --out"), &[run]);
     let hints = told.split("is a run directory: ").nth(1).unwrap();
     let (eval, report) = hints.trim().split_once(", hasard report").unwrap();
@@ -175,9 +197,15 @@ fn commands_in_hints_can_be_pasted() {
     let unevaluated = folder.run("", "export-agent -o a.agent", &[run]);
     let error = String::from_utf8_lossy(&unevaluated.stderr).into_owned();
     let command = error.trim().rsplit_once("hasard train").unwrap().1;
-    folder.pasted(&format!("hasard train{command} --set evaluation.episodes=2 --set evaluation.confirming_episodes=2"));
-    let told = folder.ok("", "export-agent", &[run, OsStr::new("-o"), OsStr::new("an agent.agent")]);
-    folder.pasted(&format!("hasard eval{} --episodes 1", told.trim().rsplit_once("hasard eval").unwrap().1));
+    folder.pasted(&format!(
+        "hasard train{command} --set evaluation.episodes=2 --set evaluation.confirming_episodes=2"
+    ));
+    let told =
+        folder.ok("", "export-agent", &[run, OsStr::new("-o"), OsStr::new("an agent.agent")]);
+    folder.pasted(&format!(
+        "hasard eval{} --episodes 1",
+        told.trim().rsplit_once("hasard eval").unwrap().1
+    ));
     let again = folder.ok("", &format!("{SMALL} --resume --out"), &[run]);
     let command = again.lines().find(|line| line.contains("was finished before")).unwrap();
     let command = command.rsplit_once("hasard train").unwrap().1.replace("MORE", "256");
@@ -200,7 +228,11 @@ fn content(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder).unwrap().flatten() {
         let path = entry.path();
-        if path.is_dir() { all.extend(content(&path)) } else { all.push((path.clone(), fs::read(&path).unwrap())) }
+        if path.is_dir() {
+            all.extend(content(&path))
+        } else {
+            all.push((path.clone(), fs::read(&path).unwrap()))
+        }
     }
     all.sort();
     all
@@ -246,6 +278,9 @@ fn the_run_of_a_graphics_card_goes_on_on_the_processor() {
         assert!(folder.refused("", &resume).contains("--device cpu"));
         folder.ok("", &format!("{resume} --device cpu"), &[]);
         let config = folder.config("run");
-        assert_eq!((&config["device"], &config["changes"][0]["setting"]), (&"cpu".into(), &"device".into()));
+        assert_eq!(
+            (&config["device"], &config["changes"][0]["setting"]),
+            (&"cpu".into(), &"device".into())
+        );
     }
 }

@@ -18,7 +18,8 @@ fn hasard() -> Command {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("hasard-cli-serve-{}-{name}", std::process::id()));
+    let folder =
+        std::env::temp_dir().join(format!("hasard-cli-serve-{}-{name}", std::process::id()));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(folder.join("runs")).unwrap();
     std::fs::create_dir_all(folder.join("zoo")).unwrap();
@@ -38,7 +39,10 @@ impl Drop for Running {
 /// A server of the folder's runs, and the address that it printed.
 fn serve(folder: &Path, listen: &str) -> (Running, String) {
     let mut command = hasard();
-    command.args(["serve", "runs", "--listen", listen]).current_dir(folder).env("HASARD_ZOO", folder.join("zoo"));
+    command
+        .args(["serve", "runs", "--listen", listen])
+        .current_dir(folder)
+        .env("HASARD_ZOO", folder.join("zoo"));
     let mut server = Running(command.stdout(Stdio::piped()).spawn().unwrap());
     let mut line = String::new();
     BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
@@ -68,19 +72,26 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
         "--out",
         "runs/tiny",
     ];
-    let mut training = Running(training.args(words).stdout(Stdio::null()).current_dir(&folder).spawn().unwrap());
+    let mut training =
+        Running(training.args(words).stdout(Stdio::null()).current_dir(&folder).spawn().unwrap());
     let progress = "document.querySelector('tbody progress')?.value ?? 0";
     browser.wait_long(&format!("({progress}) > 0"));
     browser.wait_long("document.querySelector('tbody').innerText.includes('done')");
     assert!(training.0.wait().unwrap().success());
     assert_eq!(browser.script(&format!("return ({progress}) >= 1")), json!(true));
     browser.script("document.querySelector('tbody a').click()");
-    browser.wait("document.querySelector('h1').innerText.includes('PPOPID in Volcanic Venture 1, seed 1')");
+    browser.wait(
+        "document.querySelector('h1').innerText.includes('PPOPID in Volcanic Venture 1, seed 1')",
+    );
     browser.wait("document.querySelector('.told').innerText.includes('training')");
     browser.photograph("serve_run_trained");
 
     // Its agent goes into the zoo.
-    let exported = hasard().args(["export-agent", "runs/tiny", "-o", "zoo/Tiny.agent"]).current_dir(&folder).output().unwrap();
+    let exported = hasard()
+        .args(["export-agent", "runs/tiny", "-o", "zoo/Tiny.agent"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
     assert!(exported.status.success());
     browser.go(&format!("{address}/#watch?agent=zoo:Tiny&seed=3"));
     let step = "Number(document.querySelector('#numbers b')?.innerText)";
@@ -90,15 +101,19 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     browser.script("document.getElementById('go').click()");
     browser.wait("document.getElementById('go').innerText == 'Play'");
     let sums = "[...document.querySelectorAll('#thoughts .group')].map((group) => [...group.querySelectorAll('meter')].reduce((sum, one) => sum + one.value, 0))";
-    browser.wait(&format!("{sums}.length >= 3 && {sums}.every((sum) => Math.abs(sum - 1) < 0.001)"));
+    browser
+        .wait(&format!("{sums}.length >= 3 && {sums}.every((sum) => Math.abs(sum - 1) < 0.001)"));
     browser.wait("['return value (normalised)', 'cost value (normalised)'].every((name) => [...document.querySelectorAll('#numbers > span')].some((one) => one.firstChild.textContent == name && /^-?[0-9.]+$/.test(one.lastChild.innerText)))");
     browser.wait_long("document.querySelector('[data-kind=harm]')");
     browser.script("document.querySelector('[data-kind=harm]').click()");
-    browser.wait(&format!("{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"));
+    browser.wait(&format!(
+        "{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"
+    ));
     std::thread::sleep(std::time::Duration::from_millis(1000));
     browser.photograph("serve_watch_agent");
     let picture = "document.querySelector('canvas.view').toDataURL()";
-    let (at, before) = (browser.script(&format!("return {step}")), browser.script(&format!("return {picture}")));
+    let (at, before) =
+        (browser.script(&format!("return {step}")), browser.script(&format!("return {picture}")));
     browser.script("document.getElementById('copy').click()");
     browser.wait("location.hash.includes('paused=true') && location.hash.includes('step=')");
     let link = browser.script("return location.href");
@@ -125,8 +140,13 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
     // What is asked while a show is only on its way is not lost.
     browser.script("const size = [...document.querySelectorAll('select')].find((one) => one.value == '640x480'); size.value = '160x120'; size.dispatchEvent(new Event('change')); document.getElementById('next').click()");
     browser.wait(&format!("{seed} == Number({first}) + 2 && {step} > 0"));
-    let unreachable = |line: &String| line.contains("ERR_CONNECTION_REFUSED") || line.contains("WebSocket connection");
-    assert_eq!(browser.errors().into_iter().filter(|line| !unreachable(line)).collect::<Vec<_>>(), Vec::<String>::new());
+    let unreachable = |line: &String| {
+        line.contains("ERR_CONNECTION_REFUSED") || line.contains("WebSocket connection")
+    };
+    assert_eq!(
+        browser.errors().into_iter().filter(|line| !unreachable(line)).collect::<Vec<_>>(),
+        Vec::<String>::new()
+    );
     std::fs::remove_dir_all(folder).unwrap();
 }
 
@@ -134,21 +154,37 @@ fn a_training_is_followed_and_its_agent_watched_to_its_harm() {
 fn a_folder_that_is_not_there_is_refused() {
     let folder = folder("none");
     let mut command = Command::new(env!("CARGO_BIN_EXE_hasard"));
-    let output = command.args(["serve", "no-such", "--listen", "127.0.0.1:0"]).current_dir(&folder).output().unwrap();
+    let output = command
+        .args(["serve", "no-such", "--listen", "127.0.0.1:0"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.lines().count() == 1 && said.contains("no-such: there is no such folder"), "{said}");
-    // Without a name the folder `runs` is waited for, and beyond this machine a token is drawn, another each time.
+    assert!(
+        said.lines().count() == 1 && said.contains("no-such: there is no such folder"),
+        "{said}"
+    );
+    // Without a name the folder `runs` is waited for, and beyond this machine a token is drawn,
+    // another each time.
     std::fs::remove_dir(folder.join("runs")).unwrap();
     let address = || {
         let mut server = Running(
-            hasard().args(["serve", "--listen", "0.0.0.0:0"]).current_dir(&folder).stdout(Stdio::piped()).spawn().unwrap(),
+            hasard()
+                .args(["serve", "--listen", "0.0.0.0:0"])
+                .current_dir(&folder)
+                .stdout(Stdio::piped())
+                .spawn()
+                .unwrap(),
         );
         let mut line = String::new();
         BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
         line.trim().split_once("?token=").unwrap().1.to_owned()
     };
     let (one, other) = (address(), address());
-    assert!(one.len() == 32 && one.bytes().all(|byte| byte.is_ascii_hexdigit()) && one != other, "{one} {other}");
+    assert!(
+        one.len() == 32 && one.bytes().all(|byte| byte.is_ascii_hexdigit()) && one != other,
+        "{one} {other}"
+    );
     std::fs::remove_dir_all(folder).unwrap();
 }

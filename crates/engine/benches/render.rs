@@ -1,6 +1,7 @@
 //! Time of one frame: `cargo bench -p hasard-engine`.
 //!
-//! The level is like that of Volcanic Venture: 289 tiles, two in five of them raised, seen from random places inside.
+//! The level is like that of Volcanic Venture: 289 tiles, two in five of them raised, seen from
+//! random places inside.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use hasard_engine::assets::Assets;
@@ -40,7 +41,8 @@ fn level() -> World {
         }
     }
     for _ in 0..30 {
-        let (x, y) = (Fixed::from_int(rng.between(20, 2150)), Fixed::from_int(rng.between(84, 2220)));
+        let (x, y) =
+            (Fixed::from_int(rng.between(20, 2150)), Fixed::from_int(rng.between(84, 2220)));
         world.spawn(ActorKind::ArmorBonus, x, y, Fixed::from_int(20));
     }
     world.add_player(Fixed::from_int(1088), Fixed::from_int(1152), Angle::EAST);
@@ -57,7 +59,8 @@ fn look_somewhere(world: &mut World, rng: &mut Rng) {
         (body.x, body.y, body.z, body.angle, body.sector) = (x, y, floor, angle, sector);
     }
     let player = &mut world.players[0];
-    (player.view_z, player.pitch) = (floor + Fixed::from_int(41), Angle::from_degrees(PITCH).0 as i32);
+    (player.view_z, player.pitch) =
+        (floor + Fixed::from_int(41), Angle::from_degrees(PITCH).0 as i32);
 }
 
 fn frames(criterion: &mut Criterion) {
@@ -69,9 +72,10 @@ fn frames(criterion: &mut Criterion) {
         let mut renderer = Renderer::new(scene.clone(), Arc::new(View::new(size).unwrap()));
         let mut scratch = FrameScratch::default();
         let mut rgb = vec![0; size.pixels() * 3];
-        for (name, buffers) in
-            [("colour", Buffers::default()), ("colour, depth and labels", Buffers { depth: true, labels: true })]
-        {
+        for (name, buffers) in [
+            ("colour", Buffers::default()),
+            ("colour, depth and labels", Buffers { depth: true, labels: true }),
+        ] {
             let mut rng = Rng::new(9);
             group.bench_function(BenchmarkId::new(name, size), |bencher| {
                 bencher.iter_batched(

@@ -1,5 +1,5 @@
-//! The engine alone: a map of two rooms, a thing in it, and what a player there sees, as colour and depth:
-//! `cargo run --release -p hasard-engine --example picture -- OUT.png`.
+//! The engine alone: a map of two rooms, a thing in it, and what a player there sees, as colour and
+//! depth: `cargo run --release -p hasard-engine --example picture -- OUT.png`.
 
 use hasard_engine::assets::Assets;
 use hasard_engine::map::{Map, MapBuilder, Style};
@@ -42,6 +42,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut encoder = png::Encoder::new(BufWriter::new(std::fs::File::create(&path)?), 640, 480);
     encoder.set_color(png::ColorType::Rgb);
     encoder.write_header()?.write_image_data(&rgb)?;
-    println!("{path}; the middle of the picture is {} of 255 deep", renderer.depth()[240 * 640 + 320]);
+    println!(
+        "{path}; the middle of the picture is {} of 255 deep",
+        renderer.depth()[240 * 640 + 320]
+    );
     Ok(())
 }

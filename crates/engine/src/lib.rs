@@ -1,4 +1,5 @@
-//! The engine of HASARD: a deterministic Doom-like world that advances tic by tic (35 a second), and its picture.
+//! The engine of HASARD: a deterministic Doom-like world that advances tic by tic (35 a second),
+//! and its picture.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -14,7 +15,14 @@
 
 // They panic where a stream is closed or its disk is full.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
-#![cfg_attr(test, allow(clippy::disallowed_methods, clippy::disallowed_types, reason = "tests compare with the exact functions"))]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::disallowed_methods,
+        clippy::disallowed_types,
+        reason = "tests compare with the exact functions"
+    )
+)]
 
 pub mod assets;
 pub mod map;

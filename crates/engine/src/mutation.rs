@@ -1,13 +1,17 @@
 //! Spoiling of valid files for the tests of everything that reads bytes.
 //!
 //! The ordinary tests make some thousand attempts. For a longer search:
-//! `HASARD_FUZZ_ITERATIONS=1000000 cargo test --release -p hasard-engine mutated`. What it finds belongs into `attacks/`.
+//! `HASARD_FUZZ_ITERATIONS=1000000 cargo test --release -p hasard-engine mutated`. What it finds
+//! belongs into `attacks/`.
 
 use crate::math::Rng;
 
 /// Attempts that one test makes: `HASARD_FUZZ_ITERATIONS`, or `default`.
 pub(crate) fn iterations(default: u64) -> u64 {
-    std::env::var("HASARD_FUZZ_ITERATIONS").ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+    std::env::var("HASARD_FUZZ_ITERATIONS")
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(default)
 }
 
 /// Numbers that break arithmetic.

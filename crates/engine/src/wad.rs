@@ -76,14 +76,19 @@ pub enum WadError {
 impl fmt::Display for WadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            WadError::NotAWad => f.write_str("not a WAD: it does not begin with IWAD or PWAD; give a WAD file"),
+            WadError::NotAWad => {
+                f.write_str("not a WAD: it does not begin with IWAD or PWAD; give a WAD file")
+            }
             WadError::Directory { lumps, offset, length } => write!(
                 f,
                 "broken WAD: a directory of {lumps} lumps at byte {offset} does not fit a file of {length} bytes; \
                  fetch the file again"
             ),
             WadError::LumpOutside { index, name } => {
-                write!(f, "broken WAD: lump {index} ({name:?}) lies outside the file; fetch the file again")
+                write!(
+                    f,
+                    "broken WAD: lump {index} ({name:?}) lies outside the file; fetch the file again"
+                )
             }
             WadError::Binary { name, format } => write!(
                 f,
@@ -110,11 +115,14 @@ impl<'a> Wad<'a> {
         };
         let header = bytes.get(..HEADER).ok_or(WadError::NotAWad)?;
         let (lumps, offset) = (int(header, 4), int(header, 8));
-        let directory = usize::try_from(lumps).ok().zip(usize::try_from(offset).ok()).and_then(|(lumps, offset)| {
-            let end = offset.checked_add(lumps.checked_mul(ENTRY)?)?;
-            bytes.get(offset..end).filter(|_| lumps <= LUMP_LIMIT)
-        });
-        let directory = directory.ok_or(WadError::Directory { lumps, offset, length: bytes.len() })?;
+        let directory = usize::try_from(lumps).ok().zip(usize::try_from(offset).ok()).and_then(
+            |(lumps, offset)| {
+                let end = offset.checked_add(lumps.checked_mul(ENTRY)?)?;
+                bytes.get(offset..end).filter(|_| lumps <= LUMP_LIMIT)
+            },
+        );
+        let directory =
+            directory.ok_or(WadError::Directory { lumps, offset, length: bytes.len() })?;
         let entry = |(index, entry): (usize, &[u8])| {
             let name = name_of(&entry[8..]);
             let (start, length) = (int(entry, 0), int(entry, 4));
@@ -129,7 +137,8 @@ impl<'a> Wad<'a> {
             };
             lump.map(|bytes| Lump { name, bytes }).ok_or(WadError::LumpOutside { index, name })
         };
-        let lumps = directory.chunks_exact(ENTRY).enumerate().map(entry).collect::<Result<Vec<_>, _>>()?;
+        let lumps =
+            directory.chunks_exact(ENTRY).enumerate().map(entry).collect::<Result<Vec<_>, _>>()?;
         Ok(Wad { kind, lumps })
     }
 
@@ -146,27 +155,35 @@ impl<'a> Wad<'a> {
     /// When there is none, or it is in a binary format.
     pub fn map_text(&self, name: &str) -> Result<&'a [u8], WadError> {
         let (marker, text) = (TextureName::new(name), TextureName::new("TEXTMAP"));
-        let found = self.lumps.windows(2).rev().find(|pair| pair[0].name == marker && pair[1].name == text);
+        let found =
+            self.lumps.windows(2).rev().find(|pair| pair[0].name == marker && pair[1].name == text);
         found.map(|pair| pair[1].bytes).ok_or_else(|| match self.binary_format(name) {
             Some(format) => WadError::Binary { name: name.to_ascii_uppercase(), format },
             None => WadError::NotFound { name: format!("UDMF map {name}{}", self.other_maps()) },
         })
     }
 
-    /// The format of a binary map: its lumps follow its name, and only Hexen's has `BEHAVIOR` among them.
+    /// The format of a binary map: its lumps follow its name, and only Hexen's has `BEHAVIOR` among
+    /// them.
     fn binary_format(&self, name: &str) -> Option<&'static str> {
         let marker = TextureName::new(name);
         let maps = self.lumps.iter().enumerate().rev().filter(|(_, lump)| lump.name == marker);
-        let lumps = maps.map(|(at, _)| &self.lumps[at + 1..]).find(|lumps| lumps.first().is_some_and(is_binary))?;
+        let lumps = maps
+            .map(|(at, _)| &self.lumps[at + 1..])
+            .find(|lumps| lumps.first().is_some_and(is_binary))?;
         let behaviour = TextureName::new("BEHAVIOR");
-        let hexen = lumps.iter().take_while(|lump| is_binary(lump)).any(|lump| lump.name == behaviour);
+        let hexen =
+            lumps.iter().take_while(|lump| is_binary(lump)).any(|lump| lump.name == behaviour);
         Some(if hexen { "Hexen" } else { "Doom" })
     }
 
     /// Which maps the file has, in brackets; nothing if none.
     fn other_maps(&self) -> String {
         let text = TextureName::new("TEXTMAP");
-        let maps = self.lumps.windows(2).filter(|pair| pair[1].name == text || is_binary(&pair[1]) && !is_binary(&pair[0]));
+        let maps = self
+            .lumps
+            .windows(2)
+            .filter(|pair| pair[1].name == text || is_binary(&pair[1]) && !is_binary(&pair[0]));
         let names: Vec<String> = maps.take(8).map(|pair| format!("{:?}", pair[0].name)).collect();
         if names.is_empty() { String::new() } else { format!(" (it has {})", names.join(", ")) }
     }
@@ -174,8 +191,10 @@ impl<'a> Wad<'a> {
 
 /// Whether a lump is one of those that a binary map consists of.
 fn is_binary(lump: &Lump<'_>) -> bool {
-    const LUMPS: [&str; 11] =
-        ["THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SEGS", "SSECTORS", "NODES", "SECTORS", "REJECT", "BLOCKMAP", "BEHAVIOR"];
+    const LUMPS: [&str; 11] = [
+        "THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SEGS", "SSECTORS", "NODES", "SECTORS",
+        "REJECT", "BLOCKMAP", "BEHAVIOR",
+    ];
     LUMPS.iter().any(|&name| lump.name == TextureName::new(name))
 }
 
@@ -188,7 +207,8 @@ pub fn write(kind: WadKind, lumps: &[Lump<'_>]) -> Vec<u8> {
         WadKind::Iwad => b"IWAD",
         WadKind::Pwad => b"PWAD",
     });
-    let put = |out: &mut Vec<u8>, value: usize| out.extend_from_slice(&(value as u32).to_le_bytes());
+    let put =
+        |out: &mut Vec<u8>, value: usize| out.extend_from_slice(&(value as u32).to_le_bytes());
     put(&mut out, lumps.len());
     put(&mut out, HEADER + contents);
     for lump in lumps {
@@ -204,8 +224,8 @@ pub fn write(kind: WadKind, lumps: &[Lump<'_>]) -> Vec<u8> {
     out
 }
 
-/// A PWAD with one UDMF map, which engines of the ZDoom family load as it is (they build nodes themselves). Textures
-/// that no game file has are defined by others that all have.
+/// A PWAD with one UDMF map, which engines of the ZDoom family load as it is (they build nodes
+/// themselves). Textures that no game file has are defined by others that all have.
 #[must_use]
 pub fn write_map(name: &str, map: &MapSource) -> Vec<u8> {
     let text = udmf::write(map);
@@ -251,11 +271,19 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        let lumps = [lump("ONE", b"abc"), lump("MARKER", b""), lump("EIGHTLET", b"xyz0"), lump("one", b"later")];
+        let lumps = [
+            lump("ONE", b"abc"),
+            lump("MARKER", b""),
+            lump("EIGHTLET", b"xyz0"),
+            lump("one", b"later"),
+        ];
         let bytes = write(WadKind::Iwad, &lumps);
         let wad = Wad::read(&bytes).unwrap();
         assert_eq!((wad.kind, wad.lumps.as_slice()), (WadKind::Iwad, lumps.as_slice()));
-        assert_eq!((wad.find("one"), wad.find("eightlet"), wad.find("two")), (Some(&b"later"[..]), Some(&b"xyz0"[..]), None));
+        assert_eq!(
+            (wad.find("one"), wad.find("eightlet"), wad.find("two")),
+            (Some(&b"later"[..]), Some(&b"xyz0"[..]), None)
+        );
     }
 
     #[test]
@@ -272,7 +300,8 @@ mod tests {
         // A texture of ours comes with its definition.
         let text = b"namespace = \"zdoom\"; sector { texturefloor = \"TILES6\"; textureceiling = \"FLAT5\"; }";
         let bytes = write_map("MAP01", &udmf::read(text).unwrap());
-        let definitions = std::str::from_utf8(Wad::read(&bytes).unwrap().find("TEXTURES").unwrap()).unwrap();
+        let definitions =
+            std::str::from_utf8(Wad::read(&bytes).unwrap().find("TEXTURES").unwrap()).unwrap();
         assert_eq!(definitions, "Texture TILES6, 64, 64\n{\n\tPatch FLAT5_7, 0, 0\n}\n");
     }
 
@@ -280,14 +309,24 @@ mod tests {
     fn a_binary_map_is_said_to_be_one() {
         let why = |names: &[&str]| {
             let lumps: Vec<Lump<'_>> = names.iter().map(|name| lump(name, b"x")).collect();
-            Wad::read(&write(WadKind::Pwad, &lumps)).unwrap().map_text("MAP01").unwrap_err().to_string()
+            Wad::read(&write(WadKind::Pwad, &lumps))
+                .unwrap()
+                .map_text("MAP01")
+                .unwrap_err()
+                .to_string()
         };
         let doom = ["MAP01", "THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SECTORS"];
         let error = why(&doom);
-        assert!(error.starts_with("its MAP01 is binary, in Doom's format, and must be UDMF"), "{error}");
+        assert!(
+            error.starts_with("its MAP01 is binary, in Doom's format, and must be UDMF"),
+            "{error}"
+        );
         assert!(why(&[&doom[..], &["BEHAVIOR"]].concat()).contains("in Hexen's format"));
         // Another map's BEHAVIOR says nothing of this one.
-        assert!(why(&[&doom[..], &["MAP02", "THINGS", "BEHAVIOR"]].concat()).contains("in Doom's format"));
+        assert!(
+            why(&[&doom[..], &["MAP02", "THINGS", "BEHAVIOR"]].concat())
+                .contains("in Doom's format")
+        );
         let other = why(&["E1M1", "TEXTMAP", "ENDMAP", "MAP02", "THINGS", "LINEDEFS"]);
         assert!(other.contains("no UDMF map MAP01 (it has E1M1, MAP02)"), "{other}");
         assert_eq!(why(&["PICTURE"]), "the WAD has no UDMF map MAP01; give one that has");
@@ -305,11 +344,20 @@ mod tests {
             assert!(matches!(spoiled(4, value), WadError::Directory { .. }), "{value} lumps");
         }
         for value in [-1, 16, i32::MAX, i32::MIN] {
-            assert!(matches!(spoiled(8, value), WadError::Directory { .. }), "directory at {value}");
+            assert!(
+                matches!(spoiled(8, value), WadError::Directory { .. }),
+                "directory at {value}"
+            );
         }
         for value in [-1, 30, i32::MAX, i32::MIN] {
-            assert!(matches!(spoiled(15, value), WadError::LumpOutside { index: 0, .. }), "lump at {value}");
-            assert!(matches!(spoiled(19, value), WadError::LumpOutside { .. }), "lump of {value} bytes");
+            assert!(
+                matches!(spoiled(15, value), WadError::LumpOutside { index: 0, .. }),
+                "lump at {value}"
+            );
+            assert!(
+                matches!(spoiled(19, value), WadError::LumpOutside { .. }),
+                "lump of {value} bytes"
+            );
         }
         for length in 0..good.len() {
             assert!(Wad::read(&good[..length]).is_err(), "cut to {length} bytes");

@@ -1,9 +1,11 @@
-//! Weapons, missiles, blasts, monsters and barrels in small rooms, held against what was measured of the original.
+//! Weapons, missiles, blasts, monsters and barrels in small rooms, held against what was measured
+//! of the original.
 
 use hasard_engine::map::{Map, MapBuilder, Style};
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::{
-    ActorFlags, ActorId, ActorKind, Buttons, Command, DamageKind, Event, Face, Phase, Weapon, World, ammo,
+    ActorFlags, ActorId, ActorKind, Buttons, Command, DamageKind, Event, Face, Phase, Weapon,
+    World, ammo,
 };
 use std::sync::Arc;
 
@@ -33,7 +35,8 @@ fn room(rectangle: [i32; 4], player: (f64, f64), crates: &[([i32; 4], i32)]) -> 
     World::new(Arc::new(Map::build(&source, "room", &[]).expect("the room builds")), 1)
 }
 
-/// The room of Collateral Damage, empty: the crates and the notch of its east wall do not matter here.
+/// The room of Collateral Damage, empty: the crates and the notch of its east wall do not matter
+/// here.
 fn shooting_room(seed: u64) -> World {
     let mut world = room([-576, -640, 256, 640], (-256.0, 0.0), &[]);
     world.rng = hasard_engine::math::Rng::new(seed);
@@ -91,7 +94,8 @@ fn the_launcher_wants_a_fresh_press_then_fires_8_tics_later_and_every_20() {
     assert_eq!(shots(&mut world, 300, |_| true), [], "held since the start");
     let mut world = shooting_room(1);
     arm(&mut world, Weapon::RocketLauncher, 50);
-    // Released at tics 16 to 20, pressed from 21: first rocket 9 tics later as the original's traces count.
+    // Released at tics 16 to 20, pressed from 21: first rocket 9 tics later as the original's
+    // traces count.
     let fired = shots(&mut world, 120, |tic| !(16..21).contains(&tic));
     assert_eq!(fired, [29, 49, 69, 89, 109]);
     assert_eq!(world.players[0].ammo[ammo::ROCKET], 45);
@@ -147,7 +151,13 @@ fn a_rocket_starts_30_in_front_at_height_32_flies_20_a_tic_and_burns_18_tics() {
         run(&mut world, 1, Buttons::ATTACK);
         for id in all(&world, ActorKind::Rocket) {
             let rocket = world.get(id).unwrap();
-            flight.push((world.tic, rocket.x.to_f64(), rocket.y.to_f64(), rocket.z.to_f64(), rocket.phase));
+            flight.push((
+                world.tic,
+                rocket.x.to_f64(),
+                rocket.y.to_f64(),
+                rocket.z.to_f64(),
+                rocket.phase,
+            ));
         }
     }
     assert_eq!(flight[0], (30, -226.0, 0.0, 32.0, Phase::Idle));
@@ -167,8 +177,12 @@ fn the_splash_on_the_shooter_is_that_of_the_original() {
     let data = include_str!("data/splash_selfdamage.csv");
     let mut rows = 0;
     for line in data.lines().skip(1) {
-        let [recorded_burst, distance, damage, armor]: [f64; 4] =
-            line.split(',').map(|field| field.parse().unwrap()).collect::<Vec<_>>().try_into().unwrap();
+        let [recorded_burst, distance, damage, armor]: [f64; 4] = line
+            .split(',')
+            .map(|field| field.parse().unwrap())
+            .collect::<Vec<_>>()
+            .try_into()
+            .unwrap();
         // In one row the player still drifted: 0.2 map units between firing and burst.
         let mut world = room([-448, -256, 448, 256], (recorded_burst + distance, 150.0), &[]);
         arm(&mut world, Weapon::RocketLauncher, 50);
@@ -189,7 +203,10 @@ fn the_splash_on_the_shooter_is_that_of_the_original() {
         }
         let burst_at = burst_at.expect("the rocket bursts");
         let lost = 200 - world.get(body).unwrap().health;
-        assert!((burst_at - recorded_burst).abs() < 0.3, "row {rows}: burst at {burst_at}, original {recorded_burst}");
+        assert!(
+            (burst_at - recorded_burst).abs() < 0.3,
+            "row {rows}: burst at {burst_at}, original {recorded_burst}"
+        );
         // The original wore armour that takes half in its first rows.
         let without_armor = damage as i32 + (lost / 2).min(armor as i32);
         assert_eq!(lost, without_armor, "row {rows}: {distance} from the burst");
@@ -198,7 +215,8 @@ fn the_splash_on_the_shooter_is_that_of_the_original() {
     assert!(rows >= 20, "{rows} rows");
 }
 
-/// A level of Collateral Damage: targets, their speed, neutrals, their health, place of the shooter.
+/// A level of Collateral Damage: targets, their speed, neutrals, their health, place of the
+/// shooter.
 #[derive(Clone, Copy)]
 struct Range {
     targets: usize,
@@ -217,7 +235,16 @@ const RANGES: [Range; 3] = [
 /// The room of Collateral Damage with its crates and notch.
 fn range_map(player_x: f64) -> Arc<Map> {
     let mut builder = MapBuilder::new();
-    let corners = [(-576, -640), (256, -640), (256, 192), (224, 192), (224, 320), (256, 320), (256, 640), (-576, 640)];
+    let corners = [
+        (-576, -640),
+        (256, -640),
+        (256, 192),
+        (224, 192),
+        (224, 320),
+        (256, 320),
+        (256, 640),
+        (-576, 640),
+    ];
     builder.polygon(STYLE, &corners);
     let crate_of = |floor| Style { floor, ..STYLE };
     builder.rectangle(crate_of(24), 160, -352, 192, -320);
@@ -244,12 +271,21 @@ impl Gallery {
         let mut gallery = Gallery { world, range, line_x };
         gallery.world.run_thinkers(&[]);
         for (tid, y, next) in [(11, 608, 12), (12, -608, 11)] {
-            let id = gallery.world.spawn(ActorKind::PatrolPoint, line_x, Fixed::from_int(y), Fixed::ZERO);
+            let id = gallery.world.spawn(
+                ActorKind::PatrolPoint,
+                line_x,
+                Fixed::from_int(y),
+                Fixed::ZERO,
+            );
             let point = gallery.world.get_mut(id).unwrap();
             (point.tid, point.next_goal) = (tid, next);
         }
         for i in 0..range.targets + range.neutrals {
-            gallery.add(if i < range.targets { ActorKind::Cacodemon } else { ActorKind::ZombieMan });
+            gallery.add(if i < range.targets {
+                ActorKind::Cacodemon
+            } else {
+                ActorKind::ZombieMan
+            });
         }
         let world = &mut gallery.world;
         world.clear_inventory(0);
@@ -314,7 +350,8 @@ fn mean_and_error(values: &[f64]) -> (f64, f64) {
 /// Mean and standard deviation over 60 episodes of the original: rewards, then costs.
 type Score = [(f64, f64); 2];
 
-/// Plays whole episodes, `policy` choosing buttons for each step of 4 tics, and holds both means against the original's.
+/// Plays whole episodes, `policy` choosing buttons for each step of 4 tics, and holds both means
+/// against the original's.
 fn compare_scores(name: &str, original: [Score; 3], mut policy: impl FnMut(u32) -> Buttons) {
     const EPISODES: u64 = 120;
     for (range, score) in RANGES.into_iter().zip(original) {
@@ -337,25 +374,44 @@ fn compare_scores(name: &str, original: [Score; 3], mut policy: impl FnMut(u32) 
         for (values, (mean, deviation)) in sums.iter().zip(score) {
             let (ours, error) = mean_and_error(values);
             let allowed = 3.0 * (error.powi(2) + deviation.powi(2) / 60.0).sqrt();
-            println!("{name}, shooter at {}: {ours:.2}, original {mean:.2}, allowed +-{allowed:.2}", range.player_x);
-            assert!((ours - mean).abs() < allowed, "{name}, shooter at {}: {ours} against {mean}", range.player_x);
+            println!(
+                "{name}, shooter at {}: {ours:.2}, original {mean:.2}, allowed +-{allowed:.2}",
+                range.player_x
+            );
+            assert!(
+                (ours - mean).abs() < allowed,
+                "{name}, shooter at {}: {ours} against {mean}",
+                range.player_x
+            );
         }
     }
 }
 
 #[test]
 fn a_held_launcher_scores_as_in_the_original() {
-    let original =
-        [[(25.6167, 5.8284), (19.7167, 5.3388)], [(25.9167, 5.0934), (25.7833, 7.294)], [(20.6833, 3.6032), (31.7, 7.6164)]];
-    compare_scores("held", original, |tic| if tic >= 20 { Buttons::ATTACK } else { Buttons::default() });
+    let original = [
+        [(25.6167, 5.8284), (19.7167, 5.3388)],
+        [(25.9167, 5.0934), (25.7833, 7.294)],
+        [(20.6833, 3.6032), (31.7, 7.6164)],
+    ];
+    compare_scores(
+        "held",
+        original,
+        |tic| if tic >= 20 { Buttons::ATTACK } else { Buttons::default() },
+    );
 }
 
 #[test]
 fn a_random_shooter_scores_as_in_the_original() {
-    let original = [[(13.25, 6.9753), (13.75, 7.4266)], [(8.85, 5.0227), (16.0, 8.5303)], [(5.55, 3.4613), (22.1833, 13.6851)]];
+    let original = [
+        [(13.25, 6.9753), (13.75, 7.4266)],
+        [(8.85, 5.0227), (16.0, 8.5303)],
+        [(5.55, 3.4613), (22.1833, 13.6851)],
+    ];
     let mut rng = hasard_engine::math::Rng::new(99);
     compare_scores("random", original, move |_| {
-        let turn = [Buttons::default(), Buttons::TURN_LEFT, Buttons::TURN_RIGHT][rng.below(3) as usize];
+        let turn =
+            [Buttons::default(), Buttons::TURN_LEFT, Buttons::TURN_RIGHT][rng.below(3) as usize];
         turn | [Buttons::default(), Buttons::ATTACK][rng.below(2) as usize]
     });
 }
@@ -366,11 +422,17 @@ fn monsters_do_not_appear_inside_each_other() {
     for seed in 0..200 {
         let gallery = Gallery::new(&map, RANGES[0], seed);
         let world = &gallery.world;
-        let monsters: Vec<_> = world.living().filter(|(_, actor)| actor.flags.any(ActorFlags::MONSTER)).collect();
+        let monsters: Vec<_> =
+            world.living().filter(|(_, actor)| actor.flags.any(ActorFlags::MONSTER)).collect();
         assert_eq!(monsters.len(), 8);
         for (i, (_, one)) in monsters.iter().enumerate() {
             for (_, other) in &monsters[i + 1..] {
-                assert!(!one.would_overlap(other, one.x, one.y), "seed {seed}: {:?} in {:?}", one.kind, other.kind);
+                assert!(
+                    !one.would_overlap(other, one.x, one.y),
+                    "seed {seed}: {:?} in {:?}",
+                    one.kind,
+                    other.kind
+                );
             }
         }
     }
@@ -391,7 +453,12 @@ fn put(world: &mut World, kind: ActorKind, x: i32, y: i32, health: i32) -> Actor
 }
 
 /// The tic in which `victim` dies, and who is to blame.
-fn await_death(world: &mut World, victim: ActorId, tics: u32, buttons: Buttons) -> Option<(u32, Option<ActorId>)> {
+fn await_death(
+    world: &mut World,
+    victim: ActorId,
+    tics: u32,
+    buttons: Buttons,
+) -> Option<(u32, Option<ActorId>)> {
     for _ in 0..tics {
         let now = world.tic;
         run(world, 1, buttons);
@@ -417,15 +484,18 @@ fn a_barrel_bursts_11_to_14_tics_after_the_shot_and_takes_its_neighbours_along()
         let imp = put(&mut world, ActorKind::DoomImp, 720, 256, 1);
         let player = world.players[0].actor;
         run(&mut world, 17, Buttons::default());
-        let (shot, source) = await_death(&mut world, first, 100, Buttons::ATTACK).expect("the barrel is hit");
+        let (shot, source) =
+            await_death(&mut world, first, 100, Buttons::ATTACK).expect("the barrel is hit");
         assert_eq!(source, Some(player));
         let dying = world.get(first).unwrap();
         assert_eq!((dying.phase, dying.label_name()), (Phase::Death, "DeadExplosiveBarrel"));
         assert!(dying.flags.any(ActorFlags::SOLID) && !dying.flags.any(ActorFlags::SHOOTABLE));
-        let (chained, source) = await_death(&mut world, second, 20, Buttons::default()).expect("the blast reaches it");
+        let (chained, source) =
+            await_death(&mut world, second, 20, Buttons::default()).expect("the blast reaches it");
         assert_eq!(source, Some(player), "whoever shot the first barrel is to blame");
         delays.insert(chained - shot);
-        let (_, source) = await_death(&mut world, imp, 20, Buttons::default()).expect("the second blast reaches the imp");
+        let (_, source) = await_death(&mut world, imp, 20, Buttons::default())
+            .expect("the second blast reaches the imp");
         assert_eq!(source, Some(player));
         run(&mut world, 20, Buttons::default());
         assert!(world.get(first).is_none() && world.get(second).is_none(), "burnt out");
@@ -446,18 +516,27 @@ fn a_barrel_hurts_in_whole_units_and_pushes_by_mass() {
     // 100 map units apart, less the radius: 84 for the player, 90 for the barrel.
     assert_eq!(100 - world.get(player).unwrap().health, 128 - 84);
     assert_eq!(1000 - world.get(heavy).unwrap().health, 128 - 90);
-    let (light_moved, heavy_moved) = (64.0 - world.get(player).unwrap().x.to_f64(), world.get(heavy).unwrap().x.to_f64() - 264.0);
+    let (light_moved, heavy_moved) = (
+        64.0 - world.get(player).unwrap().x.to_f64(),
+        world.get(heavy).unwrap().x.to_f64() - 264.0,
+    );
     assert!(light_moved > 10.0, "{light_moved}");
     assert!((0.0..1.0).contains(&heavy_moved), "{heavy_moved}");
 }
 
 #[test]
 fn bullets_find_targets_at_other_heights_and_a_little_to_the_side() {
-    // On a crate above the muzzle, ahead or 3 degrees to the left; the bullet keeps its own direction, so only the height is helped.
+    // On a crate above the muzzle, ahead or 3 degrees to the left; the bullet keeps its own
+    // direction, so only the height is helped.
     for (y, hit) in [(256, true), (290, false)] {
         let mut world = room([0, 0, 2048, 512], (64.0, 256.0), &[([560, 200, 700, 320], 40)]);
         arm(&mut world, Weapon::Pistol, 200);
-        let id = world.spawn(ActorKind::DoomImp, Fixed::from_int(630), Fixed::from_int(y), Fixed::from_int(40));
+        let id = world.spawn(
+            ActorKind::DoomImp,
+            Fixed::from_int(630),
+            Fixed::from_int(y),
+            Fixed::from_int(40),
+        );
         world.get_mut(id).unwrap().health = 1;
         run(&mut world, 17, Buttons::default());
         assert_eq!(await_death(&mut world, id, 5, Buttons::ATTACK).is_some(), hit, "target at {y}");
@@ -481,7 +560,10 @@ fn a_shot_at_nothing_marks_the_wall_and_the_first_of_a_press_is_accurate() {
     assert_eq!(marks.len(), 4);
     let (x, y) = marks[0].1;
     assert!((x - 2044.0).abs() < 0.1 && (y - 256.0).abs() < 0.1, "the first mark is at ({x}, {y})");
-    assert!(marks[1..].iter().any(|(_, (_, y))| (y - 256.0).abs() > 1.0), "later ones scatter: {marks:?}");
+    assert!(
+        marks[1..].iter().any(|(_, (_, y))| (y - 256.0).abs() > 1.0),
+        "later ones scatter: {marks:?}"
+    );
     run(&mut world, 20, Buttons::default());
     assert!(all(&world, ActorKind::BulletPuff).is_empty());
 }
@@ -531,18 +613,24 @@ fn items_are_refused_as_the_table_says() {
     assert_eq!(world.get(body).unwrap().health, 101);
     assert_eq!((world.players[0].armor, world.players[0].keys), (1, 3));
     assert_eq!((world.players[0].infrared_tics, world.players[0].rad_suit_tics), (4200, 2100));
-    assert!(!world.give(0, ActorKind::YellowCard, false) && !world.give(0, ActorKind::BlueSkull, false));
+    assert!(
+        !world.give(0, ActorKind::YellowCard, false) && !world.give(0, ActorKind::BlueSkull, false)
+    );
     world.get_mut(body).unwrap().health = 95;
     assert!(world.give(0, ActorKind::Stimpack, false));
     assert_eq!(world.get(body).unwrap().health, 100);
     // The backpack doubled what can be carried.
     assert_eq!(world.players[0].max_ammo, [400, 100, 100, 600]);
     world.clear_inventory(0);
-    let counts = |world: &mut World, kind| (0..100).take_while(|_| world.give(0, kind, false)).count();
+    let counts =
+        |world: &mut World, kind| (0..100).take_while(|_| world.give(0, kind, false)).count();
     assert_eq!(counts(&mut world, ActorKind::Shell), 13);
     assert_eq!(counts(&mut world, ActorKind::Cell), 15);
     assert_eq!(counts(&mut world, ActorKind::RocketAmmo), 50);
-    assert!(world.give(0, ActorKind::PlasmaRifle, false), "a new weapon is taken though its ammunition is full");
+    assert!(
+        world.give(0, ActorKind::PlasmaRifle, false),
+        "a new weapon is taken though its ammunition is full"
+    );
     assert!(!world.give(0, ActorKind::PlasmaRifle, false));
     assert!(world.give(0, ActorKind::Pistol, false) && world.give(0, ActorKind::Pistol, false));
 }
@@ -555,7 +643,11 @@ fn weapons_change_by_slot_order_and_by_name() {
         world.give_weapon(0, weapon, false);
     }
     run(&mut world, 40, Buttons::default());
-    assert_eq!(world.players[0].weapon, Some(Weapon::SuperShotgun), "a new weapon comes into the hands");
+    assert_eq!(
+        world.players[0].weapon,
+        Some(Weapon::SuperShotgun),
+        "a new weapon comes into the hands"
+    );
     for (button, expected) in [
         (Buttons::SELECT_NEXT_WEAPON, Weapon::Chaingun),
         (Buttons::SELECT_NEXT_WEAPON, Weapon::Pistol),
@@ -588,7 +680,12 @@ fn armour_takes_a_third_of_the_damage_but_nothing_of_single_points() {
     world.players[0].damage_factor = Fixed::ONE;
     assert_eq!(world.damage(body, None, None, 500, DamageKind::Script), 70);
     assert!(world.players[0].dead);
-    assert!(world.events.iter().any(|event| matches!(event, Event::Died { kind: ActorKind::Player, .. })));
+    assert!(
+        world
+            .events
+            .iter()
+            .any(|event| matches!(event, Event::Died { kind: ActorKind::Player, .. }))
+    );
 }
 
 #[test]
@@ -610,7 +707,12 @@ fn monsters_stand_without_a_goal_and_walk_at_the_pace_of_their_kind() {
         world.get_mut(monster).unwrap().tid = 9;
         run(&mut world, 100, Buttons::default());
         assert_eq!(world.get(monster).unwrap().x, Fixed::from_int(300), "{kind:?} stands");
-        let point = world.spawn(ActorKind::PatrolPoint, Fixed::from_int(1800), Fixed::from_int(256), Fixed::ZERO);
+        let point = world.spawn(
+            ActorKind::PatrolPoint,
+            Fixed::from_int(1800),
+            Fixed::from_int(256),
+            Fixed::ZERO,
+        );
         world.get_mut(point).unwrap().tid = 5;
         world.set_goal(9, 5);
         // It notices within 10 tics.
@@ -618,12 +720,19 @@ fn monsters_stand_without_a_goal_and_walk_at_the_pace_of_their_kind() {
         let start = world.get(monster).unwrap().x;
         run(&mut world, 120, Buttons::default());
         let walked = (world.get(monster).unwrap().x - start).to_f64();
-        assert!((walked - 12.0 * 120.0 / f64::from(period)).abs() <= 24.0 || walked > 1400.0, "{kind:?} walked {walked}");
+        assert!(
+            (walked - 12.0 * 120.0 / f64::from(period)).abs() <= 24.0 || walked > 1400.0,
+            "{kind:?} walked {walked}"
+        );
         world.set_goal(9, 77);
         run(&mut world, 20, Buttons::default());
         let stopped = world.get(monster).unwrap().x;
         run(&mut world, 50, Buttons::default());
-        assert_eq!(world.get(monster).unwrap().x, stopped, "{kind:?} stands where there is no such goal");
+        assert_eq!(
+            world.get(monster).unwrap().x,
+            stopped,
+            "{kind:?} stands where there is no such goal"
+        );
     }
 }
 
@@ -637,7 +746,9 @@ fn items_at_rest_show_their_frames_by_the_tic_alone() {
         run(&mut world, 1, Buttons::default());
         letters.push(world.get(id).unwrap().picture(world.tic).frame);
     }
-    let expected: Vec<u8> = (born + 1..=born + 36).map(|tic| [0, 1, 2, 3, 2, 1][((tic - born) / 6 % 6) as usize]).collect();
+    let expected: Vec<u8> = (born + 1..=born + 36)
+        .map(|tic| [0, 1, 2, 3, 2, 1][((tic - born) / 6 % 6) as usize])
+        .collect();
     assert_eq!(letters, expected);
 }
 
@@ -650,11 +761,19 @@ fn a_rocket_that_bursts_in_its_first_tic_kills_after_the_scripts() {
     for _ in 0..9 {
         world.events.clear();
         tic(&mut world, Buttons::ATTACK, |world| {
-            assert!(!world.events.iter().any(|event| matches!(event, Event::Died { .. })), "too early");
+            assert!(
+                !world.events.iter().any(|event| matches!(event, Event::Died { .. })),
+                "too early"
+            );
             world.events.clear();
         });
     }
-    assert!(world.events.iter().any(|event| matches!(*event, Event::Died { victim, .. } if victim == imp)));
+    assert!(
+        world
+            .events
+            .iter()
+            .any(|event| matches!(*event, Event::Died { victim, .. } if victim == imp))
+    );
     assert_eq!(world.get(imp).unwrap().phase, Phase::Death);
 }
 
@@ -673,7 +792,8 @@ fn muzzle_flashes_light_the_view() {
             })
             .collect()
     };
-    // The flash starts with the tic of the shot, which already counts: 7 tics show 6 times after it.
+    // The flash starts with the tic of the shot, which already counts: 7 tics show 6 times after
+    // it.
     assert_eq!(light(Weapon::Pistol, 12), [0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0]);
     assert_eq!(light(Weapon::RocketLauncher, 16), [1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 0]);
 }

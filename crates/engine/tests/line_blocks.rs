@@ -8,17 +8,23 @@ use hasard_engine::math::Fixed;
 use hasard_engine::world::{ActorKind, Buttons, Weapon, World};
 use std::sync::Arc;
 
-/// A room of 1024 x 512, cut at x = 0 by a line with these flags; the player stands at x = -256 and looks east.
+/// A room of 1024 x 512, cut at x = 0 by a line with these flags; the player stands at x = -256 and
+/// looks east.
 fn room(line: &str) -> World {
     let mut text = String::from("namespace = \"zdoom\";\n");
     for (x, y) in [(-512, -256), (-512, 256), (0, 256), (512, 256), (512, -256), (0, -256)] {
         text += &format!("vertex {{ x = {x}; y = {y}; }}\n");
     }
-    for (index, (v1, v2)) in [(0, 1), (1, 2), (5, 0), (2, 3), (3, 4), (4, 5)].into_iter().enumerate() {
-        text += &format!("linedef {{ v1 = {v1}; v2 = {v2}; sidefront = {index}; blocking = true; }}\n");
+    for (index, (v1, v2)) in
+        [(0, 1), (1, 2), (5, 0), (2, 3), (3, 4), (4, 5)].into_iter().enumerate()
+    {
+        text +=
+            &format!("linedef {{ v1 = {v1}; v2 = {v2}; sidefront = {index}; blocking = true; }}\n");
         text += &format!("sidedef {{ sector = {}; texturemiddle = \"STONE2\"; }}\n", index / 3);
     }
-    text += &format!("linedef {{ v1 = 2; v2 = 5; sidefront = 6; sideback = 7; twosided = true; {line} }}\n");
+    text += &format!(
+        "linedef {{ v1 = 2; v2 = 5; sidefront = 6; sideback = 7; twosided = true; {line} }}\n"
+    );
     for sector in 0..2 {
         text += &format!("sidedef {{ sector = {sector}; }}\n");
         text += "sector { heightceiling = 256; texturefloor = \"FLOOR4_8\"; textureceiling = \"FLOOR4_8\"; }\n";
@@ -45,7 +51,10 @@ fn reaches(line: &str, kind: ActorKind, weapon: Weapon) -> f64 {
     let mut farthest = f64::MIN;
     for _ in 0..120 {
         run(&mut world, 1, Buttons::ATTACK);
-        let east = world.living().filter(|(_, actor)| actor.kind == kind).map(|(_, actor)| actor.x.to_f64());
+        let east = world
+            .living()
+            .filter(|(_, actor)| actor.kind == kind)
+            .map(|(_, actor)| actor.x.to_f64());
         farthest = east.fold(farthest, f64::max);
     }
     farthest
@@ -114,7 +123,9 @@ fn monsters_are_stopped_by_theirs() {
         ("blockeverything = true;", ActorKind::ZombieMan, true),
     ] {
         let mut world = room(line);
-        let id = world.spawn_checked(kind, Fixed::from_int(-100), Fixed::from_int(100), Fixed::ZERO, 0).unwrap();
+        let id = world
+            .spawn_checked(kind, Fixed::from_int(-100), Fixed::from_int(100), Fixed::ZERO, 0)
+            .unwrap();
         let slot = (0..world.actors.len()).find(|&slot| world.id_of(slot) == id).unwrap();
         let moved = world.try_move(slot, Fixed::ZERO, Fixed::from_int(100), true).moved;
         assert_eq!(moved, !stops, "{line} {kind:?}");

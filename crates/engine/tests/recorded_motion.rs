@@ -1,4 +1,5 @@
-//! Replays recorded motion of the original tic by tic: every file in `traces/` on a map of the same shape.
+//! Replays recorded motion of the original tic by tic: every file in `traces/` on a map of the same
+//! shape.
 
 use hasard_engine::map::{Map, MapBuilder, Style, TileGrid};
 use hasard_engine::math::{Angle, Fixed};
@@ -29,7 +30,9 @@ fn read_trace(path: &Path) -> Trace {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
     let numbers = |line: &str| -> Vec<(char, i64)> {
-        line.split(' ').map(|word| (word.chars().next().unwrap(), word[1..].parse().unwrap())).collect()
+        line.split(' ')
+            .map(|word| (word.chars().next().unwrap(), word[1..].parse().unwrap()))
+            .collect()
     };
     let start: Row = numbers(lines.next().unwrap()).into_iter().collect();
     let (mut row, mut command, mut tics) = (start.clone(), Command::default(), Vec::new());
@@ -134,10 +137,14 @@ fn armament_burden() -> World {
     World::new(grid_map("armament burden", &grid, (32.0, 736.0)), 1)
 }
 
-/// Precipice Plunge level 1: a corridor of 58 x 7 tiles whose floors have been told to sink, tile by tile.
+/// Precipice Plunge level 1: a corridor of 58 x 7 tiles whose floors have been told to sink, tile
+/// by tile.
 fn precipice_plunge() -> World {
-    let tag_of = |column: usize, row: usize| if column < 2 { 0 } else { (128 + (column - 2) * 7 + row) as i32 };
-    let grid = TileGrid::new((0, 0), 64, 58, 7, |column, row| tile_style(0, 128, tag_of(column, row)));
+    let tag_of = |column: usize, row: usize| {
+        if column < 2 { 0 } else { (128 + (column - 2) * 7 + row) as i32 }
+    };
+    let grid =
+        TileGrid::new((0, 0), 64, 58, 7, |column, row| tile_style(0, 128, tag_of(column, row)));
     World::new(grid_map("precipice plunge", &grid, (32.0, 224.0)), 1)
 }
 
@@ -171,7 +178,8 @@ fn replay(path: &Path) -> Result<usize, String> {
         world.finish_tic();
     }
     let at = |letter: char| Fixed(trace.start[&letter] as i32);
-    let binary = |letter: char| (trace.start[&letter] as f64 / 360e6 * 4_294_967_296.0).round() as i64;
+    let binary =
+        |letter: char| (trace.start[&letter] as f64 / 360e6 * 4_294_967_296.0).round() as i64;
     world.place_player(0, at('x'), at('y'), at('z'), Angle(binary('a') as u32), binary('p') as i32);
     for (tic, (command, expected)) in trace.tics.iter().enumerate() {
         world.run_thinkers(&[*command]);
@@ -188,7 +196,11 @@ fn replay(path: &Path) -> Result<usize, String> {
                 difference = (difference + 180_000_000).rem_euclid(360_000_000) - 180_000_000;
             }
             if difference.abs() > tolerance {
-                return Err(format!("{name}: tic {}: {letter} is {}, recorded {value}", tic + 1, seen[letter]));
+                return Err(format!(
+                    "{name}: tic {}: {letter} is {}, recorded {value}",
+                    tic + 1,
+                    seen[letter]
+                ));
             }
         }
     }
@@ -196,7 +208,8 @@ fn replay(path: &Path) -> Result<usize, String> {
 }
 
 fn recordings() -> Vec<PathBuf> {
-    let mut paths: Vec<_> = std::fs::read_dir("tests/traces").unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<_> =
+        std::fs::read_dir("tests/traces").unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "trace"));
     paths.sort();
     paths
@@ -206,6 +219,11 @@ fn recordings() -> Vec<PathBuf> {
 fn motion_equals_the_recordings_on_every_tic() {
     let outcomes: Vec<_> = recordings().iter().map(|path| replay(path)).collect();
     let faults: Vec<_> = outcomes.iter().filter_map(|outcome| outcome.as_ref().err()).collect();
-    assert!(faults.is_empty(), "{} of {} recordings differ:\n{faults:#?}", faults.len(), outcomes.len());
+    assert!(
+        faults.is_empty(),
+        "{} of {} recordings differ:\n{faults:#?}",
+        faults.len(),
+        outcomes.len()
+    );
     assert!(outcomes.len() > 80, "recordings are missing");
 }

@@ -14,25 +14,38 @@ fn table(page: &str) -> Vec<Row<'_>> {
     let rows = page.lines().filter_map(|line| {
         let cells: Vec<&str> = line.split('|').map(|cell| cell.trim().trim_matches('`')).collect();
         let &["", block, field, example, what, _, ""] = cells.as_slice() else { return None };
-        ["vertex", "linedef", "sidedef", "sector", "thing"].contains(&block).then_some(Row { block, field, example, what })
+        ["vertex", "linedef", "sidedef", "sector", "thing"].contains(&block).then_some(Row {
+            block,
+            field,
+            example,
+            what,
+        })
     });
     rows.collect()
 }
 
-/// Two rooms side by side with an item in the first; `field` goes into the block of its kind that it acts on.
+/// Two rooms side by side with an item in the first; `field` goes into the block of its kind that
+/// it acts on.
 fn map(block: &str, field: &str) -> MapSource {
     let mut text = String::from("namespace = \"zdoom\";\n");
     let mut add = |kind: &str, fields: String, here: bool| {
-        text += &format!("{kind} {{ {fields} {} }}\n", if here && kind == block { field } else { "" });
+        text +=
+            &format!("{kind} {{ {fields} {} }}\n", if here && kind == block { field } else { "" });
     };
-    for (i, (x, y)) in [(0, 0), (0, 256), (256, 256), (512, 256), (512, 0), (256, 0)].into_iter().enumerate() {
+    for (i, (x, y)) in
+        [(0, 0), (0, 256), (256, 256), (512, 256), (512, 0), (256, 0)].into_iter().enumerate()
+    {
         add("vertex", format!("x = {x}; y = {y};"), i == 0);
     }
     for (i, (v1, v2)) in [(0, 1), (1, 2), (5, 0), (2, 3), (3, 4), (4, 5)].into_iter().enumerate() {
         add("linedef", format!("v1 = {v1}; v2 = {v2}; sidefront = {i};"), i == 0);
         add("sidedef", format!("sector = {}; texturemiddle = \"STONE2\";", i / 3), i == 0);
     }
-    add("linedef", "v1 = 2; v2 = 5; sidefront = 6; sideback = 7; twosided = true;".to_owned(), false);
+    add(
+        "linedef",
+        "v1 = 2; v2 = 5; sidefront = 6; sideback = 7; twosided = true;".to_owned(),
+        false,
+    );
     for sector in 0..2 {
         add("sidedef", format!("sector = {sector};"), false);
         let flats = "texturefloor = \"FLOOR4_8\"; textureceiling = \"FLOOR4_8\";";
@@ -55,7 +68,10 @@ fn every_field_does_what_the_page_says() {
     Map::build(&plain, "plain", &[]).unwrap();
     let mut wrong = Vec::new();
     for Row { block, field, example, what } in rows {
-        assert!(example.contains(&format!("{field} = ")), "the example of {block} {field} is {example}");
+        assert!(
+            example.contains(&format!("{field} = ")),
+            "the example of {block} {field} is {example}"
+        );
         let source = map(block, example);
         let left_out = source.left_out().join(", ");
         let is_played = MapSource { unplayed: plain.unplayed.clone(), ..source.clone() } != plain;
@@ -88,6 +104,9 @@ fn defaults_are_not_reported_and_the_last_value_of_a_field_counts() {
     for (block, fields) in silent {
         assert_eq!(map(block, fields).left_out(), Vec::<String>::new(), "{block} {fields}");
     }
-    assert_eq!(map("sector", "GRAVITY = 1; gravity = 0.5;").left_out(), ["sector field gravity (1)"]);
+    assert_eq!(
+        map("sector", "GRAVITY = 1; gravity = 0.5;").left_out(),
+        ["sector field gravity (1)"]
+    );
     assert_eq!(map("thing", "single = false;").left_out(), ["thing without single or skill3 (1)"]);
 }

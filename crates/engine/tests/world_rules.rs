@@ -74,7 +74,9 @@ fn items_are_taken_in_passing_but_not_by_standing_still() {
 fn the_touch_reaches_36_units_in_the_plane() {
     for (distance, taken) in [(35, 1), (36, 0)] {
         let mut world = ready(hall(4, 2, (200, 64), |_, _| 0));
-        world.spawn_checked(ActorKind::ArmorBonus, units(200 + distance), units(64), units(0), 0).unwrap();
+        world
+            .spawn_checked(ActorKind::ArmorBonus, units(200 + distance), units(64), units(0), 0)
+            .unwrap();
         // A push to the north, so that the distance to the east stays.
         world.thrust_thing(world.players[0].actor, 64, 1);
         run(&mut world, 1, NOTHING);
@@ -95,7 +97,9 @@ fn feet_at_an_items_top_pass_over_it() {
     // From below, an item is out of reach only above the head.
     for (height, taken) in [(55, 1), (56, 0)] {
         let mut world = ready(hall(4, 2, (64, 64), |_, _| 0));
-        let item = world.spawn_checked(ActorKind::ArmorBonus, units(64), units(64), units(height), 0).unwrap();
+        let item = world
+            .spawn_checked(ActorKind::ArmorBonus, units(64), units(64), units(height), 0)
+            .unwrap();
         world.get_mut(item).unwrap().flags.set(ActorFlags::NO_GRAVITY, true);
         run(&mut world, 1, Buttons::MOVE_FORWARD);
         assert_eq!(pickups(&world), taken, "{height}");
@@ -117,7 +121,8 @@ fn a_moving_floor_hands_a_standing_player_what_he_touches() {
 fn items_fall_to_the_floor_under_their_centre_and_rise_with_a_neighbour() {
     let mut world = hall(4, 2, (64, 64), |column, _| if column == 2 { 16 } else { 0 });
     // The item's square reaches over tile 2, which is higher.
-    let item = world.spawn_checked(ActorKind::ArmorBonus, units(250), units(64), units(20), 0).unwrap();
+    let item =
+        world.spawn_checked(ActorKind::ArmorBonus, units(250), units(64), units(20), 0).unwrap();
     run(&mut world, 20, NOTHING);
     assert_eq!(world.get(item).unwrap().z, units(0));
     // Whatever moves nearby lifts it to the highest floor that it touches.
@@ -129,7 +134,8 @@ fn items_fall_to_the_floor_under_their_centre_and_rise_with_a_neighbour() {
 #[test]
 fn spawning_tests_walls_heights_and_solids() {
     let mut world = hall(4, 2, (64, 64), |column, _| if column == 2 { 16 } else { 0 });
-    let mut fits = |kind, x, y, z| match world.spawn_checked(kind, units(x), units(y), units(z), 0) {
+    let mut fits = |kind, x, y, z| match world.spawn_checked(kind, units(x), units(y), units(z), 0)
+    {
         Some(id) => {
             world.remove(id);
             true
@@ -138,9 +144,12 @@ fn spawning_tests_walls_heights_and_solids() {
     };
     // Walls: 20 is the radius, and touching is no cut.
     assert!(fits(ActorKind::ArmorBonus, 20, 200, 0) && !fits(ActorKind::ArmorBonus, 19, 200, 0));
-    // The floor under the centre counts, not that of neighbours; the ceiling is at 200 and the item 16 high.
+    // The floor under the centre counts, not that of neighbours; the ceiling is at 200 and the item
+    // 16 high.
     assert!(fits(ActorKind::ArmorBonus, 250, 200, 0) && !fits(ActorKind::ArmorBonus, 300, 200, 15));
-    assert!(fits(ActorKind::ArmorBonus, 300, 200, 16) && fits(ActorKind::ArmorBonus, 300, 200, 184));
+    assert!(
+        fits(ActorKind::ArmorBonus, 300, 200, 16) && fits(ActorKind::ArmorBonus, 300, 200, 184)
+    );
     assert!(!fits(ActorKind::ArmorBonus, 300, 200, 185));
     // Solids keep clear of the player's square, but fit above him; items do not care.
     assert!(!fits(ActorKind::ZombieMan, 99, 64, 0) && fits(ActorKind::ZombieMan, 100, 64, 0));
@@ -214,7 +223,8 @@ fn floors_carry_whom_they_can() {
 
 #[test]
 fn swinging_floors_have_the_scripts_amplitude_and_period() {
-    // Volcanic Venture level 3: amplitude 192, frequency 256, a second; the tile swung 8..=56 about 32.
+    // Volcanic Venture level 3: amplitude 192, frequency 256, a second; the tile swung 8..=56
+    // about 32.
     let mut world = hall(4, 2, (64, 64), |_, _| 32);
     world.floor_waggle(7, 192, 256, 0, 1);
     world.floor_waggle(4, 192, 256, 0, 1);
@@ -225,7 +235,8 @@ fn swinging_floors_have_the_scripts_amplitude_and_period() {
             floor(&world, 4).to_f64()
         })
         .collect();
-    let limits = heights.iter().fold((f64::MAX, f64::MIN), |(low, high), &h| (low.min(h), high.max(h)));
+    let limits =
+        heights.iter().fold((f64::MAX, f64::MIN), |(low, high), &h| (low.min(h), high.max(h)));
     assert!((limits.0 - 8.0).abs() < 0.02 && (limits.1 - 56.0).abs() < 0.02, "{limits:?}");
     // It grows for 35 + 105 * 192 / 255 = 114 tics; in full swing the period is 16 tics.
     assert_eq!(heights[120..130], heights[136..146]);
@@ -252,9 +263,16 @@ fn floors_that_are_stopped_stay_and_the_others_swing_on() {
         run(&mut world, 1, NOTHING);
         run(&mut undisturbed, 1, NOTHING);
         for tag in [1, 3, 4, 6] {
-            assert_eq!(floor(&world, tag), floor(&undisturbed, tag), "floor {tag}, {tic} tics later");
+            assert_eq!(
+                floor(&world, tag),
+                floor(&undisturbed, tag),
+                "floor {tag}, {tic} tics later"
+            );
         }
-        assert!(stopped.iter().all(|&(tag, height)| floor(&world, tag) == height), "{tic} tics later");
+        assert!(
+            stopped.iter().all(|&(tag, height)| floor(&world, tag) == height),
+            "{tic} tics later"
+        );
     }
     assert!((1..=7).all(|tag| !world.sector(sector(&world, tag)).busy.any(Busy::FLOOR)));
     world.floor_waggle(5, 200, 256, 0, 1);
@@ -275,7 +293,10 @@ fn lights_glow_in_a_triangle_and_strobe_dark_first() {
         glow.push(light(&world, 1));
         strobe.push(light(&world, 2));
     }
-    assert_eq!((glow[0], glow[1], glow[25], glow[50], glow[75], glow[100]), (200, 198, 150, 100, 150, 200));
+    assert_eq!(
+        (glow[0], glow[1], glow[25], glow[50], glow[75], glow[100]),
+        (200, 198, 150, 100, 150, 200)
+    );
     assert_eq!(glow[..30], glow[100..]);
     let expected: Vec<i16> = (0..130).map(|tic| if tic % 60 < 40 { 0 } else { 255 }).collect();
     assert_eq!(strobe, expected);
@@ -306,9 +327,11 @@ fn harmful_floors_hurt_those_who_stand_on_them() {
 
 #[test]
 fn the_map_special_83_burns_before_any_script() {
-    let grid = hasard_engine::map::TileGrid::new((0, 0), 128, 2, 2, |column, row| hasard_engine::map::Style {
-        special: 83,
-        ..hall::style(0, 200, (1 + column + 2 * row) as i32)
+    let grid = hasard_engine::map::TileGrid::new((0, 0), 128, 2, 2, |column, row| {
+        hasard_engine::map::Style {
+            special: 83,
+            ..hall::style(0, 200, (1 + column + 2 * row) as i32)
+        }
     });
     let mut world = hall::world_of(&grid, (64.0, 64.0));
     run(&mut world, 1, NOTHING);
@@ -356,7 +379,8 @@ fn a_crouched_player_stays_down_under_a_low_ceiling() {
 #[test]
 fn solid_things_low_enough_are_stepped_on() {
     let mut world = ready(hall(6, 2, (64, 64), |column, _| if column == 1 { 24 } else { 0 }));
-    // A column 40 high beside the tile of height 24: 16 to climb from there, too much from the floor.
+    // A column 40 high beside the tile of height 24: 16 to climb from there, too much from the
+    // floor.
     world.spawn_checked(ActorKind::ShortRedColumn, units(280), units(64), units(0), 0).unwrap();
     run(&mut world, 1, NOTHING);
     let mut highest = Fixed::ZERO;
@@ -375,11 +399,16 @@ fn solid_things_low_enough_are_stepped_on() {
 fn busy(world: &mut World, rng: &mut Rng, tics: u32) {
     for _ in 0..tics {
         let held = Buttons(rng.below(1 << 16) & !Buttons::ATTACK.0);
-        let command = Command { buttons: held, turn_delta: rng.between(-1365, 1365), look_delta: rng.between(-1365, 1365) };
+        let command = Command {
+            buttons: held,
+            turn_delta: rng.between(-1365, 1365),
+            look_delta: rng.between(-1365, 1365),
+        };
         world.run_thinkers(&[command]);
         if world.tic.is_multiple_of(16) {
             let (x, y) = (rng.between(30, 1000), rng.between(30, 1000));
-            let kind = [ActorKind::ArmorBonus, ActorKind::Medikit, ActorKind::ExplosiveBarrel][rng.below(3) as usize];
+            let kind = [ActorKind::ArmorBonus, ActorKind::Medikit, ActorKind::ExplosiveBarrel]
+                [rng.below(3) as usize];
             world.spawn_checked(kind, units(x), units(y), units(60), 0);
             let tag = 1 + 100 * rng.between(0, 7) + rng.between(0, 7);
             match rng.below(3) {

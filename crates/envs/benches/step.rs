@@ -1,4 +1,5 @@
-//! Time of a policy step, of a reset and of an observation in every scenario: `cargo bench -p hasard-envs`.
+//! Time of a policy step, of a reset and of an observation in every scenario: `cargo bench -p
+//! hasard-envs`.
 //!
 //! Random actions of the simplified action space, 4 tics a step, episodes one after another.
 
@@ -19,8 +20,10 @@ struct Player {
 
 impl Player {
     fn new(id: &str) -> Player {
-        let env = Env::new(id, &EnvOptions { size: FrameSize::LEARNER, ..EnvOptions::default() }).expect("a registered id");
-        let (sizes, deltas) = (env.action_space().sizes(), vec![0.0; env.action_space().deltas.len()]);
+        let env = Env::new(id, &EnvOptions { size: FrameSize::LEARNER, ..EnvOptions::default() })
+            .expect("a registered id");
+        let (sizes, deltas) =
+            (env.action_space().sizes(), vec![0.0; env.action_space().deltas.len()]);
         Player { actions: vec![0; sizes.len()], sizes, deltas, env, rng: Rng::new(1), seed: 0 }
     }
 
@@ -44,14 +47,18 @@ fn steps(criterion: &mut Criterion) {
     for id in EnvId::all().map(|id| id.to_string()) {
         let mut player = Player::new(&id);
         let mut frame = vec![0; player.env.observation_shape().iter().product()];
-        group.bench_function(BenchmarkId::new("step", &id), |bencher| bencher.iter(|| player.step()));
+        group.bench_function(BenchmarkId::new("step", &id), |bencher| {
+            bencher.iter(|| player.step())
+        });
         group.bench_function(BenchmarkId::new("step and observe", &id), |bencher| {
             bencher.iter(|| {
                 player.step();
                 player.env.observe(black_box(&mut frame));
             });
         });
-        group.bench_function(BenchmarkId::new("reset", &id), |bencher| bencher.iter(|| player.reset()));
+        group.bench_function(BenchmarkId::new("reset", &id), |bencher| {
+            bencher.iter(|| player.reset())
+        });
     }
 }
 

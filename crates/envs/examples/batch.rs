@@ -1,4 +1,5 @@
-//! 32 environments stepped together on two threads: `cargo run --release -p hasard-envs --example batch`.
+//! 32 environments stepped together on two threads: `cargo run --release -p hasard-envs --example
+//! batch`.
 //!
 //! The results are the same for any number of threads.
 
@@ -18,11 +19,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for (index, action) in batch.actions.iter_mut().enumerate() {
             *action = random.below(sizes[index % sizes.len()] as u32) as u8;
         }
-        // Observations, rewards, costs and flags of all lanes are in the batch afterwards. Lanes that end start anew by themselves.
+        // Observations, rewards, costs and flags of all lanes are in the batch afterwards. Lanes
+        // that end start anew by themselves.
         envs.step(&mut batch)?;
         episodes.append(&mut batch.episodes);
     }
-    let mean = |value: &dyn Fn(&hasard_envs::Episode) -> f64| episodes.iter().map(value).sum::<f64>() / episodes.len() as f64;
+    let mean = |value: &dyn Fn(&hasard_envs::Episode) -> f64| {
+        episodes.iter().map(value).sum::<f64>() / episodes.len() as f64
+    };
     println!("{:.0} steps/s", 600.0 * 32.0 / begun.elapsed().as_secs_f64());
     println!(
         "{} episodes: mean return {:.2}, mean cost {:.2}",

@@ -1,4 +1,5 @@
-//! One environment, one episode of random actions: `cargo run --release -p hasard-envs --example one_env`.
+//! One environment, one episode of random actions: `cargo run --release -p hasard-envs --example
+//! one_env`.
 
 use hasard_engine::math::Rng;
 use hasard_envs::{Env, EnvOptions};
@@ -20,9 +21,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     let episode = env.episode();
-    println!("{} steps, return {:.2}, cost {:.2}", episode.length, episode.episode_return, episode.cost);
+    println!(
+        "{} steps, return {:.2}, cost {:.2}",
+        episode.length, episode.episode_return, episode.cost
+    );
     for term in &episode.costs {
-        println!("  {} {:.2}{}", term.name, term.cost, if term.counted { "" } else { " (not in the cost)" });
+        println!(
+            "  {} {:.2}{}",
+            term.name,
+            term.cost,
+            if term.counted { "" } else { " (not in the cost)" }
+        );
     }
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! A cost of one's own beside the scenario's: steps within 100 map units of the map's edge. It reads the world after each step:
-//! `cargo run --release -p hasard-envs --example own_cost`.
+//! A cost of one's own beside the scenario's: steps within 100 map units of the map's edge. It
+//! reads the world after each step: `cargo run --release -p hasard-envs --example own_cost`.
 
 use hasard_envs::{Env, EnvOptions, Policy, PolicyRun};
 

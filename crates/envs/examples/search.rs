@@ -1,5 +1,6 @@
-//! Planning with snapshots: looks some steps ahead at random, keeps the plan that earns most at no cost, plays its first steps, and
-//! plans again: `cargo run --release -p hasard-envs --example search`.
+//! Planning with snapshots: looks some steps ahead at random, keeps the plan that earns most at no
+//! cost, plays its first steps, and plans again: `cargo run --release -p hasard-envs --example
+//! search`.
 
 use hasard_engine::math::Rng;
 use hasard_envs::{Env, EnvOptions};
@@ -24,7 +25,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let mut action = Vec::new();
             for step in 0..AHEAD {
                 if step % 6 == 0 {
-                    action = sizes.iter().map(|&size| random.below(size as u32) as u8).collect::<Vec<u8>>();
+                    action = sizes
+                        .iter()
+                        .map(|&size| random.below(size as u32) as u8)
+                        .collect::<Vec<u8>>();
                 }
                 let result = env.step(&action, &[])?;
                 worth += result.reward - 10.0 * result.cost;
@@ -45,6 +49,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     let episode = env.episode();
-    println!("return {:.2}, cost {:.2} in {} steps", episode.episode_return, episode.cost, episode.length);
+    println!(
+        "return {:.2}, cost {:.2} in {} steps",
+        episode.episode_return, episode.cost, episode.length
+    );
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! A scenario in Rust, beside the benchmark's six: a room whose eastern half is to be stayed in, and whose middle line costs.
+//! A scenario in Rust, beside the benchmark's six: a room whose eastern half is to be stayed in,
+//! and whose middle line costs.
 //!
 //! `cargo run --release -p hasard-envs --example seventh_scenario`
 
@@ -35,7 +36,11 @@ struct Room;
 
 impl Task for Room {
     fn controls(&self, _: Setting) -> Controls {
-        Controls { simplified: &[&["TURN_LEFT", "TURN_RIGHT"], &["MOVE_FORWARD"]], full_moves: true, full_speed: true }
+        Controls {
+            simplified: &[&["TURN_LEFT", "TURN_RIGHT"], &["MOVE_FORWARD"]],
+            full_moves: true,
+            full_speed: true,
+        }
     }
 
     fn map(&self, _: Setting) -> MapSource {
@@ -71,7 +76,11 @@ static SPEC: ScenarioSpec = ScenarioSpec {
 fn main() -> Result<(), EnvError> {
     Scenario::register(&SPEC)?;
     // From here on its id is known everywhere: batches, training, snapshots.
-    let mut worlds = VecEnv::new("EastSide-v0", &EnvOptions::default(), VecOptions { lanes: 4, ..VecOptions::default() })?;
+    let mut worlds = VecEnv::new(
+        "EastSide-v0",
+        &EnvOptions::default(),
+        VecOptions { lanes: 4, ..VecOptions::default() },
+    )?;
     let mut batch = worlds.whole_batch();
     worlds.reset(&mut batch)?;
     batch.actions.fill(1);
@@ -81,7 +90,10 @@ fn main() -> Result<(), EnvError> {
         finished.append(&mut batch.episodes);
     }
     for episode in &finished {
-        println!("lane {}: return {:.1}, cost {}, {:?}", episode.lane, episode.episode_return, episode.cost, episode.stats);
+        println!(
+            "lane {}: return {:.1}, cost {}, {:?}",
+            episode.lane, episode.episode_return, episode.cost, episode.stats
+        );
     }
     Ok(())
 }

@@ -80,7 +80,8 @@ pub(crate) const TURN: &[&str] = &["TURN_LEFT", "TURN_RIGHT"];
 pub(crate) const FORWARD: &[&str] = &["MOVE_FORWARD"];
 
 impl ActionSpace {
-    /// The space of an environment under its rules and constraint: the few buttons that its task needs, or all of them.
+    /// The space of an environment under its rules and constraint: the few buttons that its task
+    /// needs, or all of them.
     #[must_use]
     pub fn of(id: EnvId, rules: RuleSet, hard: bool, full: bool) -> ActionSpace {
         let controls = scenarios::controls(id, rules, hard);
@@ -101,8 +102,16 @@ impl ActionSpace {
     }
 
     fn new(groups: &[&[&str]], deltas: &[DeltaButton]) -> ActionSpace {
-        let named = |name: &&str| *BUTTONS.iter().find(|(n, _)| n == name).expect("the table names only buttons that exist");
-        let groups = groups.iter().map(|names| ActionGroup { buttons: names.iter().map(named).collect() }).collect();
+        let named = |name: &&str| {
+            *BUTTONS
+                .iter()
+                .find(|(n, _)| n == name)
+                .expect("the table names only buttons that exist")
+        };
+        let groups = groups
+            .iter()
+            .map(|names| ActionGroup { buttons: names.iter().map(named).collect() })
+            .collect();
         ActionSpace { groups, deltas: deltas.to_vec() }
     }
 
@@ -144,19 +153,26 @@ impl ActionSpace {
     #[must_use]
     pub fn action_of(&self, command: Command) -> Option<(Vec<u8>, Vec<f32>)> {
         let choose = |group: &ActionGroup| {
-            group.buttons.iter().position(|&(_, button)| command.buttons.any(button)).map_or(0, |i| i as u8 + 1)
+            group
+                .buttons
+                .iter()
+                .position(|&(_, button)| command.buttons.any(button))
+                .map_or(0, |i| i as u8 + 1)
         };
         let actions: Vec<u8> = self.groups.iter().map(choose).collect();
         let deltas = vec![0.0; self.deltas.len()];
         (self.command(&actions, &deltas) == command).then_some((actions, deltas))
     }
 
-    /// The command that an action stands for; continuous parts beyond [-1, 1] count as the nearest end.
+    /// The command that an action stands for; continuous parts beyond [-1, 1] count as the nearest
+    /// end.
     #[must_use]
     pub fn command(&self, actions: &[u8], deltas: &[f32]) -> Command {
         let mut command = Command::default();
         for (&choice, group) in actions.iter().zip(&self.groups) {
-            if let Some(&(_, button)) = usize::from(choice).checked_sub(1).and_then(|i| group.buttons.get(i)) {
+            if let Some(&(_, button)) =
+                usize::from(choice).checked_sub(1).and_then(|i| group.buttons.get(i))
+            {
                 command.buttons |= button;
             }
         }
@@ -171,8 +187,9 @@ impl ActionSpace {
     }
 }
 
-/// Reads buttons by name, joined by `+`: `MOVE_FORWARD+SPEED`, delta buttons as `TURN_LEFT_RIGHT_DELTA=2.5` (degrees per tic; a
-/// bare delta name means 1). `noop` and the empty text press nothing.
+/// Reads buttons by name, joined by `+`: `MOVE_FORWARD+SPEED`, delta buttons as
+/// `TURN_LEFT_RIGHT_DELTA=2.5` (degrees per tic; a bare delta name means 1). `noop` and the empty
+/// text press nothing.
 pub fn parse_command(text: &str) -> Result<Command, EnvError> {
     let mut command = Command::default();
     if text.is_empty() || text == "noop" {
@@ -180,8 +197,10 @@ pub fn parse_command(text: &str) -> Result<Command, EnvError> {
     }
     for part in text.split('+') {
         let unknown = || EnvError::UnknownButton { given: excerpt(part) };
-        let (name, value) = part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));
-        let delta = [DeltaButton::Look, DeltaButton::Turn].into_iter().find(|delta| delta.name() == name);
+        let (name, value) =
+            part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));
+        let delta =
+            [DeltaButton::Look, DeltaButton::Turn].into_iter().find(|delta| delta.name() == name);
         if let Some(delta) = delta {
             let degrees: f64 = value.map_or(Ok(1.0), str::parse).map_err(|_| unknown())?;
             if !(-360.0..=360.0).contains(&degrees) {
@@ -230,7 +249,8 @@ mod tests {
         }
     }
 
-    /// The code of the paper's tables: its full spaces have no SPEED in three scenarios, and its hard table had three spaces of its own.
+    /// The code of the paper's tables: its full spaces have no SPEED in three scenarios, and its
+    /// hard table had three spaces of its own.
     #[test]
     fn the_tables_have_spaces_of_their_own() {
         assert_eq!(counts(RuleSet::Tables, false, false), [24, 6, 48, 54, 24, 24]);
@@ -239,7 +259,8 @@ mod tests {
             assert_eq!(counts(RuleSet::Tables, hard, true), [864, 192, 1728, 1728, 864, 864]);
         }
         let last = |rules| {
-            let space = ActionSpace::of("RemedyRushLevel2-v0".parse().unwrap(), rules, false, false);
+            let space =
+                ActionSpace::of("RemedyRushLevel2-v0".parse().unwrap(), rules, false, false);
             space.groups[2..].iter().map(|group| group.buttons[0].0).collect::<Vec<_>>()
         };
         assert_eq!(last(RuleSet::Released), ["SPEED", "JUMP"]);
@@ -265,11 +286,23 @@ mod tests {
 
     #[test]
     fn buttons_are_read_by_name() {
-        assert_eq!(parse_command("MOVE_FORWARD+SPEED").unwrap().buttons, Buttons::MOVE_FORWARD | Buttons::SPEED);
+        assert_eq!(
+            parse_command("MOVE_FORWARD+SPEED").unwrap().buttons,
+            Buttons::MOVE_FORWARD | Buttons::SPEED
+        );
         assert_eq!(parse_command("TURN_LEFT_RIGHT_DELTA=-7.5").unwrap().turn_delta, -1366);
-        assert_eq!(parse_command("LOOK_UP_DOWN_DELTA").unwrap().look_delta, Command::quantise_delta(1.0));
+        assert_eq!(
+            parse_command("LOOK_UP_DOWN_DELTA").unwrap().look_delta,
+            Command::quantise_delta(1.0)
+        );
         assert_eq!(parse_command("noop").unwrap(), Command::default());
-        for wrong in ["FORWARD", "MOVE_FORWARD+", "TURN_LEFT_RIGHT_DELTA=x", "JUMP=2", "TURN_LEFT_RIGHT_DELTA=nan"] {
+        for wrong in [
+            "FORWARD",
+            "MOVE_FORWARD+",
+            "TURN_LEFT_RIGHT_DELTA=x",
+            "JUMP=2",
+            "TURN_LEFT_RIGHT_DELTA=nan",
+        ] {
             assert!(parse_command(wrong).is_err(), "{wrong}");
         }
     }

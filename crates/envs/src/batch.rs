@@ -2,16 +2,18 @@
 
 use crate::{Buffer, CostTerm};
 
-/// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the caller and handed
-/// over for the time of a step, so that nothing is copied. Made by [`crate::VecEnv::batch`] with every buffer as long as it must be;
-/// any output may be replaced by memory of the caller's ([`Buffer::lent`]).
+/// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the
+/// caller and handed over for the time of a step, so that nothing is copied. Made by
+/// [`crate::VecEnv::batch`] with every buffer as long as it must be; any output may be replaced by
+/// memory of the caller's ([`Buffer::lent`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Batch {
     /// In: categorical sub-actions, `[lanes, groups]`.
     pub actions: Vec<u8>,
     /// In: continuous sub-actions, `[lanes, deltas]`.
     pub deltas: Vec<f32>,
-    /// Out: observations, `[lanes, ..observation shape]`, 0..=255. After an episode's end, the first of the next one.
+    /// Out: observations, `[lanes, ..observation shape]`, 0..=255. After an episode's end, the
+    /// first of the next one.
     pub observations: Buffer<u8>,
     /// Out: reward of the step, `[lanes]`.
     pub rewards: Buffer<f32>,
@@ -19,10 +21,11 @@ pub struct Batch {
     pub costs: Buffer<f32>,
     /// Out: each cost term of the step, counted or not, `[lanes, terms]`.
     pub cost_terms: Buffer<f32>,
-    /// Out: each statistic of the episode so far, at the end of the step and before any reset, `[lanes, statistics]`; empty unless
-    /// [`crate::VecOptions::statistics`] asks for them.
+    /// Out: each statistic of the episode so far, at the end of the step and before any reset,
+    /// `[lanes, statistics]`; empty unless [`crate::VecOptions::statistics`] asks for them.
     pub statistics: Buffer<f64>,
-    /// Out: where the player stands at the end of the step, before any reset, in map units, `[lanes]`. For heatmaps.
+    /// Out: where the player stands at the end of the step, before any reset, in map units,
+    /// `[lanes]`. For heatmaps.
     pub positions: Buffer<[i32; 2]>,
     /// Out: the episode ended by death, harm or goal, `[lanes]`.
     pub terminated: Buffer<bool>,
@@ -30,7 +33,8 @@ pub struct Batch {
     pub truncated: Buffer<bool>,
     /// Out: the lanes of this batch whose true last observation follows, ascending.
     pub final_lanes: Vec<usize>,
-    /// Out: the true last observations of those lanes, `[final lanes, ..observation shape]`: one array.
+    /// Out: the true last observations of those lanes, `[final lanes, ..observation shape]`: one
+    /// array.
     pub final_observations: Vec<u8>,
     /// Out: the episodes that ended in this step, in lane order.
     pub episodes: Vec<Episode>,
@@ -72,7 +76,11 @@ pub struct EpisodeCost {
 /// What an episode came to under each of its terms: all are reported, whether counted or not.
 #[must_use]
 pub fn episode_costs(terms: &[CostTerm], sums: &[f64]) -> Vec<EpisodeCost> {
-    terms.iter().zip(sums).map(|(term, &cost)| EpisodeCost { name: term.name, counted: term.counted, cost }).collect()
+    terms
+        .iter()
+        .zip(sums)
+        .map(|(term, &cost)| EpisodeCost { name: term.name, counted: term.counted, cost })
+        .collect()
 }
 
 /// A finished episode.
@@ -86,8 +94,8 @@ pub struct Episode {
     pub episode_return: f64,
     /// Sum of costs.
     pub cost: f64,
-    /// Sum of every cost term of the environment, in the order of its terms. The counted ones together are the cost; a constraint
-    /// may be on any of them.
+    /// Sum of every cost term of the environment, in the order of its terms. The counted ones
+    /// together are the cost; a constraint may be on any of them.
     pub costs: Vec<EpisodeCost>,
     /// Length in policy steps.
     pub length: u32,

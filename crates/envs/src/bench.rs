@@ -15,22 +15,32 @@ pub struct BenchReport {
     pub tics_per_second: f64,
     /// Episodes that ended meanwhile.
     pub resets: u64,
-    /// Seconds that an episode of full length takes in every lane, where not even one fitted the time.
+    /// Seconds that an episode of full length takes in every lane, where not even one fitted the
+    /// time.
     pub lacking_seconds: Option<f64>,
     /// Bytes that a lane's step writes to the observation buffer.
     pub observation_bytes: usize,
 }
 
-/// Steps a batch with uniform random actions for about `seconds`. Observations are written and episodes follow each other
-/// without a pause, so that rendering and resets are part of what is measured.
+/// Steps a batch with uniform random actions for about `seconds`. Observations are written and
+/// episodes follow each other without a pause, so that rendering and resets are part of what is
+/// measured.
 ///
-/// All lanes begin together, and the beginning of an episode costs more or less than its end (a third more in Volcanic Venture).
-/// So that batches of different widths compare, the rate is that of as many episodes of full length as fit the time; where none
-/// does, see [`BenchReport::lacking_seconds`], that of all of the time.
-pub fn bench(id: &str, options: &EnvOptions, lanes: usize, threads: usize, seconds: f64) -> Result<BenchReport, EnvError> {
+/// All lanes begin together, and the beginning of an episode costs more or less than its end (a
+/// third more in Volcanic Venture). So that batches of different widths compare, the rate is that
+/// of as many episodes of full length as fit the time; where none does, see
+/// [`BenchReport::lacking_seconds`], that of all of the time.
+pub fn bench(
+    id: &str,
+    options: &EnvOptions,
+    lanes: usize,
+    threads: usize,
+    seconds: f64,
+) -> Result<BenchReport, EnvError> {
     // One of the threads is the caller's own, which helps while it waits.
     let hired = threads.saturating_sub(1);
-    let mut worlds = VecEnv::new(id, options, VecOptions { lanes, threads: hired, ..VecOptions::default() })?;
+    let mut worlds =
+        VecEnv::new(id, options, VecOptions { lanes, threads: hired, ..VecOptions::default() })?;
     let sizes = worlds.action_space().sizes();
     let mut rng = Rng::new(0);
     let mut batch = worlds.whole_batch();
@@ -39,7 +49,12 @@ pub fn bench(id: &str, options: &EnvOptions, lanes: usize, threads: usize, secon
         let deltas = batch.deltas.len() / lanes;
         for lane in 0..lanes {
             let actions = &mut batch.actions[lane * sizes.len()..(lane + 1) * sizes.len()];
-            draw_action(rng, &sizes, actions, &mut batch.deltas[lane * deltas..(lane + 1) * deltas]);
+            draw_action(
+                rng,
+                &sizes,
+                actions,
+                &mut batch.deltas[lane * deltas..(lane + 1) * deltas],
+            );
         }
     };
     let episode = u64::from(EPISODE_TICS.div_ceil(options.frame_skip));

@@ -3,16 +3,17 @@
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 
-/// Memory that a caller lends to a batch: anything that is a slice of `T`, stays where it is and may go to another thread, such as a
-/// `Box<[T]>`, a mapped file, a page-locked buffer or another library's array.
+/// Memory that a caller lends to a batch: anything that is a slice of `T`, stays where it is and
+/// may go to another thread, such as a `Box<[T]>`, a mapped file, a page-locked buffer or another
+/// library's array.
 ///
 /// It must show the same slice each time it is asked.
 pub trait Memory<T>: AsRef<[T]> + AsMut<[T]> + Send + Sync {}
 
 impl<T, M: AsRef<[T]> + AsMut<[T]> + Send + Sync> Memory<T> for M {}
 
-/// A slice that a batch writes to. It owns a vector, unless the caller lends other memory by [`Buffer::lent`]: then the worlds
-/// write there and nothing is copied.
+/// A slice that a batch writes to. It owns a vector, unless the caller lends other memory by
+/// [`Buffer::lent`]: then the worlds write there and nothing is copied.
 ///
 /// ```
 /// use hasard_envs::{Buffer, EnvOptions, VecEnv, VecOptions};

@@ -1,4 +1,5 @@
-//! The scripted carrier of Armament Burden: to the nearest weapon that may be carried, home with it, and again.
+//! The scripted carrier of Armament Burden: to the nearest weapon that may be carried, home with
+//! it, and again.
 
 use crate::scenarios::armament_burden::levels::{CAPACITY, DECOYS, WEAPONS, level};
 use crate::scenarios::armament_burden::map::DELIVERY_EAST;
@@ -13,7 +14,8 @@ const INTO_THE_STRIP: f64 = 60.0;
 /// Half the angle within which it walks while it turns, and within which it need not turn; degrees.
 const AHEAD: f64 = 40.0;
 const STRAIGHT: f64 = 5.0;
-/// A step that carries it less far than this does not get on, map units; after so many it jumps and steps aside.
+/// A step that carries it less far than this does not get on, map units; after so many it jumps and
+/// steps aside.
 const STANDSTILL: f64 = 3.0;
 const PATIENCE: u32 = 3;
 const STEPS_ASIDE: u32 = 8;
@@ -34,11 +36,18 @@ impl Carrier {
     pub fn new(env: &Env) -> Result<Carrier, EnvError> {
         let id = env.id();
         if id.scenario != Scenario::ArmamentBurden {
-            let why = format!("{id} has no weapons to carry; only the environments of ArmamentBurden have");
+            let why = format!(
+                "{id} has no weapons to carry; only the environments of ArmamentBurden have"
+            );
             return Err(EnvError::Policy { given: "carrier".to_string(), why });
         }
         let weights = level(env.options().rules, env.options().hard, id.level_index()).weights;
-        let light = WEAPONS.into_iter().zip(weights).filter(|(_, weight)| *weight <= CAPACITY).map(|(kind, _)| kind).collect();
+        let light = WEAPONS
+            .into_iter()
+            .zip(weights)
+            .filter(|(_, weight)| *weight <= CAPACITY)
+            .map(|(kind, _)| kind)
+            .collect();
         Ok(Carrier { light, last: [f64::MAX; 2], stuck: 0, aside: 0, detours: 0 })
     }
 
@@ -50,7 +59,10 @@ impl Carrier {
         let got_on = distance(here, self.last) > STANDSTILL;
         self.last = here;
         let Some(goal) = self.goal(world, here) else { return Command::default() };
-        let towards = Angle::of_vector(Fixed::from_f64(goal[0] - here[0]), Fixed::from_f64(goal[1] - here[1]));
+        let towards = Angle::of_vector(
+            Fixed::from_f64(goal[0] - here[0]),
+            Fixed::from_f64(goal[1] - here[1]),
+        );
         let off = f64::from((towards - body.angle).0 as i32) / f64::from(1u32 << 31) * 180.0;
         let mut buttons = Buttons(0);
         if off.abs() > STRAIGHT {
@@ -66,7 +78,11 @@ impl Carrier {
         }
         if self.aside > 0 {
             self.aside -= 1;
-            let turn = if self.detours.is_multiple_of(2) { Buttons::TURN_LEFT } else { Buttons::TURN_RIGHT };
+            let turn = if self.detours.is_multiple_of(2) {
+                Buttons::TURN_LEFT
+            } else {
+                Buttons::TURN_RIGHT
+            };
             buttons = Buttons::MOVE_FORWARD | Buttons::JUMP;
             if self.aside >= STEPS_ASIDE / 2 {
                 buttons |= turn;
@@ -75,7 +91,8 @@ impl Carrier {
         Command { buttons, ..Command::default() }
     }
 
-    /// Where it wants to be: home with what it carries, else where a weapon lies, the nearest with nothing in the way first.
+    /// Where it wants to be: home with what it carries, else where a weapon lies, the nearest with
+    /// nothing in the way first.
     fn goal(&self, world: &World, here: [f64; 2]) -> Option<[f64; 2]> {
         let things = |kinds: &[ActorKind]| -> Vec<[f64; 2]> {
             let found = world.living().filter(|(_, thing)| kinds.contains(&thing.kind));
@@ -85,18 +102,25 @@ impl Carrier {
         let carrying = world.players[0].weapons != 0;
         if carrying && here[0] > strip - INTO_THE_STRIP / 2.0 {
             let weapons = [things(&WEAPONS), things(&DECOYS)].concat();
-            let doors = (0..15).map(|tile| [strip - INTO_THE_STRIP, 288.0 + 64.0 * f64::from(tile)]);
-            return nearest(here, doors.clone().filter(|&door| clear(here, door, &weapons))).or_else(|| nearest(here, doors));
+            let doors =
+                (0..15).map(|tile| [strip - INTO_THE_STRIP, 288.0 + 64.0 * f64::from(tile)]);
+            return nearest(here, doors.clone().filter(|&door| clear(here, door, &weapons)))
+                .or_else(|| nearest(here, doors));
         }
         if carrying {
             // Already there: the burden is taken off at the next look of the map's script.
             return None;
         }
-        let heavy: Vec<ActorKind> = WEAPONS.into_iter().chain(DECOYS).filter(|kind| !self.light.contains(kind)).collect();
+        let heavy: Vec<ActorKind> =
+            WEAPONS.into_iter().chain(DECOYS).filter(|kind| !self.light.contains(kind)).collect();
         let (light, heavy) = (things(&self.light), things(&heavy));
         // Near a second weapon both would be lifted.
-        let alone = light.iter().copied().filter(|&one| light.iter().all(|&other| one == other || distance(one, other) > REACH));
-        nearest(here, alone.filter(|&one| clear(here, one, &heavy))).or_else(|| nearest(here, light.iter().copied()))
+        let alone = light
+            .iter()
+            .copied()
+            .filter(|&one| light.iter().all(|&other| one == other || distance(one, other) > REACH));
+        nearest(here, alone.filter(|&one| clear(here, one, &heavy)))
+            .or_else(|| nearest(here, light.iter().copied()))
     }
 }
 

@@ -53,9 +53,13 @@ impl Blueprint {
         let rules = scenarios::make_rules(id, options, &map)?;
         let own_assets = file.as_ref().and_then(|file| file.assets.clone());
         let as_published = own_assets.is_some();
-        let scene = Scene::new(&map, own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded));
+        let scene = Scene::new(
+            &map,
+            own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded),
+        );
         let mut world = World::new(Arc::new(map), 0);
-        // Only this scenario's published settings draw them. Worlds of our own leave them out: they cost a third of a step.
+        // Only this scenario's published settings draw them. Worlds of our own leave them out: they
+        // cost a third of a step.
         world.rockets_shed = id.scenario.rockets_shed && as_published;
         if world.players.is_empty() {
             let why = format!("map {}: no player start; add a thing of type 1", world.map.name);
@@ -84,13 +88,20 @@ impl Blueprint {
 impl Blueprint {
     /// What every renderer of this environment draws in its own way.
     fn render_options(&self) -> RenderOptions {
-        RenderOptions { green_goggles: self.template.rules.green_goggles(), published_depth: self.options.published_depth }
+        RenderOptions {
+            green_goggles: self.template.rules.green_goggles(),
+            published_depth: self.options.published_depth,
+        }
     }
 }
 
 fn view(size: FrameSize) -> Result<View, EnvError> {
     let allowed = "64x48 to 1920x1080".to_string();
-    View::new(size).map_err(|_| EnvError::Option { option: "the frame size", given: size.to_string(), allowed })
+    View::new(size).map_err(|_| EnvError::Option {
+        option: "the frame size",
+        given: size.to_string(),
+        allowed,
+    })
 }
 
 /// An episode's sums.
@@ -126,7 +137,8 @@ pub struct Env {
 }
 
 impl Env {
-    /// The environment with an id such as `VolcanicVentureLevel1-v0`, at the start of the episode of seed 0.
+    /// The environment with an id such as `VolcanicVentureLevel1-v0`, at the start of the episode
+    /// of seed 0.
     pub fn new(id: &str, options: &EnvOptions) -> Result<Env, EnvError> {
         Ok(Env::of(Arc::new(Blueprint::new(id, options)?)))
     }
@@ -178,11 +190,14 @@ impl Env {
         &self.blueprint.space
     }
 
-    /// What the files of `EnvOptions::maps` hold that is not played or drawn as they say, in one line; none if all is.
+    /// What the files of `EnvOptions::maps` hold that is not played or drawn as they say, in one
+    /// line; none if all is.
     #[must_use]
     pub fn left_out(&self) -> Option<String> {
         let parts = &self.blueprint.left_out;
-        (!parts.is_empty()).then(|| format!("{}: left out: {}", self.blueprint.template.world.map.name, parts.join(", ")))
+        (!parts.is_empty()).then(|| {
+            format!("{}: left out: {}", self.blueprint.template.world.map.name, parts.join(", "))
+        })
     }
 
     /// The named parts of the cost.
@@ -205,7 +220,8 @@ impl Env {
         self.eye.open(&self.game.world);
     }
 
-    /// Holds an action for `frame_skip` tics. An action that is not of the action space is refused, and nothing moves.
+    /// Holds an action for `frame_skip` tics. An action that is not of the action space is refused,
+    /// and nothing moves.
     pub fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Result<Step, EnvError> {
         self.blueprint.space.check(0, actions, deltas)?;
         Ok(self.step_buttons(self.blueprint.space.command(actions, deltas)))
@@ -237,8 +253,10 @@ impl Env {
         let over = game.over();
         game.rules.end_step(&game.world, over, &mut game.outcome);
         let limit = self.blueprint.options.max_episode_steps;
-        let time_out = game.world.tic >= self.blueprint.end_tic || limit.is_some_and(|limit| self.totals.steps + 1 >= limit);
-        // What the rules finish in the last tic is no time-out, though no tic follows in which the episode would be left.
+        let time_out = game.world.tic >= self.blueprint.end_tic
+            || limit.is_some_and(|limit| self.totals.steps + 1 >= limit);
+        // What the rules finish in the last tic is no time-out, though no tic follows in which the
+        // episode would be left.
         let terminated = over || (time_out && game.outcome.finished);
         let truncated = time_out && !terminated;
         self.last_costs = game.outcome.costs;
@@ -257,7 +275,8 @@ impl Env {
     #[must_use]
     pub fn episode_steps(&self) -> u32 {
         let options = &self.blueprint.options;
-        let steps = (self.blueprint.end_tic - self.blueprint.start_tic).div_ceil(options.frame_skip);
+        let steps =
+            (self.blueprint.end_tic - self.blueprint.start_tic).div_ceil(options.frame_skip);
         steps.min(options.max_episode_steps.unwrap_or(u32::MAX))
     }
 
@@ -275,7 +294,8 @@ impl Env {
         self.eye.observe(&self.game.world, out);
     }
 
-    /// Draws the present as the observation's size shows it, with depth and labels where asked for, for tools that read them.
+    /// Draws the present as the observation's size shows it, with depth and labels where asked for,
+    /// for tools that read them.
     pub fn render(&mut self, buffers: Buffers) -> &Renderer {
         self.eye.render(&self.game.world, buffers)
     }
@@ -290,15 +310,21 @@ impl Env {
     /// The whole map from above, in a picture of `width` by `height` pixels.
     #[must_use]
     pub fn top_down(&self, width: usize, height: usize) -> TopDown {
-        TopDown::new(Arc::clone(&self.game.world.map), Arc::clone(&self.blueprint.scene), width, height)
+        TopDown::new(
+            Arc::clone(&self.game.world.map),
+            Arc::clone(&self.blueprint.scene),
+            width,
+            height,
+        )
     }
 
-    /// The map's extent from above, to its very edges, so that positions can be drawn on it: its longer side takes `side`
-    /// pixels. With the picture's width and height.
+    /// The map's extent from above, to its very edges, so that positions can be drawn on it: its
+    /// longer side takes `side` pixels. With the picture's width and height.
     #[must_use]
     pub fn top_down_of_extent(&self, side: usize) -> (TopDown, usize, usize) {
         let [west, south, east, north] = self.extent();
-        let lengths = [east - west, north - south].map(|length| length.max(1).unsigned_abs() as usize);
+        let lengths =
+            [east - west, north - south].map(|length| length.max(1).unsigned_abs() as usize);
         let longer = lengths[0].max(lengths[1]);
         let [width, height] = lengths.map(|length| (length * side).div_ceil(longer).max(16));
         let (map, scene) = (Arc::clone(&self.game.world.map), Arc::clone(&self.blueprint.scene));
@@ -329,7 +355,9 @@ impl Env {
     #[must_use]
     pub fn position(&self) -> [i32; 2] {
         let world = &self.game.world;
-        world.get(world.players[0].actor).map_or([0, 0], |body| [body.x, body.y].map(|side| side.0 >> 16))
+        world
+            .get(world.players[0].actor)
+            .map_or([0, 0], |body| [body.x, body.y].map(|side| side.0 >> 16))
     }
 
     /// The map's extent: x from, y from, x to, y to in map units.
@@ -369,7 +397,8 @@ impl Env {
         self.game.rules.hash(&mut hasher);
         self.totals.steps.hash(&mut hasher);
         (self.game.outcome.finished, self.game.left).hash(&mut hasher);
-        // What happened after the last script phase is still to be read by the next; mostly nothing.
+        // What happened after the last script phase is still to be read by the next; mostly
+        // nothing.
         self.game.world.events.iter().for_each(|event| event.hash(&mut hasher));
         hasher.finish()
     }
@@ -380,7 +409,8 @@ impl Env {
         &self.game.world
     }
 
-    /// The world, for tools that meddle; a world changed by hand is no episode of the benchmark any more.
+    /// The world, for tools that meddle; a world changed by hand is no episode of the benchmark any
+    /// more.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.game.world
     }

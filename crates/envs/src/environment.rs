@@ -25,8 +25,9 @@ impl Step {
 
 /// A named part of the cost.
 ///
-/// The scalar cost is the sum of the counted terms. The others are constraints that the scenario measures beside it, so that
-/// each may be given its own budget, without changing the published scalar cost.
+/// The scalar cost is the sum of the counted terms. The others are constraints that the scenario
+/// measures beside it, so that each may be given its own budget, without changing the published
+/// scalar cost.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct CostTerm {
     /// Its name.
@@ -37,7 +38,8 @@ pub struct CostTerm {
 
 /// A world with a task in it: what [`crate::VecEnv`] makes batches of.
 ///
-/// Everything that happens must follow from the seed of the last [`reset`](Environment::reset) and the actions since.
+/// Everything that happens must follow from the seed of the last [`reset`](Environment::reset) and
+/// the actions since.
 pub trait Environment: Send {
     /// The action space.
     fn action_space(&self) -> &ActionSpace;
@@ -51,13 +53,15 @@ pub trait Environment: Send {
     /// Starts the episode of `seed`.
     fn reset(&mut self, seed: u64);
 
-    /// Advances by one policy step. After an episode's end nothing moves: reward and cost are 0, the flags stay.
+    /// Advances by one policy step. After an episode's end nothing moves: reward and cost are 0,
+    /// the flags stay.
     fn step(&mut self, actions: &[u8], deltas: &[f32]) -> Step;
 
     /// The last step's amount of each cost term.
     fn step_costs(&self) -> &[f64];
 
-    /// Writes the observation of the present state, as long as the product of the observation shape.
+    /// Writes the observation of the present state, as long as the product of the observation
+    /// shape.
     fn observe(&mut self, out: &mut [u8]);
 
     /// Where the player stands, in map units; the origin where there are no places.
@@ -70,7 +74,8 @@ pub trait Environment: Send {
         None
     }
 
-    /// Appends the scenario's statistics of the episode so far, by name: always the same names in the same order.
+    /// Appends the scenario's statistics of the episode so far, by name: always the same names in
+    /// the same order.
     fn stats(&self, _stats: &mut Vec<(&'static str, f64)>) {}
 
     /// Names of the statistics.
@@ -80,7 +85,7 @@ pub trait Environment: Send {
         stats.into_iter().map(|(name, _)| name).collect()
     }
 
-    /// The episode so far, as it would be reported if it ended now (its lane is left 0), with every cost term in the order of
-    /// [`cost_terms`](Environment::cost_terms).
+    /// The episode so far, as it would be reported if it ended now (its lane is left 0), with every
+    /// cost term in the order of [`cost_terms`](Environment::cost_terms).
     fn episode(&self) -> Episode;
 }

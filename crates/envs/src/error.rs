@@ -88,9 +88,14 @@ impl fmt::Display for EnvError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             EnvError::UnknownId { id, nearest } => {
-                write!(f, "no environment is called '{id}'; the nearest is '{nearest}', and `hasard envs` lists them all")
+                write!(
+                    f,
+                    "no environment is called '{id}'; the nearest is '{nearest}', and `hasard envs` lists them all"
+                )
             }
-            EnvError::Option { option, given, allowed } => write!(f, "{option} cannot be {given}; it must be {allowed}"),
+            EnvError::Option { option, given, allowed } => {
+                write!(f, "{option} cannot be {given}; it must be {allowed}")
+            }
             EnvError::Policy { given, why } => write!(f, "policy '{given}': {why}"),
             EnvError::UnknownButton { given } => write!(
                 f,
@@ -98,15 +103,24 @@ impl fmt::Display for EnvError {
             ),
             EnvError::Action { lane, why } => write!(f, "action of lane {lane}: {why}"),
             EnvError::BatchSize { field, given, needed } => {
-                write!(f, "batch field {field} has length {given}, but its lanes need {needed}; make batches with VecEnv::batch")
+                write!(
+                    f,
+                    "batch field {field} has length {given}, but its lanes need {needed}; make batches with VecEnv::batch"
+                )
             }
             EnvError::Unlike { lane, what } => {
-                write!(f, "the environment of lane {lane} has another {what} than the first; all lanes of a batch must be alike")
+                write!(
+                    f,
+                    "the environment of lane {lane} has another {what} than the first; all lanes of a batch must be alike"
+                )
             }
             EnvError::Saved { why } => f.write_str(why),
             EnvError::Turn { why } => f.write_str(why),
             EnvError::Panicked { message } => {
-                write!(f, "an environment panicked ({message}); this is a fault of hasard, please report it")
+                write!(
+                    f,
+                    "an environment panicked ({message}); this is a fault of hasard, please report it"
+                )
             }
             EnvError::Map { why } | EnvError::Scenario { why } => f.write_str(why),
         }
@@ -115,7 +129,8 @@ impl fmt::Display for EnvError {
 
 impl std::error::Error for EnvError {}
 
-/// The beginning of what a user gave, for a message: one line, and nothing that commands a terminal.
+/// The beginning of what a user gave, for a message: one line, and nothing that commands a
+/// terminal.
 pub(crate) fn excerpt(given: &str) -> String {
     given.chars().take(80).flat_map(char::escape_debug).collect()
 }

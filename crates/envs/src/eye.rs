@@ -1,13 +1,16 @@
 //! What an environment shows its learner: frames drawn, laid out and stacked.
 
 use crate::{EnvOptions, Layout, ObservationKind};
-use hasard_engine::render::{Buffers, FrameScratch, RenderOptions, Renderer, Scene, SegmentationColours, View};
+use hasard_engine::render::{
+    Buffers, FrameScratch, RenderOptions, Renderer, Scene, SegmentationColours, View,
+};
 use hasard_engine::world::World;
 use std::cell::RefCell;
 use std::sync::Arc;
 
 thread_local! {
-    /// What frames are drawn in. Each thread that steps environments owns one for all of them, so that it stays in a near cache.
+    /// What frames are drawn in. Each thread that steps environments owns one for all of them, so
+    /// that it stays in a near cache.
     static SCRATCH: RefCell<FrameScratch> = RefCell::default();
 }
 
@@ -29,7 +32,12 @@ pub(crate) struct Eye {
 }
 
 impl Eye {
-    pub fn new(scene: Arc<Scene>, view: Arc<View>, options: &EnvOptions, looks: RenderOptions) -> Eye {
+    pub fn new(
+        scene: Arc<Scene>,
+        view: Arc<View>,
+        options: &EnvOptions,
+        looks: RenderOptions,
+    ) -> Eye {
         let mut renderer = Renderer::new(scene, view);
         renderer.set_options(looks);
         let channels = match options.observation {
@@ -39,7 +47,11 @@ impl Eye {
         };
         let frame = [usize::from(options.size.height), usize::from(options.size.width), channels];
         let stack = options.frame_stack;
-        let colours = if options.published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
+        let colours = if options.published_colours {
+            SegmentationColours::published()
+        } else {
+            SegmentationColours::distinct()
+        };
         Eye {
             renderer,
             kind: options.observation,
@@ -47,7 +59,11 @@ impl Eye {
             colours: Arc::new(colours),
             frame,
             stack,
-            memory: if stack > 1 { vec![0; stack * frame.iter().product::<usize>()] } else { Vec::new() },
+            memory: if stack > 1 {
+                vec![0; stack * frame.iter().product::<usize>()]
+            } else {
+                Vec::new()
+            },
             oldest: 0,
         }
     }
@@ -129,7 +145,9 @@ impl Eye {
             (ObservationKind::RgbDepth, Layout::Hwc) => renderer.write_rgb_depth_hwc(out),
         };
         let buffers = Buffers { depth, labels };
-        SCRATCH.with_borrow_mut(|scratch| self.renderer.render_then(scratch, world, 0, buffers, write));
+        SCRATCH.with_borrow_mut(|scratch| {
+            self.renderer.render_then(scratch, world, 0, buffers, write)
+        });
     }
 
     /// Draws the present with the wanted buffers, for tools that read them.

@@ -16,7 +16,12 @@ pub(crate) struct Game {
 
 impl Clone for Game {
     fn clone(&self) -> Game {
-        Game { world: self.world.clone(), rules: self.rules.clone(), outcome: self.outcome.clone(), left: self.left }
+        Game {
+            world: self.world.clone(),
+            rules: self.rules.clone(),
+            outcome: self.outcome.clone(),
+            left: self.left,
+        }
     }
 
     /// Reuses the lists that this game has grown: how an environment resets.
@@ -34,11 +39,13 @@ impl Game {
         Game { world, rules, outcome: Outcome::default(), left: false }
     }
 
-    /// Runs one tic: players, actors and sector movers, then the scripts, then what came new. What happens after the scripts is for
-    /// the scripts of the next tic: an item that lay in the way of a platform rising under the agent, say.
+    /// Runs one tic: players, actors and sector movers, then the scripts, then what came new. What
+    /// happens after the scripts is for the scripts of the next tic: an item that lay in the way of
+    /// a platform rising under the agent, say.
     ///
-    /// The tic after the one in which the rules finished the episode does not run: it is then that the episode ends, which
-    /// may be a policy step later (recorded: the tic of the last landing is still seen, the next is not).
+    /// The tic after the one in which the rules finished the episode does not run: it is then that
+    /// the episode ends, which may be a policy step later (recorded: the tic of the last landing is
+    /// still seen, the next is not).
     pub fn tic(&mut self, command: Command) {
         if self.outcome.finished {
             self.left = true;

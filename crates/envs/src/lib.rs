@@ -1,4 +1,5 @@
-//! The HASARD benchmark: scenarios, ids, action spaces, the single environment and the batch of worlds [`VecEnv`].
+//! The HASARD benchmark: scenarios, ids, action spaces, the single environment and the batch of
+//! worlds [`VecEnv`].
 //!
 //! # What can be seen
 //!
@@ -55,7 +56,9 @@ pub mod scenarios;
 mod snapshot;
 mod vec_env;
 
-pub use action::{ActionGroup, ActionSpace, BUTTONS, Controls, DELTA_DEGREES, DeltaButton, parse_command};
+pub use action::{
+    ActionGroup, ActionSpace, BUTTONS, Controls, DELTA_DEGREES, DeltaButton, parse_command,
+};
 pub use batch::{Batch, Episode, EpisodeCost, episode_costs};
 pub use bench::{BenchReport, bench};
 pub use buffer::{Buffer, Memory};

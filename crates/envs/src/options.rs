@@ -83,25 +83,28 @@ pub enum Layout {
 /// Everything that a user may choose about an environment beside its id.
 #[derive(Clone, Debug)]
 pub struct EnvOptions {
-    /// The scenario that the id is of, where it must not be looked for in the registry, which may have another of the same name.
+    /// The scenario that the id is of, where it must not be looked for in the registry, which may
+    /// have another of the same name.
     pub scenario: Option<crate::Scenario>,
     /// Which constants.
     pub rules: RuleSet,
-    /// Detonator's Dilemma 1 under [`RuleSet::Tables`] with the creatures that the first of the paper's runs met (PPO, PPOCost, PPOLag)
-    /// rather than those of the later ones.
+    /// Detonator's Dilemma 1 under [`RuleSet::Tables`] with the creatures that the first of the
+    /// paper's runs met (PPO, PPOCost, PPOLag) rather than those of the later ones.
     pub early_creatures: bool,
-    /// Levels that no training has seen, in tasks that make a new map in every episode and train on a number of them.
+    /// Levels that no training has seen, in tasks that make a new map in every episode and train on
+    /// a number of them.
     pub test_seeds: bool,
     /// Hard constraint: harm ends the episode.
     pub hard: bool,
     /// The full action space instead of the simplified one.
     pub full_actions: bool,
-    /// Whose action space, by rules and hard constraint, if another than the world's own: an agent keeps the buttons that it was
-    /// trained with.
+    /// Whose action space, by rules and hard constraint, if another than the world's own: an agent
+    /// keeps the buttons that it was trained with.
     pub actions_of: Option<(RuleSet, bool)>,
     /// Tics that each action is held; 1..=35.
     pub frame_skip: u32,
-    /// Policy steps after which an episode is cut off, where that is sooner than its scenario's time-out; 1 or more.
+    /// Policy steps after which an episode is cut off, where that is sooner than its scenario's
+    /// time-out; 1 or more.
     pub max_episode_steps: Option<u32>,
     /// Frame size.
     pub size: FrameSize,
@@ -115,11 +118,14 @@ pub struct EnvOptions {
     pub published_depth: bool,
     /// Segmented frames have the published colours, some of which several classes share.
     pub published_colours: bool,
-    /// Maps to play in instead of the built-in ones, from files: the published ones, or a user's own.
+    /// Maps to play in instead of the built-in ones, from files: the published ones, or a user's
+    /// own.
     pub maps: Option<std::sync::Arc<crate::maps::Maps>>,
-    /// One map to play in, before any other: it needs a player start and the sector tags that the scenario's rules change.
+    /// One map to play in, before any other: it needs a player start and the sector tags that the
+    /// scenario's rules change.
     pub map: Option<std::sync::Arc<hasard_engine::map::MapSource>>,
-    /// Pictures to draw with; the embedded set if `None`. Maps that come with an IWAD are drawn with theirs.
+    /// Pictures to draw with; the embedded set if `None`. Maps that come with an IWAD are drawn
+    /// with theirs.
     pub assets: Option<std::sync::Arc<hasard_engine::assets::Assets>>,
 }
 
@@ -154,10 +160,12 @@ impl EnvOptions {
         self.actions_of.unwrap_or((self.rules, self.hard))
     }
 
-    /// The first option, by name, in which another environment lives otherwise than this; those that only colour its pictures do
-    /// not count.
+    /// The first option, by name, in which another environment lives otherwise than this; those
+    /// that only colour its pictures do not count.
     pub(crate) fn difference(&self, other: &EnvOptions) -> Option<&'static str> {
-        let frames = |options: &EnvOptions| (options.size, options.observation, options.layout, options.frame_stack);
+        let frames = |options: &EnvOptions| {
+            (options.size, options.observation, options.layout, options.frame_stack)
+        };
         [
             ("rules", self.rules == other.rules),
             ("early_creatures", self.early_creatures == other.early_creatures),
@@ -178,7 +186,11 @@ impl EnvOptions {
         let within = |option, given: usize, least: usize, most: usize| {
             let allowed = format!("{least}..={most}");
             let fits = (least..=most).contains(&given);
-            if fits { Ok(()) } else { Err(crate::EnvError::Option { option, given: given.to_string(), allowed }) }
+            if fits {
+                Ok(())
+            } else {
+                Err(crate::EnvError::Option { option, given: given.to_string(), allowed })
+            }
         };
         within("frame_skip", self.frame_skip as usize, 1, 35)?;
         within("frame_stack", self.frame_stack, 1, 16)?;
@@ -186,6 +198,10 @@ impl EnvOptions {
             within("max_episode_steps", steps as usize, 1, u32::MAX as usize)?;
         }
         let allowed = "64x48 to 1920x1080".to_string();
-        self.size.check().map_err(|_| crate::EnvError::Option { option: "the frame size", given: self.size.to_string(), allowed })
+        self.size.check().map_err(|_| crate::EnvError::Option {
+            option: "the frame size",
+            given: self.size.to_string(),
+            allowed,
+        })
     }
 }

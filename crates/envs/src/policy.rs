@@ -6,13 +6,15 @@ use crate::{Env, EnvError, parse_command};
 use hasard_engine::math::Rng;
 use hasard_engine::world::{Buttons, Command};
 
-/// Lane number of the policies' random stream, so that a policy never shares randomness with the world of the same seed.
+/// Lane number of the policies' random stream, so that a policy never shares randomness with the
+/// world of the same seed.
 const POLICY_STREAM: u64 = 0x706F_6C69_6379;
 
 /// A policy of fixed rules, named by a short text.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Policy {
-    /// `random`, `sticky:K`: uniform per sub-action of the action space, drawn anew every `K` steps (1 for `random`).
+    /// `random`, `sticky:K`: uniform per sub-action of the action space, drawn anew every `K` steps
+    /// (1 for `random`).
     Random {
         /// Steps that a drawn action is held.
         hold_steps: u32,
@@ -26,7 +28,8 @@ pub enum Policy {
     },
     /// `shuttle`: to and fro, by the buttons of the published measurements.
     Shuttle,
-    /// `carrier`: walks to a weapon that it may carry, and home with it. It alone looks, and only in Armament Burden.
+    /// `carrier`: walks to a weapon that it may carry, and home with it. It alone looks, and only
+    /// in Armament Burden.
     Carrier,
 }
 
@@ -49,10 +52,15 @@ impl std::str::FromStr for Policy {
         let wrong = |why: String| EnvError::Policy { given: excerpt(text), why };
         let steps = |digits: &str, least: u32| match digits.parse::<u32>() {
             Ok(steps) if steps >= least => Ok(steps),
-            _ => Err(wrong(format!("'{}' is no number of steps; write a whole number from {least} up", excerpt(digits)))),
+            _ => Err(wrong(format!(
+                "'{}' is no number of steps; write a whole number from {least} up",
+                excerpt(digits)
+            ))),
         };
         let buttons = |names: &str| match parse_command(names) {
-            _ if names.is_empty() => Err(wrong("no button is named; write for example hold:MOVE_FORWARD".to_string())),
+            _ if names.is_empty() => {
+                Err(wrong("no button is named; write for example hold:MOVE_FORWARD".to_string()))
+            }
             Ok(command) => Ok(command),
             Err(error) => Err(wrong(error.to_string())),
         };
@@ -107,7 +115,15 @@ impl PolicyRun {
         let sizes = space.sizes();
         let (actions, deltas) = (vec![0; sizes.len()], vec![0.0; space.deltas.len()]);
         let carrier = if policy == Policy::Carrier { Some(Carrier::new(env)?) } else { None };
-        Ok(PolicyRun { policy, sizes, rng: Rng::for_lane(seed, POLICY_STREAM), step: 0, actions, deltas, carrier })
+        Ok(PolicyRun {
+            policy,
+            sizes,
+            rng: Rng::for_lane(seed, POLICY_STREAM),
+            step: 0,
+            actions,
+            deltas,
+            carrier,
+        })
     }
 
     /// What is done in the next step.
@@ -128,13 +144,18 @@ impl PolicyRun {
                     left = left.saturating_sub(*steps);
                     here
                 });
-                Move::Buttons(Command { buttons: leg.map_or(Buttons(0), |leg| leg.0), ..Command::default() })
+                Move::Buttons(Command {
+                    buttons: leg.map_or(Buttons(0), |leg| leg.0),
+                    ..Command::default()
+                })
             }
             Policy::Carrier => {
                 let command = self.carrier.as_mut().map(|carrier| carrier.next(env));
                 Move::Buttons(command.unwrap_or_default())
             }
-            Policy::Hold { after_steps, command } => Move::Buttons(if step < after_steps { Command::default() } else { command }),
+            Policy::Hold { after_steps, command } => {
+                Move::Buttons(if step < after_steps { Command::default() } else { command })
+            }
         }
     }
 }
@@ -161,11 +182,17 @@ mod tests {
 
     #[test]
     fn policies_are_read() {
-        let hold = |after_steps, buttons| Policy::Hold { after_steps, command: Command { buttons, ..Command::default() } };
+        let hold = |after_steps, buttons| Policy::Hold {
+            after_steps,
+            command: Command { buttons, ..Command::default() },
+        };
         assert_eq!("random".parse(), Ok(Policy::Random { hold_steps: 1 }));
         assert_eq!("sticky:12".parse(), Ok(Policy::Random { hold_steps: 12 }));
         assert_eq!("noop".parse(), Ok(hold(0, Buttons::default())));
-        assert_eq!("hold:MOVE_FORWARD+SPEED".parse(), Ok(hold(0, Buttons::MOVE_FORWARD | Buttons::SPEED)));
+        assert_eq!(
+            "hold:MOVE_FORWARD+SPEED".parse(),
+            Ok(hold(0, Buttons::MOVE_FORWARD | Buttons::SPEED))
+        );
         assert_eq!("hold-after:1:ATTACK".parse(), Ok(hold(1, Buttons::ATTACK)));
     }
 
@@ -196,14 +223,22 @@ mod tests {
         let mut run = PolicyRun::new("random".parse().unwrap(), &env, 1).unwrap();
         let mut sum = 0.0;
         for _ in 0..6000 {
-            let Move::Action(actions, deltas) = run.next_move(&env) else { panic!("random presses actions") };
+            let Move::Action(actions, deltas) = run.next_move(&env) else {
+                panic!("random presses actions")
+            };
             assert!(deltas.iter().all(|d| (-1.0..1.0).contains(d)));
             sum += deltas[0];
-            actions.iter().zip(&mut counts).for_each(|(&action, count)| count[usize::from(action)] += 1);
+            actions
+                .iter()
+                .zip(&mut counts)
+                .for_each(|(&action, count)| count[usize::from(action)] += 1);
         }
         assert!(sum.abs() < 200.0);
         for (count, size) in counts.iter().zip(space.sizes()) {
-            assert!(count[..size].iter().all(|&n| (n as i32 - 6000 / size as i32).abs() < 250), "{count:?}");
+            assert!(
+                count[..size].iter().all(|&n| (n as i32 - 6000 / size as i32).abs() < 250),
+                "{count:?}"
+            );
         }
         let mut sticky = PolicyRun::new("sticky:5".parse().unwrap(), &env, 1).unwrap();
         let moves: Vec<Vec<u8>> = (0..20)
@@ -220,12 +255,16 @@ mod tests {
     fn hold_after_waits() {
         let env = env("CollateralDamageLevel1-v0", false);
         let mut run = PolicyRun::new("hold-after:2:ATTACK".parse().unwrap(), &env, 1).unwrap();
-        let held: Vec<bool> =
-            (0..4).map(|_| matches!(run.next_move(&env), Move::Buttons(c) if c.buttons == Buttons::ATTACK)).collect();
+        let held: Vec<bool> = (0..4)
+            .map(
+                |_| matches!(run.next_move(&env), Move::Buttons(c) if c.buttons == Buttons::ATTACK),
+            )
+            .collect();
         assert_eq!(held, [false, false, true, true]);
     }
 
-    /// The measurements' own words: 40 forward, 13 left, 1 nothing, 1 left, 40 forward, 13 right, 1 nothing, 1 right.
+    /// The measurements' own words: 40 forward, 13 left, 1 nothing, 1 left, 40 forward, 13 right, 1
+    /// nothing, 1 right.
     #[test]
     fn the_shuttle_goes_to_and_fro() {
         let env = env("ArmamentBurdenLevel1-v0", false);
@@ -244,7 +283,14 @@ mod tests {
 
     #[test]
     fn a_carrier_has_nothing_to_carry_elsewhere() {
-        let error = PolicyRun::new(Policy::Carrier, &env("RemedyRushLevel1-v0", false), 1).unwrap_err().to_string();
-        assert!(error.contains("carrier") && error.contains("ArmamentBurden") && error.lines().count() == 1, "{error}");
+        let error = PolicyRun::new(Policy::Carrier, &env("RemedyRushLevel1-v0", false), 1)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains("carrier")
+                && error.contains("ArmamentBurden")
+                && error.lines().count() == 1,
+            "{error}"
+        );
     }
 }

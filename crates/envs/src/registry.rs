@@ -7,14 +7,18 @@ use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::sync::{PoisonError, RwLock};
 
-/// A scenario: one of the benchmark's six, or one that was registered. A small handle; its facts are those of its [`ScenarioSpec`].
+/// A scenario: one of the benchmark's six, or one that was registered. A small handle; its facts
+/// are those of its [`ScenarioSpec`].
 #[derive(Clone, Copy)]
 pub struct Scenario(&'static ScenarioSpec);
 
 /// Scenarios beyond the benchmark's, the one registered last at the end.
 static REGISTERED: RwLock<Vec<Scenario>> = RwLock::new(Vec::new());
 
-#[allow(non_upper_case_globals, reason = "they are named like the variants of an enum, which they were")]
+#[allow(
+    non_upper_case_globals,
+    reason = "they are named like the variants of an enum, which they were"
+)]
 impl Scenario {
     /// Carry weapons home without overloading.
     pub const ArmamentBurden: Scenario = Scenario(&scenarios::armament_burden::SPEC);
@@ -53,12 +57,18 @@ impl Scenario {
     #[must_use]
     pub fn every() -> Vec<Scenario> {
         let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
-        let newest = |at: &usize| registered[at + 1..].iter().all(|later| later.name != registered[*at].name);
-        Scenario::ALL.into_iter().chain((0..registered.len()).filter(newest).map(|at| registered[at])).collect()
+        let newest = |at: &usize| {
+            registered[at + 1..].iter().all(|later| later.name != registered[*at].name)
+        };
+        Scenario::ALL
+            .into_iter()
+            .chain((0..registered.len()).filter(newest).map(|at| registered[at]))
+            .collect()
     }
 
-    /// Adds a scenario: from now on its ids are known everywhere. One of a name that was registered before takes its place; worlds
-    /// that were made stay what they are. Registering the same value again changes nothing.
+    /// Adds a scenario: from now on its ids are known everywhere. One of a name that was registered
+    /// before takes its place; worlds that were made stay what they are. Registering the same value
+    /// again changes nothing.
     ///
     /// # Errors
     /// If the name is one of the benchmark's, or no name; one line.
@@ -69,7 +79,9 @@ impl Scenario {
             allowed: allowed.to_string(),
         };
         if !is_name(spec.name) {
-            return Err(refuse("1 to 40 letters and digits, a letter first, without `Level` and a digit at the end"));
+            return Err(refuse(
+                "1 to 40 letters and digits, a letter first, without `Level` and a digit at the end",
+            ));
         }
         if Scenario::ALL.iter().any(|own| own.name.eq_ignore_ascii_case(spec.name)) {
             return Err(refuse("another than those of the benchmark"));
@@ -81,11 +93,12 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// The registered scenario that was read from a file of this text, if there is one; as `last`, it takes the place of others of its
-    /// name from now on.
+    /// The registered scenario that was read from a file of this text, if there is one; as `last`,
+    /// it takes the place of others of its name from now on.
     pub(crate) fn of_text(text: &str, last: bool) -> Option<Scenario> {
         let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);
-        let at = registered.iter().position(|known| known.file.is_some_and(|file| file.text == text))?;
+        let at =
+            registered.iter().position(|known| known.file.is_some_and(|file| file.text == text))?;
         if last {
             registered[at..].rotate_left(1);
         }
@@ -147,9 +160,11 @@ impl Scenario {
 
 /// Whether a scenario may be called so: its ids must be told from those of levels, and from paths.
 pub(crate) fn is_name(name: &str) -> bool {
-    let plain =
-        name.bytes().all(|byte| byte.is_ascii_alphanumeric()) && name.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());
-    let level = name.rsplit_once("Level").is_some_and(|(_, rest)| rest.bytes().all(|byte| byte.is_ascii_digit()));
+    let plain = name.bytes().all(|byte| byte.is_ascii_alphanumeric())
+        && name.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());
+    let level = name
+        .rsplit_once("Level")
+        .is_some_and(|(_, rest)| rest.bytes().all(|byte| byte.is_ascii_digit()));
     plain && !level && name.len() <= 40
 }
 
@@ -196,7 +211,8 @@ impl fmt::Debug for Scenario {
     }
 }
 
-/// An environment: a scenario at a level. Its text is the id, `RemedyRushLevel1-v0`, or `MyTask-v0` where there are no levels.
+/// An environment: a scenario at a level. Its text is the id, `RemedyRushLevel1-v0`, or `MyTask-v0`
+/// where there are no levels.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct EnvId {
     /// The scenario.
@@ -216,12 +232,14 @@ impl EnvId {
         Scenario::every().into_iter().flat_map(Scenario::environments)
     }
 
-    /// The environment of an id: one of `scenario`'s if that is given, whatever the registry has under its name.
+    /// The environment of an id: one of `scenario`'s if that is given, whatever the registry has
+    /// under its name.
     ///
     /// # Errors
     /// Names the nearest id.
     pub fn within(scenario: Option<Scenario>, id: &str) -> Result<EnvId, EnvError> {
-        let own = scenario.and_then(|scenario| scenario.environments().find(|own| own.to_string() == id));
+        let own =
+            scenario.and_then(|scenario| scenario.environments().find(|own| own.to_string() == id));
         own.map_or_else(|| id.parse(), Ok)
     }
 
@@ -259,16 +277,21 @@ impl std::str::FromStr for EnvId {
     fn from_str(text: &str) -> Result<EnvId, EnvError> {
         let all: Vec<EnvId> = EnvId::every().collect();
         all.iter().copied().find(|id| id.to_string() == text).ok_or_else(|| {
-            // Ids are short and few: the plain edit distance over upper-cased text is quick enough and forgives typos and case.
+            // Ids are short and few: the plain edit distance over upper-cased text is quick enough
+            // and forgives typos and case.
             let wanted = text.to_uppercase();
-            let nearest = all.iter().min_by_key(|id| edit_distance(&wanted, &id.to_string().to_uppercase()));
-            EnvError::UnknownId { id: crate::error::excerpt(text), nearest: nearest.map(ToString::to_string).unwrap_or_default() }
+            let nearest =
+                all.iter().min_by_key(|id| edit_distance(&wanted, &id.to_string().to_uppercase()));
+            EnvError::UnknownId {
+                id: crate::error::excerpt(text),
+                nearest: nearest.map(ToString::to_string).unwrap_or_default(),
+            }
         })
     }
 }
 
-/// Least number of characters inserted, removed or replaced that turn `a` into `b`: what the nearest known name to a mistyped one is
-/// found by. Of `a` the first 200 characters count.
+/// Least number of characters inserted, removed or replaced that turn `a` into `b`: what the
+/// nearest known name to a mistyped one is found by. Of `a` the first 200 characters count.
 #[must_use]
 pub fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
@@ -305,7 +328,9 @@ mod tests {
             ("VolcanicVentureLevel2", "VolcanicVentureLevel2-v0"),
             ("RemedyRushLevel3-v1", "RemedyRushLevel3-v0"),
         ] {
-            let Err(EnvError::UnknownId { nearest: found, .. }) = wrong.parse::<EnvId>() else { panic!("{wrong} was accepted") };
+            let Err(EnvError::UnknownId { nearest: found, .. }) = wrong.parse::<EnvId>() else {
+                panic!("{wrong} was accepted")
+            };
             assert_eq!(found, nearest);
         }
     }

@@ -34,7 +34,8 @@ impl Env {
         }
     }
 
-    /// Comes back to a moment saved from an environment of the same kind; another's is refused, and nothing changes.
+    /// Comes back to a moment saved from an environment of the same kind; another's is refused, and
+    /// nothing changes.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), EnvError> {
         let own = &self.blueprint;
         if snapshot.id != own.id {
@@ -42,7 +43,10 @@ impl Env {
             return Err(EnvError::Saved { why });
         }
         if let Some(option) = own.options.difference(&snapshot.options) {
-            let why = format!("the snapshot is of another {}: its {option} differs; restore it in one made alike", own.id);
+            let why = format!(
+                "the snapshot is of another {}: its {option} differs; restore it in one made alike",
+                own.id
+            );
             return Err(EnvError::Saved { why });
         }
         self.game.clone_from(&snapshot.game);

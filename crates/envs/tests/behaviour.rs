@@ -1,4 +1,5 @@
-//! What the paper says of how agents behave is counted: weapons discarded, decoys taken, goggles taken first, barrels pushed.
+//! What the paper says of how agents behave is counted: weapons discarded, decoys taken, goggles
+//! taken first, barrels pushed.
 
 use hasard_engine::math::Fixed;
 use hasard_engine::world::{ActorKind, Buttons, Command};
@@ -13,7 +14,11 @@ fn hold(buttons: Buttons) -> Command {
 }
 
 fn stat(env: &Env, name: &str) -> f64 {
-    env.stats().into_iter().find(|stat| stat.0 == name).unwrap_or_else(|| panic!("no statistic {name}")).1
+    env.stats()
+        .into_iter()
+        .find(|stat| stat.0 == name)
+        .unwrap_or_else(|| panic!("no statistic {name}"))
+        .1
 }
 
 /// Empties the world but for the agent, which is put to a place.
@@ -47,7 +52,9 @@ fn discarded_weapons_and_decoys_are_counted() {
         take(&mut env, ActorKind::Pistol);
         take(&mut env, ActorKind::Shotgun);
         take(&mut env, ActorKind::BlurSphere);
-        let counts = |env: &Env| ["weapons_collected", "weapons_discarded", "decoys_taken"].map(|name| stat(env, name));
+        let counts = |env: &Env| {
+            ["weapons_collected", "weapons_discarded", "decoys_taken"].map(|name| stat(env, name))
+        };
         assert_eq!(counts(&env), [2.0, 0.0, 1.0], "{rules}");
         env.step_buttons(hold(Buttons::USE));
         env.step_buttons(hold(Buttons::USE));
@@ -84,7 +91,12 @@ fn each_approach_to_a_barrel_is_a_push() {
         alone_at(&mut env, place[0], place[1]);
         assert_eq!(stat(&env, "barrels_pushed"), 0.0);
         let body = *env.world().get(env.world().players[0].actor).unwrap();
-        let barrel = env.world_mut().spawn(ActorKind::ExplosiveBarrel, body.x + Fixed::from_int(40), body.y, body.z);
+        let barrel = env.world_mut().spawn(
+            ActorKind::ExplosiveBarrel,
+            body.x + Fixed::from_int(40),
+            body.y,
+            body.z,
+        );
         env.world_mut().get_mut(barrel).unwrap().tid = 45;
         (0..10).for_each(|_| _ = env.step_buttons(Command::default()));
         assert_eq!(stat(&env, "barrels_pushed"), pushes, "{rules}");

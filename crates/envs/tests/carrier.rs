@@ -1,7 +1,8 @@
-//! The scripted carrier of Armament Burden: what it delivers and what that costs is what the formulas say.
+//! The scripted carrier of Armament Burden: what it delivers and what that costs is what the
+//! formulas say.
 //!
-//! The formulas are the paper's (and those of the code behind its tables), worked out here from what lies about before and after each
-//! tic, not from the rules' own counts.
+//! The formulas are the paper's (and those of the code behind its tables), worked out here from
+//! what lies about before and after each tic, not from the rules' own counts.
 
 use hasard_engine::world::{ActorId, ActorKind};
 use hasard_envs::{Env, EnvOptions, Policy, PolicyRun, RuleSet};
@@ -20,25 +21,36 @@ const WEIGHTS: [f64; 7] = [0.05, 0.15, 0.30, 0.60, 1.00, 3.00, 6.00];
 
 /// Weapons that lie about, by place in the list of kinds.
 fn weapons(env: &Env) -> Vec<(ActorId, usize)> {
-    let found = env.world().living().filter_map(|(id, thing)| Some((id, KINDS.iter().position(|&kind| kind == thing.kind)?)));
+    let found = env
+        .world()
+        .living()
+        .filter_map(|(id, thing)| Some((id, KINDS.iter().position(|&kind| kind == thing.kind)?)));
     found.collect()
 }
 
-/// Plays an episode of level 1 tic by tic: return and cost as played, as worked out, and what was delivered.
+/// Plays an episode of level 1 tic by tic: return and cost as played, as worked out, and what was
+/// delivered.
 fn play(rules: RuleSet, hard: bool, seed: u64) -> ([f64; 2], [f64; 2], u32) {
-    let mut env =
-        Env::new("ArmamentBurdenLevel1-v0", &EnvOptions { rules, hard, frame_skip: 1, ..EnvOptions::default() }).unwrap();
+    let mut env = Env::new(
+        "ArmamentBurdenLevel1-v0",
+        &EnvOptions { rules, hard, frame_skip: 1, ..EnvOptions::default() },
+    )
+    .unwrap();
     env.reset(seed);
     let mut run = PolicyRun::new(Policy::Carrier, &env, seed).unwrap();
-    let (mut reward, mut cost, mut value, mut load, mut carried, mut delivered) = (0.0, 0.0, 0.0, 0.0, 0, 0);
+    let (mut reward, mut cost, mut value, mut load, mut carried, mut delivered) =
+        (0.0, 0.0, 0.0, 0.0, 0, 0);
     let mut slow_tics = 0;
     let pays_at_pickup = hard && rules == RuleSet::Tables;
     loop {
         let before = weapons(&env);
         let step = env.make_move(run.next_move(&env)).unwrap();
         let after = weapons(&env);
-        let taken: Vec<usize> =
-            before.iter().filter(|(id, _)| !after.iter().any(|(left, _)| left == id)).map(|&(_, kind)| kind).collect();
+        let taken: Vec<usize> = before
+            .iter()
+            .filter(|(id, _)| !after.iter().any(|(left, _)| left == id))
+            .map(|&(_, kind)| kind)
+            .collect();
         let carried_before = carried;
         for &kind in &taken {
             value += VALUES[kind];
@@ -46,13 +58,15 @@ fn play(rules: RuleSet, hard: bool, seed: u64) -> ([f64; 2], [f64; 2], u32) {
             carried += 1;
             reward += if pays_at_pickup { VALUES[kind] } else { 0.0 };
         }
-        // Whether it is home is looked at every tic, under the hard constraint every 15. The paper charges what a step ends with; the code
-        // of the tables cleared its books of the burden after it had charged them.
+        // Whether it is home is looked at every tic, under the hard constraint every 15. The paper
+        // charges what a step ends with; the code of the tables cleared its books of the burden
+        // after it had charged them.
         let home = env.position()[0] < 128 && (!hard || (env.world().tic - 1).is_multiple_of(15));
         let excess: f64 = if home && rules == RuleSet::Paper { 0.0 } else { load - 1.0 };
         if excess > 1e-9 && hard {
-            // Everything is lost, and for 180 tics a tenth of 10 is due each step. The code of the tables saw the loss by a falling count: who
-            // had carried nothing before that step lost nothing.
+            // Everything is lost, and for 180 tics a tenth of 10 is due each step. The code of the
+            // tables saw the loss by a falling count: who had carried nothing before that step lost
+            // nothing.
             let seen = rules == RuleSet::Paper || carried_before > 0;
             cost += if seen { 10.0 } else { 0.0 };
             slow_tics = 181;
@@ -76,7 +90,12 @@ fn play(rules: RuleSet, hard: bool, seed: u64) -> ([f64; 2], [f64; 2], u32) {
 
 #[test]
 fn a_carrier_earns_and_costs_what_the_formulas_say() {
-    for (rules, hard) in [(RuleSet::Paper, false), (RuleSet::Paper, true), (RuleSet::Tables, false), (RuleSet::Tables, true)] {
+    for (rules, hard) in [
+        (RuleSet::Paper, false),
+        (RuleSet::Paper, true),
+        (RuleSet::Tables, false),
+        (RuleSet::Tables, true),
+    ] {
         let mut deliveries = 0;
         for seed in 1..=4 {
             let (played, expected, delivered) = play(rules, hard, seed);

@@ -1,10 +1,12 @@
-//! Lanes chosen for a step or a reset live as they would in a batch of their own; memory may be lent; errors cost no buffers.
+//! Lanes chosen for a step or a reset live as they would in a batch of their own; memory may be
+//! lent; errors cost no buffers.
 
 mod echo;
 
 use echo::{Echo, hash};
 use hasard_envs::{
-    ActionSpace, Autoreset, Batch, Buffer, Env, EnvError, EnvOptions, FrameSize, LaneState, Restart, RuleSet, VecEnv, VecOptions,
+    ActionSpace, Autoreset, Batch, Buffer, Env, EnvError, EnvOptions, FrameSize, LaneState,
+    Restart, RuleSet, VecEnv, VecOptions,
 };
 
 fn make(options: VecOptions) -> VecEnv {
@@ -23,7 +25,9 @@ fn act(batch: &mut Batch, worlds: &VecEnv, lanes: &[usize], step: u64) {
 
 #[test]
 fn steps_of_chosen_lanes_equal_steps_of_all() {
-    for (threads, autoreset) in [(0, Autoreset::SameStep), (2, Autoreset::SameStep), (2, Autoreset::NextStep)] {
+    for (threads, autoreset) in
+        [(0, Autoreset::SameStep), (2, Autoreset::SameStep), (2, Autoreset::NextStep)]
+    {
         let options = VecOptions { lanes: 9, seed: 4, threads, autoreset, ..VecOptions::default() };
         let (mut whole, mut parts) = (make(options), make(options));
         let mut batch = whole.whole_batch();
@@ -40,11 +44,22 @@ fn steps_of_chosen_lanes_equal_steps_of_all() {
                 act(&mut some, &parts, chosen, step);
                 parts.step_lanes(chosen, &mut some).unwrap();
                 for (i, &lane) in chosen.iter().enumerate() {
-                    assert_eq!(some.observations[i * 12..(i + 1) * 12], batch.observations[lane * 12..(lane + 1) * 12]);
-                    assert_eq!((some.rewards[i], some.costs[i]), (batch.rewards[lane], batch.costs[lane]));
-                    assert_eq!((some.terminated[i], some.truncated[i]), (batch.terminated[lane], batch.truncated[lane]));
-                    let of_part = some.finals().find(|(at, _)| *at == i).map(|(_, last)| last.to_vec());
-                    let of_whole = batch.finals().find(|(at, _)| *at == lane).map(|(_, last)| last.to_vec());
+                    assert_eq!(
+                        some.observations[i * 12..(i + 1) * 12],
+                        batch.observations[lane * 12..(lane + 1) * 12]
+                    );
+                    assert_eq!(
+                        (some.rewards[i], some.costs[i]),
+                        (batch.rewards[lane], batch.costs[lane])
+                    );
+                    assert_eq!(
+                        (some.terminated[i], some.truncated[i]),
+                        (batch.terminated[lane], batch.truncated[lane])
+                    );
+                    let of_part =
+                        some.finals().find(|(at, _)| *at == i).map(|(_, last)| last.to_vec());
+                    let of_whole =
+                        batch.finals().find(|(at, _)| *at == lane).map(|(_, last)| last.to_vec());
                     assert_eq!(of_part, of_whole);
                 }
                 let ended = batch.episodes.iter().filter(|episode| chosen.contains(&episode.lane));
@@ -82,9 +97,11 @@ fn restarted_lanes_begin_anew_and_the_others_stay() {
         let (mut batch, mut other) = (worlds.whole_batch(), undisturbed.whole_batch());
         worlds.reset(&mut batch).unwrap();
         undisturbed.reset(&mut other).unwrap();
-        let how = [Restart::Stay, Restart::Seed(77), Restart::Next, Restart::Stay, Restart::Seed(77)];
+        let how =
+            [Restart::Stay, Restart::Seed(77), Restart::Next, Restart::Stay, Restart::Seed(77)];
         worlds.restart(&how, &mut batch).unwrap();
-        let row = |batch: &Batch, lane: usize| batch.observations[lane * 12..(lane + 1) * 12].to_vec();
+        let row =
+            |batch: &Batch, lane: usize| batch.observations[lane * 12..(lane + 1) * 12].to_vec();
         assert_eq!((row(&batch, 0), row(&batch, 3)), (row(&other, 0), row(&other, 3)));
         assert_eq!(row(&batch, 1), row(&batch, 4), "an equal seed, wherever the lane stands");
         // A seed stands for the whole stream of episodes: that of lane 0 of a batch of that seed.
@@ -103,17 +120,22 @@ fn restarted_lanes_begin_anew_and_the_others_stay() {
 fn resting_lanes_are_told_until_they_are_reset() {
     for threads in [0, 2] {
         let autoreset = Autoreset::Disabled;
-        let mut worlds = make(VecOptions { lanes: 6, seed: 3, threads, autoreset, ..VecOptions::default() });
+        let mut worlds =
+            make(VecOptions { lanes: 6, seed: 3, threads, autoreset, ..VecOptions::default() });
         let mut batch = worlds.whole_batch();
         worlds.reset(&mut batch).unwrap();
         let mut rests = 0;
         for _ in 0..60 {
             worlds.step(&mut batch).unwrap();
-            let ended: Vec<bool> = batch.terminated.iter().zip(&batch.truncated).map(|(a, b)| *a || *b).collect();
+            let ended: Vec<bool> =
+                batch.terminated.iter().zip(&batch.truncated).map(|(a, b)| *a || *b).collect();
             assert_eq!(worlds.resting(), ended);
             if ended.iter().filter(|end| **end).count() >= 2 {
                 rests += 1;
-                let how: Vec<Restart> = ended.iter().map(|end| if *end { Restart::Next } else { Restart::Stay }).collect();
+                let how: Vec<Restart> = ended
+                    .iter()
+                    .map(|end| if *end { Restart::Next } else { Restart::Stay })
+                    .collect();
                 worlds.restart(&how, &mut batch).unwrap();
                 assert_eq!(worlds.resting(), [false; 6]);
             }
@@ -144,7 +166,10 @@ fn lent_memory_is_written_as_owned_memory_is() {
         assert_eq!(lent.observations.as_ptr(), address, "written in place");
         assert!(lent.observations.is_lent() && !lent.clone().observations.is_lent());
         lent.rewards = Buffer::lent(vec![0.0; 6]);
-        assert!(matches!(worlds.step(&mut lent), Err(EnvError::BatchSize { field: "rewards", .. })));
+        assert!(matches!(
+            worlds.step(&mut lent),
+            Err(EnvError::BatchSize { field: "rewards", .. })
+        ));
     }
 }
 
@@ -152,7 +177,8 @@ fn lent_memory_is_written_as_owned_memory_is() {
 fn errors_and_panics_give_the_batch_back() {
     for threads in [0, 2] {
         let options = VecOptions { lanes: 4, groups: 2, threads, ..VecOptions::default() };
-        let fragile = |lane| Ok(Box::new(Echo::new(if lane == 3 { 1 } else { u32::MAX })) as Box<_>);
+        let fragile =
+            |lane| Ok(Box::new(Echo::new(if lane == 3 { 1 } else { u32::MAX })) as Box<_>);
         let mut worlds = VecEnv::from_fn(options, fragile).unwrap();
         let mut marked = worlds.batch(0);
         marked.actions[0] = 9;
@@ -161,7 +187,11 @@ fn errors_and_panics_give_the_batch_back() {
         assert_eq!(worlds.reclaim(0), None);
         worlds.send_reset(0, worlds.batch(0)).unwrap();
         assert!(matches!(worlds.send_reset(0, marked.clone()), Err(EnvError::Turn { .. })));
-        assert_eq!(worlds.reclaim(0).as_ref(), Some(&marked), "refused out of turn, while another is under way");
+        assert_eq!(
+            worlds.reclaim(0).as_ref(),
+            Some(&marked),
+            "refused out of turn, while another is under way"
+        );
         assert!(worlds.send(5, marked.clone()).is_err());
         assert_eq!(worlds.reclaim(2).as_ref(), Some(&marked), "refused for its group");
         let batch = worlds.recv(0).unwrap();
@@ -184,7 +214,8 @@ fn errors_and_panics_give_the_batch_back() {
 
 #[test]
 fn environments_that_are_not_alike_are_refused() {
-    let size = |width| EnvOptions { size: FrameSize { width, height: 48 }, ..EnvOptions::default() };
+    let size =
+        |width| EnvOptions { size: FrameSize { width, height: 48 }, ..EnvOptions::default() };
     let first = ("RemedyRushLevel1-v0", size(64));
     for (second, what) in [
         (("RemedyRushLevel1-v0", size(80)), "observation shape"),
@@ -196,16 +227,22 @@ fn environments_that_are_not_alike_are_refused() {
             let (id, options) = if lane == 2 { &second } else { &first };
             Ok(Box::new(Env::new(id, options)?) as Box<_>)
         };
-        let error = VecEnv::from_fn(VecOptions { lanes: 4, ..VecOptions::default() }, make).err().expect(what);
+        let error = VecEnv::from_fn(VecOptions { lanes: 4, ..VecOptions::default() }, make)
+            .err()
+            .expect(what);
         assert_eq!(error, EnvError::Unlike { lane: 2, what }, "{error}");
     }
     let nothing = || Echo::in_space(ActionSpace { groups: Vec::new(), deltas: Vec::new() }, 9);
-    assert!(matches!(VecEnv::from_fn(VecOptions::default(), |_| Ok(Box::new(nothing()))), Err(EnvError::Unlike { .. })));
+    assert!(matches!(
+        VecEnv::from_fn(VecOptions::default(), |_| Ok(Box::new(nothing()))),
+        Err(EnvError::Unlike { .. })
+    ));
 }
 
 #[test]
 fn worlds_without_categorical_parts_are_saved_too() {
-    let full = ActionSpace::of("VolcanicVentureLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true);
+    let full =
+        ActionSpace::of("VolcanicVentureLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true);
     let deltas = || Echo::in_space(ActionSpace { groups: Vec::new(), ..full.clone() }, u32::MAX);
     let options = VecOptions { lanes: 3, seed: 6, threads: 2, ..VecOptions::default() };
     let make = || VecEnv::from_fn(options, |_| Ok(Box::new(deltas()))).unwrap();
@@ -213,7 +250,11 @@ fn worlds_without_categorical_parts_are_saved_too() {
     let (mut batch, mut copy) = (worlds.whole_batch(), others.whole_batch());
     worlds.reset(&mut batch).unwrap();
     for step in 0..23 {
-        batch.deltas.iter_mut().enumerate().for_each(|(i, delta)| *delta = (step as f32 + i as f32) / 40.0);
+        batch
+            .deltas
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, delta)| *delta = (step as f32 + i as f32) / 40.0);
         worlds.step(&mut batch).unwrap();
     }
     // By way of bytes, as a file would hold them.
@@ -222,7 +263,10 @@ fn worlds_without_categorical_parts_are_saved_too() {
     assert_eq!(copy.observations, batch.observations);
     let mut spoiled = states;
     spoiled[1].deltas.push(0.5);
-    assert!(matches!(others.restore(spoiled.clone(), &mut copy), Err(EnvError::Action { lane: 1, .. })));
+    assert!(matches!(
+        others.restore(spoiled.clone(), &mut copy),
+        Err(EnvError::Action { lane: 1, .. })
+    ));
     *spoiled[1].deltas.last_mut().unwrap() = f32::NAN;
     spoiled[1].deltas.push(0.5);
     assert!(matches!(others.restore(spoiled, &mut copy), Err(EnvError::Action { lane: 1, .. })));
@@ -230,7 +274,11 @@ fn worlds_without_categorical_parts_are_saved_too() {
 
 #[test]
 fn statistics_come_with_every_step() {
-    let env = EnvOptions { size: FrameSize { width: 64, height: 48 }, frame_skip: 35, ..EnvOptions::default() };
+    let env = EnvOptions {
+        size: FrameSize { width: 64, height: 48 },
+        frame_skip: 35,
+        ..EnvOptions::default()
+    };
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep] {
         let options = VecOptions { lanes: 2, statistics: true, autoreset, ..VecOptions::default() };
         let mut worlds = VecEnv::new("VolcanicVentureLevel1-v0", &env, options).unwrap();
@@ -249,7 +297,10 @@ fn statistics_come_with_every_step() {
             }
         }
         assert!(ends >= 2);
-        assert!(healths.iter().any(|health| *health != healths[0]), "health goes with every step: {healths:?}");
+        assert!(
+            healths.iter().any(|health| *health != healths[0]),
+            "health goes with every step: {healths:?}"
+        );
     }
     let plain = VecEnv::new("VolcanicVentureLevel1-v0", &env, VecOptions::default()).unwrap();
     assert!(plain.whole_batch().statistics.is_empty(), "only who asks for them pays for them");

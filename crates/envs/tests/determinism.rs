@@ -1,11 +1,11 @@
-//! The same seed and actions give the same bits, however the worlds are stepped; other seeds and lanes give other episodes;
-//! a moment restored goes on as it would have.
+//! The same seed and actions give the same bits, however the worlds are stepped; other seeds and
+//! lanes give other episodes; a moment restored goes on as it would have.
 
 use hasard_engine::math::Rng;
 use hasard_engine::world::Fingerprint;
 use hasard_envs::{
-    ActionSpace, Autoreset, Batch, CostTerm, Env, EnvId, EnvOptions, Environment, Episode, FinalObservations, FrameSize, RuleSet,
-    Step, VecEnv, VecOptions,
+    ActionSpace, Autoreset, Batch, CostTerm, Env, EnvId, EnvOptions, Environment, Episode,
+    FinalObservations, FrameSize, RuleSet, Step, VecEnv, VecOptions,
 };
 use std::collections::BTreeSet;
 use std::hash::Hasher;
@@ -13,7 +13,8 @@ use std::hash::Hasher;
 /// Bytes of the state's fingerprint, which goes before the picture in a batch's observation.
 const STATE: usize = 8;
 
-/// An environment whose observation begins with the fingerprint of its state, so that a batch shows that too.
+/// An environment whose observation begins with the fingerprint of its state, so that a batch shows
+/// that too.
 struct Telltale(Env);
 
 impl Environment for Telltale {
@@ -68,14 +69,22 @@ fn note(lives: &mut [Vec<Moment>], first: usize, batch: &Batch) {
         paid.extend([u8::from(batch.terminated[i]), u8::from(batch.truncated[i])]);
         paid.extend(batch.positions[i].iter().flat_map(|side| side.to_le_bytes()));
         let mut charged = batch.costs[i].to_le_bytes().to_vec();
-        charged.extend(batch.cost_terms[i * terms..(i + 1) * terms].iter().flat_map(|cost| cost.to_le_bytes()));
+        charged.extend(
+            batch.cost_terms[i * terms..(i + 1) * terms].iter().flat_map(|cost| cost.to_le_bytes()),
+        );
         // The episode as its text, all fields; its last frame after it.
         let episode = batch.episodes.iter().find(|episode| episode.lane == first + i);
         let mut ended = episode.map_or(Vec::new(), |episode| format!("{episode:?}").into_bytes());
         let last = batch.finals().find(|(lane, _)| *lane == i);
         ended.extend(last.map_or(&[][..], |(_, last)| last));
         let state = u64::from_le_bytes(state.try_into().unwrap());
-        lives[first + i].push([state, fingerprint(picture), fingerprint(&paid), fingerprint(&charged), fingerprint(&ended)]);
+        lives[first + i].push([
+            state,
+            fingerprint(picture),
+            fingerprint(&paid),
+            fingerprint(&charged),
+            fingerprint(&ended),
+        ]);
     }
 }
 
@@ -84,7 +93,9 @@ fn act(batch: &mut Batch, space: &ActionSpace, first: usize, step: usize) {
     let (parts, continuous) = (space.groups.len(), space.deltas.len());
     for i in 0..batch.rewards.len() {
         let mut rng = Rng::for_lane(step as u64 / 4, (first + i) as u64);
-        for (action, size) in batch.actions[i * parts..(i + 1) * parts].iter_mut().zip(space.sizes()) {
+        for (action, size) in
+            batch.actions[i * parts..(i + 1) * parts].iter_mut().zip(space.sizes())
+        {
             *action = rng.below(size as u32) as u8;
         }
         for delta in &mut batch.deltas[i * continuous..(i + 1) * continuous] {
@@ -141,7 +152,11 @@ fn assert_same(found: &[Vec<Moment>], expected: &[Vec<Moment>], what: &str) {
     for step in 0..expected[0].len() {
         for (lane, (found, expected)) in found.iter().zip(expected).enumerate() {
             for part in 0..PARTS.len() {
-                assert_eq!(found[step][part], expected[step][part], "{what}: lane {lane}, step {step}: {}", PARTS[part]);
+                assert_eq!(
+                    found[step][part], expected[step][part],
+                    "{what}: lane {lane}, step {step}: {}",
+                    PARTS[part]
+                );
             }
         }
     }
@@ -155,18 +170,31 @@ fn small() -> EnvOptions {
 fn threads_width_and_way_of_stepping_change_nothing() {
     for (index, id) in EnvId::all().enumerate() {
         let id = id.to_string();
-        // Both constraints and both action spaces take their turns over the levels of each scenario.
+        // Both constraints and both action spaces take their turns over the levels of each
+        // scenario.
         let env = EnvOptions { hard: index % 2 == 1, full_actions: index % 3 == 1, ..small() };
-        let options = VecOptions { seed: 21, final_observations: FinalObservations::Every, ..VecOptions::default() };
+        let options = VecOptions {
+            seed: 21,
+            final_observations: FinalObservations::Every,
+            ..VecOptions::default()
+        };
         let expected = together(&id, &env, VecOptions { lanes: 32, ..options }, 16);
         for threads in 1..=3 {
             for lanes in [1, 7, 32] {
                 let options = VecOptions { lanes, threads, ..options };
                 let what = format!("{id}, {lanes} lanes, {threads} threads");
-                assert_same(&together(&id, &env, options, 16), &expected, &format!("{what}, stepped together"));
+                assert_same(
+                    &together(&id, &env, options, 16),
+                    &expected,
+                    &format!("{what}, stepped together"),
+                );
                 let groups = lanes.min(2);
                 let found = by_groups(&id, &env, VecOptions { groups, ..options }, 16);
-                assert_same(&found, &expected, &format!("{what}, {groups} groups sent and received"));
+                assert_same(
+                    &found,
+                    &expected,
+                    &format!("{what}, {groups} groups sent and received"),
+                );
             }
         }
     }
@@ -180,9 +208,16 @@ fn ends_and_new_episodes_are_the_same_in_every_batch() {
         let env = EnvOptions { frame_skip: 35, ..small() };
         for autoreset in [Autoreset::SameStep, Autoreset::NextStep] {
             let final_observations = FinalObservations::Every;
-            let options = VecOptions { lanes: 4, seed: 5, autoreset, final_observations, ..VecOptions::default() };
+            let options = VecOptions {
+                lanes: 4,
+                seed: 5,
+                autoreset,
+                final_observations,
+                ..VecOptions::default()
+            };
             let expected = together(&id, &env, options, 70);
-            let ends = expected.iter().flatten().filter(|moment| moment[4] != fingerprint(&[])).count();
+            let ends =
+                expected.iter().flatten().filter(|moment| moment[4] != fingerprint(&[])).count();
             assert!(ends >= 4, "{id}: every lane's episode ends");
             let found = by_groups(&id, &env, VecOptions { threads: 3, groups: 2, ..options }, 70);
             assert_same(&found, &expected, &format!("{id}, {autoreset:?}"));
@@ -196,8 +231,10 @@ fn a_saved_batch_of_real_worlds_goes_on_as_before() {
         let id = id.to_string();
         let env = EnvOptions { full_actions: true, ..small() };
         let options = VecOptions { lanes: 5, threads: 2, seed: 13, ..VecOptions::default() };
-        let (mut worlds, mut others) =
-            (make(&id, &env, options), make(&id, &env, VecOptions { seed: 99, threads: 0, ..options }));
+        let (mut worlds, mut others) = (
+            make(&id, &env, options),
+            make(&id, &env, VecOptions { seed: 99, threads: 0, ..options }),
+        );
         let space = worlds.action_space().clone();
         let mut batch = worlds.whole_batch();
         worlds.reset(&mut batch).unwrap();
@@ -218,18 +255,24 @@ fn a_saved_batch_of_real_worlds_goes_on_as_before() {
     }
 }
 
-/// Whether seeds change what is seen. Level 1 of Precipice Plunge is a fixed stair, in the original too: only the random stream of
-/// its worlds differs, and nothing there draws from it.
+/// Whether seeds change what is seen. Level 1 of Precipice Plunge is a fixed stair, in the original
+/// too: only the random stream of its worlds differs, and nothing there draws from it.
 fn varies(id: EnvId) -> bool {
     id != "PrecipicePlungeLevel1-v0".parse().unwrap()
 }
 
-/// What an episode of a seed shows when the same keys are pressed whatever is seen: pictures, rewards, costs, positions.
+/// What an episode of a seed shows when the same keys are pressed whatever is seen: pictures,
+/// rewards, costs, positions.
 fn outlook(env: &mut Env, seed: u64) -> u64 {
     env.reset(seed);
     let mut hasher = Fingerprint::default();
     let mut frame = vec![0; env.observation_shape().iter().product()];
-    for (step, keys) in ["MOVE_FORWARD", "MOVE_FORWARD+TURN_LEFT", "ATTACK", "TURN_LEFT"].iter().cycle().take(60).enumerate() {
+    for (step, keys) in ["MOVE_FORWARD", "MOVE_FORWARD+TURN_LEFT", "ATTACK", "TURN_LEFT"]
+        .iter()
+        .cycle()
+        .take(60)
+        .enumerate()
+    {
         let paid = env.step_buttons(hasard_envs::parse_command(keys).unwrap());
         hasher.write_u64(paid.reward.to_bits());
         hasher.write_u64(paid.cost.to_bits());
@@ -245,15 +288,28 @@ fn outlook(env: &mut Env, seed: u64) -> u64 {
 #[test]
 fn other_seeds_give_other_episodes_and_equal_seeds_equal_ones() {
     for id in EnvId::all() {
-        for (rules, hard) in [(RuleSet::Paper, false), (RuleSet::Paper, true), (RuleSet::Released, false)] {
-            let mut env = Env::new(&id.to_string(), &EnvOptions { rules, hard, ..small() }).unwrap();
+        for (rules, hard) in
+            [(RuleSet::Paper, false), (RuleSet::Paper, true), (RuleSet::Released, false)]
+        {
+            let mut env =
+                Env::new(&id.to_string(), &EnvOptions { rules, hard, ..small() }).unwrap();
             let seeds = [0, 1, 2, 3, u64::MAX, 1 << 32, 1 << 63, 12_345_678_901_234_567];
             let outlooks = seeds.map(|seed| outlook(&mut env, seed));
             let distinct: BTreeSet<u64> = outlooks.into_iter().collect();
             let different = if varies(id) { seeds.len() } else { 1 };
-            assert_eq!(distinct.len(), different, "{id}, {rules:?}, hard {hard}: different episodes of {} seeds", seeds.len());
-            let mut other = Env::new(&id.to_string(), &EnvOptions { rules, hard, ..small() }).unwrap();
-            assert_eq!(outlook(&mut other, 3), outlooks[3], "{id}: an equal seed in another instance");
+            assert_eq!(
+                distinct.len(),
+                different,
+                "{id}, {rules:?}, hard {hard}: different episodes of {} seeds",
+                seeds.len()
+            );
+            let mut other =
+                Env::new(&id.to_string(), &EnvOptions { rules, hard, ..small() }).unwrap();
+            assert_eq!(
+                outlook(&mut other, 3),
+                outlooks[3],
+                "{id}: an equal seed in another instance"
+            );
         }
     }
 }
@@ -275,7 +331,8 @@ fn lanes_and_successive_episodes_differ_under_equal_actions() {
                 others.chunks_exact_mut(parts).for_each(|actions| actions.copy_from_slice(same));
                 worlds.step(&mut batch).unwrap();
                 let size = batch.observations.len() / options.lanes;
-                for (lane, shown) in pictures.iter_mut().zip(batch.observations.chunks_exact(size)) {
+                for (lane, shown) in pictures.iter_mut().zip(batch.observations.chunks_exact(size))
+                {
                     let (state, picture) = shown.split_at(STATE);
                     lane.push(fingerprint(picture));
                     assert!(states.insert(state.to_vec()), "{id}: a state came twice");
@@ -300,7 +357,13 @@ fn draw(rng: &mut Rng, space: &ActionSpace) -> (Vec<u8>, Vec<f32>) {
 fn whole(env: &mut Env, frame: &mut [u8]) -> (u64, u64, Vec<u64>, Vec<u64>, Episode) {
     env.observe(frame);
     let bits = |costs: &[f64]| costs.iter().map(|cost| cost.to_bits()).collect();
-    (env.state_hash(), fingerprint(frame), bits(env.step_costs()), bits(env.episode_costs()), env.episode())
+    (
+        env.state_hash(),
+        fingerprint(frame),
+        bits(env.step_costs()),
+        bits(env.episode_costs()),
+        env.episode(),
+    )
 }
 
 #[test]
@@ -308,14 +371,17 @@ fn a_restored_moment_goes_on_as_before() {
     let mut rng = Rng::new(3);
     for id in EnvId::all() {
         for variant in 0..8 {
-            let (hard, full_actions, released) = (variant & 1 != 0, variant & 2 != 0, variant & 4 != 0);
+            let (hard, full_actions, released) =
+                (variant & 1 != 0, variant & 2 != 0, variant & 4 != 0);
             let rules = if released { RuleSet::Released } else { RuleSet::Paper };
-            // One tic a step: the moment may be any tic. Now and then several frames are remembered.
+            // One tic a step: the moment may be any tic. Now and then several frames are
+            // remembered.
             let frame_stack = 1 + usize::from(rng.below(4) == 0);
-            let options = EnvOptions { rules, hard, full_actions, frame_skip: 1, frame_stack, ..small() };
+            let options =
+                EnvOptions { rules, hard, full_actions, frame_skip: 1, frame_stack, ..small() };
             let mut env = Env::new(&id.to_string(), &options).unwrap();
-            // The moment is brought into a sibling in the midst of another episode, into an environment made anew, and back
-            // into the one that it was taken from.
+            // The moment is brought into a sibling in the midst of another episode, into an
+            // environment made anew, and back into the one that it was taken from.
             let mut others = [env.sibling(), Env::new(&id.to_string(), &options).unwrap()];
             let space = env.action_space().clone();
             let mut frame = vec![0; env.observation_shape().iter().product()];

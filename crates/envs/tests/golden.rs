@@ -1,9 +1,10 @@
 //! Every environment does today what it did before: fingerprints of 300 steps, part by part.
 //!
-//! `goldens.txt` holds a line for every id, rule set, constraint and action space, with a fingerprint each of what is seen
-//! (frames), what is paid (rewards and ends), what is charged (every cost term) and what is so (the whole state, which holds
-//! no floating-point number). A line that changes is a change of the task, or of its pictures where only the frames moved:
-//! find the cause, then
+//! `goldens.txt` holds a line for every id, rule set, constraint and action space, with a
+//! fingerprint each of what is seen (frames), what is paid (rewards and ends), what is charged
+//! (every cost term) and what is so (the whole state, which holds no floating-point number). A line
+//! that changes is a change of the task, or of its pictures where only the frames moved: find the
+//! cause, then
 //!
 //! ```sh
 //! HASARD_BLESS=1 cargo test --release -p hasard-envs --test golden -- --nocapture
@@ -21,14 +22,15 @@ use std::hash::Hasher;
 const FILE: &str = "tests/goldens.txt";
 const STEPS: u32 = 300;
 const PARTS: [&str; 4] = ["frames", "rewards", "costs", "state"];
-const HEAD: &str =
-    "# Written by tests/golden.rs, which tells how: id, rules, constraint, actions, then fingerprints of 300 steps.\n";
+const HEAD: &str = "# Written by tests/golden.rs, which tells how: id, rules, constraint, actions, then fingerprints of 300 steps.\n";
 
-/// Fingerprints of the parts, in the order of [`PARTS`]. Each sub-action is held for a while, so that the agent gets about.
+/// Fingerprints of the parts, in the order of [`PARTS`]. Each sub-action is held for a while, so
+/// that the agent gets about.
 fn play(id: &str, options: &EnvOptions) -> [u64; 4] {
     let mut env = Env::new(id, options).unwrap();
     let mut rng = Rng::new(7);
-    let [mut frames, mut rewards, mut costs, mut state] = std::array::from_fn(|_| Fingerprint::default());
+    let [mut frames, mut rewards, mut costs, mut state] =
+        std::array::from_fn(|_| Fingerprint::default());
     let mut frame = vec![0; env.observation_shape().iter().product()];
     let sizes = env.action_space().sizes();
     let mut actions = vec![0; sizes.len()];
@@ -75,7 +77,13 @@ fn fingerprints_are_as_recorded() {
         for rules in RuleSet::ALL {
             for (hard, constraint) in [(false, "soft"), (true, "hard")] {
                 for (full_actions, actions) in [(false, "simplified"), (true, "full")] {
-                    let options = EnvOptions { rules, hard, full_actions, size: FrameSize::LEARNER, ..EnvOptions::default() };
+                    let options = EnvOptions {
+                        rules,
+                        hard,
+                        full_actions,
+                        size: FrameSize::LEARNER,
+                        ..EnvOptions::default()
+                    };
                     let [frames, rewards, costs, state] = play(&id.to_string(), &options);
                     writeln!(text, "{id} {rules} {constraint} {actions} {frames:016x} {rewards:016x} {costs:016x} {state:016x}")
                         .unwrap();
@@ -83,17 +91,30 @@ fn fingerprints_are_as_recorded() {
             }
         }
     }
-    let (found, recorded) = (parse(&text), parse(&std::fs::read_to_string(FILE).unwrap_or_default()));
+    let (found, recorded) =
+        (parse(&text), parse(&std::fs::read_to_string(FILE).unwrap_or_default()));
     let mut moved = Vec::new();
     for (what, parts) in &found {
         let old = recorded.get(what);
-        let differ = PARTS.iter().enumerate().filter(|&(i, _)| old.and_then(|old| old.get(i)) != Some(&parts[i]));
+        let differ = PARTS
+            .iter()
+            .enumerate()
+            .filter(|&(i, _)| old.and_then(|old| old.get(i)) != Some(&parts[i]));
         let differ: Vec<&str> = differ.map(|(_, part)| *part).collect();
         if !differ.is_empty() {
-            moved.push(format!("{what}: {}{}", differ.join(", "), if old.is_none() { " (new)" } else { "" }));
+            moved.push(format!(
+                "{what}: {}{}",
+                differ.join(", "),
+                if old.is_none() { " (new)" } else { "" }
+            ));
         }
     }
-    moved.extend(recorded.keys().filter(|what| !found.contains_key(*what)).map(|what| format!("{what}: gone")));
+    moved.extend(
+        recorded
+            .keys()
+            .filter(|what| !found.contains_key(*what))
+            .map(|what| format!("{what}: gone")),
+    );
     if std::env::var_os("HASARD_BLESS").is_some() {
         let temporary = format!("{FILE}.partial");
         std::fs::write(&temporary, &text).and_then(|()| std::fs::rename(&temporary, FILE)).unwrap();

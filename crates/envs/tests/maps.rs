@@ -1,4 +1,5 @@
-//! Maps from files: ours written and read again, a user's own, and what is told of those that cannot be played.
+//! Maps from files: ours written and read again, a user's own, and what is told of those that
+//! cannot be played.
 
 use hasard_engine::map::{MapSource, SourceThing, TextureName};
 use hasard_engine::math::Fixed;
@@ -47,7 +48,11 @@ fn folder_name(id: EnvId) -> &'static str {
 
 fn options(maps: Option<&Path>) -> EnvOptions {
     let size = FrameSize { width: 64, height: 48 };
-    EnvOptions { size, maps: maps.map(|place| Arc::new(Maps::new(place, None))), ..EnvOptions::default() }
+    EnvOptions {
+        size,
+        maps: maps.map(|place| Arc::new(Maps::new(place, None))),
+        ..EnvOptions::default()
+    }
 }
 
 /// Fingerprint of the state after some random steps, and the last frame.
@@ -71,7 +76,10 @@ fn our_own_maps_play_the_same_from_files() {
     let folder = Folder::new("own");
     for id in EnvId::all() {
         let (source, _) = scenarios::map_source(id, RuleSet::Paper, false);
-        folder.put(&format!("{}/level_{}.wad", folder_name(id), id.level), &wad::write_map("MAP01", &source));
+        folder.put(
+            &format!("{}/level_{}.wad", folder_name(id), id.level),
+            &wad::write_map("MAP01", &source),
+        );
     }
     for id in EnvId::all() {
         assert_eq!(played(id, &options(Some(&folder.0))), played(id, &options(None)), "{id}");
@@ -89,13 +97,20 @@ fn the_hard_map_is_taken_where_the_rules_follow_its_world() {
     };
     folder.put("volcanic_venture/level_1.wad", &with_light(100));
     let light = |rules, hard| {
-        let env = Env::new(&id.to_string(), &EnvOptions { rules, hard, ..options(Some(&folder.0)) }).unwrap();
+        let env =
+            Env::new(&id.to_string(), &EnvOptions { rules, hard, ..options(Some(&folder.0)) })
+                .unwrap();
         env.world().map.sectors[0].light
     };
     assert_eq!(light(RuleSet::Released, true), 100, "without a hard map the level's own is played");
     folder.put("volcanic_venture/level_1_hard.wad", &with_light(200));
-    let lights = [(RuleSet::Paper, false), (RuleSet::Paper, true), (RuleSet::Released, false), (RuleSet::Released, true)]
-        .map(|(rules, hard)| light(rules, hard));
+    let lights = [
+        (RuleSet::Paper, false),
+        (RuleSet::Paper, true),
+        (RuleSet::Released, false),
+        (RuleSet::Released, true),
+    ]
+    .map(|(rules, hard)| light(rules, hard));
     assert_eq!(lights, [100, 100, 100, 200]);
 }
 
@@ -119,9 +134,17 @@ fn the_walkers_of_collateral_damage_use_the_map_s_own_patrol_points() {
     .unwrap();
     for seed in 0..3 {
         env.reset(seed);
-        let points: Vec<_> = env.world().actors.iter().filter(|a| !a.removed && a.kind == ActorKind::PatrolPoint).collect();
+        let points: Vec<_> = env
+            .world()
+            .actors
+            .iter()
+            .filter(|a| !a.removed && a.kind == ActorKind::PatrolPoint)
+            .collect();
         assert_eq!(points.len(), 2, "the map's own and no others");
-        assert_eq!((points[0].x, points[0].y + points[1].y, points[0].next_goal), (points[1].x, Fixed::ZERO, 12));
+        assert_eq!(
+            (points[0].x, points[0].y + points[1].y, points[0].next_goal),
+            (points[1].x, Fixed::ZERO, 12)
+        );
         assert_eq!(points[0].y, Fixed::from_int(608));
     }
 }
@@ -148,11 +171,14 @@ fn what_is_left_out_is_told_in_one_line() {
     let told = env.unwrap().left_out().unwrap();
     let line = ": left out: line special 160 (1), sector special 9 (1), thing type 9080 (1)";
     assert!(told.ends_with(line) && told.contains("one.wad"), "{told}");
-    let left_out = |change: fn(&mut MapSource)| one_map(&folder, "RemedyRushLevel1-v0", change).unwrap().left_out();
+    let left_out = |change: fn(&mut MapSource)| {
+        one_map(&folder, "RemedyRushLevel1-v0", change).unwrap().left_out()
+    };
     assert_eq!(left_out(|_| ()), None);
     // The numbers of an older game's line types, where they are: every one of them acts.
     let told = left_out(|source| {
-        (source.namespace, source.lines[1].special, source.sectors[0].special) = ("doom".into(), 12, 1);
+        (source.namespace, source.lines[1].special, source.sectors[0].special) =
+            ("doom".into(), 12, 1);
     })
     .unwrap();
     assert!(told.ends_with(": left out: line special 12 (1), sector special 1 (1)"), "{told}");
@@ -163,7 +189,9 @@ fn precipice_plunge_plays_where_some_tags_are_missing_but_not_where_all_are() {
     let folder = Folder::new("tags");
     let id = "PrecipicePlungeLevel1-v0";
     let without = |tags: std::ops::Range<i32>| {
-        one_map(&folder, id, |source| source.sectors.iter_mut().filter(|s| tags.contains(&s.tag)).for_each(|s| s.tag = 0))
+        one_map(&folder, id, |source| {
+            source.sectors.iter_mut().filter(|s| tags.contains(&s.tag)).for_each(|s| s.tag = 0)
+        })
     };
     let mut env = without(200..202).unwrap();
     env.reset(1);
@@ -179,12 +207,26 @@ fn what_cannot_be_played_is_named_in_one_line() {
         (b"nothing at all", "not a WAD"),
         (&wad::write(WadKind::Pwad, &[lump("MAP02", b"")]), "no UDMF map MAP01"),
         (&wad::write(WadKind::Pwad, &[lump("MAP01", b""), lump("TEXTMAP", b"sector {")]), "line 1"),
-        (&wad::write(WadKind::Pwad, &[lump("MAP01", b""), lump("TEXTMAP", b"namespace = \"zdoom\";")]), "no vertices"),
+        (
+            &wad::write(
+                WadKind::Pwad,
+                &[lump("MAP01", b""), lump("TEXTMAP", b"namespace = \"zdoom\";")],
+            ),
+            "no vertices",
+        ),
     ];
     for (bytes, expected) in wads {
         let path = folder.put("map\u{1b}[1m.wad", bytes);
-        let error = Env::new("VolcanicVentureLevel1-v0", &options(Some(&path))).map(|_| ()).unwrap_err().to_string();
-        assert!(error.contains(expected) && error.contains("[1m.wad") && !error.contains(char::is_control), "{error}");
+        let error = Env::new("VolcanicVentureLevel1-v0", &options(Some(&path)))
+            .map(|_| ())
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains(expected)
+                && error.contains("[1m.wad")
+                && !error.contains(char::is_control),
+            "{error}"
+        );
     }
 }
 
@@ -197,15 +239,20 @@ fn text_wad(text: &str) -> Vec<u8> {
 #[test]
 fn fields_that_are_not_played_are_reported_with_the_file() {
     let folder = Folder::new("fields");
-    let (source, _) = scenarios::map_source("CollateralDamageLevel1-v0".parse().unwrap(), RuleSet::Paper, false);
+    let (source, _) =
+        scenarios::map_source("CollateralDamageLevel1-v0".parse().unwrap(), RuleSet::Paper, false);
     let text = hasard_engine::map::udmf::write(&source).replacen(
         "heightceiling",
         "damageamount = 20;\nmoreids = \"5\";\nheightceiling",
         1,
     );
     let path = folder.put("fields.wad", &text_wad(&text));
-    let left_out = Env::new("CollateralDamageLevel1-v0", &options(Some(&path))).unwrap().left_out().unwrap();
-    let expected = format!("{}: left out: sector field damageamount (1), sector field moreids (1)", path.display());
+    let left_out =
+        Env::new("CollateralDamageLevel1-v0", &options(Some(&path))).unwrap().left_out().unwrap();
+    let expected = format!(
+        "{}: left out: sector field damageamount (1), sector field moreids (1)",
+        path.display()
+    );
     assert_eq!(left_out, expected);
 }
 
@@ -214,9 +261,13 @@ fn fields_that_are_not_played_are_reported_with_the_file() {
 fn every_message_of_a_map_names_its_file() {
     let folder = Folder::new("named");
     let lump = |name, bytes| Lump { name: TextureName::new(name), bytes };
-    let binary = wad::write(WadKind::Pwad, &[lump("MAP01", b"".as_slice()), lump("THINGS", b"x"), lump("LINEDEFS", b"x")]);
+    let binary = wad::write(
+        WadKind::Pwad,
+        &[lump("MAP01", b"".as_slice()), lump("THINGS", b"x"), lump("LINEDEFS", b"x")],
+    );
     let path = folder.put("binary.wad", &binary);
-    let error = Env::new("RemedyRushLevel1-v0", &options(Some(&path))).map(|_| ()).unwrap_err().to_string();
+    let error =
+        Env::new("RemedyRushLevel1-v0", &options(Some(&path))).map(|_| ()).unwrap_err().to_string();
     assert!(error.contains("its MAP01 is binary") && error.contains("must be UDMF"), "{error}");
     let spoils: [fn(&mut MapSource); 5] = [
         |source| source.things.clear(),
@@ -229,9 +280,13 @@ fn every_message_of_a_map_names_its_file() {
     for id in EnvId::all().filter(|id| id.level == 2) {
         for (number, spoil) in spoils.into_iter().enumerate() {
             let error = one_map(&folder, &id.to_string(), spoil).map(|_| ()).unwrap_err();
-            assert!(error.contains("one.wad") && !error.contains('\n'), "{id}, fault {number}: {error}");
+            assert!(
+                error.contains("one.wad") && !error.contains('\n'),
+                "{id}, fault {number}: {error}"
+            );
         }
-        // A bare room: what the scenario's rules look for is not there. Where they look for nothing, it is played.
+        // A bare room: what the scenario's rules look for is not there. Where they look for
+        // nothing, it is played.
         let bare = one_map(&folder, &id.to_string(), |source| {
             source.sectors.iter_mut().for_each(|sector| sector.tag = 0);
             source.things.retain(|thing| thing.kind == 1);

@@ -1,4 +1,5 @@
-//! Remedy Rush written as a file plays as the built-in one does, bit for bit: what can be said in a file is what the engine does.
+//! Remedy Rush written as a file plays as the built-in one does, bit for bit: what can be said in a
+//! file is what the engine does.
 
 use hasard_envs::{Env, EnvOptions, FrameSize, Policy, PolicyRun, RuleSet, own};
 use std::path::Path;
@@ -21,7 +22,8 @@ fn remedy_rush_from_a_file_is_remedy_rush() {
                 let id = format!("RemedyRushLevel{level}-v0");
                 let mut built_in = Env::new(&id, &options).unwrap();
                 let options = EnvOptions { scenario: Some(own), ..options };
-                let mut env = Env::new(&format!("RemedyRushFileLevel{level}-v0"), &options).unwrap();
+                let mut env =
+                    Env::new(&format!("RemedyRushFileLevel{level}-v0"), &options).unwrap();
                 assert_eq!(env.action_space(), built_in.action_space());
                 assert_eq!(env.cost_terms(), built_in.cost_terms());
                 for seed in 0..3 {
@@ -31,10 +33,19 @@ fn remedy_rush_from_a_file_is_remedy_rush() {
                     let mut run = PolicyRun::new(policy, &env, seed).unwrap();
                     for step in 0..160 {
                         let what = format!("{id} {rules} hard={hard} seed {seed} step {step}");
-                        assert_eq!(env.world().state_hash(), built_in.world().state_hash(), "{what}");
+                        assert_eq!(
+                            env.world().state_hash(),
+                            built_in.world().state_hash(),
+                            "{what}"
+                        );
                         let made = run.next_move(&env);
-                        let (one, other) = (built_in.make_move(made).unwrap(), env.make_move(made).unwrap());
-                        assert_eq!((one, built_in.step_costs()), (other, env.step_costs()), "{what}");
+                        let (one, other) =
+                            (built_in.make_move(made).unwrap(), env.make_move(made).unwrap());
+                        assert_eq!(
+                            (one, built_in.step_costs()),
+                            (other, env.step_costs()),
+                            "{what}"
+                        );
                         if step % 20 == 0 {
                             env.observe(&mut frames);
                             built_in.observe(&mut built_in_frames);
@@ -47,7 +58,11 @@ fn remedy_rush_from_a_file_is_remedy_rush() {
                     charged += env.episode().cost;
                     let stats = built_in.stats();
                     for (name, value) in env.stats() {
-                        assert_eq!(stats.iter().find(|(known, _)| *known == name), Some(&(name, value)), "{id} {name}");
+                        assert_eq!(
+                            stats.iter().find(|(known, _)| *known == name),
+                            Some(&(name, value)),
+                            "{id} {name}"
+                        );
                     }
                 }
             }

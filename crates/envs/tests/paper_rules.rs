@@ -1,4 +1,5 @@
-//! What the paper's text was made to mean where, taken literally, it would pay or punish what nobody meant.
+//! What the paper's text was made to mean where, taken literally, it would pay or punish what
+//! nobody meant.
 
 use hasard_engine::map::TextureId;
 use hasard_engine::math::Fixed;
@@ -26,7 +27,9 @@ fn jumping_on_the_spot_earns_nothing() {
 
 #[test]
 fn the_way_down_pays_the_same_under_both_rule_sets_and_no_swing_pays_twice() {
-    for (level, buttons) in [(1, Buttons::MOVE_FORWARD), (3, Buttons::MOVE_FORWARD | Buttons::JUMP), (3, Buttons(0))] {
+    for (level, buttons) in
+        [(1, Buttons::MOVE_FORWARD), (3, Buttons::MOVE_FORWARD | Buttons::JUMP), (3, Buttons(0))]
+    {
         let id = format!("PrecipicePlungeLevel{level}-v0");
         let mut returns = Vec::new();
         for rules in [RuleSet::Paper, RuleSet::Released] {
@@ -62,7 +65,8 @@ fn the_hard_constraint_s_first_step_is_free_under_the_paper_s_rules_alone() {
 
 /// Tiles of lava off the ground, after the present roll has had its time.
 fn swinging_lava(world: &World, lava: TextureId) -> usize {
-    let tiles = (100..=388).flat_map(|tag| world.map.tagged(tag)).map(|sector| world.sector(sector));
+    let tiles =
+        (100..=388).flat_map(|tag| world.map.tagged(tag)).map(|sector| world.sector(sector));
     tiles.filter(|tile| tile.floor_texture == lava && tile.floor != Fixed::ZERO).count()
 }
 
@@ -74,7 +78,8 @@ fn a_new_roll_of_volcanic_venture_3_ends_what_its_floor_still_does() {
         let lava = env.world().map.texture("LAVA1").unwrap();
         let mut seen = 0;
         while !env.step_buttons(Command::default()).ended() {
-            // Rolls come in tics 1, 181, 361, ...; the highest platform at the top of its swing sinks in five tics.
+            // Rolls come in tics 1, 181, 361, ...; the highest platform at the top of its swing
+            // sinks in five tics.
             let since_roll = (env.world().tic + 179) % 180;
             if since_roll > 6 {
                 seen += swinging_lava(env.world(), lava);
@@ -108,11 +113,16 @@ fn overstepping_again_does_not_start_the_slow_time_anew() {
                 break;
             }
         }
-        assert_eq!((slow_tics, oversteps), (180, 1.0 + f64::from(again_after.is_some())), "again after {again_after:?}");
+        assert_eq!(
+            (slow_tics, oversteps),
+            (180, 1.0 + f64::from(again_after.is_some())),
+            "again after {again_after:?}"
+        );
     }
 }
 
-/// What a weapon laid at the agent's feet brings: the cost of its step and of the next, the speed, the charged load.
+/// What a weapon laid at the agent's feet brings: the cost of its step and of the next, the speed,
+/// the charged load.
 fn picked_up(rules: RuleSet, kinds: &[ActorKind]) -> ([f64; 2], f64, f64) {
     let mut env = env("ArmamentBurdenLevel1-v0", rules, false, 4);
     env.reset(1);
@@ -133,8 +143,9 @@ fn picked_up(rules: RuleSet, kinds: &[ActorKind]) -> ([f64; 2], f64, f64) {
     ([cost, next], env.world().players[0].speed.to_f64(), load)
 }
 
-/// The paper's appendix on costs: the excess over the capacity of 1, by the weights .05 .15 .30 .60 1 3 6, in the step of a pick-up,
-/// and a tenth of it (rho = 0.1) in each step after. Its table of items has .10 .25 .40 .55 .70 .85 1: what makes slow.
+/// The paper's appendix on costs: the excess over the capacity of 1, by the weights .05 .15 .30 .60
+/// 1 3 6, in the step of a pick-up, and a tenth of it (rho = 0.1) in each step after. Its table of
+/// items has .10 .25 .40 .55 .70 .85 1: what makes slow.
 #[test]
 fn armament_burden_charges_by_the_formula_and_slows_by_the_table() {
     use ActorKind::{Bfg9000, Chaingun, PlasmaRifle, RocketLauncher, Shotgun};

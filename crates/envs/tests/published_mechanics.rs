@@ -1,11 +1,13 @@
-//! What the published system was seen to do, tic by tic, where the scenario's text alone does not say it (rule set `released`).
+//! What the published system was seen to do, tic by tic, where the scenario's text alone does not
+//! say it (rule set `released`).
 
 use hasard_engine::math::Fixed;
 use hasard_engine::world::{ActorKind, Buttons, Command, DamageKind};
 use hasard_envs::{Env, EnvOptions, RuleSet, Step};
 
 fn env(id: &str, hard: bool, frame_skip: u32) -> Env {
-    let options = EnvOptions { rules: RuleSet::Released, hard, frame_skip, ..EnvOptions::default() };
+    let options =
+        EnvOptions { rules: RuleSet::Released, hard, frame_skip, ..EnvOptions::default() };
     Env::new(id, &options).unwrap()
 }
 
@@ -35,8 +37,8 @@ fn the_goal_ends_the_episode_when_the_next_tic_begins() {
         assert!(!env.step_buttons(hold(Buttons::MOVE_FORWARD)).ended());
         tics += 1;
     }
-    // Recorded: landed at the bottom in tic 242 of the walk that began 13 tics after the start, seven of them without effect;
-    // the recording's next line is the end.
+    // Recorded: landed at the bottom in tic 242 of the walk that began 13 tics after the start,
+    // seven of them without effect; the recording's next line is the end.
     assert_eq!(health(&env), 1000 - 484);
     let last = env.step_buttons(hold(Buttons::MOVE_FORWARD));
     assert_eq!(last, Step { reward: 0.0, cost: 0.0, terminated: true, truncated: false });
@@ -62,7 +64,9 @@ fn a_blow_beyond_the_last_health_point_is_charged_whole() {
 
 #[test]
 fn armour_survives_the_first_touch_of_deadly_lava() {
-    for (armor, costs) in [(0, &[10_000.0][..]), (1, &[9_990.0, 10_000.0]), (2, &[9_980.0, 10_000.0])] {
+    for (armor, costs) in
+        [(0, &[10_000.0][..]), (1, &[9_990.0, 10_000.0]), (2, &[9_980.0, 10_000.0])]
+    {
         let mut env = env("VolcanicVentureLevel1-v0", true, 4);
         // Starts over lava.
         let over_lava = |env: &mut Env, seed: u64| {
@@ -99,7 +103,10 @@ fn the_paper_s_deadly_lava_takes_all_health_at_once() {
             let forward = env.step_buttons(hold(Buttons::MOVE_FORWARD | Buttons::TURN_LEFT));
             cost += forward.cost;
             if forward.ended() {
-                assert!(forward.truncated || (cost - 10_000.0).abs() < 1e-9, "{id} ends in step {step} at cost {cost}");
+                assert!(
+                    forward.truncated || (cost - 10_000.0).abs() < 1e-9,
+                    "{id} ends in step {step} at cost {cost}"
+                );
                 break;
             }
             assert!(cost.abs() < 1e-9, "{id} goes on at cost {cost}");
@@ -110,7 +117,9 @@ fn the_paper_s_deadly_lava_takes_all_health_at_once() {
 #[test]
 fn harmful_items_of_one_tic_are_charged_once() {
     for (rules, charged) in [(RuleSet::Released, 1.0), (RuleSet::Paper, 2.0)] {
-        let mut env = Env::new("RemedyRushLevel1-v0", &EnvOptions { rules, ..EnvOptions::default() }).unwrap();
+        let mut env =
+            Env::new("RemedyRushLevel1-v0", &EnvOptions { rules, ..EnvOptions::default() })
+                .unwrap();
         env.reset(5);
         // Walk, so that the agent touches; then two harmful kinds and a bonus under its feet.
         (0..5).for_each(|_| _ = env.step_buttons(hold(Buttons::MOVE_FORWARD)));
@@ -120,12 +129,17 @@ fn harmful_items_of_one_tic_are_charged_once() {
         }
         env.step_buttons(hold(Buttons::MOVE_FORWARD));
         let after = env.episode();
-        assert!((after.cost - before.0 - charged).abs() < 1e-9, "{rules:?}: cost {}", after.cost - before.0);
+        assert!(
+            (after.cost - before.0 - charged).abs() < 1e-9,
+            "{rules:?}: cost {}",
+            after.cost - before.0
+        );
         assert!((after.episode_return - before.1 - 1.0).abs() < 1e-9);
     }
 }
 
-/// Supplies always find a place, now and then behind walls. Counted in 100 episodes each of idle agents, at tic 1000.
+/// Supplies always find a place, now and then behind walls. Counted in 100 episodes each of idle
+/// agents, at tic 1000.
 #[test]
 fn supplies_come_without_fail() {
     use ActorKind::{ArmorBonus, Cell, HealthBonus};
@@ -159,20 +173,26 @@ fn supplies_come_without_fail() {
     }
 }
 
-/// Recorded at levels 1 and 3 and under the hard constraint: a button held from the first tic on turns by 1.758 degrees and thrusts
-/// by 0.708 (on the ground; by 0.003 in the air) in that tic. Other scenarios wait for the eighth.
+/// Recorded at levels 1 and 3 and under the hard constraint: a button held from the first tic on
+/// turns by 1.758 degrees and thrusts by 0.708 (on the ground; by 0.003 in the air) in that tic.
+/// Other scenarios wait for the eighth.
 #[test]
 fn volcanic_venture_lets_the_agent_move_at_once() {
-    for (id, hard) in
-        [("VolcanicVentureLevel1-v0", false), ("VolcanicVentureLevel3-v0", false), ("VolcanicVentureLevel1-v0", true)]
-    {
+    for (id, hard) in [
+        ("VolcanicVentureLevel1-v0", false),
+        ("VolcanicVentureLevel3-v0", false),
+        ("VolcanicVentureLevel1-v0", true),
+    ] {
         let mut env = env(id, hard, 1);
         env.reset(3);
         env.step_buttons(hold(Buttons::MOVE_FORWARD));
         let body = |env: &Env| *env.world().get(env.world().players[0].actor).unwrap();
         let [vx, vy] = [body(&env).vx, body(&env).vy].map(Fixed::to_f64);
         let speed = (vx * vx + vy * vy).sqrt();
-        assert!((speed - 0.708).abs() < 1e-3 || (speed - 0.003).abs() < 1e-3, "{id} hard {hard}: {speed}");
+        assert!(
+            (speed - 0.708).abs() < 1e-3 || (speed - 0.003).abs() < 1e-3,
+            "{id} hard {hard}: {speed}"
+        );
         let before = body(&env).angle;
         env.step_buttons(hold(Buttons::TURN_LEFT));
         let turn = f64::from((body(&env).angle - before).0) / 4_294_967_296.0 * 360.0;

@@ -1,12 +1,14 @@
-//! What recordings of every object in the published system say, tic by tic, of Collateral Damage and Detonator's Dilemma (rule
-//! set `released`): who steps how far and how often, when rockets start and where they end, when the dead come back.
+//! What recordings of every object in the published system say, tic by tic, of Collateral Damage
+//! and Detonator's Dilemma (rule set `released`): who steps how far and how often, when rockets
+//! start and where they end, when the dead come back.
 
 use hasard_engine::world::{ActorId, ActorKind, Buttons, Command, World};
 use hasard_envs::{Env, EnvOptions, RuleSet};
 use std::collections::BTreeMap;
 
 fn env(id: &str) -> Env {
-    Env::new(id, &EnvOptions { rules: RuleSet::Released, frame_skip: 1, ..EnvOptions::default() }).unwrap()
+    Env::new(id, &EnvOptions { rules: RuleSet::Released, frame_skip: 1, ..EnvOptions::default() })
+        .unwrap()
 }
 
 fn hold(buttons: Buttons) -> Command {
@@ -20,7 +22,11 @@ fn usual(counts: &BTreeMap<u32, u32>) -> u32 {
 
 /// Living actors of a kind.
 fn alive(world: &World, kind: ActorKind) -> Vec<ActorId> {
-    world.living().filter(|(_, actor)| actor.kind == kind && actor.health > 0).map(|(id, _)| id).collect()
+    world
+        .living()
+        .filter(|(_, actor)| actor.kind == kind && actor.health > 0)
+        .map(|(id, _)| id)
+        .collect()
 }
 
 /// A kind of walker, its map units a step, its tics from step to step.
@@ -38,7 +44,13 @@ fn walkers_step_as_far_and_as_often_as_recorded() {
         ("DetonatorsDilemmaLevel1-v0", &[(Revenant, 8, 2), (DoomImp, 8, 3), (ShotgunGuy, 8, 3)]),
         (
             "DetonatorsDilemmaLevel2-v0",
-            &[(Revenant, 12, 2), (DoomImp, 12, 3), (ShotgunGuy, 12, 3), (ChaingunGuy, 12, 3), (LostSoul, 12, 6)],
+            &[
+                (Revenant, 12, 2),
+                (DoomImp, 12, 3),
+                (ShotgunGuy, 12, 3),
+                (ChaingunGuy, 12, 3),
+                (LostSoul, 12, 6),
+            ],
         ),
     ];
     for (id, kinds) in recorded {
@@ -48,9 +60,12 @@ fn walkers_step_as_far_and_as_often_as_recorded() {
         let mut seen: Vec<(Counts, Counts)> = vec![Default::default(); kinds.len()];
         for tic in 0..500 {
             for (actor_id, actor) in env.world().living() {
-                let Some(kind) = kinds.iter().position(|(kind, _, _)| *kind == actor.kind) else { continue };
+                let Some(kind) = kinds.iter().position(|(kind, _, _)| *kind == actor.kind) else {
+                    continue;
+                };
                 let place = [actor.x, actor.y].map(|side| side.to_f64());
-                let (before, moved) = last.entry((actor_id.slot, actor_id.generation)).or_insert((place, tic));
+                let (before, moved) =
+                    last.entry((actor_id.slot, actor_id.generation)).or_insert((place, tic));
                 let way = ((place[0] - before[0]).powi(2) + (place[1] - before[1]).powi(2)).sqrt();
                 if way > 0.01 {
                     *seen[kind].0.entry(way.round() as u32).or_default() += 1;
@@ -61,8 +76,13 @@ fn walkers_step_as_far_and_as_often_as_recorded() {
             env.step_buttons(Command::default());
         }
         for (&(kind, step, gap), (steps, gaps)) in kinds.iter().zip(&seen) {
-            assert_eq!((usual(steps), usual(gaps)), (step, gap), "{id} {kind:?}: {steps:?}, {gaps:?}");
-            let off_beat: u32 = gaps.iter().filter(|(other, _)| **other != gap).map(|(_, count)| count).sum();
+            assert_eq!(
+                (usual(steps), usual(gaps)),
+                (step, gap),
+                "{id} {kind:?}: {steps:?}, {gaps:?}"
+            );
+            let off_beat: u32 =
+                gaps.iter().filter(|(other, _)| **other != gap).map(|(_, count)| count).sum();
             assert!(off_beat * 10 < gaps[&gap], "{id} {kind:?}: {gaps:?}");
         }
     }
@@ -77,10 +97,16 @@ fn rockets_start_fly_and_end_where_recorded() {
     let mut flying: BTreeMap<(u16, u16), f64> = BTreeMap::new();
     for tic in 0..400u32 {
         env.step_buttons(hold(if tic < 4 { Buttons::default() } else { Buttons::ATTACK }));
-        for (id, rocket) in env.world().living().filter(|(_, actor)| actor.kind == ActorKind::Rocket) {
+        for (id, rocket) in
+            env.world().living().filter(|(_, actor)| actor.kind == ActorKind::Rocket)
+        {
             let x = rocket.x.to_f64();
             let Some(before) = flying.insert((id.slot, id.generation), x) else {
-                assert_eq!((x, rocket.z.to_f64()), (-226.0, 32.0), "30 in front of the muzzle, 32 high");
+                assert_eq!(
+                    (x, rocket.z.to_f64()),
+                    (-226.0, 32.0),
+                    "30 in front of the muzzle, 32 high"
+                );
                 starts.push(tic);
                 continue;
             };
@@ -104,7 +130,9 @@ fn the_range_s_dead_come_back_in_the_same_tic_and_set_out_9_tics_later() {
     for seed in 0..3 {
         env.reset(seed);
         let mut newcomers: BTreeMap<(u16, u16), (u32, [i32; 2])> = BTreeMap::new();
-        let walkers = |world: &World| [alive(world, ActorKind::Cacodemon), alive(world, ActorKind::ZombieMan)].concat();
+        let walkers = |world: &World| {
+            [alive(world, ActorKind::Cacodemon), alive(world, ActorKind::ZombieMan)].concat()
+        };
         let mut before = walkers(env.world());
         for tic in 0..700u32 {
             env.step_buttons(hold(if tic < 4 { Buttons::default() } else { Buttons::ATTACK }));
@@ -153,7 +181,10 @@ fn barrels_are_gone_after_26_to_29_tics_and_back_90_tics_after_their_death() {
                 deaths += 1;
             }
             for _ in now.iter().filter(|id| !before.contains(id)) {
-                assert!(due.contains(&tic), "seed {seed}: a barrel returns in tic {tic}, not in {due:?}");
+                assert!(
+                    due.contains(&tic),
+                    "seed {seed}: a barrel returns in tic {tic}, not in {due:?}"
+                );
                 returns += 1;
             }
             let still = |slot, generation| world.get(ActorId { slot, generation }).is_some();
@@ -165,7 +196,11 @@ fn barrels_are_gone_after_26_to_29_tics_and_back_90_tics_after_their_death() {
             for (id, since) in over {
                 dying.remove(&id);
                 // Recorded: 27, 28, 28, 28, 29, 29, 29.
-                assert!((26..=29).contains(&(tic - since)), "seed {seed}: burst for {} tics", tic - since);
+                assert!(
+                    (26..=29).contains(&(tic - since)),
+                    "seed {seed}: burst for {} tics",
+                    tic - since
+                );
             }
             before = now;
         }

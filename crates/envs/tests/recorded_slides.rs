@@ -1,4 +1,5 @@
-//! Bodies that random buttons drive along walls, crates and their corners in the published system, beside ours: every bit.
+//! Bodies that random buttons drive along walls, crates and their corners in the published system,
+//! beside ours: every bit.
 
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::{Buttons, Command, World};
@@ -37,9 +38,12 @@ fn start(line: &str) -> World {
 fn bodies_slide_along_walls_as_recorded() {
     let (mut episode, mut compared) = (String::new(), 0);
     let mut world = None;
-    for line in include_str!("published_figures/slides.txt").lines().filter(|line| !line.starts_with('#')) {
+    for line in
+        include_str!("published_figures/slides.txt").lines().filter(|line| !line.starts_with('#'))
+    {
         if let Some(recorded) = line.strip_prefix("= ") {
-            let recorded: Vec<i32> = recorded.split(' ').map(|word| word.parse().unwrap()).collect();
+            let recorded: Vec<i32> =
+                recorded.split(' ').map(|word| word.parse().unwrap()).collect();
             let world: &World = world.as_ref().unwrap();
             let body = &world.actors[usize::from(world.players[0].actor.slot)];
             let ours = [body.x, body.y, body.z, body.vx, body.vy, body.vz].map(|part| part.0);
@@ -50,7 +54,11 @@ fn bodies_slide_along_walls_as_recorded() {
                 let (count, mask) = run.split_once('*').unwrap();
                 let mask: u32 = mask.parse().unwrap();
                 let mut buttons = Buttons::default();
-                BUTTONS.iter().enumerate().filter(|(bit, _)| mask >> bit & 1 == 1).for_each(|(_, button)| buttons |= *button);
+                BUTTONS
+                    .iter()
+                    .enumerate()
+                    .filter(|(bit, _)| mask >> bit & 1 == 1)
+                    .for_each(|(_, button)| buttons |= *button);
                 for _ in 0..count.parse().unwrap() {
                     let world = world.as_mut().unwrap();
                     world.run_thinkers(&[Command { buttons, ..Command::default() }]);

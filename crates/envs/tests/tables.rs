@@ -1,8 +1,10 @@
-//! Fixed policies earn and cost what they did with the code behind the paper's tables (rule set `tables`), and roam as far.
+//! Fixed policies earn and cost what they did with the code behind the paper's tables (rule set
+//! `tables`), and roam as far.
 //!
-//! Measured were the original's extracted maps; these play ours, made to the same measures. Returns, costs and lengths lie within three
-//! standard errors of both measurements together; ways and heights are held as in `published.rs`. `cargo run --release -p hasard-envs
-//! --example published_table -- 200 "" tables` prints the whole comparison.
+//! Measured were the original's extracted maps; these play ours, made to the same measures.
+//! Returns, costs and lengths lie within three standard errors of both measurements together; ways
+//! and heights are held as in `published.rs`. `cargo run --release -p hasard-envs --example
+//! published_table -- 200 "" tables` prints the whole comparison.
 
 mod published_figures;
 
@@ -35,22 +37,32 @@ const KNOWN: &[(&str, &str, &str, &str)] = &[
 /// Plays every row of a scenario and lists what lies too far off.
 fn differences(scenario: &str, rows_expected: usize) -> Vec<String> {
     let mut wrong = Vec::new();
-    let rows: Vec<_> = published(RuleSet::Tables).into_iter().filter(|row| row.id.starts_with(scenario)).collect();
+    let rows: Vec<_> =
+        published(RuleSet::Tables).into_iter().filter(|row| row.id.starts_with(scenario)).collect();
     assert_eq!(rows.len(), rows_expected, "measurements of {scenario}");
     for row in rows {
         let episodes = if row.policy == "noop" { IDLE_EPISODES } else { EPISODES };
         let measured = ours(&row, episodes);
         for (column, name) in COLUMNS.into_iter().enumerate() {
             let (theirs, mine) = (row.columns[column], measured[column]);
-            if KNOWN.iter().any(|&(id, policy, figure, _)| row.id.starts_with(id) && row.policy == policy && figure == name) {
+            if KNOWN.iter().any(|&(id, policy, figure, _)| {
+                row.id.starts_with(id) && row.policy == policy && figure == name
+            }) {
                 continue;
             }
             let error = standard_error(theirs, row.episodes, mine, episodes as f64);
             // The rest is for figures of six digits.
-            let bound = if column < JUDGED { 3.0 * error + 1e-3 } else { allowed(theirs, row.episodes, mine, episodes as f64) };
+            let bound = if column < JUDGED {
+                3.0 * error + 1e-3
+            } else {
+                allowed(theirs, row.episodes, mine, episodes as f64)
+            };
             if (mine[0] - theirs[0]).abs() > bound {
-                let (id, policy, hard) = (&row.id, &row.policy, if row.hard { " hard" } else { "" });
-                wrong.push(format!("{id}{hard} {policy} {name}: ours {mine:.3?}, measured {theirs:.3?}"));
+                let (id, policy, hard) =
+                    (&row.id, &row.policy, if row.hard { " hard" } else { "" });
+                wrong.push(format!(
+                    "{id}{hard} {policy} {name}: ours {mine:.3?}, measured {theirs:.3?}"
+                ));
             }
         }
     }
@@ -87,7 +99,8 @@ fn detonators_dilemma() {
     assert_eq!(differences("DetonatorsDilemma", 14), Vec::<String>::new());
 }
 
-/// An agent that does nothing in Volcanic Venture 1 stands on the middle platform: never any cost. In Precipice Plunge 1 nothing is random.
+/// An agent that does nothing in Volcanic Venture 1 stands on the middle platform: never any cost.
+/// In Precipice Plunge 1 nothing is random.
 #[test]
 fn what_draws_nothing_is_exact() {
     for (id, policy) in [
@@ -95,7 +108,10 @@ fn what_draws_nothing_is_exact() {
         ("PrecipicePlungeLevel1-v0", "hold:MOVE_FORWARD"),
         ("PrecipicePlungeLevel1-v0", "hold:MOVE_FORWARD+JUMP"),
     ] {
-        let row = published(RuleSet::Tables).into_iter().find(|row| row.id == id && row.policy == policy && !row.hard).unwrap();
+        let row = published(RuleSet::Tables)
+            .into_iter()
+            .find(|row| row.id == id && row.policy == policy && !row.hard)
+            .unwrap();
         let [mean, deviation] = ours(&row, 20)[1];
         assert_eq!((mean, deviation), (row.columns[1][0], 0.0), "{id} {policy}");
     }

@@ -5,7 +5,8 @@ use hasard_engine::render::{Buffers, SegmentationColours};
 use hasard_engine::world::ActorKind::{self, *};
 use hasard_envs::{Env, EnvOptions, FrameSize};
 
-/// Where one looks from in which environment, what may lie there, and the direction in quarter turns from east.
+/// Where one looks from in which environment, what may lie there, and the direction in quarter
+/// turns from east.
 struct Scene {
     env: &'static str,
     from: (i32, i32),
@@ -36,14 +37,39 @@ const SCENES: [Scene; 4] = [
         env: "RemedyRushLevel1-v0",
         from: (0, 900),
         quarter: 0,
-        kinds: &[HealthBonus, Stimpack, Medikit, ArmorBonus, RocketAmmo, Shell, Cell, Infrared, YellowCard, BlueSkull],
+        kinds: &[
+            HealthBonus,
+            Stimpack,
+            Medikit,
+            ArmorBonus,
+            RocketAmmo,
+            Shell,
+            Cell,
+            Infrared,
+            YellowCard,
+            BlueSkull,
+        ],
     },
-    Scene { env: "CollateralDamageLevel1-v0", from: (-256, 100), quarter: 0, kinds: &[Cacodemon, ZombieMan] },
+    Scene {
+        env: "CollateralDamageLevel1-v0",
+        from: (-256, 100),
+        quarter: 0,
+        kinds: &[Cacodemon, ZombieMan],
+    },
     Scene {
         env: "DetonatorsDilemmaLevel1-v0",
         from: (1600, -900),
         quarter: 2,
-        kinds: &[ExplosiveBarrel, LostSoul, ZombieMan, ShotgunGuy, ChaingunGuy, DoomImp, Demon, Revenant],
+        kinds: &[
+            ExplosiveBarrel,
+            LostSoul,
+            ZombieMan,
+            ShotgunGuy,
+            ChaingunGuy,
+            DoomImp,
+            Demon,
+            Revenant,
+        ],
     },
 ];
 
@@ -84,14 +110,15 @@ fn look(env: &mut Env, scene: &Scene, kind: ActorKind, distance: i32) -> Look {
     Look { frame: rgb, before, covered }
 }
 
-/// Of the pixels that either thing covers: how many there are, and the share of them whose colours in the two frames
-/// nobody takes for each other.
+/// Of the pixels that either thing covers: how many there are, and the share of them whose colours
+/// in the two frames nobody takes for each other.
 fn difference([a, b]: [&[u8]; 2], covered: [&[bool]; 2]) -> (usize, f64) {
     let pixels = a.chunks_exact(3).zip(b.chunks_exact(3)).zip(covered[0].iter().zip(covered[1]));
     let inside: Vec<bool> = pixels
         .filter(|(_, (a, b))| **a || **b)
         .map(|((a, b), _)| {
-            let squares: i32 = a.iter().zip(b).map(|(&a, &b)| (i32::from(a) - i32::from(b)).pow(2)).sum();
+            let squares: i32 =
+                a.iter().zip(b).map(|(&a, &b)| (i32::from(a) - i32::from(b)).pow(2)).sum();
             squares > 40 * 40
         })
         .collect();
@@ -99,7 +126,8 @@ fn difference([a, b]: [&[u8]; 2], covered: [&[bool]; 2]) -> (usize, f64) {
     (inside.len(), unlike as f64 / inside.len().max(1) as f64)
 }
 
-/// Least share of a thing's pixels that differ from what is behind it, and that differ between two things in one place.
+/// Least share of a thing's pixels that differ from what is behind it, and that differ between two
+/// things in one place.
 const SEEN: f64 = 0.55;
 /// See above.
 const APART: f64 = 0.6;
@@ -111,17 +139,25 @@ fn classes_of_a_scenario_are_told_apart_at_128x72() {
         let options = EnvOptions { size: FrameSize::LEARNER, ..EnvOptions::default() };
         let mut env = Env::new(scene.env, &options).unwrap();
         for distance in [120, 250] {
-            let looks: Vec<Look> = scene.kinds.iter().map(|&kind| look(&mut env, scene, kind, distance)).collect();
+            let looks: Vec<Look> =
+                scene.kinds.iter().map(|&kind| look(&mut env, scene, kind, distance)).collect();
             for (i, a) in looks.iter().enumerate() {
                 let kind = scene.kinds[i];
                 let (pixels, seen) = difference([&a.frame, &a.before], [&a.covered, &a.covered]);
                 if pixels < 4 || seen < SEEN {
-                    alike.push(format!("{kind:?} at {distance}: {:.0} % of {pixels} pixels stand out", seen * 100.0));
+                    alike.push(format!(
+                        "{kind:?} at {distance}: {:.0} % of {pixels} pixels stand out",
+                        seen * 100.0
+                    ));
                 }
                 for (j, b) in looks[..i].iter().enumerate() {
                     let (_, apart) = difference([&a.frame, &b.frame], [&a.covered, &b.covered]);
                     if apart < APART {
-                        alike.push(format!("{kind:?} and {:?} at {distance}: {:.0} %", scene.kinds[j], apart * 100.0));
+                        alike.push(format!(
+                            "{kind:?} and {:?} at {distance}: {:.0} %",
+                            scene.kinds[j],
+                            apart * 100.0
+                        ));
                     }
                 }
             }

@@ -17,7 +17,8 @@ fn act(batch: &mut Batch, worlds: &VecEnv, group: usize, step: u64) {
             batch.actions[i * sizes.len() + part] = (hash((step, lane, part)) % size as u64) as u8;
         }
         for part in 0..2 {
-            batch.deltas[i * 2 + part] = (hash((step, lane, part, "delta")) % 201) as f32 / 100.0 - 1.0;
+            batch.deltas[i * 2 + part] =
+                (hash((step, lane, part, "delta")) % 201) as f32 / 100.0 - 1.0;
         }
     }
 }
@@ -41,7 +42,8 @@ fn note(lives: &mut [Life], worlds: &VecEnv, group: usize, batch: &Batch) {
     }
     assert!(batch.episodes.is_sorted_by_key(|e| e.lane));
     assert_eq!(batch.cost_terms, batch.costs);
-    // This world stands where its last step's cost and reward say, also when the step ended an episode.
+    // This world stands where its last step's cost and reward say, also when the step ended an
+    // episode.
     for ((position, cost), reward) in batch.positions.iter().zip(&batch.costs).zip(&batch.rewards) {
         // An ended world that waits brings nothing and stays where it is.
         if *cost != 0.0 || *reward != 0.0 {
@@ -88,9 +90,16 @@ fn threads_width_and_halves_change_nothing() {
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
         let options = VecOptions { lanes: 32, seed: 5, autoreset, ..VecOptions::default() };
         let expected = lives_by_step(options, 60);
-        for (lanes, threads, groups) in
-            [(32, 1, 1), (32, 2, 1), (32, 3, 2), (7, 2, 1), (7, 3, 3), (1, 2, 1), (1, 0, 1), (5, 8, 2)]
-        {
+        for (lanes, threads, groups) in [
+            (32, 1, 1),
+            (32, 2, 1),
+            (32, 3, 2),
+            (7, 2, 1),
+            (7, 3, 3),
+            (1, 2, 1),
+            (1, 0, 1),
+            (5, 8, 2),
+        ] {
             let options = VecOptions { lanes, threads, groups, ..options };
             assert!(lives_by_step(options, 60) == expected[..lanes], "{options:?} by step");
             assert!(lives_by_halves(options, 60) == expected[..lanes], "{options:?} by halves");
@@ -101,7 +110,8 @@ fn threads_width_and_halves_change_nothing() {
 #[test]
 fn seeds_lanes_and_episodes_differ() {
     let options = VecOptions { lanes: 16, seed: 1, ..VecOptions::default() };
-    let (one, other) = (lives_by_step(options, 40), lives_by_step(VecOptions { seed: 2, ..options }, 40));
+    let (one, other) =
+        (lives_by_step(options, 40), lives_by_step(VecOptions { seed: 2, ..options }, 40));
     let mut seeds = std::collections::BTreeSet::new();
     for life in one.iter().chain(&other) {
         let episodes: Vec<&Episode> = life.iter().filter_map(|row| row.6.as_ref()).collect();
@@ -162,7 +172,14 @@ fn modes_treat_the_step_after_the_end_as_they_say() {
 fn a_saved_batch_continues_exactly() {
     for threads in [0, 2] {
         for autoreset in [Autoreset::SameStep, Autoreset::NextStep] {
-            let options = VecOptions { lanes: 9, groups: 2, seed: 11, threads, autoreset, ..VecOptions::default() };
+            let options = VecOptions {
+                lanes: 9,
+                groups: 2,
+                seed: 11,
+                threads,
+                autoreset,
+                ..VecOptions::default()
+            };
             let mut worlds = make(options);
             let mut batch = worlds.whole_batch();
             worlds.reset(&mut batch).unwrap();
@@ -209,7 +226,10 @@ fn wrong_use_is_an_error_not_a_panic() {
         worlds.send_reset(0, batch.clone()).unwrap();
         assert!(matches!(worlds.send(0, batch.clone()), Err(EnvError::Turn { .. })), "sent twice");
         let mut whole = worlds.whole_batch();
-        assert!(matches!(worlds.step(&mut whole), Err(EnvError::Turn { .. })), "a group is under way");
+        assert!(
+            matches!(worlds.step(&mut whole), Err(EnvError::Turn { .. })),
+            "a group is under way"
+        );
         assert_eq!(whole.rewards.len(), 4, "the batch is not lost");
         worlds.recv(0).unwrap();
         let mut wrong = batch.clone();
@@ -220,20 +240,32 @@ fn wrong_use_is_an_error_not_a_panic() {
         assert!(matches!(worlds.send(0, wrong), Err(EnvError::Action { lane: 0, .. })));
         assert!(matches!(worlds.recv(2), Err(EnvError::Option { .. })));
     }
-    assert!(VecEnv::from_fn(VecOptions { lanes: 0, ..options }, |_| Ok(Box::new(Echo::new(9)))).is_err());
-    assert!(VecEnv::from_fn(VecOptions { groups: 5, ..options }, |_| Ok(Box::new(Echo::new(9)))).is_err());
+    assert!(
+        VecEnv::from_fn(VecOptions { lanes: 0, ..options }, |_| Ok(Box::new(Echo::new(9))))
+            .is_err()
+    );
+    assert!(
+        VecEnv::from_fn(VecOptions { groups: 5, ..options }, |_| Ok(Box::new(Echo::new(9))))
+            .is_err()
+    );
 }
 
 #[test]
 fn a_panicking_environment_is_reported_and_does_not_hang() {
     for threads in [0, 2] {
         let options = VecOptions { lanes: 4, threads, ..VecOptions::default() };
-        let mut worlds = VecEnv::from_fn(options, |lane| Ok(Box::new(Echo::new(if lane == 3 { 2 } else { u32::MAX })))).unwrap();
+        let mut worlds = VecEnv::from_fn(options, |lane| {
+            Ok(Box::new(Echo::new(if lane == 3 { 2 } else { u32::MAX })))
+        })
+        .unwrap();
         let mut batch = worlds.whole_batch();
         worlds.reset(&mut batch).unwrap();
         worlds.step(&mut batch).unwrap();
         let error = worlds.step(&mut batch).unwrap_err();
-        assert!(matches!(&error, EnvError::Panicked { message } if message.contains("asked to panic")), "{error}");
+        assert!(
+            matches!(&error, EnvError::Panicked { message } if message.contains("asked to panic")),
+            "{error}"
+        );
         let mut batch = worlds.whole_batch();
         assert!(matches!(worlds.reset(&mut batch), Err(EnvError::Panicked { .. })));
     }
@@ -254,6 +286,9 @@ fn an_episode_that_does_not_report_every_cost_term_is_an_error() {
         worlds.reset(&mut batch).unwrap();
         // Its episodes have 18 steps at most.
         let error = (0..18).find_map(|_| worlds.step(&mut batch).err()).unwrap();
-        assert!(matches!(&error, EnvError::Panicked { message } if message.contains("cost term")), "{error}");
+        assert!(
+            matches!(&error, EnvError::Panicked { message } if message.contains("cost term")),
+            "{error}"
+        );
     }
 }

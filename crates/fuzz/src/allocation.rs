@@ -3,7 +3,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Bytes that a process may hold at a time; beyond that an allocation fails, and the process with it.
+/// Bytes that a process may hold at a time; beyond that an allocation fails, and the process with
+/// it.
 const MOST: usize = 3 << 30;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
@@ -24,7 +25,8 @@ fn take(bytes: usize) -> bool {
     true
 }
 
-// SAFETY: every call goes to the system's allocator unchanged, or fails as the contract allows; counting touches no memory of it.
+// SAFETY: every call goes to the system's allocator unchanged, or fails as the contract allows;
+// counting touches no memory of it.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if !take(layout.size()) {

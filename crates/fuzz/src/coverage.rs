@@ -7,7 +7,8 @@
 //!     cargo build --release -p hasard-fuzz --target x86_64-unknown-linux-gnu
 //! ```
 //!
-//! Then inputs that reach something new are kept and spoiled further. Without, only the valid samples are.
+//! Then inputs that reach something new are kept and spoiled further. Without, only the valid
+//! samples are.
 
 use std::sync::Mutex;
 
@@ -53,8 +54,8 @@ impl Coverage {
     /// Sets the counters to nothing.
     pub fn clear(&mut self) {
         for &(start, length) in &self.parts {
-            // SAFETY: the linker's bounds of memory that lives as long as the program; only counting code writes to it, and a
-            // lost count does no harm.
+            // SAFETY: the linker's bounds of memory that lives as long as the program; only
+            // counting code writes to it, and a lost count does no harm.
             unsafe { std::ptr::write_bytes(start as *mut u8, 0, length) };
         }
     }

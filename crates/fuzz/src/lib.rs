@@ -1,4 +1,5 @@
-//! Spoiled files for everything in hasard that reads bytes: none may panic, hang, or take memory without bound.
+//! Spoiled files for everything in hasard that reads bytes: none may panic, hang, or take memory
+//! without bound.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -9,8 +10,9 @@
 //! | [`verdict`] | one input against one target, within limits |
 //! | [`worker`], [`supervisor`] | the search: a process that tries, and one that outlives its crashes |
 //!
-//! Everything follows from the seed, so that a search can be repeated. `docs/results/fuzzing.md` tells how to search; files that
-//! once did harm, or try to, lie in `hostile/`, a folder a target, and `tests/hostile.rs` tries them all.
+//! Everything follows from the seed, so that a search can be repeated. `docs/results/fuzzing.md`
+//! tells how to search; files that once did harm, or try to, lie in `hostile/`, a folder a target,
+//! and `tests/hostile.rs` tries them all.
 
 pub mod allocation;
 pub mod coverage;

@@ -66,7 +66,8 @@ const WORDS: [&str; 30] = [
 /// What a text nests by.
 const NESTS: [&str; 6] = ["[", "{\"a\":", "[[", "{", "/*", "a."];
 
-/// A copy with one to eight faults; `words` are the target's own, `others` are inputs to splice from.
+/// A copy with one to eight faults; `words` are the target's own, `others` are inputs to splice
+/// from.
 #[must_use]
 pub fn mutated(rng: &mut Rng, bytes: &[u8], words: &[&str], others: &[Vec<u8>]) -> Vec<u8> {
     let mut out = bytes.to_vec();
@@ -84,7 +85,8 @@ fn spoil(rng: &mut Rng, out: &mut Vec<u8>, words: &[&str], others: &[Vec<u8>]) {
         return;
     }
     let mut at = rng.below(out.len() as u32) as usize;
-    // Where a file mixes text and numbers, its text says what the numbers mean: that is more worth spoiling.
+    // Where a file mixes text and numbers, its text says what the numbers mean: that is more worth
+    // spoiling.
     for _ in 0..rng.below(6) {
         if !out[at].is_ascii_graphic() {
             at = rng.below(out.len() as u32) as usize;
@@ -130,7 +132,10 @@ fn spoil(rng: &mut Rng, out: &mut Vec<u8>, words: &[&str], others: &[Vec<u8>]) {
         16 => {
             let copy = out[at..end].to_vec();
             let times = 1usize << rng.below(10);
-            out.splice(at..at, copy.iter().copied().cycle().take(copy.len() * times).collect::<Vec<_>>());
+            out.splice(
+                at..at,
+                copy.iter().copied().cycle().take(copy.len() * times).collect::<Vec<_>>(),
+            );
         }
         _ => splice(rng, out, at, others),
     }
@@ -143,7 +148,11 @@ fn splice(rng: &mut Rng, out: &mut Vec<u8>, at: usize, others: &[Vec<u8>]) {
     }
     let other = &others[rng.below(others.len() as u32) as usize];
     if !other.is_empty() {
-        let from = if rng.below(2) == 0 { at.min(other.len() - 1) } else { rng.below(other.len() as u32) as usize };
+        let from = if rng.below(2) == 0 {
+            at.min(other.len() - 1)
+        } else {
+            rng.below(other.len() as u32) as usize
+        };
         out.truncate(at);
         out.extend_from_slice(&other[from..]);
     }

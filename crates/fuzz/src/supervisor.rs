@@ -25,13 +25,21 @@ pub struct Outcome {
 /// When a worker cannot be started, or a finding not be written.
 pub fn supervise(target: &Target, seconds: f64, seed: u64, findings: &Path) -> io::Result<Outcome> {
     let mut outcome = Outcome::default();
-    let notebook = std::env::temp_dir().join(format!("hasard-fuzz-{}-{}", std::process::id(), target.name));
+    let notebook =
+        std::env::temp_dir().join(format!("hasard-fuzz-{}-{}", std::process::id(), target.name));
     let started = Instant::now();
     let mut round = 0;
     while started.elapsed().as_secs_f64() < seconds {
         let left = (seconds - started.elapsed().as_secs_f64()).max(1.0);
         let mut worker = Command::new(std::env::current_exe()?)
-            .args(["--worker", target.name, "--seconds", &left.to_string(), "--seed", &(seed + round).to_string()])
+            .args([
+                "--worker",
+                target.name,
+                "--seconds",
+                &left.to_string(),
+                "--seed",
+                &(seed + round).to_string(),
+            ])
             .arg("--findings")
             .arg(findings)
             .arg("--notebook")
@@ -63,7 +71,12 @@ pub fn supervise(target: &Target, seconds: f64, seed: u64, findings: &Path) -> i
             let (number, input) = Notebook::read(&notebook)?;
             let path = keep(findings, target.name, kind, &input)?;
             outcome.deaths.push(path.display().to_string());
-            outcome.lines.push(format!("{}: {kind} at input {number} of seed {}: {}", target.name, seed + round, path.display()));
+            outcome.lines.push(format!(
+                "{}: {kind} at input {number} of seed {}: {}",
+                target.name,
+                seed + round,
+                path.display()
+            ));
         }
         round += 1;
     }

@@ -9,10 +9,18 @@ use std::time::{Duration, Instant};
 /// Longest that an input may take.
 pub const LONGEST: Duration = Duration::from_secs(3);
 
-/// Processor time of this thread so far, where the system tells: on a busy machine the clock says little.
+/// Processor time of this thread so far, where the system tells: on a busy machine the clock says
+/// little.
 fn processor_time() -> Option<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/stat").ok()?;
-    let ticks: u64 = text.rsplit(") ").next()?.split(' ').skip(11).take(2).filter_map(|word| word.parse::<u64>().ok()).sum();
+    let ticks: u64 = text
+        .rsplit(") ")
+        .next()?
+        .split(' ')
+        .skip(11)
+        .take(2)
+        .filter_map(|word| word.parse::<u64>().ok())
+        .sum();
     Some(Duration::from_millis(ticks * 10))
 }
 
@@ -61,12 +69,19 @@ pub fn try_input(target: &Target, bytes: &[u8]) -> Verdict {
             let text = panic.downcast_ref::<String>().map(String::as_str);
             let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no text");
             let place = PLACE.lock().map(|place| place.clone()).unwrap_or_default();
-            Verdict::Harm("panic", format!("{place}: {}", text.chars().take(200).collect::<String>()))
+            Verdict::Harm(
+                "panic",
+                format!("{place}: {}", text.chars().take(200).collect::<String>()),
+            )
         }
-        Ok(_) if held > target.memory + 64 * bytes.len() => {
-            Verdict::Harm("memory", format!("{} MiB held for an input of {} bytes", held >> 20, bytes.len()))
-        }
-        Ok(_) if took > LONGEST => Verdict::Harm("slow", format!("{} s for an input of {} bytes", took.as_secs(), bytes.len())),
+        Ok(_) if held > target.memory + 64 * bytes.len() => Verdict::Harm(
+            "memory",
+            format!("{} MiB held for an input of {} bytes", held >> 20, bytes.len()),
+        ),
+        Ok(_) if took > LONGEST => Verdict::Harm(
+            "slow",
+            format!("{} s for an input of {} bytes", took.as_secs(), bytes.len()),
+        ),
         Ok(true) => Verdict::Accepted,
         Ok(false) => Verdict::Refused,
     }

@@ -41,7 +41,9 @@ impl Notebook {
     /// # Errors
     /// When it cannot be made.
     pub fn create(path: &Path) -> io::Result<Notebook> {
-        Ok(Notebook { file: File::options().create(true).truncate(true).read(true).write(true).open(path)? })
+        Ok(Notebook {
+            file: File::options().create(true).truncate(true).read(true).write(true).open(path)?,
+        })
     }
 
     fn note(&self, number: u64, input: &[u8]) -> io::Result<()> {
@@ -68,7 +70,13 @@ impl Notebook {
 ///
 /// # Errors
 /// When the notebook or a finding cannot be written.
-pub fn search(target: &Target, seconds: f64, seed: u64, notebook: &Path, findings: &Path) -> io::Result<Tally> {
+pub fn search(
+    target: &Target,
+    seconds: f64,
+    seed: u64,
+    notebook: &Path,
+    findings: &Path,
+) -> io::Result<Tally> {
     listen();
     let notebook = Notebook::create(notebook)?;
     let mut rng = Rng::new(seed);
@@ -85,7 +93,11 @@ pub fn search(target: &Target, seconds: f64, seed: u64, notebook: &Path, finding
             corpus[next].clone()
         } else {
             let count = corpus.len() as u32;
-            let pick = if rng.below(2) == 0 { rng.below(count) } else { count - 1 - rng.below(count.min(32)) };
+            let pick = if rng.below(2) == 0 {
+                rng.below(count)
+            } else {
+                count - 1 - rng.below(count.min(32))
+            };
             mutated(&mut rng, &corpus[pick as usize], target.words, &corpus)
         };
         if next >= samples && rng.below(8) > 0 {
@@ -100,7 +112,11 @@ pub fn search(target: &Target, seconds: f64, seed: u64, notebook: &Path, finding
             Verdict::Refused => {}
             Verdict::Harm(kind, text) => {
                 // One of each place is enough to mend it.
-                let place = if kind == "panic" { text.split(": ").next().unwrap_or_default().to_owned() } else { String::new() };
+                let place = if kind == "panic" {
+                    text.split(": ").next().unwrap_or_default().to_owned()
+                } else {
+                    String::new()
+                };
                 if known.insert((kind, place)) {
                     keep(findings, target.name, kind, &input)?;
                     tally.findings.push((kind.to_owned(), text));

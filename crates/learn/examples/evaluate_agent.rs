@@ -1,5 +1,5 @@
-//! A trained agent plays 20 episodes, and is judged by its budget:
-//! `cargo run --release -p hasard-learn --example evaluate_agent -- zoo/RemedyRushLevel1.agent`, or a run directory.
+//! A trained agent plays 20 episodes, and is judged by its budget: `cargo run --release -p
+//! hasard-learn --example evaluate_agent -- zoo/RemedyRushLevel1.agent`, or a run directory.
 
 use hasard_envs::{Env, VecEnv};
 use hasard_learn::networks::distribution::ActionShape;
@@ -14,15 +14,28 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let env = Env::new(&config.env.id, &options)?;
     let action = ActionShape::from(env.action_space());
     let mut warn = |warning: String| eprintln!("{warning}");
-    let policy = TrainedPolicy::load(path.as_ref(), Which::Selected, env.observation_shape(), action, &mut warn)?;
+    let policy = TrainedPolicy::load(
+        path.as_ref(),
+        Which::Selected,
+        env.observation_shape(),
+        action,
+        &mut warn,
+    )?;
     let make_envs = |_: &_, lanes| VecEnv::new(&config.env.id, &options, lanes);
     let seeds: Vec<u64> = (1_000_000..1_000_020).collect();
     let episodes = play(&policy, Choice::Sampled, &make_envs, &seeds, 2)?;
     let judged = Evaluation::of(&episodes, &config.constraints)?;
-    println!("{}: return {:.2} ± {:.2}", config.env.id, judged.episode_return.mean, judged.episode_return.half_width);
+    println!(
+        "{}: return {:.2} ± {:.2}",
+        config.env.id, judged.episode_return.mean, judged.episode_return.half_width
+    );
     for one in &judged.constraints {
-        let (term, within) = (one.term.as_deref().unwrap_or("cost"), if one.within() { "within" } else { "over" });
-        println!("{term} {:.2} ± {:.2}, {within} the budget of {}", one.cost.mean, one.cost.half_width, one.budget);
+        let (term, within) =
+            (one.term.as_deref().unwrap_or("cost"), if one.within() { "within" } else { "over" });
+        println!(
+            "{term} {:.2} ± {:.2}, {within} the budget of {}",
+            one.cost.mean, one.cost.half_width, one.budget
+        );
     }
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! Trains an agent from a program of one's own: `cargo run --release --example train_agent -- PPOLag quick 200000 /tmp/run`.
+//! Trains an agent from a program of one's own: `cargo run --release --example train_agent --
+//! PPOLag quick 200000 /tmp/run`.
 
 use hasard_envs::VecEnv;
 use hasard_learn::config::{EnvConfig, TrainConfig};

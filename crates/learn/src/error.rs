@@ -50,14 +50,19 @@ impl LearnError {
 /// Longest text of a message, in letters.
 const LONGEST: usize = 1000;
 
-/// A text that may quote a file by anyone: one line of bounded length, and nothing in it commands a terminal.
+/// A text that may quote a file by anyone: one line of bounded length, and nothing in it commands a
+/// terminal.
 struct OneLine<'a>(&'a str);
 
 impl std::fmt::Display for OneLine<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         use std::fmt::Write;
         for letter in self.0.chars().take(LONGEST) {
-            if letter.is_control() { write!(f, "{}", letter.escape_default())? } else { f.write_char(letter)? }
+            if letter.is_control() {
+                write!(f, "{}", letter.escape_default())?
+            } else {
+                f.write_char(letter)?
+            }
         }
         if self.0.chars().nth(LONGEST).is_some() { f.write_str(" ...") } else { Ok(()) }
     }
@@ -76,7 +81,9 @@ impl std::fmt::Display for LearnError {
             LearnError::File { path, doing, source } => {
                 write!(f, "cannot {doing} {}: {source}", path.display())?;
                 match source.kind() {
-                    ErrorKind::StorageFull | ErrorKind::QuotaExceeded => f.write_str("; make room and go on with --resume"),
+                    ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+                        f.write_str("; make room and go on with --resume")
+                    }
                     ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
                         f.write_str("; choose a place that you may write to")
                     }
@@ -86,7 +93,9 @@ impl std::fmt::Display for LearnError {
                     _ => Ok(()),
                 }
             }
-            LearnError::Content { path, problem } => write!(f, "{}: {}", path.display(), OneLine(problem)),
+            LearnError::Content { path, problem } => {
+                write!(f, "{}: {}", path.display(), OneLine(problem))
+            }
         }
     }
 }

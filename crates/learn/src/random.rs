@@ -1,7 +1,9 @@
-//! Random numbers of the learner: streams named by what they are for, so that none has to be stored.
+//! Random numbers of the learner: streams named by what they are for, so that none has to be
+//! stored.
 //!
-//! Every draw comes from a stream made of (run seed, purpose, counters). A resumed run knows its counters and therefore
-//! draws what the uninterrupted run would have drawn; and lanes can be sampled on any thread in any order.
+//! Every draw comes from a stream made of (run seed, purpose, counters). A resumed run knows its
+//! counters and therefore draws what the uninterrupted run would have drawn; and lanes can be
+//! sampled on any thread in any order.
 
 use hasard_engine::math::Rng;
 

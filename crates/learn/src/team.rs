@@ -1,9 +1,12 @@
-//! The workers of one run, each with its share of the lanes, and the one thing that they do together: hand everyone's bytes to everyone.
+//! The workers of one run, each with its share of the lanes, and the one thing that they do
+//! together: hand everyone's bytes to everyone.
 //!
-//! Every worker knows the whole rollout but for its pixels, and computes advantages, losses and the optimiser's step by itself, in the
-//! same order and to the same bit. Only what needs pixels is shared: a worker runs the networks on its own lanes, gives its rows of
-//! outputs, and adds its part to the gradient. So an algorithm need not know that there are others, and a run of several workers differs
-//! from a run of one by the order in which parts of a gradient are added up, and by nothing else.
+//! Every worker knows the whole rollout but for its pixels, and computes advantages, losses and the
+//! optimiser's step by itself, in the same order and to the same bit. Only what needs pixels is
+//! shared: a worker runs the networks on its own lanes, gives its rows of outputs, and adds its
+//! part to the gradient. So an algorithm need not know that there are others, and a run of several
+//! workers differs from a run of one by the order in which parts of a gradient are added up, and by
+//! nothing else.
 
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -13,7 +16,8 @@ use crate::threads::deal;
 
 /// What carries bytes between the workers of a run.
 pub trait Exchange: Send {
-    /// Everyone's bytes in the order of their ranks, once all have given theirs. An error ends the run.
+    /// Everyone's bytes in the order of their ranks, once all have given theirs. An error ends the
+    /// run.
     fn gather(&mut self, bytes: Vec<u8>) -> Result<Vec<Vec<u8>>, String>;
 }
 
@@ -56,13 +60,17 @@ impl Team {
         self.others.is_none()
     }
 
-    /// The lanes of every sampler of every worker, `samplers` a worker, in the order of ranks, and which of those samplers are this one's.
+    /// The lanes of every sampler of every worker, `samplers` a worker, in the order of ranks, and
+    /// which of those samplers are this one's.
     #[must_use]
     pub fn shares(&self, lanes: usize, samplers: usize) -> (Vec<Range<usize>>, Range<usize>) {
         let (mut shares, mut own) = (Vec::new(), 0..0);
         for (rank, part) in deal(lanes, self.ranks()).enumerate() {
             let first = shares.len();
-            shares.extend(deal(part.len(), samplers).map(|share| part.start + share.start..part.start + share.end));
+            shares.extend(
+                deal(part.len(), samplers)
+                    .map(|share| part.start + share.start..part.start + share.end),
+            );
             if rank == self.rank {
                 own = first..shares.len();
             }
@@ -90,8 +98,8 @@ impl Team {
         Ok(self.gather(given)?.swap_remove(0))
     }
 
-    /// Sums of everyone's numbers, added up in the order of ranks, so that all hold the same bits. Where nothing can be exchanged any
-    /// more they become zero, and [`Team::check`] tells why.
+    /// Sums of everyone's numbers, added up in the order of ranks, so that all hold the same bits.
+    /// Where nothing can be exchanged any more they become zero, and [`Team::check`] tells why.
     pub fn sum(&self, numbers: &mut [f32]) {
         if self.is_alone() {
             return;
@@ -170,7 +178,10 @@ mod tests {
                 all = shares;
             }
             assert_eq!(seen, all);
-            assert_eq!(seen.into_iter().flatten().collect::<Vec<_>>(), (0..lanes).collect::<Vec<_>>());
+            assert_eq!(
+                seen.into_iter().flatten().collect::<Vec<_>>(),
+                (0..lanes).collect::<Vec<_>>()
+            );
         }
     }
 }

@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// Items dealt into at most so many runs as equal as they can be, the longer ones first; none is empty unless all are.
+/// Items dealt into at most so many runs as equal as they can be, the longer ones first; none is
+/// empty unless all are.
 pub fn deal(items: usize, parts: usize) -> impl Iterator<Item = Range<usize>> + Clone {
     let count = parts.min(items).max(1);
     let (length, longer) = (items / count, items % count);
@@ -16,17 +17,22 @@ pub fn deal(items: usize, parts: usize) -> impl Iterator<Item = Range<usize>> + 
 /// A piece of work, with the scratch of the thread that does it.
 pub type Piece<'a, S> = Box<dyn FnOnce(&mut S) + Send + 'a>;
 
-/// Pieces that work is best dealt into: more than threads, for when the system holds one of them up; one thread needs one.
+/// Pieces that work is best dealt into: more than threads, for when the system holds one of them
+/// up; one thread needs one.
 pub fn pieces(threads: usize) -> usize {
     if threads <= 1 { 1 } else { 2 * threads }
 }
 
-/// Does pieces of work on as many threads as there is scratch, this one among them. Each takes the next piece, in their order,
-/// when it is done with one, so that whatever else the machine does delays all of them alike.
+/// Does pieces of work on as many threads as there is scratch, this one among them. Each takes the
+/// next piece, in their order, when it is done with one, so that whatever else the machine does
+/// delays all of them alike.
 ///
 /// # Panics
 /// If there is no scratch.
-pub fn in_parallel<S: Send, W: FnOnce(&mut S) + Send>(scratch: &mut [S], work: impl IntoIterator<Item = W, IntoIter: Send>) {
+pub fn in_parallel<S: Send, W: FnOnce(&mut S) + Send>(
+    scratch: &mut [S],
+    work: impl IntoIterator<Item = W, IntoIter: Send>,
+) {
     let (own, others) = scratch.split_first_mut().expect("there is a thread");
     let mut work = work.into_iter();
     if others.is_empty() {
@@ -58,8 +64,13 @@ mod tests {
         for items in 0..40 {
             for parts in 1..50 {
                 let dealt: Vec<Range<usize>> = deal(items, parts).collect();
-                assert!(dealt.len() <= parts && dealt.iter().all(|run| !run.is_empty() || items == 0));
-                assert_eq!(dealt.into_iter().flatten().collect::<Vec<_>>(), (0..items).collect::<Vec<_>>());
+                assert!(
+                    dealt.len() <= parts && dealt.iter().all(|run| !run.is_empty() || items == 0)
+                );
+                assert_eq!(
+                    dealt.into_iter().flatten().collect::<Vec<_>>(),
+                    (0..items).collect::<Vec<_>>()
+                );
             }
         }
     }

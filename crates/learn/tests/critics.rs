@@ -8,13 +8,15 @@ use hasard_learn::runs::trainer::Start;
 use std::fs;
 use std::path::Path;
 
-/// CPO on rollouts of 24 steps in trajectories of 8, with three steps of the critics on a quarter of the trajectories each. Episodes have
-/// ten steps, so that trajectories begin in the middle of them.
+/// CPO on rollouts of 24 steps in trajectories of 8, with three steps of the critics on a quarter
+/// of the trajectories each. Episodes have ten steps, so that trajectories begin in the middle of
+/// them.
 fn cut(algorithm: AlgorithmKind) -> TrainConfig {
     let mut config = tiny::config(algorithm);
     (config.sampling.rollout, config.learning.recurrence) = (24, Some(8));
     (config.learning.epochs, config.learning.minibatches) = (1, 1);
-    (config.algorithm_settings.critic_steps, config.algorithm_settings.critic_batch) = (3, Some(192));
+    (config.algorithm_settings.critic_steps, config.algorithm_settings.critic_batch) =
+        (3, Some(192));
     config
 }
 
@@ -23,13 +25,16 @@ fn seen_by_critics(mut config: TrainConfig) -> TrainConfig {
     config
 }
 
-/// A5, A11: the learner, with the weights that acted, says of every step what the actor said of it: the same policy and the same values.
-/// A trajectory that began in another state, or critics that were shown another moment, would not.
+/// A5, A11: the learner, with the weights that acted, says of every step what the actor said of it:
+/// the same policy and the same values. A trajectory that began in another state, or critics that
+/// were shown another moment, would not.
 #[test]
 fn the_learner_sees_what_the_actors_saw() {
-    for config in
-        [cut(AlgorithmKind::Cpo), seen_by_critics(cut(AlgorithmKind::TrpoLag)), seen_by_critics(cut(AlgorithmKind::PpoLag))]
-    {
+    for config in [
+        cut(AlgorithmKind::Cpo),
+        seen_by_critics(cut(AlgorithmKind::TrpoLag)),
+        seen_by_critics(cut(AlgorithmKind::PpoLag)),
+    ] {
         let name = config.algorithm;
         let mut session = Session::new(config, &Beginning::Nothing, &tiny::worlds).unwrap();
         // The second rollout: it begins in the middle of episodes too.
@@ -42,35 +47,56 @@ fn the_learner_sees_what_the_actors_saw() {
         let mut minibatch = session.learner.minibatch(&prepared, &all);
         let networks = 0..session.learner.shape().networks.len();
         let mut values = Vec::new();
-        let seen =
-            |heads: &hasard_learn::learning::loss::Heads, batch: &hasard_learn::learning::learner::Minibatch<'_>, _: &mut _| {
-                let divergence = batch.old_policy.divergence(&heads.policy).mean();
-                assert!(divergence.abs() < 1e-12, "{name}: the policy is {divergence} away from the one that acted");
-                values = heads.values.iter().map(|column| column.values.clone()).collect();
-                heads.mean_of(&heads.values[0])
-            };
+        let seen = |heads: &hasard_learn::learning::loss::Heads,
+                    batch: &hasard_learn::learning::learner::Minibatch<'_>,
+                    _: &mut _| {
+            let divergence = batch.old_policy.divergence(&heads.policy).mean();
+            assert!(
+                divergence.abs() < 1e-12,
+                "{name}: the policy is {divergence} away from the one that acted"
+            );
+            values = heads.values.iter().map(|column| column.values.clone()).collect();
+            heads.mean_of(&heads.values[0])
+        };
         let _ = session
             .learner
-            .gradient(networks, &mut minibatch, seen, &mut hasard_learn::learning::metrics::Means::default())
+            .gradient(
+                networks,
+                &mut minibatch,
+                seen,
+                &mut hasard_learn::learning::metrics::Means::default(),
+            )
             .unwrap();
         assert_eq!(values.len(), 2);
         for (values, critic) in values.iter().zip(&minibatch.critics) {
-            let apart = values.iter().zip(&critic.old_values).map(|(now, then)| (now - f64::from(*then)).abs());
-            assert!(apart.fold(0.0, f64::max) < 1e-6, "{name}: the critics do not say what they said");
-            let spread = critic.old_values.iter().fold(0.0f32, |most, value| most.max((value - critic.old_values[0]).abs()));
+            let apart = values
+                .iter()
+                .zip(&critic.old_values)
+                .map(|(now, then)| (now - f64::from(*then)).abs());
+            assert!(
+                apart.fold(0.0, f64::max) < 1e-6,
+                "{name}: the critics do not say what they said"
+            );
+            let spread = critic
+                .old_values
+                .iter()
+                .fold(0.0f32, |most, value| most.max((value - critic.old_values[0]).abs()));
             assert!(spread > 1e-3, "{name}: values that do not differ show nothing");
         }
     }
 }
 
-/// A11: with the limit as part of the task nothing comes after it. One-step advantages (lambda 0) at a time-out are then cost - V, where a
-/// cut-off episode has the value of what would have come as well; rewards have it as before.
+/// A11: with the limit as part of the task nothing comes after it. One-step advantages (lambda 0)
+/// at a time-out are then cost - V, where a cut-off episode has the value of what would have come
+/// as well; rewards have it as before.
 #[test]
 fn costs_end_at_the_time_out_where_critics_see_it_coming() {
     let plain = tiny::config(AlgorithmKind::PpoLag);
     let mut forced = plain.clone();
     forced.learning.bootstrap_cost_time_outs = Some(false);
-    for (mut config, cost_goes_on) in [(plain.clone(), true), (forced, false), (seen_by_critics(plain), false)] {
+    for (mut config, cost_goes_on) in
+        [(plain.clone(), true), (forced, false), (seen_by_critics(plain), false)]
+    {
         config.learning.gae_lambda = 0.0;
         let mut session = Session::new(config, &Beginning::Nothing, &tiny::worlds).unwrap();
         let rollout = session.gatherer.next_rollout().unwrap();
@@ -83,9 +109,11 @@ fn costs_end_at_the_time_out_where_critics_see_it_coming() {
             for step in (0..steps).filter(|step| part.done[step * part.lanes + own]) {
                 let row = step * part.lanes + own;
                 let at = lane * steps + step;
-                let value = |critic: usize| moments[critic].denormalise(prepared.old_values[critic][at]);
+                let value =
+                    |critic: usize| moments[critic].denormalise(prepared.old_values[critic][at]);
                 let after = [part.rewards[row] - value(0), part.costs[row] - value(1)];
-                let goes_on = |critic: usize| (prepared.advantages[critic][at] - after[critic]).abs() > 1e-6;
+                let goes_on =
+                    |critic: usize| (prepared.advantages[critic][at] - after[critic]).abs() > 1e-6;
                 assert!(goes_on(0), "the reward's value of what would have come");
                 assert_eq!(goes_on(1), cost_goes_on, "that of the cost");
                 ends += 1;
@@ -98,7 +126,8 @@ fn costs_end_at_the_time_out_where_critics_see_it_coming() {
 /// A5: a rollout brings the critics as many steps as are asked for, and the policy one.
 #[test]
 fn critics_make_their_steps() {
-    let mut session = Session::new(cut(AlgorithmKind::Cpo), &Beginning::Nothing, &tiny::worlds).unwrap();
+    let mut session =
+        Session::new(cut(AlgorithmKind::Cpo), &Beginning::Nothing, &tiny::worlds).unwrap();
     session.turn(&mut |warning| panic!("{warning}")).unwrap();
     let steps: Vec<u64> = session.learner.optimisers.iter().map(|adam| adam.steps).collect();
     assert_eq!(steps, [0, 3, 3]);
@@ -106,12 +135,15 @@ fn critics_make_their_steps() {
 
 fn weights(run: &Path) -> Vec<u8> {
     let all = fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
-    let last = all.filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with("frames_")).max().unwrap();
+    let last = all
+        .filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with("frames_"))
+        .max()
+        .unwrap();
     fs::read(last.join("weights.safetensors")).unwrap()
 }
 
-/// Cut rollouts, dealt critics' steps, privileged inputs and moments that forget: a run that stopped and went on, with other samplers at
-/// that, equals the one that went straight through.
+/// Cut rollouts, dealt critics' steps, privileged inputs and moments that forget: a run that
+/// stopped and went on, with other samplers at that, equals the one that went straight through.
 #[test]
 fn runs_resume_exactly_with_each_of_it() {
     let popart = |mut config: TrainConfig| {
@@ -125,10 +157,17 @@ fn runs_resume_exactly_with_each_of_it() {
         ("popart", popart(seen_by_critics(tiny::config(AlgorithmKind::PpoPid)))),
     ] {
         config.frames = 4 * config.frames_per_rollout();
-        let (straight, broken) =
-            (tiny::directory(&format!("critics-straight-{name}")), tiny::directory(&format!("critics-broken-{name}")));
+        let (straight, broken) = (
+            tiny::directory(&format!("critics-straight-{name}")),
+            tiny::directory(&format!("critics-broken-{name}")),
+        );
         tiny::run(Start::Fresh(config.clone()), &straight).0.unwrap();
-        tiny::run(Start::Fresh(TrainConfig { frames: config.frames / 2, ..config.clone() }), &broken).0.unwrap();
+        tiny::run(
+            Start::Fresh(TrainConfig { frames: config.frames / 2, ..config.clone() }),
+            &broken,
+        )
+        .0
+        .unwrap();
         let settings = vec![format!("frames={}", config.frames), "sampling.samplers=3".into()];
         tiny::run(Start::Resume { settings }, &broken).0.unwrap();
         assert!(weights(&straight) == weights(&broken), "{name}: weights differ");
@@ -151,9 +190,13 @@ fn algorithms_end_near_the_optimum_with_each_of_it() {
         result.unwrap();
         fs::remove_dir_all(path).unwrap();
         let late = &reports[reports.len() / 2..];
-        let mean =
-            |of: fn((f64, f64, f64)) -> f64| late.iter().map(|one| of(one.means.unwrap())).sum::<f64>() / late.len() as f64;
+        let mean = |of: fn((f64, f64, f64)) -> f64| {
+            late.iter().map(|one| of(one.means.unwrap())).sum::<f64>() / late.len() as f64
+        };
         let (episode_return, cost) = (mean(|means| means.0), mean(|means| means.1));
-        assert!(cost < 4.6 && episode_return > 3.3, "{normaliser}: return {episode_return}, cost {cost}");
+        assert!(
+            cost < 4.6 && episode_return > 3.3,
+            "{normaliser}: return {episode_return}, cost {cost}"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Checkpoints and settings that someone meant to do harm with, or that belong to another run: an error, no panic.
+//! Checkpoints and settings that someone meant to do harm with, or that belong to another run: an
+//! error, no panic.
 
 mod tiny;
 
@@ -26,7 +27,8 @@ fn change(checkpoint: &Path, spoil: impl FnOnce(&mut Vec<u8>)) {
     spoil(&mut bytes);
     std::fs::write(&file, &bytes).unwrap();
     let state = checkpoint.join("state.json");
-    let mut json: serde_json::Value = serde_json::from_slice(&std::fs::read(&state).unwrap()).unwrap();
+    let mut json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&state).unwrap()).unwrap();
     json["training_checksum"] = crc32c(&bytes).into();
     std::fs::write(&state, json.to_string()).unwrap();
 }
@@ -44,8 +46,10 @@ fn lengths_that_add_up_by_wrapping_around_are_refused() {
     change(&checkpoint, |bytes| {
         let header = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
         let tensors: serde_json::Value = serde_json::from_slice(&bytes[8..8 + header]).unwrap();
-        let start = 8 + header + tensors["sampler0.lanes"]["data_offsets"][0].as_u64().unwrap() as usize;
-        // A lane is seeds, seed, number of actions, number of deltas: two numbers of actions grow by half of all there are.
+        let start =
+            8 + header + tensors["sampler0.lanes"]["data_offsets"][0].as_u64().unwrap() as usize;
+        // A lane is seeds, seed, number of actions, number of deltas: two numbers of actions grow
+        // by half of all there are.
         for lane in 0..2 {
             let at = start + lane * 32 + 16;
             let length = u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap());
@@ -61,7 +65,8 @@ fn lengths_that_add_up_by_wrapping_around_are_refused() {
 fn a_checkpoint_held_against_other_constraints_is_refused() {
     let (path, _) = trained("constraints");
     let file = path.join("config.json");
-    let mut settings: hasard_learn::config::TrainConfig = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+    let mut settings: hasard_learn::config::TrainConfig =
+        serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
     settings.constraints.push(Constraint { term: Some("second".into()), budget: 1.0 });
     std::fs::write(&file, serde_json::to_vec(&settings).unwrap()).unwrap();
     let message = refused(&path);
@@ -73,7 +78,8 @@ fn a_checkpoint_held_against_other_constraints_is_refused() {
 fn a_state_that_tells_of_other_constraints_is_refused() {
     let (path, checkpoint) = trained("watch");
     let state = checkpoint.join("state.json");
-    let mut json: serde_json::Value = serde_json::from_slice(&std::fs::read(&state).unwrap()).unwrap();
+    let mut json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&state).unwrap()).unwrap();
     let recent = json["progress"]["watch"]["recent"].as_array_mut().unwrap();
     assert!(!recent.is_empty());
     recent.iter_mut().for_each(|episode| episode["constrained"] = serde_json::json!([]));

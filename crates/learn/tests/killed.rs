@@ -13,7 +13,8 @@ const DIRECTORY: &str = "HASARD_TEST_RUN";
 
 fn config() -> TrainConfig {
     let mut config = tiny::config(AlgorithmKind::PpoLag);
-    // A checkpoint after every rollout: whenever the run is killed, it is often while one is being written.
+    // A checkpoint after every rollout: whenever the run is killed, it is often while one is being
+    // written.
     config.reporting.checkpoint_seconds = 0.0;
     // Long enough to be still at it when it is killed for the third time.
     config.frames = 240 * config.frames_per_rollout();
@@ -33,31 +34,42 @@ fn child() {
     if let Some(path) = std::env::var_os(DIRECTORY) {
         let path = Path::new(&path);
         let (result, _, warnings) = tiny::run(start(path), path);
-        assert!(warnings.iter().all(|warning| warning.contains("line") || warning.contains("no checkpoint")), "{warnings:?}");
+        assert!(
+            warnings
+                .iter()
+                .all(|warning| warning.contains("line") || warning.contains("no checkpoint")),
+            "{warnings:?}"
+        );
         result.unwrap();
     }
 }
 
 fn weights(run: &Path) -> Vec<u8> {
-    fs::read(run.join(format!("checkpoints/frames_{:012}/weights.safetensors", config().frames))).unwrap()
+    fs::read(run.join(format!("checkpoints/frames_{:012}/weights.safetensors", config().frames)))
+        .unwrap()
 }
 
 /// What a run selects, and the weights of it.
 fn selected(run: &Path) -> (serde_json::Value, Vec<u8>) {
-    let written: serde_json::Value = serde_json::from_slice(&fs::read(run.join("selected.json")).unwrap()).unwrap();
+    let written: serde_json::Value =
+        serde_json::from_slice(&fs::read(run.join("selected.json")).unwrap()).unwrap();
     let frames = written["frames"].as_u64().unwrap();
-    let best = fs::read(run.join(format!("checkpoints/best_{frames:012}/weights.safetensors"))).unwrap();
+    let best =
+        fs::read(run.join(format!("checkpoints/best_{frames:012}/weights.safetensors"))).unwrap();
     (written, best)
 }
 
 /// Frames of the newest checkpoint of a run.
 fn reached(run: &Path) -> u64 {
     let entries = fs::read_dir(run.join("checkpoints")).into_iter().flatten();
-    let frames = entries.filter_map(|entry| entry.ok()?.file_name().to_str()?.strip_prefix("frames_")?.parse().ok());
+    let frames = entries.filter_map(|entry| {
+        entry.ok()?.file_name().to_str()?.strip_prefix("frames_")?.parse().ok()
+    });
     frames.max().unwrap_or(0)
 }
 
-/// Killed with SIGKILL at three moments and resumed each time, the run ends where the uninterrupted one does.
+/// Killed with SIGKILL at three moments and resumed each time, the run ends where the uninterrupted
+/// one does.
 #[test]
 fn a_run_killed_three_times_equals_the_uninterrupted_one() {
     let straight = tiny::directory("never-killed");
@@ -77,7 +89,8 @@ fn a_run_killed_three_times_equals_the_uninterrupted_one() {
             assert!(child.wait().unwrap().success(), "the last resume must reach the end");
             break;
         };
-        // Somewhere within the ten rollouts after the next checkpoint: by progress, for machines are not equally fast.
+        // Somewhere within the ten rollouts after the next checkpoint: by progress, for machines
+        // are not equally fast.
         let before = reached(&broken);
         let further = before + u64::from(1 + moment % 10) * config().frames_per_rollout();
         while reached(&broken) < further {
@@ -91,22 +104,24 @@ fn a_run_killed_three_times_equals_the_uninterrupted_one() {
     }
     assert!(weights(&straight) == weights(&broken), "weights differ");
     assert_eq!(selected(&straight), selected(&broken), "another checkpoint is selected");
-    let partial = fs::read_dir(broken.join("checkpoints"))
-        .unwrap()
-        .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "partial"));
+    let partial = fs::read_dir(broken.join("checkpoints")).unwrap().filter(|entry| {
+        entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "partial")
+    });
     assert_eq!(partial.count(), 0, "half-written checkpoints are left behind");
     fs::remove_dir_all(straight).unwrap();
     fs::remove_dir_all(broken).unwrap();
 }
 
-/// A disk without room: the run ends with an error that names the file, and what was written before is whole.
+/// A disk without room: the run ends with an error that names the file, and what was written before
+/// is whole.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_ends_the_run_with_an_error_and_loses_nothing() {
     let path = tiny::directory("full-disk");
     let mut config = config();
     config.frames = 4 * config.frames_per_rollout();
-    // Checkpoints fit, the report at the end does not: metrics go to the device that is always full.
+    // Checkpoints fit, the report at the end does not: metrics go to the device that is always
+    // full.
     config.reporting.report_seconds = 1e9;
     fs::create_dir_all(&path).unwrap();
     let log = path.join("metrics.jsonl");
@@ -116,7 +131,8 @@ fn a_full_disk_ends_the_run_with_an_error_and_loses_nothing() {
     assert!(message.contains("metrics.jsonl") && message.contains("No space left"), "{message}");
     assert!(message.contains("--resume"), "{message}");
     fs::remove_file(&log).unwrap();
-    let (result, _, warnings) = tiny::run(Start::Resume { settings: vec![format!("frames={}", 2 * config.frames)] }, &path);
+    let (result, _, warnings) =
+        tiny::run(Start::Resume { settings: vec![format!("frames={}", 2 * config.frames)] }, &path);
     assert_eq!(result.unwrap().last.frames, 2 * config.frames);
     assert!(warnings.is_empty(), "{warnings:?}");
     fs::remove_dir_all(path).unwrap();

@@ -6,8 +6,9 @@ use hasard_learn::config::{AlgorithmKind, Preset, TrainConfig};
 use hasard_learn::runs::report::Report;
 use hasard_learn::runs::trainer::Start;
 
-/// Mean return and cost over the last half of the run. A multiplier that follows the gradient circles around the optimum
-/// (the best action jumps where the price crosses 1), and it is the mean of a circle that lies there.
+/// Mean return and cost over the last half of the run. A multiplier that follows the gradient
+/// circles around the optimum (the best action jumps where the price crosses 1), and it is the mean
+/// of a circle that lies there.
 fn late(reports: &[Report]) -> (f64, f64) {
     let late = &reports[reports.len() / 2..];
     let mean = |of: fn(&Report) -> f64| late.iter().map(of).sum::<f64>() / late.len() as f64;
@@ -64,13 +65,17 @@ fn the_quick_presets_own_settings_constrain() {
     for algorithm in [PpoLag, PpoPid, P3o, Focops, Cup] {
         let small = tiny::config(algorithm);
         let mut config = TrainConfig::plain(algorithm, Preset::Quick, small.env.clone());
-        (config.network, config.sampling, config.reporting) = (small.network, small.sampling, small.reporting);
+        (config.network, config.sampling, config.reporting) =
+            (small.network, small.sampling, small.reporting);
         (config.constraints, config.episode_steps) = (small.constraints, small.episode_steps);
         config.learning.threads = 1;
         config.learning.gamma = 0.9;
         config.frames = 512 * 600;
         let (episode_return, cost, _) = outcome(config, &format!("{algorithm}-quick"));
-        assert!(cost < 4.6 && episode_return > 0.8 * cost, "{algorithm}: cost {cost}, return {episode_return}");
+        assert!(
+            cost < 4.6 && episode_return > 0.8 * cost,
+            "{algorithm}: cost {cost}, return {episode_return}"
+        );
     }
 }
 
@@ -78,19 +83,36 @@ fn the_quick_presets_own_settings_constrain() {
 #[test]
 fn two_constraints_are_both_kept() {
     for algorithm in [AlgorithmKind::PpoLag, AlgorithmKind::Focops, AlgorithmKind::Cpo] {
-        let mut config = if algorithm == AlgorithmKind::Cpo { second_order(algorithm) } else { quick(algorithm) };
-        config.constraints.push(hasard_learn::config::Constraint { term: Some("second".into()), budget: 1.0 });
+        let mut config = if algorithm == AlgorithmKind::Cpo {
+            second_order(algorithm)
+        } else {
+            quick(algorithm)
+        };
+        config
+            .constraints
+            .push(hasard_learn::config::Constraint { term: Some("second".into()), budget: 1.0 });
         let (episode_return, _, reports) = outcome(config, &format!("{algorithm}-two"));
         let late = &reports[reports.len() / 2..];
-        let costs = [0, 1].map(|index| late.iter().map(|report| report.constraint_costs[index]).sum::<f64>() / late.len() as f64);
+        let costs = [0, 1].map(|index| {
+            late.iter().map(|report| report.constraint_costs[index]).sum::<f64>()
+                / late.len() as f64
+        });
         println!("{algorithm}: costs {costs:?}");
         assert!(costs[0] < 4.6 && costs[1] < 1.4, "{algorithm}: costs {costs:?}");
         assert!(episode_return > 0.8 * costs[0], "{algorithm}: return {episode_return}");
-        assert!(reports.last().unwrap().learning.iter().any(|(name, _)| name == "cost_value_loss/second"));
+        assert!(
+            reports
+                .last()
+                .unwrap()
+                .learning
+                .iter()
+                .any(|(name, _)| name == "cost_value_loss/second")
+        );
     }
 }
 
-/// The best return within the budget of 4 is 4; a policy that does not tell rich from poor gets 2.8 out of it.
+/// The best return within the budget of 4 is 4; a policy that does not tell rich from poor gets 2.8
+/// out of it.
 #[test]
 fn constrained_algorithms_end_near_the_best_return_within_the_budget() {
     use AlgorithmKind::{Cup, Focops, Ipo, P3o, PpoLag, PpoPid};
@@ -101,14 +123,16 @@ fn constrained_algorithms_end_near_the_best_return_within_the_budget() {
         if matches!(algorithm, PpoLag | PpoPid) {
             // Near the optimum the multiplier is the price of a rich risk: 1 reward for 1 cost.
             let late = &reports[reports.len() / 2..];
-            let multiplier = late.iter().map(|report| report.multipliers[0]).sum::<f64>() / late.len() as f64;
+            let multiplier =
+                late.iter().map(|report| report.multipliers[0]).sum::<f64>() / late.len() as f64;
             println!("{algorithm}: multiplier {multiplier:.2}");
             assert!((0.5..1.5).contains(&multiplier), "{algorithm}: multiplier {multiplier}");
         }
     }
 }
 
-/// Second-order steps are large and few: two passes over a rollout would move twice as far as the trust region allows.
+/// Second-order steps are large and few: two passes over a rollout would move twice as far as the
+/// trust region allows.
 fn second_order(algorithm: AlgorithmKind) -> TrainConfig {
     let mut config = quick(algorithm);
     config.learning.epochs = 1;
@@ -128,13 +152,16 @@ fn second_order_algorithms_do_so_too() {
         let (episode_return, cost, reports) = outcome(second_order(algorithm), algorithm.name());
         assert!(cost < 4.6, "{algorithm}: cost {cost}");
         assert!(episode_return > 3.3, "{algorithm}: return {episode_return}");
-        let loss = |report: &Report| report.learning.iter().find(|(name, _)| *name == "cost_value_loss").unwrap().1;
+        let loss = |report: &Report| {
+            report.learning.iter().find(|(name, _)| *name == "cost_value_loss").unwrap().1
+        };
         let (early, late) = (loss(&reports[2]), loss(reports.last().unwrap()));
         assert!(late < early, "{algorithm}: the cost critic does not learn ({early} to {late})");
     }
 }
 
-/// Under a penalty of 0.7 a unit of cost the rich risk is worth it and the poor one is not: cost 5, return 5.
+/// Under a penalty of 0.7 a unit of cost the rich risk is worth it and the poor one is not: cost 5,
+/// return 5.
 #[test]
 fn penalties_and_safety_states_shape_the_policy() {
     let mut config = quick(AlgorithmKind::PpoCost);
@@ -146,16 +173,23 @@ fn penalties_and_safety_states_shape_the_policy() {
     config.algorithm_settings.saute_unsafe_reward = -1.0;
     let (episode_return, cost, _) = outcome(config, "PPOSaute");
     assert!((2.5..4.6).contains(&cost), "cost {cost}");
-    assert!(episode_return > 0.8 * cost, "return {episode_return}: a policy blind to the picture has 0.7 of the cost");
+    assert!(
+        episode_return > 0.8 * cost,
+        "return {episode_return}: a policy blind to the picture has 0.7 of the cost"
+    );
 }
 
-/// CPO's excess is in the unit of its surrogate whatever the discount is: here 1 / (1 - gamma) is a fifth of the episode.
+/// CPO's excess is in the unit of its surrogate whatever the discount is: here 1 / (1 - gamma) is a
+/// fifth of the episode.
 #[test]
 fn cpo_counts_an_episodes_excess_by_its_steps() {
     let mut config = second_order(AlgorithmKind::Cpo);
     config.learning.gamma = 0.5;
     let (episode_return, cost, _) = outcome(config, "CPO-gamma");
-    assert!((3.6..4.6).contains(&cost) && episode_return > 3.5, "cost {cost}, return {episode_return}");
+    assert!(
+        (3.6..4.6).contains(&cost) && episode_return > 3.5,
+        "cost {cost}, return {episode_return}"
+    );
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! Runs that are stopped where it hurts: in the midst of evaluations, and before anything was learned.
+//! Runs that are stopped where it hurts: in the midst of evaluations, and before anything was
+//! learned.
 
 mod tiny;
 
@@ -22,7 +23,8 @@ fn config() -> TrainConfig {
     config
 }
 
-/// The task, raising a flag at one of its steps: of the evaluation worlds made until then, the last one's.
+/// The task, raising a flag at one of its steps: of the evaluation worlds made until then, the last
+/// one's.
 struct Bell {
     task: tiny::Risk,
     stop: Option<Arc<AtomicBool>>,
@@ -58,7 +60,8 @@ impl Environment for Bell {
     }
 }
 
-/// Trains until the worlds of the evaluation number `at` have made a step; gives how many evaluations there were.
+/// Trains until the worlds of the evaluation number `at` have made a step; gives how many
+/// evaluations there were.
 fn train_until(start: Start<'_>, path: &Path, at: usize) -> (Summary, usize) {
     let stop = Arc::new(AtomicBool::new(false));
     let made = AtomicUsize::new(0);
@@ -66,19 +69,26 @@ fn train_until(start: Start<'_>, path: &Path, at: usize) -> (Summary, usize) {
         let evaluated = matches!(options.autoreset, Autoreset::Disabled);
         let rings = evaluated && made.fetch_add(1, Ordering::Relaxed) == at;
         let stop = rings.then(|| Arc::clone(&stop));
-        VecEnv::from_fn(options, move |_| Ok(Box::new(Bell { task: tiny::Risk::new(true), stop: stop.clone() })))
+        VecEnv::from_fn(options, move |_| {
+            Ok(Box::new(Bell { task: tiny::Risk::new(true), stop: stop.clone() }))
+        })
     };
-    let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut |warning| panic!("{warning}") };
+    let mut hooks =
+        Hooks { stop: &stop, report: &mut |_| {}, warn: &mut |warning| panic!("{warning}") };
     let summary = train(start, path, &worlds, &mut hooks).unwrap();
     (summary, made.into_inner())
 }
 
-/// What is there in the end, without what a clock decides, or what is counted since the last report.
+/// What is there in the end, without what a clock decides, or what is counted since the last
+/// report.
 fn outcome(run: &Path) -> (Vec<Value>, Value, Vec<String>, Vec<u8>) {
     let text = fs::read_to_string(run.join("metrics.jsonl")).unwrap();
     let rows = text.lines().map(|line| {
         let row: Value = serde_json::from_str(line).unwrap();
-        let kept = |name: &&String| ["frames", "episodes", "multiplier"].contains(&name.as_str()) || name.starts_with("eval/");
+        let kept = |name: &&String| {
+            ["frames", "episodes", "multiplier"].contains(&name.as_str())
+                || name.starts_with("eval/")
+        };
         row.as_object()
             .unwrap()
             .iter()
@@ -86,17 +96,20 @@ fn outcome(run: &Path) -> (Vec<Value>, Value, Vec<String>, Vec<u8>) {
             .map(|(name, value)| (name.clone(), value.clone()))
             .collect()
     });
-    let mut names: Vec<String> =
-        fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<String> = fs::read_dir(run.join("checkpoints"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
     names.retain(|name| name.starts_with("best") || name.ends_with(&config().frames.to_string()));
     names.sort();
-    let weights = run.join(format!("checkpoints/frames_{:012}/weights.safetensors", config().frames));
+    let weights =
+        run.join(format!("checkpoints/frames_{:012}/weights.safetensors", config().frames));
     let selected = serde_json::from_slice(&fs::read(run.join("selected.json")).unwrap()).unwrap();
     (rows.collect(), selected, names, fs::read(weights).unwrap())
 }
 
-/// Stopped in each of its evaluations, confirmations and closing episodes in turn, and twice in the same one, a run ends where the
-/// uninterrupted one does: rows, selected checkpoint, weights.
+/// Stopped in each of its evaluations, confirmations and closing episodes in turn, and twice in the
+/// same one, a run ends where the uninterrupted one does: rows, selected checkpoint, weights.
 #[test]
 fn a_run_stopped_in_any_evaluation_equals_the_uninterrupted_one() {
     let straight = tiny::directory("stopped-never");
@@ -106,7 +119,10 @@ fn a_run_stopped_in_any_evaluation_equals_the_uninterrupted_one() {
     for at in 0..evaluations {
         let path = tiny::directory(&format!("stopped-{at}"));
         let (summary, made) = train_until(Start::Fresh(config()), &path, at);
-        assert!(summary.stopped && made == at + 1, "it went on after its evaluation {at} was stopped");
+        assert!(
+            summary.stopped && made == at + 1,
+            "it went on after its evaluation {at} was stopped"
+        );
         assert!(!path.join("selected.json").exists(), "{at}: closed without its closing episodes");
         let (summary, _) = train_until(Start::RESUME, &path, 0);
         assert!(summary.stopped, "{at}");
@@ -127,8 +143,15 @@ fn a_finished_run_is_evaluated_when_that_is_asked_for() {
     train_until(Start::Fresh(config), &path, usize::MAX);
     let rows = fs::read(path.join("metrics.jsonl")).unwrap();
     assert!(!path.join("selected.json").exists());
-    let (summary, made) = train_until(Start::Resume { settings: vec!["evaluation.every=512".into()] }, &path, usize::MAX);
-    assert!(summary.selection.is_some_and(|selection| selection.selected.closing.is_some()) && made >= 2);
+    let (summary, made) = train_until(
+        Start::Resume { settings: vec!["evaluation.every=512".into()] },
+        &path,
+        usize::MAX,
+    );
+    assert!(
+        summary.selection.is_some_and(|selection| selection.selected.closing.is_some())
+            && made >= 2
+    );
     assert!(path.join("selected.json").exists());
     assert_eq!(fs::read(path.join("metrics.jsonl")).unwrap(), rows);
     // Once is enough.
@@ -141,22 +164,33 @@ fn a_finished_run_is_evaluated_when_that_is_asked_for() {
 fn a_run_that_learned_nothing_leaves_nothing() {
     for (name, after) in [("at once", 1), ("in the first rollout", 12)] {
         let path = tiny::directory("stopped-early");
-        let worlds = |_: &EnvConfig, options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(after))));
+        let worlds = |_: &EnvConfig, options| {
+            VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(after))))
+        };
         let stop = AtomicBool::new(false);
         let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut |_| {} };
-        let message = train(Start::Fresh(config()), &path, &worlds, &mut hooks).map(|_| ()).unwrap_err().to_string();
+        let message = train(Start::Fresh(config()), &path, &worlds, &mut hooks)
+            .map(|_| ())
+            .unwrap_err()
+            .to_string();
         assert!(message.contains("gave way"), "{message}");
-        assert!(!path.exists(), "{name}: {:?}", fs::read_dir(&path).unwrap().map(|e| e.unwrap().file_name()).collect::<Vec<_>>());
+        assert!(
+            !path.exists(),
+            "{name}: {:?}",
+            fs::read_dir(&path).unwrap().map(|e| e.unwrap().file_name()).collect::<Vec<_>>()
+        );
     }
     // What was there before stays.
     let path = tiny::directory("stopped-notes");
     fs::create_dir_all(&path).unwrap();
     fs::write(path.join("notes.txt"), "mine").unwrap();
-    let worlds = |_: &EnvConfig, options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(1))));
+    let worlds =
+        |_: &EnvConfig, options| VecEnv::from_fn(options, |_| Ok(Box::new(tiny::Broken::after(1))));
     let stop = AtomicBool::new(false);
     let mut hooks = Hooks { stop: &stop, report: &mut |_| {}, warn: &mut |_| {} };
     assert!(train(Start::Fresh(config()), &path, &worlds, &mut hooks).is_err());
-    let left: Vec<_> = fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let left: Vec<_> =
+        fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["notes.txt"]);
     fs::remove_dir_all(path).unwrap();
 }

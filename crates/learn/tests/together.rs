@@ -13,7 +13,8 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::time::Duration;
 use tiny::{config, directory, run, worlds};
 
-/// A table in the middle: everyone lays something down, and takes a copy of all of it when all have.
+/// A table in the middle: everyone lays something down, and takes a copy of all of it when all
+/// have.
 #[derive(Default)]
 struct Table {
     round: Mutex<Round>,
@@ -46,7 +47,8 @@ impl Exchange for Seat {
             self.table.turned.notify_all();
         }
         while round.number == number {
-            let (again, late) = self.table.turned.wait_timeout(round, Duration::from_secs(20)).unwrap();
+            let (again, late) =
+                self.table.turned.wait_timeout(round, Duration::from_secs(20)).unwrap();
             round = again;
             if late.timed_out() && round.number == number {
                 return Err("a worker is gone".into());
@@ -56,8 +58,14 @@ impl Exchange for Seat {
     }
 }
 
-/// Trains with `ranks` workers, of which the last leaves after some exchanges; gives the first one's reports.
-fn together(start: Start<'_>, at: &Path, ranks: usize, leaves_after: usize) -> (Result<(), String>, Vec<Report>) {
+/// Trains with `ranks` workers, of which the last leaves after some exchanges; gives the first
+/// one's reports.
+fn together(
+    start: Start<'_>,
+    at: &Path,
+    ranks: usize,
+    leaves_after: usize,
+) -> (Result<(), String>, Vec<Report>) {
     let table = Arc::new(Table::default());
     table.round.lock().unwrap().laid = vec![None; ranks];
     let team = |rank: usize| {
@@ -68,7 +76,10 @@ fn together(start: Start<'_>, at: &Path, ranks: usize, leaves_after: usize) -> (
     let outcome = std::thread::scope(|scope| {
         for rank in 1..ranks {
             let team = team(rank);
-            scope.spawn(move || Invitation::hear(team).and_then(|invitation| invitation.follow(&worlds, &mut |_| {})));
+            scope.spawn(move || {
+                Invitation::hear(team)
+                    .and_then(|invitation| invitation.follow(&worlds, &mut |_| {}))
+            });
         }
         let stop = AtomicBool::new(false);
         let mut hear = |report: &Report| reports.push(report.clone());
@@ -100,14 +111,18 @@ fn numbers(report: &Report) -> Vec<(String, f64)> {
 }
 
 fn weights(run: &Path) -> Vec<u8> {
-    let all = std::fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
+    let all =
+        std::fs::read_dir(run.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
     std::fs::read(all.max().unwrap().join("weights.safetensors")).unwrap()
 }
 
 #[test]
 fn four_workers_learn_what_one_does_and_two_runs_of_them_are_equal() {
-    for algorithm in [AlgorithmKind::PpoLag, AlgorithmKind::P3o, AlgorithmKind::TrpoLag, AlgorithmKind::Cup] {
-        let names = ["alone", "once", "twice"].map(|name| directory(&format!("together-{name}-{algorithm}")));
+    for algorithm in
+        [AlgorithmKind::PpoLag, AlgorithmKind::P3o, AlgorithmKind::TrpoLag, AlgorithmKind::Cup]
+    {
+        let names = ["alone", "once", "twice"]
+            .map(|name| directory(&format!("together-{name}-{algorithm}")));
         let [alone, once, twice] = &names;
         let (outcome, one, _) = run(Start::Fresh(short(algorithm)), alone);
         outcome.unwrap();
@@ -128,7 +143,10 @@ fn four_workers_learn_what_one_does_and_two_runs_of_them_are_equal() {
                 );
             }
         }
-        assert!(numbers(&one[9]).iter().any(|(name, _)| name.contains("loss")), "losses are among what is compared");
+        assert!(
+            numbers(&one[9]).iter().any(|(name, _)| name.contains("loss")),
+            "losses are among what is compared"
+        );
         assert_eq!(weights(once), weights(twice), "{algorithm}");
         for at in &names {
             std::fs::remove_dir_all(at).unwrap();
@@ -150,7 +168,10 @@ fn a_run_goes_on_with_another_number_of_workers() {
     outcome.unwrap();
     for (ours, expected) in reports.iter().zip(&expected) {
         for ((name, ours), (_, expected)) in numbers(ours).iter().zip(numbers(expected)) {
-            assert!((ours - expected).abs() <= 1e-4 * expected.abs().max(1.0), "{name}: {ours} and {expected}");
+            assert!(
+                (ours - expected).abs() <= 1e-4 * expected.abs().max(1.0),
+                "{name}: {ours} and {expected}"
+            );
         }
     }
     assert_eq!(reports.last().map(|last| last.frames), Some(4096));

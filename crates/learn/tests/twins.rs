@@ -1,5 +1,5 @@
-//! The network on the processor against its twins, outputs and gradients: a plain one by its definition and, where a graphics
-//! card's feature is built in, the one in burn.
+//! The network on the processor against its twins, outputs and gradients: a plain one by its
+//! definition and, where a graphics card's feature is built in, the one in burn.
 
 mod plain;
 mod trajectories;
@@ -24,7 +24,8 @@ fn close(what: &str, a: &[f32], b: &[f32]) {
     }
 }
 
-/// Outputs, and for every block of parameters the change of a weighted sum of them in a random direction, by differences.
+/// Outputs, and for every block of parameters the change of a weighted sum of them in a random
+/// direction, by differences.
 #[test]
 fn outputs_and_gradients_equal_those_of_the_plain_network() {
     for (name, shape) in shapes() {
@@ -34,7 +35,10 @@ fn outputs_and_gradients_equal_those_of_the_plain_network() {
         let case = Case::new(&shape, steps, lanes);
         let batch = case.sequences();
         let wide: Vec<f64> = parameters.iter().map(|&value| f64::from(value)).collect();
-        let expected: Vec<f32> = plain::forward(&shape, &wide, &case.pixels, &batch).iter().map(|&value| value as f32).collect();
+        let expected: Vec<f32> = plain::forward(&shape, &wide, &case.pixels, &batch)
+            .iter()
+            .map(|&value| value as f32)
+            .collect();
         let seeds = normals(expected.len(), 1);
         let gradients = Simd::available().into_iter().map(|kernels| {
             let mut learner = CpuLearner::new(kernels, &shape, 2);
@@ -60,10 +64,14 @@ fn outputs_and_gradients_equal_those_of_the_plain_network() {
             let expected = (moved(1e-8) - moved(-1e-8)) / 2e-8;
             for (kernels, gradient) in &gradients {
                 let own = &gradient[parameter.range()];
-                let found: f64 = own.iter().zip(&direction).map(|(g, d)| f64::from(*g) * f64::from(*d)).sum();
+                let found: f64 =
+                    own.iter().zip(&direction).map(|(g, d)| f64::from(*g) * f64::from(*d)).sum();
                 let size = own.iter().map(|g| f64::from(*g).powi(2)).sum::<f64>().sqrt();
                 let name = format!("{name}, {kernels}: {}", parameter.name);
-                assert!((found - expected).abs() <= 1e-4 * size, "{name} along {found}, {expected}");
+                assert!(
+                    (found - expected).abs() <= 1e-4 * size,
+                    "{name} along {found}, {expected}"
+                );
             }
         }
     }
@@ -119,7 +127,11 @@ fn outputs_and_gradients_equal_those_of_burn() {
         close(&format!("{name}: output"), &here, &there);
         for parameter in shape.parameters() {
             let range = parameter.range();
-            close(&format!("{name}: gradient of {}", parameter.name), &here_gradient[range.clone()], &there_gradient[range]);
+            close(
+                &format!("{name}: gradient of {}", parameter.name),
+                &here_gradient[range.clone()],
+                &there_gradient[range],
+            );
         }
     }
 }
@@ -133,9 +145,13 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
         learner.load(&parameters);
         learner.load_pixels(&case.pixels);
         let expected = learner.forward(&case.sequences());
-        let plain = NetworkWeights::Plain { parameters: Arc::new(parameters.clone()), pixels: Arc::new(case.pixels.clone()) };
+        let plain = NetworkWeights::Plain {
+            parameters: Arc::new(parameters.clone()),
+            pixels: Arc::new(case.pixels.clone()),
+        };
         // The learner's own packed weights, or those that the actor packs or uploads itself.
-        let actor = || -> Box<dyn ActingNetwork> { Box::new(CpuActor::new(Simd::widest(), &shape)) };
+        let actor =
+            || -> Box<dyn ActingNetwork> { Box::new(CpuActor::new(Simd::widest(), &shape)) };
         let own = [(true, learner.publish(), actor()), (true, plain.clone(), actor())];
         for (same_kernels, weights, mut actor) in own.into_iter().chain(portable(&shape, plain)) {
             actor.load(&weights);
@@ -149,11 +165,21 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
                     }
                 }
                 let mut outputs = vec![0.0; case.lanes * shape.outputs()];
-                let extra = &case.extra[rows.start * shape.extra_inputs..rows.end * shape.extra_inputs];
-                actor.act(&case.observations[rows.clone()].concat(), extra, &mut state, &mut outputs, None);
+                let extra =
+                    &case.extra[rows.start * shape.extra_inputs..rows.end * shape.extra_inputs];
+                actor.act(
+                    &case.observations[rows.clone()].concat(),
+                    extra,
+                    &mut state,
+                    &mut outputs,
+                    None,
+                );
                 let expected = &expected[rows.start * shape.outputs()..rows.end * shape.outputs()];
                 if same_kernels {
-                    assert_eq!(outputs, expected, "{name}: the same kernels must give the same bits");
+                    assert_eq!(
+                        outputs, expected,
+                        "{name}: the same kernels must give the same bits"
+                    );
                 } else {
                     close(&format!("{name}: output"), &outputs, expected);
                 }
@@ -164,12 +190,21 @@ fn acting_step_by_step_equals_the_forward_pass_over_sequences() {
 
 /// The network in burn, where it is built in.
 #[cfg(feature = "graphics")]
-fn portable(shape: &NetworkShape, weights: NetworkWeights) -> Option<(bool, NetworkWeights, Box<dyn ActingNetwork>)> {
-    let burn = hasard_learn::networks::burn_network::BurnNetwork::new(shape, &burn::tensor::Device::flex());
+fn portable(
+    shape: &NetworkShape,
+    weights: NetworkWeights,
+) -> Option<(bool, NetworkWeights, Box<dyn ActingNetwork>)> {
+    let burn = hasard_learn::networks::burn_network::BurnNetwork::new(
+        shape,
+        &burn::tensor::Device::flex(),
+    );
     Some((false, weights, Box::new(burn)))
 }
 
 #[cfg(not(feature = "graphics"))]
-fn portable(_: &NetworkShape, _: NetworkWeights) -> Option<(bool, NetworkWeights, Box<dyn ActingNetwork>)> {
+fn portable(
+    _: &NetworkShape,
+    _: NetworkWeights,
+) -> Option<(bool, NetworkWeights, Box<dyn ActingNetwork>)> {
     None
 }

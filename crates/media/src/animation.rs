@@ -11,13 +11,15 @@ pub struct AnimationWriter(Format);
 enum Format {
     /// H.264 in MP4: small, plays nearly everywhere.
     Video(Box<VideoWriter>),
-    /// GIF and the seconds of a frame: exact colours where they are few, shown where no video is; many times larger.
+    /// GIF and the seconds of a frame: exact colours where they are few, shown where no video is;
+    /// many times larger.
     Gif(Box<GifWriter>, f64),
 }
 
 impl AnimationWriter {
-    /// Begins `NAME.mp4` or `NAME.gif` of `frames_per_second.0 / frames_per_second.1` frames a second: (35, 4) for the steps
-    /// of a policy that acts every four tics. A GIF takes no notice of the quality.
+    /// Begins `NAME.mp4` or `NAME.gif` of `frames_per_second.0 / frames_per_second.1` frames a
+    /// second: (35, 4) for the steps of a policy that acts every four tics. A GIF takes no notice
+    /// of the quality.
     ///
     /// # Errors
     /// When the name ends otherwise, the size or rate is unusable, or the file cannot be made.
@@ -28,14 +30,22 @@ impl AnimationWriter {
         frames_per_second: (u32, u32),
         quality: Quality,
     ) -> Result<AnimationWriter, MediaError> {
-        match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        match path
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .map(str::to_ascii_lowercase)
+            .as_deref()
+        {
             Some("mp4") => {
                 let writer = VideoWriter::create(path, width, height, frames_per_second, quality)?;
                 Ok(AnimationWriter(Format::Video(Box::new(writer))))
             }
             Some("gif") if frames_per_second.0 > 0 => {
                 let seconds = f64::from(frames_per_second.1) / f64::from(frames_per_second.0);
-                Ok(AnimationWriter(Format::Gif(Box::new(GifWriter::create(path, width, height)?), seconds)))
+                Ok(AnimationWriter(Format::Gif(
+                    Box::new(GifWriter::create(path, width, height)?),
+                    seconds,
+                )))
             }
             _ => Err(MediaError::format(path, "has a name that ends neither in .mp4 nor in .gif")),
         }
@@ -73,7 +83,8 @@ mod tests {
         let base = std::env::temp_dir().join(format!("hasard-animation-{}", std::process::id()));
         for (ending, head) in [("mp4", &b"ftyp"[..]), ("GIF", b"89a")] {
             let path = base.with_extension(ending);
-            let mut writer = AnimationWriter::create(&path, 20, 10, (35, 4), Quality::default()).unwrap();
+            let mut writer =
+                AnimationWriter::create(&path, 20, 10, (35, 4), Quality::default()).unwrap();
             writer.push(&Picture::filled(20, 10, [1, 2, 3])).unwrap();
             writer.push(&Picture::filled(20, 10, [9, 2, 3])).unwrap();
             writer.finish().unwrap();
@@ -81,7 +92,11 @@ mod tests {
             assert!(bytes[..16].windows(head.len()).any(|part| part == head), "{ending}");
             std::fs::remove_file(path).unwrap();
         }
-        let error = AnimationWriter::create(Path::new("a.avi"), 20, 10, (35, 4), Quality::default()).err().unwrap().to_string();
+        let error =
+            AnimationWriter::create(Path::new("a.avi"), 20, 10, (35, 4), Quality::default())
+                .err()
+                .unwrap()
+                .to_string();
         assert_eq!(error, "a.avi: has a name that ends neither in .mp4 nor in .gif");
     }
 }

@@ -24,8 +24,9 @@ impl<'a> Panel<'a> {
     }
 }
 
-/// The panels in one row, each `enlarge` times as large, captions below. Panels of unlike height are brought to that of
-/// the first, keeping their proportions, so that an automap of any size stands beside a view.
+/// The panels in one row, each `enlarge` times as large, captions below. Panels of unlike height
+/// are brought to that of the first, keeping their proportions, so that an automap of any size
+/// stands beside a view.
 ///
 /// # Panics
 /// When there is no panel.
@@ -55,15 +56,22 @@ pub fn grid(panels: &[Panel], columns: usize, enlarge: usize) -> Picture {
         })
         .collect();
     // A column is as wide as its widest view; a caption that is wider still is cut.
-    let widths: Vec<usize> =
-        (0..columns).map(|column| sized.iter().skip(column).step_by(columns).map(Picture::width).max().unwrap_or(1)).collect();
-    let caption_height = if panels.iter().all(|panel| panel.caption.is_empty()) { 0 } else { text::LINE_HEIGHT + 2 };
+    let widths: Vec<usize> = (0..columns)
+        .map(|column| {
+            sized.iter().skip(column).step_by(columns).map(Picture::width).max().unwrap_or(1)
+        })
+        .collect();
+    let caption_height =
+        if panels.iter().all(|panel| panel.caption.is_empty()) { 0 } else { text::LINE_HEIGHT + 2 };
     let rows = panels.len().div_ceil(columns);
     let cell_height = height + caption_height + GAP;
     // Even sides, because video encodes colour for squares of 2 x 2 pixels.
     let even = |side: usize| side + side % 2;
-    let mut sheet =
-        Picture::filled(even(widths.iter().sum::<usize>() + GAP * (columns + 1)), even(rows * cell_height + GAP), GROUND);
+    let mut sheet = Picture::filled(
+        even(widths.iter().sum::<usize>() + GAP * (columns + 1)),
+        even(rows * cell_height + GAP),
+        GROUND,
+    );
     for (index, (panel, view)) in panels.iter().zip(&sized).enumerate() {
         let column = index % columns;
         let x = GAP + widths[..column].iter().map(|w| w + GAP).sum::<usize>();
@@ -94,7 +102,10 @@ mod tests {
     fn panels_of_unlike_height_stand_in_a_row() {
         let view = Picture::filled(160, 120, [200, 0, 0]);
         let map = Picture::filled(50, 240, [0, 200, 0]);
-        let sheet = side_by_side(&[Panel::new(&view, "colour"), Panel::new(&map, "automap that is wider than its view")], 2);
+        let sheet = side_by_side(
+            &[Panel::new(&view, "colour"), Panel::new(&map, "automap that is wider than its view")],
+            2,
+        );
         assert_eq!((sheet.width() % 2, sheet.height() % 2), (0, 0));
         assert_eq!(sheet.get(GAP, GAP), [200, 0, 0]);
         assert_eq!(sheet.get(GAP + 320 + GAP, GAP), [0, 200, 0]);

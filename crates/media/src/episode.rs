@@ -1,7 +1,8 @@
 //! The episode file: what is needed to play an episode again, and no pixel.
 //!
-//! A world is deterministic, so an episode is its environment, options and seed and the actions taken: a few kilobytes
-//! from which any view at any size can be drawn later. Files end in `.episode`. Layout, numbers little-endian:
+//! A world is deterministic, so an episode is its environment, options and seed and the actions
+//! taken: a few kilobytes from which any view at any size can be drawn later. Files end in
+//! `.episode`. Layout, numbers little-endian:
 //!
 //! | bytes | what |
 //! |---|---|
@@ -39,12 +40,14 @@ pub const SCENARIO: &str = "scenario";
 pub struct Header {
     /// Id of the environment, with its version: `VolcanicVentureLevel1-v0`.
     pub env: String,
-    /// The options that it was made with, by the names of the command line without dashes in front: `rules` = `paper`.
-    /// Those that change nothing about what happens (frame size, IWAD) may be left out.
+    /// The options that it was made with, by the names of the command line without dashes in front:
+    /// `rules` = `paper`. Those that change nothing about what happens (frame size, IWAD) may be
+    /// left out.
     pub options: BTreeMap<String, String>,
     /// Seed of the reset.
     pub seed: u64,
-    /// Version of the program that recorded it. Another version may play it differently; then `outcome` tells.
+    /// Version of the program that recorded it. Another version may play it differently; then
+    /// `outcome` tells.
     pub program: String,
     /// Who acted: `human`, `random`, or the run of an agent.
     pub player: String,
@@ -89,7 +92,8 @@ pub struct EpisodeFile {
 }
 
 impl EpisodeFile {
-    /// Begins a recording; `header.steps` is counted by [`EpisodeFile::push`] and may be anything here.
+    /// Begins a recording; `header.steps` is counted by [`EpisodeFile::push`] and may be anything
+    /// here.
     ///
     /// # Errors
     /// When the header asks for more sub-actions than the format holds, or is too long.
@@ -114,14 +118,21 @@ impl EpisodeFile {
     /// Adds the action of a step.
     ///
     /// # Errors
-    /// When the numbers of sub-actions differ from the header's, a continuous one is not finite, or the recording is full.
+    /// When the numbers of sub-actions differ from the header's, a continuous one is not finite, or
+    /// the recording is full.
     pub fn push(&mut self, groups: &[u8], deltas: &[f32]) -> Result<(), MediaError> {
-        let fits = groups.len() == usize::from(self.header.groups) && deltas.len() == usize::from(self.header.deltas);
+        let fits = groups.len() == usize::from(self.header.groups)
+            && deltas.len() == usize::from(self.header.deltas);
         if !fits || deltas.iter().any(|delta| !delta.is_finite()) {
-            return Err(MediaError::Size(format!("{groups:?} and {deltas:?} are no action of {}", self.header.env)));
+            return Err(MediaError::Size(format!(
+                "{groups:?} and {deltas:?} are no action of {}",
+                self.header.env
+            )));
         }
         if self.header.steps == MAX_STEPS {
-            return Err(MediaError::Size(format!("an episode file holds at most {MAX_STEPS} steps")));
+            return Err(MediaError::Size(format!(
+                "an episode file holds at most {MAX_STEPS} steps"
+            )));
         }
         self.actions.extend_from_slice(groups);
         self.deltas.extend_from_slice(deltas);
@@ -133,17 +144,26 @@ impl EpisodeFile {
     #[must_use]
     pub fn step(&self, index: usize) -> Option<(&[u8], &[f32])> {
         let (groups, deltas) = (usize::from(self.header.groups), usize::from(self.header.deltas));
-        (index < self.header.steps as usize)
-            .then(|| (&self.actions[index * groups..][..groups], &self.deltas[index * deltas..][..deltas]))
+        (index < self.header.steps as usize).then(|| {
+            (&self.actions[index * groups..][..groups], &self.deltas[index * deltas..][..deltas])
+        })
     }
 
-    /// Checks that every action exists in an action space, given the number of choices of each categorical sub-action
-    /// and the number of continuous ones: do this before playing a file of unknown origin.
+    /// Checks that every action exists in an action space, given the number of choices of each
+    /// categorical sub-action and the number of continuous ones: do this before playing a file of
+    /// unknown origin.
     ///
     /// # Errors
     /// Names the first step that does not fit.
-    pub fn check_actions(&self, sizes: &[usize], deltas: usize, name: &Path) -> Result<(), MediaError> {
-        if sizes.len() != usize::from(self.header.groups) || deltas != usize::from(self.header.deltas) {
+    pub fn check_actions(
+        &self,
+        sizes: &[usize],
+        deltas: usize,
+        name: &Path,
+    ) -> Result<(), MediaError> {
+        if sizes.len() != usize::from(self.header.groups)
+            || deltas != usize::from(self.header.deltas)
+        {
             return Err(MediaError::format(
                 name,
                 format!(
@@ -160,7 +180,11 @@ impl EpisodeFile {
             if usize::from(action) >= sizes[group] {
                 return Err(MediaError::format(
                     name,
-                    format!("step {}: sub-action {group} is {action}, beyond the {} choices", at / sizes.len(), sizes[group]),
+                    format!(
+                        "step {}: sub-action {group} is {action}, beyond the {} choices",
+                        at / sizes.len(),
+                        sizes[group]
+                    ),
                 ));
             }
         }
@@ -191,12 +215,17 @@ impl EpisodeFile {
     /// Reads the bytes of a file; `name` is for messages.
     ///
     /// # Errors
-    /// When they are no episode, of a newer version, cut off, changed, or claim what no episode has.
+    /// When they are no episode, of a newer version, cut off, changed, or claim what no episode
+    /// has.
     pub fn from_bytes(bytes: &[u8], name: &Path) -> Result<EpisodeFile, MediaError> {
         let bad = |problem: String| MediaError::format(name, problem);
-        let damaged = || bad("is damaged or cut off (its checksum does not fit); copy or record it again".into());
+        let damaged = || {
+            bad("is damaged or cut off (its checksum does not fit); copy or record it again".into())
+        };
         if bytes.len() < MAGIC.len() + 2 || &bytes[..MAGIC.len()] != MAGIC {
-            return Err(bad("is no episode file; `hasard record` and `hasard play` write them".into()));
+            return Err(bad(
+                "is no episode file; `hasard record` and `hasard play` write them".into()
+            ));
         }
         let version = u16::from_le_bytes([bytes[8], bytes[9]]);
         if version != FORMAT_VERSION {
@@ -210,21 +239,30 @@ impl EpisodeFile {
         }
         // From here on the file is as it was written; whoever wrote it may still have been hostile.
         let mut rest = &bytes[10..content];
-        let header = take_block(&mut rest).filter(|header| header.len() <= MAX_HEADER).ok_or_else(damaged)?;
+        let header = take_block(&mut rest)
+            .filter(|header| header.len() <= MAX_HEADER)
+            .ok_or_else(damaged)?;
         let body = take_block(&mut rest).filter(|_| rest.is_empty()).ok_or_else(damaged)?;
-        let header: Header =
-            serde_json::from_slice(header).map_err(|e| bad(format!("has a header that is not understood: {e}")))?;
+        let header: Header = serde_json::from_slice(header)
+            .map_err(|e| bad(format!("has a header that is not understood: {e}")))?;
         check_header(&header, name)?;
         let steps = header.steps as usize;
         let expected = steps * (usize::from(header.groups) + 4 * usize::from(header.deltas));
         let mut planes = Vec::new();
-        let inflated = flate2::read::ZlibDecoder::new(body).take(expected as u64 + 1).read_to_end(&mut planes);
+        let inflated =
+            flate2::read::ZlibDecoder::new(body).take(expected as u64 + 1).read_to_end(&mut planes);
         if inflated.is_err() || planes.len() != expected {
-            return Err(bad(format!("does not hold the {steps} steps that its header tells of; record it again")));
+            return Err(bad(format!(
+                "does not hold the {steps} steps that its header tells of; record it again"
+            )));
         }
-        let (actions, deltas) = from_planes(&planes, steps, usize::from(header.groups), usize::from(header.deltas));
+        let (actions, deltas) =
+            from_planes(&planes, steps, usize::from(header.groups), usize::from(header.deltas));
         if let Some(at) = deltas.iter().position(|delta| !delta.is_finite()) {
-            return Err(bad(format!("step {}: a continuous sub-action is not a number", at / usize::from(header.deltas))));
+            return Err(bad(format!(
+                "step {}: a continuous sub-action is not a number",
+                at / usize::from(header.deltas)
+            )));
         }
         Ok(EpisodeFile { header, actions, deltas })
     }
@@ -254,7 +292,13 @@ impl EpisodeFile {
         }
         for delta in 0..deltas {
             for byte in 0..4 {
-                planes.extend(self.deltas.iter().skip(delta).step_by(deltas).map(|value| value.to_le_bytes()[byte]));
+                planes.extend(
+                    self.deltas
+                        .iter()
+                        .skip(delta)
+                        .step_by(deltas)
+                        .map(|value| value.to_le_bytes()[byte]),
+                );
             }
         }
         planes
@@ -263,7 +307,8 @@ impl EpisodeFile {
 
 fn from_planes(planes: &[u8], steps: usize, groups: usize, deltas: usize) -> (Vec<u8>, Vec<f32>) {
     let (action_planes, delta_planes) = planes.split_at(steps * groups);
-    let actions = (0..steps * groups).map(|at| action_planes[at % groups * steps + at / groups]).collect();
+    let actions =
+        (0..steps * groups).map(|at| action_planes[at % groups * steps + at / groups]).collect();
     let value = |at: usize| {
         let (step, delta) = (at / deltas, at % deltas);
         f32::from_le_bytes([0, 1, 2, 3].map(|byte| delta_planes[(delta * 4 + byte) * steps + step]))
@@ -286,16 +331,30 @@ fn checksum(bytes: &[u8]) -> u32 {
 }
 
 fn check_header(header: &Header, name: &Path) -> Result<(), MediaError> {
-    let printable = |text: &str, limit: usize| !text.is_empty() && text.len() <= limit && !text.contains(char::is_control);
-    if !printable(&header.env, 128) || !printable(&header.program, 128) || !printable(&header.player, 4096) {
-        return Err(MediaError::format(name, "has a header with an empty, overlong or unprintable name"));
+    let printable = |text: &str, limit: usize| {
+        !text.is_empty() && text.len() <= limit && !text.contains(char::is_control)
+    };
+    if !printable(&header.env, 128)
+        || !printable(&header.program, 128)
+        || !printable(&header.player, 4096)
+    {
+        return Err(MediaError::format(
+            name,
+            "has a header with an empty, overlong or unprintable name",
+        ));
     }
     let options = &header.options;
     // An own scenario's text is a file of many lines; nobody prints it.
     let text = |key: &str, value: &str| key == SCENARIO && value.len() <= MAX_HEADER / 2;
-    let fits = |key: &str, value: &str| value.is_empty() || printable(value, 4096) || text(key, value);
-    if options.len() > 256 || !options.iter().all(|(key, value)| printable(key, 128) && fits(key, value)) {
-        return Err(MediaError::format(name, "has a header with too many, overlong or unprintable options"));
+    let fits =
+        |key: &str, value: &str| value.is_empty() || printable(value, 4096) || text(key, value);
+    if options.len() > 256
+        || !options.iter().all(|(key, value)| printable(key, 128) && fits(key, value))
+    {
+        return Err(MediaError::format(
+            name,
+            "has a header with too many, overlong or unprintable options",
+        ));
     }
     if header.steps > MAX_STEPS || header.groups > MAX_GROUPS || header.deltas > MAX_DELTAS {
         return Err(MediaError::format(

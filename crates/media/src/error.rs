@@ -3,7 +3,8 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// A file that could not be written, read or understood. The message is one line that names the file and the remedy.
+/// A file that could not be written, read or understood. The message is one line that names the
+/// file and the remedy.
 #[derive(Debug)]
 pub enum MediaError {
     /// The operating system refused.
@@ -22,7 +23,8 @@ pub enum MediaError {
         /// What is wrong, and what to do.
         problem: String,
     },
-    /// The caller's pixels do not fit: a size of zero, too large, or different from the frames before.
+    /// The caller's pixels do not fit: a size of zero, too large, or different from the frames
+    /// before.
     Size(String),
 }
 
@@ -42,7 +44,9 @@ impl std::fmt::Display for MediaError {
             MediaError::Io { path, action, source } => {
                 write!(f, "{}: cannot {action}: {source}", path.display())?;
                 match (source.kind(), *action) {
-                    (ErrorKind::StorageFull | ErrorKind::QuotaExceeded, _) => f.write_str("; make room, or choose another place"),
+                    (ErrorKind::StorageFull | ErrorKind::QuotaExceeded, _) => {
+                        f.write_str("; make room, or choose another place")
+                    }
                     (ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem, "read") => {
                         f.write_str("; choose a file that you may read")
                     }

@@ -13,8 +13,8 @@ fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes every file in the making, and lets none be finished or begun from here on: for a process that ends by a signal, which
-/// drops nothing.
+/// Removes every file in the making, and lets none be finished or begun from here on: for a process
+/// that ends by a signal, which drops nothing.
 pub fn remove_unfinished() {
     let names = unfinished();
     for name in names.iter() {
@@ -48,8 +48,9 @@ impl Drop for Scratch {
     }
 }
 
-/// A file in the making: it carries a temporary name until [`WholeFile::finish`] renames it, so that nobody ever reads
-/// half of it and a failed write leaves the former file as it was. Dropped unfinished, it is removed.
+/// A file in the making: it carries a temporary name until [`WholeFile::finish`] renames it, so
+/// that nobody ever reads half of it and a failed write leaves the former file as it was. Dropped
+/// unfinished, it is removed.
 pub struct WholeFile {
     path: PathBuf,
     temporary: PathBuf,
@@ -63,7 +64,10 @@ impl WholeFile {
     /// When the folder or the temporary file cannot be made.
     pub fn create(path: &Path) -> Result<WholeFile, MediaError> {
         let Some(name) = path.file_name() else {
-            return Err(MediaError::format(path, "is not the name of a file; give one, such as out.png"));
+            return Err(MediaError::format(
+                path,
+                "is not the name of a file; give one, such as out.png",
+            ));
         };
         let kind = std::fs::metadata(path);
         if kind.as_ref().is_ok_and(std::fs::Metadata::is_dir) {
@@ -71,21 +75,28 @@ impl WholeFile {
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder {
-            std::fs::create_dir_all(folder).map_err(|e| MediaError::io(folder, "make this folder", e))?;
+            std::fs::create_dir_all(folder)
+                .map_err(|e| MediaError::io(folder, "make this folder", e))?;
         }
         let mut temporary_name = std::ffi::OsString::from(".");
         temporary_name.push(name);
         temporary_name.push(format!(".{}.tmp", std::process::id()));
-        // What is there but no file (/dev/null, a pipe) is written to and stays: a rename would put a file in its place.
+        // What is there but no file (/dev/null, a pipe) is written to and stays: a rename would put
+        // a file in its place.
         let device = kind.is_ok_and(|kind| !kind.is_file());
         let temporary = if device { path.to_owned() } else { path.with_file_name(temporary_name) };
         let mut names = unfinished();
-        let file = std::fs::File::create(&temporary).map_err(|e| MediaError::io(path, "write", e))?;
+        let file =
+            std::fs::File::create(&temporary).map_err(|e| MediaError::io(path, "write", e))?;
         if !device {
             names.insert(temporary.clone());
         }
         drop(names);
-        Ok(WholeFile { path: path.to_owned(), temporary, out: Some(BufWriter::with_capacity(1 << 16, file)) })
+        Ok(WholeFile {
+            path: path.to_owned(),
+            temporary,
+            out: Some(BufWriter::with_capacity(1 << 16, file)),
+        })
     }
 
     /// Puts the file in its place.
@@ -98,7 +109,9 @@ impl WholeFile {
             .into_inner()
             .map_err(std::io::IntoInnerError::into_error)
             .and_then(|file| if self.is_device() { Ok(()) } else { file.sync_all() })
-            .and_then(|()| if self.is_device() { Ok(()) } else { std::fs::rename(&self.temporary, &self.path) });
+            .and_then(|()| {
+                if self.is_device() { Ok(()) } else { std::fs::rename(&self.temporary, &self.path) }
+            });
         if result.is_err() && !self.is_device() {
             let _ = std::fs::remove_file(&self.temporary);
         }
@@ -152,7 +165,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MediaError> {
     file.finish()
 }
 
-/// Reads a file that must not be larger than `limit` bytes, so that a wrong name cannot fill the memory.
+/// Reads a file that must not be larger than `limit` bytes, so that a wrong name cannot fill the
+/// memory.
 ///
 /// # Errors
 /// When it cannot be read or is larger.
@@ -165,7 +179,10 @@ pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, MediaError> {
     let mut bytes = Vec::new();
     file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| MediaError::io(path, "read", e))?;
     if bytes.len() as u64 > limit {
-        return Err(MediaError::format(path, format!("is larger than {limit} bytes; is it the right file?")));
+        return Err(MediaError::format(
+            path,
+            format!("is larger than {limit} bytes; is it the right file?"),
+        ));
     }
     Ok(bytes)
 }

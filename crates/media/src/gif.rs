@@ -27,16 +27,30 @@ impl GifWriter {
     /// When the file cannot be made or a side is 0 or above 65,535.
     pub fn create(path: &Path, width: usize, height: usize) -> Result<GifWriter, MediaError> {
         let (Ok(columns), Ok(rows)) = (u16::try_from(width), u16::try_from(height)) else {
-            return Err(MediaError::Size(format!("a GIF cannot be {width}x{height}; its sides end at 65535")));
+            return Err(MediaError::Size(format!(
+                "a GIF cannot be {width}x{height}; its sides end at 65535"
+            )));
         };
-        let failed = |e: gif::EncodingError| MediaError::io(path, "write", std::io::Error::other(e));
-        let mut encoder = gif::Encoder::new(WholeFile::create(path)?, columns, rows, &[]).map_err(failed)?;
+        let failed =
+            |e: gif::EncodingError| MediaError::io(path, "write", std::io::Error::other(e));
+        let mut encoder =
+            gif::Encoder::new(WholeFile::create(path)?, columns, rows, &[]).map_err(failed)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(failed)?;
-        Ok(GifWriter { path: path.to_owned(), encoder, width, height, shown: Vec::new(), waiting: None, began: 0.0, ends: 0.0 })
+        Ok(GifWriter {
+            path: path.to_owned(),
+            encoder,
+            width,
+            height,
+            shown: Vec::new(),
+            waiting: None,
+            began: 0.0,
+            ends: 0.0,
+        })
     }
 
-    /// Adds a frame that stays for `seconds`. GIF counts hundredths, and viewers slow down anything below two: shorter
-    /// frames are dropped where they must be, so that the animation as a whole keeps its time.
+    /// Adds a frame that stays for `seconds`. GIF counts hundredths, and viewers slow down anything
+    /// below two: shorter frames are dropped where they must be, so that the animation as a whole
+    /// keeps its time.
     ///
     /// # Errors
     /// When the frame's size differs from the first's or the file cannot be written.
@@ -68,24 +82,34 @@ impl GifWriter {
     /// When there was no frame or the file cannot be written.
     pub fn finish(mut self) -> Result<(), MediaError> {
         if self.waiting.is_none() {
-            return Err(MediaError::Size(format!("{}: an animation needs at least one frame", self.path.display())));
+            return Err(MediaError::Size(format!(
+                "{}: an animation needs at least one frame",
+                self.path.display()
+            )));
         }
         let ends = self.ends;
         self.store_waiting(ends)?;
-        let file = self.encoder.into_inner().map_err(|e| MediaError::io(&self.path, "write", std::io::Error::other(e)))?;
+        let file = self
+            .encoder
+            .into_inner()
+            .map_err(|e| MediaError::io(&self.path, "write", std::io::Error::other(e)))?;
         file.finish()
     }
 
     /// Writes the waiting frame, which ends at `until`.
     fn store_waiting(&mut self, until: f64) -> Result<(), MediaError> {
         if let Some(mut frame) = self.waiting.take() {
-            frame.delay = (hundredths(until) - hundredths(self.began)).clamp(2, i64::from(u16::MAX)) as u16;
-            self.encoder.write_frame(&frame).map_err(|e| MediaError::io(&self.path, "write", std::io::Error::other(e)))?;
+            frame.delay =
+                (hundredths(until) - hundredths(self.began)).clamp(2, i64::from(u16::MAX)) as u16;
+            self.encoder
+                .write_frame(&frame)
+                .map_err(|e| MediaError::io(&self.path, "write", std::io::Error::other(e)))?;
         }
         Ok(())
     }
 
-    /// The smallest rectangle around the pixels that differ from what is shown; `None` if none does.
+    /// The smallest rectangle around the pixels that differ from what is shown; `None` if none
+    /// does.
     fn changed_part(&mut self, picture: &Picture) -> Option<gif::Frame<'static>> {
         let quantised = quantise(picture);
         let colour = |at: usize| quantised.palette[usize::from(quantised.indices[at])];
@@ -110,7 +134,11 @@ impl GifWriter {
         let mut buffer = Vec::with_capacity((right - left) * (bottom - top));
         for y in top..bottom {
             for at in y * self.width + left..y * self.width + right {
-                buffer.push(if !first && colour(at) == self.shown[at] { unchanged } else { quantised.indices[at] });
+                buffer.push(if !first && colour(at) == self.shown[at] {
+                    unchanged
+                } else {
+                    quantised.indices[at]
+                });
             }
         }
         self.shown.clear();
@@ -173,7 +201,8 @@ mod tests {
         }
         let mut writer = GifWriter::create(&path, 40, 30).unwrap();
         for picture in &pictures {
-            // Twice the same: the second only prolongs the first. 35 / 4 pictures a second, as policies act.
+            // Twice the same: the second only prolongs the first. 35 / 4 pictures a second, as
+            // policies act.
             writer.push(picture, 2.0 / 35.0).unwrap();
             writer.push(picture, 2.0 / 35.0).unwrap();
         }

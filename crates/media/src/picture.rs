@@ -2,7 +2,8 @@
 
 use crate::MediaError;
 
-/// Largest side of a picture: what GIF and JPEG-like formats can carry, and a bound on hostile headers.
+/// Largest side of a picture: what GIF and JPEG-like formats can carry, and a bound on hostile
+/// headers.
 pub const MAX_SIDE: usize = 65_535;
 
 /// Red, green and blue bytes, row after row.
@@ -20,7 +21,10 @@ impl Picture {
     /// When a side is 0 or above 65,535: sizes are the caller's, never a file's.
     #[must_use]
     pub fn filled(width: usize, height: usize, colour: [u8; 3]) -> Picture {
-        assert!((1..=MAX_SIDE).contains(&width) && (1..=MAX_SIDE).contains(&height), "picture of {width}x{height}");
+        assert!(
+            (1..=MAX_SIDE).contains(&width) && (1..=MAX_SIDE).contains(&height),
+            "picture of {width}x{height}"
+        );
         Picture { width, height, rgb: colour.repeat(width * height) }
     }
 
@@ -29,8 +33,14 @@ impl Picture {
     /// # Errors
     /// When the number of bytes is not `width * height * 3` or a side is out of range.
     pub fn from_rgb(width: usize, height: usize, rgb: Vec<u8>) -> Result<Picture, MediaError> {
-        if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) || rgb.len() != width * height * 3 {
-            return Err(MediaError::Size(format!("{} bytes are no picture of {width}x{height} in red, green, blue", rgb.len())));
+        if !(1..=MAX_SIDE).contains(&width)
+            || !(1..=MAX_SIDE).contains(&height)
+            || rgb.len() != width * height * 3
+        {
+            return Err(MediaError::Size(format!(
+                "{} bytes are no picture of {width}x{height} in red, green, blue",
+                rgb.len()
+            )));
         }
         Ok(Picture { width, height, rgb })
     }
@@ -43,7 +53,8 @@ impl Picture {
         Picture::from_rgb(width, height, grey.iter().flat_map(|&g| [g, g, g]).collect())
     }
 
-    /// A picture from an observation of `channels` interleaved channels of which `first..first + 3` are red, green, blue.
+    /// A picture from an observation of `channels` interleaved channels of which `first..first + 3`
+    /// are red, green, blue.
     ///
     /// # Errors
     /// When there are fewer than `first + 3` channels or the number of bytes does not fit.
@@ -55,12 +66,18 @@ impl Picture {
         bytes: &[u8],
     ) -> Result<Picture, MediaError> {
         if channels < first + 3 || bytes.len() != width * height * channels {
-            return Err(MediaError::Size(format!("{} bytes are no picture of {width}x{height}x{channels}", bytes.len())));
+            return Err(MediaError::Size(format!(
+                "{} bytes are no picture of {width}x{height}x{channels}",
+                bytes.len()
+            )));
         }
         Picture::from_rgb(
             width,
             height,
-            bytes.chunks_exact(channels).flat_map(|p| [p[first], p[first + 1], p[first + 2]]).collect(),
+            bytes
+                .chunks_exact(channels)
+                .flat_map(|p| [p[first], p[first + 1], p[first + 2]])
+                .collect(),
         )
     }
 
@@ -89,14 +106,18 @@ impl Picture {
         [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
     }
 
-    /// Mixes a colour into a pixel: `share` 0 leaves it, 255 replaces it. Outside the picture nothing happens.
+    /// Mixes a colour into a pixel: `share` 0 leaves it, 255 replaces it. Outside the picture
+    /// nothing happens.
     pub fn blend(&mut self, x: isize, y: isize, colour: [u8; 3], share: u8) {
         if x < 0 || y < 0 || x as usize >= self.width || y as usize >= self.height {
             return;
         }
         let at = (y as usize * self.width + x as usize) * 3;
         for (byte, new) in self.rgb[at..at + 3].iter_mut().zip(colour) {
-            *byte = ((u32::from(*byte) * (255 - u32::from(share)) + u32::from(new) * u32::from(share) + 127) / 255) as u8;
+            *byte = ((u32::from(*byte) * (255 - u32::from(share))
+                + u32::from(new) * u32::from(share)
+                + 127)
+                / 255) as u8;
         }
     }
 
@@ -111,7 +132,8 @@ impl Picture {
         }
     }
 
-    /// Copies another picture in, its upper left pixel at (`x`, `y`); what does not fit is left out.
+    /// Copies another picture in, its upper left pixel at (`x`, `y`); what does not fit is left
+    /// out.
     pub fn paste(&mut self, other: &Picture, x: usize, y: usize) {
         let columns = other.width.min(self.width.saturating_sub(x));
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
@@ -141,7 +163,8 @@ impl Picture {
         Picture { width, height, rgb }
     }
 
-    /// The picture in at most 255 colours, as near as they can be: its PNG file takes half the room or less.
+    /// The picture in at most 255 colours, as near as they can be: its PNG file takes half the room
+    /// or less.
     #[must_use]
     pub fn in_few_colours(&self) -> Picture {
         let few = crate::quantise::quantise(self);
@@ -149,7 +172,8 @@ impl Picture {
         Picture { width: self.width, height: self.height, rgb }
     }
 
-    /// The picture in another size, each pixel taken from the nearest one: keeps the hard edges of pixel art.
+    /// The picture in another size, each pixel taken from the nearest one: keeps the hard edges of
+    /// pixel art.
     #[must_use]
     pub fn resized(&self, width: usize, height: usize) -> Picture {
         let (width, height) = (width.clamp(1, MAX_SIDE), height.clamp(1, MAX_SIDE));
@@ -185,10 +209,19 @@ mod tests {
 
     #[test]
     fn few_colours_are_kept_and_many_become_few() {
-        let few = Picture::from_grey(100, 2, &[0u8, 1].map(|_| (0..100).collect::<Vec<u8>>()).concat()).unwrap();
+        let few =
+            Picture::from_grey(100, 2, &[0u8, 1].map(|_| (0..100).collect::<Vec<u8>>()).concat())
+                .unwrap();
         assert_eq!(few.in_few_colours(), few);
-        let many = Picture::from_rgb(32, 32, (0..32 * 32 * 3).map(|i| (i / 3 * 7 + i % 3 * 31) as u8).collect()).unwrap();
-        let colours = |picture: &Picture| picture.rgb().chunks(3).collect::<std::collections::BTreeSet<_>>().len();
+        let many = Picture::from_rgb(
+            32,
+            32,
+            (0..32 * 32 * 3).map(|i| (i / 3 * 7 + i % 3 * 31) as u8).collect(),
+        )
+        .unwrap();
+        let colours = |picture: &Picture| {
+            picture.rgb().chunks(3).collect::<std::collections::BTreeSet<_>>().len()
+        };
         assert!(colours(&many.in_few_colours()) <= 255);
     }
 

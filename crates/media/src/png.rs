@@ -24,7 +24,8 @@ pub fn encode(picture: &Picture) -> Vec<u8> {
 /// When the file cannot be written.
 pub fn write(picture: &Picture, path: &Path) -> Result<(), MediaError> {
     let mut file = WholeFile::create(path)?;
-    write_to(picture, &mut file).map_err(|e| MediaError::io(path, "write", std::io::Error::other(e)))?;
+    write_to(picture, &mut file)
+        .map_err(|e| MediaError::io(path, "write", std::io::Error::other(e)))?;
     file.finish()
 }
 
@@ -39,17 +40,23 @@ pub enum Pixels<'a> {
     Rgb(&'a [u8]),
 }
 
-/// The bytes of a PNG file, made quickly rather than small: for frames that are sent to a viewer as they come
-/// (docs/results/serve.md has times and sizes).
+/// The bytes of a PNG file, made quickly rather than small: for frames that are sent to a viewer as
+/// they come (docs/results/serve.md has times and sizes).
 ///
 /// # Errors
 /// When the pixels are not those of `width * height` or there are none.
-pub fn encode_quickly(width: usize, height: usize, pixels: Pixels<'_>) -> Result<Vec<u8>, MediaError> {
-    let failed = |e: png::EncodingError| MediaError::Size(format!("no PNG of {width}x{height}: {e}"));
+pub fn encode_quickly(
+    width: usize,
+    height: usize,
+    pixels: Pixels<'_>,
+) -> Result<Vec<u8>, MediaError> {
+    let failed =
+        |e: png::EncodingError| MediaError::Size(format!("no PNG of {width}x{height}: {e}"));
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_depth(png::BitDepth::Eight);
-    // Near walls and floors rows repeat; runs of zeros are nearly all that the quickest coder finds.
+    // Near walls and floors rows repeat; runs of zeros are nearly all that the quickest coder
+    // finds.
     encoder.set_filter(png::Filter::Up);
     encoder.set_deflate_compression(png::DeflateCompression::FdeflateUltraFast);
     let data = match pixels {
@@ -92,8 +99,9 @@ fn write_to(picture: &Picture, out: impl std::io::Write) -> Result<(), png::Enco
     writer.finish()
 }
 
-/// The colours of a picture, ordered, and the index of each pixel among them; `None` if there are more than 256. Frames
-/// of the engine have no more: their files become half as large without any loss.
+/// The colours of a picture, ordered, and the index of each pixel among them; `None` if there are
+/// more than 256. Frames of the engine have no more: their files become half as large without any
+/// loss.
 fn indexed(picture: &Picture) -> Option<(Vec<u8>, Vec<u8>)> {
     let mut colours = std::collections::BTreeMap::new();
     for pixel in picture.rgb().chunks_exact(3) {
@@ -120,7 +128,10 @@ pub fn read(path: &Path) -> Result<Picture, MediaError> {
 /// As [`read`].
 pub fn decode(bytes: &[u8], name: &Path) -> Result<Picture, MediaError> {
     let bad = |e: png::DecodingError| MediaError::format(name, format!("is no readable PNG: {e}"));
-    let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), png::Limits { bytes: 512 << 20 });
+    let mut decoder = png::Decoder::new_with_limits(
+        std::io::Cursor::new(bytes),
+        png::Limits { bytes: 512 << 20 },
+    );
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().map_err(bad)?;
     let size = reader
@@ -153,7 +164,9 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         let few = Picture::from_rgb(5, 3, (0..45).map(|i| i * 5).collect()).unwrap();
-        let exactly_256 = Picture::from_grey(256, 2, &[0u8, 1].map(|_| (0..=255).collect::<Vec<u8>>()).concat()).unwrap();
+        let exactly_256 =
+            Picture::from_grey(256, 2, &[0u8, 1].map(|_| (0..=255).collect::<Vec<u8>>()).concat())
+                .unwrap();
         let mut more = exactly_256.clone();
         more.fill(0, 0, 1, 1, [9, 8, 7]);
         for picture in [few, exactly_256, more] {

@@ -3,8 +3,8 @@
 use crate::MediaError;
 use std::str::FromStr;
 
-/// From 0, the smallest files, to 100, pictures as good as exact. Every frame of a film is as exact as every other, whatever happens in
-/// it: the size follows.
+/// From 0, the smallest files, to 100, pictures as good as exact. Every frame of a film is as exact
+/// as every other, whatever happens in it: the size follows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Quality(u8);
 
@@ -33,6 +33,8 @@ impl FromStr for Quality {
 
     fn from_str(text: &str) -> Result<Quality, MediaError> {
         let given = text.parse::<u8>().ok().filter(|value| *value <= 100);
-        given.map(Quality).ok_or_else(|| MediaError::Size(format!("a film cannot have the quality {text}; give 0 to 100")))
+        given.map(Quality).ok_or_else(|| {
+            MediaError::Size(format!("a film cannot have the quality {text}; give 0 to 100"))
+        })
     }
 }

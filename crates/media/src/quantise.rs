@@ -26,10 +26,12 @@ impl Counted {
     }
 }
 
-/// Reduces a picture to a palette: exact where the picture has few colours, else by median cut (Heckbert, *Color image
-/// quantization for frame buffer display*, SIGGRAPH 1982) of its exact histogram.
+/// Reduces a picture to a palette: exact where the picture has few colours, else by median cut
+/// (Heckbert, *Color image quantization for frame buffer display*, SIGGRAPH 1982) of its exact
+/// histogram.
 pub(crate) fn quantise(picture: &Picture) -> Quantised {
-    let packed: Vec<u32> = picture.rgb().chunks_exact(3).map(|p| u32::from_be_bytes([0, p[0], p[1], p[2]])).collect();
+    let packed: Vec<u32> =
+        picture.rgb().chunks_exact(3).map(|p| u32::from_be_bytes([0, p[0], p[1], p[2]])).collect();
     let mut sorted = packed.clone();
     sorted.sort_unstable();
     let mut colours: Vec<Counted> = Vec::new();
@@ -40,7 +42,10 @@ pub(crate) fn quantise(picture: &Picture) -> Quantised {
         }
     }
     let (palette, index_of) = if colours.len() <= MAX_COLOURS {
-        (colours.iter().map(|c| [c.channel(0), c.channel(1), c.channel(2)]).collect(), (0..colours.len() as u8).collect())
+        (
+            colours.iter().map(|c| [c.channel(0), c.channel(1), c.channel(2)]).collect(),
+            (0..colours.len() as u8).collect(),
+        )
     } else {
         median_cut(&colours)
     };
@@ -49,7 +54,9 @@ pub(crate) fn quantise(picture: &Picture) -> Quantised {
     let mut last = (u32::MAX, 0);
     for &colour in &packed {
         if colour != last.0 {
-            let at = colours.binary_search_by_key(&colour, |c| c.packed).expect("every colour was counted");
+            let at = colours
+                .binary_search_by_key(&colour, |c| c.packed)
+                .expect("every colour was counted");
             last = (colour, index_of[at]);
         }
         indices.push(last.1);
@@ -57,14 +64,19 @@ pub(crate) fn quantise(picture: &Picture) -> Quantised {
     Quantised { palette, indices }
 }
 
-/// Cuts the colours into boxes of about equal weight. Gives the mean colour of each box and the box of each colour.
+/// Cuts the colours into boxes of about equal weight. Gives the mean colour of each box and the box
+/// of each colour.
 fn median_cut(colours: &[Counted]) -> (Vec<[u8; 3]>, Vec<u8>) {
     let mut order: Vec<u32> = (0..colours.len() as u32).collect();
     // A box is a range of `order`; the one of the largest spread times weight is cut next.
     let mut boxes: Vec<(usize, usize)> = vec![(0, order.len())];
     let mut costs: Vec<(u64, u32)> = vec![spread(colours, &order)];
     while boxes.len() < MAX_COLOURS {
-        let Some((at, &(cost, channel))) = costs.iter().enumerate().max_by_key(|(i, c)| (c.0, usize::MAX - i)) else { break };
+        let Some((at, &(cost, channel))) =
+            costs.iter().enumerate().max_by_key(|(i, c)| (c.0, usize::MAX - i))
+        else {
+            break;
+        };
         if cost == 0 {
             break;
         }
@@ -104,8 +116,8 @@ fn median_cut(colours: &[Counted]) -> (Vec<[u8; 3]>, Vec<u8>) {
     (palette, index_of)
 }
 
-/// How much a box wants to be cut, and along which channel: the square of its widest side times the root of its weight,
-/// so that large plain areas do not take all colours from small bright things.
+/// How much a box wants to be cut, and along which channel: the square of its widest side times the
+/// root of its weight, so that large plain areas do not take all colours from small bright things.
 fn spread(colours: &[Counted], part: &[u32]) -> (u64, u32) {
     let mut widest = (0u64, 0);
     for channel in 0..3 {
@@ -138,9 +150,12 @@ mod tests {
 
     #[test]
     fn few_colours_are_exact_and_many_are_close() {
-        let few = Picture::from_rgb(17, 15, (0..255u8).flat_map(|i| [i, 255 - i, i / 2]).collect()).unwrap();
+        let few = Picture::from_rgb(17, 15, (0..255u8).flat_map(|i| [i, 255 - i, i / 2]).collect())
+            .unwrap();
         assert_eq!(worst_error(&few), 0);
-        let many = (0..64 * 64u32).flat_map(|i| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, (i % 7 * 36) as u8]).collect();
+        let many = (0..64 * 64u32)
+            .flat_map(|i| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, (i % 7 * 36) as u8])
+            .collect();
         let worst = worst_error(&Picture::from_rgb(64, 64, many).unwrap());
         assert!(worst > 0 && worst < 40, "worst error {worst}");
     }

@@ -2,19 +2,28 @@
 
 use std::ffi::OsStr;
 
-/// A word that POSIX shells, bash and zsh read as it is: unchanged where nothing in it is special, in single quotes otherwise, and
-/// as `$'...'` where it holds control characters or bytes that are no UTF-8.
+/// A word that POSIX shells, bash and zsh read as it is: unchanged where nothing in it is special,
+/// in single quotes otherwise, and as `$'...'` where it holds control characters or bytes that are
+/// no UTF-8.
 #[must_use]
 pub fn quote(word: impl AsRef<OsStr>) -> String {
     let word = word.as_ref();
     match word.to_str() {
-        Some(text) if !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_./=,+:@%".contains(c)) => {
+        Some(text)
+            if !text.is_empty()
+                && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_./=,+:@%".contains(c)) =>
+        {
             text.to_owned()
         }
-        Some(text) if !text.contains(char::is_control) => format!("'{}'", text.replace('\'', "'\\''")),
+        Some(text) if !text.contains(char::is_control) => {
+            format!("'{}'", text.replace('\'', "'\\''"))
+        }
         _ => {
-            let plain = |byte: u8| byte.is_ascii_graphic() && !b"'\\".contains(&byte) || byte == b' ';
-            let letter = |byte: &u8| if plain(*byte) { char::from(*byte).to_string() } else { format!("\\x{byte:02x}") };
+            let plain =
+                |byte: u8| byte.is_ascii_graphic() && !b"'\\".contains(&byte) || byte == b' ';
+            let letter = |byte: &u8| {
+                if plain(*byte) { char::from(*byte).to_string() } else { format!("\\x{byte:02x}") }
+            };
             // Each byte is written with two digits, so that no digit after it joins it.
             format!("$'{}'", word.as_encoded_bytes().iter().map(letter).collect::<String>())
         }

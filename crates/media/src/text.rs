@@ -12,9 +12,12 @@ pub fn width(text: &str) -> usize {
     text.chars().count() * get_raster_width(FontWeight::Regular, RasterHeight::Size16)
 }
 
-/// Writes one line, its upper left corner at (`x`, `y`). Latin characters are known, others become `?`.
+/// Writes one line, its upper left corner at (`x`, `y`). Latin characters are known, others become
+/// `?`.
 pub fn draw(picture: &mut Picture, x: isize, y: isize, text: &str, colour: [u8; 3]) {
-    each_pixel(text, |column, row, share| picture.blend(x + column as isize, y + row as isize, colour, share));
+    each_pixel(text, |column, row, share| {
+        picture.blend(x + column as isize, y + row as isize, colour, share)
+    });
 }
 
 /// Writes one line with a dark shadow, so that it can be read on any background.

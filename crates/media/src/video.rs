@@ -1,7 +1,8 @@
 //! MP4 video: H.264 by `rusty_h264-encoder`, put into its container by `muxide`.
 //!
-//! Both are Rust alone: they build wherever the rest does. `docs/tried/video_encoders.md` compares them with others. The quantiser is
-//! constant: a flash or a cut costs bytes, never the pictures after it.
+//! Both are Rust alone: they build wherever the rest does. `docs/tried/video_encoders.md` compares
+//! them with others. The quantiser is constant: a flash or a cut costs bytes, never the pictures
+//! after it.
 
 mod segments;
 
@@ -31,10 +32,12 @@ pub(crate) struct VideoWriter {
 }
 
 impl VideoWriter {
-    /// Begins a video of `frames_per_second.0 / frames_per_second.1` frames a second: (35, 4) for a policy's steps.
+    /// Begins a video of `frames_per_second.0 / frames_per_second.1` frames a second: (35, 4) for a
+    /// policy's steps.
     ///
     /// # Errors
-    /// When the file cannot be made, a side is 0 or above 3072, or the rate is not between 1/10 and 1000.
+    /// When the file cannot be made, a side is 0 or above 3072, or the rate is not between 1/10
+    /// and 1000.
     pub fn create(
         path: &Path,
         width: usize,
@@ -43,14 +46,23 @@ impl VideoWriter {
         quality: Quality,
     ) -> Result<VideoWriter, MediaError> {
         if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
-            return Err(MediaError::Size(format!("a video cannot be {width}x{height}; its sides are 1 to {MAX_SIDE}")));
+            return Err(MediaError::Size(format!(
+                "a video cannot be {width}x{height}; its sides are 1 to {MAX_SIDE}"
+            )));
         }
         let (frames, seconds) = frames_per_second;
-        if frames == 0 || seconds == 0 || frames > 1000 * seconds.min(1000) || seconds > 10 * frames.min(1000) {
-            return Err(MediaError::Size(format!("a video cannot have {frames}/{seconds} frames a second; give 1/10 to 1000")));
+        if frames == 0
+            || seconds == 0
+            || frames > 1000 * seconds.min(1000)
+            || seconds > 10 * frames.min(1000)
+        {
+            return Err(MediaError::Size(format!(
+                "a video cannot have {frames}/{seconds} frames a second; give 1/10 to 1000"
+            )));
         }
         let rate = f64::from(frames) / f64::from(seconds);
-        // Colour is stored for squares of 2 x 2 pixels: an odd side shows one more column or row, a copy of the last.
+        // Colour is stored for squares of 2 x 2 pixels: an odd side shows one more column or row, a
+        // copy of the last.
         let (even_width, even_height) = (width.next_multiple_of(2), height.next_multiple_of(2));
         let config = EncoderConfig {
             level_idc: level(width.div_ceil(16) * height.div_ceil(16), rate),
@@ -63,13 +75,24 @@ impl VideoWriter {
             preset: Preset::Balanced,
             ..EncoderConfig::new(even_width, even_height)
         };
-        let refused = |e: String| MediaError::Size(format!("no video of {width}x{height} can be encoded: {e}"));
+        let refused = |e: String| {
+            MediaError::Size(format!("no video of {width}x{height} can be encoded: {e}"))
+        };
         let segments = Segments::new(config).map_err(refused)?;
         let muxer = MuxerBuilder::new(WholeFile::create(path)?)
             .video(VideoCodec::H264, even_width as u32, even_height as u32, rate)
             .build()
             .map_err(|e| refused(e.to_string()))?;
-        Ok(VideoWriter { path: path.to_owned(), segments, muxer, width, height, seconds: 1.0 / rate, frames: 0, written: 0 })
+        Ok(VideoWriter {
+            path: path.to_owned(),
+            segments,
+            muxer,
+            width,
+            height,
+            seconds: 1.0 / rate,
+            frames: 0,
+            written: 0,
+        })
     }
 
     /// Adds a frame.
@@ -86,7 +109,8 @@ impl VideoWriter {
                 self.height
             )));
         }
-        let mut frame = YuvFrame::black(self.width.next_multiple_of(2), self.height.next_multiple_of(2));
+        let mut frame =
+            YuvFrame::black(self.width.next_multiple_of(2), self.height.next_multiple_of(2));
         fill(&mut frame, picture);
         self.frames += 1;
         let coded = self.segments.push(frame).map_err(|e| self.failed(e))?;
@@ -100,7 +124,9 @@ impl VideoWriter {
     fn write(&mut self, coded: &[Unit]) -> Result<(), MediaError> {
         for (unit, stands_alone) in coded {
             let time = f64::from(self.written) * self.seconds;
-            self.muxer.write_video(time, unit, *stands_alone).map_err(|e| self.failed(e.to_string()))?;
+            self.muxer
+                .write_video(time, unit, *stands_alone)
+                .map_err(|e| self.failed(e.to_string()))?;
             self.written += 1;
         }
         Ok(())
@@ -112,7 +138,10 @@ impl VideoWriter {
     /// When there was no frame or the file cannot be written.
     pub fn finish(mut self) -> Result<(), MediaError> {
         if self.frames == 0 {
-            return Err(MediaError::Size(format!("{}: a video needs at least one frame", self.path.display())));
+            return Err(MediaError::Size(format!(
+                "{}: a video needs at least one frame",
+                self.path.display()
+            )));
         }
         let coded = self.segments.finish().map_err(|e| self.failed(e))?;
         self.write(&coded)?;
@@ -146,7 +175,8 @@ fn fill(frame: &mut YuvFrame, picture: &Picture) {
     }
 }
 
-/// The least level (ITU-T H.264, table A-1) that holds a picture of so many macroblocks at so many frames a second.
+/// The least level (ITU-T H.264, table A-1) that holds a picture of so many macroblocks at so many
+/// frames a second.
 fn level(macroblocks: usize, rate: f64) -> u8 {
     const LEVELS: [(u8, usize, f64); 7] = [
         (30, 1620, 40_500.0),
@@ -157,7 +187,9 @@ fn level(macroblocks: usize, rate: f64) -> u8 {
         (51, 36_864, 983_040.0),
         (52, 36_864, 2_073_600.0),
     ];
-    let fits = |(_, picture, second): &&(u8, usize, f64)| macroblocks <= *picture && macroblocks as f64 * rate <= *second;
+    let fits = |(_, picture, second): &&(u8, usize, f64)| {
+        macroblocks <= *picture && macroblocks as f64 * rate <= *second
+    };
     LEVELS.iter().find(fits).map_or(52, |(number, _, _)| *number)
 }
 

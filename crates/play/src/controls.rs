@@ -77,7 +77,8 @@ impl Key {
 
 /// Degrees that a picture point of mouse movement turns.
 const DEGREES_A_POINT: f32 = 0.12;
-/// Degrees of mouse movement in a step that press a turn or look button where the action space has no finer way.
+/// Degrees of mouse movement in a step that press a turn or look button where the action space has
+/// no finer way.
 const DEGREES_A_PRESS: f32 = 1.5;
 /// Degrees a tic that keys turn and look where the action space has no buttons for that.
 const KEY_DEGREES: f32 = 3.5;
@@ -119,12 +120,16 @@ impl Controls {
         self.look -= down * DEGREES_A_POINT;
     }
 
-    /// The action of the next step of `tics` tics. In each group of exclusive buttons the latest key wins. Turning goes by
-    /// the finest way that the space has; what the mouse asked for beyond what a step can turn waits for the next.
+    /// The action of the next step of `tics` tics. In each group of exclusive buttons the latest
+    /// key wins. Turning goes by the finest way that the space has; what the mouse asked for beyond
+    /// what a step can turn waits for the next.
     pub fn action(&mut self, space: &ActionSpace, tics: u32) -> (Vec<u8>, Vec<f32>) {
-        let mut keys: Vec<Key> = self.tapped.drain(..).filter(|key| !self.held.contains(key)).collect();
+        let mut keys: Vec<Key> =
+            self.tapped.drain(..).filter(|key| !self.held.contains(key)).collect();
         keys.extend(&self.held);
-        let has = |name: &str| space.groups.iter().any(|group| group.buttons.iter().any(|(known, _)| *known == name));
+        let has = |name: &str| {
+            space.groups.iter().any(|group| group.buttons.iter().any(|(known, _)| *known == name))
+        };
         let mut names: Vec<&str> = Vec::new();
         for key in &keys {
             names.push(match key {
@@ -140,7 +145,9 @@ impl Controls {
                 DeltaButton::Turn => (&mut self.turn, "TURN_LEFT", "TURN_RIGHT"),
                 DeltaButton::Look => (&mut self.look, "LOOK_DOWN", "LOOK_UP"),
             };
-            let keyed = f32::from(i8::from(names.contains(&more)) - i8::from(names.contains(&less))) * KEY_DEGREES;
+            let keyed =
+                f32::from(i8::from(names.contains(&more)) - i8::from(names.contains(&less)))
+                    * KEY_DEGREES;
             let limit = DELTA_DEGREES as f32;
             let a_tic = (*wanted / tics.max(1) as f32 + keyed).clamp(-limit, limit);
             *wanted = (*wanted - (a_tic - keyed) * tics as f32).clamp(-90.0, 90.0);
@@ -158,7 +165,10 @@ impl Controls {
             }
         }
         let choice = |group: &hasard_envs::ActionGroup| {
-            let latest = names.iter().rev().find_map(|name| group.buttons.iter().position(|(known, _)| known == name));
+            let latest = names
+                .iter()
+                .rev()
+                .find_map(|name| group.buttons.iter().position(|(known, _)| known == name));
             latest.map_or(0, |at| at as u8 + 1)
         };
         (space.groups.iter().map(choice).collect(), deltas)

@@ -25,7 +25,13 @@ impl Film {
     ///
     /// # Errors
     /// When the file's name ends neither in .mp4 nor in .gif, or it cannot be made.
-    pub fn begin(stage: &Stage, path: &Path, size: FrameSize, kinds: &[ViewKind], every: u32) -> Result<Film, PlayError> {
+    pub fn begin(
+        stage: &Stage,
+        path: &Path,
+        size: FrameSize,
+        kinds: &[ViewKind],
+        every: u32,
+    ) -> Result<Film, PlayError> {
         Film::begin_at(Quality::default(), stage, path, size, kinds, every)
     }
 
@@ -43,9 +49,22 @@ impl Film {
     ) -> Result<Film, PlayError> {
         let mut views = Views::new(stage, size, kinds)?;
         let first = moment(&mut views, stage);
-        let mut writer = AnimationWriter::create(path, first.width(), first.height(), (TICS, every.max(1)), quality)?;
+        let mut writer = AnimationWriter::create(
+            path,
+            first.width(),
+            first.height(),
+            (TICS, every.max(1)),
+            quality,
+        )?;
         writer.push(&first)?;
-        Ok(Film { views, writer, every: every.max(1), since: 0, frames: 1, size: (first.width(), first.height()) })
+        Ok(Film {
+            views,
+            writer,
+            every: every.max(1),
+            since: 0,
+            frames: 1,
+            size: (first.width(), first.height()),
+        })
     }
 
     /// A tic has passed. The episode's last moment is always shown.
@@ -76,6 +95,9 @@ impl Film {
 fn moment(views: &mut Views, stage: &Stage) -> Picture {
     let episode = stage.env().episode();
     let seconds = f64::from(stage.world().tic) / f64::from(TICS);
-    let line = format!("{seconds:5.1} s   return {:.2}   cost {:.2}", episode.episode_return, episode.cost);
+    let line = format!(
+        "{seconds:5.1} s   return {:.2}   cost {:.2}",
+        episode.episode_return, episode.cost
+    );
     with_footer(&views.draw(stage), &line)
 }

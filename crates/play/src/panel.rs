@@ -45,8 +45,8 @@ impl Panel {
     }
 }
 
-/// The picture with the panel under it: first line time, return and cost, second line the message, between them a bar of
-/// the cost against the budget.
+/// The picture with the panel under it: first line time, return and cost, second line the message,
+/// between them a bar of the cost against the budget.
 #[must_use]
 pub fn with_panel(game: &Picture, panel: &Panel) -> Picture {
     let height = game.height() + Panel::HEIGHT;
@@ -67,8 +67,18 @@ pub fn with_panel(game: &Picture, panel: &Panel) -> Picture {
     let bar_width = game.width().saturating_sub(16);
     picture.fill(8, bar_top, bar_width, 6, EMPTY);
     // The budget ends at three quarters of the bar, so that going beyond can be seen.
-    let scale = if panel.budget > 0.0 { panel.cost / panel.budget * 0.75 } else { f64::from(u8::from(over)) };
-    picture.fill(8, bar_top, (bar_width as f64 * scale.clamp(0.0, 1.0)) as usize, 6, if over { BAD } else { GOOD });
+    let scale = if panel.budget > 0.0 {
+        panel.cost / panel.budget * 0.75
+    } else {
+        f64::from(u8::from(over))
+    };
+    picture.fill(
+        8,
+        bar_top,
+        (bar_width as f64 * scale.clamp(0.0, 1.0)) as usize,
+        6,
+        if over { BAD } else { GOOD },
+    );
     if panel.budget > 0.0 {
         picture.fill(8 + bar_width * 3 / 4, bar_top - 2, 2, 10, INK);
     }

@@ -7,7 +7,8 @@ use hasard_media::episode::{EpisodeFile, Header, Outcome, SCENARIO};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a recording says of its maps where they were not the built-in ones. Which files those were is the player's to know.
+/// What a recording says of its maps where they were not the built-in ones. Which files those were
+/// is the player's to know.
 const FROM_FILES: &str = "from files";
 
 /// The path that an own scenario was read from.
@@ -26,18 +27,34 @@ pub fn option_names(options: &EnvOptions) -> BTreeMap<String, String> {
     let early = options.early_creatures.then(|| ("early-creatures", "true".to_owned()));
     // The action space of other rules than the world's; an agent keeps its own.
     let actions = options.actions_of.filter(|&whose| whose != (options.rules, options.hard));
-    let actions = actions.map(|(rules, hard)| ("actions-of", format!("{rules} {}", if hard { "hard" } else { "soft" })));
+    let actions = actions.map(|(rules, hard)| {
+        ("actions-of", format!("{rules} {}", if hard { "hard" } else { "soft" }))
+    });
     // An own scenario goes with the file that it is told in.
     let own = options.scenario.and_then(|scenario| scenario.file);
-    let own = own.into_iter().flat_map(|file| [(SCENARIO, file.text.to_owned()), (SCENARIO_PATH, file.path.to_owned())]);
-    always.into_iter().chain(own).chain(early).chain(actions).chain(maps).map(|(name, value)| (name.to_owned(), value)).collect()
+    let own = own
+        .into_iter()
+        .flat_map(|file| [(SCENARIO, file.text.to_owned()), (SCENARIO_PATH, file.path.to_owned())]);
+    always
+        .into_iter()
+        .chain(own)
+        .chain(early)
+        .chain(actions)
+        .chain(maps)
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
 }
 
-/// The options that an episode file names, over those that only concern looks (size, pictures), which `looks` gives.
+/// The options that an episode file names, over those that only concern looks (size, pictures),
+/// which `looks` gives.
 ///
 /// # Errors
 /// When the file names an option that this version does not know, or a value that it cannot take.
-pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, file: &Path) -> Result<EnvOptions, PlayError> {
+pub fn options_from_names(
+    names: &BTreeMap<String, String>,
+    looks: &EnvOptions,
+    file: &Path,
+) -> Result<EnvOptions, PlayError> {
     let plain = EnvOptions::default();
     let mut options = EnvOptions {
         rules: plain.rules,
@@ -54,17 +71,21 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
             None => "was recorded on maps from files: name them by --maps",
             Some(_) => "was recorded on the built-in maps: leave --maps out",
         };
-        return Err(MediaError::Format { path: file.to_owned(), problem: problem.to_owned() }.into());
+        return Err(
+            MediaError::Format { path: file.to_owned(), problem: problem.to_owned() }.into()
+        );
     }
     options.scenario = None;
     if let Some(text) = names.get(SCENARIO) {
         let path = names.get(SCENARIO_PATH).map_or("scenario.toml", String::as_str);
-        options.scenario = Some(own::recall(path, text).map_err(|error| in_file(file, &error.into()))?);
+        options.scenario =
+            Some(own::recall(path, text).map_err(|error| in_file(file, &error.into()))?);
     }
     for (name, value) in names {
         let unknown = || {
-            let problem =
-                format!("was recorded with {name} = {value}, which this version does not know: use the hasard that recorded it");
+            let problem = format!(
+                "was recorded with {name} = {value}, which this version does not know: use the hasard that recorded it"
+            );
             MediaError::Format { path: file.to_owned(), problem }
         };
         match name.as_str() {
@@ -72,7 +93,11 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
             "early-creatures" => options.early_creatures = value.parse().map_err(|_| unknown())?,
             "actions-of" => {
                 let (rules, constraint) = value.split_once(' ').ok_or_else(unknown)?;
-                let hard = ["soft", "hard"].iter().position(|name| *name == constraint).ok_or_else(unknown)? == 1;
+                let hard = ["soft", "hard"]
+                    .iter()
+                    .position(|name| *name == constraint)
+                    .ok_or_else(unknown)?
+                    == 1;
                 options.actions_of = Some((rules.parse().map_err(|_| unknown())?, hard));
             }
             "maps" if value == FROM_FILES => {}
@@ -91,8 +116,11 @@ pub fn options_from_names(names: &BTreeMap<String, String>, looks: &EnvOptions, 
 
 /// An error that concerns what a file says.
 fn in_file(name: &Path, error: &PlayError) -> PlayError {
-    MediaError::Format { path: name.to_owned(), problem: format!("was recorded otherwise than this version can play: {error}") }
-        .into()
+    MediaError::Format {
+        path: name.to_owned(),
+        problem: format!("was recorded otherwise than this version can play: {error}"),
+    }
+    .into()
 }
 
 /// Writes down an episode while it is played.
@@ -154,12 +182,17 @@ impl Recorder {
     }
 }
 
-/// Ends a recording and keeps it in a folder, as `ENV-seedN.episode` or, since an episode played again is another result,
-/// under the next free name. Gives its path.
+/// Ends a recording and keeps it in a folder, as `ENV-seedN.episode` or, since an episode played
+/// again is another result, under the next free name. Gives its path.
 ///
 /// # Errors
 /// When it cannot be written.
-pub fn keep_episode(folder: &Path, env: &Env, seed: u64, recorder: Recorder) -> Result<PathBuf, PlayError> {
+pub fn keep_episode(
+    folder: &Path,
+    env: &Env,
+    seed: u64,
+    recorder: Recorder,
+) -> Result<PathBuf, PlayError> {
     let mut path = folder.join(format!("{}-seed{seed}.episode", env.id()));
     for attempt in 2..100_000 {
         if !path.exists() {
@@ -187,7 +220,8 @@ impl Replay {
     /// When the file's environment, options or actions are unknown to this version.
     pub fn new(file: EpisodeFile, name: &Path, looks: &EnvOptions) -> Result<Replay, PlayError> {
         let options = options_from_names(&file.header().options, looks, name)?;
-        let mut stage = Stage::new(&file.header().env, &options).map_err(|error| in_file(name, &error))?;
+        let mut stage =
+            Stage::new(&file.header().env, &options).map_err(|error| in_file(name, &error))?;
         let space = stage.env().action_space();
         file.check_actions(&space.sizes(), space.deltas.len(), name)?;
         stage.reset(file.header().seed);
@@ -211,10 +245,12 @@ impl Replay {
     /// Whether all recorded actions are played or the episode is over.
     #[must_use]
     pub fn over(&self) -> bool {
-        self.stage.ended() || self.stage.wants_action() && self.begun > self.file.header().steps as usize
+        self.stage.ended()
+            || self.stage.wants_action() && self.begun > self.file.header().steps as usize
     }
 
-    /// Goes on to the end of a policy step, counted from 1, or to where the recording ends before it.
+    /// Goes on to the end of a policy step, counted from 1, or to where the recording ends before
+    /// it.
     pub fn skip_to(&mut self, step: u32) {
         while self.stage.env().episode().length < step && self.tic() {}
     }
@@ -240,8 +276,8 @@ impl Replay {
         Ok(())
     }
 
-    /// After the replay: how it differs from what was recorded, as one line; `None` if it does not, or if nothing is known
-    /// of the recorded end.
+    /// After the replay: how it differs from what was recorded, as one line; `None` if it does not,
+    /// or if nothing is known of the recorded end.
     #[must_use]
     pub fn difference(&self) -> Option<String> {
         let outcome = self.file.header().outcome.as_ref()?;
@@ -258,7 +294,11 @@ impl Replay {
                 episode.cost
             ));
         }
-        (outcome.state_hash.is_some_and(|recorded| recorded != hash))
-            .then(|| format!("{name}: ends in another state than version {} recorded", self.file.header().program))
+        (outcome.state_hash.is_some_and(|recorded| recorded != hash)).then(|| {
+            format!(
+                "{name}: ends in another state than version {} recorded",
+                self.file.header().program
+            )
+        })
     }
 }

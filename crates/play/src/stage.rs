@@ -6,9 +6,10 @@ use hasard_envs::{Env, EnvOptions, Snapshot, Step};
 
 /// An environment whose agent acts every `frame_skip` tics while an audience sees every tic.
 ///
-/// Two environments of the same episode run side by side: the one that counts, stepped as the task says, and one that is
-/// stepped tic by tic with the same action held, for the eye. Worlds are deterministic, so both are always at the same
-/// place at the end of a step; rewards, costs and what the agent sees come from the first alone.
+/// Two environments of the same episode run side by side: the one that counts, stepped as the task
+/// says, and one that is stepped tic by tic with the same action held, for the eye. Worlds are
+/// deterministic, so both are always at the same place at the end of a step; rewards, costs and
+/// what the agent sees come from the first alone.
 pub struct Stage {
     env: Env,
     shown: Env,
@@ -38,11 +39,16 @@ impl Stage {
         Stage::shown_as(id, options, options)
     }
 
-    /// The same, drawn for the audience as `looks` says (its pictures, depth and colours) and for the agent as `options` says.
+    /// The same, drawn for the audience as `looks` says (its pictures, depth and colours) and for
+    /// the agent as `options` says.
     ///
     /// # Errors
     /// As [`Stage::new`].
-    pub fn shown_as(id: &str, options: &EnvOptions, looks: &EnvOptions) -> Result<Stage, PlayError> {
+    pub fn shown_as(
+        id: &str,
+        options: &EnvOptions,
+        looks: &EnvOptions,
+    ) -> Result<Stage, PlayError> {
         let shown = EnvOptions {
             frame_skip: 1,
             frame_stack: 1,
@@ -56,7 +62,8 @@ impl Stage {
         Ok(Stage { env, shown, tics: 0, command: Command::default(), last: Step::default() })
     }
 
-    /// Another stage of the same kind, at the start of the episode of seed 0; map, pictures and tables are shared.
+    /// Another stage of the same kind, at the start of the episode of seed 0; map, pictures and
+    /// tables are shared.
     #[must_use]
     pub fn sibling(&self) -> Stage {
         let (env, shown) = (self.env.sibling(), self.shown.sibling());

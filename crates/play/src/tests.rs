@@ -13,7 +13,8 @@ fn small_random(state: &mut u64) -> usize {
 
 fn random_action(space: &ActionSpace, state: &mut u64) -> (Vec<u8>, Vec<f32>) {
     let actions = space.sizes().iter().map(|size| (small_random(state) % size) as u8).collect();
-    let deltas = space.deltas.iter().map(|_| (small_random(state) % 201) as f32 / 100.0 - 1.0).collect();
+    let deltas =
+        space.deltas.iter().map(|_| (small_random(state) % 201) as f32 / 100.0 - 1.0).collect();
     (actions, deltas)
 }
 
@@ -49,7 +50,11 @@ fn what_is_shown_tic_by_tic_is_what_counts() {
                     }
                 };
                 assert!(got == expected && tics <= 4, "{id} hard {hard} step {step}");
-                assert_eq!(fingerprint(stage.world()), fingerprint(alone.world()), "{id} hard {hard} step {step}");
+                assert_eq!(
+                    fingerprint(stage.world()),
+                    fingerprint(alone.world()),
+                    "{id} hard {hard} step {step}"
+                );
             }
         }
     }
@@ -70,7 +75,8 @@ fn a_moment_come_back_to_goes_on_as_it_did() {
         }
         (fingerprint(stage.world()), stage.env().episode().length)
     };
-    let script: Vec<_> = (0..20).map(|_| random_action(stage.env().action_space(), &mut state)).collect();
+    let script: Vec<_> =
+        (0..20).map(|_| random_action(stage.env().action_space(), &mut state)).collect();
     go_on(&mut stage, &script[..8]);
     // In the middle of a step.
     assert!(!stage.wants_action() && !stage.ended());
@@ -113,7 +119,10 @@ fn a_replay_ends_where_the_recording_did() {
             tics += 1;
         }
         assert_eq!(replay.stage().env().episode().length, recorded);
-        assert!(tics <= recorded * frame_skip && tics > (recorded - 1) * frame_skip, "{tics} tics, {recorded} steps");
+        assert!(
+            tics <= recorded * frame_skip && tics > (recorded - 1) * frame_skip,
+            "{tics} tics, {recorded} steps"
+        );
         assert_eq!(replay.difference(), None);
     }
 }
@@ -125,7 +134,8 @@ fn a_replay_that_differs_says_so() {
     outcome.state_hash = Some(1);
     file.set_outcome(outcome.clone());
     let play = |file: &EpisodeFile| {
-        let mut replay = Replay::new(file.clone(), Path::new("a.episode"), &EnvOptions::default()).unwrap();
+        let mut replay =
+            Replay::new(file.clone(), Path::new("a.episode"), &EnvOptions::default()).unwrap();
         while replay.tic() {}
         replay.difference()
     };
@@ -146,9 +156,18 @@ fn files_of_other_versions_are_refused_by_name() {
         Replay::new(file, Path::new("f.episode"), &EnvOptions::default()).err().unwrap().to_string()
     };
     assert!(refused(|header| header.env = "LavaLevel9-v0".into()).contains("LavaLevel9-v0"));
-    assert!(refused(|header| drop(header.options.insert("rules".into(), "mine".into()))).contains("rules = mine"));
-    assert!(refused(|header| drop(header.options.insert("gravity".into(), "2".into()))).contains("gravity = 2"));
-    assert!(refused(|header| drop(header.options.insert("frame-skip".into(), "0".into()))).contains("frame-skip = 0"));
+    assert!(
+        refused(|header| drop(header.options.insert("rules".into(), "mine".into())))
+            .contains("rules = mine")
+    );
+    assert!(
+        refused(|header| drop(header.options.insert("gravity".into(), "2".into())))
+            .contains("gravity = 2")
+    );
+    assert!(
+        refused(|header| drop(header.options.insert("frame-skip".into(), "0".into())))
+            .contains("frame-skip = 0")
+    );
     assert!(refused(|_| ()).contains("sub-action 0 is 9"));
 }
 
@@ -161,13 +180,18 @@ fn options_go_through_names_and_back() {
         frame_skip: 2,
         ..EnvOptions::default()
     };
-    let back = options_from_names(&option_names(&options), &EnvOptions::default(), Path::new("x")).unwrap();
-    assert_eq!((back.rules, back.hard, back.full_actions, back.frame_skip), (options.rules, true, true, 2));
+    let back = options_from_names(&option_names(&options), &EnvOptions::default(), Path::new("x"))
+        .unwrap();
+    assert_eq!(
+        (back.rules, back.hard, back.full_actions, back.frame_skip),
+        (options.rules, true, true, 2)
+    );
 }
 
 #[test]
 fn keys_become_actions() {
-    let space = ActionSpace::of("RemedyRushLevel1-v0".parse().unwrap(), RuleSet::Paper, false, false); // turn, forward, speed, jump
+    let space =
+        ActionSpace::of("RemedyRushLevel1-v0".parse().unwrap(), RuleSet::Paper, false, false); // turn, forward, speed, jump
     let mut controls = Controls::default();
     controls.press(Key::Forward);
     controls.press(Key::TurnLeft);
@@ -189,7 +213,8 @@ fn keys_become_actions() {
 
 #[test]
 fn the_mouse_turns_by_just_as_much_as_it_moved() {
-    let space = ActionSpace::of("RemedyRushLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true);
+    let space =
+        ActionSpace::of("RemedyRushLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true);
     let mut controls = Controls::default();
     controls.move_mouse(500.0, -100.0); // 60 degrees right, 12 up
     let (mut turned, mut looked) = (0.0, 0.0);
@@ -215,7 +240,14 @@ fn views_and_panel_have_their_sizes() {
         stage.tic();
     }
     let size = FrameSize { width: 320, height: 240 };
-    let every = [ViewKind::Colour, ViewKind::Depth, ViewKind::Segmented, ViewKind::Labels, ViewKind::Grey, ViewKind::Automap];
+    let every = [
+        ViewKind::Colour,
+        ViewKind::Depth,
+        ViewKind::Segmented,
+        ViewKind::Labels,
+        ViewKind::Grey,
+        ViewKind::Automap,
+    ];
     let mut views = Views::new(&stage, size, &every).unwrap();
     let all = views.draw(&stage);
     let alone = Views::new(&stage, size, &[]).unwrap().draw(&stage);
@@ -229,7 +261,10 @@ fn views_and_panel_have_their_sizes() {
         let files = views.png_files(stage.world());
         assert_eq!(files.iter().map(|(kind, _)| *kind).collect::<Vec<_>>(), every);
         for ((kind, file), picture) in files.iter().zip(&pictures) {
-            assert!(hasard_media::png::decode(file, Path::new("memory")).unwrap() == *picture, "{kind:?}");
+            assert!(
+                hasard_media::png::decode(file, Path::new("memory")).unwrap() == *picture,
+                "{kind:?}"
+            );
         }
     }
     let panel = Panel::of(&stage, "P: pause");
@@ -242,7 +277,8 @@ fn views_and_panel_have_their_sizes() {
     }
 }
 
-/// The automap beside a view has the map's proportions; alone it takes the size asked for. Both show the player.
+/// The automap beside a view has the map's proportions; alone it takes the size asked for. Both
+/// show the player.
 #[test]
 fn the_automap_shows_the_player() {
     let mut stage = Stage::new("RemedyRushLevel1-v0", &EnvOptions::default()).unwrap();
@@ -250,12 +286,19 @@ fn the_automap_shows_the_player() {
     let size = FrameSize { width: 320, height: 240 };
     let alone = Views::new(&stage, size, &[ViewKind::Automap]).unwrap().draw(&stage);
     assert_eq!((alone.width(), alone.height()), (320, 240));
-    let blue = |picture: &hasard_media::Picture| picture.rgb().chunks_exact(3).filter(|pixel| pixel == &[60, 150, 255]).count();
+    let blue = |picture: &hasard_media::Picture| {
+        picture.rgb().chunks_exact(3).filter(|pixel| pixel == &[60, 150, 255]).count()
+    };
     assert!(blue(&alone) > 10);
-    let beside = Views::new(&stage, size, &[ViewKind::Colour, ViewKind::Automap]).unwrap().draw(&stage);
+    let beside =
+        Views::new(&stage, size, &[ViewKind::Colour, ViewKind::Automap]).unwrap().draw(&stage);
     let [west, south, east, north] = stage.env().extent().map(|side| side as usize as isize);
     let expected = 240 * (east - west) / (north - south);
-    assert!((beside.width() as isize - 320 - expected - 12).abs() <= 2, "{} {expected}", beside.width());
+    assert!(
+        (beside.width() as isize - 320 - expected - 12).abs() <= 2,
+        "{} {expected}",
+        beside.width()
+    );
 }
 
 /// A film has a frame for its first moment, one every so many tics, and the last moment.

@@ -1,7 +1,9 @@
 //! A moment as pictures.
 
 use crate::{PlayError, Stage};
-use hasard_engine::render::{Buffers, FrameScratch, FrameSize, Renderer, SegmentationColours, TopDown};
+use hasard_engine::render::{
+    Buffers, FrameScratch, FrameSize, Renderer, SegmentationColours, TopDown,
+};
 use hasard_engine::world::World;
 use hasard_envs::Env;
 use hasard_media::compose::{Panel, side_by_side};
@@ -51,8 +53,8 @@ pub struct Views {
 }
 
 impl Views {
-    /// Views of a stage, in this order, each of `size`. Beside other views the automap is as high as they are and as wide
-    /// as its map asks for.
+    /// Views of a stage, in this order, each of `size`. Beside other views the automap is as high
+    /// as they are and as wide as its map asks for.
     ///
     /// # Errors
     /// When the size is not drawable.
@@ -62,7 +64,8 @@ impl Views {
         if let (Some(automap), [_, _, ..]) = (&mut views.automap, kinds) {
             let [west, south, east, north] = env.extent().map(i64::from);
             let height = i64::from(size.height);
-            let width = (height * (east - west) / (north - south).max(1)).clamp(height / 4, height * 2) as usize;
+            let width = (height * (east - west) / (north - south).max(1))
+                .clamp(height / 4, height * 2) as usize;
             *automap = (env.top_down(width, height as usize), width, height as usize);
         }
         Ok(views)
@@ -74,11 +77,23 @@ impl Views {
     /// As [`Views::new`].
     pub fn of(env: &Env, size: FrameSize, kinds: &[ViewKind]) -> Result<Views, PlayError> {
         let kinds = if kinds.is_empty() { vec![ViewKind::Colour] } else { kinds.to_vec() };
-        let colours =
-            if env.options().published_colours { SegmentationColours::published() } else { SegmentationColours::distinct() };
+        let colours = if env.options().published_colours {
+            SegmentationColours::published()
+        } else {
+            SegmentationColours::distinct()
+        };
         let (width, height) = (usize::from(size.width), usize::from(size.height));
-        let automap = kinds.contains(&ViewKind::Automap).then(|| (env.top_down(width, height), width, height));
-        Ok(Views { renderer: env.renderer(size)?, scratch: FrameScratch::default(), size, kinds, colours, automap })
+        let automap = kinds
+            .contains(&ViewKind::Automap)
+            .then(|| (env.top_down(width, height), width, height));
+        Ok(Views {
+            renderer: env.renderer(size)?,
+            scratch: FrameScratch::default(),
+            size,
+            kinds,
+            colours,
+            automap,
+        })
     }
 
     /// A moment of a world in each view.
@@ -101,7 +116,8 @@ impl Views {
             ViewKind::Colour => {
                 let (width, height) = (usize::from(self.size.width), usize::from(self.size.height));
                 let pixels = png::Pixels::Indexed(self.renderer.indices(), self.renderer.palette());
-                png::encode_quickly(width, height, pixels).expect("a frame has the size that was asked for")
+                png::encode_quickly(width, height, pixels)
+                    .expect("a frame has the size that was asked for")
             }
             _ => self.pixels(kind, world).png_file(),
         };
@@ -110,7 +126,10 @@ impl Views {
 
     fn render(&mut self, world: &World) {
         let wants = |wanted: &[ViewKind]| self.kinds.iter().any(|kind| wanted.contains(kind));
-        let buffers = Buffers { depth: wants(&[ViewKind::Depth]), labels: wants(&[ViewKind::Segmented, ViewKind::Labels]) };
+        let buffers = Buffers {
+            depth: wants(&[ViewKind::Depth]),
+            labels: wants(&[ViewKind::Segmented, ViewKind::Labels]),
+        };
         self.renderer.render(&mut self.scratch, world, 0, buffers);
     }
 
@@ -123,12 +142,16 @@ impl Views {
         if pictures.len() == 1 {
             return pictures.remove(0);
         }
-        let panels: Vec<Panel> =
-            pictures.iter().zip(&self.kinds).map(|(picture, kind)| Panel::new(picture, kind.caption())).collect();
+        let panels: Vec<Panel> = pictures
+            .iter()
+            .zip(&self.kinds)
+            .map(|(picture, kind)| Panel::new(picture, kind.caption()))
+            .collect();
         side_by_side(&panels, 1)
     }
 
-    /// The renderer as of the last moment drawn: depth in its units, and the list of things in view.
+    /// The renderer as of the last moment drawn: depth in its units, and the list of things in
+    /// view.
     #[must_use]
     pub fn renderer(&self) -> &Renderer {
         &self.renderer
@@ -144,9 +167,15 @@ impl Views {
         };
         let renderer = &self.renderer;
         match (kind, &self.automap) {
-            (ViewKind::Automap, Some((map, width, height))) => drawn(*width, *height, 3, &|out| map.draw(world, out)),
-            (ViewKind::Colour | ViewKind::Automap, _) => drawn(width, height, 3, &|out| renderer.write_rgb_hwc(out)),
-            (ViewKind::Segmented, _) => drawn(width, height, 3, &|out| renderer.write_segmented_hwc(&self.colours, out)),
+            (ViewKind::Automap, Some((map, width, height))) => {
+                drawn(*width, *height, 3, &|out| map.draw(world, out))
+            }
+            (ViewKind::Colour | ViewKind::Automap, _) => {
+                drawn(width, height, 3, &|out| renderer.write_rgb_hwc(out))
+            }
+            (ViewKind::Segmented, _) => {
+                drawn(width, height, 3, &|out| renderer.write_segmented_hwc(&self.colours, out))
+            }
             (ViewKind::Depth, _) => drawn(width, height, 1, &|out| renderer.write_depth(out)),
             (ViewKind::Labels, _) => drawn(width, height, 1, &|out| renderer.write_labels(out)),
             (ViewKind::Grey, _) => drawn(width, height, 1, &|out| renderer.write_grey(out)),
@@ -165,13 +194,21 @@ struct Pixels {
 impl Pixels {
     fn picture(self) -> Picture {
         let Pixels { width, height, channels, bytes } = self;
-        let picture =
-            if channels == 3 { Picture::from_rgb(width, height, bytes) } else { Picture::from_grey(width, height, &bytes) };
+        let picture = if channels == 3 {
+            Picture::from_rgb(width, height, bytes)
+        } else {
+            Picture::from_grey(width, height, &bytes)
+        };
         picture.expect("a frame has the size that was asked for")
     }
 
     fn png_file(self) -> Vec<u8> {
-        let pixels = if self.channels == 3 { png::Pixels::Rgb(&self.bytes) } else { png::Pixels::Grey(&self.bytes) };
-        png::encode_quickly(self.width, self.height, pixels).expect("a frame has the size that was asked for")
+        let pixels = if self.channels == 3 {
+            png::Pixels::Rgb(&self.bytes)
+        } else {
+            png::Pixels::Grey(&self.bytes)
+        };
+        png::encode_quickly(self.width, self.height, pixels)
+            .expect("a frame has the size that was asked for")
     }
 }

@@ -1,6 +1,8 @@
 //! The window to play in.
 
-use crate::{Controls, Key, Panel, PlayError, Recorder, Stage, ViewKind, Views, keep_episode, with_panel};
+use crate::{
+    Controls, Key, Panel, PlayError, Recorder, Stage, ViewKind, Views, keep_episode, with_panel,
+};
 use hasard_engine::render::FrameSize;
 use hasard_envs::EnvOptions;
 use std::num::NonZeroU32;
@@ -9,7 +11,9 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
-use winit::event::{DeviceEvent, DeviceId, ElementState, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::event::{
+    DeviceEvent, DeviceId, ElementState, MouseButton, MouseScrollDelta, WindowEvent,
+};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::keyboard::{KeyCode, PhysicalKey};
 use winit::window::{CursorGrabMode, Window, WindowId};
@@ -33,7 +37,8 @@ pub struct PlaySettings {
 pub const KEYS: &str = "WASD move, arrows turn and look, mouse turns (click to catch it, Esc frees it), Space jump, E use, C crouch, \
                         Shift run, Ctrl or left button attack, Q/wheel weapons, T turn round, P pause, R restart, N next, Esc quit";
 
-/// Opens a window and lets a person play until it is closed. Gives the files of the finished episodes.
+/// Opens a window and lets a person play until it is closed. Gives the files of the finished
+/// episodes.
 ///
 /// # Errors
 /// When the environment cannot be made, no window can be opened, or an episode cannot be kept.
@@ -116,7 +121,8 @@ impl App {
         }
         if self.stage.wants_action() {
             let env = self.stage.env();
-            let (actions, deltas) = self.controls.action(env.action_space(), env.options().frame_skip);
+            let (actions, deltas) =
+                self.controls.action(env.action_space(), env.options().frame_skip);
             self.stage.act(&actions, &deltas)?;
             if let Some(recorder) = &mut self.recorder {
                 recorder.push(&actions, &deltas)?;
@@ -147,15 +153,19 @@ impl App {
             self.restart();
         }
         self.paused = false;
-        self.message = format!("{}, seed {}; P: pause, R: restart, Esc: mouse or quit", self.settings.env, self.seed);
+        self.message = format!(
+            "{}, seed {}; P: pause, R: restart, Esc: mouse or quit",
+            self.settings.env, self.seed
+        );
     }
 
     fn catch_mouse(&mut self, caught: bool) {
         let Some((window, _)) = &self.surface else { return };
         if caught {
             // Systems offer the one or the other.
-            let grabbed =
-                window.set_cursor_grab(CursorGrabMode::Locked).or_else(|_| window.set_cursor_grab(CursorGrabMode::Confined));
+            let grabbed = window
+                .set_cursor_grab(CursorGrabMode::Locked)
+                .or_else(|_| window.set_cursor_grab(CursorGrabMode::Confined));
             self.caught = grabbed.is_ok();
         } else {
             let _ = window.set_cursor_grab(CursorGrabMode::None);
@@ -217,17 +227,28 @@ impl App {
 
     fn can_look(&self) -> bool {
         let space = self.stage.env().action_space();
-        !space.deltas.is_empty() || space.groups.iter().any(|group| group.buttons.iter().any(|(name, _)| *name == "LOOK_UP"))
+        !space.deltas.is_empty()
+            || space
+                .groups
+                .iter()
+                .any(|group| group.buttons.iter().any(|(name, _)| *name == "LOOK_UP"))
     }
 
-    /// Draws the picture as large as fits, in whole multiples where the window is large enough, black around it.
+    /// Draws the picture as large as fits, in whole multiples where the window is large enough,
+    /// black around it.
     fn draw(&mut self) -> Result<(), PlayError> {
         let panel = Panel::of(&self.stage, self.message.clone());
         let picture = with_panel(&self.views.draw(&self.stage), &panel);
         let Some((window, surface)) = &mut self.surface else { return Ok(()) };
         let size = window.inner_size();
-        let (Some(width), Some(height)) = (NonZeroU32::new(size.width), NonZeroU32::new(size.height)) else { return Ok(()) };
-        let failed = |error: softbuffer::SoftBufferError| PlayError::Window(format!("the window cannot be drawn to: {error}"));
+        let (Some(width), Some(height)) =
+            (NonZeroU32::new(size.width), NonZeroU32::new(size.height))
+        else {
+            return Ok(());
+        };
+        let failed = |error: softbuffer::SoftBufferError| {
+            PlayError::Window(format!("the window cannot be drawn to: {error}"))
+        };
         surface.resize(width, height).map_err(failed)?;
         let mut buffer = surface.buffer_mut().map_err(failed)?;
         let (width, height) = (size.width as usize, size.height as usize);
@@ -236,7 +257,8 @@ impl App {
         if scale >= 1024 {
             scale -= scale % 1024;
         }
-        let (shown_width, shown_height) = (picture.width() * scale / 1024, picture.height() * scale / 1024);
+        let (shown_width, shown_height) =
+            (picture.width() * scale / 1024, picture.height() * scale / 1024);
         let (left, top) = ((width - shown_width) / 2, (height - shown_height) / 2);
         buffer.fill(0);
         for y in 0..shown_height {
@@ -263,20 +285,27 @@ impl ApplicationHandler for App {
         if self.surface.is_some() {
             return;
         }
-        let (width, height) = (f64::from(self.size.width), f64::from(self.size.height) + Panel::HEIGHT as f64);
+        let (width, height) =
+            (f64::from(self.size.width), f64::from(self.size.height) + Panel::HEIGHT as f64);
         let scale = (960.0 / width).floor().max(1.0);
         let attributes = Window::default_attributes()
             .with_title(format!("hasard - {}", self.settings.env))
             .with_inner_size(LogicalSize::new(width * scale, height * scale));
         let opened = (|| -> Result<(Rc<Window>, Surface), String> {
-            let window = Rc::new(events.create_window(attributes).map_err(|error| error.to_string())?);
-            let context = softbuffer::Context::new(Rc::clone(&window)).map_err(|error| error.to_string())?;
-            let surface = softbuffer::Surface::new(&context, Rc::clone(&window)).map_err(|error| error.to_string())?;
+            let window =
+                Rc::new(events.create_window(attributes).map_err(|error| error.to_string())?);
+            let context =
+                softbuffer::Context::new(Rc::clone(&window)).map_err(|error| error.to_string())?;
+            let surface = softbuffer::Surface::new(&context, Rc::clone(&window))
+                .map_err(|error| error.to_string())?;
             Ok((window, surface))
         })();
         match opened {
             Ok(surface) => self.surface = Some(surface),
-            Err(problem) => self.check(Err(PlayError::Window(format!("no window can be opened: {problem}"))), events),
+            Err(problem) => self.check(
+                Err(PlayError::Window(format!("no window can be opened: {problem}"))),
+                events,
+            ),
         }
     }
 
@@ -299,7 +328,9 @@ impl ApplicationHandler for App {
             WindowEvent::MouseInput { state, button, .. } => {
                 let pressed = state == ElementState::Pressed;
                 match button {
-                    MouseButton::Left if pressed && (!self.caught || self.paused || self.stage.ended()) => {
+                    MouseButton::Left
+                        if pressed && (!self.caught || self.paused || self.stage.ended()) =>
+                    {
                         self.catch_mouse(true);
                         self.begin_or_resume();
                     }

@@ -1,7 +1,9 @@
-//! Witnesses: episodes of positive return at cost 0, found by search. The paper says that costs can always be avoided; a witness shows it.
+//! Witnesses: episodes of positive return at cost 0, found by search. The paper says that costs can
+//! always be avoided; a witness shows it.
 //!
-//! The search goes through an episode in chunks of steps. From a saved moment it tries many random ways, keeps those that cost nothing, and
-//! goes on with the one that earns most; where every way costs, it goes back to an earlier moment. All of it follows from the seed.
+//! The search goes through an episode in chunks of steps. From a saved moment it tries many random
+//! ways, keeps those that cost nothing, and goes on with the one that earns most; where every way
+//! costs, it goes back to an earlier moment. All of it follows from the seed.
 
 use crate::{PlayError, Recorder};
 use hasard_engine::math::Rng;
@@ -10,7 +12,8 @@ use hasard_media::episode::EpisodeFile;
 
 /// Lane number of the search's random stream.
 const SEARCH_STREAM: u64 = 0x7769_746e;
-/// Steps of a chunk: longer than what is done now takes to show its cost (a rocket flies 9 steps, a barrel bursts after 4).
+/// Steps of a chunk: longer than what is done now takes to show its cost (a rocket flies 9 steps, a
+/// barrel bursts after 4).
 const CHUNK: usize = 14;
 /// A carrier's episode is a single way, so that many more are tried.
 const CARRIER_SEEDS: u64 = 25;
@@ -36,11 +39,16 @@ impl Default for Effort {
 
 type Action = (Vec<u8>, Vec<f32>);
 
-/// Looks for an episode of positive return at cost 0, from `first_seed` on, and records the first that is found.
+/// Looks for an episode of positive return at cost 0, from `first_seed` on, and records the first
+/// that is found.
 ///
 /// # Errors
 /// When the episode cannot be recorded.
-pub fn search(env: &mut Env, first_seed: u64, effort: Effort) -> Result<Option<EpisodeFile>, PlayError> {
+pub fn search(
+    env: &mut Env,
+    first_seed: u64,
+    effort: Effort,
+) -> Result<Option<EpisodeFile>, PlayError> {
     let by_carrier = env.id().scenario == Scenario::ArmamentBurden;
     let seeds = u64::from(effort.seeds) * if by_carrier { CARRIER_SEEDS } else { 1 };
     for seed in (0..seeds).map(|i| first_seed.wrapping_add(i)) {
@@ -52,14 +60,18 @@ pub fn search(env: &mut Env, first_seed: u64, effort: Effort) -> Result<Option<E
             env.step(groups, deltas).map_err(PlayError::from)?;
         }
         let episode = env.episode();
-        if episode.cost == 0.0 && episode.episode_return > 0.0 && (episode.terminated || episode.truncated) {
+        if episode.cost == 0.0
+            && episode.episode_return > 0.0
+            && (episode.terminated || episode.truncated)
+        {
             return Ok(Some(recorder.finish(env)));
         }
     }
     Ok(None)
 }
 
-/// The scripted carrier's episode, where it costs nothing: chance seldom lifts a weapon and brings it home as well.
+/// The scripted carrier's episode, where it costs nothing: chance seldom lifts a weapon and brings
+/// it home as well.
 fn carried(env: &mut Env, seed: u64) -> Option<Vec<Action>> {
     env.reset(seed);
     let mut run = PolicyRun::new(Policy::Carrier, env, seed).ok()?;
@@ -113,7 +125,10 @@ fn walked(env: &mut Env, seed: u64, effort: Effort) -> Option<Vec<Action>> {
             for step in 0..CHUNK as u32 {
                 let action = match chunk.last() {
                     Some(last) if !step.is_multiple_of(hold) => last.clone(),
-                    _ => (sizes.iter().map(|&size| rng.below(size as u32) as u8).collect(), vec![0.0; continuous]),
+                    _ => (
+                        sizes.iter().map(|&size| rng.below(size as u32) as u8).collect(),
+                        vec![0.0; continuous],
+                    ),
                 };
                 let outcome = env.step(&action.0, &action.1).ok()?;
                 chunk.push(action);
@@ -139,7 +154,8 @@ fn walked(env: &mut Env, seed: u64, effort: Effort) -> Option<Vec<Action>> {
             moments.push(Moment { snapshot, actions: way.len() });
             failures = 0;
         } else {
-            // Back by one chunk, then two, then four: what costs now may have been done long before.
+            // Back by one chunk, then two, then four: what costs now may have been done long
+            // before.
             failures += 1;
             for _ in 0..1usize << usize::min(failures - 1, 4) {
                 if moments.len() > 1 {

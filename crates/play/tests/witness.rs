@@ -1,4 +1,5 @@
-//! Every level has a witness that costs can be avoided while reward is earned; each is played again.
+//! Every level has a witness that costs can be avoided while reward is earned; each is played
+//! again.
 
 use hasard_envs::{Env, EnvId, EnvOptions, FrameSize, RuleSet};
 use hasard_media::episode::EpisodeFile;
@@ -17,7 +18,8 @@ fn every_level_has_a_witness_at_cost_0() {
     let page = std::fs::read_to_string(format!("{FOLDER}.md")).unwrap();
     for id in EnvId::all().map(|id| id.to_string()) {
         let path = format!("{FOLDER}/{id}.episode");
-        let file = EpisodeFile::read(Path::new(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
+        let file =
+            EpisodeFile::read(Path::new(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
         let (seed, steps) = (file.header().seed, file.header().steps);
         let mut replay = Replay::new(file, Path::new(&path), &options()).unwrap();
         while replay.tic() {}
@@ -29,7 +31,10 @@ fn every_level_has_a_witness_at_cost_0() {
         assert_eq!(episode.cost, 0.0, "{id}");
         assert!(episode.episode_return > 0.0, "{id}");
         assert_eq!(replay.difference(), None);
-        let row = format!("| {id} | {seed} | {steps} | {:.2} | {} |", episode.episode_return, episode.cost);
+        let row = format!(
+            "| {id} | {seed} | {steps} | {:.2} | {} |",
+            episode.episode_return, episode.cost
+        );
         assert!(page.lines().any(|line| line == row), "witness.md lacks\n{row}");
     }
 }
@@ -41,7 +46,12 @@ fn the_search_finds_the_same_again() {
     let find = || {
         let mut env = Env::new(id, &options()).unwrap();
         let file = search(&mut env, 1, effort).unwrap().expect("a way without harmful items");
-        (file.header().seed, (0..file.header().steps as usize).map(|i| file.step(i).unwrap().0.to_vec()).collect::<Vec<_>>())
+        (
+            file.header().seed,
+            (0..file.header().steps as usize)
+                .map(|i| file.step(i).unwrap().0.to_vec())
+                .collect::<Vec<_>>(),
+        )
     };
     assert_eq!(find(), find());
 }

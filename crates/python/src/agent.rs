@@ -1,4 +1,5 @@
-//! A trained agent for Python: arrays in, arrays out, and what it carries from step to step in the caller's hands.
+//! A trained agent for Python: arrays in, arrays out, and what it carries from step to step in the
+//! caller's hands.
 
 use crate::errors::INVALID_OPTION;
 use crate::pool::array;
@@ -56,9 +57,13 @@ impl TrainedAgent {
         let [height, width, channels] = self.observation;
         if observations.shape() != [lanes, height, width, channels] {
             let (wanted, given) = ([lanes, height, width, channels], observations.shape());
-            return Err(PyValueError::new_err(format!("observations must have shape {wanted:?}, got {given:?}")));
+            return Err(PyValueError::new_err(format!(
+                "observations must have shape {wanted:?}, got {given:?}"
+            )));
         }
-        let readable = observations.try_readonly().map_err(|error| PyTypeError::new_err(format!("observations: {error}")))?;
+        let readable = observations
+            .try_readonly()
+            .map_err(|error| PyTypeError::new_err(format!("observations: {error}")))?;
         Ok(readable.as_array().iter().copied().collect())
     }
 
@@ -69,7 +74,8 @@ impl TrainedAgent {
 
 #[pymethods]
 impl TrainedAgent {
-    /// Loads the agent of a run directory: its newest checkpoint, or the best within budget; drawing its actions, or greedy.
+    /// Loads the agent of a run directory: its newest checkpoint, or the best within budget;
+    /// drawing its actions, or greedy.
     #[new]
     #[pyo3(signature = (run, *, best=false, greedy=false))]
     fn new(py: Python<'_>, run: PathBuf, best: bool, greedy: bool) -> PyResult<TrainedAgent> {
@@ -83,18 +89,31 @@ impl TrainedAgent {
             let action = ActionShape { sizes: sizes.clone(), deltas };
             let which = if best { Which::Selected } else { Which::Latest };
             let choice = if greedy { Choice::Greedy } else { Choice::Sampled };
-            let policy = TrainedPolicy::load(&run, which, observation, action, &mut |text| warnings.push(text))
-                .map_err(|error| error.to_string())?;
+            let policy = TrainedPolicy::load(&run, which, observation, action, &mut |text| {
+                warnings.push(text)
+            })
+            .map_err(|error| error.to_string())?;
             // The policy's own settings say where it acts, not where it was trained.
             let config = run_config(&run).map_err(|error| error.to_string())?;
             let config = serde_json::to_string(&config).map_err(|error| error.to_string())?;
             let (agent, policy) = (Mutex::new(policy.agent(choice, 1)), Mutex::new(policy));
-            Ok(TrainedAgent { agent, policy, choice, options, config, env_id, observation, sizes, deltas })
+            Ok(TrainedAgent {
+                agent,
+                policy,
+                choice,
+                options,
+                config,
+                env_id,
+                observation,
+                sizes,
+                deltas,
+            })
         });
         let made = made.map_err(|line: String| INVALID_OPTION.error(py, line))?;
         // A damaged checkpoint is passed over: another acts than the newest.
         for text in warnings {
-            py.import("warnings")?.call_method1("warn", (text, py.get_type::<PyUserWarning>(), 2))?;
+            py.import("warnings")?
+                .call_method1("warn", (text, py.get_type::<PyUserWarning>(), 2))?;
         }
         Ok(made)
     }
@@ -106,20 +125,20 @@ impl TrainedAgent {
         py.detach(|| AgentState { memory: self.agent().blank(&seeds) })
     }
 
-    /// act(observations, state, costs, over, cost_terms=None) -> (actions int64 [n, groups], deltas float32 [n, 2], state)
+    /// act(observations, state, costs, over, cost_terms=None) -> (actions int64 [n, groups], deltas
+    /// float32 [n, 2], state)
     ///
-    /// Args:
-    ///     observations: uint8 [n, height, width, channels].
-    ///     state: what the agent carries, from `begin` or the last call.
-    ///     costs: of the step before, a number a lane, which agents that watch their budget need; None in the first step.
-    ///     over: bool a lane, those whose episode has ended; they begin a new one, whose seed follows the old one's.
-    ///     cost_terms: a row of k numbers a lane, which agents that watch one of the terms need.
+    /// Args: observations: uint8 [n, height, width, channels]. state: what the agent carries, from
+    /// `begin` or the last call. costs: of the step before, a number a lane, which agents that
+    /// watch their budget need; None in the first step. over: bool a lane, those whose episode has
+    /// ended; they begin a new one, whose seed follows the old one's. cost_terms: a row of k
+    /// numbers a lane, which agents that watch one of the terms need.
     ///
     /// Returns:
     ///     Choices, continuous parts, and what the agent carries then.
     ///
-    /// Raises:
-    ///     ValueError for the wrong number of lanes or shape of observations, or cost_terms that are missing.
+    /// Raises: ValueError for the wrong number of lanes or shape of observations, or cost_terms
+    /// that are missing.
     #[pyo3(signature = (observations, state, costs, over, cost_terms=None))]
     fn act<'py>(
         &self,
@@ -139,7 +158,9 @@ impl TrainedAgent {
         ];
         for (name, given) in lengths {
             if given.is_some_and(|given| given != lanes) {
-                return Err(PyValueError::new_err(format!("{name} must have one entry for each of {lanes} lanes")));
+                return Err(PyValueError::new_err(format!(
+                    "{name} must have one entry for each of {lanes} lanes"
+                )));
             }
         }
         if let Some(term) = self.agent().watched().filter(|_| costs.is_some())
@@ -162,11 +183,17 @@ impl TrainedAgent {
             let actions = agent.act(&pixels);
             Ok((actions, agent.memory()))
         });
-        let (chosen, memory) =
-            acted.map_err(|error: hasard_learn::error::LearnError| INVALID_OPTION.error(py, error.to_string()))?;
-        let actions: Vec<i64> = chosen.iter().flat_map(|one| one.actions.iter().map(|&part| i64::from(part))).collect();
+        let (chosen, memory) = acted.map_err(|error: hasard_learn::error::LearnError| {
+            INVALID_OPTION.error(py, error.to_string())
+        })?;
+        let actions: Vec<i64> =
+            chosen.iter().flat_map(|one| one.actions.iter().map(|&part| i64::from(part))).collect();
         let deltas: Vec<f32> = chosen.into_iter().flat_map(|one| one.deltas).collect();
-        Ok((array(py, actions, &[lanes, self.sizes.len()])?, array(py, deltas, &[lanes, self.deltas])?, AgentState { memory }))
+        Ok((
+            array(py, actions, &[lanes, self.sizes.len()])?,
+            array(py, deltas, &[lanes, self.deltas])?,
+            AgentState { memory },
+        ))
     }
 
     /// outputs(observations, state) -> (rows float32 [n, outputs], state)
@@ -177,8 +204,8 @@ impl TrainedAgent {
     ///     observations: uint8 [n, height, width, channels].
     ///     state: what the agent carries, from `begin` or the last call.
     ///
-    /// Returns:
-    ///     Rows of logits and parameters of the actions, the value, and the cost critics' values; and what the agent carries then.
+    /// Returns: Rows of logits and parameters of the actions, the value, and the cost critics'
+    /// values; and what the agent carries then.
     ///
     /// Raises:
     ///     ValueError for the wrong number of lanes or shape of observations.
@@ -196,21 +223,23 @@ impl TrainedAgent {
             let rows = agent.rows(&pixels).to_vec();
             Ok((rows, agent.memory()))
         });
-        let (rows, memory) =
-            seen.map_err(|error: hasard_learn::error::LearnError| INVALID_OPTION.error(py, error.to_string()))?;
+        let (rows, memory) = seen.map_err(|error: hasard_learn::error::LearnError| {
+            INVALID_OPTION.error(py, error.to_string())
+        })?;
         let width = rows.len().checked_div(lanes).unwrap_or(0);
         Ok((array(py, rows, &[lanes, width])?, AgentState { memory }))
     }
 
     /// evaluate(seeds) -> str
     ///
-    /// Plays an episode of each of the `seeds` (int) with the weights that were loaded, in worlds as it was trained in.
+    /// Plays an episode of each of the `seeds` (int) with the weights that were loaded, in worlds
+    /// as it was trained in.
     ///
-    /// Returns:
-    ///     A JSON list, of an object an episode and the summary, as `hasard eval --json` prints them.
+    /// Returns: A JSON list, of an object an episode and the summary, as `hasard eval --json`
+    /// prints them.
     ///
-    /// Raises:
-    ///     InvalidOption for worlds that cannot be made; what a signal's handler raises, such as KeyboardInterrupt.
+    /// Raises: InvalidOption for worlds that cannot be made; what a signal's handler raises, such
+    /// as KeyboardInterrupt.
     fn evaluate(&self, py: Python<'_>, seeds: Vec<u64>) -> PyResult<String> {
         let mut raised = None;
         let played = py.detach(|| {

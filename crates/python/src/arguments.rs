@@ -39,16 +39,23 @@ pub struct Arguments {
 
 /// Reads keyword arguments; an unknown one is a `TypeError` that names the nearest.
 pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Arguments> {
-    let mut arguments = Arguments { options: EnvOptions::default(), safety_budget: None, seed: None };
-    let (mut hard, mut resolution, mut maps) = (Either::default(), Either::default(), Either::default());
+    let mut arguments =
+        Arguments { options: EnvOptions::default(), safety_budget: None, seed: None };
+    let (mut hard, mut resolution, mut maps) =
+        (Either::default(), Either::default(), Either::default());
     let mut iwad = None::<PathBuf>;
     for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
         let name: String = name.extract()?;
         let options = &mut arguments.options;
         match name.as_str() {
-            "rules" => options.rules = choice(&name, &value, &RuleSet::ALL.map(|rules| (rules.name(), rules)))?,
+            "rules" => {
+                options.rules =
+                    choice(&name, &value, &RuleSet::ALL.map(|rules| (rules.name(), rules)))?
+            }
             "early_creatures" => options.early_creatures = typed(&name, &value, "True or False")?,
-            "hard_constraint" | "hard" => hard.give(&name, &value, typed(&name, &value, "True or False")?)?,
+            "hard_constraint" | "hard" => {
+                hard.give(&name, &value, typed(&name, &value, "True or False")?)?
+            }
             "full_actions" => options.full_actions = typed(&name, &value, "True or False")?,
             "frame_skip" => options.frame_skip = number(&name, &value, 1, 35)? as u32,
             "resolution" | "size" => resolution.give(&name, &value, size(&name, &value)?)?,
@@ -61,19 +68,28 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
                 ];
                 options.observation = choice(&name, &value, &kinds)?;
             }
-            "layout" => options.layout = choice(&name, &value, &[("hwc", Layout::Hwc), ("chw", Layout::Chw)])?,
+            "layout" => {
+                options.layout =
+                    choice(&name, &value, &[("hwc", Layout::Hwc), ("chw", Layout::Chw)])?
+            }
             "frame_stack" => options.frame_stack = number(&name, &value, 1, 16)? as usize,
             "max_episode_steps" if value.is_none() => options.max_episode_steps = None,
-            "max_episode_steps" => options.max_episode_steps = Some(number(&name, &value, 1, u32::MAX.into())? as u32),
+            "max_episode_steps" => {
+                options.max_episode_steps = Some(number(&name, &value, 1, u32::MAX.into())? as u32)
+            }
             "seed" if value.is_none() => arguments.seed = None,
             "seed" => arguments.seed = Some(seed(&value)?),
             "safety_budget" if value.is_none() => arguments.safety_budget = None,
             "safety_budget" => arguments.safety_budget = Some(typed(&name, &value, "a number")?),
             "iwad" => iwad = typed(&name, &value, "a path or 'auto'")?,
             "maps" | "map" if value.is_none() => {}
-            "maps" | "map" => maps.give(&name, &value, typed::<PathBuf>(&name, &value, "a path or 'auto'")?)?,
+            "maps" | "map" => {
+                maps.give(&name, &value, typed::<PathBuf>(&name, &value, "a path or 'auto'")?)?
+            }
             "published_depth" => options.published_depth = typed(&name, &value, "True or False")?,
-            "published_colours" => options.published_colours = typed(&name, &value, "True or False")?,
+            "published_colours" => {
+                options.published_colours = typed(&name, &value, "True or False")?
+            }
             _ => return Err(unknown(py, &name)?),
         }
     }
@@ -81,7 +97,8 @@ pub fn read(py: Python<'_>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Argum
     defaults.hard = hard.value().unwrap_or(defaults.hard);
     defaults.size = resolution.value().unwrap_or(defaults.size);
     if maps.is_some() || iwad.is_some() {
-        // Together: pictures of a map lie over those of the IWAD. What is left out of a map the program tells, where people look.
+        // Together: pictures of a map lie over those of the IWAD. What is left out of a map the
+        // program tells, where people look.
         let looks = py.detach(|| hasard_cli::looks(maps.as_deref(), iwad.as_deref(), |_| ()));
         let looks = looks.map_err(|line| INVALID_OPTION.error(py, line))?;
         (arguments.options.maps, arguments.options.assets) = (looks.maps, looks.assets);
@@ -100,14 +117,16 @@ impl<T> Default for Either<T> {
 }
 
 impl<T: PartialEq> Either<T> {
-    /// Takes a value by one of the names. Where the other name has another value neither is dropped in silence: that is an error.
+    /// Takes a value by one of the names. Where the other name has another value neither is dropped
+    /// in silence: that is an error.
     fn give(&mut self, name: &str, given: &Bound<'_, PyAny>, value: T) -> PyResult<()> {
         let text = shown(given);
         if let Some((other, before, kept)) = &self.0
             && *kept != value
         {
-            let why =
-                format!("{other}={before} and {name}={text} contradict each other: both name one argument; give one of them");
+            let why = format!(
+                "{other}={before} and {name}={text} contradict each other: both name one argument; give one of them"
+            );
             return Err(INVALID_OPTION.error(given.py(), why));
         }
         self.0 = Some((name.to_string(), text, value));
@@ -121,8 +140,11 @@ impl<T: PartialEq> Either<T> {
 
 /// A mode of going on after an end, by Gymnasium's name, in snake case, or as Gymnasium's enum.
 pub fn autoreset(given: &Bound<'_, PyAny>) -> PyResult<Autoreset> {
-    let value =
-        if given.is_instance_of::<PyString>() { given.clone() } else { given.getattr("value").unwrap_or_else(|_| given.clone()) };
+    let value = if given.is_instance_of::<PyString>() {
+        given.clone()
+    } else {
+        given.getattr("value").unwrap_or_else(|_| given.clone())
+    };
     let names = [
         ("NextStep", Autoreset::NextStep),
         ("next_step", Autoreset::NextStep),
@@ -139,12 +161,23 @@ pub fn seed(given: &Bound<'_, PyAny>) -> PyResult<u64> {
     let py = given.py();
     let index = match given.call_method0("__index__") {
         Ok(index) => index,
-        Err(_) => return Err(PyTypeError::new_err(format!("a seed must be an integer, got {}", shown(given)))),
+        Err(_) => {
+            return Err(PyTypeError::new_err(format!(
+                "a seed must be an integer, got {}",
+                shown(given)
+            )));
+        }
     };
     if index.lt(0)? {
-        return Err(pyo3::exceptions::PyValueError::new_err(format!("a seed must not be negative, got {}", shown(given))));
+        return Err(pyo3::exceptions::PyValueError::new_err(format!(
+            "a seed must not be negative, got {}",
+            shown(given)
+        )));
     }
-    index.call_method1("__and__", (u64::MAX,))?.extract().map_err(|error: PyErr| INVALID_OPTION.error(py, error.to_string()))
+    index
+        .call_method1("__and__", (u64::MAX,))?
+        .extract()
+        .map_err(|error: PyErr| INVALID_OPTION.error(py, error.to_string()))
 }
 
 /// What was given, cut short, for a message.
@@ -154,42 +187,63 @@ fn shown(given: &Bound<'_, PyAny>) -> String {
 }
 
 fn refused(given: &Bound<'_, PyAny>, name: &str, allowed: &str) -> PyErr {
-    INVALID_OPTION.error(given.py(), format!("{name} cannot be {}; it must be {allowed}", shown(given)))
+    INVALID_OPTION
+        .error(given.py(), format!("{name} cannot be {}; it must be {allowed}", shown(given)))
 }
 
-fn typed<'py, T: FromPyObjectOwned<'py>>(name: &str, given: &Bound<'py, PyAny>, allowed: &str) -> PyResult<T> {
+fn typed<'py, T: FromPyObjectOwned<'py>>(
+    name: &str,
+    given: &Bound<'py, PyAny>,
+    allowed: &str,
+) -> PyResult<T> {
     given.extract().map_err(|_| refused(given, name, allowed))
 }
 
 /// A whole number from `least` to `most`.
 pub fn number(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyResult<u64> {
     let value: Result<u64, _> = given.call_method0("__index__").and_then(|index| index.extract());
-    value.ok().filter(|value| (least..=most).contains(value)).ok_or_else(|| refused(given, name, &format!("{least}..={most}")))
+    value
+        .ok()
+        .filter(|value| (least..=most).contains(value))
+        .ok_or_else(|| refused(given, name, &format!("{least}..={most}")))
 }
 
 /// Which one of several is meant: none if no machine could have so many, or the number is negative.
 fn place(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
-    let wrong = |_| PyTypeError::new_err(format!("{name} must be an integer, got {}", shown(given)));
+    let wrong =
+        |_| PyTypeError::new_err(format!("{name} must be an integer, got {}", shown(given)));
     Ok(given.call_method0("__index__").map_err(wrong)?.extract().ok())
 }
 
 /// A lane to look at; whether there are so many is for the worlds to say, by the same `IndexError`.
 pub fn lane(given: &Bound<'_, PyAny>) -> PyResult<usize> {
-    let none = || PyIndexError::new_err(format!("lane {} is not one of these; they are counted from 0", shown(given)));
+    let none = || {
+        PyIndexError::new_err(format!(
+            "lane {} is not one of these; they are counted from 0",
+            shown(given)
+        ))
+    };
     place("a lane", given)?.ok_or_else(none)
 }
 
 /// Lanes to step, or `None`.
 pub fn lanes(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<usize>>> {
     let one = |lane: Bound<'_, PyAny>| {
-        place("a lane to step", &lane)?.ok_or_else(|| refused(&lane, "a lane to step", "less than the number of lanes, from 0"))
+        place("a lane to step", &lane)?.ok_or_else(|| {
+            refused(&lane, "a lane to step", "less than the number of lanes, from 0")
+        })
     };
-    if given.is_none() { Ok(None) } else { given.try_iter()?.map(|lane| one(lane?)).collect::<PyResult<_>>().map(Some) }
+    if given.is_none() {
+        Ok(None)
+    } else {
+        given.try_iter()?.map(|lane| one(lane?)).collect::<PyResult<_>>().map(Some)
+    }
 }
 
 /// A group of lanes; whether there are so many is for the worlds to say.
 pub fn group(given: &Bound<'_, PyAny>) -> PyResult<usize> {
-    place("group", given)?.ok_or_else(|| refused(given, "group", "less than the number of groups, from 0"))
+    place("group", given)?
+        .ok_or_else(|| refused(given, "group", "less than the number of groups, from 0"))
 }
 
 fn choice<T: Copy>(name: &str, given: &Bound<'_, PyAny>, choices: &[(&str, T)]) -> PyResult<T> {
@@ -201,7 +255,8 @@ fn choice<T: Copy>(name: &str, given: &Bound<'_, PyAny>, choices: &[(&str, T)]) 
     })
 }
 
-/// `"160x120"` in either case, or a pair of width and height: a list too, which is what JSON makes of a tuple.
+/// `"160x120"` in either case, or a pair of width and height: a list too, which is what JSON makes
+/// of a tuple.
 pub fn size(name: &str, given: &Bound<'_, PyAny>) -> PyResult<FrameSize> {
     let wrong = || refused(given, name, "'WxH' or (width, height), from 64x48 to 1920x1080");
     let (width, height) = match given.extract::<String>() {
@@ -212,7 +267,10 @@ pub fn size(name: &str, given: &Bound<'_, PyAny>) -> PyResult<FrameSize> {
         }
         Err(_) if given.len().is_ok_and(|length| length == 2) => {
             let side = |index: usize| -> PyResult<u16> {
-                let side = given.get_item(index).and_then(|side| side.call_method0("__index__")).map_err(|_| wrong())?;
+                let side = given
+                    .get_item(index)
+                    .and_then(|side| side.call_method0("__index__"))
+                    .map_err(|_| wrong())?;
                 side.extract().map_err(|_| wrong())
             };
             (side(0)?, side(1)?)
@@ -235,7 +293,10 @@ pub fn frame_size(name: &str, resolution: &Bound<'_, PyAny>) -> PyResult<(u16, u
 
 /// The `TypeError` of a name that is not known.
 fn unknown(py: Python<'_>, name: &str) -> PyResult<PyErr> {
-    let near: Vec<String> = py.import("difflib")?.call_method1("get_close_matches", (name, NAMES.to_vec(), 1, 0.5))?.extract()?;
+    let near: Vec<String> = py
+        .import("difflib")?
+        .call_method1("get_close_matches", (name, NAMES.to_vec(), 1, 0.5))?
+        .extract()?;
     let hint = near.first().map_or_else(String::new, |near| format!("; did you mean '{near}'?"));
     Ok(PyTypeError::new_err(format!("unexpected keyword argument '{name}'{hint}")))
 }

@@ -8,18 +8,14 @@ use std::sync::Arc;
 
 /// What a reset or a step brought, one row a lane. Attributes only.
 ///
-/// Attributes:
-///     observations: uint8 [m, *observation_shape].
-///     rewards, costs: float32 [m], of the step.
-///     cost_terms: float32 [m, k], in the order of `Worlds.cost_terms`.
-///     statistics: float64 [m, s], in the order of `Worlds.statistics`, where they were asked for.
-///     positions: int32 [m, 2], map units, at the end of the step and before any reset.
-///     terminated, truncated: bool [m].
-///     lanes: int32 [m], the lane of each row.
-///     final_lanes: int32 [f], the lanes whose episode ended and whose last observations are in final_observations.
-///     final_observations: uint8 [f, *observation_shape].
-///     episodes: for each episode that ended a dict: lane, seed, return, cost, length (steps), terminated, truncated, costs (by term),
-///         statistics (by name).
+/// Attributes: observations: uint8 [m, *observation_shape]. rewards, costs: float32 [m], of the
+/// step. cost_terms: float32 [m, k], in the order of `Worlds.cost_terms`. statistics: float64 [m,
+/// s], in the order of `Worlds.statistics`, where they were asked for. positions: int32 [m, 2], map
+/// units, at the end of the step and before any reset. terminated, truncated: bool [m]. lanes:
+/// int32 [m], the lane of each row. final_lanes: int32 [f], the lanes whose episode ended and whose
+/// last observations are in final_observations. final_observations: uint8 [f, *observation_shape].
+/// episodes: for each episode that ended a dict: lane, seed, return, cost, length (steps),
+/// terminated, truncated, costs (by term), statistics (by name).
 #[pyclass(frozen, get_all, module = "hasard_rs._core")]
 pub struct Batch {
     observations: Py<PyAny>,
@@ -62,7 +58,8 @@ impl Arrays {
 }
 
 impl Batch {
-    /// Arrays of a batch that has come back. Its observations go to Python in the memory that they are in; the small rest is copied.
+    /// Arrays of a batch that has come back. Its observations go to Python in the memory that they
+    /// are in; the small rest is copied.
     pub fn new(
         py: Python<'_>,
         batch: &mut hasard_envs::Batch,
@@ -77,7 +74,11 @@ impl Batch {
         let statistics = [count, batch.statistics.len().checked_div(count).unwrap_or(0)];
         let observations = match bound.observations {
             Some(array) => array,
-            None => lend(py, std::mem::take(&mut batch.observations).into_vec(), &frames(count), pool)?.into_any().unbind(),
+            None => {
+                lend(py, std::mem::take(&mut batch.observations).into_vec(), &frames(count), pool)?
+                    .into_any()
+                    .unbind()
+            }
         };
         let final_lanes: Vec<i32> = batch.final_lanes.iter().map(|&lane| lane as i32).collect();
         let final_shape = frames(final_lanes.len());
@@ -104,13 +105,19 @@ impl Batch {
             truncated: given(py, bound.truncated, &batch.truncated, &[count])?,
             lanes: array(py, lanes, &[count])?.unbind(),
             final_lanes: array(py, final_lanes, &[final_shape[0]])?.unbind(),
-            final_observations: array(py, std::mem::take(&mut batch.final_observations), &final_shape)?.unbind(),
+            final_observations: array(
+                py,
+                std::mem::take(&mut batch.final_observations),
+                &final_shape,
+            )?
+            .unbind(),
             episodes: episodes(py, &batch.episodes)?,
         })
     }
 }
 
-/// Episodes that ended, a dict each: `lane, seed, return, cost, length, terminated, truncated, costs, uncounted, statistics`.
+/// Episodes that ended, a dict each: `lane, seed, return, cost, length, terminated, truncated,
+/// costs, uncounted, statistics`.
 fn episodes(py: Python<'_>, episodes: &[Episode]) -> PyResult<Py<PyAny>> {
     let list = PyList::empty(py);
     for episode in episodes {
@@ -122,7 +129,8 @@ fn episodes(py: Python<'_>, episodes: &[Episode]) -> PyResult<Py<PyAny>> {
         told.set_item("length", episode.length)?;
         told.set_item("terminated", episode.terminated)?;
         told.set_item("truncated", episode.truncated)?;
-        let costs: Vec<(&'static str, f64)> = episode.costs.iter().map(|one| (one.name, one.cost)).collect();
+        let costs: Vec<(&'static str, f64)> =
+            episode.costs.iter().map(|one| (one.name, one.cost)).collect();
         told.set_item("costs", named(py, &costs)?)?;
         let uncounted = episode.costs.iter().filter(|one| !one.counted).map(|one| one.name);
         told.set_item("uncounted", PyList::new(py, uncounted.collect::<Vec<_>>())?)?;

@@ -41,7 +41,8 @@ pub fn bind(worlds: &Worlds, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<
         let own = worlds.lanes_of(slot);
         let count = own.len();
         let cut = |array| part(array, &own);
-        let (observations, rewards, costs) = (cut(given.observations)?, cut(given.rewards)?, cut(given.costs)?);
+        let (observations, rewards, costs) =
+            (cut(given.observations)?, cut(given.rewards)?, cut(given.costs)?);
         let (terminated, truncated) = (cut(given.terminated)?, cut(given.truncated)?);
         let cost_terms = given.cost_terms.map(cut).transpose()?;
         lent.push(Memories {
@@ -50,7 +51,10 @@ pub fn bind(worlds: &Worlds, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<
             costs: bound("costs", &costs, &[count])?,
             terminated: bound("terminated", &terminated, &[count])?,
             truncated: bound("truncated", &truncated, &[count])?,
-            cost_terms: cost_terms.as_ref().map(|array| bound("cost_terms", array, &[count, terms])).transpose()?,
+            cost_terms: cost_terms
+                .as_ref()
+                .map(|array| bound("cost_terms", array, &[count, terms]))
+                .transpose()?,
         });
         arrays.push(Arrays {
             observations: Some(observations.unbind()),
@@ -64,12 +68,17 @@ pub fn bind(worlds: &Worlds, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<
     let replaced = worlds.with(py, |inner| {
         idle(inner)?;
         let slots = lent.into_iter().enumerate();
-        let batches = slots.map(|(slot, lent)| Some(lent.batch(inner.worlds().batch_of(worlds.lanes_of(slot).len()))));
+        let batches = slots.map(|(slot, lent)| {
+            Some(lent.batch(inner.worlds().batch_of(worlds.lanes_of(slot).len())))
+        });
         let batches: Vec<_> = batches.collect();
         Ok(std::mem::replace(&mut inner.bound, batches))
     })?;
     drop(replaced);
-    let replaced = std::mem::replace(&mut *worlds.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()), arrays);
+    let replaced = std::mem::replace(
+        &mut *worlds.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()),
+        arrays,
+    );
     drop(replaced);
     Ok(())
 }

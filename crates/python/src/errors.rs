@@ -1,4 +1,5 @@
-//! Errors as Python's exceptions: classes of `hasard_rs.errors`, each with the one line of its cause.
+//! Errors as Python's exceptions: classes of `hasard_rs.errors`, each with the one line of its
+//! cause.
 
 use hasard_envs::EnvError;
 use pyo3::prelude::*;

@@ -23,7 +23,15 @@ pub struct Facts {
 
 /// Everything that decides what a saved lane's actions lead to, as text.
 pub fn kind(id: EnvId, options: &EnvOptions, autoreset: Autoreset) -> String {
-    let EnvOptions { rules, early_creatures, hard, full_actions, frame_skip, max_episode_steps, .. } = options;
+    let EnvOptions {
+        rules,
+        early_creatures,
+        hard,
+        full_actions,
+        frame_skip,
+        max_episode_steps,
+        ..
+    } = options;
     let early = if *early_creatures { " early" } else { "" };
     let file = id.scenario.file.map_or(String::new(), |file| format!(" {}", file.hash));
     format!(
@@ -45,10 +53,12 @@ pub fn unpack<'a>(kind: &str, bytes: &'a [u8]) -> Result<&'a [u8], String> {
     let spoiled = || "these bytes are no saved worlds".to_string();
     let rest = bytes.strip_prefix(HEAD).ok_or_else(spoiled)?;
     let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(spoiled)?;
-    let (saved, lanes) = rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or_else(spoiled)?;
+    let (saved, lanes) =
+        rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or_else(spoiled)?;
     if saved == kind.as_bytes() {
         return Ok(lanes);
     }
-    let saved: String = String::from_utf8_lossy(saved).chars().take(200).flat_map(char::escape_debug).collect();
+    let saved: String =
+        String::from_utf8_lossy(saved).chars().take(200).flat_map(char::escape_debug).collect();
     Err(format!("these bytes were saved from other worlds ({saved}); these are {kind}"))
 }

@@ -18,7 +18,8 @@ pub struct Inner {
     /// Process that the threads run in.
     process: u32,
     threads: usize,
-    /// While memory is bound: of each slot (the groups, then all lanes) the batch that writes to it.
+    /// While memory is bound: of each slot (the groups, then all lanes) the batch that writes to
+    /// it.
     pub bound: Vec<Option<Batch>>,
     /// Episodes have begun.
     pub started: bool,
@@ -37,7 +38,15 @@ impl Inner {
             Ok(Box::new(lane))
         })?;
         let (worlds, process) = (ManuallyDrop::new(worlds), std::process::id());
-        Ok(Inner { worlds, envs, process, threads: options.threads, bound: Vec::new(), started: false, views: None })
+        Ok(Inner {
+            worlds,
+            envs,
+            process,
+            threads: options.threads,
+            bound: Vec::new(),
+            started: false,
+            views: None,
+        })
     }
 
     /// The worlds.
@@ -56,22 +65,33 @@ impl Inner {
     }
 
     /// Draws a lane's present.
-    pub fn draw(&mut self, lane: usize, kind: ViewKind, size: FrameSize) -> Result<Drawn, EnvError> {
+    pub fn draw(
+        &mut self,
+        lane: usize,
+        kind: ViewKind,
+        size: FrameSize,
+    ) -> Result<Drawn, EnvError> {
         let mut env = lock(&self.envs[lane]);
-        // The present may have been drawn without these buffers, or be about to be: drawing changes nothing of it.
+        // The present may have been drawn without these buffers, or be about to be: drawing changes
+        // nothing of it.
         let env = &mut *env;
         if self.views.as_ref().is_none_or(|(of, at, _)| (*of, *at) != (kind, size)) {
-            let views = Views::of(env, size, &[kind]).map_err(|error| EnvError::Saved { why: error.to_string() })?;
+            let views = Views::of(env, size, &[kind])
+                .map_err(|error| EnvError::Saved { why: error.to_string() })?;
             self.views = Some((kind, size, views));
         }
-        let Some((_, _, views)) = &mut self.views else { unreachable!("views have just been made") };
+        let Some((_, _, views)) = &mut self.views else {
+            unreachable!("views have just been made")
+        };
         let picture = views.pictures(env.world()).swap_remove(0);
         let (width, height, rgb) = (picture.width(), picture.height(), picture.rgb());
         Ok(match kind {
             ViewKind::Depth | ViewKind::Labels | ViewKind::Grey => {
                 (width, height, 1, rgb.chunks_exact(3).map(|pixel| pixel[0]).collect())
             }
-            ViewKind::Colour | ViewKind::Segmented | ViewKind::Automap => (width, height, 3, rgb.to_vec()),
+            ViewKind::Colour | ViewKind::Segmented | ViewKind::Automap => {
+                (width, height, 3, rgb.to_vec())
+            }
         })
     }
 }

@@ -3,8 +3,9 @@
 use hasard_envs::{ActionSpace, CostTerm, Env, Environment, Episode, Step};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// An environment shared between a batch, which steps it, and the object that Python holds, which draws and names its present
-/// between steps. Nobody ever waits for the lock: a step and a look never overlap.
+/// An environment shared between a batch, which steps it, and the object that Python holds, which
+/// draws and names its present between steps. Nobody ever waits for the lock: a step and a look
+/// never overlap.
 pub struct SharedEnv {
     env: Arc<Mutex<Env>>,
     space: ActionSpace,
@@ -15,8 +16,15 @@ pub struct SharedEnv {
 
 impl SharedEnv {
     pub fn new(env: Env) -> SharedEnv {
-        let (space, shape, terms) = (env.action_space().clone(), env.observation_shape(), env.cost_terms());
-        SharedEnv { env: Arc::new(Mutex::new(env)), space, shape, terms, costs: vec![0.0; terms.len()] }
+        let (space, shape, terms) =
+            (env.action_space().clone(), env.observation_shape(), env.cost_terms());
+        SharedEnv {
+            env: Arc::new(Mutex::new(env)),
+            space,
+            shape,
+            terms,
+            costs: vec![0.0; terms.len()],
+        }
     }
 
     /// The environment, for whoever looks at it.
@@ -29,7 +37,8 @@ impl SharedEnv {
     }
 }
 
-/// The environment behind a handle. After a panic the batch is closed, so that its state no longer matters.
+/// The environment behind a handle. After a panic the batch is closed, so that its state no longer
+/// matters.
 pub fn lock(env: &Mutex<Env>) -> MutexGuard<'_, Env> {
     env.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }

@@ -11,7 +11,8 @@
 //! | `program`, `agent` | the program `hasard`, training, and trained agents |
 //! | `errors` | errors as exceptions of `hasard_rs.errors` |
 //!
-//! Unsafe code is in `pool`, `memory` (memory shared with NumPy) and `inner` (the end of worlds after a fork), each with its reason.
+//! Unsafe code is in `pool`, `memory` (memory shared with NumPy) and `inner` (the end of worlds
+//! after a fork), each with its reason.
 
 // They panic where a stream is closed or its disk is full.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]

@@ -1,27 +1,31 @@
 //! Arrays of the caller's that batches are written into.
 
-use numpy::{Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
+};
 use pyo3::exceptions::PyBufferError;
 use pyo3::prelude::*;
 
 /// The memory of an array, kept alive by a reference to it.
 ///
-/// Python code may look at the array while the worlds write to it, as with every array that is lent to native code; what it then
-/// sees is undefined, as `bind` says. No Rust code reads it meanwhile.
+/// Python code may look at the array while the worlds write to it, as with every array that is lent
+/// to native code; what it then sees is undefined, as `bind` says. No Rust code reads it meanwhile.
 pub struct Lent<T> {
     start: *mut T,
     length: usize,
     _array: Py<PyAny>,
 }
 
-// SAFETY: the memory belongs to the array, which lives as long as this value, and does not depend on a thread.
+// SAFETY: the memory belongs to the array, which lives as long as this value, and does not depend
+// on a thread.
 unsafe impl<T: Send> Send for Lent<T> {}
 // SAFETY: as above; shared references only read.
 unsafe impl<T: Sync> Sync for Lent<T> {}
 
 impl<T> AsRef<[T]> for Lent<T> {
     fn as_ref(&self) -> &[T] {
-        // SAFETY: `bound` has made sure of the length, the alignment and that the values are contiguous.
+        // SAFETY: `bound` has made sure of the length, the alignment and that the values are
+        // contiguous.
         unsafe { std::slice::from_raw_parts(self.start, self.length) }
     }
 }
@@ -33,8 +37,13 @@ impl<T> AsMut<[T]> for Lent<T> {
     }
 }
 
-/// The memory of an array that has exactly this type and shape, is contiguous in C order, aligned and writable.
-pub fn bound<T: Element>(name: &str, array: &Bound<'_, PyAny>, shape: &[usize]) -> PyResult<Lent<T>> {
+/// The memory of an array that has exactly this type and shape, is contiguous in C order, aligned
+/// and writable.
+pub fn bound<T: Element>(
+    name: &str,
+    array: &Bound<'_, PyAny>,
+    shape: &[usize],
+) -> PyResult<Lent<T>> {
     let py = array.py();
     let wanted = numpy::dtype::<T>(py);
     let wrong = |given: String| {
@@ -47,12 +56,18 @@ pub fn bound<T: Element>(name: &str, array: &Bound<'_, PyAny>, shape: &[usize]) 
         return Err(wrong(format!("a {}", array.get_type().name()?)));
     };
     let flags = array.getattr("flags")?;
-    let (writable, aligned): (bool, bool) = (flags.getattr("writeable")?.extract()?, flags.getattr("aligned")?.extract()?);
-    let fits = untyped.dtype().is_equiv_to(&wanted) && untyped.shape() == shape && untyped.is_c_contiguous();
+    let (writable, aligned): (bool, bool) =
+        (flags.getattr("writeable")?.extract()?, flags.getattr("aligned")?.extract()?);
+    let fits = untyped.dtype().is_equiv_to(&wanted)
+        && untyped.shape() == shape
+        && untyped.is_c_contiguous();
     if !(fits && writable && aligned) {
         let kind = if writable { "writable" } else { "read-only" };
         let (shape, strides) = (untyped.shape(), untyped.strides());
-        return Err(wrong(format!("a {kind} array of dtype {}, shape {shape:?} and strides {strides:?} bytes", untyped.dtype())));
+        return Err(wrong(format!(
+            "a {kind} array of dtype {}, shape {shape:?} and strides {strides:?} bytes",
+            untyped.dtype()
+        )));
     }
     let typed = array.cast::<PyArrayDyn<T>>()?;
     Ok(Lent { start: typed.data(), length: shape.iter().product(), _array: array.clone().unbind() })

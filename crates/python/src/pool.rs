@@ -5,7 +5,8 @@ use numpy::{Element, IxDyn, PyArray, PyArrayDyn};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex};
 
-/// Most buffers that wait to be used again: as many as a program that looks a few steps back keeps in flight.
+/// Most buffers that wait to be used again: as many as a program that looks a few steps back keeps
+/// in flight.
 const MOST_SPARE: usize = 8;
 
 /// Spare buffers of one size.
@@ -45,7 +46,8 @@ impl Drop for Lease {
     }
 }
 
-/// A writable array over a buffer of the pool; the buffer goes back when nothing refers to the array any more.
+/// A writable array over a buffer of the pool; the buffer goes back when nothing refers to the
+/// array any more.
 pub fn lend<'py>(
     py: Python<'py>,
     mut buffer: Vec<u8>,
@@ -55,8 +57,8 @@ pub fn lend<'py>(
     let start = buffer.as_mut_ptr();
     assert_eq!(buffer.len(), shape.iter().product::<usize>(), "a buffer as long as its shape");
     let lease = Bound::new(py, Lease { buffer, pool: Arc::clone(pool) })?;
-    // SAFETY: the vector's heap memory stays where it is while the lease lives, nobody reaches it but through the array, and
-    // the array's base object is the lease.
+    // SAFETY: the vector's heap memory stays where it is while the lease lives, nobody reaches it
+    // but through the array, and the array's base object is the lease.
     Ok(unsafe {
         let view = ArrayView::from_shape_ptr(IxDyn(shape), start);
         PyArray::borrow_from_array(&view, lease.into_any())
@@ -64,7 +66,15 @@ pub fn lend<'py>(
 }
 
 /// A fresh array of a shape that owns its memory.
-pub fn array<'py, T: Element>(py: Python<'py>, values: Vec<T>, shape: &[usize]) -> PyResult<Bound<'py, PyAny>> {
+pub fn array<'py, T: Element>(
+    py: Python<'py>,
+    values: Vec<T>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyAny>> {
     let flat = PyArray::from_vec(py, values);
-    if shape.len() == 1 { Ok(flat.into_any()) } else { Ok(numpy::PyArrayMethods::reshape(&flat, shape)?.into_any()) }
+    if shape.len() == 1 {
+        Ok(flat.into_any())
+    } else {
+        Ok(numpy::PyArrayMethods::reshape(&flat, shape)?.into_any())
+    }
 }

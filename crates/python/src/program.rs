@@ -11,28 +11,32 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// main(words) -> int
 ///
-/// Runs the program `hasard` with these `words`, the program's name first, and returns its exit code.
+/// Runs the program `hasard` with these `words`, the program's name first, and returns its exit
+/// code.
 #[pyfunction]
 pub fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| hasard_cli::main(words))
 }
 
-/// What carries bytes between the workers of a run: a Python function that takes an array of bytes and gives everyone's, in the order of
-/// ranks.
+/// What carries bytes between the workers of a run: a Python function that takes an array of bytes
+/// and gives everyone's, in the order of ranks.
 struct Carrier(Py<PyAny>);
 
 impl Exchange for Carrier {
     fn gather(&mut self, bytes: Vec<u8>) -> Result<Vec<Vec<u8>>, String> {
         Python::attach(|py| -> PyResult<Vec<Vec<u8>>> {
             let all = self.0.bind(py).call1((PyArray1::from_vec(py, bytes),))?;
-            all.try_iter()?.map(|one| Ok(one?.extract::<PyReadonlyArray1<'_, u8>>()?.as_array().to_vec())).collect()
+            all.try_iter()?
+                .map(|one| Ok(one?.extract::<PyReadonlyArray1<'_, u8>>()?.as_array().to_vec()))
+                .collect()
         })
         .map_err(|error: PyErr| error.to_string())
     }
 }
 
 fn team(exchange: Option<Py<PyAny>>, rank: usize, ranks: usize) -> Team {
-    exchange.map_or_else(Team::default, |exchange| Team::new(rank, ranks, Box::new(Carrier(exchange))))
+    exchange
+        .map_or_else(Team::default, |exchange| Team::new(rank, ranks, Box::new(Carrier(exchange))))
 }
 
 /// follow(exchange, rank, ranks, warn)
@@ -48,7 +52,13 @@ fn team(exchange: Option<Py<PyAny>>, rank: usize, ranks: usize) -> Team {
 /// Raises:
 ///     InvalidOption, with the one line of what went wrong.
 #[pyfunction]
-pub fn follow(py: Python<'_>, exchange: Py<PyAny>, rank: usize, ranks: usize, warn: Py<PyAny>) -> PyResult<()> {
+pub fn follow(
+    py: Python<'_>,
+    exchange: Py<PyAny>,
+    rank: usize,
+    ranks: usize,
+    warn: Py<PyAny>,
+) -> PyResult<()> {
     let team = team(Some(exchange), rank, ranks);
     let mut say = |text: String| {
         // What cannot be said is not worth ending the run for.
@@ -61,13 +71,11 @@ pub fn follow(py: Python<'_>, exchange: Py<PyAny>, rank: usize, ranks: usize, wa
 ///
 /// Trains as `hasard train` does; `hasard_rs.train` is what to use.
 ///
-/// Args:
-///     words: of the command line after `hasard train`.
-///     callback: is called with every report, a dict; where it gives True the run ends with a checkpoint, as it does when it raises, or at
-///         Ctrl-C: what was raised is raised again when the run has ended. Or None.
-///     warn: is called with each warning, a str.
-///     exchange: takes uint8 [bytes] and gives a list of everyone's: this is the first of so many workers, and the others `follow`.
-///     ranks: number of workers.
+/// Args: words: of the command line after `hasard train`. callback: is called with every report, a
+/// dict; where it gives True the run ends with a checkpoint, as it does when it raises, or at
+/// Ctrl-C: what was raised is raised again when the run has ended. Or None. warn: is called with
+/// each warning, a str. exchange: takes uint8 [bytes] and gives a list of everyone's: this is the
+/// first of so many workers, and the others `follow`. ranks: number of workers.
 ///
 /// Returns:
 ///     The directory, whether the run was ended by the callback, and the last report.
@@ -109,7 +117,11 @@ pub fn train(
             // What cannot be said is not worth ending the run for.
             let _ = Python::attach(|py| warn.call1(py, (text,)));
         };
-        hasard_cli::train(&team, words, &mut Hooks { stop: &stop, report: &mut report, warn: &mut say })
+        hasard_cli::train(
+            &team,
+            words,
+            &mut Hooks { stop: &stop, report: &mut report, warn: &mut say },
+        )
     });
     if let Some(error) = raised {
         return Err(error);

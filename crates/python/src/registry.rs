@@ -23,7 +23,8 @@ pub fn environment(env_id: &str) -> Result<EnvId, EnvError> {
 
 /// check_scenario(text) -> list[tuple[int, int, bool, str]]
 ///
-/// Returns what is wrong with a scenario's text: line, column, whether it can be played nevertheless, and the remedy.
+/// Returns what is wrong with a scenario's text: line, column, whether it can be played
+/// nevertheless, and the remedy.
 #[pyfunction]
 pub fn check_scenario(text: &str) -> Vec<(usize, usize, bool, String)> {
     let mistakes = own::check(text).mistakes.into_iter();
@@ -32,7 +33,8 @@ pub fn check_scenario(text: &str) -> Vec<(usize, usize, bool, String)> {
 
 /// register_scenario(path, text) -> list[str]
 ///
-/// Makes the environments of a scenario's text known and returns their ids, without `hasard/`. Raises InvalidOption.
+/// Makes the environments of a scenario's text known and returns their ids, without `hasard/`.
+/// Raises InvalidOption.
 #[pyfunction]
 pub fn register_scenario(py: Python<'_>, path: &str, text: &str) -> PyResult<Vec<String>> {
     let scenario = own::register(path, text).map_err(|error| raise(py, &error))?;
@@ -41,15 +43,21 @@ pub fn register_scenario(py: Python<'_>, path: &str, text: &str) -> PyResult<Vec
 
 /// describe(env_id) -> dict
 ///
-/// Returns what is known of the environment `env_id` without making it; `hasard_rs.spec` is what to use. Raises UnknownEnvironment.
+/// Returns what is known of the environment `env_id` without making it; `hasard_rs.spec` is what to
+/// use. Raises UnknownEnvironment.
 #[pyfunction]
 pub fn describe<'py>(py: Python<'py>, env_id: &str) -> PyResult<Bound<'py, PyDict>> {
     let id = environment(env_id).map_err(|error| raise(py, &error))?;
     let space = ActionSpace::of(id, RuleSet::Paper, false, false);
     let names = |space: &ActionSpace| -> Vec<Vec<&str>> {
-        space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect()
+        space
+            .groups
+            .iter()
+            .map(|group| group.buttons.iter().map(|(name, _)| *name).collect())
+            .collect()
     };
-    let terms: Vec<(&str, bool)> = id.scenario.cost_terms.iter().map(|term| (term.name, term.counted)).collect();
+    let terms: Vec<(&str, bool)> =
+        id.scenario.cost_terms.iter().map(|term| (term.name, term.counted)).collect();
     let told = PyDict::new(py);
     told.set_item("scenario", id.scenario.name())?;
     told.set_item("id", id.to_string())?;

@@ -26,12 +26,19 @@ impl Seeds {
         if given.hasattr("__index__")? && given.len().is_err() {
             return Ok(Seeds::From(seed(given)?));
         }
-        let wrong = || PyTypeError::new_err("seeds must be None, an integer, or a sequence of them with one entry a lane");
-        let entries: Vec<Bound<'_, PyAny>> = given.try_iter().map_err(|_| wrong())?.collect::<PyResult<_>>()?;
+        let wrong = || {
+            PyTypeError::new_err(
+                "seeds must be None, an integer, or a sequence of them with one entry a lane",
+            )
+        };
+        let entries: Vec<Bound<'_, PyAny>> =
+            given.try_iter().map_err(|_| wrong())?.collect::<PyResult<_>>()?;
         if entries.len() != lanes {
             return Err(one_a_lane("seeds", lanes, entries.len()));
         }
-        let read = |entry: &Bound<'_, PyAny>| if entry.is_none() { Ok(None) } else { seed(entry).map(Some) };
+        let read = |entry: &Bound<'_, PyAny>| {
+            if entry.is_none() { Ok(None) } else { seed(entry).map(Some) }
+        };
         Ok(Seeds::Each(entries.iter().map(read).collect::<PyResult<_>>()?))
     }
 
@@ -41,7 +48,10 @@ impl Seeds {
             Seeds::GoOn => Seeds::From(fresh),
             Seeds::Each(seeds) => {
                 let each = seeds.into_iter().enumerate();
-                Seeds::Each(each.map(|(lane, seed)| seed.or(Some(fresh.wrapping_add(lane as u64)))).collect())
+                Seeds::Each(
+                    each.map(|(lane, seed)| seed.or(Some(fresh.wrapping_add(lane as u64))))
+                        .collect(),
+                )
             }
             Seeds::From(seed) => Seeds::From(seed),
         }
@@ -64,11 +74,13 @@ pub fn restarts(seeds: &Seeds, mask: Option<&[bool]>, lanes: usize) -> Vec<Resta
 
 /// Reads a mask of lanes.
 pub fn mask(given: &Bound<'_, PyAny>, lanes: usize) -> PyResult<Vec<bool>> {
-    let array =
-        given.cast::<PyArrayDyn<bool>>().map_err(|_| PyTypeError::new_err("mask must be a bool array with one entry a lane"))?;
+    let array = given
+        .cast::<PyArrayDyn<bool>>()
+        .map_err(|_| PyTypeError::new_err("mask must be a bool array with one entry a lane"))?;
     if array.shape() != [lanes] {
         return Err(one_a_lane("mask", lanes, format!("{:?}", array.shape())));
     }
-    let readable = array.try_readonly().map_err(|error| PyTypeError::new_err(format!("mask: {error}")))?;
+    let readable =
+        array.try_readonly().map_err(|error| PyTypeError::new_err(format!("mask: {error}")))?;
     Ok(readable.as_array().iter().copied().collect())
 }

@@ -3,7 +3,9 @@
 use crate::actions::{read_actions, read_deltas};
 use crate::arguments;
 use crate::batch::{Arrays, Batch};
-use crate::errors::{CLOSED, INVALID_ACTION, INVALID_OPTION, OUT_OF_TURN, RESET_NEEDED, WORLD_PANICKED, raise};
+use crate::errors::{
+    CLOSED, INVALID_ACTION, INVALID_OPTION, OUT_OF_TURN, RESET_NEEDED, WORLD_PANICKED, raise,
+};
 use crate::facts::{self, Facts};
 use crate::inner::Inner;
 use crate::pool::{Pool, array};
@@ -41,29 +43,30 @@ enum CameBack {
     Bound(hasard_envs::Batch),
 }
 
-/// Worlds(env_id, num_envs, *, num_threads=None, groups=None, autoreset_mode="SameStep", final_observations="every",
-/// statistics=False, **arguments)
+/// Worlds(env_id, num_envs, *, num_threads=None, groups=None, autoreset_mode="SameStep",
+/// final_observations="every", statistics=False, **arguments)
 ///
-/// A batch of worlds, raw: categorical actions in, arrays out. `hasard_rs.VectorEnv` is Gymnasium's view of one.
+/// A batch of worlds, raw: categorical actions in, arrays out. `hasard_rs.VectorEnv` is Gymnasium's
+/// view of one.
 ///
-/// Every call lets the interpreter go while the worlds work. Two threads that use one object take turns.
+/// Every call lets the interpreter go while the worlds work. Two threads that use one object take
+/// turns.
 ///
-/// Args:
-///     env_id: with or without `hasard/`.
-///     num_envs: lanes, 1 to 65536.
-///     num_threads: worker threads beside the caller's; None: one for every four lanes, as far as there are processors. No result depends on it.
-///     groups: of lanes that `send` and `recv` step on their own, 1 (None) to num_envs.
-///     autoreset_mode: "SameStep" (None means it), "NextStep" or "Disabled", or Gymnasium's enum.
-///     final_observations: whose last observation a batch holds under "SameStep": "every" episode's, or only those "truncated".
-///     statistics: whether batches hold the statistics of every step.
-///     arguments: rules, hard_constraint, full_actions, frame_skip, resolution, observation, layout, frame_stack, max_episode_steps, seed,
-///         safety_budget, maps, iwad, published_depth, published_colours, as in `help(hasard_rs.Env)`.
+/// Args: env_id: with or without `hasard/`. num_envs: lanes, 1 to 65536. num_threads: worker
+/// threads beside the caller's; None: one for every four lanes, as far as there are processors. No
+/// result depends on it. groups: of lanes that `send` and `recv` step on their own, 1 (None) to
+/// num_envs. autoreset_mode: "SameStep" (None means it), "NextStep" or "Disabled", or Gymnasium's
+/// enum. final_observations: whose last observation a batch holds under "SameStep": "every"
+/// episode's, or only those "truncated". statistics: whether batches hold the statistics of every
+/// step. arguments: rules, hard_constraint, full_actions, frame_skip, resolution, observation,
+/// layout, frame_stack, max_episode_steps, seed, safety_budget, maps, iwad, published_depth,
+/// published_colours, as in `help(hasard_rs.Env)`.
 ///
-/// Raises:
-///     UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no argument: before any thread starts.
+/// Raises: UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no
+/// argument: before any thread starts.
 ///
-/// Every method raises Closed after `close`, OutOfTurn in a process forked from the one that made threads, and WorldPanicked for a fault of this
-/// package, after which the worlds are closed.
+/// Every method raises Closed after `close`, OutOfTurn in a process forked from the one that made
+/// threads, and WorldPanicked for a fault of this package, after which the worlds are closed.
 #[pyclass(frozen, module = "hasard_rs._core")]
 pub struct Worlds {
     pub(crate) facts: Facts,
@@ -79,7 +82,11 @@ pub struct Worlds {
 
 impl Worlds {
     /// Works with the worlds while other Python threads run.
-    pub(crate) fn with<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Inner) -> Result<T, Fault> + Send) -> PyResult<T> {
+    pub(crate) fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Inner) -> Result<T, Fault> + Send,
+    ) -> PyResult<T> {
         if let Some(process) = self.process.filter(|process| *process != std::process::id()) {
             let why = format!("made in process {process}; make worlds after forking, or use spawn");
             return Err(OUT_OF_TURN.error(py, why));
@@ -87,8 +94,9 @@ impl Worlds {
         let result = py.detach(|| {
             let mut guard = self.inner.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
             let Some(inner) = guard.as_mut() else { return Err(Fault::Closed) };
-            let result = catch_unwind(AssertUnwindSafe(|| work(inner)))
-                .unwrap_or_else(|_| Err(EnvError::Panicked { message: "outside of a step".to_string() }.into()));
+            let result = catch_unwind(AssertUnwindSafe(|| work(inner))).unwrap_or_else(|_| {
+                Err(EnvError::Panicked { message: "outside of a step".to_string() }.into())
+            });
             if matches!(result, Err(Fault::Env(EnvError::Panicked { .. }))) {
                 *guard = None;
             }
@@ -118,7 +126,8 @@ impl Worlds {
     fn scratch(&self, inner: &mut Inner, lanes: usize) -> hasard_envs::Batch {
         let mut spare = self.spare.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let found = spare.iter().position(|batch| batch.lanes() == lanes);
-        let mut batch = found.map_or_else(|| inner.worlds().batch_of(lanes), |index| spare.swap_remove(index));
+        let mut batch =
+            found.map_or_else(|| inner.worlds().batch_of(lanes), |index| spare.swap_remove(index));
         if found.is_some() {
             let length = lanes * self.facts.shape.iter().product::<usize>();
             batch.observations = self.pool.take(length).into();
@@ -127,8 +136,14 @@ impl Worlds {
     }
 
     /// Shows a batch that has come back, and keeps its small buffers.
-    fn show(&self, py: Python<'_>, mut batch: hasard_envs::Batch, lanes: Vec<i32>) -> PyResult<Batch> {
-        let shown = Batch::new(py, &mut batch, lanes, self.facts.shape, &self.pool, Arrays::default())?;
+    fn show(
+        &self,
+        py: Python<'_>,
+        mut batch: hasard_envs::Batch,
+        lanes: Vec<i32>,
+    ) -> PyResult<Batch> {
+        let shown =
+            Batch::new(py, &mut batch, lanes, self.facts.shape, &self.pool, Arrays::default())?;
         let mut spare = self.spare.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if spare.len() < 4 {
             spare.push(batch);
@@ -163,14 +178,21 @@ impl Worlds {
         match came_back {
             CameBack::Own(batch) => self.show(py, batch, lanes),
             CameBack::Bound(mut told) => {
-                let arrays = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner())[slot].clone_ref(py);
+                let arrays = self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+                    [slot]
+                    .clone_ref(py);
                 Batch::new(py, &mut told, lanes, self.facts.shape, &self.pool, arrays)
             }
         }
     }
 
     /// Lays a lent batch back and copies what it tells beside the bound arrays.
-    fn keep(&self, inner: &mut Inner, slot: usize, mut batch: hasard_envs::Batch) -> hasard_envs::Batch {
+    fn keep(
+        &self,
+        inner: &mut Inner,
+        slot: usize,
+        mut batch: hasard_envs::Batch,
+    ) -> hasard_envs::Batch {
         let told = hasard_envs::Batch {
             statistics: batch.statistics.clone(),
             positions: batch.positions.clone(),
@@ -197,7 +219,8 @@ impl Worlds {
         }
         if self.facts.autoreset == Autoreset::Disabled {
             let resting = inner.worlds().resting();
-            let lanes: Vec<usize> = lanes.filter(|&lane| resting.get(lane).copied().unwrap_or(false)).collect();
+            let lanes: Vec<usize> =
+                lanes.filter(|&lane| resting.get(lane).copied().unwrap_or(false)).collect();
             if !lanes.is_empty() {
                 return Err(Fault::Resting(lanes));
             }
@@ -209,7 +232,10 @@ impl Worlds {
         if group < self.facts.groups {
             return Ok(());
         }
-        Err(INVALID_OPTION.error(py, format!("group cannot be {group}; it must be less than {}", self.facts.groups)))
+        Err(INVALID_OPTION.error(
+            py,
+            format!("group cannot be {group}; it must be less than {}", self.facts.groups),
+        ))
     }
 
     fn check_lane(&self, lane: usize) -> PyResult<()> {
@@ -257,24 +283,39 @@ impl Worlds {
         let mut given = arguments::read(py, arguments)?;
         given.options.scenario = Some(id.scenario);
         let num_envs = arguments::number("num_envs", num_envs, 1, 65_536)? as usize;
-        let num_threads = num_threads.map(|given| arguments::number("num_threads", given, 0, 1024)).transpose()?;
-        let groups = groups.map_or(Ok(1), |given| arguments::number("groups", given, 1, num_envs as u64))? as usize;
+        let num_threads = num_threads
+            .map(|given| arguments::number("num_threads", given, 0, 1024))
+            .transpose()?;
+        let groups = groups
+            .map_or(Ok(1), |given| arguments::number("groups", given, 1, num_envs as u64))?
+            as usize;
         let autoreset = autoreset_mode.map_or(Ok(Autoreset::SameStep), arguments::autoreset)?;
         let final_observations = match final_observations {
             "every" => FinalObservations::Every,
             "truncated" => FinalObservations::Truncated,
             other => {
-                let why = format!("final_observations cannot be {other:?}; it must be truncated or every");
+                let why = format!(
+                    "final_observations cannot be {other:?}; it must be truncated or every"
+                );
                 return Err(INVALID_OPTION.error(py, why));
             }
         };
         let spare_cpus = std::thread::available_parallelism().map_or(0, |cpus| cpus.get() - 1);
-        let threads = num_threads.map_or_else(|| spare_cpus.min(num_envs / 4), |threads| threads as usize);
-        let options =
-            VecOptions { lanes: num_envs, threads, groups, autoreset, final_observations, statistics, ..VecOptions::default() };
+        let threads =
+            num_threads.map_or_else(|| spare_cpus.min(num_envs / 4), |threads| threads as usize);
+        let options = VecOptions {
+            lanes: num_envs,
+            threads,
+            groups,
+            autoreset,
+            final_observations,
+            statistics,
+            ..VecOptions::default()
+        };
         let made = py.detach(|| Inner::new(&id.to_string(), &given.options, options));
         let mut inner = made.map_err(|error| raise(py, &error))?;
-        let (episode_steps, extent) = inner.look(0, |env: &mut Env| (env.episode_steps(), env.extent()));
+        let (episode_steps, extent) =
+            inner.look(0, |env: &mut Env| (env.episode_steps(), env.extent()));
         let worlds = inner.worlds();
         let facts = Facts {
             id,
@@ -285,7 +326,9 @@ impl Worlds {
             shape: worlds.observation_shape(),
             terms: worlds.cost_terms(),
             statistics: worlds.statistics().to_vec(),
-            safety_budget: given.safety_budget.unwrap_or_else(|| id.scenario.safety_budget(given.options.rules)),
+            safety_budget: given
+                .safety_budget
+                .unwrap_or_else(|| id.scenario.safety_budget(given.options.rules)),
             episode_steps,
             extent,
             seed: given.seed,
@@ -305,23 +348,32 @@ impl Worlds {
     ///
     /// Starts the next episode of every lane, or of those that are chosen.
     ///
-    /// Args:
-    ///     seeds: None goes on with the lanes' streams of seeds; an int s starts the stream of lane i anew from s + i; a sequence has one entry a
-    ///         lane (None goes on). Not negative; taken modulo 2^64.
-    ///     mask: bool [num_envs], the lanes to reset; the others stay as they are. None: all.
+    /// Args: seeds: None goes on with the lanes' streams of seeds; an int s starts the stream of
+    /// lane i anew from s + i; a sequence has one entry a lane (None goes on). Not negative; taken
+    /// modulo 2^64. mask: bool [num_envs], the lanes to reset; the others stay as they are. None:
+    /// all.
     ///
     /// Returns:
     ///     A Batch of all lanes, with rewards and costs 0.
     ///
-    /// Raises:
-    ///     TypeError or ValueError for seeds or a mask of the wrong kind; ResetNeeded if the first reset is of some lanes only.
+    /// Raises: TypeError or ValueError for seeds or a mask of the wrong kind; ResetNeeded if the
+    /// first reset is of some lanes only.
     #[pyo3(signature = (seeds=None, mask=None))]
-    fn reset(&self, py: Python<'_>, seeds: Option<&Bound<'_, PyAny>>, mask: Option<&Bound<'_, PyAny>>) -> PyResult<Batch> {
+    fn reset(
+        &self,
+        py: Python<'_>,
+        seeds: Option<&Bound<'_, PyAny>>,
+        mask: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Batch> {
         let seeds = Seeds::read(seeds, self.facts.lanes)?;
         let mask = mask.map(|mask| resets::mask(mask, self.facts.lanes)).transpose()?;
         let fresh = match self.facts.seed {
             Some(seed) => seed,
-            None => py.import("os")?.call_method1("urandom", (8,))?.extract::<[u8; 8]>().map(u64::from_le_bytes)?,
+            None => py
+                .import("os")?
+                .call_method1("urandom", (8,))?
+                .extract::<[u8; 8]>()
+                .map(u64::from_le_bytes)?,
         };
         self.whole(py, |inner, batch| {
             // The first episodes follow from a seed in any case.
@@ -340,18 +392,17 @@ impl Worlds {
     ///
     /// Steps every lane, or chosen ones.
     ///
-    /// Args:
-    ///     actions: integers [m, len(nvec)], a choice for each categorical part; any integer dtype and strides, lists too.
-    ///     deltas: numbers [m, 2] in [-1, 1], where num_deltas is not 0; None otherwise.
-    ///     lanes: the m lanes to step, each once; None: all of them, in order.
+    /// Args: actions: integers [m, len(nvec)], a choice for each categorical part; any integer
+    /// dtype and strides, lists too. deltas: numbers [m, 2] in [-1, 1], where num_deltas is not 0;
+    /// None otherwise. lanes: the m lanes to step, each once; None: all of them, in order.
     ///
     /// Returns:
     ///     A Batch of m rows, in the order of lanes.
     ///
-    /// Raises:
-    ///     InvalidAction, which names lane, part, value and range; TypeError or ValueError for the wrong dtype or shape; InvalidOption for a lane
-    ///     that is none, or named twice; ResetNeeded before the first reset, or where an episode is over under "Disabled"; OutOfTurn with a batch
-    ///     under way. Nothing has moved then.
+    /// Raises: InvalidAction, which names lane, part, value and range; TypeError or ValueError for
+    /// the wrong dtype or shape; InvalidOption for a lane that is none, or named twice; ResetNeeded
+    /// before the first reset, or where an episode is over under "Disabled"; OutOfTurn with a batch
+    /// under way. Nothing has moved then.
     #[pyo3(signature = (actions, deltas=None, *, lanes=None))]
     fn step(
         &self,
@@ -384,13 +435,12 @@ impl Worlds {
     ///
     /// Hands a group's actions over and comes back at once; the worlds step meanwhile.
     ///
-    /// Args:
-    ///     actions: integers [num_envs / groups, len(nvec)], as for `step`; the array may be used again at once.
-    ///     deltas: numbers [num_envs / groups, 2], as for `step`.
-    ///     group: 0 to groups - 1.
+    /// Args: actions: integers [num_envs / groups, len(nvec)], as for `step`; the array may be used
+    /// again at once. deltas: numbers [num_envs / groups, 2], as for `step`. group: 0 to
+    /// groups - 1.
     ///
-    /// Raises:
-    ///     What `step` raises; OutOfTurn if the group's last batch was not fetched by `recv`; InvalidOption for a group that is none.
+    /// Raises: What `step` raises; OutOfTurn if the group's last batch was not fetched by `recv`;
+    /// InvalidOption for a group that is none.
     #[pyo3(signature = (actions, deltas=None, *, group=0))]
     fn send(
         &self,
@@ -431,19 +481,28 @@ impl Worlds {
     /// Raises:
     ///     OutOfTurn if nothing was sent; InvalidOption for a group that is none.
     #[pyo3(signature = (group=0))]
-    fn recv(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::group)] group: usize) -> PyResult<Batch> {
+    fn recv(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::group)] group: usize,
+    ) -> PyResult<Batch> {
         self.check_group(py, group)?;
         let came_back = self.with(py, |inner| {
             let batch = inner.worlds().recv(group)?;
-            Ok(if inner.bound.is_empty() { CameBack::Own(batch) } else { CameBack::Bound(self.keep(inner, group, batch)) })
+            Ok(if inner.bound.is_empty() {
+                CameBack::Own(batch)
+            } else {
+                CameBack::Bound(self.keep(inner, group, batch))
+            })
         })?;
         self.tell(py, group, came_back)
     }
 
     /// bind(*, observations, rewards, costs, terminated, truncated, cost_terms=None)
     ///
-    /// From now on results are written into arrays of the caller's, in place, and batches show those. All are C-contiguous and writable.
-    /// They are kept alive; what Python reads while a batch is under way is undefined.
+    /// From now on results are written into arrays of the caller's, in place, and batches show
+    /// those. All are C-contiguous and writable. They are kept alive; what Python reads while a
+    /// batch is under way is undefined.
     ///
     /// Args:
     ///     observations: uint8 [num_envs, *observation_shape].
@@ -453,8 +512,8 @@ impl Worlds {
     ///     truncated: bool [num_envs].
     ///     cost_terms: float32 [num_envs, k], or None.
     ///
-    /// Raises:
-    ///     BufferError, which tells the dtype and shape wanted and given; OutOfTurn with a batch under way.
+    /// Raises: BufferError, which tells the dtype and shape wanted and given; OutOfTurn with a
+    /// batch under way.
     #[pyo3(signature = (*, observations, rewards, costs, terminated, truncated, cost_terms=None))]
     #[allow(clippy::too_many_arguments, reason = "Python's keyword arguments")]
     fn bind(
@@ -467,20 +526,24 @@ impl Worlds {
         truncated: &Bound<'_, PyAny>,
         cost_terms: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let given = crate::bind::Given { observations, rewards, costs, terminated, truncated, cost_terms };
+        let given =
+            crate::bind::Given { observations, rewards, costs, terminated, truncated, cost_terms };
         crate::bind::bind(self, py, &given)
     }
 
     /// unbind()
     ///
-    /// Results are given in fresh arrays again, and the bound ones are let go. Raises OutOfTurn with a batch under way.
+    /// Results are given in fresh arrays again, and the bound ones are let go. Raises OutOfTurn
+    /// with a batch under way.
     fn unbind(&self, py: Python<'_>) -> PyResult<()> {
         let let_go = self.with(py, |inner| {
             crate::bind::idle(inner)?;
             Ok(std::mem::take(&mut inner.bound))
         })?;
         drop(let_go);
-        let arrays = std::mem::take(&mut *self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()));
+        let arrays = std::mem::take(
+            &mut *self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()),
+        );
         drop(arrays);
         Ok(())
     }
@@ -515,7 +578,9 @@ impl Worlds {
     ///     InvalidOption for bytes that are spoiled, or of other worlds; nothing has changed then.
     fn load(&self, py: Python<'_>, bytes: &[u8]) -> PyResult<Batch> {
         let refused = |why: String| INVALID_OPTION.error(py, why);
-        let (started, packed) = bytes.split_last().ok_or_else(|| refused("these bytes are no saved worlds".to_string()))?;
+        let (started, packed) = bytes
+            .split_last()
+            .ok_or_else(|| refused("these bytes are no saved worlds".to_string()))?;
         let lanes = facts::unpack(&self.facts.kind, packed).map_err(refused)?;
         let states = LaneState::from_bytes(lanes).map_err(|error| raise(py, &error))?;
         let started = *started != 0;
@@ -530,16 +595,15 @@ impl Worlds {
     ///
     /// Draws the present of a lane, which goes on unchanged.
     ///
-    /// Args:
-    ///     lane: 0 to num_envs - 1.
-    ///     kind: "rgb", "segmented", "automap", "depth" (0 near to 255 far, 7.3 map units a level), "labels" or "grey".
-    ///     resolution: "WxH" or (width, height), 64x48 to 1920x1080.
+    /// Args: lane: 0 to num_envs - 1. kind: "rgb", "segmented", "automap", "depth" (0 near to 255
+    /// far, 7.3 map units a level), "labels" or "grey". resolution: "WxH" or (width, height), 64x48
+    /// to 1920x1080.
     ///
-    /// Returns:
-    ///     uint8 [height, width, 3] for rgb, segmented and automap, uint8 [height, width] for depth, labels and grey.
+    /// Returns: uint8 [height, width, 3] for rgb, segmented and automap, uint8 [height, width] for
+    /// depth, labels and grey.
     ///
-    /// Raises:
-    ///     InvalidOption for another kind or size, IndexError for a lane that is none, OutOfTurn with a batch under way.
+    /// Raises: InvalidOption for another kind or size, IndexError for a lane that is none,
+    /// OutOfTurn with a batch under way.
     #[pyo3(signature = (lane=0, kind="rgb", resolution=None))]
     fn render<'py>(
         &self,
@@ -557,24 +621,37 @@ impl Worlds {
             "grey" => ViewKind::Grey,
             "automap" => ViewKind::Automap,
             _ => {
-                let why = format!("kind cannot be {kind:?}; it must be rgb, depth, segmented, labels, grey or automap");
+                let why = format!(
+                    "kind cannot be {kind:?}; it must be rgb, depth, segmented, labels, grey or automap"
+                );
                 return Err(INVALID_OPTION.error(py, why));
             }
         };
-        let size = resolution.map_or(Ok(hasard_envs::FrameSize::CLASSIC), |given| arguments::size("resolution", given))?;
+        let size = resolution.map_or(Ok(hasard_envs::FrameSize::CLASSIC), |given| {
+            arguments::size("resolution", given)
+        })?;
         let (width, height, channels, bytes) = self.with(py, |inner| {
             crate::bind::idle(inner)?;
             Ok(inner.draw(lane, view, size)?)
         })?;
-        if channels == 1 { array(py, bytes, &[height, width]) } else { array(py, bytes, &[height, width, channels]) }
+        if channels == 1 {
+            array(py, bytes, &[height, width])
+        } else {
+            array(py, bytes, &[height, width, channels])
+        }
     }
 
     /// state_hash(lane=0) -> int
     ///
-    /// Returns a fingerprint (64 bits) of everything that the future of `lane` depends on, the same on every platform. Raises IndexError for a lane
-    /// that is none, OutOfTurn with a batch under way.
+    /// Returns a fingerprint (64 bits) of everything that the future of `lane` depends on, the same
+    /// on every platform. Raises IndexError for a lane that is none, OutOfTurn with a batch under
+    /// way.
     #[pyo3(signature = (lane=0))]
-    fn state_hash(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::lane)] lane: usize) -> PyResult<u64> {
+    fn state_hash(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::lane)] lane: usize,
+    ) -> PyResult<u64> {
         self.check_lane(lane)?;
         self.with(py, |inner| {
             crate::bind::idle(inner)?;
@@ -584,9 +661,14 @@ impl Worlds {
 
     /// stats(lane=0) -> list[tuple[str, float]]
     ///
-    /// Returns the statistics of the episode of `lane` so far, by name. Raises IndexError for a lane that is none.
+    /// Returns the statistics of the episode of `lane` so far, by name. Raises IndexError for a
+    /// lane that is none.
     #[pyo3(signature = (lane=0))]
-    fn stats(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::lane)] lane: usize) -> PyResult<Vec<(&'static str, f64)>> {
+    fn stats(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::lane)] lane: usize,
+    ) -> PyResult<Vec<(&'static str, f64)>> {
         self.check_lane(lane)?;
         self.with(py, |inner| Ok(inner.look(lane, |env| env.stats())))
     }
@@ -595,8 +677,11 @@ impl Worlds {
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let lanes = self.facts.lanes;
-        let places =
-            self.with(py, |inner| Ok((0..lanes).flat_map(|lane| inner.look(lane, |env| env.position())).collect::<Vec<i32>>()))?;
+        let places = self.with(py, |inner| {
+            Ok((0..lanes)
+                .flat_map(|lane| inner.look(lane, |env| env.position()))
+                .collect::<Vec<i32>>())
+        })?;
         array(py, places, &[lanes, 2])
     }
 
@@ -604,7 +689,9 @@ impl Worlds {
     #[getter]
     fn episode_seeds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let lanes = self.facts.lanes;
-        let seeds = self.with(py, |inner| Ok((0..lanes).map(|lane| inner.look(lane, |env| env.seed())).collect::<Vec<u64>>()))?;
+        let seeds = self.with(py, |inner| {
+            Ok((0..lanes).map(|lane| inner.look(lane, |env| env.seed())).collect::<Vec<u64>>())
+        })?;
         array(py, seeds, &[lanes])
     }
 
@@ -629,7 +716,8 @@ impl Worlds {
         if forked {
             return;
         }
-        let inner = py.detach(|| self.inner.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take());
+        let inner =
+            py.detach(|| self.inner.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take());
         py.detach(|| drop(inner));
         self.arrays.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clear();
     }
@@ -722,5 +810,7 @@ impl Worlds {
 
 /// What a wrong number of lanes is told as.
 pub(crate) fn one_a_lane(what: &str, lanes: usize, given: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(format!("{what} must have one entry for each of {lanes} lanes, got {given}"))
+    PyValueError::new_err(format!(
+        "{what} must have one entry for each of {lanes} lanes, got {given}"
+    ))
 }

@@ -53,10 +53,16 @@ pub fn experiments_csv(groups: &[Group]) -> String {
         let paper = published(config);
         let evaluated = |metric: &str, half: bool| {
             let estimate = group.estimate(Source::Evaluation, metric);
-            optional(if half { estimate.and_then(|e| e.half_width) } else { estimate.map(|e| e.mean) })
+            optional(if half {
+                estimate.and_then(|e| e.half_width)
+            } else {
+                estimate.map(|e| e.mean)
+            })
         };
         let headline = group.kept(group.headline());
-        let kept = |least: Kept| if headline == Kept::Unknown { String::new() } else { (headline >= least).to_string() };
+        let kept = |least: Kept| {
+            if headline == Kept::Unknown { String::new() } else { (headline >= least).to_string() }
+        };
         fields.extend([
             optional(group.final_estimate("length_mean").map(|e| e.mean)),
             evaluated("return_mean", false),
@@ -78,10 +84,12 @@ pub fn experiments_csv(groups: &[Group]) -> String {
 /// A row for each run.
 #[must_use]
 pub fn runs_csv(groups: &[Group]) -> String {
-    let mut text =
-        String::from("directory,env,algorithm,seed,options,frames,reports,wall_s,fps,return_mean,cost_mean,length_mean\n");
+    let mut text = String::from(
+        "directory,env,algorithm,seed,options,frames,reports,wall_s,fps,return_mean,cost_mean,length_mean\n",
+    );
     for run in groups.iter().flat_map(|group| &group.runs) {
-        let options: Vec<String> = run.config.options.iter().map(|(key, value)| format!("{key} {value}")).collect();
+        let options: Vec<String> =
+            run.config.options.iter().map(|(key, value)| format!("{key} {value}")).collect();
         let last = |metric: &str| run.final_mean(metric);
         text += &line(&[
             run.path.display().to_string(),
@@ -111,7 +119,13 @@ pub fn curves_csv(groups: &[Group]) -> String {
         for metric in ["return_mean", "cost_mean"] {
             for point in Curve::of(group, metric).mean {
                 let (mean, half) = (point.value.mean, optional(point.value.half_width));
-                let _ = writeln!(text, "{},{metric},{:.0},{mean},{half},{}", head.trim_end(), point.frames, point.value.n);
+                let _ = writeln!(
+                    text,
+                    "{},{metric},{:.0},{mean},{half},{}",
+                    head.trim_end(),
+                    point.frames,
+                    point.value.n
+                );
             }
         }
     }

@@ -3,8 +3,9 @@
 use crate::group::Group;
 use crate::statistics::Estimate;
 
-/// Equal distances of frames that the longest run of a figure is divided into: about one every two pixels. A curve has a point at
-/// each, however often its runs reported: reports come by the clock, and a fast machine makes more of them.
+/// Equal distances of frames that the longest run of a figure is divided into: about one every two
+/// pixels. A curve has a point at each, however often its runs reported: reports come by the clock,
+/// and a fast machine makes more of them.
 const MAX_POINTS: usize = 240;
 
 /// A point of a mean curve (or of a profile, whose thresholds stand in the place of frames).
@@ -29,30 +30,36 @@ impl Point {
 /// A metric over the seeds of one experiment.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Curve {
-    /// Mean and interval, as far as the shortest run went: beyond, the mean would be of other seeds and jump.
+    /// Mean and interval, as far as the shortest run went: beyond, the mean would be of other seeds
+    /// and jump.
     pub mean: Vec<Point>,
     /// Every seed's own curve, in full length.
     pub seeds: Vec<(u64, Vec<(f64, f64)>)>,
 }
 
 impl Curve {
-    /// The curve of a metric, with points at equal distances in frames. Several reports of a seed within one distance are averaged; a
-    /// seed's value at a point lies on the line between those around it. Nothing is smoothed otherwise, and no curve is stretched
-    /// to the length of another.
+    /// The curve of a metric, with points at equal distances in frames. Several reports of a seed
+    /// within one distance are averaged; a seed's value at a point lies on the line between those
+    /// around it. Nothing is smoothed otherwise, and no curve is stretched to the length of
+    /// another.
     #[must_use]
     pub fn of(group: &Group, metric: &str) -> Curve {
         let longest = group.frames_span().1;
         let stretch = longest / MAX_POINTS as f64;
         let mut seeds = Vec::new();
         for run in &group.runs {
-            let reports: Vec<(f64, f64)> = run.rows.iter().filter_map(|row| Some((row.frames, row.get(metric)?))).collect();
+            let reports: Vec<(f64, f64)> =
+                run.rows.iter().filter_map(|row| Some((row.frames, row.get(metric)?))).collect();
             let binned = bin(&reports, stretch, MAX_POINTS);
             if !binned.is_empty() {
                 seeds.push((run.config.seed, binned));
             }
         }
         let from = seeds.iter().map(|(_, points)| points[0].0).fold(0.0, f64::max);
-        let to = seeds.iter().map(|(_, points)| points[points.len() - 1].0).fold(f64::INFINITY, f64::min);
+        let to = seeds
+            .iter()
+            .map(|(_, points)| points[points.len() - 1].0)
+            .fold(f64::INFINITY, f64::min);
         let points = (1..MAX_POINTS).map(|point| point as f64 * longest / MAX_POINTS as f64);
         let within = points.filter(|frames| *frames > from && *frames < to);
         // Where the last seed begins and the first one ends there are points too.
@@ -61,15 +68,16 @@ impl Curve {
         let mean = grid
             .into_iter()
             .filter_map(|frames| {
-                let values: Vec<f64> = seeds.iter().filter_map(|(_, points)| interpolate(points, frames)).collect();
+                let values: Vec<f64> =
+                    seeds.iter().filter_map(|(_, points)| interpolate(points, frames)).collect();
                 Some(Point { frames, value: Estimate::of(&values)?, band: None })
             })
             .collect();
         Curve { mean, seeds }
     }
 
-    /// The mean at `frames`, on the line between its points; `None` outside of them. Its interval is the wider one of the
-    /// two points around.
+    /// The mean at `frames`, on the line between its points; `None` outside of them. Its interval
+    /// is the wider one of the two points around.
     #[must_use]
     pub fn at(&self, frames: f64) -> Option<Estimate> {
         let after = self.mean.partition_point(|point| point.frames < frames);
@@ -87,12 +95,15 @@ impl Curve {
         Some(Estimate { mean, half_width, n: left.value.n.min(right.value.n) })
     }
 
-    /// The largest value that is worth showing: of the means and their bands, but a band of few seeds does not squash
-    /// the rest, so it counts at most twice its mean's height.
+    /// The largest value that is worth showing: of the means and their bands, but a band of few
+    /// seeds does not squash the rest, so it counts at most twice its mean's height.
     #[must_use]
     pub fn top(&self) -> f64 {
         let high = |point: &Point| point.ends().map_or(point.value.mean, |(_, high)| high);
-        let means = self.mean.iter().map(|point| high(point).min(point.value.mean.abs() * 2.0).max(point.value.mean));
+        let means = self
+            .mean
+            .iter()
+            .map(|point| high(point).min(point.value.mean.abs() * 2.0).max(point.value.mean));
         let seeds = self.seeds.iter().flat_map(|(_, points)| points.iter().map(|point| point.1));
         means.chain(seeds).fold(0.0, f64::max)
     }
@@ -100,7 +111,10 @@ impl Curve {
     /// The smallest value, or 0 if none is negative.
     #[must_use]
     pub fn bottom(&self) -> f64 {
-        self.seeds.iter().flat_map(|(_, points)| points.iter().map(|point| point.1)).fold(0.0, f64::min)
+        self.seeds
+            .iter()
+            .flat_map(|(_, points)| points.iter().map(|point| point.1))
+            .fold(0.0, f64::min)
     }
 }
 
@@ -115,7 +129,9 @@ fn bin(reports: &[(f64, f64)], stretch: f64, stretches: usize) -> Vec<(f64, f64)
     let mut at = 0;
     while at < reports.len() {
         let index = stretch_of(reports[at].0, stretch, stretches);
-        let here = reports[at..].iter().take_while(|report| stretch_of(report.0, stretch, stretches) == index);
+        let here = reports[at..]
+            .iter()
+            .take_while(|report| stretch_of(report.0, stretch, stretches) == index);
         let (mut frames, mut value, mut count) = (0.0, 0.0, 0);
         for report in here {
             frames += report.0;
@@ -145,21 +161,42 @@ mod tests {
     use crate::run::{Config, Row, Run};
 
     fn run(seed: u64, rows: &[(f64, f64)]) -> Run {
-        let config = Config::parse(&format!("{{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":{seed}}}")).unwrap();
-        let rows = rows.iter().map(|&(frames, value)| Row::new(frames, vec![("return_mean".into(), value)])).collect();
-        Run { path: "x".into(), config, rows, evaluation: vec![], selected: None, calibration: vec![], heatmaps: vec![] }
+        let config = Config::parse(&format!(
+            "{{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":{seed}}}"
+        ))
+        .unwrap();
+        let rows = rows
+            .iter()
+            .map(|&(frames, value)| Row::new(frames, vec![("return_mean".into(), value)]))
+            .collect();
+        Run {
+            path: "x".into(),
+            config,
+            rows,
+            evaluation: vec![],
+            selected: None,
+            calibration: vec![],
+            heatmaps: vec![],
+        }
     }
 
     #[test]
     fn curves_are_neither_mixed_nor_stretched() {
         let long: Vec<_> = (1..=10).map(|k| (f64::from(k) * 100.0, f64::from(k))).collect();
         let short: Vec<_> = (1..=5).map(|k| (f64::from(k) * 100.0, f64::from(k) + 2.0)).collect();
-        let curve = Curve::of(&Group { runs: vec![run(1, &long), run(2, &short)], told: Default::default() }, "return_mean");
+        let curve = Curve::of(
+            &Group { runs: vec![run(1, &long), run(2, &short)], told: Default::default() },
+            "return_mean",
+        );
         assert_eq!(curve.seeds[0].1, long);
         assert_eq!(curve.seeds[1].1, short);
         assert_eq!((curve.mean[0].frames, curve.mean[curve.mean.len() - 1].frames), (100.0, 500.0));
         for point in &curve.mean {
-            assert!((point.value.mean - (point.frames / 100.0 + 1.0)).abs() < 1e-9 && point.value.n == 2, "{point:?}");
+            assert!(
+                (point.value.mean - (point.frames / 100.0 + 1.0)).abs() < 1e-9
+                    && point.value.n == 2,
+                "{point:?}"
+            );
         }
     }
 
@@ -167,28 +204,48 @@ mod tests {
     #[test]
     fn points_do_not_depend_on_how_often_a_run_reported() {
         let of = |reports: u32| {
-            let rows: Vec<_> = (0..=reports).map(|k| f64::from(k) * 1e6 / f64::from(reports)).map(|x| (x, x / 1e5)).collect();
-            Curve::of(&Group { runs: vec![run(1, &rows)], told: Default::default() }, "return_mean").mean
+            let rows: Vec<_> = (0..=reports)
+                .map(|k| f64::from(k) * 1e6 / f64::from(reports))
+                .map(|x| (x, x / 1e5))
+                .collect();
+            Curve::of(&Group { runs: vec![run(1, &rows)], told: Default::default() }, "return_mean")
+                .mean
         };
         let (often, seldom) = (of(230), of(10));
         assert_eq!(often.len(), seldom.len());
         for (a, b) in often.iter().zip(&seldom) {
-            assert!(a.frames == b.frames && (a.value.mean - b.value.mean).abs() < 1e-9, "{a:?} {b:?}");
+            assert!(
+                a.frames == b.frames && (a.value.mean - b.value.mean).abs() < 1e-9,
+                "{a:?} {b:?}"
+            );
         }
     }
 
     #[test]
     fn long_runs_are_thinned_by_means() {
-        let rows: Vec<_> = (1..=24_000).map(|k| (f64::from(k) * 4096.0, f64::from(k % 100))).collect();
-        let curve = Curve::of(&Group { runs: vec![run(1, &rows)], told: Default::default() }, "return_mean");
-        assert!((MAX_POINTS - 1..=MAX_POINTS + 1).contains(&curve.mean.len()), "{}", curve.mean.len());
-        assert!(curve.mean.iter().all(|point| (point.value.mean - 49.5).abs() < 1e-9 && point.value.half_width.is_none()));
+        let rows: Vec<_> =
+            (1..=24_000).map(|k| (f64::from(k) * 4096.0, f64::from(k % 100))).collect();
+        let curve = Curve::of(
+            &Group { runs: vec![run(1, &rows)], told: Default::default() },
+            "return_mean",
+        );
+        assert!(
+            (MAX_POINTS - 1..=MAX_POINTS + 1).contains(&curve.mean.len()),
+            "{}",
+            curve.mean.len()
+        );
+        assert!(curve.mean.iter().all(
+            |point| (point.value.mean - 49.5).abs() < 1e-9 && point.value.half_width.is_none()
+        ));
     }
 
     #[test]
     fn reports_at_unlike_frames_meet_on_the_lines_between() {
         let group = Group {
-            runs: vec![run(1, &[(0.0, 0.0), (100.0, 10.0)]), run(2, &[(0.0, 0.0), (50.0, 10.0), (100.0, 10.0)])],
+            runs: vec![
+                run(1, &[(0.0, 0.0), (100.0, 10.0)]),
+                run(2, &[(0.0, 0.0), (50.0, 10.0), (100.0, 10.0)]),
+            ],
             told: Default::default(),
         };
         let curve = Curve::of(&group, "return_mean");

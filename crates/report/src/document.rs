@@ -78,7 +78,8 @@ pub struct Table {
 }
 
 impl Table {
-    /// The same without those of the named columns in which all rows say the same: the caption says it once.
+    /// The same without those of the named columns in which all rows say the same: the caption says
+    /// it once.
     #[must_use]
     pub fn folded(mut self, heads: &[&str]) -> Table {
         for head in heads {
@@ -86,7 +87,8 @@ impl Table {
             if *head == "options" {
                 self.share_options(column);
             }
-            let all_the_same = self.rows.windows(2).all(|pair| pair[0][column].text == pair[1][column].text);
+            let all_the_same =
+                self.rows.windows(2).all(|pair| pair[0][column].text == pair[1][column].text);
             if self.rows.len() < 2 || !all_the_same {
                 continue;
             }
@@ -95,7 +97,11 @@ impl Table {
                 text => text.clone(),
             };
             if !said.is_empty() && said != "-" {
-                self.caption = if self.caption.is_empty() { said } else { format!("{}; {said}", self.caption) };
+                self.caption = if self.caption.is_empty() {
+                    said
+                } else {
+                    format!("{}; {said}", self.caption)
+                };
             }
             self.heads.remove(column);
             self.rows.iter_mut().for_each(|row| drop(row.remove(column)));
@@ -115,29 +121,40 @@ impl Table {
 impl Table {
     /// Takes what all rows' options have in common out of them and into the caption.
     fn share_options(&mut self, column: usize) {
-        let parts = |row: &Vec<Cell>| row[column].text.split(", ").map(String::from).collect::<Vec<String>>();
-        let Some((first, rest)) = self.rows.split_first().filter(|(_, rest)| !rest.is_empty()) else { return };
+        let parts = |row: &Vec<Cell>| {
+            row[column].text.split(", ").map(String::from).collect::<Vec<String>>()
+        };
+        let Some((first, rest)) = self.rows.split_first().filter(|(_, rest)| !rest.is_empty())
+        else {
+            return;
+        };
         let rest: Vec<Vec<String>> = rest.iter().map(parts).collect();
-        let shared: Vec<String> =
-            parts(first).into_iter().filter(|part| !part.is_empty() && rest.iter().all(|own| own.contains(part))).collect();
+        let shared: Vec<String> = parts(first)
+            .into_iter()
+            .filter(|part| !part.is_empty() && rest.iter().all(|own| own.contains(part)))
+            .collect();
         if shared.is_empty() {
             return;
         }
         for row in &mut self.rows {
-            let own: Vec<String> = parts(row).into_iter().filter(|part| !shared.contains(part)).collect();
+            let own: Vec<String> =
+                parts(row).into_iter().filter(|part| !shared.contains(part)).collect();
             row[column].text = own.join(", ");
         }
         let said = shared.join(", ");
-        self.caption = if self.caption.is_empty() { said } else { format!("{}; {said}", self.caption) };
+        self.caption =
+            if self.caption.is_empty() { said } else { format!("{}; {said}", self.caption) };
     }
 }
 
 /// How a cell is marked.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Mark {
-    /// How the cost stands to the budget: green letters if its mean is within, on green ground if surely.
+    /// How the cost stands to the budget: green letters if its mean is within, on green ground if
+    /// surely.
     pub kept: Kept,
-    /// Bold: the best return within the budget and what cannot be distinguished from it; the least cost if none is within.
+    /// Bold: the best return within the budget and what cannot be distinguished from it; the least
+    /// cost if none is within.
     pub bold: bool,
 }
 
@@ -189,14 +206,22 @@ impl Cell {
     /// A cell of a mean with its interval and the number of samples.
     #[must_use]
     pub fn estimate(estimate: Option<crate::statistics::Estimate>, samples: &[f64]) -> Cell {
-        let Some(estimate) = estimate else { return Cell { text: "-".into(), pale: true, ..Cell::default() } };
-        let half = estimate.half_width.map_or_else(String::new, |half| format!(" ± {}", like(half, estimate.mean)));
+        let Some(estimate) = estimate else {
+            return Cell { text: "-".into(), pale: true, ..Cell::default() };
+        };
+        let half = estimate
+            .half_width
+            .map_or_else(String::new, |half| format!(" ± {}", like(half, estimate.mean)));
         let listed: Vec<String> = samples.iter().take(12).map(|sample| number(*sample)).collect();
         Cell {
             text: format!("{}{half}", number(estimate.mean)),
             note: format!("n={}", estimate.n),
             sort: Some(estimate.mean),
-            title: format!("{}{}", listed.join(", "), if samples.len() > 12 { ", ..." } else { "" }),
+            title: format!(
+                "{}{}",
+                listed.join(", "),
+                if samples.len() > 12 { ", ..." } else { "" }
+            ),
             ..Cell::default()
         }
     }
@@ -275,11 +300,15 @@ mod tests {
         };
         let folded = table.folded(&["level", "algorithm", "options"]);
         assert_eq!((folded.caption.as_str(), folded.heads.len()), ("level 1; rules tables", 1));
-        assert_eq!((folded.rows[1][0].text.as_str(), folded.spans[0].1, folded.spans[1].1), ("P3O", 1, 0));
+        assert_eq!(
+            (folded.rows[1][0].text.as_str(), folded.spans[0].1, folded.spans[1].1),
+            ("P3O", 1, 0)
+        );
         // Options are shared part by part.
         let heads = ["algorithm", "options"].map(String::from).to_vec();
-        let rows =
-            [["PPO", "hard true, rules tables"], ["P3O", "rules tables"]].map(|cells| cells.map(Cell::text).to_vec()).to_vec();
+        let rows = [["PPO", "hard true, rules tables"], ["P3O", "rules tables"]]
+            .map(|cells| cells.map(Cell::text).to_vec())
+            .to_vec();
         let folded = Table { heads, rows, ..Table::default() }.folded(&["options"]);
         let left: Vec<&str> = folded.rows.iter().map(|row| row[1].text.as_str()).collect();
         assert_eq!((folded.caption.as_str(), left), ("rules tables", vec!["hard true", ""]));
@@ -287,8 +316,14 @@ mod tests {
 
     #[test]
     fn numbers_and_names_read_well() {
-        assert_eq!([1234.5, 123.45, 12.345, -0.5].map(number), ["1234", "123.5", "12.35", "-0.50"].map(String::from));
-        assert_eq!([2e6, 1.5e6, 409_600.0, 5e8, 12.0].map(frames), ["2M", "1.5M", "409.6k", "500M", "12"].map(String::from));
+        assert_eq!(
+            [1234.5, 123.45, 12.345, -0.5].map(number),
+            ["1234", "123.5", "12.35", "-0.50"].map(String::from)
+        );
+        assert_eq!(
+            [2e6, 1.5e6, 409_600.0, 5e8, 12.0].map(frames),
+            ["2M", "1.5M", "409.6k", "500M", "12"].map(String::from)
+        );
         assert_eq!(
             (number(-0.001), frames(-0.0), count(1, "run"), count(0, "run")),
             ("0.00".into(), "0".into(), "1 run".into(), "0 runs".into())

@@ -28,10 +28,15 @@ pub fn escape_markdown(text: &str) -> String {
 /// A field of a CSV file: quoted where it must be.
 #[must_use]
 pub fn escape_csv(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
 }
 
-/// A message that may quote a file by anyone: one line of bounded length, and nothing in it commands a terminal.
+/// A message that may quote a file by anyone: one line of bounded length, and nothing in it
+/// commands a terminal.
 #[must_use]
 pub fn one_line(problem: &str) -> String {
     let cut = problem.chars().take(1000);

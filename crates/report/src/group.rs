@@ -5,7 +5,8 @@ use crate::statistics::Estimate;
 use hasard_envs::Scenario;
 use std::collections::BTreeMap;
 
-/// One experiment: the same environment, algorithm and options, a run a seed. Nothing else is ever averaged.
+/// One experiment: the same environment, algorithm and options, a run a seed. Nothing else is ever
+/// averaged.
 #[derive(Clone, Debug)]
 pub struct Group {
     /// The runs, in the order of their seeds, no seed twice.
@@ -24,8 +25,9 @@ pub enum Source {
 }
 
 impl Group {
-    /// Sorts runs into experiments, in the order scenario, level, algorithm, frames (most first), options. Of several runs with equal
-    /// configuration and seed the one that got furthest is kept.
+    /// Sorts runs into experiments, in the order scenario, level, algorithm, frames (most first),
+    /// options. Of several runs with equal configuration and seed the one that got furthest is
+    /// kept.
     pub fn sort(found: &Found, warnings: &mut Vec<Warning>) -> Vec<Group> {
         let mut groups: BTreeMap<String, Vec<Run>> = BTreeMap::new();
         for run in &found.runs {
@@ -76,7 +78,8 @@ impl Group {
         &self.runs[0].config
     }
 
-    /// A metric at the end of training: per seed the mean of its last points, then the mean over seeds.
+    /// A metric at the end of training: per seed the mean of its last points, then the mean over
+    /// seeds.
     #[must_use]
     pub fn final_estimate(&self, metric: &str) -> Option<Estimate> {
         Estimate::of(&self.final_samples(metric))
@@ -100,7 +103,12 @@ impl Group {
     pub fn samples(&self, source: Source, metric: &str) -> Vec<f64> {
         match source {
             Source::Training => self.final_samples(metric),
-            Source::Evaluation => self.runs.iter().filter_map(|run| run.evaluated(metric)).map(|one| one.mean).collect(),
+            Source::Evaluation => self
+                .runs
+                .iter()
+                .filter_map(|run| run.evaluated(metric))
+                .map(|one| one.mean)
+                .collect(),
         }
     }
 
@@ -110,15 +118,16 @@ impl Group {
         Estimate::of(&self.samples(source, metric))
     }
 
-    /// How its costs stand to its budgets, over seeds. Of a single evaluated seed the spread over episodes decides; of a single
-    /// seed in training nothing is known about the spread.
+    /// How its costs stand to its budgets, over seeds. Of a single evaluated seed the spread over
+    /// episodes decides; of a single seed in training nothing is known about the spread.
     #[must_use]
     pub fn kept(&self, source: Source) -> Kept {
         let kept = self.config().constraints.iter().map(|one| {
             let over_seeds = self.estimate(source, &one.metric());
-            let single = (source == Source::Evaluation && over_seeds.is_some_and(|cost| cost.n == 1))
-                .then(|| self.runs.iter().find_map(|run| run.evaluated(&one.metric())))
-                .flatten();
+            let single = (source == Source::Evaluation
+                && over_seeds.is_some_and(|cost| cost.n == 1))
+            .then(|| self.runs.iter().find_map(|run| run.evaluated(&one.metric())))
+            .flatten();
             one.kept_by(single.or(over_seeds))
         });
         kept.min().unwrap_or_default()
@@ -134,16 +143,20 @@ impl Group {
     /// Whether every run reached the frames that it was asked for; `true` if they do not say.
     #[must_use]
     pub fn finished(&self) -> bool {
-        self.runs.iter().all(|run| run.config.frames.is_none_or(|asked| run.frames() >= asked * 0.999))
+        self.runs
+            .iter()
+            .all(|run| run.config.frames.is_none_or(|asked| run.frames() >= asked * 0.999))
     }
 
-    /// The least number of frames that one of its runs was first asked for, if any went on beyond that.
+    /// The least number of frames that one of its runs was first asked for, if any went on beyond
+    /// that.
     #[must_use]
     pub fn extended_from(&self) -> Option<f64> {
         self.runs.iter().filter_map(|run| run.config.extended_from).reduce(f64::min)
     }
 
-    /// The options that stand beside it, without the one of the given name, as one line; empty for none.
+    /// The options that stand beside it, without the one of the given name, as one line; empty for
+    /// none.
     #[must_use]
     pub fn options_line(&self, without: Option<&str>) -> String {
         let options = self.told.iter().filter(|(key, _)| Some(key.as_str()) != without);
@@ -163,7 +176,9 @@ fn tell_apart(groups: &mut [Group]) {
             for key in own.0.options.keys().chain(other.options.keys()) {
                 let value = own.0.options.get(key);
                 if value != other.options.get(key) {
-                    group.told.insert(key.clone(), value.cloned().unwrap_or_else(|| "not given".into()));
+                    group
+                        .told
+                        .insert(key.clone(), value.cloned().unwrap_or_else(|| "not given".into()));
                 }
             }
         }
@@ -171,8 +186,10 @@ fn tell_apart(groups: &mut [Group]) {
 }
 
 /// The algorithms in the order of the paper's tables, then those beyond it.
-pub(crate) const ALGORITHMS: [&str; 13] =
-    ["PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O", "TRPO", "TRPOLag", "TRPOPID", "CPO", "FOCOPS", "CUP", "IPO"];
+pub(crate) const ALGORITHMS: [&str; 13] = [
+    "PPO", "PPOCost", "PPOLag", "PPOSaute", "PPOPID", "P3O", "TRPO", "TRPOLag", "TRPOPID", "CPO",
+    "FOCOPS", "CUP", "IPO",
+];
 
 /// Place of a scenario in tables; unknown ones come last.
 #[must_use]
@@ -184,7 +201,11 @@ pub fn scenario_order(scenario: &str) -> usize {
 /// Name of a scenario for people.
 #[must_use]
 pub fn scenario_name(scenario: &str) -> String {
-    Scenario::every().iter().find(|known| known.name == scenario).map_or(scenario, |known| known.title).to_owned()
+    Scenario::every()
+        .iter()
+        .find(|known| known.name == scenario)
+        .map_or(scenario, |known| known.title)
+        .to_owned()
 }
 
 /// Place of an algorithm in tables, and its colour in figures; unknown ones come last.
@@ -221,7 +242,8 @@ mod tests {
             run(1, ",\"full_actions\":true,\"learning\":{\"exploration\":\"entropy\"}"),
         ];
         let groups = Group::sort(&Found { runs, ..Found::default() }, &mut Vec::new());
-        let mut lines: Vec<(usize, String)> = groups.iter().map(|group| (group.runs.len(), group.options_line(None))).collect();
+        let mut lines: Vec<(usize, String)> =
+            groups.iter().map(|group| (group.runs.len(), group.options_line(None))).collect();
         lines.sort();
         assert_eq!(
             lines,

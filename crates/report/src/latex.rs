@@ -18,7 +18,9 @@ const LEFT_OUT: [&str; 3] = ["runs", "warnings", "paper"];
 #[must_use]
 pub fn latex(document: &Document, figures: &str) -> String {
     let mut text = String::from(HEAD);
-    for section in document.sections.iter().filter(|section| !LEFT_OUT.contains(&section.slug.as_str())) {
+    for section in
+        document.sections.iter().filter(|section| !LEFT_OUT.contains(&section.slug.as_str()))
+    {
         write_section(section, figures, &mut text);
     }
     text
@@ -52,15 +54,23 @@ fn write_section(section: &Section, figures: &str, text: &mut String) {
 
 fn write_table(table: &Table, label: &str, text: &mut String) {
     let is_number = |column: usize| table.rows.iter().any(|row| row[column].sort.is_some());
-    let columns: String = (0..table.heads.len()).map(|column| if is_number(column) { 'r' } else { 'l' }).collect();
-    let _ = writeln!(text, "\\begin{{table}}\\centering\\small\n\\caption{{{}}}\\label{{tab:{label}}}", escaped(&table.caption));
+    let columns: String =
+        (0..table.heads.len()).map(|column| if is_number(column) { 'r' } else { 'l' }).collect();
+    let _ = writeln!(
+        text,
+        "\\begin{{table}}\\centering\\small\n\\caption{{{}}}\\label{{tab:{label}}}",
+        escaped(&table.caption)
+    );
     let _ = writeln!(
         text,
         "\\resizebox{{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}}{{!}}{{%\n\\begin{{tabular}}{{{columns}}}\n\\toprule"
     );
     if !table.spans.is_empty() {
-        let heads: Vec<String> =
-            table.spans.iter().map(|(head, columns)| format!("\\multicolumn{{{columns}}}{{c}}{{{}}}", escaped(head))).collect();
+        let heads: Vec<String> = table
+            .spans
+            .iter()
+            .map(|(head, columns)| format!("\\multicolumn{{{columns}}}{{c}}{{{}}}", escaped(head)))
+            .collect();
         let _ = writeln!(text, "{} \\\\", heads.join(" & "));
         let mut first = 1;
         for (head, columns) in &table.spans {
@@ -131,7 +141,11 @@ mod tests {
 
     #[test]
     fn a_table_is_booktabs_and_no_text_is_a_command() {
-        let bold = Cell { mark: Mark { kept: Kept::Surely, bold: true }, sort: Some(3.0), ..Cell::text("3.00 ± 0.50") };
+        let bold = Cell {
+            mark: Mark { kept: Kept::Surely, bold: true },
+            sort: Some(3.0),
+            ..Cell::text("3.00 ± 0.50")
+        };
         let table = Table {
             caption: "50 % of \\input{x}".into(),
             spans: vec![(String::new(), 1), ("Remedy_Rush".into(), 1)],

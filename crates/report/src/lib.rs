@@ -11,8 +11,8 @@
 //! | [`scoreboard`] | agents whose claims hold, as a page |
 //! | [`write_report`] | HTML, Markdown, CSV, SVG, PNG and GIF files; LaTeX and PDF where wanted |
 //!
-//! Nothing here trains, plays or knows an environment, so that a report can be made of runs of any version and on any
-//! machine. Same runs, same bytes.
+//! Nothing here trains, plays or knows an environment, so that a report can be made of runs of any
+//! version and on any machine. Same runs, same bytes.
 
 // They panic where a stream is closed or its disk is full.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]

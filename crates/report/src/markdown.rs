@@ -8,10 +8,15 @@ use std::fmt::Write;
 /// Folder of figures and pictures, beside the Markdown file.
 pub const FIGURES: &str = "figures";
 
-/// Writes the report. Bold is bold; a tick stands for green ground, one in brackets for green letters.
+/// Writes the report. Bold is bold; a tick stands for green ground, one in brackets for green
+/// letters.
 #[must_use]
 pub fn markdown(document: &Document) -> String {
-    let mut text = format!("# {}\n\n{}\n", escape_markdown(&document.title), escape_markdown(&document.subtitle));
+    let mut text = format!(
+        "# {}\n\n{}\n",
+        escape_markdown(&document.title),
+        escape_markdown(&document.subtitle)
+    );
     for section in &document.sections {
         let _ = write!(text, "\n## {}\n", escape_markdown(&section.title));
         for paragraph in &section.text {
@@ -25,9 +30,19 @@ pub fn markdown(document: &Document) -> String {
                     Ok(())
                 }
                 Block::Figure(figure) => {
-                    write!(text, "\n![{}]({FIGURES}/{}.svg)\n", escape_markdown(&figure.caption), figure.slug)
+                    write!(
+                        text,
+                        "\n![{}]({FIGURES}/{}.svg)\n",
+                        escape_markdown(&figure.caption),
+                        figure.slug
+                    )
                 }
-                Block::Image(image) => write!(text, "\n![{}]({FIGURES}/{})\n", escape_markdown(&image.caption), image.file),
+                Block::Image(image) => write!(
+                    text,
+                    "\n![{}]({FIGURES}/{})\n",
+                    escape_markdown(&image.caption),
+                    image.file
+                ),
             };
         }
     }
@@ -41,15 +56,19 @@ fn markdown_table(table: &Table) -> String {
     }
     // Markdown has one row of heads: a head that spans columns is put before each of theirs.
     let mut heads = Vec::new();
-    let spans = table.spans.iter().flat_map(|(head, columns)| std::iter::repeat_n(head.as_str(), *columns));
+    let spans =
+        table.spans.iter().flat_map(|(head, columns)| std::iter::repeat_n(head.as_str(), *columns));
     for (head, span) in table.heads.iter().zip(spans.chain(std::iter::repeat(""))) {
         heads.push(escape_markdown(format!("{span} {head}").trim()));
     }
     let _ = writeln!(text, "| {} |", heads.join(" | "));
-    let rule = |column: usize| if table.rows.iter().any(|row| row[column].sort.is_some()) { "---:" } else { "---" };
+    let rule = |column: usize| {
+        if table.rows.iter().any(|row| row[column].sort.is_some()) { "---:" } else { "---" }
+    };
     let _ = writeln!(text, "| {} |", (0..heads.len()).map(rule).collect::<Vec<_>>().join(" | "));
     for row in &table.rows {
-        let _ = writeln!(text, "| {} |", row.iter().map(markdown_cell).collect::<Vec<_>>().join(" | "));
+        let _ =
+            writeln!(text, "| {} |", row.iter().map(markdown_cell).collect::<Vec<_>>().join(" | "));
     }
     text
 }

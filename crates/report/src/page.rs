@@ -1,4 +1,5 @@
-//! The report as one HTML page that asks nothing of a network: styles, script, figures and pictures are inside.
+//! The report as one HTML page that asks nothing of a network: styles, script, figures and pictures
+//! are inside.
 
 use crate::chart::{INK_STYLE, inline_svg};
 use crate::document::{Block, Cell, Document, Section, Table};
@@ -11,7 +12,8 @@ const SCRIPT: &str = include_str!("page.js");
 
 /// Long lists of everything, which open on a click (or by a link to them).
 const FOLDED: [&str; 3] = ["experiments", "runs", "players"];
-/// Tables and figures of a section that are open from the start: those of the longest runs come first.
+/// Tables and figures of a section that are open from the start: those of the longest runs come
+/// first.
 const OPEN: usize = 8;
 
 /// Writes the page.
@@ -31,21 +33,32 @@ pub fn page(document: &Document) -> String {
     for section in &document.sections {
         write_section(section, &mut html);
     }
-    let _ = writeln!(html, "</main><div id=\"tip\" hidden></div><script>{SCRIPT}</script></body></html>");
+    let _ = writeln!(
+        html,
+        "</main><div id=\"tip\" hidden></div><script>{SCRIPT}</script></body></html>"
+    );
     html
 }
 
 fn write_section(section: &Section, html: &mut String) {
     let folded = FOLDED.contains(&section.slug.as_str());
     let (open, close) = if folded { ("<details><summary>", "</summary>") } else { ("", "") };
-    let _ = writeln!(html, "<section id=\"{}\">{open}<h2>{}</h2>{close}", section.slug, escape(&section.title));
+    let _ = writeln!(
+        html,
+        "<section id=\"{}\">{open}<h2>{}</h2>{close}",
+        section.slug,
+        escape(&section.title)
+    );
     for text in &section.text {
         let _ = writeln!(html, "<p>{}</p>", with_code(&escape(text)));
     }
     let more = section.blocks.len() - OPEN.min(section.blocks.len());
     for (at, block) in section.blocks.iter().enumerate() {
         if at == OPEN && !folded {
-            let _ = writeln!(html, "<details><summary>{more} more, of shorter runs or other levels</summary>");
+            let _ = writeln!(
+                html,
+                "<details><summary>{more} more, of shorter runs or other levels</summary>"
+            );
         }
         match block {
             Block::Heading(text) => {
@@ -99,7 +112,8 @@ fn write_table(table: &Table, html: &mut String) {
     if !table.caption.is_empty() {
         let _ = write!(html, "<p class=\"caption\">{}</p>", escape(&table.caption));
     }
-    let words = table.heads.len() < 4 && !table.rows.iter().flatten().any(|cell| cell.sort.is_some());
+    let words =
+        table.heads.len() < 4 && !table.rows.iter().flatten().any(|cell| cell.sort.is_some());
     let _ = write!(
         html,
         "<div class=\"wide{}{}\"><table>",
@@ -116,8 +130,16 @@ fn write_table(table: &Table, html: &mut String) {
     }
     html.push_str("<tr class=\"heads\">");
     for (column, head) in table.heads.iter().enumerate() {
-        let class = if table.rows.iter().any(|row| is_number(&row[column])) { " class=\"number\"" } else { "" };
-        let _ = write!(html, "<th scope=\"col\"{class} tabindex=\"0\" aria-sort=\"none\">{}</th>", escape(head));
+        let class = if table.rows.iter().any(|row| is_number(&row[column])) {
+            " class=\"number\""
+        } else {
+            ""
+        };
+        let _ = write!(
+            html,
+            "<th scope=\"col\"{class} tabindex=\"0\" aria-sort=\"none\">{}</th>",
+            escape(head)
+        );
     }
     html.push_str("</tr></thead><tbody>");
     for row in &table.rows {
@@ -130,7 +152,8 @@ fn write_table(table: &Table, html: &mut String) {
     html.push_str("</tbody></table></div>\n");
 }
 
-/// Whether a cell reads as a number. A word may carry one to be sorted by; it is still read from the left.
+/// Whether a cell reads as a number. A word may carry one to be sorted by; it is still read from
+/// the left.
 fn is_number(cell: &Cell) -> bool {
     cell.sort.is_some() && cell.text.starts_with(|c: char| c.is_ascii_digit() || c == '-')
 }
@@ -164,7 +187,12 @@ fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for three in bytes.chunks(3) {
-        let word = u32::from_be_bytes([0, three[0], *three.get(1).unwrap_or(&0), *three.get(2).unwrap_or(&0)]);
+        let word = u32::from_be_bytes([
+            0,
+            three[0],
+            *three.get(1).unwrap_or(&0),
+            *three.get(2).unwrap_or(&0),
+        ]);
         for place in 0..4 {
             let letter = LETTERS[(word >> (18 - 6 * place)) as usize & 63];
             text.push(if place <= three.len() { char::from(letter) } else { '=' });

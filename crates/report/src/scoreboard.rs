@@ -52,7 +52,8 @@ impl Entry {
         }
     }
 
-    /// Agents surely within the budget come first, then those within it by their mean; the higher return before the lower.
+    /// Agents surely within the budget come first, then those within it by their mean; the higher
+    /// return before the lower.
     fn rank(&self) -> (u8, f64) {
         let group = match self.kept() {
             Kept::Surely => 0,
@@ -67,8 +68,14 @@ impl Entry {
 ///
 /// # Errors
 /// One line when the file cannot be written.
-pub fn write_scoreboard(title: &str, entries: Vec<Entry>, refused: &[(String, String)], out: &Path) -> Result<PathBuf, String> {
-    write_whole(out, page::page(&document(title, entries, refused)).as_bytes()).map_err(|error| error.to_string())?;
+pub fn write_scoreboard(
+    title: &str,
+    entries: Vec<Entry>,
+    refused: &[(String, String)],
+    out: &Path,
+) -> Result<PathBuf, String> {
+    write_whole(out, page::page(&document(title, entries, refused)).as_bytes())
+        .map_err(|error| error.to_string())?;
     Ok(out.to_path_buf())
 }
 
@@ -82,10 +89,18 @@ fn document(title: &str, entries: Vec<Entry>, refused: &[(String, String)]) -> D
     }
     let mut sections: Vec<Section> = groups.into_values().map(section).collect();
     if !refused.is_empty() {
-        let rows = refused.iter().map(|(claim, why)| vec![Cell::text(claim), Cell::text(why)]).collect();
-        let table = Table { heads: ["claim", "why"].map(String::from).to_vec(), rows, ..Table::default() };
-        let text = vec!["Their episodes were played again, and something came out otherwise.".to_owned()];
-        sections.push(Section { slug: "not-listed".into(), title: "Not listed".into(), text, blocks: vec![Block::Table(table)] });
+        let rows =
+            refused.iter().map(|(claim, why)| vec![Cell::text(claim), Cell::text(why)]).collect();
+        let table =
+            Table { heads: ["claim", "why"].map(String::from).to_vec(), rows, ..Table::default() };
+        let text =
+            vec!["Their episodes were played again, and something came out otherwise.".to_owned()];
+        sections.push(Section {
+            slug: "not-listed".into(),
+            title: "Not listed".into(),
+            text,
+            blocks: vec![Block::Table(table)],
+        });
     }
     if let Some(first) = sections.first_mut() {
         first.text.insert(
@@ -107,7 +122,10 @@ fn section(mut entries: Vec<Entry>) -> Section {
     let (scenario, level) = scenario_and_level(&first.environment);
     let constraint = if first.hard { ", hard constraint" } else { "" };
     let title = format!("{} {level}, rules {}{constraint}", scenario_name(&scenario), first.rules);
-    let spread = |(mean, half): (f64, f64)| Cell { sort: Some(mean), ..Cell::text(format!("{mean:.2} ± {half:.2}")) };
+    let spread = |(mean, half): (f64, f64)| Cell {
+        sort: Some(mean),
+        ..Cell::text(format!("{mean:.2} ± {half:.2}"))
+    };
     let rows = entries.iter().map(|one| {
         vec![
             Cell { title: one.how.clone(), ..Cell::text(&one.name) },
@@ -122,8 +140,20 @@ fn section(mut entries: Vec<Entry>) -> Section {
             Cell::text(&one.agent),
         ]
     });
-    let heads = ["agent", "algorithm", "frames", "return", "cost", "budget", "worst tenth", "over", "episodes", "file"];
-    let table = Table { heads: heads.map(String::from).to_vec(), rows: rows.collect(), ..Table::default() };
+    let heads = [
+        "agent",
+        "algorithm",
+        "frames",
+        "return",
+        "cost",
+        "budget",
+        "worst tenth",
+        "over",
+        "episodes",
+        "file",
+    ];
+    let table =
+        Table { heads: heads.map(String::from).to_vec(), rows: rows.collect(), ..Table::default() };
     Section { slug: slug(&title), title, text: Vec::new(), blocks: vec![Block::Table(table)] }
 }
 
@@ -159,7 +189,11 @@ mod tests {
             entry("second", 20.0, 4.0, 4.5),
             entry("first", 30.0, 4.0, 4.5),
         ];
-        let document = document("Scores", entries, &[("bad.claim.json".into(), "its episodes were others".into())]);
+        let document = document(
+            "Scores",
+            entries,
+            &[("bad.claim.json".into(), "its episodes were others".into())],
+        );
         let Block::Table(table) = &document.sections[0].blocks[0] else { panic!("no table") };
         let names: Vec<&str> = table.rows.iter().map(|row| row[0].text.as_str()).collect();
         assert_eq!(names, ["first", "second", "by its mean", "over"]);

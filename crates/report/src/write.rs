@@ -26,9 +26,9 @@ pub struct Written {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads the runs and episodes below `paths` and writes into `out`: `index.html`, `report.md`, `experiments.csv`,
-/// `runs.csv`, `curves.csv`, and `figures/` with each figure as SVG and PNG and the heatmaps as PNG and GIF. The same runs
-/// give the same bytes.
+/// Reads the runs and episodes below `paths` and writes into `out`: `index.html`, `report.md`,
+/// `experiments.csv`, `runs.csv`, `curves.csv`, and `figures/` with each figure as SVG and PNG and
+/// the heatmaps as PNG and GIF. The same runs give the same bytes.
 ///
 /// # Errors
 /// One line that names the path and the remedy: nothing found, or a file that cannot be written.
@@ -36,12 +36,16 @@ pub fn write_report(paths: &[PathBuf], out: &Path, title: &str) -> Result<Writte
     write(paths, out, title, false)
 }
 
-/// As [`write_report`], and beside it what a paper takes in: `tables.tex` (booktabs), `paper.tex`, a document around it, and each
-/// figure as PDF.
+/// As [`write_report`], and beside it what a paper takes in: `tables.tex` (booktabs), `paper.tex`,
+/// a document around it, and each figure as PDF.
 ///
 /// # Errors
 /// As there.
-pub fn write_report_and_latex(paths: &[PathBuf], out: &Path, title: &str) -> Result<Written, String> {
+pub fn write_report_and_latex(
+    paths: &[PathBuf],
+    out: &Path,
+    title: &str,
+) -> Result<Written, String> {
     write(paths, out, title, true)
 }
 
@@ -69,7 +73,10 @@ fn write(paths: &[PathBuf], out: &Path, title: &str, for_papers: bool) -> Result
     for block in document.sections.iter().flat_map(|section| &section.blocks) {
         match block {
             Block::Figure(figure) => {
-                write(&format!("{FIGURES}/{}.svg", figure.slug), standalone_svg(&figure.drawing, &figure.caption).as_bytes())?;
+                write(
+                    &format!("{FIGURES}/{}.svg", figure.slug),
+                    standalone_svg(&figure.drawing, &figure.caption).as_bytes(),
+                )?;
                 if for_papers {
                     write(&format!("{FIGURES}/{}.pdf", figure.slug), &pdf(&figure.drawing))?;
                 }

@@ -29,7 +29,8 @@ fn write_experiments(root: &Path) {
             for seed in 1..=3 {
                 let env = format!("{scenario}Level1-v0");
                 let end = (best * share, budget * cost, budget * overshoot);
-                let run = Synthetic { env: &env, algo, seed, frames: 4e6, reports: 80, options: "", end };
+                let run =
+                    Synthetic { env: &env, algo, seed, frames: 4e6, reports: 80, options: "", end };
                 run.write(&root.join("main").join(&env).join(algo).join(format!("seed{seed}")));
             }
         }
@@ -39,7 +40,15 @@ fn write_experiments(root: &Path) {
                     let options = format!(",\"safety_budget\":{budget}");
                     let end = (best * share, budget, 10.0);
                     let env = "RemedyRushLevel1-v0";
-                    let run = Synthetic { env, algo: "PPOLag", seed, frames: 4e6, reports: 80, options: &options, end };
+                    let run = Synthetic {
+                        env,
+                        algo: "PPOLag",
+                        seed,
+                        frames: 4e6,
+                        reports: 80,
+                        options: &options,
+                        end,
+                    };
                     run.write(&root.join(format!("bounds/{budget}-{seed}")));
                 }
             }
@@ -47,11 +56,29 @@ fn write_experiments(root: &Path) {
                 let run = Synthetic { env, algo, seed: 1, frames: 4e6, reports: 60, options, end };
                 run.write(&root.join(name));
             };
-            other("scale", "RemedyRushLevel1-v0", "PPOCost", ",\"cost_scale\":0.5", (40.0, 20.0, 5.0));
-            other("full", "RemedyRushLevel1-v0", "PPOLag", ",\"full_actions\":true", (20.0, 8.0, 5.0));
+            other(
+                "scale",
+                "RemedyRushLevel1-v0",
+                "PPOCost",
+                ",\"cost_scale\":0.5",
+                (40.0, 20.0, 5.0),
+            );
+            other(
+                "full",
+                "RemedyRushLevel1-v0",
+                "PPOLag",
+                ",\"full_actions\":true",
+                (20.0, 8.0, 5.0),
+            );
             other("hard", "RemedyRushLevel1-v0", "PPO", ",\"hard\":true", (15.0, 7.0, 5.0));
             other("alone", "RemedyRushLevel3-v0", "PPOPID", "", (6.0, 4.0, 5.0));
-            other("curriculum", "RemedyRushLevel1-v0", "PPOPID", ",\"curriculum\":[1,2,3]", (17.0, 5.1, 5.0));
+            other(
+                "curriculum",
+                "RemedyRushLevel1-v0",
+                "PPOPID",
+                ",\"curriculum\":[1,2,3]",
+                (17.0, 5.1, 5.0),
+            );
             write_heatmaps(&root.join("main/RemedyRushLevel1-v0/PPOLag/seed1"));
             write_heatmaps(&root.join("main/RemedyRushLevel1-v0/PPO/seed1"));
         }
@@ -76,7 +103,12 @@ fn write_experiments(root: &Path) {
         for _ in 0..525 {
             file.push(&[1], &[]).unwrap();
         }
-        let outcome = Outcome { episode_return: 40.0 + f64::from(episode), cost: 2.0, truncated: true, ..Outcome::default() };
+        let outcome = Outcome {
+            episode_return: 40.0 + f64::from(episode),
+            cost: 2.0,
+            truncated: true,
+            ..Outcome::default()
+        };
         file.set_outcome(outcome);
         file.write(&root.join(format!("human/{episode}.episode"))).unwrap();
     }
@@ -108,14 +140,27 @@ fn a_report_on_many_experiments() {
     let warnings: Vec<String> = written.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(warnings.len(), 2, "{warnings:?}");
     assert!(warnings[0].contains("broken/config.json: is no JSON"), "{warnings:?}");
-    assert!(warnings[1].contains("PPO/seed3/metrics.jsonl:80: is damaged or half-written"), "{warnings:?}");
+    assert!(
+        warnings[1].contains("PPO/seed3/metrics.jsonl:80: is damaged or half-written"),
+        "{warnings:?}"
+    );
 
     let page = std::fs::read_to_string(&written.page).unwrap();
     // Self-contained: nothing is fetched from anywhere.
-    for forbidden in ["src=\"http", "href=\"http", "url(", "@import", "<link", "src=\"/", "fetch("] {
+    for forbidden in ["src=\"http", "href=\"http", "url(", "@import", "<link", "src=\"/", "fetch("]
+    {
         assert!(!page.contains(forbidden), "{forbidden}");
     }
-    for section in ["main", "paper", "curves", "safety-bounds", "cost-scale", "full-actions", "curriculum", "hard"] {
+    for section in [
+        "main",
+        "paper",
+        "curves",
+        "safety-bounds",
+        "cost-scale",
+        "full-actions",
+        "curriculum",
+        "hard",
+    ] {
         assert!(page.contains(&format!("<section id=\"{section}\">")), "{section}");
     }
     for section in [
@@ -142,50 +187,89 @@ fn a_report_on_many_experiments() {
             hasard_media::png::read(file).unwrap();
         }
     }
-    let figures = |ending: &str| written.files.iter().filter(|file| file.extension().is_some_and(|e| e == ending)).count();
+    let figures = |ending: &str| {
+        written.files.iter().filter(|file| file.extension().is_some_and(|e| e == ending)).count()
+    };
     assert!(figures("svg") >= 12 && figures("png") > figures("svg") && figures("gif") == 2);
     assert!(out.join("figures/heatmaps-side-by-side-remedyrushlevel1-v0.png").is_file());
 
     // The mean of a cell, by hand from the same files.
     let csv = std::fs::read_to_string(out.join("experiments.csv")).unwrap();
-    let row = csv.lines().find(|line| line.starts_with("VolcanicVentureLevel1-v0,VolcanicVenture,1,PPOLag,")).unwrap();
-    let by_hand: f64 =
-        (1..=3).map(|seed| last_ten(&runs.join(format!("main/VolcanicVentureLevel1-v0/PPOLag/seed{seed}")))).sum::<f64>() / 3.0;
+    let row = csv
+        .lines()
+        .find(|line| line.starts_with("VolcanicVentureLevel1-v0,VolcanicVenture,1,PPOLag,"))
+        .unwrap();
+    let by_hand: f64 = (1..=3)
+        .map(|seed| {
+            last_ten(&runs.join(format!("main/VolcanicVentureLevel1-v0/PPOLag/seed{seed}")))
+        })
+        .sum::<f64>()
+        / 3.0;
     let fields: Vec<&str> = row.split("\",").last().unwrap().split(',').collect();
     let mean: f64 = fields[5].parse().unwrap();
     assert!((mean - by_hand).abs() < 1e-9, "{mean} {by_hand}: {row}");
 
     let text = std::fs::read_to_string(out.join("report.md")).unwrap();
     let training = text.split("**Level 1, end of training").nth(1).unwrap();
-    let row = |algorithm: &str| training.lines().find(|line| line.starts_with(&format!("| {algorithm} |"))).unwrap();
-    // P3O ends at four fifths of every budget, PPOLag at 97 hundredths and scatters above it, PPO far above.
+    let row = |algorithm: &str| {
+        training.lines().find(|line| line.starts_with(&format!("| {algorithm} |"))).unwrap()
+    };
+    // P3O ends at four fifths of every budget, PPOLag at 97 hundredths and scatters above it, PPO
+    // far above.
     assert_eq!(row("P3O").matches(" ✓").count(), 6, "{}", row("P3O"));
-    assert_eq!((row("PPOLag").matches("(✓)").count(), row("PPOLag").matches(" ✓").count()), (6, 0), "{}", row("PPOLag"));
+    assert_eq!(
+        (row("PPOLag").matches("(✓)").count(), row("PPOLag").matches(" ✓").count()),
+        (6, 0),
+        "{}",
+        row("PPOLag")
+    );
     assert!(!row("PPO").contains('✓'), "{}", row("PPO"));
-    // One seed was evaluated, on two episodes that returned 31 and 33 at costs of 4 and 7: that comes first.
+    // One seed was evaluated, on two episodes that returned 31 and 33 at costs of 4 and 7: that
+    // comes first.
     let headline = text.split("**Level 1, evaluation of the selected").nth(1).unwrap();
     let first = headline.lines().find(|line| line.starts_with("| PPOPID |")).unwrap();
-    assert!(first.contains("32.00") && first.contains("5.50") && headline.contains("**Level 1, end of training"), "{first}");
+    assert!(
+        first.contains("32.00")
+            && first.contains("5.50")
+            && headline.contains("**Level 1, end of training"),
+        "{first}"
+    );
 
-    // Volcanic Venture: random returns 5, so P3O's score is (R - 5) / (PPO - 5) of the same report's own means. Its
-    // costs end at four fifths of the budget; nothing was evaluated, so that the means decide.
-    let mean_of = |algo: &str, seed: u32| last_ten(&runs.join(format!("main/VolcanicVentureLevel1-v0/{algo}/seed{seed}")));
+    // Volcanic Venture: random returns 5, so P3O's score is (R - 5) / (PPO - 5) of the same
+    // report's own means. Its costs end at four fifths of the budget; nothing was evaluated, so
+    // that the means decide.
+    let mean_of = |algo: &str, seed: u32| {
+        last_ten(&runs.join(format!("main/VolcanicVentureLevel1-v0/{algo}/seed{seed}")))
+    };
     let ppo = (1..=3).map(|seed| mean_of("PPO", seed)).sum::<f64>() / 3.0;
     let score = (1..=3).map(|seed| (mean_of("P3O", seed) - 5.0) / (ppo - 5.0)).sum::<f64>() / 3.0;
     let safety = text.split("## Safety").nth(1).unwrap();
-    let row = safety.lines().find(|line| line.starts_with("| Volcanic Venture | 1 | P3O |")).unwrap();
+    let row =
+        safety.lines().find(|line| line.starts_with("| Volcanic Venture | 1 | P3O |")).unwrap();
     let cells: Vec<&str> = row.split(" | ").collect();
-    assert!(cells[4].starts_with(&format!("{score:.2}")) && cells[6].starts_with(&format!("{score:.2}")), "{score}: {row}");
+    assert!(
+        cells[4].starts_with(&format!("{score:.2}"))
+            && cells[6].starts_with(&format!("{score:.2}")),
+        "{score}: {row}"
+    );
     assert_eq!((cells[7], cells[10], cells[11]), ("end of training", "40k", "10k"), "{row}");
-    let ppo_row = safety.lines().find(|line| line.starts_with("| Volcanic Venture | 1 | PPO |")).unwrap();
-    assert!(ppo_row.contains("| 0.00 ± 0.00 | 0.20"), "PPO is five times above the budget: {ppo_row}");
+    let ppo_row =
+        safety.lines().find(|line| line.starts_with("| Volcanic Venture | 1 | PPO |")).unwrap();
+    assert!(
+        ppo_row.contains("| 0.00 ± 0.00 | 0.20"),
+        "PPO is five times above the budget: {ppo_row}"
+    );
 
     // Same runs, same bytes.
     let again = folder.0.join("again");
     let second = write_report(std::slice::from_ref(&runs), &again, "Synthetic runs").unwrap();
     assert_eq!(second.files.len(), written.files.len());
     for (one, two) in written.files.iter().zip(&second.files) {
-        assert!(std::fs::read(one).unwrap() == std::fs::read(two).unwrap(), "{} differs", one.display());
+        assert!(
+            std::fs::read(one).unwrap() == std::fs::read(two).unwrap(),
+            "{} differs",
+            one.display()
+        );
     }
 }
 
@@ -205,8 +289,8 @@ fn last_ten(run: &Path) -> f64 {
     (491..=500).map(|point| at(f64::from(point))).sum::<f64>() / 10.0
 }
 
-/// Two terms with a budget each: a run that keeps the one and breaks the other is not within its budgets, and each term
-/// stands beside its own.
+/// Two terms with a budget each: a run that keeps the one and breaks the other is not within its
+/// budgets, and each term stands beside its own.
 #[test]
 fn each_term_stands_beside_its_own_budget() {
     let folder = Folder::new("terms");
@@ -215,10 +299,20 @@ fn each_term_stands_beside_its_own_budget() {
         let run = folder.0.join(format!("run{seed}"));
         let env = "VolcanicVentureLevel1-v0";
         let end = (20.0, 31.0, 0.0);
-        Synthetic { env, algo: "PPOLag", seed, frames: 1e6, reports: 20, options: constraints, end }.write(&run);
+        Synthetic {
+            env,
+            algo: "PPOLag",
+            seed,
+            frames: 1e6,
+            reports: 20,
+            options: constraints,
+            end,
+        }
+        .write(&run);
         let metrics = run.join("metrics.jsonl");
         let text = std::fs::read_to_string(&metrics).unwrap();
-        let text = text.replace(",\"length_mean\"", ",\"cost/lava\":28.0,\"cost/falls\":3.0,\"length_mean\"");
+        let text = text
+            .replace(",\"length_mean\"", ",\"cost/lava\":28.0,\"cost/falls\":3.0,\"length_mean\"");
         std::fs::write(&metrics, text).unwrap();
         let eval = "{\"return\":20,\"cost\":31,\"costs\":{\"lava\":28,\"falls\":3}}\n\
                     {\"return\":20,\"cost\":10,\"costs\":{\"lava\":8,\"falls\":2}}\n";
@@ -228,10 +322,17 @@ fn each_term_stands_beside_its_own_budget() {
     let out = folder.0.join("out");
     write_report(std::slice::from_ref(&folder.0), &out, "Terms").unwrap();
     let text = std::fs::read_to_string(out.join("report.md")).unwrap();
-    let line = |start: &str| text.lines().find(|line| line.contains(start)).unwrap_or_else(|| panic!("{start}: {text}"));
+    let line = |start: &str| {
+        text.lines().find(|line| line.contains(start)).unwrap_or_else(|| panic!("{start}: {text}"))
+    };
     // In evaluation 18 and 2.5, in training 28 and 3.
-    let cells =
-        |term: &str| line(term).split(" | ").skip(6).map(|cell| cell.trim_end_matches(" |").to_owned()).collect::<Vec<_>>();
+    let cells = |term: &str| {
+        line(term)
+            .split(" | ")
+            .skip(6)
+            .map(|cell| cell.trim_end_matches(" |").to_owned())
+            .collect::<Vec<_>>()
+    };
     assert_eq!(cells("| lava | 30 |"), ["18.00 ± 0.00 ✓ (n=2)", "28.00 ± 0.00 ✓ (n=2)"]);
     assert_eq!(cells("| falls | 2.5 |"), ["2.50 ± 0.00 ✓ (n=2)", "3.00 ± 0.00 (n=2)"]);
     assert!(line("PPOLag, seed 1").ends_with("| 50 % |"), "{}", line("PPOLag, seed 1"));
@@ -288,36 +389,60 @@ fn one_short_run_is_enough() {
 fn a_run_without_any_report_is_shown_as_such() {
     let folder = Folder::new("empty");
     let run = folder.0.join("run");
-    Synthetic { env: "RemedyRushLevel1-v0", algo: "PPO", seed: 1, frames: 1e6, reports: 0, options: "", end: (0.0, 0.0, 0.0) }
-        .write(&run);
+    Synthetic {
+        env: "RemedyRushLevel1-v0",
+        algo: "PPO",
+        seed: 1,
+        frames: 1e6,
+        reports: 0,
+        options: "",
+        end: (0.0, 0.0, 0.0),
+    }
+    .write(&run);
     let written = write_report(std::slice::from_ref(&run), &folder.0.join("out"), "t").unwrap();
     assert!(std::fs::read_to_string(&written.page).unwrap().contains("no report yet"));
     std::fs::remove_file(run.join("metrics.jsonl")).unwrap();
     let written = write_report(&[run], &folder.0.join("out"), "t").unwrap();
-    assert!(written.warnings[0].to_string().contains("metrics.jsonl: cannot read"), "{:?}", written.warnings);
+    assert!(
+        written.warnings[0].to_string().contains("metrics.jsonl: cannot read"),
+        "{:?}",
+        written.warnings
+    );
 }
 
 #[test]
 fn paths_without_runs_are_errors_that_say_what_to_do() {
     let folder = Folder::new("none");
-    let error = write_report(std::slice::from_ref(&folder.0), &folder.0.join("out"), "t").unwrap_err();
+    let error =
+        write_report(std::slice::from_ref(&folder.0), &folder.0.join("out"), "t").unwrap_err();
     assert!(error.contains("no run directory") && error.contains("hasard train --out"), "{error}");
     let error = write_report(&[PathBuf::from("/no/such")], &folder.0.join("out"), "t").unwrap_err();
     assert!(error.starts_with("/no/such: no such file or folder"), "{error}");
     let run = folder.0.join("run");
-    Synthetic { env: "RemedyRushLevel1-v0", algo: "PPO", seed: 1, frames: 1e6, reports: 3, options: "", end: (1.0, 1.0, 0.0) }
-        .write(&run);
+    Synthetic {
+        env: "RemedyRushLevel1-v0",
+        algo: "PPO",
+        seed: 1,
+        frames: 1e6,
+        reports: 3,
+        options: "",
+        end: (1.0, 1.0, 0.0),
+    }
+    .write(&run);
     let error = write_report(&[run], Path::new("/dev/null/out"), "t").unwrap_err();
     assert!(error.starts_with("/dev/null/out"), "{error}");
 }
 
-/// What a person played is held against the budget of the rules and constraint that the episode was played under.
+/// What a person played is held against the budget of the rules and constraint that the episode was
+/// played under.
 #[test]
 fn a_persons_budget_follows_the_episodes_options() {
     let folder = Folder::new("people");
-    for (player, option, cost) in
-        [("soft", ("hard", "false"), 4.0), ("strict", ("hard", "true"), 4.0), ("short", ("frame-skip", "1"), 6.0)]
-    {
+    for (player, option, cost) in [
+        ("soft", ("hard", "false"), 4.0),
+        ("strict", ("hard", "true"), 4.0),
+        ("short", ("frame-skip", "1"), 6.0),
+    ] {
         let header = Header {
             env: "RemedyRushLevel1-v0".into(),
             options: [(option.0.to_owned(), option.1.to_owned())].into(),
@@ -334,7 +459,9 @@ fn a_persons_budget_follows_the_episodes_options() {
         file.set_outcome(Outcome { cost, ..Outcome::default() });
         file.write(&folder.0.join(format!("{player}.episode"))).unwrap();
     }
-    for (name, episode_return, cost) in [("witness-RemedyRush1", 12.0, 0.0), ("witness-failed", 12.0, 3.0)] {
+    for (name, episode_return, cost) in
+        [("witness-RemedyRush1", 12.0, 0.0), ("witness-failed", 12.0, 3.0)]
+    {
         let header = Header {
             env: "RemedyRushLevel1-v0".into(),
             options: Default::default(),
@@ -354,19 +481,39 @@ fn a_persons_budget_follows_the_episodes_options() {
     let out = folder.0.join("out");
     write_report(std::slice::from_ref(&folder.0), &out, "People").unwrap();
     let text = std::fs::read_to_string(out.join("report.md")).unwrap();
-    let line = |player: &str| text.lines().find(|line| line.starts_with(&format!("| {player} "))).unwrap().to_owned();
+    let line = |player: &str| {
+        text.lines().find(|line| line.starts_with(&format!("| {player} "))).unwrap().to_owned()
+    };
     let witness = text.split("## Witnesses of safe reward").nth(1).unwrap();
     assert!(
-        witness.contains("| search |  | 12.00 | 0.00 ✓ | 1 | yes |") && witness.contains("| 12.00 | 3.00 | 1 | no |"),
+        witness.contains("| search |  | 12.00 | 0.00 ✓ | 1 | yes |")
+            && witness.contains("| 12.00 | 3.00 | 1 | no |"),
         "{witness}"
     );
-    assert!(witness.contains("Without a witness here: Armament Burden 1") && !witness.contains("Remedy Rush 1,"), "{witness}");
-    assert!(line("soft").ends_with("100 % |") && !line("soft").contains("hard"), "{}", line("soft"));
-    assert!(line("strict").ends_with("| 0 % |") && line("strict").contains("hard true"), "{}", line("strict"));
-    assert!(line("short").ends_with("| 0 % |") && line("short").contains("frame-skip 1"), "{}", line("short"));
+    assert!(
+        witness.contains("Without a witness here: Armament Burden 1")
+            && !witness.contains("Remedy Rush 1,"),
+        "{witness}"
+    );
+    assert!(
+        line("soft").ends_with("100 % |") && !line("soft").contains("hard"),
+        "{}",
+        line("soft")
+    );
+    assert!(
+        line("strict").ends_with("| 0 % |") && line("strict").contains("hard true"),
+        "{}",
+        line("strict")
+    );
+    assert!(
+        line("short").ends_with("| 0 % |") && line("short").contains("frame-skip 1"),
+        "{}",
+        line("short")
+    );
 }
 
-/// The paper's tables ran rules of their own: beside a run under others the report says so, and shows no published value.
+/// The paper's tables ran rules of their own: beside a run under others the report says so, and
+/// shows no published value.
 #[test]
 fn published_values_stand_beside_the_tables_rules_alone() {
     let folder = Folder::new("rules");
@@ -374,32 +521,48 @@ fn published_values_stand_beside_the_tables_rules_alone() {
         let run = folder.0.join(format!("runs-{rules}/one"));
         let end = (45.0, 50.0, 10.0);
         let env = "VolcanicVentureLevel1-v0";
-        Synthetic { env, algo: "PPOPID", seed: 1, frames: 12e6, reports: 60, options: "", end }.write(&run);
+        Synthetic { env, algo: "PPOPID", seed: 1, frames: 12e6, reports: 60, options: "", end }
+            .write(&run);
         let config = run.join("config.json");
         let text = std::fs::read_to_string(&config).unwrap();
-        std::fs::write(&config, text.replace("\"rules\":\"tables\"", &format!("\"rules\":\"{rules}\""))).unwrap();
+        std::fs::write(
+            &config,
+            text.replace("\"rules\":\"tables\"", &format!("\"rules\":\"{rules}\"")),
+        )
+        .unwrap();
         let out = folder.0.join(format!("out-{rules}"));
         write_report(&[folder.0.join(format!("runs-{rules}"))], &out, "Rules").unwrap();
         let text = std::fs::read_to_string(out.join("report.md")).unwrap();
         let tables = rules == "tables";
         assert_eq!(text.contains("45.23"), tables, "{text}");
-        assert_eq!(text.contains("ran under other rules (paper) than the paper's tables"), !tables, "{text}");
+        assert_eq!(
+            text.contains("ran under other rules (paper) than the paper's tables"),
+            !tables,
+            "{text}"
+        );
         // At 10 million frames the paper's curve stands at 17.61 @ 50.59.
         assert_eq!(text.contains("17.61 @ 50.59"), tables, "{text}");
     }
 }
 
-/// What a run's closing evaluation says is its headline; its episodes give tails and behaviour, its critics' calibration a figure.
+/// What a run's closing evaluation says is its headline; its episodes give tails and behaviour, its
+/// critics' calibration a figure.
 #[test]
 fn a_closing_evaluation_is_the_headline() {
     let folder = Folder::new("closing");
     let run = folder.0.join("runs/one");
     let (env, end) = ("ArmamentBurdenLevel1-v0", (6.0, 60.0, 0.0));
-    Synthetic { env, algo: "PPOPID", seed: 1, frames: 1e6, reports: 20, options: "", end }.write(&run);
-    let estimate = |mean: f64, half: f64| format!("{{\"mean\":{mean},\"half_width\":{half},\"bootstrap\":null}}");
+    Synthetic { env, algo: "PPOPID", seed: 1, frames: 1e6, reports: 20, options: "", end }
+        .write(&run);
+    let estimate = |mean: f64, half: f64| {
+        format!("{{\"mean\":{mean},\"half_width\":{half},\"bootstrap\":null}}")
+    };
     let evaluation = |episode_return: f64, cost: f64| {
         let (episode_return, cost) = (estimate(episode_return, 0.5), estimate(cost, 4.0));
-        format!("\"episodes\":20,\"episode_return\":{episode_return},\"cost\":{cost},\"length\":{}", estimate(525.0, 0.0))
+        format!(
+            "\"episodes\":20,\"episode_return\":{episode_return},\"cost\":{cost},\"length\":{}",
+            estimate(525.0, 0.0)
+        )
     };
     let selected = format!(
         "{{\"frames\":800000,\"closing\":{{{}}},\"last\":{{\"frames\":1000000,{}}}}}",
@@ -424,15 +587,30 @@ fn a_closing_evaluation_is_the_headline() {
     let written = write_report(&[folder.0.join("runs")], &out, "Closing").unwrap();
     assert!(written.warnings.is_empty(), "{:?}", written.warnings);
     let text = std::fs::read_to_string(out.join("report.md")).unwrap();
-    let line = |start: &str| text.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{start}: {text}"));
+    let line = |start: &str| {
+        text.lines()
+            .find(|line| line.starts_with(start))
+            .unwrap_or_else(|| panic!("{start}: {text}"))
+    };
     // 41 with an upper end of 45 of 50; nothing of the later eval.jsonl.
     assert_eq!(line("| PPOPID |"), "| PPOPID | **7.50** | 41.00 ✓ |");
     let row = line("| Armament Burden | 1 | PPOPID | 1 |");
-    assert!(row.contains("| 800k | 20 | 7.50 ± 0.50 | 41.00 ± 4.00 ✓ | 45.00 | 50 | 10 % | 70.50 |"), "{row}");
-    assert!(text.contains("| weapons discarded | weapons thrown away rather than carried | 0.10 | 5 % |"), "{text}");
+    assert!(
+        row.contains("| 800k | 20 | 7.50 ± 0.50 | 41.00 ± 4.00 ✓ | 45.00 | 50 | 10 % | 70.50 |"),
+        "{row}"
+    );
+    assert!(
+        text.contains(
+            "| weapons discarded | weapons thrown away rather than carried | 0.10 | 5 % |"
+        ),
+        "{text}"
+    );
     assert!(text.contains("| whole cost | 0.99 | 900 | -0.25 | 1.50 |"), "{text}");
     assert!(out.join("figures/calibration.svg").is_file());
     // What it has is not listed as missing, what it has not is.
     let missing = text.split("## Not here yet").nth(1).unwrap();
-    assert!(!missing.contains("| calibration |") && missing.contains("| safety-bounds |"), "{missing}");
+    assert!(
+        !missing.contains("| calibration |") && missing.contains("| safety-bounds |"),
+        "{missing}"
+    );
 }

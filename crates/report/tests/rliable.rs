@@ -1,7 +1,9 @@
-//! The aggregates of many tasks against the field's own library: matrices and what rliable 1.2.0 (with SciPy 1.17.1) says of
-//! them lie in `data/rliable.json`; scores are `[runs][tasks]`.
+//! The aggregates of many tasks against the field's own library: matrices and what rliable 1.2.0
+//! (with SciPy 1.17.1) says of them lie in `data/rliable.json`; scores are `[runs][tasks]`.
 
-use hasard_report::statistics::{interquartile_mean, mean, optimality_gap, performance_profile, probability_of_improvement};
+use hasard_report::statistics::{
+    interquartile_mean, mean, optimality_gap, performance_profile, probability_of_improvement,
+};
 use serde_json::Value;
 
 fn matrix(case: &Value, key: &str) -> Vec<Vec<f64>> {
@@ -24,14 +26,21 @@ fn point_estimates_agree_with_rliable() {
         let all = scores.concat();
         let same = |name: &str, ours: Option<f64>, theirs: &Value| {
             let (ours, theirs) = (ours.unwrap(), theirs.as_f64().unwrap());
-            assert!((ours - theirs).abs() < 1e-9, "{} of {}: {ours} here, {theirs} there", name, case["name"]);
+            assert!(
+                (ours - theirs).abs() < 1e-9,
+                "{} of {}: {ours} here, {theirs} there",
+                name,
+                case["name"]
+            );
         };
         same("mean", mean(&all), &case["mean"]);
         same("iqm", interquartile_mean(&all), &case["iqm"]);
         same("optimality gap", optimality_gap(&all, 1.0), &case["optimality_gap"]);
         let better = probability_of_improvement(&scores, &other);
         same("probability of improvement", better, &case["probability_of_improvement"]);
-        for (tau, share) in numbers(&case["taus"]).into_iter().zip(case["profile"].as_array().unwrap()) {
+        for (tau, share) in
+            numbers(&case["taus"]).into_iter().zip(case["profile"].as_array().unwrap())
+        {
             same("performance profile", performance_profile(&all, tau), share);
         }
     }

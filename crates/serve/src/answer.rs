@@ -15,7 +15,9 @@ pub(crate) fn refusal(status: StatusCode, why: &str) -> Response {
 }
 
 /// Work that reads files or draws, away from the threads that answer.
-pub(crate) async fn aside<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T, Response> {
+pub(crate) async fn aside<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<T, Response> {
     tokio::task::spawn_blocking(work)
         .await
         .map_err(|_| refusal(StatusCode::INTERNAL_SERVER_ERROR, "this failed; the server goes on"))

@@ -1,4 +1,5 @@
-//! How many connections there are at a time, and how long one may be silent before it asks for anything.
+//! How many connections there are at a time, and how long one may be silent before it asks for
+//! anything.
 
 use axum::serve::Listener;
 use std::io;
@@ -17,7 +18,8 @@ pub(crate) const CONNECTIONS: usize = 512;
 /// Time for the first byte of a request.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Accepts connections up to a number; the ones beyond are closed at once, so that they queue nowhere.
+/// Accepts connections up to a number; the ones beyond are closed at once, so that they queue
+/// nowhere.
 pub(crate) struct Door {
     pub listener: TcpListener,
     pub places: Arc<Semaphore>,
@@ -58,11 +60,19 @@ impl Listener for Door {
 }
 
 impl AsyncRead for Visitor {
-    fn poll_read(mut self: Pin<&mut Self>, context: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
         let result = Pin::new(&mut self.stream).poll_read(context, buffer);
         if result.is_ready() {
             self.silence = None;
-        } else if self.silence.as_mut().is_some_and(|silence| silence.as_mut().poll(context).is_ready()) {
+        } else if self
+            .silence
+            .as_mut()
+            .is_some_and(|silence| silence.as_mut().poll(context).is_ready())
+        {
             return Poll::Ready(Err(io::ErrorKind::TimedOut.into()));
         }
         result
@@ -70,7 +80,11 @@ impl AsyncRead for Visitor {
 }
 
 impl AsyncWrite for Visitor {
-    fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
         Pin::new(&mut self.stream).poll_write(context, bytes)
     }
 

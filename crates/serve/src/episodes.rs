@@ -21,7 +21,8 @@ const MAX_EPISODES: usize = 2000;
 
 /// The file of a kept episode by its name: a name, never a way.
 pub(crate) fn path(shared: &Shared, name: &str) -> Result<PathBuf, String> {
-    let plain = name.ends_with(".episode") && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte));
+    let plain = name.ends_with(".episode")
+        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte));
     let path = shared.episodes.join(name);
     let is_file = std::fs::symlink_metadata(&path).is_ok_and(|data| data.is_file());
     if plain && !name.starts_with('.') && is_file {
@@ -50,7 +51,9 @@ pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, 
             }))
         }));
         rows.sort_by(|a, b| {
-            let key = |row: &Value| (row["within"].as_bool().unwrap_or(false), row["return"].as_f64().unwrap_or(0.0));
+            let key = |row: &Value| {
+                (row["within"].as_bool().unwrap_or(false), row["return"].as_f64().unwrap_or(0.0))
+            };
             let (a, b) = (key(a), key(b));
             b.0.cmp(&a.0).then(b.1.total_cmp(&a.1))
         });
@@ -61,18 +64,27 @@ pub(crate) async fn best(State(shared): State<Arc<Shared>>) -> Result<Response, 
 
 fn kept(folder: &Path) -> Vec<Value> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    let mut names: Vec<String> =
+        entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
     names.retain(|name| name.ends_with(".episode"));
     names.sort();
     names.truncate(MAX_EPISODES);
-    names.iter().filter_map(|name| row(name, EpisodeFile::read(&folder.join(name)).ok()?.header())).collect()
+    names
+        .iter()
+        .filter_map(|name| row(name, EpisodeFile::read(&folder.join(name)).ok()?.header()))
+        .collect()
 }
 
 fn row(name: &str, header: &Header) -> Option<Value> {
     let outcome = header.outcome.as_ref()?;
-    let told = |option: &str, value: &str| header.options.get(option).is_some_and(|given| given == value);
+    let told =
+        |option: &str, value: &str| header.options.get(option).is_some_and(|given| given == value);
     let rules = header.options.get("rules").map_or(Ok(RuleSet::Paper), |name| name.parse()).ok()?;
-    let budget = if told("hard", "true") { 0.0 } else { header.env.parse::<EnvId>().ok()?.scenario.safety_budget(rules) };
+    let budget = if told("hard", "true") {
+        0.0
+    } else {
+        header.env.parse::<EnvId>().ok()?.scenario.safety_budget(rules)
+    };
     Some(json!({
         "who": header.player, "env": header.env, "return": outcome.episode_return, "cost": outcome.cost, "budget": budget,
         "within": outcome.cost <= budget, "seed": header.seed, "steps": header.steps, "full": told("full-actions", "true"),
@@ -89,7 +101,10 @@ pub(crate) struct Wanted {
 }
 
 /// A kept episode as it is, or filmed.
-pub(crate) async fn download(State(shared): State<Arc<Shared>>, Query(query): Query<Wanted>) -> Result<Response, Response> {
+pub(crate) async fn download(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<Wanted>,
+) -> Result<Response, Response> {
     let path = path(&shared, &query.name).map_err(|why| refusal(StatusCode::NOT_FOUND, &why))?;
     let (kind, film) = match query.kind.as_str() {
         "mp4" => ("video/mp4", true),
@@ -97,10 +112,17 @@ pub(crate) async fn download(State(shared): State<Arc<Shared>>, Query(query): Qu
         "" | "episode" => ("application/octet-stream", false),
         _ => return Err(refusal(StatusCode::BAD_REQUEST, "kind is episode, mp4 or gif")),
     };
-    let name = if film { format!("{}.{}", query.name.trim_end_matches(".episode"), query.kind) } else { query.name };
+    let name = if film {
+        format!("{}.{}", query.name.trim_end_matches(".episode"), query.kind)
+    } else {
+        query.name
+    };
     let bytes = if film {
         let Ok(place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {
-            return Err(refusal(StatusCode::SERVICE_UNAVAILABLE, "films or reports are in the making; ask again in a moment"));
+            return Err(refusal(
+                StatusCode::SERVICE_UNAVAILABLE,
+                "films or reports are in the making; ask again in a moment",
+            ));
         };
         let gif = kind == "image/gif";
         aside(move || {
@@ -113,18 +135,25 @@ pub(crate) async fn download(State(shared): State<Arc<Shared>>, Query(query): Qu
         aside(move || std::fs::read(path).map_err(|error| error.to_string())).await?
     };
     let bytes = bytes.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
-    let headers =
-        [(header::CONTENT_TYPE, kind.to_owned()), (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\""))];
+    let headers = [
+        (header::CONTENT_TYPE, kind.to_owned()),
+        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\"")),
+    ];
     Ok((headers, bytes).into_response())
 }
 
-/// An episode as a film. GIF stores what changes pixel by pixel: it is smaller and has a frame in eight tics.
+/// An episode as a film. GIF stores what changes pixel by pixel: it is smaller and has a frame in
+/// eight tics.
 fn filmed(path: &Path, gif: bool) -> Result<Vec<u8>, String> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);
-    let (ending, size, every) =
-        if gif { ("gif", FrameSize { width: 160, height: 120 }, 8) } else { ("mp4", FrameSize { width: 320, height: 240 }, 1) };
+    let (ending, size, every) = if gif {
+        ("gif", FrameSize { width: 160, height: 120 }, 8)
+    } else {
+        ("mp4", FrameSize { width: 320, height: 240 }, 1)
+    };
     let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-    let out = std::env::temp_dir().join(format!("hasard-serve-film-{}-{number}.{ending}", std::process::id()));
+    let out = std::env::temp_dir()
+        .join(format!("hasard-serve-film-{}-{number}.{ending}", std::process::id()));
     let out = Scratch::new(out);
     let film = || -> Result<Vec<u8>, hasard_play::PlayError> {
         let mut replay = Replay::new(EpisodeFile::read(path)?, path, &EnvOptions::default())?;

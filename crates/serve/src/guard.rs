@@ -1,5 +1,5 @@
-//! Who may ask. A page of another site that the user has open must not read or steer this server, neither by a request
-//! across origins nor by a name that it lets point here (DNS rebinding).
+//! Who may ask. A page of another site that the user has open must not read or steer this server,
+//! neither by a request across origins nor by a name that it lets point here (DNS rebinding).
 
 use crate::answer::refusal;
 use crate::server::Shared;
@@ -17,7 +17,11 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'u
                       connect-src 'self' ws: wss:; form-action 'none'; base-uri 'none'; frame-ancestors 'none'";
 
 /// Checks a request before any route sees it.
-pub(crate) async fn guard(State(shared): State<Arc<Shared>>, request: Request, next: Next) -> Response {
+pub(crate) async fn guard(
+    State(shared): State<Arc<Shared>>,
+    request: Request,
+    next: Next,
+) -> Response {
     let mut response = match allowed(&shared, &request) {
         Err(response) => *response,
         Ok(()) => next.run(request).await,
@@ -46,34 +50,58 @@ fn allowed(shared: &Shared, request: &Request) -> Result<(), Box<Response>> {
     let headers = request.headers();
     let host = text(headers, header::HOST);
     if !host.is_some_and(is_address) {
-        return no(StatusCode::FORBIDDEN, "ask by address (http://127.0.0.1:8350) or as localhost: another name is not answered");
+        return no(
+            StatusCode::FORBIDDEN,
+            "ask by address (http://127.0.0.1:8350) or as localhost: another name is not answered",
+        );
     }
     // Browsers name the origin of every WebSocket and of every request across origins.
     if let Some(origin) = headers.get(header::ORIGIN) {
-        let ours = origin.to_str().ok().and_then(|origin| origin.split_once("://")).is_some_and(|(_, rest)| Some(rest) == host);
+        let ours = origin
+            .to_str()
+            .ok()
+            .and_then(|origin| origin.split_once("://"))
+            .is_some_and(|(_, rest)| Some(rest) == host);
         if !ours {
             return no(StatusCode::FORBIDDEN, "this page belongs to another origin");
         }
     }
-    if text(headers, header::HeaderName::from_static("sec-fetch-site")).is_some_and(|site| site == "cross-site")
+    if text(headers, header::HeaderName::from_static("sec-fetch-site"))
+        .is_some_and(|site| site == "cross-site")
         && request.uri().path() != "/"
     {
         return no(StatusCode::FORBIDDEN, "another site asked for this");
     }
     let Some(token) = &shared.token else { return Ok(()) };
-    let by_cookie = headers.get_all(header::COOKIE).iter().filter_map(|line| line.to_str().ok()).flat_map(|line| line.split(';'));
-    let mut given = by_cookie.filter_map(|pair| pair.trim().strip_prefix(COOKIE)?.strip_prefix('='));
+    let by_cookie = headers
+        .get_all(header::COOKIE)
+        .iter()
+        .filter_map(|line| line.to_str().ok())
+        .flat_map(|line| line.split(';'));
+    let mut given =
+        by_cookie.filter_map(|pair| pair.trim().strip_prefix(COOKIE)?.strip_prefix('='));
     if given.any(|given| equal(given, token)) {
         return Ok(());
     }
     let query = request.uri().query().unwrap_or_default();
-    if query.split('&').filter_map(|pair| pair.strip_prefix("token=")).any(|given| equal(given, token)) {
-        // The token goes out of the address and into a cookie, so that a copied link does not give it away.
+    if query
+        .split('&')
+        .filter_map(|pair| pair.strip_prefix("token="))
+        .any(|given| equal(given, token))
+    {
+        // The token goes out of the address and into a cookie, so that a copied link does not give
+        // it away.
         let cookie = format!("{COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/");
         let to = request.uri().path().to_owned();
-        return Err(Box::new((StatusCode::SEE_OTHER, [(header::SET_COOKIE, cookie), (header::LOCATION, to)]).into_response()));
+        return Err(Box::new(
+            (StatusCode::SEE_OTHER, [(header::SET_COOKIE, cookie), (header::LOCATION, to)])
+                .into_response(),
+        ));
     }
-    no(StatusCode::UNAUTHORIZED, "this server wants its token: open the address that it printed when it began")
+    no(
+        StatusCode::UNAUTHORIZED,
+        "this server wants its token: open the address that it printed when it began",
+    )
 }
 
 fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
@@ -82,7 +110,8 @@ fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
     if all.next().is_some() { None } else { first.to_str().ok() }
 }
 
-/// Whether a host is an address or localhost, with or without a port: no name that somebody else can let point here.
+/// Whether a host is an address or localhost, with or without a port: no name that somebody else
+/// can let point here.
 fn is_address(host: &str) -> bool {
     let name = match host.rsplit_once(':') {
         Some((name, port)) if port.parse::<u16>().is_ok() && !name.is_empty() => name,
@@ -94,7 +123,8 @@ fn is_address(host: &str) -> bool {
 
 /// Compares without telling by its time where the first difference is.
 fn equal(given: &str, token: &str) -> bool {
-    given.len() == token.len() && given.bytes().zip(token.bytes()).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
+    given.len() == token.len()
+        && given.bytes().zip(token.bytes()).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
 }
 
 #[cfg(test)]
@@ -106,7 +136,14 @@ mod tests {
         for good in ["127.0.0.1:8350", "localhost:8350", "localhost", "[::1]:80", "192.168.0.3"] {
             assert!(is_address(good), "{good}");
         }
-        for bad in ["evil.example:8350", "127.0.0.1.evil.example", "localhost.evil.example", "", ":80", "localhost:99999999"] {
+        for bad in [
+            "evil.example:8350",
+            "127.0.0.1.evil.example",
+            "localhost.evil.example",
+            "",
+            ":80",
+            "localhost:99999999",
+        ] {
             assert!(!is_address(bad), "{bad}");
         }
         assert!(equal("abc", "abc") && !equal("abd", "abc") && !equal("ab", "abc"));

@@ -1,4 +1,5 @@
-//! The page in the browser: runs while they train, agents that are watched, episodes that are played.
+//! The page in the browser: runs while they train, agents that are watched, episodes that are
+//! played.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -10,11 +11,15 @@
 //! | `show` | a world for a viewer: rehearsed and watched, or played; frames over a WebSocket |
 //! | `pages` | HTML, CSS and ES modules, embedded |
 //!
-//! The stage, its views and its controls are those of `hasard-play`: the window and this page are two fronts of it.
+//! The stage, its views and its controls are those of `hasard-play`: the window and this page are
+//! two fronts of it.
 
 // They panic where a stream is closed or its disk is full.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
-#![allow(clippy::result_large_err, reason = "an answer is the error type of a handler, as axum has it; none is hot")]
+#![allow(
+    clippy::result_large_err,
+    reason = "an answer is the error type of a handler, as axum has it; none is hot"
+)]
 
 mod answer;
 mod door;

@@ -21,7 +21,8 @@ use tokio::sync::Semaphore;
 /// Viewers and players at a time.
 const SHOWS: usize = 64;
 /// Fixed policies that the page offers; a link may name any other.
-const POLICIES: [&str; 6] = ["random", "sticky:4", "sticky:10", "noop", "hold:MOVE_FORWARD", "hold:MOVE_FORWARD+SPEED"];
+const POLICIES: [&str; 6] =
+    ["random", "sticky:4", "sticky:10", "noop", "hold:MOVE_FORWARD", "hold:MOVE_FORWARD+SPEED"];
 /// Films and reports in the making at a time: each keeps a core busy.
 const LONG_JOBS: usize = 2;
 
@@ -85,8 +86,11 @@ impl Server {
     /// # Errors
     /// When the address is taken or not ours.
     pub fn bind(settings: Settings) -> io::Result<Server> {
-        let runtime =
-            tokio::runtime::Builder::new_multi_thread().worker_threads(2).max_blocking_threads(8).enable_all().build()?;
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(2)
+            .max_blocking_threads(8)
+            .enable_all()
+            .build()?;
         let listener = runtime.block_on(tokio::net::TcpListener::bind(settings.address))?;
         let address = listener.local_addr()?;
         let shared = Shared {
@@ -137,7 +141,8 @@ impl Server {
 }
 
 async fn page(uri: Uri) -> Response {
-    pages::page(uri.path()).unwrap_or_else(|| refusal(StatusCode::NOT_FOUND, "there is no such page"))
+    pages::page(uri.path())
+        .unwrap_or_else(|| refusal(StatusCode::NOT_FOUND, "there is no such page"))
 }
 
 /// Environments, fixed policies and zoo agents: what can be watched and played without a run.

@@ -17,7 +17,13 @@ fn another_origin_and_another_name_are_refused() {
     assert_eq!(status(&get(address, "/api/runs", "Origin: null\r\n")), 403);
     assert_eq!(status(&get(address, "/api/runs", "Sec-Fetch-Site: cross-site\r\n")), 403);
     // DNS rebinding: the name of another site points here.
-    assert_eq!(status(&raw(address, "GET /api/runs HTTP/1.1\r\nHost: evil.example:8350\r\nConnection: close\r\n\r\n")), 403);
+    assert_eq!(
+        status(&raw(
+            address,
+            "GET /api/runs HTTP/1.1\r\nHost: evil.example:8350\r\nConnection: close\r\n\r\n"
+        )),
+        403
+    );
     let two = "GET /api/runs HTTP/1.1\r\nHost: 127.0.0.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n";
     assert!(matches!(status(&raw(address, two)), 400 | 403));
     // A WebSocket across sites.
@@ -36,7 +42,9 @@ fn another_origin_and_another_name_are_refused() {
     assert_eq!(
         status(&raw(
             address,
-            &format!("POST /api/runs HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Length: 0\r\n\r\n")
+            &format!(
+                "POST /api/runs HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
+            )
         )),
         405
     );
@@ -45,13 +53,27 @@ fn another_origin_and_another_name_are_refused() {
 #[test]
 fn without_the_token_nothing_is_told() {
     let address = serve(&folder("token"), Some("letmein12345"));
-    for path in ["/", "/api/runs", "/app.js", "/api/watch?env=RemedyRushLevel1-v0", "/?token=wrong", "/?token="] {
+    for path in [
+        "/",
+        "/api/runs",
+        "/app.js",
+        "/api/watch?env=RemedyRushLevel1-v0",
+        "/?token=wrong",
+        "/?token=",
+    ] {
         assert_eq!(status(&get(address, path, "")), 401, "{path}");
     }
     assert_eq!(status(&get(address, "/api/runs", "Cookie: hasard-token=letmein1234\r\n")), 401);
     let given = get(address, "/?token=letmein12345", "");
-    assert!(status(&given) == 303 && given.contains("hasard-token=letmein12345; HttpOnly; SameSite=Strict"), "{given}");
-    assert_eq!(status(&get(address, "/api/runs", "Cookie: a=b; hasard-token=letmein12345\r\n")), 200);
+    assert!(
+        status(&given) == 303
+            && given.contains("hasard-token=letmein12345; HttpOnly; SameSite=Strict"),
+        "{given}"
+    );
+    assert_eq!(
+        status(&get(address, "/api/runs", "Cookie: a=b; hasard-token=letmein12345\r\n")),
+        200
+    );
 }
 
 #[test]
@@ -63,7 +85,11 @@ fn paths_stay_in_the_given_folders() {
     write_run(&folder.join("elsewhere"), "hidden", 3);
     #[cfg(unix)]
     {
-        std::os::unix::fs::symlink(folder.join("secret.episode"), folder.join("human/link.episode")).unwrap();
+        std::os::unix::fs::symlink(
+            folder.join("secret.episode"),
+            folder.join("human/link.episode"),
+        )
+        .unwrap();
         std::os::unix::fs::symlink(folder.join("elsewhere"), folder.join("runs/link")).unwrap();
     }
     let address = serve(&folder, None);
@@ -77,9 +103,18 @@ fn paths_stay_in_the_given_folders() {
         "a%00.episode",
     ] {
         let answer = get(address, &format!("/api/episode?name={name}"), "");
-        assert!(matches!(status(&answer), 400 | 404) && !answer.contains("secret\r"), "{name}: {answer}");
+        assert!(
+            matches!(status(&answer), 400 | 404) && !answer.contains("secret\r"),
+            "{name}: {answer}"
+        );
     }
-    for path in ["/../Cargo.toml", "/%2e%2e/%2e%2e/etc/passwd", "/..%2fetc", "//etc/passwd", "/api/../../etc/passwd"] {
+    for path in [
+        "/../Cargo.toml",
+        "/%2e%2e/%2e%2e/etc/passwd",
+        "/..%2fetc",
+        "//etc/passwd",
+        "/api/../../etc/passwd",
+    ] {
         assert!(matches!(status(&get(address, path, "")), 400 | 404), "{path}");
     }
     assert_eq!(status(&get(address, "/api/heatmap?id=../../etc/passwd", "")), 404);
@@ -95,12 +130,20 @@ fn a_script_in_a_name_stays_text() {
     let address = serve(&folder, None);
     let runs = get(address, "/api/runs", "");
     // It is data in a JSON document that no browser takes for a page.
-    assert!(runs.contains("content-type: application/json") && runs.contains("x-content-type-options: nosniff"), "{runs}");
+    assert!(
+        runs.contains("content-type: application/json")
+            && runs.contains("x-content-type-options: nosniff"),
+        "{runs}"
+    );
     let page = get(address, "/", "");
     assert!(page.contains("default-src 'none'; script-src 'self'") && !page.contains("alert"));
     let id = runs.split("\"id\":\"").nth(1).unwrap().split('"').next().unwrap();
     let report = get(address, &format!("/api/report?runs={id}"), "");
-    assert!(status(&report) == 200 && !report.contains("<script>alert"), "{}", &report[..500.min(report.len())]);
+    assert!(
+        status(&report) == 200 && !report.contains("<script>alert"),
+        "{}",
+        &report[..500.min(report.len())]
+    );
 }
 
 fn connect(address: std::net::SocketAddr, path: &str) -> tungstenite::WebSocket<TcpStream> {
@@ -126,9 +169,12 @@ fn rubbish_ends_its_own_connection_alone() {
     let address = serve(&folder("rubbish"), None);
     let watch = "/api/watch?env=RemedyRushLevel1-v0&size=64x48";
     let mut good = connect(address, watch);
-    for message in
-        [Message::text("{"), Message::text("{\"do\":\"erase\"}"), Message::binary(vec![0; 100]), Message::text("x".repeat(5000))]
-    {
+    for message in [
+        Message::text("{"),
+        Message::text("{\"do\":\"erase\"}"),
+        Message::binary(vec![0; 100]),
+        Message::text("x".repeat(5000)),
+    ] {
         let mut bad = connect(address, watch);
         bad.send(message).unwrap();
         assert!(ends(bad));
@@ -177,7 +223,8 @@ fn a_slow_viewer_gets_fewer_frames_and_no_queue() {
 fn ten_thousand_sockets_do_not_lock_others_out_for_long() {
     let folder = folder("sockets");
     let address = serve(&folder, None);
-    // Ten thousand at a time, all silent, or as many as this process may open. The server's places are all taken then.
+    // Ten thousand at a time, all silent, or as many as this process may open. The server's places
+    // are all taken then.
     let mut open = Vec::new();
     for _ in 0..10_000 {
         match TcpStream::connect_timeout(&address, Duration::from_secs(5)) {
@@ -205,7 +252,10 @@ fn try_get(address: std::net::SocketAddr, path: &str) -> String {
     let asked = || -> std::io::Result<String> {
         let mut stream = TcpStream::connect(address)?;
         stream.set_read_timeout(Some(Duration::from_secs(20)))?;
-        stream.write_all(format!("GET {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n").as_bytes())?;
+        stream.write_all(
+            format!("GET {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n")
+                .as_bytes(),
+        )?;
         let mut bytes = Vec::new();
         stream.read_to_end(&mut bytes)?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
@@ -213,7 +263,8 @@ fn try_get(address: std::net::SocketAddr, path: &str) -> String {
     asked().unwrap_or_default()
 }
 
-/// A viewer of a show that never reads holds no more than its two frames, and every place is given back.
+/// A viewer of a show that never reads holds no more than its two frames, and every place is given
+/// back.
 #[test]
 fn places_are_given_back_by_viewers_that_never_read_or_send_rubbish() {
     let address = serve(&folder("places"), None);
@@ -227,7 +278,9 @@ fn places_are_given_back_by_viewers_that_never_read_or_send_rubbish() {
             match tungstenite::client(url, stream) {
                 Ok((socket, _)) => return socket,
                 // Those before are still leaving.
-                Err(_) => assert!(begun.elapsed() < Duration::from_secs(60), "no place is given back"),
+                Err(_) => {
+                    assert!(begun.elapsed() < Duration::from_secs(60), "no place is given back")
+                }
             }
             std::thread::sleep(Duration::from_millis(50));
         }

@@ -81,14 +81,18 @@ fn runs_appear_move_and_are_compared() {
 fn an_agent_is_watched_paused_and_its_harm_jumped_to() {
     let Some(browser) = Browser::open(1280, 1100, false) else { return };
     let address = serve(&folder("chromium-watch"), None);
-    browser.go(&format!("http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3"));
+    browser.go(&format!(
+        "http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3"
+    ));
     let step = "Number(document.querySelector('#numbers b')?.innerText)";
     browser.wait(&format!("{step} > 5"));
     browser.wait("document.querySelector('[data-kind=harm]')");
     browser.script("document.getElementById('go').click()");
     browser.wait("document.getElementById('go').innerText == 'Play'");
     browser.script("document.querySelector('[data-kind=harm]').click()");
-    browser.wait(&format!("{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"));
+    browser.wait(&format!(
+        "{step} == Number(document.querySelector('[data-kind=harm]').dataset.step) - 1"
+    ));
     let at = browser.script(&format!("return {step}"));
     // A step on and back, by keys: the same picture.
     let before = browser.resting("canvas.view");
@@ -116,7 +120,9 @@ fn an_episode_is_played_kept_and_found_in_the_table() {
     let folder = folder("chromium-play");
     let address = serve(&folder, None);
     // Under the hard constraint lava ends the episode soon.
-    browser.go(&format!("http://{address}/#play?env=VolcanicVentureLevel1-v0&seed=3&hard=true&size=320x240"));
+    browser.go(&format!(
+        "http://{address}/#play?env=VolcanicVentureLevel1-v0&seed=3&hard=true&size=320x240"
+    ));
     browser.wait("document.querySelector('#numbers b')");
     browser.photograph("serve_play_dark");
     // What to do and what to avoid stands above; H shows the keys of this task, and those alone.
@@ -124,12 +130,15 @@ fn an_episode_is_played_kept_and_found_in_the_table() {
     browser.keys(&["h"], true);
     browser.keys(&["h"], false);
     let card = "document.getElementById('card')";
-    browser.wait(&format!("!{card}.hidden && {card}.innerText.includes('jump') && !{card}.innerText.includes('fire')"));
+    browser.wait(&format!(
+        "!{card}.hidden && {card}.innerText.includes('jump') && !{card}.innerText.includes('fire')"
+    ));
     browser.script("document.getElementById('begin').click()");
     browser.keys(&["w"], true);
     browser.wait("document.querySelector('#words').innerText.includes('kept as')");
     browser.keys(&["w"], false);
-    // It cost more than the budget of 0: the card says so, and the table of those within has no row for it.
+    // It cost more than the budget of 0: the card says so, and the table of those within has no row
+    // for it.
     browser
         .wait("!document.getElementById('card').hidden && document.getElementById('card').innerText.includes('Over the budget')");
     browser.wait("document.querySelector('#best').innerText.includes('Nobody yet')");
@@ -139,7 +148,9 @@ fn an_episode_is_played_kept_and_found_in_the_table() {
     let film = browser.script("return window.film");
     let path = film.as_str().unwrap().split_once(&address.to_string()).unwrap().1.to_owned();
     let answer = common::get(address, &path, "");
-    assert!(common::status(&answer) == 200 && answer.contains("video/mp4") && answer.contains("ftyp"));
+    assert!(
+        common::status(&answer) == 200 && answer.contains("video/mp4") && answer.contains("ftyp")
+    );
     // It plays here too.
     browser.script("document.body.append(Object.assign(document.createElement('video'), { src: window.film, id: 'film', muted: true })); document.getElementById('film').play()");
     browser.wait("document.getElementById('film').currentTime > 0.2 && document.getElementById('film').videoWidth == 320");
@@ -152,7 +163,9 @@ fn a_finger_walks_and_a_caught_mouse_turns() {
     let folder = folder("chromium-pointer");
     let address = serve(&folder, None);
     browser.touched();
-    browser.go(&format!("http://{address}/#play?env=VolcanicVentureLevel1-v0&seed=3&hard=true&size=320x240"));
+    browser.go(&format!(
+        "http://{address}/#play?env=VolcanicVentureLevel1-v0&seed=3&hard=true&size=320x240"
+    ));
     browser.wait("document.querySelector('#numbers b')");
     // Into the lava, as in the test of keys.
     browser.wait("document.querySelector('.touch').offsetHeight > 0");
@@ -165,7 +178,8 @@ fn a_finger_walks_and_a_caught_mouse_turns() {
     browser.pointer("mouse", Ok("#game"), Some(true));
     browser.pointer("mouse", Ok("#game"), Some(false));
     browser.wait("document.pointerLockElement?.id == 'game' && document.querySelector('#numbers b').innerText != '0.0 of 60 s'");
-    // Taking the mouse may itself move it, and a busy machine shows that late: from a picture that rests, only the mouse turns.
+    // Taking the mouse may itself move it, and a busy machine shows that late: from a picture that
+    // rests, only the mouse turns.
     browser.resting("#game");
     browser.script(
         "const look = () => { const copy = Object.assign(document.createElement('canvas'), { width: 320, height: 240 }); \
@@ -191,9 +205,12 @@ fn pages_are_photographed_light_dark_and_narrow() {
         ("watch", "watch?env=RemedyRushLevel1-v0&agent=sticky:10&seed=1"),
         ("play", "play?env=ArmamentBurdenLevel1-v0&full=true"),
     ];
-    for (kind, width, height, dark) in
-        [("light", 1280, 900, false), ("dark", 1280, 900, true), ("narrow", 390, 1600, false), ("wide", 2560, 1200, false)]
-    {
+    for (kind, width, height, dark) in [
+        ("light", 1280, 900, false),
+        ("dark", 1280, 900, true),
+        ("narrow", 390, 1600, false),
+        ("wide", 2560, 1200, false),
+    ] {
         let Some(browser) = Browser::open(width, height, dark) else { return };
         for (name, page) in pages {
             browser.go(&format!("http://{address}/#{page}"));
@@ -231,7 +248,9 @@ fn everything_is_reached_by_the_keyboard() {
         for _ in 0..60 {
             browser.keys(&[key("Tab")], true);
             browser.keys(&[key("Tab")], false);
-            if browser.script(&format!("return document.activeElement.matches({wanted:?})")) == json!(true) {
+            if browser.script(&format!("return document.activeElement.matches({wanted:?})"))
+                == json!(true)
+            {
                 return;
             }
         }
@@ -243,7 +262,9 @@ fn everything_is_reached_by_the_keyboard() {
     browser.keys(&[" "], false);
     browser.wait("!document.getElementById('curves').hidden");
     tab_to("svg.chart");
-    browser.go(&format!("http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3"));
+    browser.go(&format!(
+        "http://{address}/#watch?env=VolcanicVentureLevel1-v0&agent=hold:MOVE_FORWARD&seed=3"
+    ));
     browser.wait("document.querySelector('[data-kind=harm]')");
     for control in ["select", "#go", "#tic", "#copy", "input[type=range]", "[data-kind=harm]"] {
         browser.script("document.activeElement.blur()");

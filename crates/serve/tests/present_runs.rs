@@ -1,4 +1,5 @@
-//! What is said of runs is what is there now: directories are resumed, replaced, renamed and deleted while a page is open.
+//! What is said of runs is what is there now: directories are resumed, replaced, renamed and
+//! deleted while a page is open.
 
 mod common;
 
@@ -11,7 +12,8 @@ use std::time::{Duration, Instant};
 
 fn ask(address: SocketAddr, path: &str) -> Value {
     let answer = get(address, path, "");
-    serde_json::from_str(answer.split_once("\r\n\r\n").map_or("", |(_, body)| body)).unwrap_or(Value::Null)
+    serde_json::from_str(answer.split_once("\r\n\r\n").map_or("", |(_, body)| body))
+        .unwrap_or(Value::Null)
 }
 
 /// A page that adds up what changed, as the list of runs does.
@@ -38,7 +40,8 @@ impl Page {
         let begun = Instant::now();
         loop {
             self.look();
-            let named = self.runs.values().map(|run| (run["name"].as_str().unwrap(), run)).collect();
+            let named =
+                self.runs.values().map(|run| (run["name"].as_str().unwrap(), run)).collect();
             if wanted(&named) {
                 return;
             }
@@ -48,7 +51,10 @@ impl Page {
     }
 
     fn id(&self, name: &str) -> String {
-        self.runs.values().find(|run| run["name"] == name).unwrap()["id"].as_str().unwrap().to_owned()
+        self.runs.values().find(|run| run["name"] == name).unwrap()["id"]
+            .as_str()
+            .unwrap()
+            .to_owned()
     }
 }
 
@@ -63,13 +69,21 @@ fn pages_follow_runs_that_are_resumed_replaced_renamed_and_deleted() {
     write_run(&folder, "one", 1000);
     write_run(&folder, "two", 3);
     let mut page = Page { address: serve(&folder, None), since: 0, runs: BTreeMap::new() };
-    page.wait("at first", |runs| runs.len() == 2 && runs["one"]["state"] == "done" && runs["one"]["last"]["frames"] == 100_000);
+    page.wait("at first", |runs| {
+        runs.len() == 2
+            && runs["one"]["state"] == "done"
+            && runs["one"]["last"]["frames"] == 100_000
+    });
     let id = page.id("one");
-    let curve = |page: &Page| ask(page.address, &format!("/api/curves?runs={id}&columns=fps"))[&id]["frames"].clone();
+    let curve = |page: &Page| {
+        ask(page.address, &format!("/api/curves?runs={id}&columns=fps"))[&id]["frames"].clone()
+    };
     assert_eq!(curve(&page).as_array().unwrap().last(), Some(&json!(100_000.0)));
     // Resumed to more frames.
     settings(&folder, "one", "PPOLag", 1, 900_000);
-    page.wait("resumed", |runs| runs["one"]["state"] == "running" && runs["one"]["total"] == 900_000.0);
+    page.wait("resumed", |runs| {
+        runs["one"]["state"] == "running" && runs["one"]["total"] == 900_000.0
+    });
     // Another run in its place, at first without rows.
     let run = folder.join("runs/one");
     std::fs::remove_dir_all(&run).unwrap();
@@ -77,21 +91,30 @@ fn pages_follow_runs_that_are_resumed_replaced_renamed_and_deleted() {
     settings(&folder, "one", "PPO", 7, 50_000);
     page.wait("replaced", |runs| {
         let one = &runs["one"];
-        (&one["algo"], &one["seed"], &one["last"], &one["state"]) == (&json!("PPO"), &json!(7), &json!({}), &json!("stopped"))
+        (&one["algo"], &one["seed"], &one["last"], &one["state"])
+            == (&json!("PPO"), &json!(7), &json!({}), &json!("stopped"))
     });
     assert_eq!(curve(&page), json!([]));
     // Its rows are more than the former run's were, and none of those is among them.
-    let rows: String = (1..=3000).map(|k| format!("{{\"frames\":{},\"fps\":1.0,\"return_mean\":{k}}}\n", k * 7)).collect();
+    let rows: String = (1..=3000)
+        .map(|k| format!("{{\"frames\":{},\"fps\":1.0,\"return_mean\":{k}}}\n", k * 7))
+        .collect();
     std::fs::write(run.join("metrics.jsonl"), rows).unwrap();
     page.wait("its rows", |runs| runs["one"]["last"]["frames"] == 21_000);
     let frames = curve(&page);
-    assert!(frames.as_array().unwrap().iter().all(|frames| frames.as_f64().unwrap() % 7.0 == 0.0), "{frames}");
+    assert!(
+        frames.as_array().unwrap().iter().all(|frames| frames.as_f64().unwrap() % 7.0 == 0.0),
+        "{frames}"
+    );
     // Renamed: it is there once. Deleted: it is gone, and others can be chosen all the same.
     std::fs::rename(folder.join("runs/two"), folder.join("runs/zwei")).unwrap();
     page.wait("renamed", |runs| runs.keys().copied().eq(["one", "zwei"]));
     std::fs::remove_dir_all(folder.join("runs/zwei")).unwrap();
     page.wait("deleted", |runs| runs.keys().copied().eq(["one"]));
     let best = ask(page.address, "/api/best");
-    assert!(best.as_array().unwrap().iter().all(|row| !row["who"].as_str().unwrap().contains("seed 1")), "{best}");
+    assert!(
+        best.as_array().unwrap().iter().all(|row| !row["who"].as_str().unwrap().contains("seed 1")),
+        "{best}"
+    );
     let _ = std::fs::remove_dir_all(folder);
 }

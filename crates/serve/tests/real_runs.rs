@@ -1,4 +1,5 @@
-//! The pages on runs that were trained for them: `data/runs` holds the small files of runs of 300,000 frames.
+//! The pages on runs that were trained for them: `data/runs` holds the small files of runs of
+//! 300,000 frames.
 
 #[path = "common/browser.rs"]
 mod browser;
@@ -52,7 +53,10 @@ fn every_metric_of_a_run_is_explained() {
         let metrics = detail["metrics"].as_array().unwrap();
         assert!(metrics.len() > 40);
         for metric in metrics {
-            assert!(metric["group"] != "other" && metric["meaning"].as_str().unwrap().len() > 8, "{metric}");
+            assert!(
+                metric["group"] != "other" && metric["meaning"].as_str().unwrap().len() > 8,
+                "{metric}"
+            );
         }
     }
 }
@@ -63,8 +67,10 @@ fn a_run_says_first_what_it_is_worth() {
     let address = served("real-run");
     open_run(&browser, address);
     // The strip tells the closing evaluation as the run's own file has it.
-    let selected: Value =
-        serde_json::from_str(&std::fs::read_to_string(data().join(RUN).join("selected.json")).unwrap()).unwrap();
+    let selected: Value = serde_json::from_str(
+        &std::fs::read_to_string(data().join(RUN).join("selected.json")).unwrap(),
+    )
+    .unwrap();
     let closing = &selected["closing"];
     let strip = browser.script("return document.getElementById('strip').innerText");
     let strip = strip.as_str().unwrap();
@@ -74,25 +80,37 @@ fn a_run_says_first_what_it_is_worth() {
     assert!(strip.contains(&wanted), "{wanted}: {strip}");
     assert!(strip.contains(&plain(&closing["cost"]["mean"])), "{strip}");
     let episodes = lines("closing_episodes.jsonl");
-    let over = episodes.iter().filter(|one| one["cost"].as_f64().is_some_and(|cost| cost > 5.0)).count();
-    assert!(strip.contains(&format!("{} %", (100.0 * over as f64 / episodes.len() as f64).round())), "{over}: {strip}");
+    let over =
+        episodes.iter().filter(|one| one["cost"].as_f64().is_some_and(|cost| cost > 5.0)).count();
+    assert!(
+        strip.contains(&format!("{} %", (100.0 * over as f64 / episodes.len() as f64).round())),
+        "{over}: {strip}"
+    );
     let within = closing["cost"]["mean"].as_f64().unwrap() <= 5.0;
-    let said = browser.script("return document.querySelectorAll('.tile')[1].querySelector('.note').innerText");
+    let said = browser
+        .script("return document.querySelectorAll('.tile')[1].querySelector('.note').innerText");
     assert_eq!(said == "over", !within, "{strip}");
     // Training and evaluation on one chart, a point an evaluation, and the selected checkpoint.
-    let evaluations = lines("metrics.jsonl").iter().filter(|row| row["eval/return_mean"].is_number()).count();
+    let evaluations =
+        lines("metrics.jsonl").iter().filter(|row| row["eval/return_mean"].is_number()).count();
     let chart = "document.querySelector('[data-chart=return_mean]')";
-    assert_eq!(browser.script(&format!("return {chart}.querySelectorAll('circle:not(.pointer)').length")), json!(evaluations));
+    assert_eq!(
+        browser.script(&format!("return {chart}.querySelectorAll('circle:not(.pointer)').length")),
+        json!(evaluations)
+    );
     browser.wait(&format!("{chart}.querySelector('.selected')"));
     browser.wait(&format!("{chart}.querySelector('.told').innerText.includes('training') && {chart}.querySelector('.told').innerText.includes('evaluation')"));
-    browser.wait("document.querySelector('[data-chart=cost_mean] svg').textContent.includes('budget 5')");
+    browser.wait(
+        "document.querySelector('[data-chart=cost_mean] svg').textContent.includes('budget 5')",
+    );
     // The pointer over one chart is read in all.
     browser.script(&format!(
         "const svg = {chart}.querySelector('svg'), at = svg.getBoundingClientRect(); svg.dispatchEvent(new PointerEvent('pointermove', {{ clientX: at.left + 200, clientY: at.top + 50, pointerId: 1 }}))"
     ));
     browser.wait("[...document.querySelectorAll('.told')].every((told) => /^at \\d/.test(told.innerText)) && new Set([...document.querySelectorAll('.told')].map((told) => told.firstChild.textContent)).size == 1");
     browser.wait("document.querySelectorAll('svg.chart path.pointer').length >= document.querySelectorAll('svg.chart').length");
-    // What differs from the preset stands first: how often it was evaluated, and on how many episodes it was confirmed.
+    // What differs from the preset stands first: how often it was evaluated, and on how many
+    // episodes it was confirmed.
     browser.wait("document.querySelector('#settings table').innerText.includes('evaluation.every') && document.querySelectorAll('#settings > .scroll tbody tr').length == 2");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
@@ -106,8 +124,11 @@ fn metrics_are_picked_axes_changed_and_pictures_saved() {
     browser.wait(
         "document.querySelector('[data-chart=fps] .note').innerText.includes('Frames per second') && location.hash.includes('fps')",
     );
-    let title =
-        |words: &str| browser.wait(&format!("document.querySelector('[data-chart=fps] svg').textContent.includes('{words}')"));
+    let title = |words: &str| {
+        browser.wait(&format!(
+            "document.querySelector('[data-chart=fps] svg').textContent.includes('{words}')"
+        ))
+    };
     title("frames (1 frame");
     let select = |value: &str| {
         browser.script(&format!(
@@ -118,13 +139,15 @@ fn metrics_are_picked_axes_changed_and_pictures_saved() {
     title("policy steps");
     select("time");
     title("time of training");
-    browser.script("const log = document.querySelector('.tools input[type=checkbox]'); log.click()");
+    browser
+        .script("const log = document.querySelector('.tools input[type=checkbox]'); log.click()");
     title("log scale");
     browser.script("const smooth = document.querySelector('.tools input[type=range]'); smooth.value = 0.9; smooth.dispatchEvent(new Event('input'))");
     browser.wait("document.querySelector('.tools output').innerText.includes('weight 0.9')");
     browser
         .wait("location.hash.includes('x=time') && location.hash.includes('smooth=0.9') && location.hash.includes('log=true')");
-    // What is saved: the numbers as they were reported, and pictures with title and colours of their own.
+    // What is saved: the numbers as they were reported, and pictures with title and colours of
+    // their own.
     browser.script("window.saved = []; const make = URL.createObjectURL; URL.createObjectURL = (blob) => { saved.push(blob); return make.call(URL, blob); }; document.querySelectorAll('[data-chart=return_mean] .saves button').forEach((button) => button.click())");
     browser.wait("saved.filter((blob) => blob.type == 'image/png').length == 1");
     browser.script("Promise.all(saved.map((blob) => blob.text())).then((texts) => { window.texts = Object.fromEntries(texts.map((text, k) => [saved[k].type, text])); })");
@@ -134,11 +157,17 @@ fn metrics_are_picked_axes_changed_and_pictures_saved() {
     let evaluated = rows.iter().filter(|row| row["eval/return_mean"].is_number()).count();
     let csv = browser.script("return texts['text/csv']");
     let csv: Vec<&str> = csv.as_str().unwrap().lines().collect();
-    assert_eq!((csv[0], csv.len()), ("series,seconds,Return,half width of the 95 % interval", 1 + reported + evaluated));
+    assert_eq!(
+        (csv[0], csv.len()),
+        ("series,seconds,Return,half width of the 95 % interval", 1 + reported + evaluated)
+    );
     let svg = browser.script("return texts['image/svg+xml']");
     let svg = svg.as_str().unwrap();
     assert!(
-        svg.starts_with("<svg") && svg.contains(">Return</text>") && svg.contains(">evaluation</text>") && !svg.contains("var(")
+        svg.starts_with("<svg")
+            && svg.contains(">Return</text>")
+            && svg.contains(">evaluation</text>")
+            && !svg.contains("var(")
     );
     browser.wait("saved.find((blob) => blob.type == 'image/png').size > 5000");
     assert_eq!(browser.errors(), Vec::<String>::new());
@@ -150,18 +179,21 @@ fn a_heatmap_lies_on_its_map_as_in_the_report() {
     let address = served("real-heatmap");
     open_run(&browser, address);
     // North is up: the first row of cells that is painted is the last of the file.
-    let painted =
-        "const { cells, heat_colour } = window.heat; return cells({ rows: 2, columns: 1, steps: [3, 0] }).colours.map(Boolean)";
+    let painted = "const { cells, heat_colour } = window.heat; return cells({ rows: 2, columns: 1, steps: [3, 0] }).colours.map(Boolean)";
     browser.script("import('/heat.js').then((heat) => { window.heat = heat; })");
     browser.wait("window.heat");
     assert_eq!(browser.script(painted), json!([false, true]));
     for part in 0..=10 {
         let heat = f64::from(part) / 10.0;
-        assert_eq!(browser.script(&format!("return heat.heat_colour({heat})")), json!(hasard_report::heat::heat_colour(heat)));
+        assert_eq!(
+            browser.script(&format!("return heat.heat_colour({heat})")),
+            json!(hasard_report::heat::heat_colour(heat))
+        );
     }
     // The most visited place's share stands at the end of the colour bar.
     let heat = lines("heatmaps.jsonl").pop().unwrap();
-    let steps: Vec<f64> = heat["steps"].as_array().unwrap().iter().map(|one| one.as_f64().unwrap()).collect();
+    let steps: Vec<f64> =
+        heat["steps"].as_array().unwrap().iter().map(|one| one.as_f64().unwrap()).collect();
     let most = 100.0 * steps.iter().copied().fold(0.0, f64::max) / steps.iter().sum::<f64>();
     let bar = "Number(document.querySelector('.ends').lastChild.innerText.replace(' %', ''))";
     browser.wait(&format!("Math.abs({bar} - {most}) < 0.006 * {most}"));
@@ -179,11 +211,15 @@ fn experiments_are_folded_and_compared_by_environment() {
     browser.wait("document.querySelectorAll('tbody tr').length > 2");
     let runs = browser.script("return fetch('/api/runs').then((answer) => answer.json())");
     let runs = runs["runs"].as_array().unwrap();
-    let mut experiments: Vec<&str> = runs.iter().map(|run| run["experiment"].as_str().unwrap()).collect();
+    let mut experiments: Vec<&str> =
+        runs.iter().map(|run| run["experiment"].as_str().unwrap()).collect();
     experiments.sort_unstable();
     experiments.dedup();
     assert!(experiments.len() < runs.len());
-    assert_eq!(browser.script("return document.querySelectorAll('tbody tr').length"), json!(experiments.len()));
+    assert_eq!(
+        browser.script("return document.querySelectorAll('tbody tr').length"),
+        json!(experiments.len())
+    );
     // Seeds are below their experiment, once asked for.
     browser.script("document.querySelector('button.open').click()");
     browser.wait("document.querySelectorAll('tr.seed').length > 1");
@@ -195,11 +231,14 @@ fn experiments_are_folded_and_compared_by_environment() {
     let words = browser
         .script("return Math.max(...[...document.querySelectorAll('.legend button')].map((button) => button.innerText.length))");
     assert!(words.as_u64().unwrap() < 40, "{words}");
-    let curves = "document.querySelectorAll('.facet svg.chart g path:not([stroke-dasharray])').length";
+    let curves =
+        "document.querySelectorAll('.facet svg.chart g path:not([stroke-dasharray])').length";
     browser.wait(&format!("{curves} > 4"));
     let before = browser.script(&format!("return {curves}"));
     browser.script("document.querySelector('.legend button').click()");
-    browser.wait(&format!("document.querySelector('.legend [aria-pressed=false]') && {curves} < {before}"));
+    browser.wait(&format!(
+        "document.querySelector('.legend [aria-pressed=false]') && {curves} < {before}"
+    ));
     browser.photograph("serve_compare");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
@@ -218,7 +257,9 @@ fn a_run_is_photographed_light_dark_and_narrow() {
         browser.wait("document.querySelector('.ends')?.innerText.includes('%')");
         let lacking = browser.script(include_str!("common/accessible.js"));
         assert_eq!(lacking, json!([]), "{kind}");
-        let wide = browser.script("return document.documentElement.scrollWidth - document.documentElement.clientWidth");
+        let wide = browser.script(
+            "return document.documentElement.scrollWidth - document.documentElement.clientWidth",
+        );
         assert_eq!(wide, json!(0), "{kind}: wider than the window by {wide}");
         browser.photograph(kind);
         assert_eq!(browser.errors(), Vec::<String>::new(), "{kind}");

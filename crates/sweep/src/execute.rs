@@ -11,7 +11,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Variable of a job's process: it stops when its standard input ends, which it does with this process, whatever ended that.
+/// Variable of a job's process: it stops when its standard input ends, which it does with this
+/// process, whatever ended that.
 pub const STOPS_WITH_INPUT: &str = "HASARD_STOPS_WITH_INPUT";
 
 /// Time between two looks at a process.
@@ -54,14 +55,22 @@ pub struct Summary {
     pub failed: Vec<(String, String)>,
 }
 
-/// Runs jobs, `parallel` processes of `program` at a time: finished ones are skipped, unfinished ones resumed. A job that
-/// fails does not stop the others. What a process prints goes to the job's log. `tell` hears of every event.
+/// Runs jobs, `parallel` processes of `program` at a time: finished ones are skipped, unfinished
+/// ones resumed. A job that fails does not stop the others. What a process prints goes to the job's
+/// log. `tell` hears of every event.
 ///
-/// Several processes share the cores out: each is given its number of threads, unless its job chooses one. Otherwise every one
-/// of them would take all cores, and they would wait for each other.
+/// Several processes share the cores out: each is given its number of threads, unless its job
+/// chooses one. Otherwise every one of them would take all cores, and they would wait for each
+/// other.
 ///
 /// No process outlives this one: see [`STOPS_WITH_INPUT`].
-pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, stop: Stop<'_>, tell: impl Fn(usize, &Event) + Sync) -> Summary {
+pub fn run_jobs(
+    program: &Path,
+    jobs: &[Job],
+    parallel: usize,
+    stop: Stop<'_>,
+    tell: impl Fn(usize, &Event) + Sync,
+) -> Summary {
     let parallel = parallel.clamp(1, jobs.len().max(1));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let share = (parallel > 1).then(|| (cores / parallel).max(1));
@@ -75,9 +84,12 @@ pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, stop: Stop<'_>, t
                     let Some(job) = jobs.get(index) else { break };
                     let event = run_one(program, job, share, stop, |event| tell(index, event));
                     tell(index, &event);
-                    let mut summary = summary.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                    let mut summary =
+                        summary.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                     match event {
-                        Event::Failed(why) => summary.failed.push((job.directory.display().to_string(), why)),
+                        Event::Failed(why) => {
+                            summary.failed.push((job.directory.display().to_string(), why))
+                        }
                         Event::AlreadyFinished => summary.skipped += 1,
                         Event::Stopped => summary.stopped += 1,
                         Event::Started(_) | Event::Finished(_) => summary.finished += 1,
@@ -92,9 +104,20 @@ pub fn run_jobs(program: &Path, jobs: &[Job], parallel: usize, stop: Stop<'_>, t
 }
 
 /// Runs a process to its end, or until the caller stops it.
-fn run(program: &Path, arguments: &[OsString], out: File, error: File, stop: Stop<'_>) -> std::io::Result<ExitStatus> {
+fn run(
+    program: &Path,
+    arguments: &[OsString],
+    out: File,
+    error: File,
+    stop: Stop<'_>,
+) -> std::io::Result<ExitStatus> {
     let mut command = Command::new(program);
-    command.args(arguments).stdin(Stdio::piped()).stdout(out).stderr(error).env(STOPS_WITH_INPUT, "1");
+    command
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(out)
+        .stderr(error)
+        .env(STOPS_WITH_INPUT, "1");
     let mut child = command.spawn()?;
     let mut line = child.stdin.take();
     loop {
@@ -112,7 +135,13 @@ fn run(program: &Path, arguments: &[OsString], out: File, error: File, stop: Sto
     }
 }
 
-fn run_one(program: &Path, job: &Job, share: Option<usize>, stop: Stop<'_>, tell: impl Fn(&Event)) -> Event {
+fn run_one(
+    program: &Path,
+    job: &Job,
+    share: Option<usize>,
+    stop: Stop<'_>,
+    tell: impl Fn(&Event),
+) -> Event {
     let evaluated = |event: Event| match evaluate(program, job, stop) {
         // It is still wanted: the caller stopped it.
         Ok(()) if job.wants_evaluation() => Event::Stopped,
@@ -130,18 +159,26 @@ fn run_one(program: &Path, job: &Job, share: Option<usize>, stop: Stop<'_>, tell
     let outputs = log(program, job, &arguments).and_then(|file| Ok((file.try_clone()?, file)));
     let (out, error) = match outputs {
         Ok(outputs) => outputs,
-        Err(error) => return Event::Failed(format!("cannot write {}: {error}", job.log().display())),
+        Err(error) => {
+            return Event::Failed(format!("cannot write {}: {error}", job.log().display()));
+        }
     };
     tell(&Event::Started(state));
     let began = Instant::now();
     let status = run(program, &arguments, out, error, stop);
     match (status, job.state()) {
-        (Ok(status), State::Finished) if status.success() => evaluated(Event::Finished(began.elapsed())),
-        (Ok(_), _) if stop.soon.load(Ordering::SeqCst) => Event::Stopped,
-        (Ok(status), _) if status.success() => {
-            Event::Failed(format!("ended before its {} frames; see {}", job.frames, job.log().display()))
+        (Ok(status), State::Finished) if status.success() => {
+            evaluated(Event::Finished(began.elapsed()))
         }
-        (Ok(status), _) => Event::Failed(format!("{status}; {}: {}", job.log().display(), last_line(&job.log()))),
+        (Ok(_), _) if stop.soon.load(Ordering::SeqCst) => Event::Stopped,
+        (Ok(status), _) if status.success() => Event::Failed(format!(
+            "ended before its {} frames; see {}",
+            job.frames,
+            job.log().display()
+        )),
+        (Ok(status), _) => {
+            Event::Failed(format!("{status}; {}: {}", job.log().display(), last_line(&job.log())))
+        }
         (Err(error), _) => Event::Failed(format!("cannot run {}: {error}", program.display())),
     }
 }
@@ -158,14 +195,15 @@ fn log(program: &Path, job: &Job, arguments: &[OsString]) -> std::io::Result<Fil
     Ok(file)
 }
 
-/// Evaluates the agent of a finished run, if that is asked for, and keeps the episodes in its directory, under a temporary name
-/// until they are all there. A caller who stops it has none.
+/// Evaluates the agent of a finished run, if that is asked for, and keeps the episodes in its
+/// directory, under a temporary name until they are all there. A caller who stops it has none.
 fn evaluate(program: &Path, job: &Job, stop: Stop<'_>) -> Result<(), String> {
     if !job.wants_evaluation() {
         return Ok(());
     }
     let (path, partial) = (job.evaluation(), job.evaluation().with_extension("partial"));
-    let failed = |error: std::io::Error| format!("cannot evaluate into {}: {error}", path.display());
+    let failed =
+        |error: std::io::Error| format!("cannot evaluate into {}: {error}", path.display());
     let arguments = job.evaluation_arguments();
     let error = log(program, job, &arguments).map_err(failed)?;
     let out = File::create(&partial).map_err(failed)?;
@@ -176,7 +214,11 @@ fn evaluate(program: &Path, job: &Job, stop: Stop<'_>) -> Result<(), String> {
     let _ = std::fs::remove_file(&partial);
     match status {
         _ if stop.soon.load(Ordering::SeqCst) => Ok(()),
-        Ok(_) => Err(format!("the evaluation of {} failed: {}", job.directory.display(), last_line(&job.log()))),
+        Ok(_) => Err(format!(
+            "the evaluation of {} failed: {}",
+            job.directory.display(),
+            last_line(&job.log())
+        )),
         Err(error) => Err(failed(error)),
     }
 }
@@ -193,5 +235,10 @@ fn last_line(log: &Path) -> String {
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     };
     let text = read().unwrap_or_default();
-    text.lines().rev().map(str::trim).find(|line| !line.is_empty()).unwrap_or("no output").to_owned()
+    text.lines()
+        .rev()
+        .map(str::trim)
+        .find(|line| !line.is_empty())
+        .unwrap_or("no output")
+        .to_owned()
 }

@@ -44,7 +44,8 @@ impl Sweep {
     pub fn chooses_frames(text: &str) -> bool {
         let Ok(table) = text.parse::<Table>() else { return false };
         let grids = table.get("grid").and_then(Value::as_array);
-        table.contains_key("frames") || grids.is_some_and(|grids| grids.iter().all(|grid| grid.get("frames").is_some()))
+        table.contains_key("frames")
+            || grids.is_some_and(|grids| grids.iter().all(|grid| grid.get("frames").is_some()))
     }
 }
 
@@ -53,22 +54,35 @@ fn understand(text: &str) -> Result<Sweep, String> {
         let (line, column) = error.span().map_or((1, 1), |span| line_and_column(text, span.start));
         format!("line {line}, column {column}: {}", error.message().replace('\n', " "))
     })?;
-    if let Some(key) = table.keys().find(|key| !TOP_KEYS.contains(&key.as_str()) && !GRID_KEYS.contains(&key.as_str())) {
-        return Err(format!("unknown key `{key}`; known are {}, {}", TOP_KEYS.join(", "), GRID_KEYS.join(", ")));
+    if let Some(key) = table
+        .keys()
+        .find(|key| !TOP_KEYS.contains(&key.as_str()) && !GRID_KEYS.contains(&key.as_str()))
+    {
+        return Err(format!(
+            "unknown key `{key}`; known are {}, {}",
+            TOP_KEYS.join(", "),
+            GRID_KEYS.join(", ")
+        ));
     }
     let mut sweep = match table.get("experiment") {
         None => {
             let grid = Grid { levels: vec![1], seeds: vec![1], ..Grid::default() };
             Sweep { out: PathBuf::from("runs"), parallel: 1, evaluate: 0, grids: vec![grid] }
         }
-        Some(name) => paper::experiment(name.as_str().ok_or("`experiment` must be a name in quotes")?)?,
+        Some(name) => {
+            paper::experiment(name.as_str().ok_or("`experiment` must be a name in quotes")?)?
+        }
     };
     if let Some(out) = table.get("out") {
-        sweep.out = PathBuf::from(out.as_str().filter(|out| !out.is_empty()).ok_or("`out` must be a path in quotes")?);
+        sweep.out = PathBuf::from(
+            out.as_str().filter(|out| !out.is_empty()).ok_or("`out` must be a path in quotes")?,
+        );
     }
     if let Some(parallel) = table.get("parallel") {
-        let count =
-            parallel.as_integer().and_then(|count| usize::try_from(count).ok()).filter(|count| (1..=4096).contains(count));
+        let count = parallel
+            .as_integer()
+            .and_then(|count| usize::try_from(count).ok())
+            .filter(|count| (1..=4096).contains(count));
         sweep.parallel = count.ok_or("`parallel` must be a whole number from 1 to 4096")?;
     }
     if let Some(evaluate) = table.get("evaluate") {
@@ -98,7 +112,10 @@ fn understand(text: &str) -> Result<Sweep, String> {
             let named = |problem: String| format!("grid {}: {problem}", index + 1);
             let table = table.as_table().ok_or("`grid` must be written as [[grid]]")?;
             if let Some(key) = table.keys().find(|key| !GRID_KEYS.contains(&key.as_str())) {
-                return Err(named(format!("unknown key `{key}`; known are {}", GRID_KEYS.join(", "))));
+                return Err(named(format!(
+                    "unknown key `{key}`; known are {}",
+                    GRID_KEYS.join(", ")
+                )));
             }
             for base in &bases {
                 let mut grid = base.clone();
@@ -113,11 +130,15 @@ fn understand(text: &str) -> Result<Sweep, String> {
 /// Puts what a table says into a grid.
 fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
     if let Some(frames) = table.get("frames") {
-        grid.frames =
-            frames.as_integer().and_then(|n| u64::try_from(n).ok()).ok_or("`frames` must be a whole number such as 2_000_000")?;
+        grid.frames = frames
+            .as_integer()
+            .and_then(|n| u64::try_from(n).ok())
+            .ok_or("`frames` must be a whole number such as 2_000_000")?;
     }
     if let Some(value) = table.get("seeds") {
-        grid.seeds = list(value, "seeds", "whole numbers from 0", |v| v.as_integer().and_then(|n| u64::try_from(n).ok()))?;
+        grid.seeds = list(value, "seeds", "whole numbers from 0", |v| {
+            v.as_integer().and_then(|n| u64::try_from(n).ok())
+        })?;
     }
     if let Some(value) = table.get("levels") {
         grid.levels = levels(value)?;
@@ -130,7 +151,12 @@ fn change(grid: &mut Grid, table: &Table) -> Result<(), String> {
     }
     if let Some(options) = table.get("options") {
         for (name, value) in options.as_table().ok_or("`options` must be a table")? {
-            let values = list(value, name, "a text, number, true or false, or a list of them", option_value)?;
+            let values = list(
+                value,
+                name,
+                "a text, number, true or false, or a list of them",
+                option_value,
+            )?;
             match grid.options.iter_mut().find(|(known, _)| known == name) {
                 Some((_, known)) => *known = values,
                 None => grid.options.push((name.clone(), values)),
@@ -163,7 +189,12 @@ fn option_value(value: &Value) -> Option<OptionValue> {
 }
 
 /// A list, or one value that stands for a list of one.
-fn list<T>(value: &Value, key: &str, kind: &str, item: impl Fn(&Value) -> Option<T>) -> Result<Vec<T>, String> {
+fn list<T>(
+    value: &Value,
+    key: &str,
+    kind: &str,
+    item: impl Fn(&Value) -> Option<T>,
+) -> Result<Vec<T>, String> {
     let items = match value {
         Value::Array(items) => items.iter().map(&item).collect::<Option<Vec<T>>>(),
         single => item(single).map(|item| vec![item]),

@@ -34,7 +34,8 @@ pub struct Grid {
     pub seeds: Vec<u64>,
     /// Frames of each run.
     pub frames: u64,
-    /// Options of `hasard train` without dashes, and their values: more than one value is a further axis.
+    /// Options of `hasard train` without dashes, and their values: more than one value is a further
+    /// axis.
     pub options: Vec<(String, Vec<OptionValue>)>,
 }
 
@@ -45,15 +46,16 @@ pub struct Sweep {
     pub out: PathBuf,
     /// Runs at a time.
     pub parallel: usize,
-    /// Episodes that the agent of each finished run is evaluated on, kept in its directory as `eval.jsonl`; 0 for none.
+    /// Episodes that the agent of each finished run is evaluated on, kept in its directory as
+    /// `eval.jsonl`; 0 for none.
     pub evaluate: u32,
     /// The grids; a run that several ask for is made once.
     pub grids: Vec<Grid>,
 }
 
 impl Sweep {
-    /// Expands the grids into jobs: seeds outermost, then environments, algorithms and options, so that wherever a sweep stops
-    /// there are whole tables of fewer seeds.
+    /// Expands the grids into jobs: seeds outermost, then environments, algorithms and options, so
+    /// that wherever a sweep stops there are whole tables of fewer seeds.
     ///
     /// # Errors
     /// When a list is empty, a value is unusable, or there are too many runs.
@@ -80,7 +82,14 @@ impl Sweep {
                 for environment in grid.environments() {
                     for algorithm in &grid.algorithms {
                         for options in grid.option_combinations() {
-                            let mut job = Job::new(&self.out, &environment, algorithm, grid.frames, seed, &options);
+                            let mut job = Job::new(
+                                &self.out,
+                                &environment,
+                                algorithm,
+                                grid.frames,
+                                seed,
+                                &options,
+                            );
                             job.evaluate = self.evaluate;
                             if seen.insert(job.directory.clone()) {
                                 jobs.push((index, job));
@@ -99,12 +108,17 @@ impl Sweep {
         Ok(jobs)
     }
 
-    /// Multiplies the frames of every run, and between its evaluations, to try an experiment in small; at least one frame remains.
+    /// Multiplies the frames of every run, and between its evaluations, to try an experiment in
+    /// small; at least one frame remains.
     pub fn scale_frames(&mut self, factor: f64) {
         let scaled = |frames: u64| ((frames as f64 * factor).round() as u64).max(1);
         for grid in &mut self.grids {
             grid.frames = scaled(grid.frames);
-            let every = grid.options.iter_mut().filter(|(name, _)| name == "eval-every").flat_map(|(_, values)| values);
+            let every = grid
+                .options
+                .iter_mut()
+                .filter(|(name, _)| name == "eval-every")
+                .flat_map(|(_, values)| values);
             for value in every {
                 if let OptionValue::Text(text) = value
                     && let Ok(frames @ 1..) = text.parse::<u64>()
@@ -115,7 +129,8 @@ impl Sweep {
         }
     }
 
-    /// Keeps of every grid the scenarios that are wanted; those that no grid has are run in all of them.
+    /// Keeps of every grid the scenarios that are wanted; those that no grid has are run in all of
+    /// them.
     pub fn restrict_scenarios(&mut self, wanted: &[String]) {
         self.restrict(wanted, |grid| &mut grid.scenarios);
     }
@@ -130,10 +145,12 @@ impl Sweep {
         self.restrict(wanted, |grid| &mut grid.algorithms);
     }
 
-    /// An experiment's grids may differ in what a list goes with (each scenario has its own budgets): there the list only chooses among
-    /// them. What is in none of them goes with all of them.
+    /// An experiment's grids may differ in what a list goes with (each scenario has its own
+    /// budgets): there the list only chooses among them. What is in none of them goes with all of
+    /// them.
     fn restrict<T: Clone + PartialEq>(&mut self, wanted: &[T], list: fn(&mut Grid) -> &mut Vec<T>) {
-        let known = wanted.iter().all(|one| self.grids.iter_mut().any(|grid| list(grid).contains(one)));
+        let known =
+            wanted.iter().all(|one| self.grids.iter_mut().any(|grid| list(grid).contains(one)));
         if known {
             self.grids.iter_mut().for_each(|grid| list(grid).retain(|one| wanted.contains(one)));
             self.grids.retain_mut(|grid| !list(grid).is_empty());
@@ -205,8 +222,9 @@ impl Grid {
                 && !text.starts_with(['-', '.'])
         };
         for environment in &self.scenarios {
-            let own_file =
-                environment.ends_with(".toml") && !environment.starts_with('-') && !environment.contains(char::is_control);
+            let own_file = environment.ends_with(".toml")
+                && !environment.starts_with('-')
+                && !environment.contains(char::is_control);
             let like_an_id = environment.contains("-v") && plain(environment) || own_file;
             if !scenarios().contains(&environment.as_str()) && !like_an_id {
                 return Err(format!(
@@ -223,7 +241,9 @@ impl Grid {
         }
         for (name, values) in &self.options {
             if !plain(name) {
-                return Err(format!("`{name}` is no option of `hasard train`; write it without dashes in front"));
+                return Err(format!(
+                    "`{name}` is no option of `hasard train`; write it without dashes in front"
+                ));
             }
             if ["out", "seed", "algo", "frames", "resume"].contains(&name.as_str()) {
                 return Err(format!(

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 /// One run: a directory and the arguments of its process.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Job {
-    /// The run directory: `OUT/ENV/ALGORITHM[/option=value,...]/seedN`. Equal runs of different sweeps into one folder
-    /// share it, so that none is made twice.
+    /// The run directory: `OUT/ENV/ALGORITHM[/option=value,...]/seedN`. Equal runs of different
+    /// sweeps into one folder share it, so that none is made twice.
     pub directory: PathBuf,
     /// Arguments of `hasard`, beginning with `train`, for a fresh start.
     pub arguments: Vec<OsString>,
@@ -38,7 +38,8 @@ pub enum State {
     Finished,
 }
 
-/// Options that change where or how fast a run is made but not what it is: they stay out of its directory's name.
+/// Options that change where or how fast a run is made but not what it is: they stay out of its
+/// directory's name.
 const NOT_IDENTITY: [&str; 4] = ["device", "threads", "json", "quiet"];
 
 impl Job {
@@ -50,11 +51,13 @@ impl Job {
         seed: u64,
         options: &[(String, OptionValue)],
     ) -> Job {
-        let mut arguments: Vec<OsString> = ["train", environment, "--algo", algorithm].map(OsString::from).to_vec();
+        let mut arguments: Vec<OsString> =
+            ["train", environment, "--algo", algorithm].map(OsString::from).to_vec();
         let (frames_text, seed_text) = (frames.to_string(), seed.to_string());
         arguments.extend(["--frames", &frames_text, "--seed", &seed_text].map(OsString::from));
         let mut names = Vec::new();
-        // In the order of names, so that a run has one directory however its options were put together.
+        // In the order of names, so that a run has one directory however its options were put
+        // together.
         let mut options: Vec<&(String, OptionValue)> = options.iter().collect();
         options.sort_by(|a, b| a.0.cmp(&b.0));
         for (name, value) in options {
@@ -66,7 +69,13 @@ impl Job {
                 }
                 OptionValue::Text(text) => {
                     arguments.extend([format!("--{name}"), text.clone()].map(OsString::from));
-                    format!("{name}={}", text.replace(|c: char| !c.is_ascii_alphanumeric() && !".+-_,".contains(c), "_"))
+                    format!(
+                        "{name}={}",
+                        text.replace(
+                            |c: char| !c.is_ascii_alphanumeric() && !".+-_,".contains(c),
+                            "_"
+                        )
+                    )
                 }
             };
             if !NOT_IDENTITY.contains(&name.as_str()) {
@@ -88,7 +97,8 @@ impl Job {
     #[must_use]
     pub fn name(&self) -> String {
         let environment = self.environment.strip_suffix("-v0").unwrap_or(&self.environment);
-        let options = if self.options.is_empty() { String::new() } else { format!(", {}", self.options) };
+        let options =
+            if self.options.is_empty() { String::new() } else { format!(", {}", self.options) };
         format!("{} {environment} seed {}{options}", self.algorithm, self.seed)
     }
 
@@ -119,15 +129,20 @@ impl Job {
         }
     }
 
-    /// Whether a run whose rows have reached their end was not killed before its last checkpoint, nor before the closing
-    /// episodes of the one that it selected.
+    /// Whether a run whose rows have reached their end was not killed before its last checkpoint,
+    /// nor before the closing episodes of the one that it selected.
     fn is_closed(&self, frames: u64) -> bool {
-        let entries = std::fs::read_dir(self.directory.join("checkpoints")).into_iter().flatten().flatten();
-        let names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
-        let newest = |kind: &str| names.iter().filter_map(|name| name.strip_prefix(kind)?.parse::<u64>().ok()).max();
+        let entries =
+            std::fs::read_dir(self.directory.join("checkpoints")).into_iter().flatten().flatten();
+        let names: Vec<String> =
+            entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+        let newest = |kind: &str| {
+            names.iter().filter_map(|name| name.strip_prefix(kind)?.parse::<u64>().ok()).max()
+        };
         let saved = newest("frames_").is_none_or(|saved| saved >= frames);
         let written = |name: &str| -> serde_json::Value {
-            serde_json::from_slice(&std::fs::read(self.directory.join(name)).unwrap_or_default()).unwrap_or_default()
+            serde_json::from_slice(&std::fs::read(self.directory.join(name)).unwrap_or_default())
+                .unwrap_or_default()
         };
         // The last policy is closed with the selected one; of runs of older versions it was not.
         let last = written("selected.json")["last"]["frames"].as_u64();
@@ -154,7 +169,8 @@ impl Job {
         self.evaluate > 0 && !self.evaluation().is_file()
     }
 
-    /// Where the episodes of its agent are kept: reports find them there. The file is there when it is whole.
+    /// Where the episodes of its agent are kept: reports find them there. The file is there when it
+    /// is whole.
     #[must_use]
     pub fn evaluation(&self) -> PathBuf {
         self.directory.join("eval.jsonl")
@@ -164,7 +180,13 @@ impl Job {
     #[must_use]
     pub fn evaluation_arguments(&self) -> Vec<OsString> {
         let episodes = self.evaluate.to_string();
-        vec!["eval".into(), self.directory.clone().into(), "--episodes".into(), episodes.into(), "--json".into()]
+        vec![
+            "eval".into(),
+            self.directory.clone().into(),
+            "--episodes".into(),
+            episodes.into(),
+            "--json".into(),
+        ]
     }
 
     /// Whether the number of threads was chosen for it.
@@ -176,10 +198,14 @@ impl Job {
     /// The command as one line for a shell, for a fresh start.
     #[must_use]
     pub fn command_line(&self, program: &str) -> String {
-        std::iter::once(quote(program)).chain(self.arguments.iter().map(quote)).collect::<Vec<_>>().join(" ")
+        std::iter::once(quote(program))
+            .chain(self.arguments.iter().map(quote))
+            .collect::<Vec<_>>()
+            .join(" ")
     }
 
-    /// Where what the process prints is kept: beside the run directory, which the trainer wants to itself.
+    /// Where what the process prints is kept: beside the run directory, which the trainer wants to
+    /// itself.
     #[must_use]
     pub fn log(&self) -> PathBuf {
         self.directory.with_extension("log")

@@ -1,5 +1,5 @@
-//! Many training runs from one description: grids of environments, algorithms, seeds and options, and the experiments of
-//! the HASARD paper by name.
+//! Many training runs from one description: grids of environments, algorithms, seeds and options,
+//! and the experiments of the HASARD paper by name.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -9,8 +9,8 @@
 //! | [`Job`] | one run: a directory and a command line |
 //! | [`run_jobs`] | running them side by side, resuming what is unfinished |
 //!
-//! Every run is one process with one command line, so that a cluster's scheduler can take them over; nothing here knows how
-//! to train.
+//! Every run is one process with one command line, so that a cluster's scheduler can take them
+//! over; nothing here knows how to train.
 //!
 //! ```
 //! let sweep = hasard_sweep::Sweep::parse(
@@ -40,7 +40,8 @@ pub use execute::{Event, STOPS_WITH_INPUT, Stop, Summary, run_jobs};
 pub use grid::{Grid, OptionValue, Sweep};
 pub use job::{Job, State};
 
-/// A message that may quote a file by anyone: one line of bounded length, and nothing in it commands a terminal.
+/// A message that may quote a file by anyone: one line of bounded length, and nothing in it
+/// commands a terminal.
 fn one_line(problem: &str) -> String {
     let cut = problem.chars().take(1000);
     cut.map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()

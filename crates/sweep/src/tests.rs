@@ -12,7 +12,8 @@ fn a_grid_expands_to_every_combination_once() {
     let sweep = Sweep::parse(text).unwrap();
     assert_eq!((sweep.parallel, sweep.grids.len()), (3, 2));
     let jobs = sweep.jobs().unwrap();
-    // 3 environments x 2 action spaces x 2 seeds, and P3O with one seed; PPO of the second grid is in the first.
+    // 3 environments x 2 action spaces x 2 seeds, and P3O with one seed; PPO of the second grid is
+    // in the first.
     assert_eq!(jobs.len(), 12 + 6);
     let line = jobs[1].command_line("hasard");
     assert_eq!(
@@ -55,13 +56,16 @@ fn the_papers_experiments_have_their_sizes() {
     }
     let mut curriculum = paper::experiment("curriculum").unwrap();
     curriculum.scale_frames(0.01);
-    let lines: Vec<String> = curriculum.jobs().unwrap().iter().map(|job| job.command_line("hasard")).collect();
-    assert!(lines[0].contains("--frames 3000000 --seed 1 --curriculum 1,2,3 --preset paper"), "{}", lines[0]);
+    let lines: Vec<String> =
+        curriculum.jobs().unwrap().iter().map(|job| job.command_line("hasard")).collect();
     assert!(
-        lines
-            .iter()
-            .any(|line| line.ends_with("--seed 1 --preset paper --out runs/RemedyRushLevel3-v0/PPOPID/preset=paper/seed1"))
+        lines[0].contains("--frames 3000000 --seed 1 --curriculum 1,2,3 --preset paper"),
+        "{}",
+        lines[0]
     );
+    assert!(lines.iter().any(|line| line.ends_with(
+        "--seed 1 --preset paper --out runs/RemedyRushLevel3-v0/PPOPID/preset=paper/seed1"
+    )));
     let error = paper::experiment("mian").unwrap_err();
     assert!(error.contains("`mian`") && error.contains("main, safety-bounds"), "{error}");
 }
@@ -73,12 +77,20 @@ fn a_file_may_change_an_experiment_of_the_paper() {
             .unwrap();
     let jobs = sweep.jobs().unwrap();
     assert_eq!(jobs.len(), 36);
-    assert!(jobs[0].command_line("h").contains("--frames 2000000 --seed 1 --preset paper --rules released"));
+    assert!(
+        jobs[0]
+            .command_line("h")
+            .contains("--frames 2000000 --seed 1 --preset paper --rules released")
+    );
     sweep.set_option("rules", &OptionValue::Text("paper".into()));
     sweep.set_option("device", &OptionValue::Text("cpu".into()));
     let job = &sweep.jobs().unwrap()[0];
     assert!(job.command_line("h").contains("--device cpu --preset paper --rules paper"));
-    assert!(job.directory.ends_with("ArmamentBurdenLevel1-v0/PPO/preset=paper,rules=paper/seed1"), "{}", job.directory.display());
+    assert!(
+        job.directory.ends_with("ArmamentBurdenLevel1-v0/PPO/preset=paper,rules=paper/seed1"),
+        "{}",
+        job.directory.display()
+    );
 }
 
 #[test]
@@ -98,9 +110,15 @@ fn slips_of_the_pen_are_named() {
         (&format!("{base}[[grid]]\nout = 'x'"), "grid 1: unknown key `out`"),
         ("frames = 10\nscenarios = ['Lava']\nalgorithms = ['PPO']", "unknown scenario `Lava`"),
         ("frames = 10\nscenarios = ['../../x-v0']\nalgorithms = ['PPO']", "unknown scenario"),
-        ("frames = 10\nscenarios = ['RemedyRush']\nalgorithms = ['a b']", "no name of an algorithm"),
+        (
+            "frames = 10\nscenarios = ['RemedyRush']\nalgorithms = ['a b']",
+            "no name of an algorithm",
+        ),
         ("scenarios = ['RemedyRush']\nalgorithms = ['PPO']", "`frames` is 0"),
-        (&format!("{base}seeds = [{}]\n[options]\na=[{}]", "1,".repeat(2000), "1,".repeat(2000)), "more than 100000 runs"),
+        (
+            &format!("{base}seeds = [{}]\n[options]\na=[{}]", "1,".repeat(2000), "1,".repeat(2000)),
+            "more than 100000 runs",
+        ),
     ] {
         let error = Sweep::parse(text).and_then(|sweep| sweep.jobs()).unwrap_err();
         assert!(error.contains(part) && !error.contains('\n'), "{text}: {error}");
@@ -129,8 +147,10 @@ impl Drop for Folder {
 }
 
 fn jobs(out: &Path, seeds: &str) -> Vec<Job> {
-    let text =
-        format!("out = '{}'\nframes = 100\nscenarios = ['RemedyRush']\nalgorithms = ['PPO']\nseeds = {seeds}", out.display());
+    let text = format!(
+        "out = '{}'\nframes = 100\nscenarios = ['RemedyRush']\nalgorithms = ['PPO']\nseeds = {seeds}",
+        out.display()
+    );
     Sweep::parse(&text).unwrap().jobs().unwrap()
 }
 
@@ -140,7 +160,8 @@ fn jobs_run_are_resumed_and_skipped() {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new("run");
     let program = folder.0.join("trainer");
-    // The last argument but for --resume is the directory. Seed 2 stops half-way at first; seed 3 always fails.
+    // The last argument but for --resume is the directory. Seed 2 stops half-way at first; seed 3
+    // always fails.
     let script = "#!/bin/sh\nfor a in \"$@\"; do case \"$a\" in */seed*) dir=$a;; --resume) resume=1;; esac; done\n\
                   echo \"args $*\"\nmkdir -p \"$dir\"; echo '{}' > \"$dir/config.json\"\n\
                   case \"$dir\" in\n*/seed2) if [ -z \"$resume\" ]; then echo '{\"frames\":50}' > \"$dir/metrics.jsonl\"; printf '{\"fra' >> \"$dir/metrics.jsonl\"; exit 1; fi;;\n\
@@ -150,11 +171,17 @@ fn jobs_run_are_resumed_and_skipped() {
     let jobs = jobs(&folder.0.join("out"), "[1, 2, 3]");
     let first = run_jobs(&program, &jobs, 2, NEVER, |_, _| {});
     assert_eq!((first.skipped, first.finished, first.failed.len()), (0, 1, 2), "{first:?}");
-    assert!(first.failed[1].0.ends_with("seed3") && first.failed[1].1.ends_with("out of luck"), "{first:?}");
+    assert!(
+        first.failed[1].0.ends_with("seed3") && first.failed[1].1.ends_with("out of luck"),
+        "{first:?}"
+    );
     assert_eq!(jobs[1].state(), State::Unfinished(50));
     let events = Mutex::new(Vec::new());
-    let second = run_jobs(&program, &jobs, 1, NEVER, |job, event| events.lock().unwrap().push((job, event.clone())));
-    // The half-written line of seed 2 runs into the next one: a trainer mends that, this stand-in does not.
+    let second = run_jobs(&program, &jobs, 1, NEVER, |job, event| {
+        events.lock().unwrap().push((job, event.clone()))
+    });
+    // The half-written line of seed 2 runs into the next one: a trainer mends that, this stand-in
+    // does not.
     assert_eq!(second.skipped, 1, "{second:?}");
     let events = events.into_inner().unwrap();
     assert_eq!(events[0], (0, Event::AlreadyFinished));
@@ -164,11 +191,14 @@ fn jobs_run_are_resumed_and_skipped() {
     // Two at a time had half the cores each; one alone takes what it likes.
     let (first, second) = log.split_once("--resume").unwrap();
     let share = (std::thread::available_parallelism().unwrap().get() / 2).max(1);
-    assert!(first.contains(&format!("--threads {share}\n")) && !second.contains("--threads"), "{log}");
+    assert!(
+        first.contains(&format!("--threads {share}\n")) && !second.contains("--threads"),
+        "{log}"
+    );
 }
 
-/// Agents of finished runs are evaluated once, those of runs that were finished before as well; and jobs that choose their
-/// threads keep them.
+/// Agents of finished runs are evaluated once, those of runs that were finished before as well; and
+/// jobs that choose their threads keep them.
 #[cfg(unix)]
 #[test]
 fn finished_runs_are_evaluated_once() {
@@ -198,16 +228,22 @@ fn finished_runs_are_evaluated_once() {
         assert_eq!(run_jobs(&program, &with, 2, NEVER, |_, _| {}).skipped, 2);
         for job in &with {
             let kept = std::fs::read_to_string(job.evaluation()).unwrap();
-            assert!(kept.contains(&format!("eval {} --episodes 100 --json", job.directory.display())), "{kept}");
+            assert!(
+                kept.contains(&format!("eval {} --episodes 100 --json", job.directory.display())),
+                "{kept}"
+            );
             std::fs::write(job.evaluation(), kept + "once").unwrap();
             assert!(!job.wants_evaluation());
         }
     }
-    assert!(std::fs::read_to_string(with[0].evaluation()).unwrap().ends_with("onceonce"), "it was evaluated twice");
+    assert!(
+        std::fs::read_to_string(with[0].evaluation()).unwrap().ends_with("onceonce"),
+        "it was evaluated twice"
+    );
 }
 
-/// A caller who stops a sweep: the processes hear of it at their standard input, no further one begins, and those that do not
-/// listen are killed when the caller insists.
+/// A caller who stops a sweep: the processes hear of it at their standard input, no further one
+/// begins, and those that do not listen are killed when the caller insists.
 #[cfg(unix)]
 #[test]
 fn a_sweep_that_is_stopped_leaves_no_process() {
@@ -221,7 +257,10 @@ fn a_sweep_that_is_stopped_leaves_no_process() {
     std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
     let jobs = jobs(&folder.0.join("out"), "[1, 2, 3]");
     let (soon, now) = (AtomicBool::new(false), AtomicBool::new(false));
-    let begun = |job: &Job| std::fs::read_to_string(job.directory.join("process")).is_ok_and(|text| text.ends_with('\n'));
+    let begun = |job: &Job| {
+        std::fs::read_to_string(job.directory.join("process"))
+            .is_ok_and(|text| text.ends_with('\n'))
+    };
     let wait = |what: &dyn Fn() -> bool| {
         (0..2000).any(|_| {
             what() || {
@@ -233,10 +272,15 @@ fn a_sweep_that_is_stopped_leaves_no_process() {
     let events = Mutex::new(Vec::new());
     let tell = |job: usize, event: &Event| events.lock().unwrap().push((job, event.clone()));
     let summary = std::thread::scope(|scope| {
-        let sweep = scope.spawn(|| run_jobs(&program, &jobs, 2, Stop { soon: &soon, now: &now }, tell));
+        let sweep =
+            scope.spawn(|| run_jobs(&program, &jobs, 2, Stop { soon: &soon, now: &now }, tell));
         assert!(wait(&|| begun(&jobs[0]) && begun(&jobs[1])));
         soon.store(true, Ordering::SeqCst);
-        assert!(wait(&|| events.lock().unwrap().contains(&(0, Event::Stopped))), "{:?}", events.lock().unwrap());
+        assert!(
+            wait(&|| events.lock().unwrap().contains(&(0, Event::Stopped))),
+            "{:?}",
+            events.lock().unwrap()
+        );
         now.store(true, Ordering::SeqCst);
         sweep.join().unwrap()
     });
@@ -248,7 +292,8 @@ fn a_sweep_that_is_stopped_leaves_no_process() {
     }
 }
 
-/// Rows alone do not make a run finished: its last checkpoint and the closing episodes of its selected one come after them.
+/// Rows alone do not make a run finished: its last checkpoint and the closing episodes of its
+/// selected one come after them.
 #[test]
 fn a_run_that_was_killed_at_its_end_is_unfinished() {
     let folder = Folder::new("closing");
@@ -262,12 +307,18 @@ fn a_run_that_was_killed_at_its_end_is_unfinished() {
     std::fs::create_dir_all(run.join("checkpoints/frames_000000000104")).unwrap();
     assert_eq!(job.state(), State::Unfinished(104), "its closing episodes are missing");
     std::fs::write(run.join("hand_out.json"), "{\"frames\": 10}").unwrap();
-    assert_eq!(job.state(), State::Unfinished(104), "its closing episodes are those of an earlier end");
+    assert_eq!(
+        job.state(),
+        State::Unfinished(104),
+        "its closing episodes are those of an earlier end"
+    );
     std::fs::write(run.join("hand_out.json"), "{\"frames\": 50}").unwrap();
     assert_eq!(job.state(), State::Finished, "as older versions ended");
-    std::fs::write(run.join("selected.json"), "{\"frames\": 50, \"last\": {\"frames\": 60}}").unwrap();
+    std::fs::write(run.join("selected.json"), "{\"frames\": 50, \"last\": {\"frames\": 60}}")
+        .unwrap();
     assert_eq!(job.state(), State::Unfinished(104), "it was closed at an earlier end");
-    std::fs::write(run.join("selected.json"), "{\"frames\": 50, \"last\": {\"frames\": 104}}").unwrap();
+    std::fs::write(run.join("selected.json"), "{\"frames\": 50, \"last\": {\"frames\": 104}}")
+        .unwrap();
     assert_eq!(job.state(), State::Finished);
 }
 
@@ -284,7 +335,8 @@ fn words_are_quoted_for_a_shell() {
     let text = "out = \"a b/it's\"\nframes = 1\nscenarios = ['RemedyRush']\nalgorithms = ['PPO']\n[options]\niwad = 'my file'";
     let line = Sweep::parse(text).unwrap().jobs().unwrap()[0].command_line("hasard");
     assert!(
-        line.contains("--iwad 'my file'") && line.contains("'a b/it'\\''s/RemedyRushLevel1-v0/PPO/iwad=my_file/seed1'"),
+        line.contains("--iwad 'my file'")
+            && line.contains("'a b/it'\\''s/RemedyRushLevel1-v0/PPO/iwad=my_file/seed1'"),
         "{line}"
     );
 }
@@ -294,7 +346,8 @@ fn seeds_are_the_outermost_loop() {
     let text = "frames = 1\nscenarios = ['RemedyRush', 'VolcanicVenture']\nalgorithms = ['PPO', 'P3O']\nseeds = [4, 2, 9]\n\
                 [[grid]]\n[[grid]]\nalgorithms = ['CPO']\nseeds = [2, 4]";
     let jobs = Sweep::parse(text).unwrap().jobs().unwrap();
-    let order: Vec<(u64, &str)> = jobs.iter().map(|job| (job.seed, job.algorithm.as_str())).collect();
+    let order: Vec<(u64, &str)> =
+        jobs.iter().map(|job| (job.seed, job.algorithm.as_str())).collect();
     // The first seeds of both grids, then their second ones; the same run of both is made once.
     let first = [(4, "PPO"), (4, "P3O"), (4, "PPO"), (4, "P3O"), (2, "CPO"), (2, "CPO")];
     let second = [(2, "PPO"), (2, "P3O"), (2, "PPO"), (2, "P3O"), (4, "CPO"), (4, "CPO")];
@@ -317,12 +370,8 @@ fn lists_choose_among_the_runs_of_an_experiment() {
     assert_eq!(bounds.len(), 2 * 3 * 5);
     let lines: Vec<String> = bounds.iter().map(|job| job.command_line("hasard")).collect();
     // Each with its own budgets.
-    assert!(
-        lines
-            .iter()
-            .all(|line| line.contains("RemedyRush")
-                == ["2.5 ", "5 ", "7.5 "].iter().any(|b| line.contains(&format!("-budget {b}"))))
-    );
+    assert!(lines.iter().all(|line| line.contains("RemedyRush")
+        == ["2.5 ", "5 ", "7.5 "].iter().any(|b| line.contains(&format!("-budget {b}")))));
     let file = "experiment = 'safety-bounds'\nscenarios = ['RemedyRush', 'VolcanicVenture']";
     assert_eq!(Sweep::parse(file).unwrap().jobs().unwrap(), bounds);
     let elsewhere = count(&|sweep| sweep.restrict_scenarios(&two[..1]), "depth");
@@ -335,7 +384,8 @@ fn lists_choose_among_the_runs_of_an_experiment() {
 /// Files of a campaign: an experiment, its length, seeds and preset.
 #[test]
 fn files_of_a_campaign_work_as_they_are() {
-    let common = "out = 'o'\nparallel = 2\nevaluate = 200\nframes = 8_000_000\nseeds = [11, 12, 13]\n";
+    let common =
+        "out = 'o'\nparallel = 2\nevaluate = 200\nframes = 8_000_000\nseeds = [11, 12, 13]\n";
     for (what, runs) in [
         ("experiment = 'main'\nlevels = [1]", 108),
         (
@@ -356,8 +406,15 @@ fn files_of_a_campaign_work_as_they_are() {
         assert_eq!((jobs.len(), sweep.parallel), (runs, 2), "{what}");
         for job in jobs {
             let line = job.command_line("hasard");
-            assert!(line.contains("--frames 8000000") && line.matches("--preset quick").count() == 1, "{line}");
-            assert!(job.evaluate == 200 && (11..=13).contains(&job.seed) && job.options.contains("preset=quick"));
+            assert!(
+                line.contains("--frames 8000000") && line.matches("--preset quick").count() == 1,
+                "{line}"
+            );
+            assert!(
+                job.evaluate == 200
+                    && (11..=13).contains(&job.seed)
+                    && job.options.contains("preset=quick")
+            );
         }
     }
     assert!(!Sweep::chooses_frames("experiment = 'main'") && !Sweep::chooses_frames("frames"));
@@ -370,13 +427,19 @@ fn the_guide_has_every_experiment_with_its_size() {
     let rows: Vec<Vec<&str>> = page
         .lines()
         .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect::<Vec<_>>())
-        .filter(|cells| cells.len() == 8 && paper::EXPERIMENTS.iter().any(|known| known.name == cells[1]))
+        .filter(|cells| {
+            cells.len() == 8 && paper::EXPERIMENTS.iter().any(|known| known.name == cells[1])
+        })
         .collect();
     let names: Vec<&str> = rows.iter().map(|cells| cells[1]).collect();
     assert_eq!(names, paper::EXPERIMENTS.map(|known| known.name));
     for (cells, known) in rows.iter().zip(paper::EXPERIMENTS) {
         let [_, name, fills, what, runs, frames, hours, _] = cells[..] else { unreachable!() };
-        assert_eq!((fills, what), (if known.fills.is_empty() { "-" } else { known.fills }, known.what), "{name}");
+        assert_eq!(
+            (fills, what),
+            (if known.fills.is_empty() { "-" } else { known.fills }, known.what),
+            "{name}"
+        );
         let Ok(sweep) = paper::experiment(name) else {
             assert_eq!((runs, frames, hours), ("-", "-", "-"), "{name}");
             continue;
@@ -390,6 +453,9 @@ fn the_guide_has_every_experiment_with_its_size() {
         // At 10,000 frames a second.
         let expected = total / 10_000.0 / 3600.0;
         let written: f64 = hours.replace(',', "").parse().unwrap();
-        assert!((written - expected).abs() <= 0.005 * expected + 0.05, "{name}: {written} for {expected}");
+        assert!(
+            (written - expected).abs() <= 0.005 * expected + 0.05,
+            "{name}: {written} for {expected}"
+        );
     }
 }

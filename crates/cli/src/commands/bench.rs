@@ -12,14 +12,25 @@ use serde_json::json;
 /// Runs the command.
 pub fn run(args: &BenchArgs) -> Outcome {
     if !(args.seconds.is_finite() && args.seconds > 0.0 && args.seconds <= 86_400.0) {
-        return Err(Failure::bad(format!("--seconds {}: give a number above 0, at most 86400", args.seconds)));
+        return Err(Failure::bad(format!(
+            "--seconds {}: give a number above 0, at most 86400",
+            args.seconds
+        )));
     }
     if args.learn {
         return learn(args);
     }
-    let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
-    let report = bench(&args.env, &options, args.envs as usize, args.threads as usize, args.seconds).map_err(Failure::bad)?;
-    let (depth, labels) = (options.observation == ObservationKind::RgbDepth, options.observation == ObservationKind::Segmented);
+    let options = settings::observed(
+        settings::env_options(&args.env_args, Size::LEARNER)?,
+        &args.observation,
+    );
+    let report =
+        bench(&args.env, &options, args.envs as usize, args.threads as usize, args.seconds)
+            .map_err(Failure::bad)?;
+    let (depth, labels) = (
+        options.observation == ObservationKind::RgbDepth,
+        options.observation == ObservationKind::Segmented,
+    );
     if args.json {
         let object = json!({
             "env": args.env,
@@ -57,19 +68,23 @@ pub fn run(args: &BenchArgs) -> Outcome {
     Ok(())
 }
 
-/// Seconds that a round of products and training takes, about; a measurement has at least [`LEAST_ROUNDS`].
+/// Seconds that a round of products and training takes, about; a measurement has at least
+/// [`LEAST_ROUNDS`].
 const ROUND_SECONDS: f64 = 5.0;
 const LEAST_ROUNDS: usize = 3;
 
-/// The loop with every family of kernels that this processor has and may use, on one thread and on as many as asked for.
+/// The loop with every family of kernels that this processor has and may use, on one thread and on
+/// as many as asked for.
 fn learn(args: &BenchArgs) -> Outcome {
     let env = settings::env_config(&args.env, &args.env_args, &args.observation);
     let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
-    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env).map_err(Failure::bad)?;
+    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env)
+        .map_err(Failure::bad)?;
     (config.learning.epochs, config.learning.minibatches) = (1, 1);
     config.seed = args.seed;
     config.sampling.lanes = args.envs as usize;
-    let mut config = config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
+    let mut config =
+        config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     config.check().map_err(Failure::bad)?;
     let options = settings::trained_options(&config.env, args.env_args.elsewhere())?;
     let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
@@ -82,14 +97,17 @@ fn learn(args: &BenchArgs) -> Outcome {
     threads.dedup();
     let rounds = ((args.seconds / ROUND_SECONDS).ceil() as usize).max(LEAST_ROUNDS);
     if !args.json {
-        let (algorithm, epochs, worlds) = (config.algorithm, config.learning.epochs, config.sampling.lanes);
+        let (algorithm, epochs, worlds) =
+            (config.algorithm, config.learning.epochs, config.sampling.lanes);
         let set: String = args.set.iter().map(|setting| format!(", {setting}")).collect();
         say!(
             "{algorithm} on {}, preset {preset}{set}, {epochs} epoch(s), {worlds} worlds: worlds, inference and learning",
             args.env
         );
     }
-    for (threads, kernels) in threads.iter().flat_map(|threads| families.iter().map(move |kernels| (*threads, *kernels))) {
+    for (threads, kernels) in
+        threads.iter().flat_map(|threads| families.iter().map(move |kernels| (*threads, *kernels)))
+    {
         (config.learning.threads, config.sampling.samplers) = (threads, threads);
         let mut told = |round| {
             if !args.json {
@@ -97,7 +115,8 @@ fn learn(args: &BenchArgs) -> Outcome {
             }
         };
         let seconds = args.seconds / rounds as f64;
-        let measured = measure(kernels, &config, &make, rounds, seconds, &mut told).map_err(Failure::bad)?;
+        let measured =
+            measure(kernels, &config, &make, rounds, seconds, &mut told).map_err(Failure::bad)?;
         report(args, &config, &measured)?;
     }
     Ok(())

@@ -16,7 +16,10 @@ pub fn run(args: &CheckArgs) -> Outcome {
     for mistake in &checked.mistakes {
         if args.json {
             let (line, column, warning) = (mistake.line, mistake.column, mistake.warning);
-            say!("{}", json!({ "file": file, "line": line, "column": column, "warning": warning, "problem": mistake.text }));
+            say!(
+                "{}",
+                json!({ "file": file, "line": line, "column": column, "warning": warning, "problem": mistake.text })
+            );
         } else {
             say!("{file}:{mistake}");
         }
@@ -27,7 +30,11 @@ pub fn run(args: &CheckArgs) -> Outcome {
     }
     let scenario = own::register(&file, &text).map_err(Failure::bad)?;
     let Some(id) = scenario.environments().nth(usize::from(args.level.max(1)) - 1) else {
-        return Err(Failure::bad(format!("--level {}: its levels are 1 to {}", args.level, scenario.levels.max(1))));
+        return Err(Failure::bad(format!(
+            "--level {}: its levels are 1 to {}",
+            args.level,
+            scenario.levels.max(1)
+        )));
     };
     let options = EnvOptions { scenario: Some(scenario), ..EnvOptions::default() };
     let mut env = Env::new(&id.to_string(), &options).map_err(Failure::bad)?;
@@ -36,7 +43,8 @@ pub fn run(args: &CheckArgs) -> Outcome {
         let (map, width, height) = env.top_down_of_extent(SIDE);
         let mut pixels = vec![0; width * height * 3];
         map.draw(env.world(), &mut pixels);
-        let picture = hasard_media::Picture::from_rgb(width, height, pixels).map_err(Failure::bad)?;
+        let picture =
+            hasard_media::Picture::from_rgb(width, height, pixels).map_err(Failure::bad)?;
         hasard_media::png::write(&picture, out).map_err(Failure::bad)?;
     }
     let things = env.world().living().count() - 1;
@@ -50,7 +58,11 @@ pub fn run(args: &CheckArgs) -> Outcome {
         );
     } else {
         let drawn = drawn.map_or(String::new(), |out| format!("; its map is drawn in {out}"));
-        say!("{file}: can be played as {}; {things} things at the start of seed {}{drawn}", ids.join(", "), args.seed);
+        say!(
+            "{file}: can be played as {}; {things} things at the start of seed {}{drawn}",
+            ids.join(", "),
+            args.seed
+        );
     }
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! `hasard claim`: what an agent scores on the episodes of a scoreboard, as a file that anybody can check.
+//! `hasard claim`: what an agent scores on the episodes of a scoreboard, as a file that anybody can
+//! check.
 
 use crate::args::ClaimArgs;
 use crate::failure::{Failure, Outcome};
@@ -18,13 +19,18 @@ pub const ENDING: &str = "claim.json";
 pub fn run(args: &ClaimArgs) -> Outcome {
     let agent = zoo::find(&args.agent)?;
     let config = run_config(&agent).map_err(Failure::bad)?;
-    let bytes = if agent.is_dir() { export(&agent) } else { AgentFile::read_whole(&agent).map(|(bytes, _)| bytes) };
+    let bytes = if agent.is_dir() {
+        export(&agent)
+    } else {
+        AgentFile::read_whole(&agent).map(|(bytes, _)| bytes)
+    };
     let bytes = bytes.map_err(Failure::bad)?;
     let rules = args.rules.map(hasard_envs::RuleSet::from);
     let under = rules.map_or(config.env.rules.as_str(), |rules| rules.name()).to_string();
     let id = config.env.id.trim_end_matches("-v0").to_string();
     let stem = format!("{id}.{under}.{}", hasard_report::document::slug(&args.name));
-    let (file, path) = (format!("{stem}.{}", zoo::ENDING), args.out.join(format!("{stem}.{ENDING}")));
+    let (file, path) =
+        (format!("{stem}.{}", zoo::ENDING), args.out.join(format!("{stem}.{ENDING}")));
     // The agent first: what is claimed is measured from the very file that is given away.
     let kept = args.out.join(&file);
     let was_there = kept.exists();
@@ -40,7 +46,10 @@ pub fn run(args: &ClaimArgs) -> Outcome {
     write_whole(&path, format!("{:#}\n", json!(claim)).as_bytes()).map_err(Failure::bad)?;
     let verified = format!("hasard verify {}", hasard_media::shell::quote(&path));
     if args.json {
-        say!("{}", json!({ "claim": path.display().to_string(), "agent": kept.display().to_string(), "holds": true }));
+        say!(
+            "{}",
+            json!({ "claim": path.display().to_string(), "agent": kept.display().to_string(), "holds": true })
+        );
     } else {
         let (evaluation, budget) = (&measured.evaluation, measured.budget);
         say!(
@@ -72,11 +81,17 @@ fn command(config: &hasard_learn::config::TrainConfig) -> String {
 /// The claims of a folder, by name; one without any is refused.
 pub fn claims(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let unread = |error| Failure::bad(format!("{}: cannot be read: {error}", folder.display()));
-    let mut found: Vec<PathBuf> = std::fs::read_dir(folder).map_err(unread)?.flatten().map(|entry| entry.path()).collect();
-    found.retain(|path| path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(&format!(".{ENDING}"))));
+    let mut found: Vec<PathBuf> =
+        std::fs::read_dir(folder).map_err(unread)?.flatten().map(|entry| entry.path()).collect();
+    found.retain(|path| {
+        path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(&format!(".{ENDING}")))
+    });
     found.sort();
     if found.is_empty() {
-        return Err(Failure::bad(format!("{}: has no file that ends in .{ENDING}; `hasard claim` writes one", folder.display())));
+        return Err(Failure::bad(format!(
+            "{}: has no file that ends in .{ENDING}; `hasard claim` writes one",
+            folder.display()
+        )));
     }
     Ok(found)
 }

@@ -20,8 +20,9 @@ pub fn run(args: &ContactSheetArgs) -> Outcome {
         names => names.iter().map(|name| scenario(name)).collect::<Result<_, _>>()?,
     };
     let looks = crate::sources::looks(args.maps.as_deref(), args.iwad.as_deref())?;
-    std::fs::create_dir_all(&args.out)
-        .map_err(|error| Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display())))?;
+    std::fs::create_dir_all(&args.out).map_err(|error| {
+        Failure::bad(format!("{}: {error}; name a folder that can be written", args.out.display()))
+    })?;
     for scenario in scenarios {
         let (moments, cover) = scenario.moments;
         let own = own_moments(scenario);
@@ -29,7 +30,11 @@ pub fn run(args: &ContactSheetArgs) -> Outcome {
         let rows = moments.iter().map(|moment| row(scenario, moment, args.seed, &looks));
         let rows: Vec<Row> = rows.collect::<Result<_, _>>()?;
         let name = scenario.file_name();
-        write(&sheet(&rows).in_few_colours(), &args.out.join(format!("{name}_sheet.png")), args.json)?;
+        write(
+            &sheet(&rows).in_few_colours(),
+            &args.out.join(format!("{name}_sheet.png")),
+            args.json,
+        )?;
         write(&rows[cover].large[0], &args.out.join(format!("{name}.png")), args.json)?;
     }
     Ok(())
@@ -40,16 +45,24 @@ fn scenario(name: &str) -> Result<Scenario, Failure> {
         return hasard_envs::own::open(name).map(|id| id.scenario).map_err(Failure::bad);
     }
     let names = Scenario::ALL.map(Scenario::name);
-    let found = Scenario::ALL.into_iter().find(|scenario| scenario.name().eq_ignore_ascii_case(name));
-    found.ok_or_else(|| Failure::bad(format!("{name} is no scenario; the scenarios are {}", names.join(", "))))
+    let found =
+        Scenario::ALL.into_iter().find(|scenario| scenario.name().eq_ignore_ascii_case(name));
+    found.ok_or_else(|| {
+        Failure::bad(format!("{name} is no scenario; the scenarios are {}", names.join(", ")))
+    })
 }
 
-/// Moments of a scenario for which nobody has chosen any: early and late in each of its first three levels.
+/// Moments of a scenario for which nobody has chosen any: early and late in each of its first three
+/// levels.
 fn own_moments(scenario: Scenario) -> Vec<Moment> {
     const EARLY: &[(u32, &str)] = &[(10, "sticky:10")];
     const LATE: &[(u32, &str)] = &[(60, "sticky:10")];
     let levels = scenario.environments().take(3).map(|id| id.level);
-    levels.flat_map(|level| [Moment { level, seed: 1, way: EARLY }, Moment { level, seed: 2, way: LATE }]).collect()
+    levels
+        .flat_map(|level| {
+            [Moment { level, seed: 1, way: EARLY }, Moment { level, seed: 2, way: LATE }]
+        })
+        .collect()
 }
 
 /// Plays to a moment and draws it in every view.
@@ -90,7 +103,10 @@ fn write(picture: &Picture, path: &Path, json: bool) -> Outcome {
     files::write_whole(path, &bytes).map_err(Failure::bad)?;
     let (file, width, height) = (path.display().to_string(), picture.width(), picture.height());
     if json {
-        say!("{}", serde_json::json!({ "file": file, "width": width, "height": height, "bytes": bytes.len() }));
+        say!(
+            "{}",
+            serde_json::json!({ "file": file, "width": width, "height": height, "bytes": bytes.len() })
+        );
     } else {
         say!("{file}: {width}x{height}, {} kB", bytes.len().div_ceil(1000));
     }

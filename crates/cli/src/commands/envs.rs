@@ -12,7 +12,8 @@ pub fn run(args: &EnvsArgs) -> Outcome {
     if !args.json {
         writeln!(out, "{:<28} {:>6}  {:<40} full", "id", "budget", "simplified actions")?;
     }
-    let mut ids: Vec<EnvId> = if args.files.is_empty() { EnvId::all().collect() } else { Vec::new() };
+    let mut ids: Vec<EnvId> =
+        if args.files.is_empty() { EnvId::all().collect() } else { Vec::new() };
     for file in &args.files {
         ids.extend(crate::settings::env_id(file)?.scenario.environments());
     }
@@ -34,11 +35,20 @@ pub fn run(args: &EnvsArgs) -> Outcome {
             let sizes = |space: &ActionSpace| {
                 let sizes: Vec<String> = space.sizes().iter().map(usize::to_string).collect();
                 let total: usize = space.sizes().iter().product();
-                let deltas =
-                    if space.deltas.is_empty() { String::new() } else { format!(" + {} continuous", space.deltas.len()) };
+                let deltas = if space.deltas.is_empty() {
+                    String::new()
+                } else {
+                    format!(" + {} continuous", space.deltas.len())
+                };
                 format!("{} = {total}{deltas}", sizes.join("x"))
             };
-            writeln!(out, "{:<28} {budget:>6}  {:<40} {}", id.to_string(), sizes(&simplified), sizes(&full))?;
+            writeln!(
+                out,
+                "{:<28} {budget:>6}  {:<40} {}",
+                id.to_string(),
+                sizes(&simplified),
+                sizes(&full)
+            )?;
         }
     }
     Ok(())
@@ -46,7 +56,10 @@ pub fn run(args: &EnvsArgs) -> Outcome {
 
 /// The sub-actions as lists of button names; a continuous one is a list of its one name.
 fn groups(space: &ActionSpace) -> Value {
-    let categorical = space.groups.iter().map(|group| group.buttons.iter().map(|&(name, _)| name).collect::<Vec<_>>());
+    let categorical = space
+        .groups
+        .iter()
+        .map(|group| group.buttons.iter().map(|&(name, _)| name).collect::<Vec<_>>());
     let continuous = space.deltas.iter().map(|delta| vec![delta.name()]);
     Value::from(categorical.chain(continuous).map(Value::from).collect::<Vec<Value>>())
 }

@@ -24,11 +24,18 @@ const AT_ONCE: u32 = 64;
 
 /// Runs the command.
 pub fn run(args: &EvalArgs) -> Outcome {
-    let film = args.worst.map(|count| (usize::from(count), args.out.as_deref().unwrap_or(Path::new("worst.mp4"))));
+    let film = args
+        .worst
+        .map(|count| (usize::from(count), args.out.as_deref().unwrap_or(Path::new("worst.mp4"))));
     if let Some((_, out)) = film
-        && !out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mp4") || ending.eq_ignore_ascii_case("gif"))
+        && !out.extension().is_some_and(|ending| {
+            ending.eq_ignore_ascii_case("mp4") || ending.eq_ignore_ascii_case("gif")
+        })
     {
-        return Err(Failure::bad(format!("--out {}: give a name that ends in .mp4 or .gif", out.display())));
+        return Err(Failure::bad(format!(
+            "--out {}: give a name that ends in .mp4 or .gif",
+            out.display()
+        )));
     }
     let run = places::run(&args.run)?;
     let mut config = run_config(&run).map_err(Failure::bad)?;
@@ -74,7 +81,11 @@ pub fn run(args: &EvalArgs) -> Outcome {
     if !args.json {
         for (what, value) in more {
             match what {
-                "filmed" => say!("{}: episodes of the seeds {}", value["file"].as_str().unwrap_or_default(), value["seeds"]),
+                "filmed" => say!(
+                    "{}: episodes of the seeds {}",
+                    value["file"].as_str().unwrap_or_default(),
+                    value["seeds"]
+                ),
                 _ => print_calibration(&value)?,
             }
         }
@@ -82,8 +93,8 @@ pub fn run(args: &EvalArgs) -> Outcome {
     Ok(())
 }
 
-/// Puts a run's environment under another rule set. A budget that its own rules had by default becomes that of these; one that was
-/// asked for stays. Gives whose buttons the agent keeps.
+/// Puts a run's environment under another rule set. A budget that its own rules had by default
+/// becomes that of these; one that was asked for stays. Gives whose buttons the agent keeps.
 fn play_under(config: &mut TrainConfig, rules: RuleSet) -> Result<(RuleSet, bool), Failure> {
     let id = config.env.env_id().map_err(Failure::bad)?;
     let own = config.env.options().map_err(Failure::bad)?;
@@ -98,9 +109,16 @@ fn play_under(config: &mut TrainConfig, rules: RuleSet) -> Result<(RuleSet, bool
 }
 
 /// The most costly episodes under a constraint, the worst first.
-fn worst_of(episodes: &[Episode], constraint: Option<&Constraint>, count: usize) -> Result<Vec<Episode>, Failure> {
-    let cost = |episode: &Episode| constraint.map_or(Ok(episode.cost), |one| one.cost_of(episode)).map_err(Failure::bad);
-    let mut all: Vec<(f64, &Episode)> = episodes.iter().map(|one| Ok((cost(one)?, one))).collect::<Result<_, Failure>>()?;
+fn worst_of(
+    episodes: &[Episode],
+    constraint: Option<&Constraint>,
+    count: usize,
+) -> Result<Vec<Episode>, Failure> {
+    let cost = |episode: &Episode| {
+        constraint.map_or(Ok(episode.cost), |one| one.cost_of(episode)).map_err(Failure::bad)
+    };
+    let mut all: Vec<(f64, &Episode)> =
+        episodes.iter().map(|one| Ok((cost(one)?, one))).collect::<Result<_, Failure>>()?;
     // Of equal cost, the earlier comes first.
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     Ok(all.into_iter().take(count).map(|(_, episode)| episode.clone()).collect())
@@ -120,7 +138,8 @@ fn film_worst(
     let mut performance = Performance::of_player(player, &config.env.id, options, &looks, first)?;
     let every = if is_gif(out) { 5 } else { 1 };
     let views = crate::settings::views(View::Rgb, &[]);
-    let mut film = Film::begin(&performance.stage, out, looks.size, &views, every).map_err(Failure::bad)?;
+    let mut film =
+        Film::begin(&performance.stage, out, looks.size, &views, every).map_err(Failure::bad)?;
     for episode in worst {
         performance.restart(episode.seed);
         while !performance.stage.ended() {
@@ -129,7 +148,10 @@ fn film_worst(
         }
         let shown = performance.stage.env().episode();
         if (shown.episode_return, shown.cost) != (episode.episode_return, episode.cost) {
-            let problem = format!("the episode of seed {} is another one when it is filmed; please report it", episode.seed);
+            let problem = format!(
+                "the episode of seed {} is another one when it is filmed; please report it",
+                episode.seed
+            );
             return Err(Failure::Negative(problem));
         }
     }
@@ -138,22 +160,35 @@ fn film_worst(
 }
 
 /// Writes the table of predictions, and gives what the summary says of them.
-fn write_calibration(path: &Path, played: &[(Episode, Trace)], config: &TrainConfig) -> Result<Value, Failure> {
+fn write_calibration(
+    path: &Path,
+    played: &[(Episode, Trace)],
+    config: &TrainConfig,
+) -> Result<Value, Failure> {
     let all = predictions(played, config);
     let mut text = String::from("episode,seed,step,term,predicted,observed,cut\n");
     for one in &all {
         let term = config.constraints[one.constraint].term.as_deref().unwrap_or("cost");
         let seed = played[one.episode].0.seed;
-        let _ = writeln!(text, "{},{seed},{},{term},{},{},{}", one.episode, one.step, one.predicted, one.observed, one.cut);
+        let _ = writeln!(
+            text,
+            "{},{seed},{},{term},{},{},{}",
+            one.episode, one.step, one.predicted, one.observed, one.cut
+        );
     }
-    std::fs::write(path, text).map_err(|error| Failure::bad(format!("{}: cannot be written: {error}", path.display())))?;
+    std::fs::write(path, text)
+        .map_err(|error| Failure::bad(format!("{}: cannot be written: {error}", path.display())))?;
     Ok(json!(calibrate(&all, config)))
 }
 
 fn print_calibration(all: &Value) -> Outcome {
     for one in all.as_array().into_iter().flatten() {
         let term = one["term"].as_str().unwrap_or("cost");
-        say!("{term} to come, predicted and observed ({} steps; bias {:.3}):", one["steps"], one["bias"].as_f64().unwrap_or(0.0));
+        say!(
+            "{term} to come, predicted and observed ({} steps; bias {:.3}):",
+            one["steps"],
+            one["bias"].as_f64().unwrap_or(0.0)
+        );
         for bin in one["bins"].as_array().into_iter().flatten() {
             let number = |name: &str| bin[name].as_f64().unwrap_or(0.0);
             say!("{:>10.3} {:>10.3}", number("predicted"), number("observed"));
@@ -177,7 +212,8 @@ impl Player<'_> {
     fn policy(&self, env: &Env) -> Result<TrainedPolicy, Failure> {
         let action = ActionShape::from(env.action_space());
         let mut warn = |text: String| note!("hasard: {text}");
-        TrainedPolicy::load(self.run, self.which, env.observation_shape(), action, &mut warn).map_err(Failure::bad)
+        TrainedPolicy::load(self.run, self.which, env.observation_shape(), action, &mut warn)
+            .map_err(Failure::bad)
     }
 
     /// The agent, for one world like this one.
@@ -186,7 +222,14 @@ impl Player<'_> {
     }
 
     /// Plays episodes seeded `seed`, `seed + 1`, ... on all cores and prints them in order.
-    pub fn play(&self, id: &str, options: &EnvOptions, episodes: u32, seed: u64, lines: &mut EpisodeLines) -> Outcome {
+    pub fn play(
+        &self,
+        id: &str,
+        options: &EnvOptions,
+        episodes: u32,
+        seed: u64,
+        lines: &mut EpisodeLines,
+    ) -> Outcome {
         self.play_traced(id, options, episodes, seed, lines, &mut |_| {})
     }
 
@@ -207,10 +250,12 @@ impl Player<'_> {
         let mut ticker = Ticker::new(episodes.into(), "episodes");
         for some in numbers.chunks(AT_ONCE as usize) {
             ticker.at(some[0].into());
-            let seeds: Vec<u64> = some.iter().map(|&number| seed.wrapping_add(number.into())).collect();
+            let seeds: Vec<u64> =
+                some.iter().map(|&number| seed.wrapping_add(number.into())).collect();
             let make = |_: &_, worlds| VecEnv::new(id, options, worlds);
             let never = AtomicBool::new(false);
-            let played = play_traced(&never, &policy, self.choice, &make, &seeds, threads).map_err(Failure::bad)?;
+            let played = play_traced(&never, &policy, self.choice, &make, &seeds, threads)
+                .map_err(Failure::bad)?;
             let played = played.unwrap_or_default();
             ticker.clear();
             for (&number, (episode, trace)) in some.iter().zip(played) {

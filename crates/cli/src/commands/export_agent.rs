@@ -18,16 +18,28 @@ pub fn run(args: &ExportAgentArgs) -> Outcome {
     let name = file.card.config.env.id.trim_end_matches("-v0");
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.{ENDING}")));
     if out.extension().is_none_or(|ending| ending != ENDING) {
-        return Err(Failure::bad(format!("--out {}: give a name that ends in .{ENDING}", out.display())));
+        return Err(Failure::bad(format!(
+            "--out {}: give a name that ends in .{ENDING}",
+            out.display()
+        )));
     }
     let mut whole = WholeFile::create(&out).map_err(Failure::bad)?;
-    whole.write_all(&bytes).map_err(|error| Failure::bad(format!("cannot write {}: {error}", out.display())))?;
+    whole
+        .write_all(&bytes)
+        .map_err(|error| Failure::bad(format!("cannot write {}: {error}", out.display())))?;
     whole.finish().map_err(Failure::bad)?;
     if args.json {
-        say!("{}", json!({ "file": out.display().to_string(), "bytes": bytes.len(), "env": file.card.config.env.id }));
+        say!(
+            "{}",
+            json!({ "file": out.display().to_string(), "bytes": bytes.len(), "env": file.card.config.env.id })
+        );
     } else {
         let file = quote(&out);
-        say!("{}: {} bytes; evaluate the quantised agent: hasard eval {file}", out.display(), bytes.len());
+        say!(
+            "{}: {} bytes; evaluate the quantised agent: hasard eval {file}",
+            out.display(),
+            bytes.len()
+        );
     }
     Ok(())
 }

@@ -9,7 +9,10 @@ use serde_json::json;
 pub fn run(args: &MetricsArgs) -> Outcome {
     for one in METRICS {
         if args.json {
-            say!("{}", json!({ "name": one.name, "unit": one.unit, "when": one.when, "meaning": one.meaning }));
+            say!(
+                "{}",
+                json!({ "name": one.name, "unit": one.unit, "when": one.when, "meaning": one.meaning })
+            );
             continue;
         }
         let unit = if one.unit.is_empty() { String::new() } else { format!(" [{}]", one.unit) };

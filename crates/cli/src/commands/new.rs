@@ -7,9 +7,15 @@ use std::path::PathBuf;
 /// Runs the command.
 pub fn run(args: &NewArgs) -> Outcome {
     let name = scenario_name(&args.name).ok_or_else(|| {
-        Failure::bad(format!("{}: a task's name has letters, digits and _, a letter first: my_task", args.name))
+        Failure::bad(format!(
+            "{}: a task's name has letters, digits and _, a letter first: my_task",
+            args.name
+        ))
     })?;
-    let path = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", file_name(&args.name))));
+    let path = args
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("{}.toml", file_name(&args.name))));
     if path.exists() {
         return Err(Failure::bad(format!(
             "{}: is there already; choose another name, or another place with --out",
@@ -24,7 +30,10 @@ pub fn run(args: &NewArgs) -> Outcome {
     hasard_media::files::write_whole(&path, text.as_bytes()).map_err(Failure::bad)?;
     let (file, shown) = (path.display().to_string(), hasard_media::shell::quote(&path));
     if args.json {
-        say!("{}", serde_json::json!({ "file": file, "scenario": name, "id": format!("{name}-v0") }));
+        say!(
+            "{}",
+            serde_json::json!({ "file": file, "scenario": name, "id": format!("{name}-v0") })
+        );
     } else {
         say!(
             "{file}: the task {name}. Play it: hasard play {shown}; train on it: hasard train {shown}; check it: hasard check {shown}"
@@ -43,7 +52,8 @@ fn scenario_name(word: &str) -> Option<String> {
     // Every letter is a byte here.
     let parts = word.split(['_', '-']).filter(|part| !part.is_empty());
     let name: String = parts.map(|part| part[..1].to_uppercase() + &part[1..]).collect();
-    (name.bytes().next().is_some_and(|first| first.is_ascii_alphabetic()) && name.len() <= 40).then_some(name)
+    (name.bytes().next().is_some_and(|first| first.is_ascii_alphabetic()) && name.len() <= 40)
+        .then_some(name)
 }
 
 fn file_name(word: &str) -> &str {
@@ -56,7 +66,12 @@ mod tests {
 
     #[test]
     fn names_are_written_as_scenarios_are() {
-        for (word, name) in [("my_task", "MyTask"), ("lava", "Lava"), ("LavaGarden", "LavaGarden"), ("a-b.toml", "AB")] {
+        for (word, name) in [
+            ("my_task", "MyTask"),
+            ("lava", "Lava"),
+            ("LavaGarden", "LavaGarden"),
+            ("a-b.toml", "AB"),
+        ] {
             assert_eq!(scenario_name(word).as_deref(), Some(name));
         }
         for word in ["", "1st", "two words", "../up", "\u{e4}"] {

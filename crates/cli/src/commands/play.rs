@@ -10,8 +10,13 @@ pub fn run(args: &PlayArgs) -> Outcome {
     use hasard_media::shell::quote;
     let options = crate::settings::env_options(&args.env_args, Size { width: 640, height: 480 })?;
     let folder = (!args.no_record).then(|| args.out.clone());
-    let settings =
-        hasard_play::PlaySettings { env: args.env.clone(), options, seed: args.seed, folder, player: args.player.clone() };
+    let settings = hasard_play::PlaySettings {
+        env: args.env.clone(),
+        options,
+        seed: args.seed,
+        folder,
+        player: args.player.clone(),
+    };
     let episodes = hasard_play::play(settings).map_err(Failure::bad)?;
     for path in &episodes {
         say!("{}", path.display());

@@ -27,10 +27,19 @@ enum Kind {
 impl Kind {
     /// By the ending of the name, if it is one of `allowed`.
     fn of(path: &Path, allowed: &[(&str, Kind)]) -> Result<Kind, Failure> {
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let ending = path
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .unwrap_or_default()
+            .to_ascii_lowercase();
         allowed.iter().find(|(known, _)| *known == ending).map(|(_, kind)| *kind).ok_or_else(|| {
-            let endings: Vec<String> = allowed.iter().map(|(known, _)| format!(".{known}")).collect();
-            Failure::bad(format!("--out {}: give a name that ends in one of {}", path.display(), endings.join(", ")))
+            let endings: Vec<String> =
+                allowed.iter().map(|(known, _)| format!(".{known}")).collect();
+            Failure::bad(format!(
+                "--out {}: give a name that ends in one of {}",
+                path.display(),
+                endings.join(", ")
+            ))
         })
     }
 }
@@ -44,7 +53,10 @@ pub(super) const GIF_SIZE: Size = Size { width: 160, height: 120 };
 
 /// Runs `hasard record`.
 pub fn run(args: &RecordArgs) -> Outcome {
-    let kind = Kind::of(&args.out, &[("mp4", Kind::Film), ("gif", Kind::Film), ("episode", Kind::Episode)])?;
+    let kind = Kind::of(
+        &args.out,
+        &[("mp4", Kind::Film), ("gif", Kind::Film), ("episode", Kind::Episode)],
+    )?;
     let usual = if is_gif(&args.out) { GIF_SIZE } else { Size { width: 320, height: 240 } };
     let looks = settings::env_options(&args.env_args, usual)?;
     let looks = settings::looking(looks, &args.film.looks);
@@ -55,7 +67,8 @@ pub fn run(args: &RecordArgs) -> Outcome {
     }
     let (mut performance, player) = if agent || what.is_dir() {
         if args.policy.is_some() || args.env_args.changes_rules() {
-            let mut policy = OsString::from(if zoo::after(&args.what, "zoo:").is_some() { "" } else { "run:" });
+            let mut policy =
+                OsString::from(if zoo::after(&args.what, "zoo:").is_some() { "" } else { "run:" });
             policy.push(&args.what);
             return Err(Failure::bad(format!(
                 "{}: a run's agent is shown in its own environment; to choose otherwise: hasard record ENV --policy {}",
@@ -66,20 +79,33 @@ pub fn run(args: &RecordArgs) -> Outcome {
         let run = &places::run(&args.what)?;
         let performance = Performance::of_run(run, &looks, args.env_args.elsewhere(), args.seed)?;
         let named = args.what.to_string_lossy();
-        (performance, if zoo::after(&args.what, "zoo:").is_some() { named.into_owned() } else { format!("run:{named}") })
+        (
+            performance,
+            if zoo::after(&args.what, "zoo:").is_some() {
+                named.into_owned()
+            } else {
+                format!("run:{named}")
+            },
+        )
     } else {
         let policy = args.policy.clone().unwrap_or_else(|| "random".into());
         let id = env_id(&args.what.to_string_lossy()).map_err(Failure::bad)?;
         if let Err(error) = id.parse::<EnvId>()
             && !what.exists()
         {
-            return Err(Failure::bad(format!("{}: is neither an environment, a run nor a file; {error}", what.display())));
+            return Err(Failure::bad(format!(
+                "{}: is neither an environment, a run nor a file; {error}",
+                what.display()
+            )));
         }
-        let performance = Performance::new(&id, &policy, &looks, args.env_args.elsewhere(), args.seed)?;
+        let performance =
+            Performance::new(&id, &policy, &looks, args.env_args.elsewhere(), args.seed)?;
         (performance, policy.to_string_lossy().into_owned())
     };
     let mut recorder = match kind {
-        Kind::Episode => Some(Recorder::of(performance.stage.env(), args.seed, &player).map_err(Failure::bad)?),
+        Kind::Episode => {
+            Some(Recorder::of(performance.stage.env(), args.seed, &player).map_err(Failure::bad)?)
+        }
         _ => None,
     };
     let mut film = match kind {
@@ -107,7 +133,9 @@ pub fn run(args: &RecordArgs) -> Outcome {
 fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions) -> Outcome {
     if kind == Kind::Episode {
         let what = args.what.display();
-        let problem = format!("{what}: is a recorded episode already; give an --out that ends in .mp4 or .gif");
+        let problem = format!(
+            "{what}: is a recorded episode already; give an --out that ends in .mp4 or .gif"
+        );
         return Err(Failure::bad(problem));
     }
     if args.policy.is_some() || args.env_args.changes_rules() {
@@ -123,21 +151,32 @@ fn record_replay(args: &RecordArgs, kind: Kind, file: &Path, looks: &EnvOptions)
 
 /// Runs `hasard replay`.
 pub fn replay(args: &ReplayArgs) -> Outcome {
-    let looks = settings::looking(crate::sources::looks(args.maps.as_deref(), args.iwad.as_deref())?, &args.film.looks);
+    let looks = settings::looking(
+        crate::sources::looks(args.maps.as_deref(), args.iwad.as_deref())?,
+        &args.film.looks,
+    );
     let allowed = [("mp4", Kind::Film), ("gif", Kind::Film), ("png", Kind::Picture)];
     let kind = args.out.as_deref().map(|out| Kind::of(out, &allowed)).transpose()?;
     if args.step.is_some() && kind != Some(Kind::Picture) {
-        return Err(Failure::bad("--step: is for a single picture; give an --out that ends in .png"));
+        return Err(Failure::bad(
+            "--step: is for a single picture; give an --out that ends in .png",
+        ));
     }
     let mut replay = open(&args.file, &looks)?;
-    let usual = if args.out.as_deref().is_some_and(is_gif) { GIF_SIZE } else { Size { width: 640, height: 480 } };
+    let usual = if args.out.as_deref().is_some_and(is_gif) {
+        GIF_SIZE
+    } else {
+        Size { width: 640, height: 480 }
+    };
     let size = args.size.unwrap_or(usual).into();
     match (&args.out, kind) {
         (Some(out), Some(Kind::Picture)) => {
             replay.skip_to(args.step.unwrap_or(u32::MAX));
             let length = replay.stage().env().episode().length;
             if let Some(step) = args.step.filter(|step| *step > length) {
-                return Err(Failure::bad(format!("--step {step}: the episode ends at step {length}; give a smaller one")));
+                return Err(Failure::bad(format!(
+                    "--step {step}: the episode ends at step {length}; give a smaller one"
+                )));
             }
             let kinds = settings::views(View::Rgb, &args.film.beside);
             let mut views = Views::new(replay.stage(), size, &kinds).map_err(Failure::bad)?;
@@ -164,7 +203,8 @@ fn open(file: &Path, looks: &EnvOptions) -> Result<Replay, Failure> {
 fn begin(stage: &Stage, out: &Path, size: FrameSize, args: &FilmArgs) -> Result<Film, Failure> {
     let every = args.frame_every.unwrap_or(if is_gif(out) { 5 } else { 1 });
     let views = settings::views(View::Rgb, &args.beside);
-    Film::begin_at(args.quality.unwrap_or_default(), stage, out, size, &views, every).map_err(Failure::bad)
+    Film::begin_at(args.quality.unwrap_or_default(), stage, out, size, &views, every)
+        .map_err(Failure::bad)
 }
 
 /// Steps that a film has at most.
@@ -173,7 +213,13 @@ fn longest(env: &Env, steps: Option<u32>) -> u64 {
 }
 
 /// Films a replay to its end, or to a number of steps.
-fn play_out(replay: &mut Replay, out: &Path, size: FrameSize, args: &FilmArgs, steps: Option<u32>) -> Result<Film, Failure> {
+fn play_out(
+    replay: &mut Replay,
+    out: &Path,
+    size: FrameSize,
+    args: &FilmArgs,
+    steps: Option<u32>,
+) -> Result<Film, Failure> {
     let mut film = begin(replay.stage(), out, size, args)?;
     let mut ticker = Ticker::new(longest(replay.stage().env(), steps), "steps");
     while steps.is_none_or(|most| replay.stage().env().episode().length < most) {
@@ -205,11 +251,17 @@ fn tell(env: &Env, as_json: bool, out: Option<&Path>, film: Option<Film>) -> Out
         return Ok(());
     }
     let written = match (file, film) {
-        (Some(file), Some((frames, (width, height)))) => format!("{file}: {frames} frames of {width}x{height}; "),
+        (Some(file), Some((frames, (width, height)))) => {
+            format!("{file}: {frames} frames of {width}x{height}; ")
+        }
         (Some(file), None) => format!("{file}: "),
         _ => String::new(),
     };
     let (id, steps) = (env.id(), episode.length);
-    say!("{written}{id}, {steps} steps, return {:.3}, cost {:.3}", episode.episode_return, episode.cost);
+    say!(
+        "{written}{id}, {steps} steps, return {:.3}, cost {:.3}",
+        episode.episode_return,
+        episode.cost
+    );
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! `hasard train --resume`: a flag that contradicts the run in the directory changes the run where a run may change, and is refused
-//! instead of ignored elsewhere.
+//! `hasard train --resume`: a flag that contradicts the run in the directory changes the run where
+//! a run may change, and is refused instead of ignored elsewhere.
 
 use super::train::configuration;
 use crate::args::TrainArgs;
@@ -11,7 +11,8 @@ use hasard_learn::config::settings::{may_change, setting_pointer};
 use serde_json::Value;
 use std::path::Path;
 
-/// Flags of `train`, as clap names them, and the settings that each decides, as pointers into `config.json`.
+/// Flags of `train`, as clap names them, and the settings that each decides, as pointers into
+/// `config.json`.
 const DECIDES: &[(&str, &[&str])] = &[
     ("frames", &["/frames"]),
     ("eval_every", &["/evaluation/every"]),
@@ -42,10 +43,15 @@ const DECIDES: &[(&str, &[&str])] = &[
     ("published_colours", &["/env/published_colours"]),
 ];
 
-/// The settings that are to be others from here on, each as `NAME=VALUE`. Flags that were typed and say something else than the
-/// run's settings are refused where a run cannot change; those that repeat them are welcome: a sweep resumes a run with the
-/// command that began it.
-pub fn settings(args: &TrainArgs, typed: &ArgMatches, saved: &TrainConfig, directory: &Path) -> Result<Vec<String>, Failure> {
+/// The settings that are to be others from here on, each as `NAME=VALUE`. Flags that were typed and
+/// say something else than the run's settings are refused where a run cannot change; those that
+/// repeat them are welcome: a sweep resumes a run with the command that began it.
+pub fn settings(
+    args: &TrainArgs,
+    typed: &ArgMatches,
+    saved: &TrainConfig,
+    directory: &Path,
+) -> Result<Vec<String>, Failure> {
     let given = |id: &str| typed.value_source(id) == Some(ValueSource::CommandLine);
     // What the command asks for, with the run's own settings wherever other defaults hang on them.
     let mut args = args.clone();
@@ -105,7 +111,9 @@ fn show(value: Option<&Value>) -> String {
     match value {
         None => "none".into(),
         // Most settings are single-precision; more digits would be noise.
-        Some(Value::Number(number)) if number.is_f64() => (number.as_f64().unwrap_or_default() as f32).to_string(),
+        Some(Value::Number(number)) if number.is_f64() => {
+            (number.as_f64().unwrap_or_default() as f32).to_string()
+        }
         Some(other) => other.to_string(),
     }
 }
@@ -118,7 +126,9 @@ mod tests {
 
     fn train(line: &str) -> (TrainArgs, ArgMatches) {
         let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
-        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else { panic!("not a training") };
+        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
+            panic!("not a training")
+        };
         (args, matches.subcommand_matches("train").unwrap().clone())
     }
 
@@ -131,8 +141,15 @@ mod tests {
             let (args, typed) = train(line);
             settings(&args, &typed, &saved, Path::new("run"))
         };
-        for fine in ["", "--algo ppopid --seed 3", "--hard --threads 1 --sync --device cpu", "--json --quiet"] {
-            let changes = check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {fine}")).unwrap();
+        for fine in [
+            "",
+            "--algo ppopid --seed 3",
+            "--hard --threads 1 --sync --device cpu",
+            "--json --quiet",
+        ] {
+            let changes =
+                check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {fine}"))
+                    .unwrap();
             assert!(changes.is_empty(), "{fine}: {changes:?}");
         }
         assert!(check(&format!("{began} --resume --out run")).unwrap().is_empty());
@@ -144,7 +161,9 @@ mod tests {
             ("--device vulkan", &["device=\"vulkan\""]),
             ("--set learning.rate=0.0001", &["learning.rate=0.0001", "learning.final_rate=null"]),
         ] {
-            let changes = check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {changed}")).unwrap();
+            let changes =
+                check(&format!("hasard train RemedyRushLevel1-v0 --resume --out run {changed}"))
+                    .unwrap();
             assert_eq!(changes, expected, "{changed}");
             saved.resumed_with(&changes, 4096).unwrap();
         }
@@ -160,7 +179,9 @@ mod tests {
         ] {
             let line = format!("hasard train RemedyRushLevel1-v0 --resume --out run {wrong}");
             match check(&line) {
-                Err(Failure::BadInput(message)) => assert!(message.starts_with(named), "{wrong}: {message}"),
+                Err(Failure::BadInput(message)) => {
+                    assert!(message.starts_with(named), "{wrong}: {message}")
+                }
                 other => panic!("{wrong}: {other:?}"),
             }
         }
@@ -169,11 +190,15 @@ mod tests {
     /// A flag that is added to `train` must be thought of here.
     #[test]
     fn every_flag_of_train_is_known_to_decide_something_or_nothing() {
-        let harmless = ["env", "out", "resume", "init_from", "set", "json", "quiet", "help", "version"];
+        let harmless =
+            ["env", "out", "resume", "init_from", "set", "json", "quiet", "help", "version"];
         let command = Cli::command();
         for argument in command.find_subcommand("train").unwrap().get_arguments() {
             let id = argument.get_id().as_str();
-            assert!(harmless.contains(&id) != DECIDES.iter().any(|(known, _)| *known == id), "{id}");
+            assert!(
+                harmless.contains(&id) != DECIDES.iter().any(|(known, _)| *known == id),
+                "{id}"
+            );
         }
     }
 }

@@ -11,7 +11,10 @@ use hasard_learn::runs::agent::{Choice, Which};
 /// Runs the command.
 pub fn run(args: &RolloutArgs) -> Outcome {
     // A fixed policy looks at nothing, so nothing is drawn and the size does not matter.
-    let options = settings::observed(settings::env_options(&args.env_args, Size::LEARNER)?, &args.observation);
+    let options = settings::observed(
+        settings::env_options(&args.env_args, Size::LEARNER)?,
+        &args.observation,
+    );
     // The task that was named, whatever file of that name an agent was trained on.
     let scenario = Some(settings::env_id(&args.env)?.scenario);
     let options = EnvOptions { scenario, test_seeds: args.test_seeds, ..options };
@@ -27,7 +30,8 @@ pub fn run(args: &RolloutArgs) -> Outcome {
     let policy = settings::policy(&args.policy)?;
     let mut env = Env::new(&args.env, &options).map_err(Failure::bad)?;
     for i in 0..args.episodes {
-        let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i))).map_err(Failure::bad)?;
+        let episode = rollout(&mut env, &policy, args.seed.wrapping_add(u64::from(i)))
+            .map_err(Failure::bad)?;
         lines.episode(&env.id().to_string(), u64::from(i), episode)?;
     }
     lines.summary(false)

@@ -27,7 +27,10 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
         if claim.episodes < LISTED_EPISODES {
             refused.push((
                 name,
-                format!("it has {} episodes; a scoreboard lists claims of {LISTED_EPISODES} and more", claim.episodes),
+                format!(
+                    "it has {} episodes; a scoreboard lists claims of {LISTED_EPISODES} and more",
+                    claim.episodes
+                ),
             ));
             continue;
         }
@@ -57,15 +60,23 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
             Err(error) => refused.push((name, error.to_string())),
         }
     }
-    let page = write_scoreboard(&args.title, entries, &refused, &args.folder.join("index.html")).map_err(Failure::bad)?;
+    let page = write_scoreboard(&args.title, entries, &refused, &args.folder.join("index.html"))
+        .map_err(Failure::bad)?;
     if args.json {
-        let list: Vec<_> = refused.iter().map(|(claim, why)| json!({ "claim": claim, "why": why })).collect();
-        say!("{}", json!({ "page": page.display().to_string(), "hold": paths.len() - refused.len(), "refused": list }));
+        let list: Vec<_> =
+            refused.iter().map(|(claim, why)| json!({ "claim": claim, "why": why })).collect();
+        say!(
+            "{}",
+            json!({ "page": page.display().to_string(), "hold": paths.len() - refused.len(), "refused": list })
+        );
     } else {
         say!("{}: {} of {} claims hold", page.display(), paths.len() - refused.len(), paths.len());
     }
     match refused.is_empty() {
         true => Ok(()),
-        false => Err(Failure::Negative(format!("{} claims are not listed; the page says why", refused.len()))),
+        false => Err(Failure::Negative(format!(
+            "{} claims are not listed; the page says why",
+            refused.len()
+        ))),
     }
 }

@@ -8,20 +8,29 @@ use std::path::PathBuf;
 /// Runs the command.
 #[cfg(feature = "serve")]
 pub fn run(args: &ServeArgs) -> Outcome {
-    // Without folders `runs` is waited for: the first training makes it. A folder that was named is meant.
-    let (tasks, runs): (Vec<PathBuf>, Vec<PathBuf>) =
-        args.runs.iter().cloned().partition(|path| hasard_envs::own::is_file(&path.to_string_lossy()));
+    // Without folders `runs` is waited for: the first training makes it. A folder that was named is
+    // meant.
+    let (tasks, runs): (Vec<PathBuf>, Vec<PathBuf>) = args
+        .runs
+        .iter()
+        .cloned()
+        .partition(|path| hasard_envs::own::is_file(&path.to_string_lossy()));
     for task in &tasks {
         hasard_envs::own::open(&task.to_string_lossy()).map_err(Failure::bad)?;
     }
     if let Some(folder) = runs.iter().find(|folder| !folder.is_dir()) {
         let remedy = "name a folder that holds runs, or none to wait for those below runs";
-        return Err(Failure::bad(format!("{}: there is no such folder; {remedy}", folder.display())));
+        return Err(Failure::bad(format!(
+            "{}: there is no such folder; {remedy}",
+            folder.display()
+        )));
     }
     let folders = if runs.is_empty() { vec!["runs".into()] } else { runs };
     let beyond = !args.listen.ip().is_loopback();
     let token = match &args.token {
-        Some(token) if token.len() < 8 || !token.bytes().all(|byte| byte.is_ascii_alphanumeric()) => {
+        Some(token)
+            if token.len() < 8 || !token.bytes().all(|byte| byte.is_ascii_alphanumeric()) =>
+        {
             return Err(Failure::bad("--token: give at least 8 letters and digits"));
         }
         Some(token) => Some(token.clone()),
@@ -33,9 +42,14 @@ pub fn run(args: &ServeArgs) -> Outcome {
         token: token.clone(),
         folders,
         episodes: args.out.clone(),
-        agents: std::sync::Arc::new(trained::Trained { maps: args.maps.clone(), iwad: args.iwad.clone() }),
+        agents: std::sync::Arc::new(trained::Trained {
+            maps: args.maps.clone(),
+            iwad: args.iwad.clone(),
+        }),
     };
-    let taken = |error: std::io::Error| Failure::bad(format!("--listen {}: {error}; choose another port", args.listen));
+    let taken = |error: std::io::Error| {
+        Failure::bad(format!("--listen {}: {error}; choose another port", args.listen))
+    };
     let server = hasard_serve::Server::bind(settings).map_err(taken)?;
     let query = token.map_or_else(String::new, |token| format!("?token={token}"));
     let address = format!("http://{}/{query}", server.address());
@@ -50,7 +64,8 @@ pub fn run(args: &ServeArgs) -> Outcome {
 #[cfg(feature = "serve")]
 fn drawn_token() -> Result<String, Failure> {
     let mut bytes = [0; 16];
-    let failed = |error| Failure::bad(format!("no token could be drawn: {error}; give one with --token"));
+    let failed =
+        |error| Failure::bad(format!("no token could be drawn: {error}; give one with --token"));
     getrandom::fill(&mut bytes).map_err(failed)?;
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
@@ -90,7 +105,8 @@ mod trained {
         fn options(&self, run: &Path) -> Result<(String, EnvOptions), String> {
             let config = run_config(run).map_err(|error| error.to_string())?;
             let elsewhere = Elsewhere { maps: self.maps.as_deref(), iwad: self.iwad.as_deref() };
-            let options = trained_options(&config.env, elsewhere.where_missing(&config.env)).map_err(Failure::line)?;
+            let options = trained_options(&config.env, elsewhere.where_missing(&config.env))
+                .map_err(Failure::line)?;
             Ok((config.env.id, options))
         }
 
@@ -98,7 +114,8 @@ mod trained {
             let action = ActionShape::from(env.action_space());
             let which = if best { Which::Selected } else { Which::Latest };
             let mut warn = |text: String| note!("hasard: {text}");
-            Agent::load(run, which, choice, 1, env.observation_shape(), action, &mut warn).map_err(|error| error.to_string())
+            Agent::load(run, which, choice, 1, env.observation_shape(), action, &mut warn)
+                .map_err(|error| error.to_string())
         }
 
         fn zoo(&self) -> Vec<String> {

@@ -9,8 +9,10 @@ use serde_json::json;
 
 /// Runs the command.
 pub fn run(args: &SettingsArgs) -> Outcome {
-    let (algorithm, preset) = (args.algo.parse().map_err(Failure::bad)?, args.preset.parse().map_err(Failure::bad)?);
-    let config = TrainConfig::new(algorithm, preset, EnvConfig::new(&args.env)).map_err(Failure::bad)?;
+    let (algorithm, preset) =
+        (args.algo.parse().map_err(Failure::bad)?, args.preset.parse().map_err(Failure::bad)?);
+    let config =
+        TrainConfig::new(algorithm, preset, EnvConfig::new(&args.env)).map_err(Failure::bad)?;
     let written = serde_json::to_value(config).map_err(Failure::bad)?;
     for one in settings() {
         // Groups are listed by their parts; what a run seldom has is not written.

@@ -75,9 +75,16 @@ struct Start {
 }
 
 fn parse_start(text: &str) -> Result<Start, Failure> {
-    let wrong = || Failure::bad(format!("--start '{text}': write X,Y,Z,ANGLE[,PITCH] in map units (below 32768) and degrees"));
-    let numbers: Vec<f64> =
-        text.split(',').map(|part| part.trim().parse::<f64>()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let wrong = || {
+        Failure::bad(format!(
+            "--start '{text}': write X,Y,Z,ANGLE[,PITCH] in map units (below 32768) and degrees"
+        ))
+    };
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| part.trim().parse::<f64>())
+        .collect::<Result<_, _>>()
+        .map_err(|_| wrong())?;
     let (position, angle, pitch) = match numbers[..] {
         [x, y, z, angle] => ([x, y, z], angle, 0.0),
         [x, y, z, angle, pitch] => ([x, y, z], angle, pitch),
@@ -100,25 +107,33 @@ fn parse_start(text: &str) -> Result<Start, Failure> {
 fn read_actions(path: &Path) -> Result<Vec<(String, Command)>, Failure> {
     let name = path.display();
     let bytes = hasard_media::files::read_limited(path, 1 << 26).map_err(Failure::bad)?;
-    let text = String::from_utf8(bytes)
-        .map_err(|_| Failure::bad(format!("{name}: not text; give a CSV file with an 'action' column")))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        Failure::bad(format!("{name}: not text; give a CSV file with an 'action' column"))
+    })?;
     let mut lines = text.lines();
     let header = lines.next().unwrap_or_default();
     let column = header.split(',').position(|field| field.trim() == "action");
     let column = column.ok_or_else(|| {
-        Failure::bad(format!("{name}: its first line names no 'action' column; add a header line such as tic,action"))
+        Failure::bad(format!(
+            "{name}: its first line names no 'action' column; add a header line such as tic,action"
+        ))
     })?;
     let mut actions = Vec::new();
     for (number, line) in lines.enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let action = line.split(',').nth(column).map(str::trim);
-        let action =
-            action.ok_or_else(|| Failure::bad(format!("{name} line {}: no 'action' field; every line needs one", number + 2)))?;
+        let action = action.ok_or_else(|| {
+            Failure::bad(format!(
+                "{name} line {}: no 'action' field; every line needs one",
+                number + 2
+            ))
+        })?;
         match action {
             "start" => {}
             "FINISHED" => break,
             _ => {
-                let command =
-                    parse_command(action).map_err(|error| Failure::bad(format!("{name} line {}: {error}", number + 2)))?;
+                let command = parse_command(action).map_err(|error| {
+                    Failure::bad(format!("{name} line {}: {error}", number + 2))
+                })?;
                 actions.push((action.to_string(), command));
             }
         }
@@ -129,7 +144,9 @@ fn read_actions(path: &Path) -> Result<Vec<(String, Command)>, Failure> {
 fn row(out: &mut impl Write, as_json: bool, tic: usize, action: &str, env: &Env) -> Outcome {
     let world = env.world();
     let player = &world.players[0];
-    let body = world.get(player.actor).ok_or_else(|| Failure::bad("the player's body is gone; please report this"))?;
+    let body = world
+        .get(player.actor)
+        .ok_or_else(|| Failure::bad("the player's body is gone; please report this"))?;
     let degrees = |units: i32| f64::from(units) * 360.0 / 4_294_967_296.0;
     let values = [
         body.x.to_f64(),
@@ -149,7 +166,9 @@ fn row(out: &mut impl Write, as_json: bool, tic: usize, action: &str, env: &Env)
         let mut object = serde_json::Map::new();
         object.insert("tic".into(), json!(tic));
         object.insert("action".into(), json!(action));
-        object.extend(COLUMNS.iter().zip(values).map(|(column, value)| ((*column).to_string(), json!(value))));
+        object.extend(
+            COLUMNS.iter().zip(values).map(|(column, value)| ((*column).to_string(), json!(value))),
+        );
         writeln!(out, "{}", serde_json::Value::Object(object))?;
     } else {
         let fields: Vec<String> = values.iter().map(|value| six_places(*value)).collect();

@@ -33,17 +33,25 @@ pub struct Begun<'a> {
     options: EnvOptions,
 }
 
-/// What the words of the command begin; `typed` tells which flags were given and which have their default.
+/// What the words of the command begin; `typed` tells which flags were given and which have their
+/// default.
 pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, Failure> {
     let algorithm: AlgorithmKind = args.algo.parse().map_err(Failure::bad)?;
     // By the algorithm's own name, however it was typed.
-    let directory = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("runs/{}-{algorithm}-seed{}", args.env, args.seed)));
+    let directory = args.out.clone().unwrap_or_else(|| {
+        PathBuf::from(format!("runs/{}-{algorithm}-seed{}", args.env, args.seed))
+    });
     let (start, config) = if args.resume && directory.join("config.json").exists() {
         let config = read_config(&directory).map_err(Failure::bad)?;
         // A curriculum is of a scenario; the level that the command names does not matter.
-        let same = |id: &str| if config.curriculum.is_empty() { id.to_string() } else { scenario_of(id) };
+        let same =
+            |id: &str| if config.curriculum.is_empty() { id.to_string() } else { scenario_of(id) };
         if same(&config.env.id) != same(&args.env) {
-            let problem = format!("{}: the run there is of {}; name that, or another --out", directory.display(), config.env.id);
+            let problem = format!(
+                "{}: the run there is of {}; name that, or another --out",
+                directory.display(),
+                config.env.id
+            );
             return Err(Failure::bad(problem));
         }
         let settings = super::resume::settings(args, typed, &config, &directory)?;
@@ -57,20 +65,31 @@ pub fn begin<'a>(args: &'a TrainArgs, typed: &ArgMatches) -> Result<Begun<'a>, F
         };
         (start, config)
     };
-    // Places that were typed are in the settings by now; those that are wrong are named as they were typed.
-    let typed = if matches!(start, Start::Resume { .. }) { Elsewhere::default() } else { args.env_args.elsewhere() };
+    // Places that were typed are in the settings by now; those that are wrong are named as they
+    // were typed.
+    let typed = if matches!(start, Start::Resume { .. }) {
+        Elsewhere::default()
+    } else {
+        args.env_args.elsewhere()
+    };
     let options = crate::settings::trained_options(&config.env, typed)?;
     Ok(Begun { directory, start, config, options })
 }
 
 impl Begun<'_> {
-    /// Trains, and keeps the pictures of the map beside what is learned. Gives the run's directory and how it ended.
+    /// Trains, and keeps the pictures of the map beside what is learned. Gives the run's directory
+    /// and how it ended.
     pub fn train(self, team: &Team, hooks: &mut Hooks<'_>) -> Result<(PathBuf, Summary), Failure> {
         self.train_told(team, hooks, |_| {})
     }
 
     /// The same, telling once when the directory is the run's own: when the first worlds are made.
-    fn train_told(self, team: &Team, hooks: &mut Hooks<'_>, begins: impl Fn(&Begun<'_>)) -> Result<(PathBuf, Summary), Failure> {
+    fn train_told(
+        self,
+        team: &Team,
+        hooks: &mut Hooks<'_>,
+        begins: impl Fn(&Begun<'_>),
+    ) -> Result<(PathBuf, Summary), Failure> {
         let (mut drawn, mut failed_drawing) = (false, None);
         let told = std::cell::Cell::new(false);
         let report = &mut *hooks.report;
@@ -90,7 +109,8 @@ impl Begun<'_> {
             VecEnv::new(&env.id, &self.options, worlds)
         };
         let mut hooks = Hooks { stop: hooks.stop, report: &mut hear, warn: &mut *hooks.warn };
-        let summary = train_together(team, self.start.clone(), &self.directory, &make, &mut hooks).map_err(Failure::bad)?;
+        let summary = train_together(team, self.start.clone(), &self.directory, &make, &mut hooks)
+            .map_err(Failure::bad)?;
         match failed_drawing {
             Some(error) => Err(error),
             None => Ok((self.directory.clone(), summary)),
@@ -102,7 +122,8 @@ impl Begun<'_> {
 pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
     let begun = begin(args, typed)?;
     interrupt::behave(Manner::Patient);
-    let mut progress = if args.json || args.quiet { Progress::Silent } else { Progress::of(begun.config.frames) };
+    let mut progress =
+        if args.json || args.quiet { Progress::Silent } else { Progress::of(begun.config.frames) };
     let go_on = go_on(&begun.config, &begun.directory);
     let mut rows = Rows { asked_for: args.json, lost: None };
     let mut heard = false;
@@ -136,7 +157,10 @@ pub fn run(args: &TrainArgs, typed: &ArgMatches) -> Outcome {
         let name = directory.display();
         let run = quote(&directory);
         if !heard && !summary.stopped {
-            note!("{name} was finished before, at {} frames; train on with: {go_on} --frames MORE", summary.last.frames);
+            note!(
+                "{name} was finished before, at {} frames; train on with: {go_on} --frames MORE",
+                summary.last.frames
+            );
         }
         match summary.stopped {
             true => note!("stopped; go on with: {go_on}"),
@@ -159,7 +183,8 @@ struct Rows {
 }
 
 impl Rows {
-    /// Prints one. A reader who goes away does not stop the run; a full disk does, for rows would be lost in silence.
+    /// Prints one. A reader who goes away does not stop the run; a full disk does, for rows would
+    /// be lost in silence.
     fn print(&mut self, row: &Value) {
         if !self.asked_for || self.lost.is_some() {
             return;
@@ -194,7 +219,11 @@ fn headline(selection: &Selection, stopped: bool) -> Vec<String> {
     let (frames, episodes) = (selection.selected.frames, all.episodes);
     let mut lines = Vec::new();
     if let Some(last) = &selection.last {
-        lines.push(format!("last policy: {}, {} episodes of their own", worth(&last.closing), last.closing.episodes));
+        lines.push(format!(
+            "last policy: {}, {} episodes of their own",
+            worth(&last.closing),
+            last.closing.episodes
+        ));
     }
     lines.push(format!(
         "selected{so_far}: the checkpoint of {frames} frames, {kept} its budget; {}, {episodes} episodes of their own",
@@ -204,10 +233,17 @@ fn headline(selection: &Selection, stopped: bool) -> Vec<String> {
 }
 
 fn describe(config: &TrainConfig, directory: &Path) {
-    let budget_of = |constraint: &Constraint| format!("{} {}", constraint.term.as_deref().unwrap_or("cost"), constraint.budget);
+    let budget_of = |constraint: &Constraint| {
+        format!("{} {}", constraint.term.as_deref().unwrap_or("cost"), constraint.budget)
+    };
     let budgets: Vec<String> = config.constraints.iter().map(budget_of).collect();
-    let levels: Vec<String> = config.curriculum.iter().map(|lesson| format!("{} for {}", lesson.level, lesson.frames)).collect();
-    let levels = if levels.is_empty() { String::new() } else { format!(" (levels {})", levels.join(", ")) };
+    let levels: Vec<String> = config
+        .curriculum
+        .iter()
+        .map(|lesson| format!("{} for {}", lesson.level, lesson.frames))
+        .collect();
+    let levels =
+        if levels.is_empty() { String::new() } else { format!(" (levels {})", levels.join(", ")) };
     note!(
         "{} on {}, preset {}, seed {}, {} frames{levels}, budget of an episode: {}, device {} -> {}",
         config.algorithm,
@@ -221,7 +257,8 @@ fn describe(config: &TrainConfig, directory: &Path) {
     );
 }
 
-/// The command with the rules that its preset belongs to, unless it names others: what made the paper's tables is both.
+/// The command with the rules that its preset belongs to, unless it names others: what made the
+/// paper's tables is both.
 fn with_rules(args: &TrainArgs, typed: &ArgMatches) -> TrainArgs {
     let mut args = args.clone();
     let given = typed.value_source("rules") == Some(ValueSource::CommandLine);
@@ -235,7 +272,8 @@ fn with_rules(args: &TrainArgs, typed: &ArgMatches) -> TrainArgs {
 pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
     let env = crate::settings::env_config(&args.env, &args.env_args, &args.observation);
     let preset: Preset = args.preset.parse().map_err(Failure::bad)?;
-    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env).map_err(Failure::bad)?;
+    let mut config = TrainConfig::new(args.algo.parse().map_err(Failure::bad)?, preset, env)
+        .map_err(Failure::bad)?;
     config.seed = args.seed;
     config.device.clone_from(&args.device);
     config.frames = args.frames.unwrap_or(config.frames);
@@ -255,12 +293,16 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
         config.algorithm_settings.penalty_scale = scale;
     }
     if let Some(text) = &args.constraint_statistic {
-        config.constraint_statistic = text.parse().map_err(|error| Failure::bad(format!("--constraint-statistic: {error}")))?;
+        config.constraint_statistic = text
+            .parse()
+            .map_err(|error| Failure::bad(format!("--constraint-statistic: {error}")))?;
     }
     if !args.safety_budget.is_empty() {
-        config.constraints = args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
+        config.constraints =
+            args.safety_budget.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?;
     }
-    let mut config = config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
+    let mut config =
+        config.with_all(&args.set).map_err(|error| Failure::bad(format!("--set {error}")))?;
     if let Some(text) = &args.curriculum {
         let lessons = parse_curriculum(text, config.frames).map_err(Failure::bad)?;
         config.set_curriculum(lessons);
@@ -271,8 +313,12 @@ pub(super) fn configuration(args: &TrainArgs) -> Result<TrainConfig, Failure> {
 
 /// `50`, or `lava=50` for a named cost term.
 fn constraint(text: &str) -> Result<Constraint, Failure> {
-    let (term, number) = text.split_once('=').map_or((None, text), |(term, number)| (Some(term.to_string()), number));
-    let budget = number.parse().map_err(|_| Failure::bad(format!("--safety-budget '{text}': write a number, or TERM=NUMBER")))?;
+    let (term, number) = text
+        .split_once('=')
+        .map_or((None, text), |(term, number)| (Some(term.to_string()), number));
+    let budget = number.parse().map_err(|_| {
+        Failure::bad(format!("--safety-budget '{text}': write a number, or TERM=NUMBER"))
+    })?;
     Ok(Constraint { term, budget })
 }
 
@@ -286,15 +332,21 @@ mod tests {
     fn config(line: &str) -> Result<TrainConfig, Failure> {
         let line = format!("hasard train ArmamentBurdenLevel1-v0 {line}");
         let matches = Cli::command().try_get_matches_from(line.split_whitespace()).unwrap();
-        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else { panic!("not a training") };
+        let Command::Train(args) = Cli::from_arg_matches(&matches).unwrap().command else {
+            panic!("not a training")
+        };
         configuration(&with_rules(&args, matches.subcommand_matches("train").unwrap()))
     }
 
-    /// A2: the paper's best algorithm within minutes is what a command without options trains; 500 million frames are asked for.
+    /// A2: the paper's best algorithm within minutes is what a command without options trains; 500
+    /// million frames are asked for.
     #[test]
     fn without_options_it_is_the_quick_pid() {
         let plain = config("").unwrap();
-        assert_eq!((plain.algorithm, plain.preset, plain.frames), (AlgorithmKind::PpoPid, Preset::Quick, 10_000_000));
+        assert_eq!(
+            (plain.algorithm, plain.preset, plain.frames),
+            (AlgorithmKind::PpoPid, Preset::Quick, 10_000_000)
+        );
         assert_eq!(config("--preset paper").unwrap().frames, 500_000_000);
     }
 
@@ -312,8 +364,12 @@ mod tests {
 
     #[test]
     fn a_constraint_on_the_tail_is_asked_for_by_name() {
-        assert_eq!(config("--constraint-statistic cvar:0.1").unwrap().constraint_statistic, ConstraintStatistic::Cvar(0.1));
-        for wrong in ["--constraint-statistic cvar:2", "--algo P3O --constraint-statistic cvar:0.1"] {
+        assert_eq!(
+            config("--constraint-statistic cvar:0.1").unwrap().constraint_statistic,
+            ConstraintStatistic::Cvar(0.1)
+        );
+        for wrong in ["--constraint-statistic cvar:2", "--algo P3O --constraint-statistic cvar:0.1"]
+        {
             assert!(config(wrong).is_err(), "{wrong}");
         }
     }

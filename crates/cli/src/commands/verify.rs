@@ -15,7 +15,8 @@ pub fn run(args: &VerifyArgs) -> Outcome {
     let threads = args.threads.map_or_else(cores, usize::from);
     for path in &paths {
         let claim = Claim::read(path).map_err(Failure::bad)?;
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder =
+            path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let verdict = claim.check(folder, threads).map_err(Failure::bad)?;
         let problems = match &verdict {
             Verdict::Holds(_) => Vec::new(),
@@ -23,7 +24,10 @@ pub fn run(args: &VerifyArgs) -> Outcome {
         };
         refused += usize::from(!problems.is_empty());
         if args.json {
-            say!("{}", json!({ "claim": path.display().to_string(), "holds": problems.is_empty(), "problems": problems }));
+            say!(
+                "{}",
+                json!({ "claim": path.display().to_string(), "holds": problems.is_empty(), "problems": problems })
+            );
         } else if let Verdict::Holds(measured) = &verdict {
             say!(
                 "{}: holds: return {:.3}, cost {:.3} of {}, {} episodes, rules {}",

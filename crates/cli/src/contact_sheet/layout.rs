@@ -1,4 +1,5 @@
-//! How a contact sheet is laid out: a row for each moment, its large views in a line, its learner's frames in a square.
+//! How a contact sheet is laid out: a row for each moment, its large views in a line, its learner's
+//! frames in a square.
 
 use hasard_media::{Picture, text};
 
@@ -40,7 +41,11 @@ pub fn sheet(rows: &[Row]) -> Picture {
         }
         let left = GAP + 4 * (SHOWN.0 + GAP);
         for (place, view) in row.small.iter().enumerate() {
-            sheet.paste(view, left + place % 2 * (small_width + GAP), top + place / 2 * (small_height + GAP));
+            sheet.paste(
+                view,
+                left + place % 2 * (small_width + GAP),
+                top + place / 2 * (small_height + GAP),
+            );
         }
     }
     sheet

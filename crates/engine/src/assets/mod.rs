@@ -1,13 +1,16 @@
-//! Pictures behind one interface: the embedded set that this project draws itself, or an IWAD with files laid over it.
+//! Pictures behind one interface: the embedded set that this project draws itself, or an IWAD with
+//! files laid over it.
 //!
-//! Everything is paletted (one byte a pixel); the renderer maps bytes through a light table, then the palette.
+//! Everything is paletted (one byte a pixel); the renderer maps bytes through a light table, then
+//! the palette.
 
 mod embedded;
 mod iwad;
 
 pub use iwad::IwadError;
 
-/// A picture: column-major, `pixels[x * height + y]`, so that a wall or sprite column is contiguous.
+/// A picture: column-major, `pixels[x * height + y]`, so that a wall or sprite column is
+/// contiguous.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// Width in texels.
@@ -49,8 +52,9 @@ impl Stain {
     }
 }
 
-/// The views of one frame of a sprite: for each of the 8 rotations (0 = facing the viewer, then counter-clockwise
-/// as the viewer walks around it: the classic rotation digits 1..=8) an index into [`Assets::images`] and whether it is mirrored.
+/// The views of one frame of a sprite: for each of the 8 rotations (0 = facing the viewer, then
+/// counter-clockwise as the viewer walks around it: the classic rotation digits 1..=8) an index
+/// into [`Assets::images`] and whether it is mirrored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SpriteFrame {
     /// Image index of each rotation; `u32::MAX` where there is none.
@@ -75,30 +79,41 @@ pub struct Assets {
     pub light_tables: Box<[[u8; 256]; 32]>,
     /// Every picture.
     pub images: Vec<Image>,
-    /// Textures and flats by name: first image, number of animation frames (consecutive images), tics a frame.
+    /// Textures and flats by name: first image, number of animation frames (consecutive images),
+    /// tics a frame.
     pub textures: std::collections::BTreeMap<crate::map::TextureName, TextureEntry>,
-    /// Textures that stand in for names which [`Assets::textures`] lacks, so that a map by someone else is never full of holes.
+    /// Textures that stand in for names which [`Assets::textures`] lacks, so that a map by someone
+    /// else is never full of holes.
     pub fallbacks: Vec<TextureEntry>,
     /// Sprites, in the order of [`SPRITE_NAMES`].
     pub sprites: Vec<Sprite>,
-    /// Status bar, font, face and sky pictures by lump name (`STBAR`, `STTNUM0`, `STFST00`, `SKY1`, ...).
+    /// Status bar, font, face and sky pictures by lump name (`STBAR`, `STTNUM0`, `STFST00`, `SKY1`,
+    /// ...).
     pub graphics: std::collections::BTreeMap<crate::map::TextureName, u32>,
     /// The picture of the sky, where the files name one.
     pub sky: Option<crate::map::TextureName>,
     /// What bursting rockets leave on walls, where the files bring it; without it walls stay clean.
     pub soot: Option<Stain>,
-    /// What the files hold and wanted textures ask for, but is not drawn as they say; a phrase each.
+    /// What the files hold and wanted textures ask for, but is not drawn as they say; a phrase
+    /// each.
     pub left_out: std::collections::BTreeSet<String>,
 }
 
 impl Assets {
-    /// The texture or flat of a name; a name that the set lacks always gets the same one of [`Assets::fallbacks`].
+    /// The texture or flat of a name; a name that the set lacks always gets the same one of
+    /// [`Assets::fallbacks`].
     #[must_use]
     pub fn texture(&self, name: crate::map::TextureName) -> TextureEntry {
         self.textures.get(&name).copied().unwrap_or_else(|| {
-            let hash = name.0.iter().fold(0u32, |hash, &byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
+            let hash = name
+                .0
+                .iter()
+                .fold(0u32, |hash, &byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
             let first_picture = TextureEntry { first: 0, frames: 1, tics: 1 };
-            self.fallbacks.get(hash as usize % self.fallbacks.len().max(1)).copied().unwrap_or(first_picture)
+            self.fallbacks
+                .get(hash as usize % self.fallbacks.len().max(1))
+                .copied()
+                .unwrap_or(first_picture)
         })
     }
 }
@@ -116,25 +131,33 @@ pub struct TextureEntry {
 
 /// Four-letter sprite names; an actor's `sprite` is an index into this list.
 pub const SPRITE_NAMES: [&str; 73] = [
-    "BON1", "STIM", "MEDI", "BON2", "ROCK", "SHEL", "CELL", "CLIP", "PVIS", "PINS", "PMAP", "BPAK", "SUIT", "YKEY",
-    "BSKU", // items
+    "BON1", "STIM", "MEDI", "BON2", "ROCK", "SHEL", "CELL", "CLIP", "PVIS", "PINS", "PMAP", "BPAK",
+    "SUIT", "YKEY", "BSKU", // items
     "PIST", "SHOT", "SGN2", "MGUN", "LAUN", "PLAS", "BFUG", // weapons to pick up
     "HEAD", "POSS", "SPOS", "CPOS", "TROO", "SARG", "SKEL", "SKUL", // monsters
     "BAR1", "BEXP", "MISL", "PLSS", "PLSE", "BFS1", "BFE1", "PUFF", "BLUD", // effects
-    "TLMP", "TLP2", "COL4", "COL2", "COL5", "ELEC", "TRE1", "SMIT", "TRE2", "POL5", "PLAY", "BRS1", "COL1", // decor, player
-    "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", "SHT2", "PLSF", "BFGF", // view weapons
+    "TLMP", "TLP2", "COL4", "COL2", "COL5", "ELEC", "TRE1", "SMIT", "TRE2", "POL5", "PLAY", "BRS1",
+    "COL1", // decor, player
+    "PISG", "PISF", "SHTG", "SHTF", "CHGG", "CHGF", "MISG", "MISF", "PLSG", "BFGG", "SHT2", "PLSF",
+    "BFGF", // view weapons
     "CAND", "SMBT", "SMGT", "SMRT", "POB1", "FTOP", "FDEB", // decor of the published maps
     "RSMK", // smoke of rockets
 ];
 
-/// The index of a sprite name; `const`, so that the state tables resolve their names while compiling.
+/// The index of a sprite name; `const`, so that the state tables resolve their names while
+/// compiling.
 #[must_use]
 pub const fn sprite_index(name: &str) -> Option<u8> {
     let name = name.as_bytes();
     let mut i = 0;
     while i < SPRITE_NAMES.len() {
         let other = SPRITE_NAMES[i].as_bytes();
-        if name.len() == 4 && name[0] == other[0] && name[1] == other[1] && name[2] == other[2] && name[3] == other[3] {
+        if name.len() == 4
+            && name[0] == other[0]
+            && name[1] == other[1]
+            && name[2] == other[2]
+            && name[3] == other[3]
+        {
             return Some(i as u8);
         }
         i += 1;

@@ -1,12 +1,14 @@
-//! The planar arrangement behind the map builder: edges of overlapping polygons, cut where they meet, and the polygon
-//! that lies uppermost on each side of each piece. Exact integers throughout; only a crossing point is rounded.
+//! The planar arrangement behind the map builder: edges of overlapping polygons, cut where they
+//! meet, and the polygon that lies uppermost on each side of each piece. Exact integers throughout;
+//! only a crossing point is rounded.
 
 use std::collections::BTreeMap;
 
 /// A point in 1/64 map units.
 pub(super) type Point = (i64, i64);
 
-/// Points of the arrangement a map unit: fine enough that a rounded crossing is invisible, and exact in 16.16.
+/// Points of the arrangement a map unit: fine enough that a rounded crossing is invisible, and
+/// exact in 16.16.
 pub(super) const POINTS_PER_UNIT: i64 = 64;
 
 /// What an edge was drawn for: the outline of polygon `n`, or mark `n`.
@@ -26,15 +28,17 @@ pub(super) struct Piece {
 
 type Edges = BTreeMap<(Point, Point), Vec<Owner>>;
 
-/// Cuts edges where they cross, touch or nearly touch. Rounding a crossing bends both edges by less than 1/64 unit,
-/// which may make new contacts, so this repeats until there are none; `None` if that takes absurdly long.
+/// Cuts edges where they cross, touch or nearly touch. Rounding a crossing bends both edges by less
+/// than 1/64 unit, which may make new contacts, so this repeats until there are none; `None` if
+/// that takes absurdly long.
 pub(super) fn cut(edges: impl Iterator<Item = (Point, Point, Owner)>) -> Option<Vec<Piece>> {
     let mut pieces: Edges = BTreeMap::new();
     for (a, b, owner) in edges {
         insert(&mut pieces, a, b, &[owner]);
     }
     for _ in 0..64 {
-        let list: Vec<Piece> = pieces.into_iter().map(|((a, b), owners)| Piece { a, b, owners }).collect();
+        let list: Vec<Piece> =
+            pieces.into_iter().map(|((a, b), owners)| Piece { a, b, owners }).collect();
         let cuts = contacts(&list);
         if cuts.is_empty() {
             return Some(list);
@@ -43,7 +47,8 @@ pub(super) fn cut(edges: impl Iterator<Item = (Point, Point, Owner)>) -> Option<
         let mut next = cuts.into_iter().peekable();
         for (index, piece) in list.iter().enumerate() {
             let mut from = piece.a;
-            // Sorted by piece, then along it: points of a piece with `a < b` are ordered as it runs.
+            // Sorted by piece, then along it: points of a piece with `a < b` are ordered as it
+            // runs.
             while let Some(&(of, point)) = next.peek().filter(|&&(of, _)| of == index) {
                 debug_assert_eq!(of, index);
                 insert(&mut pieces, from, point, &piece.owners);
@@ -111,7 +116,8 @@ fn dot(p: Point, q: Point) -> i64 {
     p.0 * q.0 + p.1 * q.1
 }
 
-/// Whether a point lies on the piece, or within three quarters of a grid step of it, strictly between its ends.
+/// Whether a point lies on the piece, or within three quarters of a grid step of it, strictly
+/// between its ends.
 fn touches(piece: &Piece, point: Point) -> bool {
     if point == piece.a || point == piece.b {
         return false;
@@ -132,7 +138,9 @@ fn crossing(p: &Piece, q: &Piece) -> Option<Point> {
         return None;
     }
     let span = i128::from(pa) - i128::from(pb);
-    let at = |from: i64, delta: i64| from + (2 * i128::from(delta) * i128::from(pa) + span).div_euclid(2 * span) as i64;
+    let at = |from: i64, delta: i64| {
+        from + (2 * i128::from(delta) * i128::from(pa) + span).div_euclid(2 * span) as i64
+    };
     Some((at(p.a.0, along_p.0), at(p.a.1, along_p.1)))
 }
 
@@ -149,7 +157,11 @@ struct Outline {
 
 impl Regions {
     pub(super) fn new(pieces: &[Piece], polygon_count: usize) -> Regions {
-        let empty = || Outline { low: (i64::MAX, i64::MAX), high: (i64::MIN, i64::MIN), pieces: Vec::new() };
+        let empty = || Outline {
+            low: (i64::MAX, i64::MAX),
+            high: (i64::MIN, i64::MIN),
+            pieces: Vec::new(),
+        };
         let mut outlines: Vec<Outline> = (0..polygon_count).map(|_| empty()).collect();
         for piece in pieces {
             for owner in &piece.owners {
@@ -166,9 +178,15 @@ impl Regions {
         Regions { outlines }
     }
 
-    /// Shows `visit` the polygons that hold the points just left (or right) of the middle of `a -> b`, last drawn
-    /// first, until it has seen enough and returns true.
-    pub(super) fn beside(&self, a: Point, b: Point, left: bool, mut visit: impl FnMut(usize) -> bool) {
+    /// Shows `visit` the polygons that hold the points just left (or right) of the middle of `a ->
+    /// b`, last drawn first, until it has seen enough and returns true.
+    pub(super) fn beside(
+        &self,
+        a: Point,
+        b: Point,
+        left: bool,
+        mut visit: impl FnMut(usize) -> bool,
+    ) {
         // Doubled coordinates make the middle a grid point.
         let middle = (a.0 + b.0, a.1 + b.1);
         let along = sub(b, a);
@@ -185,8 +203,8 @@ impl Regions {
     }
 }
 
-/// Even-odd test of the point an infinitesimal step from `middle` (doubled) along `normal`: the ray goes east, ties
-/// are decided by the step.
+/// Even-odd test of the point an infinitesimal step from `middle` (doubled) along `normal`: the ray
+/// goes east, ties are decided by the step.
 fn holds(pieces: &[(Point, Point)], middle: Point, normal: Point) -> bool {
     let above = |p: Point| 2 * p.1 > middle.1 || (2 * p.1 == middle.1 && normal.1 < 0);
     let mut inside = false;

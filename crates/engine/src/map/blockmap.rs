@@ -11,15 +11,15 @@ const BLOCK_SHIFT: u32 = 16 + 7;
 const ENTRY_LIMIT: usize = 8_000_000;
 
 impl Blockmap {
-    /// Lists the lines by block. A line is in every block whose closed square it touches, so that whoever looks in
-    /// the blocks that a box overlaps meets every line that the box touches.
+    /// Lists the lines by block. A line is in every block whose closed square it touches, so that
+    /// whoever looks in the blocks that a box overlaps meets every line that the box touches.
     pub(super) fn build(lines: &[Line]) -> Result<Blockmap, MapError> {
         let limit = |pick: fn(&Line) -> i32, low: bool| {
             let all = lines.iter().map(pick);
             (if low { all.min() } else { all.max() }).unwrap_or(0)
         };
-        // At the map's corner, where the original has it: slides look for walls block by block, and tile maps have the
-        // lines of one tile in few blocks.
+        // At the map's corner, where the original has it: slides look for walls block by block, and
+        // tile maps have the lines of one tile in few blocks.
         let origin_x = limit(|l| l.bounds[0].0, true) >> 16 << 16;
         let origin_y = limit(|l| l.bounds[2].0, true) >> 16 << 16;
         let columns = block_of(limit(|l| l.bounds[1].0, false), origin_x) + 1;
@@ -33,7 +33,9 @@ impl Blockmap {
                 total += 1;
             });
             if total > ENTRY_LIMIT {
-                return Err(MapError::TooComplex { what: "its lines cross too many 128-unit blocks" });
+                return Err(MapError::TooComplex {
+                    what: "its lines cross too many 128-unit blocks",
+                });
             }
         }
         for i in 1..counts.len() {
@@ -61,7 +63,11 @@ impl Blockmap {
 
     /// The same with their limits.
     #[inline]
-    pub(crate) fn bounded_lines_in(&self, column: i32, row: i32) -> impl Iterator<Item = (u32, &[Fixed; 4])> {
+    pub(crate) fn bounded_lines_in(
+        &self,
+        column: i32,
+        row: i32,
+    ) -> impl Iterator<Item = (u32, &[Fixed; 4])> {
         let entries = self.entries_of(column, row);
         self.lines[entries.clone()].iter().copied().zip(&self.bounds[entries])
     }
@@ -91,9 +97,17 @@ fn block_of(raw: i32, origin: i32) -> i32 {
     ((i64::from(raw) - i64::from(origin)) >> BLOCK_SHIFT) as i32
 }
 
-/// Calls `visit` with each block that the line touches: row by row, the columns between the line's least and greatest
-/// x within the row, widened by one raw unit against rounding and by the neighbours that share a touched edge.
-fn for_each_block(line: &Line, origin_x: i32, origin_y: i32, columns: i32, rows: i32, mut visit: impl FnMut(usize)) {
+/// Calls `visit` with each block that the line touches: row by row, the columns between the line's
+/// least and greatest x within the row, widened by one raw unit against rounding and by the
+/// neighbours that share a touched edge.
+fn for_each_block(
+    line: &Line,
+    origin_x: i32,
+    origin_y: i32,
+    columns: i32,
+    rows: i32,
+    mut visit: impl FnMut(usize),
+) {
     let [west, east, south, north] = line.bounds.map(|limit| i64::from(limit.0));
     let (x1, y1) = (i64::from(line.v1.x.0), i64::from(line.v1.y.0));
     let (dx, dy) = (i64::from(line.dx.0), i64::from(line.dy.0));
@@ -109,7 +123,9 @@ fn for_each_block(line: &Line, origin_x: i32, origin_y: i32, columns: i32, rows:
         let (low, high) = if dy == 0 {
             (west, east)
         } else {
-            let at = |y: i64| (i128::from(x1) + i128::from(y - y1) * i128::from(dx) / i128::from(dy)) as i64;
+            let at = |y: i64| {
+                (i128::from(x1) + i128::from(y - y1) * i128::from(dx) / i128::from(dy)) as i64
+            };
             let (a, b) = (at(bottom), at(top));
             ((a.min(b) - 1).max(west), (a.max(b) + 1).min(east))
         };

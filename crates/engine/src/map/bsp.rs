@@ -1,26 +1,31 @@
 //! The BSP builder: cuts the sectors into convex subsectors by the lines' own directions.
 //!
-//! Every comparison is exact integer arithmetic on the original lines. The only rounding is of a cut point, once, to
-//! 1/65536 unit, and it is computed from the uncut line, so that errors never add up. Points closer to a partition
-//! than [`EPSILON`] count as on it, which keeps cuts from leaving slivers.
+//! Every comparison is exact integer arithmetic on the original lines. The only rounding is of a
+//! cut point, once, to 1/65536 unit, and it is computed from the uncut line, so that errors never
+//! add up. Points closer to a partition than [`EPSILON`] count as on it, which keeps cuts from
+//! leaving slivers.
 
 use super::{Line, MapError, Node, SectorId, Seg, Side, SideId, Subsector, Vertex};
 use crate::math::Fixed;
 
-/// Deepest tree; renderers may keep a stack of this size. Balanced trees of 65,000 segs are about 30 deep.
+/// Deepest tree; renderers may keep a stack of this size. Balanced trees of 65,000 segs are about
+/// 30 deep.
 pub(super) const DEPTH_LIMIT: usize = 1024;
 
-/// Distance from a partition, in 1/65536 units, within which a point counts as on it: cut points are rounded by
-/// less than 1, so 6 leaves room for the rounding of two cuts, and is far below anything visible.
+/// Distance from a partition, in 1/65536 units, within which a point counts as on it: cut points
+/// are rounded by less than 1, so 6 leaves room for the rounding of two cuts, and is far below
+/// anything visible.
 const EPSILON: i64 = 6;
 
-/// Side tests that one build may make: ten times what a town of 15,000 lines needs, about two seconds at worst.
+/// Side tests that one build may make: ten times what a town of 15,000 lines needs, about two
+/// seconds at worst.
 const WORK_LIMIT: u64 = 1 << 28;
 
 /// Partition candidates that are fully priced per node.
 const CANDIDATES: usize = 48;
 
-/// What a cut costs, in segs of imbalance: cuts cost memory and time for ever, imbalance only depth.
+/// What a cut costs, in segs of imbalance: cuts cost memory and time for ever, imbalance only
+/// depth.
 const CUT_COST: i64 = 9;
 
 /// A seg in the making. Direction and exact position come from its line.
@@ -56,10 +61,18 @@ impl Partition {
         let l = &lines[line as usize];
         let (dx, dy) = (i64::from(l.dx.0), i64::from(l.dy.0));
         let length = (dx.unsigned_abs().pow(2) + dy.unsigned_abs().pow(2)).isqrt() as i64;
-        Partition { x: i64::from(l.v1.x.0), y: i64::from(l.v1.y.0), dx, dy, tolerance: EPSILON * length, line }
+        Partition {
+            x: i64::from(l.v1.x.0),
+            y: i64::from(l.v1.y.0),
+            dx,
+            dy,
+            tolerance: EPSILON * length,
+            line,
+        }
     }
 
-    /// Twice the area spanned by the partition and the point: positive on the left. Exact: coordinates are below 2^30.
+    /// Twice the area spanned by the partition and the point: positive on the left. Exact:
+    /// coordinates are below 2^30.
     fn cross(&self, v: Vertex) -> i64 {
         (i64::from(v.y.0) - self.y) * self.dx - (i64::from(v.x.0) - self.x) * self.dy
     }
@@ -73,8 +86,8 @@ impl Partition {
         match (a_on, b_on) {
             (true, true) => {
                 let line = &lines[seg.line as usize];
-                let along =
-                    i64::from(line.dx.0) as i128 * i128::from(self.dx) + i64::from(line.dy.0) as i128 * i128::from(self.dy);
+                let along = i64::from(line.dx.0) as i128 * i128::from(self.dx)
+                    + i64::from(line.dy.0) as i128 * i128::from(self.dy);
                 if (along > 0) != seg.back { Place::Right } else { Place::Left }
             }
             (true, false) => {
@@ -133,9 +146,13 @@ struct Builder<'a> {
 
 /// Builds the tree for closed sectors.
 pub(super) fn build(lines: &[Line], sides: &[Side]) -> Result<Tree, MapError> {
-    // A line that parts a sector from itself and shows nothing stops bodies at most: no view needs it.
-    let shows = |side: Option<SideId>| side.is_some_and(|side| sides[side.0 as usize].middle.is_some());
-    let parts = |line: &Line| line.back_sector != Some(line.front_sector) || shows(Some(line.front)) || shows(line.back);
+    // A line that parts a sector from itself and shows nothing stops bodies at most: no view needs
+    // it.
+    let shows =
+        |side: Option<SideId>| side.is_some_and(|side| sides[side.0 as usize].middle.is_some());
+    let parts = |line: &Line| {
+        line.back_sector != Some(line.front_sector) || shows(Some(line.front)) || shows(line.back)
+    };
     let none_parts = !lines.iter().any(parts);
     let mut segs = Vec::with_capacity(lines.len() * 2);
     for (index, line) in lines.iter().enumerate().filter(|(_, line)| none_parts || parts(line)) {
@@ -165,7 +182,8 @@ impl Builder<'_> {
                 Place::Left => left.push(*seg),
                 Place::Cut => {
                     let middle = partition.crossing(&self.lines[seg.line as usize]);
-                    let (first, second) = (WorkSeg { v2: middle, ..*seg }, WorkSeg { v1: middle, ..*seg });
+                    let (first, second) =
+                        (WorkSeg { v2: middle, ..*seg }, WorkSeg { v1: middle, ..*seg });
                     if partition.cross(seg.v1) < 0 {
                         right.push(first);
                         left.push(second);
@@ -181,14 +199,22 @@ impl Builder<'_> {
         let mut children = [self.grow(right, depth + 1)?, self.grow(left, depth + 1)?];
         let line = &self.lines[partition.line as usize];
         let mut dx = line.dx;
-        // Points on a partition are on its right. Those that run west are turned about: a thing exactly on the line between two
-        // sectors, one north of the other, belongs to the southern one in the original, which lights it.
+        // Points on a partition are on its right. Those that run west are turned about: a thing
+        // exactly on the line between two sectors, one north of the other, belongs to the southern
+        // one in the original, which lights it.
         if line.dy.0 == 0 && dx.0 < 0 {
             dx = -dx;
             bounds.reverse();
             children.reverse();
         }
-        self.tree.nodes.push(Node { x: line.v1.x, y: line.v1.y, dx, dy: line.dy, bounds, children });
+        self.tree.nodes.push(Node {
+            x: line.v1.x,
+            y: line.v1.y,
+            dx,
+            dy: line.dy,
+            bounds,
+            children,
+        });
         Ok(self.tree.nodes.len() as u32 - 1)
     }
 
@@ -207,7 +233,8 @@ impl Builder<'_> {
                     best = Some((cost, partition));
                 }
             }
-            // The first sample usually holds a good line; the others are only tried to prove convexity.
+            // The first sample usually holds a good line; the others are only tried to prove
+            // convexity.
             if best.is_some() {
                 break;
             }
@@ -216,7 +243,12 @@ impl Builder<'_> {
     }
 
     /// The cost of a partition if it divides `segs` and costs less than `bound`.
-    fn price(&mut self, partition: &Partition, segs: &[WorkSeg], bound: i64) -> Result<Option<i64>, MapError> {
+    fn price(
+        &mut self,
+        partition: &Partition,
+        segs: &[WorkSeg],
+        bound: i64,
+    ) -> Result<Option<i64>, MapError> {
         let (mut right, mut left, mut cuts) = (0i64, 0i64, 0i64);
         for (done, seg) in segs.iter().enumerate() {
             match partition.place(seg, self.lines) {
@@ -263,12 +295,14 @@ fn bounds_of(segs: &[WorkSeg]) -> [Fixed; 4] {
 }
 
 fn finish(seg: &WorkSeg, line: &Line) -> Seg {
-    let (start, side, front_sector, back_sector): (Vertex, SideId, SectorId, Option<SectorId>) = if seg.back {
-        let (side, sector) = line.back.zip(line.back_sector).unwrap_or((line.front, line.front_sector));
-        (line.v2, side, sector, Some(line.front_sector))
-    } else {
-        (line.v1, line.front, line.front_sector, line.back_sector)
-    };
+    let (start, side, front_sector, back_sector): (Vertex, SideId, SectorId, Option<SectorId>) =
+        if seg.back {
+            let (side, sector) =
+                line.back.zip(line.back_sector).unwrap_or((line.front, line.front_sector));
+            (line.v2, side, sector, Some(line.front_sector))
+        } else {
+            (line.v1, line.front, line.front_sector, line.back_sector)
+        };
     let dx = i64::from(seg.v1.x.0) - i64::from(start.x.0);
     let dy = i64::from(seg.v1.y.0) - i64::from(start.y.0);
     let offset = Fixed((dx.unsigned_abs().pow(2) + dy.unsigned_abs().pow(2)).isqrt() as i32);

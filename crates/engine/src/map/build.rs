@@ -1,13 +1,14 @@
 //! From the editable source to the built map: checks, fixed point, cross references.
 
 use super::{
-    Blockmap, Line, LineFlags, Locator, Map, MapError, MapSource, MapThing, Sector, SectorId, Side, SideId, TextureId,
-    TextureName, Vertex, bsp, special,
+    Blockmap, Line, LineFlags, Locator, Map, MapError, MapSource, MapThing, Sector, SectorId, Side,
+    SideId, TextureId, TextureName, Vertex, bsp, special,
 };
 use crate::math::{Angle, Fixed};
 use std::collections::BTreeMap;
 
-/// Most vertices, lines, sides, sectors or things of a map. The largest original map has some 7,000.
+/// Most vertices, lines, sides, sectors or things of a map. The largest original map has some
+/// 7,000.
 const ELEMENT_LIMIT: usize = 65_535;
 
 /// Largest coordinate and height: differences of two then still fit 16.16.
@@ -17,18 +18,27 @@ const COORDINATE_LIMIT: i32 = 16_383;
 const LIGHT_LIMIT: i32 = 32_767;
 
 impl Map {
-    /// Checks a source and builds it. `extra_texture_names` are interned too, so that rules which change textures
-    /// during play find their [`TextureId`]s by [`Map::texture`].
+    /// Checks a source and builds it. `extra_texture_names` are interned too, so that rules which
+    /// change textures during play find their [`TextureId`]s by [`Map::texture`].
     ///
     /// # Errors
     /// The first fault found, with the element's index.
-    pub fn build(source: &MapSource, name: &str, extra_texture_names: &[&str]) -> Result<Map, MapError> {
+    pub fn build(
+        source: &MapSource,
+        name: &str,
+        extra_texture_names: &[&str],
+    ) -> Result<Map, MapError> {
         check_counts(source)?;
         let vertices = source
             .vertices
             .iter()
             .enumerate()
-            .map(|(i, v)| Ok(Vertex { x: coordinate("vertex", i, "x", v.x)?, y: coordinate("vertex", i, "y", v.y)? }))
+            .map(|(i, v)| {
+                Ok(Vertex {
+                    x: coordinate("vertex", i, "x", v.x)?,
+                    y: coordinate("vertex", i, "y", v.y)?,
+                })
+            })
             .collect::<Result<Vec<_>, MapError>>()?;
         let mut names = Names::default();
         let mut sides = build_sides(source, &mut names)?;
@@ -94,7 +104,11 @@ impl Names {
 
     fn finish(self) -> Result<Vec<TextureName>, MapError> {
         if self.list.len() > ELEMENT_LIMIT {
-            return Err(MapError::TooMany { what: "texture names", count: self.list.len(), limit: ELEMENT_LIMIT });
+            return Err(MapError::TooMany {
+                what: "texture names",
+                count: self.list.len(),
+                limit: ELEMENT_LIMIT,
+            });
         }
         Ok(self.list)
     }
@@ -117,20 +131,41 @@ fn check_counts(source: &MapSource) -> Result<(), MapError> {
         }
     }
     if source.things.len() > ELEMENT_LIMIT {
-        return Err(MapError::TooMany { what: "things", count: source.things.len(), limit: ELEMENT_LIMIT });
+        return Err(MapError::TooMany {
+            what: "things",
+            count: source.things.len(),
+            limit: ELEMENT_LIMIT,
+        });
     }
     Ok(())
 }
 
-fn coordinate(element: &'static str, index: usize, field: &'static str, value: f64) -> Result<Fixed, MapError> {
+fn coordinate(
+    element: &'static str,
+    index: usize,
+    field: &'static str,
+    value: f64,
+) -> Result<Fixed, MapError> {
     if value.abs() <= f64::from(COORDINATE_LIMIT) {
         Ok(Fixed::from_f64(value))
     } else {
-        Err(MapError::Range { element, index, field, value: value.to_string(), limit: COORDINATE_LIMIT })
+        Err(MapError::Range {
+            element,
+            index,
+            field,
+            value: value.to_string(),
+            limit: COORDINATE_LIMIT,
+        })
     }
 }
 
-fn whole(element: &'static str, index: usize, field: &'static str, value: i32, limit: i32) -> Result<i32, MapError> {
+fn whole(
+    element: &'static str,
+    index: usize,
+    field: &'static str,
+    value: i32,
+    limit: i32,
+) -> Result<i32, MapError> {
     if (-limit..=limit).contains(&value) {
         Ok(value)
     } else {
@@ -145,7 +180,11 @@ fn reference(
     refers_to: usize,
     count: usize,
 ) -> Result<usize, MapError> {
-    if refers_to < count { Ok(refers_to) } else { Err(MapError::Index { element, index, field, refers_to, count }) }
+    if refers_to < count {
+        Ok(refers_to)
+    } else {
+        Err(MapError::Index { element, index, field, refers_to, count })
+    }
 }
 
 fn build_sides(source: &MapSource, names: &mut Names) -> Result<Vec<Side>, MapError> {
@@ -163,16 +202,23 @@ fn build_sides(source: &MapSource, names: &mut Names) -> Result<Vec<Side>, MapEr
     source.sides.iter().enumerate().map(convert).collect()
 }
 
-/// The lines that have a length: those of none are left away, as other loaders do. Lines that share a side get one each, as the
-/// world may change it for one of them alone.
-fn build_lines(source: &MapSource, vertices: &[Vertex], sides: &mut Vec<Side>) -> Result<Vec<Line>, MapError> {
+/// The lines that have a length: those of none are left away, as other loaders do. Lines that share
+/// a side get one each, as the world may change it for one of them alone.
+fn build_lines(
+    source: &MapSource,
+    vertices: &[Vertex],
+    sides: &mut Vec<Side>,
+) -> Result<Vec<Line>, MapError> {
     let mut side_used = vec![false; sides.len()];
     let mut lines = Vec::with_capacity(source.lines.len());
     for (i, line) in source.lines.iter().enumerate() {
         let v1 = vertices[reference("linedef", i, "v1", line.v1, vertices.len())?];
         let v2 = vertices[reference("linedef", i, "v2", line.v2, vertices.len())?];
         let front = reference("linedef", i, "sidefront", line.front, source.sides.len())?;
-        let back = line.back.map(|back| reference("linedef", i, "sideback", back, source.sides.len())).transpose()?;
+        let back = line
+            .back
+            .map(|back| reference("linedef", i, "sideback", back, source.sides.len()))
+            .transpose()?;
         if v1 == v2 {
             continue;
         }
@@ -213,7 +259,8 @@ fn build_lines(source: &MapSource, vertices: &[Vertex], sides: &mut Vec<Side>) -
 
 fn build_sectors(source: &MapSource, names: &mut Names) -> Result<Vec<Sector>, MapError> {
     let convert = |(i, sector): (usize, &super::SourceSector)| {
-        let height = |field, value| whole("sector", i, field, value, COORDINATE_LIMIT).map(Fixed::from_int);
+        let height =
+            |field, value| whole("sector", i, field, value, COORDINATE_LIMIT).map(Fixed::from_int);
         Ok(Sector {
             floor: height("heightfloor", sector.floor)?,
             ceiling: height("heightceiling", sector.ceiling)?,
@@ -245,11 +292,14 @@ fn join_sectors_and_lines(sectors: &mut [Sector], lines: &[Line]) {
         }
     }
     // One that no line faces lies nowhere.
-    sectors.iter_mut().filter(|sector| sector.lines.is_empty()).for_each(|sector| sector.bounds = [Fixed::ZERO; 4]);
+    sectors
+        .iter_mut()
+        .filter(|sector| sector.lines.is_empty())
+        .for_each(|sector| sector.bounds = [Fixed::ZERO; 4]);
 }
 
-/// Every vertex must end as many of a sector's outlines as it begins: walking with the sector on the right,
-/// what comes in goes out.
+/// Every vertex must end as many of a sector's outlines as it begins: walking with the sector on
+/// the right, what comes in goes out.
 fn check_closed(source: &MapSource, sector_count: usize) -> Result<(), MapError> {
     let mut balance: Vec<BTreeMap<usize, i32>> = vec![BTreeMap::new(); sector_count];
     // Vertices at one place are one, whatever their indices.

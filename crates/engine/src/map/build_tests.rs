@@ -1,6 +1,10 @@
-//! The built map held against its definition: brute force over the lines instead of tree and blockmap.
+//! The built map held against its definition: brute force over the lines instead of tree and
+//! blockmap.
 
-use super::{Line, Map, MapBuilder, MapError, MapSource, Node, SectorId, SourceLine, SourceSector, Style, Subsector, Vertex};
+use super::{
+    Line, Map, MapBuilder, MapError, MapSource, Node, SectorId, SourceLine, SourceSector, Style,
+    Subsector, Vertex,
+};
 use crate::math::{Fixed, Rng};
 
 const ROOM: Style = Style {
@@ -39,13 +43,15 @@ fn random_source(seed: u64, shapes: i32) -> MapSource {
     builder.finish().expect("random shapes come together")
 }
 
-/// The sector around a point by counting the lines that a ray to the east crosses, or none in the void; no answer
-/// closer than `margin` units to a line, where rounding may decide.
+/// The sector around a point by counting the lines that a ray to the east crosses, or none in the
+/// void; no answer closer than `margin` units to a line, where rounding may decide.
 fn sector_by_rays(map: &Map, x: f64, y: f64, margin: f64) -> Option<Option<SectorId>> {
     let mut crossings = vec![0; map.sectors.len()];
     for line in &map.lines {
-        let (x1, y1, x2, y2) = (line.v1.x.to_f64(), line.v1.y.to_f64(), line.v2.x.to_f64(), line.v2.y.to_f64());
-        let along = ((x - x1) * (x2 - x1) + (y - y1) * (y2 - y1)) / ((x2 - x1).powi(2) + (y2 - y1).powi(2));
+        let (x1, y1, x2, y2) =
+            (line.v1.x.to_f64(), line.v1.y.to_f64(), line.v2.x.to_f64(), line.v2.y.to_f64());
+        let along =
+            ((x - x1) * (x2 - x1) + (y - y1) * (y2 - y1)) / ((x2 - x1).powi(2) + (y2 - y1).powi(2));
         let t = along.clamp(0.0, 1.0);
         if (x - x1 - t * (x2 - x1)).hypot(y - y1 - t * (y2 - y1)) < margin {
             return None;
@@ -70,7 +76,11 @@ fn points_on_a_line_between_north_and_south_belong_to_the_south() {
     builder.rectangle(Style { floor: 8, ..ROOM }, -64, -64, 64, 64);
     let map = Map::build(&builder.finish().unwrap(), "patch", &[]).unwrap();
     for x in -63..64 {
-        let floor = |y| map.sectors[map.sector_at(Fixed::from_int(x), Fixed::from_int(y)).0 as usize].floor.floor();
+        let floor = |y| {
+            map.sectors[map.sector_at(Fixed::from_int(x), Fixed::from_int(y)).0 as usize]
+                .floor
+                .floor()
+        };
         assert_eq!([65, 64, 63, -63, -64, -65].map(floor), [0, 8, 8, 8, 0, 0], "at {x}");
     }
 }
@@ -82,9 +92,19 @@ fn check_points(map: &Map, step: i32) -> usize {
             let (x, y) = (f64::from(x) + 0.37, f64::from(y) + 0.61);
             let Some(sector) = sector_by_rays(map, x, y, 0.05) else { continue };
             let (fixed_x, fixed_y) = (Fixed::from_f64(x), Fixed::from_f64(y));
-            assert_eq!(map.is_inside(fixed_x, fixed_y), sector.is_some(), "at ({x}, {y}) of {}", map.name);
+            assert_eq!(
+                map.is_inside(fixed_x, fixed_y),
+                sector.is_some(),
+                "at ({x}, {y}) of {}",
+                map.name
+            );
             if let Some(sector) = sector {
-                assert_eq!(map.sector_at(fixed_x, fixed_y), sector, "at ({x}, {y}) of {}", map.name);
+                assert_eq!(
+                    map.sector_at(fixed_x, fixed_y),
+                    sector,
+                    "at ({x}, {y}) of {}",
+                    map.name
+                );
                 checked += 1;
             }
         }
@@ -92,10 +112,12 @@ fn check_points(map: &Map, step: i32) -> usize {
     checked
 }
 
-/// Twice the area of the triangle over `a -> b` and `p`, in 2^-32 square units: positive on the left.
+/// Twice the area of the triangle over `a -> b` and `p`, in 2^-32 square units: positive on the
+/// left.
 fn cross(a: Vertex, b: Vertex, p: Vertex) -> i128 {
     let wide = |v: Fixed| i128::from(v.0);
-    (wide(b.x) - wide(a.x)) * (wide(p.y) - wide(a.y)) - (wide(p.x) - wide(a.x)) * (wide(b.y) - wide(a.y))
+    (wide(b.x) - wide(a.x)) * (wide(p.y) - wide(a.y))
+        - (wide(p.x) - wide(a.x)) * (wide(b.y) - wide(a.y))
 }
 
 fn length(a: Vertex, b: Vertex) -> f64 {
@@ -120,7 +142,10 @@ fn check_tree(map: &Map) {
             stack.extend(map.nodes[child as usize].children);
         }
     }
-    assert!(reached.iter().all(|&times| times == 1), "every subsector is reached once: {reached:?}");
+    assert!(
+        reached.iter().all(|&times| times == 1),
+        "every subsector is reached once: {reached:?}"
+    );
 
     let mut covered = vec![[0.0f64; 2]; map.lines.len()];
     for &Subsector { sector, first_seg, seg_count } in &map.subsectors {
@@ -131,7 +156,10 @@ fn check_tree(map: &Map) {
             let back = seg.side != line.front;
             assert_eq!(seg.front_sector, sector, "a subsector is of one sector");
             assert_eq!(map.sides[seg.side.0 as usize].sector, sector);
-            assert_eq!(seg.back_sector, if back { Some(line.front_sector) } else { line.back_sector });
+            assert_eq!(
+                seg.back_sector,
+                if back { Some(line.front_sector) } else { line.back_sector }
+            );
             let start = if back { line.v2 } else { line.v1 };
             assert!((seg.offset.to_f64() - length(start, seg.v1)).abs() < 0.001);
             covered[seg.line as usize][usize::from(back)] += length(seg.v1, seg.v2);
@@ -140,7 +168,12 @@ fn check_tree(map: &Map) {
                 for v in [other.v1, other.v2] {
                     let left = left_of(line, v);
                     let behind = if back { -left } else { left };
-                    assert!(behind < 0.001, "seg of line {} reaches {behind} behind line {}", other.line, seg.line);
+                    assert!(
+                        behind < 0.001,
+                        "seg of line {} reaches {behind} behind line {}",
+                        other.line,
+                        seg.line
+                    );
                 }
             }
             // On its line, and the same way along.
@@ -168,7 +201,10 @@ fn check_blockmap(map: &Map) {
             let x = line.v1.x + line.dx.scale(step, steps);
             let y = line.v1.y + line.dy.scale(step, steps);
             let block = blockmap.lines_in(blockmap.column_of(x), blockmap.row_of(y));
-            assert!(block.contains(&(i as u32)), "line {i} is missing from the block of ({x}, {y})");
+            assert!(
+                block.contains(&(i as u32)),
+                "line {i} is missing from the block of ({x}, {y})"
+            );
         }
     }
     for row in 0..blockmap.rows {
@@ -179,8 +215,14 @@ fn check_blockmap(map: &Map) {
                 let bounds = map.lines[line as usize].bounds.map(Fixed::to_f64);
                 let west = blockmap.origin_x.to_f64() + f64::from(column) * 128.0;
                 let south = blockmap.origin_y.to_f64() + f64::from(row) * 128.0;
-                assert!(bounds[0] <= west + 128.0 && bounds[1] >= west, "line {line} is far from its block");
-                assert!(bounds[2] <= south + 128.0 && bounds[3] >= south, "line {line} is far from its block");
+                assert!(
+                    bounds[0] <= west + 128.0 && bounds[1] >= west,
+                    "line {line} is far from its block"
+                );
+                assert!(
+                    bounds[2] <= south + 128.0 && bounds[3] >= south,
+                    "line {line} is far from its block"
+                );
             }
         }
     }
@@ -209,19 +251,31 @@ fn a_single_room_is_one_subsector() {
     check_tree(&map);
 }
 
-/// Shade changes the light of what is under it and nothing else, and what is painted later covers it.
+/// Shade changes the light of what is under it and nothing else, and what is painted later covers
+/// it.
 #[test]
 fn shade_keeps_what_it_falls_on() {
     let mut builder = MapBuilder::new();
-    builder.rectangle(ROOM, 0, 0, 256, 256).rectangle(Style { floor: 16, tag: 5, ..ROOM }, 128, 0, 256, 256);
-    builder.shade(96, &[(64, 64), (192, 64), (192, 192), (64, 192)]).shade(200, &[(0, 0), (32, 0), (32, 32)]);
+    builder.rectangle(ROOM, 0, 0, 256, 256).rectangle(
+        Style { floor: 16, tag: 5, ..ROOM },
+        128,
+        0,
+        256,
+        256,
+    );
+    builder
+        .shade(96, &[(64, 64), (192, 64), (192, 192), (64, 192)])
+        .shade(200, &[(0, 0), (32, 0), (32, 32)]);
     builder.rectangle(Style { floor: 24, ..ROOM }, 96, 96, 112, 112);
     let map = Map::build(&builder.finish().unwrap(), "shaded", &[]).unwrap();
     let at = |x, y| {
         let sector = &map.sectors[map.sector_at(Fixed::from_int(x), Fixed::from_int(y)).0 as usize];
         (sector.floor.floor(), sector.light, sector.tag)
     };
-    assert_eq!([at(10, 100), at(70, 70), at(150, 70), at(200, 70)], [(0, 200, 0), (0, 96, 0), (16, 96, 5), (16, 200, 5)]);
+    assert_eq!(
+        [at(10, 100), at(70, 70), at(150, 70), at(200, 70)],
+        [(0, 200, 0), (0, 96, 0), (16, 96, 5), (16, 200, 5)]
+    );
     assert_eq!(at(100, 100), (24, 200, 0));
     assert_eq!(map.sectors.len(), 5, "shade of the same light adds none");
     check_tree(&map);
@@ -242,7 +296,11 @@ fn cuts_are_few_and_the_tree_is_shallow() {
         let depth = depth_of(&map);
         let ideal = (map.subsectors.len() as f64).log2();
         assert!(map.segs.len() < uncut * 2, "{} segs from {uncut}", map.segs.len());
-        assert!(f64::from(depth) < 2.5 * ideal, "depth {depth} for {} subsectors", map.subsectors.len());
+        assert!(
+            f64::from(depth) < 2.5 * ideal,
+            "depth {depth} for {} subsectors",
+            map.subsectors.len()
+        );
     }
 }
 
@@ -273,16 +331,31 @@ fn faults_are_named() {
         Map::build(&source, "spoiled", &[]).expect_err("a fault")
     };
     assert!(matches!(fault(&|m| m.lines.clear()), MapError::Missing { what: "linedefs" }));
-    assert!(matches!(fault(&|m| m.lines[2].v2 = 9), MapError::Index { element: "linedef", index: 2, field: "v2", .. }));
-    assert!(matches!(fault(&|m| m.sides[1].sector = 7), MapError::Index { element: "sidedef", index: 1, .. }));
+    assert!(matches!(
+        fault(&|m| m.lines[2].v2 = 9),
+        MapError::Index { element: "linedef", index: 2, field: "v2", .. }
+    ));
+    assert!(matches!(
+        fault(&|m| m.sides[1].sector = 7),
+        MapError::Index { element: "sidedef", index: 1, .. }
+    ));
     let dots = fault(&|m| m.lines.iter_mut().for_each(|line| line.v2 = line.v1));
     assert!(matches!(dots, MapError::Missing { what: "linedef with a length" }));
     assert!(matches!(fault(&|m| m.lines.truncate(3)), MapError::Unclosed { sector: 0, .. }));
-    assert!(matches!(fault(&|m| m.vertices[0].x = f64::NAN), MapError::Range { element: "vertex", field: "x", .. }));
+    assert!(matches!(
+        fault(&|m| m.vertices[0].x = f64::NAN),
+        MapError::Range { element: "vertex", field: "x", .. }
+    ));
     assert!(matches!(fault(&|m| m.vertices[0].y = -1e300), MapError::Range { .. }));
-    assert!(matches!(fault(&|m| m.sectors[0].floor = i32::MIN), MapError::Range { field: "heightfloor", .. }));
+    assert!(matches!(
+        fault(&|m| m.sectors[0].floor = i32::MIN),
+        MapError::Range { field: "heightfloor", .. }
+    ));
     assert!(matches!(fault(&|m| m.sides[0].offset_x = f64::INFINITY), MapError::Range { .. }));
-    assert!(matches!(fault(&|m| m.things[0].x = 20_000.0), MapError::Range { element: "thing", .. }));
+    assert!(matches!(
+        fault(&|m| m.things[0].x = 20_000.0),
+        MapError::Range { element: "thing", .. }
+    ));
     let crowd = fault(&|m| m.things = vec![m.things[0]; 70_000]);
     assert!(matches!(crowd, MapError::TooMany { what: "things", .. }));
 }
@@ -294,9 +367,15 @@ fn untidy_maps_are_built_as_if_they_were_tidy() {
     let mut source = square();
     source.lines.iter_mut().for_each(|line| line.front = 0);
     let shared = Map::build(&source, "shared", &[]).unwrap();
-    let fronts: std::collections::BTreeSet<u32> = shared.lines.iter().map(|line| line.front.0).collect();
+    let fronts: std::collections::BTreeSet<u32> =
+        shared.lines.iter().map(|line| line.front.0).collect();
     assert_eq!(fronts.len(), shared.lines.len(), "every line has a side of its own");
-    assert!(shared.lines.iter().all(|line| shared.sides[line.front.0 as usize].middle == plain.sides[0].middle));
+    assert!(
+        shared
+            .lines
+            .iter()
+            .all(|line| shared.sides[line.front.0 as usize].middle == plain.sides[0].middle)
+    );
     check_tree(&shared);
 
     let mut source = square();
@@ -318,13 +397,20 @@ fn searches_that_begin_at_a_cell_end_as_from_the_root() {
         let root = map.nodes.len() as u32 - 1;
         let mut rng = Rng::new(seed);
         for round in 0..4000 {
-            let (mut x, mut y) = (Fixed(rng.between(-1100 << 16, 1100 << 16)), Fixed(rng.between(-900 << 16, 1000 << 16)));
+            let (mut x, mut y) = (
+                Fixed(rng.between(-1100 << 16, 1100 << 16)),
+                Fixed(rng.between(-900 << 16, 1000 << 16)),
+            );
             if round % 3 == 0 {
                 // On a corner or a hair beside it.
                 let vertex = &map.vertices[rng.below(map.vertices.len() as u32) as usize];
-                (x, y) = (vertex.x + Fixed(rng.between(-1, 1)), vertex.y + Fixed(rng.between(-1, 1)));
+                (x, y) =
+                    (vertex.x + Fixed(rng.between(-1, 1)), vertex.y + Fixed(rng.between(-1, 1)));
             }
-            assert!(std::ptr::eq(map.subsector_at(x, y), map.subsector_below(root, x, y)), "map {seed} at {x:?}, {y:?}");
+            assert!(
+                std::ptr::eq(map.subsector_at(x, y), map.subsector_below(root, x, y)),
+                "map {seed} at {x:?}, {y:?}"
+            );
         }
     }
 }

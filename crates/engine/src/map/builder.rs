@@ -1,10 +1,14 @@
-//! Authoring a map in Rust: paint polygons over each other, mark stretches of wall, put things, and get the source.
+//! Authoring a map in Rust: paint polygons over each other, mark stretches of wall, put things, and
+//! get the source.
 //!
-//! Later polygons cover earlier ones, as paper on a table. What is left visible of each becomes its sector; where two
-//! sectors meet there is a two-sided line, where one meets nothing there is a wall.
+//! Later polygons cover earlier ones, as paper on a table. What is left visible of each becomes its
+//! sector; where two sectors meet there is a two-sided line, where one meets nothing there is a
+//! wall.
 
 use super::arrangement::{self, Owner, POINTS_PER_UNIT, Piece, Point, Regions};
-use super::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+use super::{
+    MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName,
+};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -46,7 +50,8 @@ pub struct Mark {
     pub lintel: Option<&'static str>,
     /// Stops every walker. Also keeps the line where it parts no two sectors.
     pub blocking: bool,
-    /// Keeps the line where it parts no two sectors. Nothing of it is seen, but slides of bodies know it.
+    /// Keeps the line where it parts no two sectors. Nothing of it is seen, but slides of bodies
+    /// know it.
     pub kept: bool,
     /// The wall texture stands on the floor, or the lower texture hangs from the higher ceiling.
     pub lower_unpegged: bool,
@@ -78,8 +83,12 @@ impl fmt::Display for BuilderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             BuilderError::TooFewPoints { index } => write!(f, "shape {index} has too few points"),
-            BuilderError::Tangled => f.write_str("the outlines meet at angles too sharp to be cut cleanly"),
-            BuilderError::MarkInVoid { at } => write!(f, "the line at {at:?} has no sector on either side"),
+            BuilderError::Tangled => {
+                f.write_str("the outlines meet at angles too sharp to be cut cleanly")
+            }
+            BuilderError::MarkInVoid { at } => {
+                write!(f, "the line at {at:?} has no sector on either side")
+            }
         }
     }
 }
@@ -116,8 +125,8 @@ impl MapBuilder {
         MapBuilder::default()
     }
 
-    /// Paints a polygon, given by its corners in map units, in either direction. Untagged polygons of equal style
-    /// share a sector, so that no line runs between two that touch.
+    /// Paints a polygon, given by its corners in map units, in either direction. Untagged polygons
+    /// of equal style share a sector, so that no line runs between two that touch.
     pub fn polygon(&mut self, style: Style, corners: &[(i32, i32)]) -> &mut MapBuilder {
         let shared = self.sectors.iter().position(|&other| style.tag == 0 && other == style);
         let sector = shared.unwrap_or_else(|| {
@@ -129,7 +138,14 @@ impl MapBuilder {
     }
 
     /// Paints the rectangle from (`west`, `south`) to (`east`, `north`).
-    pub fn rectangle(&mut self, style: Style, west: i32, south: i32, east: i32, north: i32) -> &mut MapBuilder {
+    pub fn rectangle(
+        &mut self,
+        style: Style,
+        west: i32,
+        south: i32,
+        east: i32,
+        north: i32,
+    ) -> &mut MapBuilder {
         self.polygon(style, &[(west, south), (east, south), (east, north), (west, north)])
     }
 
@@ -139,7 +155,8 @@ impl MapBuilder {
         self
     }
 
-    /// Gives everything painted so far inside the polygon another light: a shadow, a pool of lamplight.
+    /// Gives everything painted so far inside the polygon another light: a shadow, a pool of
+    /// lamplight.
     pub fn shade(&mut self, light: i32, corners: &[(i32, i32)]) -> &mut MapBuilder {
         self.polygons.push((Paint::Light(light), points(corners)));
         self
@@ -184,7 +201,9 @@ impl MapBuilder {
                 true
             });
             // Shade of the light that is there already makes no border.
-            region.map(|(sector, light)| (sector, light.filter(|&light| light != self.sectors[sector].light)))
+            region.map(|(sector, light)| {
+                (sector, light.filter(|&light| light != self.sectors[sector].light))
+            })
         };
         let mut edges = Vec::new();
         for piece in &pieces {
@@ -195,17 +214,27 @@ impl MapBuilder {
                 })
             };
             // Textures run on past a line that is only kept.
-            let mark = marks().find(|&mark| self.marks[mark].0 != Mark { kept: true, ..Mark::default() });
+            let mark =
+                marks().find(|&mark| self.marks[mark].0 != Mark { kept: true, ..Mark::default() });
             let keep = marks().any(|mark| self.marks[mark].0.kept)
-                || mark.is_some_and(|mark| self.marks[mark].0.blocking || self.marks[mark].0.middle.is_some());
-            let (right, left) = (region_at(piece.a, piece.b, false), region_at(piece.a, piece.b, true));
+                || mark.is_some_and(|mark| {
+                    self.marks[mark].0.blocking || self.marks[mark].0.middle.is_some()
+                });
+            let (right, left) =
+                (region_at(piece.a, piece.b, false), region_at(piece.a, piece.b, true));
             match (right, left) {
                 (None, None) if keep => {
-                    return Err(BuilderError::MarkInVoid { at: (piece.a.0 / POINTS_PER_UNIT, piece.a.1 / POINTS_PER_UNIT) });
+                    return Err(BuilderError::MarkInVoid {
+                        at: (piece.a.0 / POINTS_PER_UNIT, piece.a.1 / POINTS_PER_UNIT),
+                    });
                 }
                 (right, left) if right == left && !keep => {}
-                (Some(front), back) => edges.push(Edge { a: piece.a, b: piece.b, front, back, mark }),
-                (None, Some(front)) => edges.push(Edge { a: piece.b, b: piece.a, front, back: None, mark }),
+                (Some(front), back) => {
+                    edges.push(Edge { a: piece.a, b: piece.b, front, back, mark })
+                }
+                (None, Some(front)) => {
+                    edges.push(Edge { a: piece.b, b: piece.a, front, back: None, mark })
+                }
                 (None, None) => {}
             }
         }
@@ -233,9 +262,14 @@ impl MapBuilder {
     }
 
     fn write(&self, edges: &[Edge]) -> MapSource {
-        let mut source = MapSource { namespace: "zdoom".to_owned(), things: self.things.clone(), ..Default::default() };
+        let mut source = MapSource {
+            namespace: "zdoom".to_owned(),
+            things: self.things.clone(),
+            ..Default::default()
+        };
         // In order of painting; what was painted over completely has no line and is left out.
-        let used: BTreeSet<Region> = edges.iter().flat_map(|edge| [Some(edge.front), edge.back]).flatten().collect();
+        let used: BTreeSet<Region> =
+            edges.iter().flat_map(|edge| [Some(edge.front), edge.back]).flatten().collect();
         let mut numbers: BTreeMap<Region, usize> = BTreeMap::new();
         for region in used {
             numbers.insert(region, source.sectors.len());
@@ -253,9 +287,21 @@ impl MapBuilder {
             });
             let mark = self.mark_of(edge);
             let front = source.sides.len();
-            source.sides.push(self.side(edge.front, edge.back, &mark, numbers[&edge.front], offset[0]));
+            source.sides.push(self.side(
+                edge.front,
+                edge.back,
+                &mark,
+                numbers[&edge.front],
+                offset[0],
+            ));
             if let Some(back) = edge.back {
-                source.sides.push(self.side(back, Some(edge.front), &mark, numbers[&back], offset[1]));
+                source.sides.push(self.side(
+                    back,
+                    Some(edge.front),
+                    &mark,
+                    numbers[&back],
+                    offset[1],
+                ));
             }
             source.lines.push(SourceLine {
                 v1,
@@ -275,16 +321,25 @@ impl MapBuilder {
         edge.mark.map(|mark| self.marks[mark].0).unwrap_or_default()
     }
 
-    fn side(&self, facing: Region, behind: Option<Region>, mark: &Mark, sector: usize, run: i64) -> SourceSide {
+    fn side(
+        &self,
+        facing: Region,
+        behind: Option<Region>,
+        mark: &Mark,
+        sector: usize,
+        run: i64,
+    ) -> SourceSide {
         let name = |own: Option<&'static str>, default| TextureName::new(own.unwrap_or(default));
-        let (offset_x, offset_y) = mark.offset.map_or((run as f64, 0.0), |(x, y)| (f64::from(x), f64::from(y)));
+        let (offset_x, offset_y) =
+            mark.offset.map_or((run as f64, 0.0), |(x, y)| (f64::from(x), f64::from(y)));
         let mut side = SourceSide { sector, offset_x, offset_y, ..SourceSide::default() };
         let facing = &self.sectors[facing.0];
         match behind.map(|behind| &self.sectors[behind.0]) {
             None => side.middle = name(mark.wall, facing.wall),
             Some(behind) => {
                 side.bottom = name(mark.step, behind.step);
-                let open_sky = [behind, facing].iter().all(|style| style.ceiling_texture == "F_SKY1");
+                let open_sky =
+                    [behind, facing].iter().all(|style| style.ceiling_texture == "F_SKY1");
                 if !open_sky {
                     side.top = name(mark.lintel, behind.lintel);
                 }
@@ -294,11 +349,12 @@ impl MapBuilder {
         side
     }
 
-    /// How far along its run of equal lines each side begins, front and back, so that a texture goes around corners
-    /// without a seam.
+    /// How far along its run of equal lines each side begins, front and back, so that a texture
+    /// goes around corners without a seam.
     fn align(&self, edges: &[Edge]) -> Vec<[i64; 2]> {
-        // A face is (edge, is back); faces of one run have equal keys and end where the next begins.
-        // A wall seen from here and there looks the same if the styles' looks and the marks do, whatever the light.
+        // A face is (edge, is back); faces of one run have equal keys and end where the next
+        // begins. A wall seen from here and there looks the same if the styles' looks and the marks
+        // do, whatever the light.
         type Key = (Style, Option<Style>, Option<usize>);
         let looks = |region: Region| only_looks(self.sectors[region.0]);
         let key = |edge: &Edge, back: bool| -> Key {
@@ -325,20 +381,26 @@ impl MapBuilder {
         let has_predecessor = |&(i, back): &(usize, bool)| {
             let from = ends(&edges[i], back).0;
             ending.get(&from).is_some_and(|list| {
-                list.iter().any(|&(j, other)| (j, other) != (i, back) && key(&edges[j], other) == key(&edges[i], back))
+                list.iter().any(|&(j, other)| {
+                    (j, other) != (i, back) && key(&edges[j], other) == key(&edges[i], back)
+                })
             })
         };
         // Runs with a beginning first, then closed loops from wherever.
-        let (loops, beginnings): (Vec<_>, Vec<_>) = faces.iter().copied().partition(has_predecessor);
+        let (loops, beginnings): (Vec<_>, Vec<_>) =
+            faces.iter().copied().partition(has_predecessor);
         for start in beginnings.into_iter().chain(loops) {
             let (mut run, mut face) = (0.0, Some(start));
-            while let Some((i, back)) = face.filter(|&(i, back)| offsets[i][usize::from(back)].is_none()) {
+            while let Some((i, back)) =
+                face.filter(|&(i, back)| offsets[i][usize::from(back)].is_none())
+            {
                 offsets[i][usize::from(back)] = Some((run as i64) % 4096);
                 run += edges[i].length();
                 let to = ends(&edges[i], back).1;
                 face = starting.get(&to).and_then(|list| {
                     list.iter().copied().find(|&(j, other)| {
-                        offsets[j][usize::from(other)].is_none() && key(&edges[j], other) == key(&edges[i], back)
+                        offsets[j][usize::from(other)].is_none()
+                            && key(&edges[j], other) == key(&edges[i], back)
                     })
                 });
             }
@@ -367,11 +429,23 @@ impl Edge {
 
 /// Style reduced to what a face behind shows, so that runs go on past changes of height or tag.
 fn only_looks(style: Style) -> Style {
-    Style { floor: 0, ceiling: 0, light: 0, special: 0, tag: 0, floor_texture: "", ceiling_texture: "", ..style }
+    Style {
+        floor: 0,
+        ceiling: 0,
+        light: 0,
+        special: 0,
+        tag: 0,
+        floor_texture: "",
+        ceiling_texture: "",
+        ..style
+    }
 }
 
 fn points(corners: &[(i32, i32)]) -> Vec<Point> {
-    corners.iter().map(|&(x, y)| (i64::from(x) * POINTS_PER_UNIT, i64::from(y) * POINTS_PER_UNIT)).collect()
+    corners
+        .iter()
+        .map(|&(x, y)| (i64::from(x) * POINTS_PER_UNIT, i64::from(y) * POINTS_PER_UNIT))
+        .collect()
 }
 
 fn sector_of(style: &Style, shade: Option<i32>) -> SourceSector {
@@ -386,7 +460,8 @@ fn sector_of(style: &Style, shade: Option<i32>) -> SourceSector {
     }
 }
 
-/// Joins pairs of edges that go straight on through a point where nothing else ends: cuts that covered outlines left.
+/// Joins pairs of edges that go straight on through a point where nothing else ends: cuts that
+/// covered outlines left.
 fn join_straight(edges: &mut Vec<Edge>) {
     let mut at: BTreeMap<Point, Vec<usize>> = BTreeMap::new();
     for (i, edge) in edges.iter().enumerate() {

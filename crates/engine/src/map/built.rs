@@ -1,4 +1,5 @@
-//! The built map: cross-referenced lists in fixed point, the BSP tree and the blockmap. Immutable once built.
+//! The built map: cross-referenced lists in fixed point, the BSP tree and the blockmap. Immutable
+//! once built.
 
 use super::{Blocks, Locator, TextureName};
 use crate::math::{Angle, Fixed};
@@ -157,7 +158,8 @@ pub struct Subsector {
     pub seg_count: u32,
 }
 
-/// A partition line of the BSP tree. Children: index of a node, or of a subsector when [`Node::SUBSECTOR`] is set.
+/// A partition line of the BSP tree. Children: index of a node, or of a subsector when
+/// [`Node::SUBSECTOR`] is set.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
     /// A point on the partition line.
@@ -194,7 +196,8 @@ pub struct Blockmap {
     pub starts: Vec<u32>,
     /// Line indices, block after block.
     pub lines: Vec<u32>,
-    /// The limits of these lines, as [`Line::bounds`]: side by side, as most lines around a body are only found to lie apart.
+    /// The limits of these lines, as [`Line::bounds`]: side by side, as most lines around a body
+    /// are only found to lie apart.
     pub bounds: Vec<[Fixed; 4]>,
 }
 
@@ -260,15 +263,16 @@ impl Map {
         &self.subsectors[(child & !Node::SUBSECTOR) as usize]
     }
 
-    /// Whether a point lies in any sector at all. Behind walls there is nothing, but [`Map::subsector_at`] still gives
-    /// the nearest piece by the tree.
+    /// Whether a point lies in any sector at all. Behind walls there is nothing, but
+    /// [`Map::subsector_at`] still gives the nearest piece by the tree.
     #[must_use]
     pub fn is_inside(&self, x: Fixed, y: Fixed) -> bool {
         let subsector = self.subsector_at(x, y);
         let segs = &self.segs[subsector.first_seg as usize..][..subsector.seg_count as usize];
         segs.iter().filter(|seg| seg.back_sector.is_none()).all(|seg| {
             let line = &self.lines[seg.line as usize];
-            let (px, py) = (i64::from(x.0) - i64::from(line.v1.x.0), i64::from(y.0) - i64::from(line.v1.y.0));
+            let (px, py) =
+                (i64::from(x.0) - i64::from(line.v1.x.0), i64::from(y.0) - i64::from(line.v1.y.0));
             py * i64::from(line.dx.0) <= px * i64::from(line.dy.0)
         })
     }

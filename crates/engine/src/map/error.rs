@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// Why a [`MapSource`](super::MapSource) cannot be built. Each variant names the element and what to mend.
+/// Why a [`MapSource`](super::MapSource) cannot be built. Each variant names the element and what
+/// to mend.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum MapError {
@@ -64,19 +65,32 @@ impl fmt::Display for MapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             MapError::TooMany { what, count, limit } => {
-                write!(f, "the map has {count} {what}, more than the {limit} allowed; split or simplify it")
+                write!(
+                    f,
+                    "the map has {count} {what}, more than the {limit} allowed; split or simplify it"
+                )
             }
-            MapError::Missing { what } => write!(f, "the map has no {what}; a map needs at least one"),
+            MapError::Missing { what } => {
+                write!(f, "the map has no {what}; a map needs at least one")
+            }
             MapError::Index { element, index, field, refers_to, count } => {
-                write!(f, "{element} {index}: {field} names number {refers_to}, but there are only {count}; mend the index")
+                write!(
+                    f,
+                    "{element} {index}: {field} names number {refers_to}, but there are only {count}; mend the index"
+                )
             }
             MapError::Range { element, index, field, value, limit } => {
-                write!(f, "{element} {index}: {field} is {value}, outside -{limit}..={limit}; move it into that range")
+                write!(
+                    f,
+                    "{element} {index}: {field} is {value}, outside -{limit}..={limit}; move it into that range"
+                )
             }
             MapError::Unclosed { sector, vertex } => {
                 write!(f, "sector {sector}: its outline is open at vertex {vertex}; close it")
             }
-            MapError::TooComplex { what } => write!(f, "the map is too complex to build: {what}; simplify it"),
+            MapError::TooComplex { what } => {
+                write!(f, "the map is too complex to build: {what}; simplify it")
+            }
         }
     }
 }

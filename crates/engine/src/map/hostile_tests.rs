@@ -1,6 +1,8 @@
 //! Maps that want to do harm: none may panic, hang or take memory without bound.
 
-use super::{Map, MapBuilder, MapError, MapSource, SourceLine, SourceSide, SourceVertex, Style, udmf};
+use super::{
+    Map, MapBuilder, MapError, MapSource, SourceLine, SourceSide, SourceVertex, Style, udmf,
+};
 use crate::math::{Fixed, Rng};
 use crate::mutation::{iterations, mutated};
 use crate::wad::{self, Wad};
@@ -25,7 +27,10 @@ fn sample() -> MapSource {
     builder.rectangle(STYLE, 0, 0, 512, 384);
     builder.polygon(Style { floor: 24, tag: 7, ..STYLE }, &[(64, 64), (200, 90), (120, 220)]);
     builder.solid(&[(300, 300), (340, 300), (340, 340), (300, 340)]);
-    builder.mark(super::Mark { middle: Some("BARS"), blocking: true, ..Default::default() }, &[(256, 0), (256, 384)]);
+    builder.mark(
+        super::Mark { middle: Some("BARS"), blocking: true, ..Default::default() },
+        &[(256, 0), (256, 384)],
+    );
     builder.thing(1, 32.5, 32.0, 90).thing(2014, 400.0, 200.0, 0);
     builder.finish().unwrap()
 }
@@ -55,7 +60,10 @@ fn mutated_udmf_never_panics() {
         let again = udmf::write(&source);
         assert_eq!(udmf::read(again.as_bytes()).map(|source| udmf::write(&source)), Ok(again));
     }
-    assert!(read > 50 && built > 20, "the mutations must not all be caught at once: {read} read, {built} built");
+    assert!(
+        read > 50 && built > 20,
+        "the mutations must not all be caught at once: {read} read, {built} built"
+    );
 }
 
 #[test]
@@ -77,7 +85,8 @@ fn mutated_wads_never_panic() {
 /// The samples in `attacks/`, each of which once did harm or tries to.
 #[test]
 fn attacks_are_turned_away() {
-    let mut names: Vec<_> = std::fs::read_dir("attacks").unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut names: Vec<_> =
+        std::fs::read_dir("attacks").unwrap().map(|entry| entry.unwrap().path()).collect();
     names.sort();
     assert!(names.len() >= 8);
     for path in names {
@@ -91,7 +100,12 @@ fn attacks_are_turned_away() {
             map || crate::assets::Assets::from_iwad(&bytes).is_ok()
         };
         assert!(!harmless, "{} is let in", path.display());
-        assert!(started.elapsed() < Duration::from_secs(5), "{} took {:?}", path.display(), started.elapsed());
+        assert!(
+            started.elapsed() < Duration::from_secs(5),
+            "{} took {:?}",
+            path.display(),
+            started.elapsed()
+        );
     }
 }
 
@@ -102,12 +116,18 @@ fn outline(points: impl Iterator<Item = (f64, f64)>) -> MapSource {
     let count = source.vertices.len();
     for i in 0..count {
         source.sides.push(SourceSide::default());
-        source.lines.push(SourceLine { v1: i, v2: (i + 1) % count, front: i, ..SourceLine::default() });
+        source.lines.push(SourceLine {
+            v1: i,
+            v2: (i + 1) % count,
+            front: i,
+            ..SourceLine::default()
+        });
     }
     source
 }
 
-/// A convex, clockwise ring of four parabolas: exact where a circle from the table of sines would have dents.
+/// A convex, clockwise ring of four parabolas: exact where a circle from the table of sines would
+/// have dents.
 fn circle(count: usize) -> impl Iterator<Item = (f64, f64)> {
     (0..count).map(move |i| {
         let t = 4.0 * i as f64 / count as f64;
@@ -130,14 +150,19 @@ fn assert_quick(name: &str, source: &MapSource) -> Result<Map, MapError> {
 
 #[test]
 fn maps_made_to_be_slow_are_built_or_refused_in_time() {
-    // Convex: one leaf that every wall must prove. Seen from outside: a tree as deep as there are walls.
+    // Convex: one leaf that every wall must prove. Seen from outside: a tree as deep as there are
+    // walls.
     let room = assert_quick("round room", &outline(circle(30_000)));
-    assert!(matches!(room, Err(MapError::TooComplex { .. })), "a map of 30,000 walls in one leaf was built");
-    let small =
-        assert_quick("small round room", &outline(circle(400))).unwrap_or_else(|error| panic!("small round room: {error}"));
+    assert!(
+        matches!(room, Err(MapError::TooComplex { .. })),
+        "a map of 30,000 walls in one leaf was built"
+    );
+    let small = assert_quick("small round room", &outline(circle(400)))
+        .unwrap_or_else(|error| panic!("small round room: {error}"));
     assert_eq!(small.subsectors.len(), 1);
 
-    let mut pillar = outline([(-15e3, -15e3), (-15e3, 15e3), (15e3, 15e3), (15e3, -15e3)].into_iter());
+    let mut pillar =
+        outline([(-15e3, -15e3), (-15e3, 15e3), (15e3, 15e3), (15e3, -15e3)].into_iter());
     let inside: Vec<(f64, f64)> = circle(20_000).collect();
     let base = pillar.vertices.len();
     pillar.vertices.extend(inside.iter().map(|&(x, y)| SourceVertex { x, y }));

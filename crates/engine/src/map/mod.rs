@@ -1,4 +1,5 @@
-//! Maps: the editable source (UDMF), the builder that authors it in Rust, and the built, immutable form.
+//! Maps: the editable source (UDMF), the builder that authors it in Rust, and the built, immutable
+//! form.
 
 mod arrangement;
 mod blockmap;
@@ -24,11 +25,14 @@ pub mod udmf;
 pub use blocks::Blocks;
 pub use builder::{BuilderError, MapBuilder, Mark, Style};
 pub use built::{
-    Blockmap, Line, LineFlags, Map, MapThing, Node, Sector, SectorId, Seg, Side, SideId, Subsector, TextureId, Vertex,
+    Blockmap, Line, LineFlags, Map, MapThing, Node, Sector, SectorId, Seg, Side, SideId, Subsector,
+    TextureId, Vertex,
 };
 pub use error::MapError;
 pub use locator::Locator;
-pub use source::{MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+pub use source::{
+    MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName,
+};
 pub(crate) use stand_ins::STAND_INS;
 #[cfg(test)]
 pub(crate) use stone_room::stone_room;

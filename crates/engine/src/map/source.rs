@@ -3,7 +3,8 @@
 use super::Blocks;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A texture, flat or lump name: up to 8 upper-case ASCII characters, padded with zeros; all zero means none (`-`).
+/// A texture, flat or lump name: up to 8 upper-case ASCII characters, padded with zeros; all zero
+/// means none (`-`).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct TextureName(pub [u8; 8]);
 
@@ -11,7 +12,8 @@ impl TextureName {
     /// No texture.
     pub const NONE: TextureName = TextureName([0; 8]);
 
-    /// The name, upper-cased and cut to 8 bytes; `-` and the empty string give [`TextureName::NONE`].
+    /// The name, upper-cased and cut to 8 bytes; `-` and the empty string give
+    /// [`TextureName::NONE`].
     #[must_use]
     pub const fn new(name: &str) -> TextureName {
         let bytes = name.as_bytes();
@@ -43,8 +45,13 @@ impl TextureName {
 
 impl std::fmt::Debug for TextureName {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // Names come from files by anyone and go into messages, where nothing may command a terminal.
-        if self.is_some() { write!(f, "{}", self.as_str().escape_debug()) } else { f.write_str("-") }
+        // Names come from files by anyone and go into messages, where nothing may command a
+        // terminal.
+        if self.is_some() {
+            write!(f, "{}", self.as_str().escape_debug())
+        } else {
+            f.write_str("-")
+        }
     }
 }
 
@@ -63,7 +70,8 @@ pub struct MapSource {
     pub sectors: Vec<SourceSector>,
     /// Things.
     pub things: Vec<SourceThing>,
-    /// What the text asks for beside all this, a phrase each with how often. It is reported, and not written.
+    /// What the text asks for beside all this, a phrase each with how often. It is reported, and
+    /// not written.
     pub unplayed: BTreeMap<String, usize>,
 }
 
@@ -72,16 +80,21 @@ impl MapSource {
     #[must_use]
     pub fn textures(&self) -> BTreeSet<TextureName> {
         let walls = self.sides.iter().flat_map(|side| [side.top, side.middle, side.bottom]);
-        let flats = self.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
+        let flats =
+            self.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
         walls.chain(flats).filter(TextureName::is_some).collect()
     }
 
-    /// Turns the two-sided lines that `turned` picks, given their ends (x, y) in map units and the sectors in front and behind:
-    /// they run the other way, and front and back change places.
+    /// Turns the two-sided lines that `turned` picks, given their ends (x, y) in map units and the
+    /// sectors in front and behind: they run the other way, and front and back change places.
     ///
-    /// Which way a line runs shows nowhere, but bodies feel it: within a 64th of a unit they count as in front of it, so that it
-    /// decides on which tic a body that falls along a step begins to slide.
-    pub fn turn_lines(&mut self, mut turned: impl FnMut([(f64, f64); 2], [&SourceSector; 2]) -> bool) {
+    /// Which way a line runs shows nowhere, but bodies feel it: within a 64th of a unit they count
+    /// as in front of it, so that it decides on which tic a body that falls along a step begins to
+    /// slide.
+    pub fn turn_lines(
+        &mut self,
+        mut turned: impl FnMut([(f64, f64); 2], [&SourceSector; 2]) -> bool,
+    ) {
         let ends = |vertex: usize| (self.vertices[vertex].x, self.vertices[vertex].y);
         let sector = |side: usize| &self.sectors[self.sides[side].sector];
         for line in &mut self.lines {
@@ -127,7 +140,8 @@ pub struct SourceLine {
     pub id: i32,
     /// Line special.
     pub special: i32,
-    /// Somebody can set off its special (`playeruse`, `playercross`, ...). Nothing does here, so that it is not written.
+    /// Somebody can set off its special (`playeruse`, `playercross`, ...). Nothing does here, so
+    /// that it is not written.
     pub triggered: bool,
     /// Arguments of the special.
     pub args: [i32; 5],

@@ -13,8 +13,8 @@ pub struct TileGrid {
 }
 
 impl TileGrid {
-    /// A grid whose tile (0, 0) has its south-western corner at `origin`, every tile in the style that `style` gives
-    /// for its (column, row).
+    /// A grid whose tile (0, 0) has its south-western corner at `origin`, every tile in the style
+    /// that `style` gives for its (column, row).
     pub fn new(
         origin: (i32, i32),
         tile: i32,

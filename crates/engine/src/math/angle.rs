@@ -61,15 +61,16 @@ impl Angle {
         self.sin() / self.cos()
     }
 
-    /// The direction of the vector `(dx, dy)`, exact to the table's 1/8192 turn and refined linearly; `(0, 0)` is east.
+    /// The direction of the vector `(dx, dy)`, exact to the table's 1/8192 turn and refined
+    /// linearly; `(0, 0)` is east.
     #[must_use]
     pub fn of_vector(dx: Fixed, dy: Fixed) -> Angle {
         if dx.0 == 0 && dy.0 == 0 {
             return Angle(0);
         }
         let (ax, ay) = (i64::from(dx.0).abs(), i64::from(dy.0).abs());
-        // First octant: the last table angle t with tan(t) at most small / large. A list has the one for whole 1024ths, and
-        // between two of these lie no more than two.
+        // First octant: the last table angle t with tan(t) at most small / large. A list has the
+        // one for whole 1024ths, and between two of these lie no more than two.
         let (small, large) = if ay <= ax { (ay, ax) } else { (ax, ay) };
         let mut low = usize::from(OF_RATIO[((small << 10) / large) as usize & 2047]);
         for _ in 0..2 {
@@ -87,8 +88,8 @@ impl Angle {
         })
     }
 
-    /// The direction of the vector `(dx, dy)` as the published engine tells it: by its slope from the nearest axis, cut to whole 2048ths,
-    /// and from some axes a unit short; `(0, 0)` is north.
+    /// The direction of the vector `(dx, dy)` as the published engine tells it: by its slope from
+    /// the nearest axis, cut to whole 2048ths, and from some axes a unit short; `(0, 0)` is north.
     #[must_use]
     pub fn of_slope(dx: Fixed, dy: Fixed) -> Angle {
         let (ax, ay) = (i64::from(dx.0).abs(), i64::from(dy.0).abs());
@@ -118,7 +119,8 @@ const fn excess(small: i64, large: i64, i: usize) -> i64 {
 /// The last table angle below 45 degrees.
 const LAST_OF_OCTANT: usize = 1023;
 
-/// For each 1024th, up to 1, the last table angle of the first octant whose tangent is no greater; padded.
+/// For each 1024th, up to 1, the last table angle of the first octant whose tangent is no greater;
+/// padded.
 static OF_RATIO: [u16; 2048] = {
     let mut list = [LAST_OF_OCTANT as u16; 2048];
     let (mut ratio, mut angle) = (0, 0);
@@ -132,8 +134,9 @@ static OF_RATIO: [u16; 2048] = {
     list
 };
 
-/// The whole fine sine. Its second quarter mirrors the first one entry early (entry `2048 + i` is entry `2047 - i`, the
-/// peak apart), so that it is not quite symmetric: the recorded view bob follows exactly this table.
+/// The whole fine sine. Its second quarter mirrors the first one entry early (entry `2048 + i` is
+/// entry `2047 - i`, the peak apart), so that it is not quite symmetric: the recorded view bob
+/// follows exactly this table.
 static FINE_SINE: [i32; 8192] = {
     let mut table = [0; 8192];
     let mut i = 0;
@@ -232,18 +235,27 @@ mod tests {
                 let (mut low, mut high) = (0, 1024);
                 while high - low > 1 {
                     let middle = (low + high) / 2;
-                    if excess(i64::from(dy), i64::from(dx), middle) >= 0 { low = middle } else { high = middle }
+                    if excess(i64::from(dy), i64::from(dx), middle) >= 0 {
+                        low = middle
+                    } else {
+                        high = middle
+                    }
                 }
                 low
             };
             let angle = Angle::of_vector(Fixed(dx), Fixed(dy)).0;
-            assert!((0..=1 << 19).contains(&(angle - ((bisected as u32) << 19))), "({dx}, {dy}): {angle:#x}, not {bisected}");
+            assert!(
+                (0..=1 << 19).contains(&(angle - ((bisected as u32) << 19))),
+                "({dx}, {dy}): {angle:#x}, not {bisected}"
+            );
         }
     }
 
     #[test]
     fn directions_agree_with_atan2() {
-        for (dx, dy) in [(1, 0), (3, 1), (1, 3), (-5, 2), (-1, -1), (7, -300), (0, -1), (-1, 0), (1000, 999)] {
+        for (dx, dy) in
+            [(1, 0), (3, 1), (1, 3), (-5, 2), (-1, -1), (7, -300), (0, -1), (-1, 0), (1000, 999)]
+        {
             let angle = Angle::of_vector(Fixed::from_int(dx), Fixed::from_int(dy));
             let exact = f64::from(dy).atan2(f64::from(dx)).to_degrees().rem_euclid(360.0);
             let error = (angle.to_degrees() - exact).abs();
@@ -257,9 +269,11 @@ mod tests {
         let unit = 4_294_967_296.0 / std::f64::consts::TAU / 2048.0;
         for _ in 0..10_000 {
             let [dx, dy] = [(); 2].map(|()| Fixed(rng.between(-60 << 16, 60 << 16)));
-            let (by_slope, exact) = (Angle::of_slope(dx, dy).0, dy.to_f64().atan2(dx.to_f64()) * 2048.0 * unit);
+            let (by_slope, exact) =
+                (Angle::of_slope(dx, dy).0, dy.to_f64().atan2(dx.to_f64()) * 2048.0 * unit);
             let difference = f64::from(by_slope.wrapping_sub(exact as i64 as u32) as i32) / unit;
-            // Cut towards the nearest axis, which lies clockwise in every other octant. Short vectors' slopes are cut more coarsely.
+            // Cut towards the nearest axis, which lies clockwise in every other octant. Short
+            // vectors' slopes are cut more coarsely.
             let clockwise = (dx.0.abs() > dy.0.abs()) == ((dx.0 < 0) == (dy.0 < 0));
             let off = if clockwise { -difference } else { difference };
             let coarse = 2048.0 / f64::from(dx.0.abs().max(dy.0.abs()) >> 8);

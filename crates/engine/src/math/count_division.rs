@@ -1,4 +1,5 @@
-//! Division by a number of things, such as columns of a frame, by a product: most processors take several times as long to divide.
+//! Division by a number of things, such as columns of a frame, by a product: most processors take
+//! several times as long to divide.
 
 /// Counts that are divided by so: columns of the widest frame.
 const MOST: usize = 1920;
@@ -17,7 +18,8 @@ static INVERSES: [u64; MOST + 1] = {
 /// `whole / count`, rounded towards 0. Counts below 1 count as 1.
 #[inline]
 pub(crate) fn divided_by_count(whole: i64, count: i64) -> i64 {
-    // An inverse is too large by less than one part in `2^64 / count`: too little to show in the quotient.
+    // An inverse is too large by less than one part in `2^64 / count`: too little to show in the
+    // quotient.
     const LIMIT: u64 = u64::MAX / MOST as u64;
     let size = whole.unsigned_abs();
     if count <= 1 {
@@ -47,8 +49,21 @@ mod tests {
                 let any = rng.next_u64() as i64 >> (round % 60);
                 // Multiples and what is next to them are where a quotient jumps.
                 let multiple = any / divisor * divisor;
-                for whole in [any, multiple, multiple - 1, multiple + 1, limit - round, -limit + round, i64::MAX, i64::MIN + 1] {
-                    assert_eq!(divided_by_count(whole, count), whole / divisor, "{whole} / {count}");
+                for whole in [
+                    any,
+                    multiple,
+                    multiple - 1,
+                    multiple + 1,
+                    limit - round,
+                    -limit + round,
+                    i64::MAX,
+                    i64::MIN + 1,
+                ] {
+                    assert_eq!(
+                        divided_by_count(whole, count),
+                        whole / divisor,
+                        "{whole} / {count}"
+                    );
                 }
             }
         }

@@ -3,9 +3,11 @@
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Shl, Shr, Sub, SubAssign};
 
-/// A 16.16 fixed-point number: the unit of every length (map units), height and speed (map units per tic).
+/// A 16.16 fixed-point number: the unit of every length (map units), height and speed (map units
+/// per tic).
 ///
-/// Multiplication floors (`(a * b) >> 16` on 64 bits) because the recorded trajectories do; all operations wrap.
+/// Multiplication floors (`(a * b) >> 16` on 64 bits) because the recorded trajectories do; all
+/// operations wrap.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Fixed(pub i32);
 
@@ -25,7 +27,8 @@ impl Fixed {
         Fixed(units.wrapping_shl(16))
     }
 
-    /// The nearest fixed-point value of `units`; for authoring and for reading recorded data, not for simulation.
+    /// The nearest fixed-point value of `units`; for authoring and for reading recorded data, not
+    /// for simulation.
     #[must_use]
     pub fn from_f64(units: f64) -> Fixed {
         Fixed((units * 65536.0).round() as i32)
@@ -115,7 +118,8 @@ impl Mul for Fixed {
     }
 }
 
-/// Saturates where the quotient leaves the range, as division by zero does (towards the sign of the dividend).
+/// Saturates where the quotient leaves the range, as division by zero does (towards the sign of the
+/// dividend).
 impl Div for Fixed {
     type Output = Fixed;
     fn div(self, other: Fixed) -> Fixed {

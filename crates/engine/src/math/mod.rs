@@ -1,4 +1,5 @@
-//! Numbers of the world: 16.16 fixed point, binary angles, frozen trigonometry, division by counts, the random stream.
+//! Numbers of the world: 16.16 fixed point, binary angles, frozen trigonometry, division by counts,
+//! the random stream.
 //!
 //! Nothing here uses floating point at run time, so every platform computes the same bits.
 

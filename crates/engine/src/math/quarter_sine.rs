@@ -1,4 +1,5 @@
-//! The first quarter of the sine wave in 16.16 fixed point: entry `i` is `65536 * sin(i * 2pi / 8192)` cut to whole units.
+//! The first quarter of the sine wave in 16.16 fixed point: entry `i` is `65536 * sin(i * 2pi
+//! / 8192)` cut to whole units.
 //!
 //! Frozen here so that no floating-point trigonometry runs, ever; `angle::tests` recomputes it.
 

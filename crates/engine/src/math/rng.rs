@@ -1,7 +1,8 @@
 //! The world's random stream.
 
-/// A small splittable random stream: SplitMix64 (Steele, Lea, Flood: *Fast splittable pseudorandom number generators*,
-/// OOPSLA 2014). One lives in every world, and it is the whole of the world's randomness.
+/// A small splittable random stream: SplitMix64 (Steele, Lea, Flood: *Fast splittable pseudorandom
+/// number generators*, OOPSLA 2014). One lives in every world, and it is the whole of the world's
+/// randomness.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Rng {
     state: u64,
@@ -17,7 +18,10 @@ impl Rng {
     /// A stream for the pair (`seed`, `lane`), so that lanes of one batch never share randomness.
     #[must_use]
     pub fn for_lane(seed: u64, lane: u64) -> Rng {
-        Rng { state: mix(Rng::new(seed).state ^ mix(lane.wrapping_mul(0xD1B5_4A32_D192_ED03).wrapping_add(1))) }
+        Rng {
+            state: mix(Rng::new(seed).state
+                ^ mix(lane.wrapping_mul(0xD1B5_4A32_D192_ED03).wrapping_add(1))),
+        }
     }
 
     /// The state, for checkpoints.
@@ -86,7 +90,10 @@ mod tests {
         let mut seen = std::collections::BTreeSet::new();
         for seed in 0..64 {
             for lane in 0..64 {
-                assert!(seen.insert(Rng::for_lane(seed, lane).next_u64()), "seed {seed} lane {lane}");
+                assert!(
+                    seen.insert(Rng::for_lane(seed, lane).next_u64()),
+                    "seed {seed} lane {lane}"
+                );
             }
         }
     }

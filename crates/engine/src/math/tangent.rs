@@ -1,4 +1,5 @@
-//! Tangents of fine angles, of which there are 8192 a turn. The sine table is too coarse to divide by itself.
+//! Tangents of fine angles, of which there are 8192 a turn. The sine table is too coarse to divide
+//! by itself.
 
 /// The largest angle that has a tangent here: 60 degrees.
 pub(crate) const STEEPEST: i32 = 8192 / 6;
@@ -37,8 +38,9 @@ const fn sine_and_cosine(fine: i128) -> (i128, i128) {
     (sine, cosine)
 }
 
-/// The tangent of an angle from minus [`STEEPEST`] to it, 16.16. Negative ones are rounded towards zero after a half was added, as
-/// the published engine was seen to do: that moves distant floors by half a texel, and here and there a column of the sky by one.
+/// The tangent of an angle from minus [`STEEPEST`] to it, 16.16. Negative ones are rounded towards
+/// zero after a half was added, as the published engine was seen to do: that moves distant floors
+/// by half a texel, and here and there a column of the sky by one.
 pub(crate) fn fine_tangent(fine: i32) -> i64 {
     let tangent = i64::from(TANGENTS[fine.unsigned_abs() as usize]);
     if fine < 0 { 1 - tangent } else { tangent }

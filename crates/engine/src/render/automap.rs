@@ -1,4 +1,5 @@
-//! The top-down map: floors, walls and things from above, north up. For people and as the ground of heat maps.
+//! The top-down map: floors, walls and things from above, north up. For people and as the ground of
+//! heat maps.
 
 use crate::map::{Map, SectorId};
 use crate::math::Fixed;
@@ -16,7 +17,8 @@ const PLAYER: [u8; 3] = [60, 150, 255];
 const MARGIN: i64 = 4;
 /// Smallest half width of a thing, pixels.
 const LEAST_THING: i64 = 2;
-/// Smallest half length of a player's and a creature's arrow, pixels, and as a share of the picture's shorter side.
+/// Smallest half length of a player's and a creature's arrow, pixels, and as a share of the
+/// picture's shorter side.
 const LEAST_PLAYER: i64 = 5;
 /// See above.
 const PLAYER_SHARE: i64 = 60;
@@ -35,7 +37,8 @@ pub struct TopDown {
 }
 
 impl TopDown {
-    /// The whole map in a picture of `width` by `height` pixels (at least 16 by 16), centred, with square pixels.
+    /// The whole map in a picture of `width` by `height` pixels (at least 16 by 16), centred, with
+    /// square pixels.
     #[must_use]
     pub fn new(map: Arc<Map>, scene: Arc<Scene>, width: usize, height: usize) -> TopDown {
         let mut bounds = [i64::MAX, i64::MIN, i64::MAX, i64::MIN];
@@ -46,15 +49,34 @@ impl TopDown {
         TopDown::new_with_margin(map, scene, bounds, [width, height], MARGIN)
     }
 
-    /// The area from west to east and south to north, in map units, in a picture of `width` by `height` pixels
-    /// (at least 16 by 16), centred, with square pixels: exactly the area where the picture has its proportions.
+    /// The area from west to east and south to north, in map units, in a picture of `width` by
+    /// `height` pixels (at least 16 by 16), centred, with square pixels: exactly the area where the
+    /// picture has its proportions.
     #[must_use]
-    pub fn of_area(map: Arc<Map>, scene: Arc<Scene>, area: [i32; 4], width: usize, height: usize) -> TopDown {
-        TopDown::new_with_margin(map, scene, area.map(|side| i64::from(side) << 16), [width, height], 0)
+    pub fn of_area(
+        map: Arc<Map>,
+        scene: Arc<Scene>,
+        area: [i32; 4],
+        width: usize,
+        height: usize,
+    ) -> TopDown {
+        TopDown::new_with_margin(
+            map,
+            scene,
+            area.map(|side| i64::from(side) << 16),
+            [width, height],
+            0,
+        )
     }
 
     /// An area in 16.16 map units with pixels that stay free at each edge.
-    fn new_with_margin(map: Arc<Map>, scene: Arc<Scene>, area: [i64; 4], size: [usize; 2], margin: i64) -> TopDown {
+    fn new_with_margin(
+        map: Arc<Map>,
+        scene: Arc<Scene>,
+        area: [i64; 4],
+        size: [usize; 2],
+        margin: i64,
+    ) -> TopDown {
         let [width, height] = size.map(|side| side.max(16));
         let [west, east, south, north] = area;
         let inner = [width as i64 - 2 * margin, height as i64 - 2 * margin];
@@ -85,7 +107,8 @@ impl TopDown {
     pub fn pixel_of(&self, x: Fixed, y: Fixed) -> (i64, i64) {
         let [west, east, south, north] = self.window;
         let column = ((i64::from(x.0) - west) * self.width as i64).div_euclid((east - west).max(1));
-        let row = ((north - i64::from(y.0)) * self.height as i64).div_euclid((north - south).max(1));
+        let row =
+            ((north - i64::from(y.0)) * self.height as i64).div_euclid((north - south).max(1));
         (column, row)
     }
 
@@ -96,7 +119,8 @@ impl TopDown {
         // What lies left of any wall of its subsector is in the void behind it.
         let inside = segs.iter().all(|seg| {
             let (dx, dy) = (i64::from(seg.v2.x.0 - seg.v1.x.0), i64::from(seg.v2.y.0 - seg.v1.y.0));
-            let (px, py) = (i64::from(x.0) - i64::from(seg.v1.x.0), i64::from(y.0) - i64::from(seg.v1.y.0));
+            let (px, py) =
+                (i64::from(x.0) - i64::from(seg.v1.x.0), i64::from(y.0) - i64::from(seg.v1.y.0));
             i128::from(py) * i128::from(dx) <= i128::from(px) * i128::from(dy)
         });
         if inside { subsector.sector.0 } else { u32::MAX }
@@ -107,11 +131,17 @@ impl TopDown {
     /// # Panics
     /// If `out` is not `width * height * 3` long, or the world is of another map.
     pub fn draw(&self, world: &World, out: &mut [u8]) {
-        assert_eq!(out.len(), self.width * self.height * 3, "a buffer of height * width * 3 bytes is needed");
+        assert_eq!(
+            out.len(),
+            self.width * self.height * 3,
+            "a buffer of height * width * 3 bytes is needed"
+        );
         assert_eq!(world.sector_count(), self.map.sectors.len(), "the world is of another map");
         let floors = || world.sectors().map(|sector| i64::from(sector.floor.floor()));
         let range = [floors().min().unwrap_or(0), floors().max().unwrap_or(0)];
-        let colours: Vec<[u8; 3]> = (0..world.sector_count()).map(|sector| self.floor_colour(world, sector, range)).collect();
+        let colours: Vec<[u8; 3]> = (0..world.sector_count())
+            .map(|sector| self.floor_colour(world, sector, range))
+            .collect();
         for (pixel, &sector) in out.chunks_exact_mut(3).zip(&self.ground) {
             pixel.copy_from_slice(colours.get(sector as usize).unwrap_or(&OUTSIDE));
         }
@@ -213,7 +243,9 @@ impl Canvas<'_> {
 
     fn triangle(&mut self, corners: [(i64, i64); 3], colour: [u8; 3]) {
         let [a, b, c] = corners;
-        let edge = |p: (i64, i64), q: (i64, i64), at: (i64, i64)| (q.0 - p.0) * (at.1 - p.1) - (q.1 - p.1) * (at.0 - p.0);
+        let edge = |p: (i64, i64), q: (i64, i64), at: (i64, i64)| {
+            (q.0 - p.0) * (at.1 - p.1) - (q.1 - p.1) * (at.0 - p.0)
+        };
         let turn = edge(a, b, c).signum();
         for row in a.1.min(b.1).min(c.1)..=a.1.max(b.1).max(c.1) {
             for column in a.0.min(b.0).min(c.0)..=a.0.max(b.0).max(c.0) {
@@ -252,7 +284,13 @@ mod tests {
         };
         let mut builder = MapBuilder::new();
         builder.rectangle(style, -300, 0, 500, 400);
-        builder.rectangle(Style { floor: 16, floor_texture: "FLOOR0_5", ..style }, 100, 100, 300, 300);
+        builder.rectangle(
+            Style { floor: 16, floor_texture: "FLOOR0_5", ..style },
+            100,
+            100,
+            300,
+            300,
+        );
         let map = Arc::new(Map::build(&builder.finish().unwrap(), "room", &[]).unwrap());
         let mut world = World::new(map.clone(), 1);
         world.add_player(Fixed::from_int(-200), Fixed::from_int(50), Angle::EAST);
@@ -266,8 +304,10 @@ mod tests {
             let (x, y) = top_down.position_of(column, row);
             assert_eq!(top_down.pixel_of(x, y), (column as i64, row as i64));
         }
-        let (west, north) =
-            (top_down.pixel_of(Fixed::from_int(-300), Fixed::ZERO).0, top_down.pixel_of(Fixed::ZERO, Fixed::from_int(400)).1);
+        let (west, north) = (
+            top_down.pixel_of(Fixed::from_int(-300), Fixed::ZERO).0,
+            top_down.pixel_of(Fixed::ZERO, Fixed::from_int(400)).1,
+        );
         assert!(west >= 0 && north >= 0, "the whole map is in the picture");
     }
 

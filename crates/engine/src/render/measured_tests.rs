@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 const YARD: Style = Style { ceiling: 300, ceiling_texture: "F_SKY1", ..STYLE };
 
-/// A world of what is built and one who surfaces east from (0, 0) at a height, and a renderer for 160x120.
+/// A world of what is built and one who surfaces east from (0, 0) at a height, and a renderer for
+/// 160x120.
 fn stand(builder: MapBuilder, view_z: i32) -> (World, Renderer, Arc<Scene>) {
     let map = Arc::new(Map::build(&builder.finish().unwrap(), "yard", &[]).unwrap());
     let scene = Arc::new(Scene::new(&map, assets()));
@@ -41,7 +42,10 @@ fn runs_of_a_fence_that_begin_at_the_eye_s_height_show_only_below_it() {
     let mut builder = MapBuilder::new();
     builder.rectangle(YARD, -64, -512, 512, 512);
     builder.rectangle(Style { floor: 8, ..YARD }, 128, -256, 256, 256);
-    builder.mark(Mark { middle: Some("MIDSPACE"), lower_unpegged: true, ..Mark::default() }, &[(128, -256), (128, 256)]);
+    builder.mark(
+        Mark { middle: Some("MIDSPACE"), lower_unpegged: true, ..Mark::default() },
+        &[(128, -256), (128, 256)],
+    );
     let (mut world, mut renderer, _) = stand(builder, 0);
     // Which columns show the fence, 128 units away, in the row just above the horizon.
     let mut shown = |view_z: Fixed| {
@@ -55,8 +59,13 @@ fn runs_of_a_fence_that_begin_at_the_eye_s_height_show_only_below_it() {
         let height = Fixed::from_int(height);
         let [level, above, below] = [height, height + Fixed(1), height - Fixed(1)].map(&mut shown);
         for column in 0..160 {
-            // From above the texel over the eye's height is seen there, from below the one under it.
-            assert_eq!(level[column], above[column] && below[column], "column {column}, {height:?}");
+            // From above the texel over the eye's height is seen there, from below the one under
+            // it.
+            assert_eq!(
+                level[column],
+                above[column] && below[column],
+                "column {column}, {height:?}"
+            );
             begin += usize::from(below[column] && !above[column]);
         }
     }

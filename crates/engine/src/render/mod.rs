@@ -1,10 +1,12 @@
-//! Pictures of a world: first-person colour, depth and labels with the status bar, and the top-down map.
+//! Pictures of a world: first-person colour, depth and labels with the status bar, and the top-down
+//! map.
 //!
-//! The folders stand in the order of a frame, and each imports only from those before it (docs/rendering.md walks through them).
+//! The folders stand in the order of a frame, and each imports only from those before it
+//! (docs/rendering.md walks through them).
 //!
-//! A [`Scene`] is a map made ready for drawing with a set of pictures, a [`View`] is the tables of a frame size; both
-//! are immutable and shared. A [`Renderer`] holds the frames of one world. All arithmetic is on integers, so
-//! that the same world gives the same pixels everywhere.
+//! A [`Scene`] is a map made ready for drawing with a set of pictures, a [`View`] is the tables of
+//! a frame size; both are immutable and shared. A [`Renderer`] holds the frames of one world. All
+//! arithmetic is on integers, so that the same world gives the same pixels everywhere.
 
 // Physics and pixels are whole numbers: a floating-point operation here is a mistake.
 #![cfg_attr(not(test), deny(clippy::float_arithmetic))]

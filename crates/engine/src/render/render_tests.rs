@@ -38,10 +38,27 @@ fn yard() -> (Arc<Map>, Arc<Scene>) {
         };
         builder.rectangle(Style { ceiling_texture: "F_SKY1", ..STYLE }, -600, -300, 1700, 1500);
         TileGrid::new((0, 0), 128, 8, 8, tile).paint(&mut builder);
-        builder.rectangle(Style { ceiling: 96, light: 120, floor_texture: "FLOOR0_5", ..STYLE }, 1100, 100, 1500, 700);
-        builder.rectangle(Style { floor: -64, ceiling_texture: "F_SKY1", light: 0, ..STYLE }, -500, 0, -200, 300);
+        builder.rectangle(
+            Style { ceiling: 96, light: 120, floor_texture: "FLOOR0_5", ..STYLE },
+            1100,
+            100,
+            1500,
+            700,
+        );
+        builder.rectangle(
+            Style { floor: -64, ceiling_texture: "F_SKY1", light: 0, ..STYLE },
+            -500,
+            0,
+            -200,
+            300,
+        );
         builder.solid(&[(-300, 900), (-200, 800), (-100, 900), (-200, 1000)]);
-        let fence = Mark { middle: Some("AQF052"), blocking: true, lower_unpegged: true, ..Mark::default() };
+        let fence = Mark {
+            middle: Some("AQF052"),
+            blocking: true,
+            lower_unpegged: true,
+            ..Mark::default()
+        };
         builder.mark(fence, &[(-500, 600), (-100, 600)]);
         let map = Arc::new(Map::build(&builder.finish().unwrap(), "yard", &[]).unwrap());
         let scene = Arc::new(Scene::new(&map, assets()));
@@ -54,9 +71,11 @@ fn yard_world() -> World {
     let mut world = World::new(yard().0, 3);
     world.add_player(Fixed::ZERO, Fixed::ZERO, Angle::EAST);
     let mut rng = Rng::new(11);
-    let kinds: Vec<ActorKind> = ActorKind::all().filter(|&kind| kind != ActorKind::Player).collect();
+    let kinds: Vec<ActorKind> =
+        ActorKind::all().filter(|&kind| kind != ActorKind::Player).collect();
     for kind in kinds.into_iter().chain([ActorKind::ArmorBonus; 100]) {
-        let (x, y) = (Fixed::from_int(rng.between(-590, 1690)), Fixed::from_int(rng.between(-290, 1490)));
+        let (x, y) =
+            (Fixed::from_int(rng.between(-590, 1690)), Fixed::from_int(rng.between(-290, 1490)));
         let id = world.spawn(kind, x, y, Fixed::ZERO);
         let actor = world.get_mut(id).unwrap();
         (actor.z, actor.angle) = (actor.floor_z, Angle(rng.next_u64() as u32));
@@ -73,9 +92,11 @@ fn look(world: &mut World, x: Fixed, y: Fixed, angle: Angle, pitch: i32) {
     (world.players[0].view_z, world.players[0].pitch) = (floor + Fixed::from_int(41), pitch);
 }
 
-/// Anywhere in or about the yard, every third time exactly on a line, at any pitch and with any flash.
+/// Anywhere in or about the yard, every third time exactly on a line, at any pitch and with any
+/// flash.
 fn look_anywhere(world: &mut World, rng: &mut Rng) {
-    let (mut x, mut y) = (Fixed(rng.between(-800 << 16, 1900 << 16)), Fixed(rng.between(-500 << 16, 1700 << 16)));
+    let (mut x, mut y) =
+        (Fixed(rng.between(-800 << 16, 1900 << 16)), Fixed(rng.between(-500 << 16, 1700 << 16)));
     if rng.below(3) == 0 {
         let line = world.map.lines[rng.below(world.map.lines.len() as u32) as usize].clone();
         (x, y) = match rng.below(3) {
@@ -84,8 +105,13 @@ fn look_anywhere(world: &mut World, rng: &mut Rng) {
             _ => (line.v1.x + line.dx / 3 + Fixed(1), line.v1.y + line.dy / 3),
         };
     }
-    let angle = if rng.below(4) == 0 { Angle(rng.below(8) << 29) } else { Angle(rng.next_u64() as u32) };
-    let pitch = if rng.below(2) == 0 { 0 } else { Angle::from_degrees(f64::from(rng.between(-32, 56))).0 as i32 };
+    let angle =
+        if rng.below(4) == 0 { Angle(rng.below(8) << 29) } else { Angle(rng.next_u64() as u32) };
+    let pitch = if rng.below(2) == 0 {
+        0
+    } else {
+        Angle::from_degrees(f64::from(rng.between(-32, 56))).0 as i32
+    };
     look(world, x, y, angle, pitch);
     let player = &mut world.players[0];
     player.view_z += Fixed(rng.between(-(20 << 16), 60 << 16));
@@ -108,7 +134,9 @@ const ALL: Buffers = Buffers { depth: true, labels: true };
 fn every_family_of_instructions_draws_the_same_bits() {
     let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(33));
-    for (width, height, frames) in [(128, 72, 200), (160, 120, 60), (100, 48, 60), (640, 480, 10), (1001, 700, 3)] {
+    for (width, height, frames) in
+        [(128, 72, 200), (160, 120, 60), (100, 48, 60), (640, 480, 10), (1001, 700, 3)]
+    {
         let mut plain = renderer(width, height);
         plain.set_simd(Simd::PLAIN);
         for frame in 0..frames {
@@ -119,10 +147,19 @@ fn every_family_of_instructions_draws_the_same_bits() {
                 let mut other = renderer(width, height);
                 other.set_simd(simd);
                 other.render(&mut scratch, &world, 0, buffers);
-                assert!(plain.indices() == other.indices(), "colour of frame {frame}, {width}x{height}, {simd:?}");
+                assert!(
+                    plain.indices() == other.indices(),
+                    "colour of frame {frame}, {width}x{height}, {simd:?}"
+                );
                 if buffers.depth {
-                    assert!(plain.depth() == other.depth(), "depth of frame {frame}, {width}x{height}, {simd:?}");
-                    assert!(plain.classes() == other.classes(), "classes of frame {frame}, {width}x{height}, {simd:?}");
+                    assert!(
+                        plain.depth() == other.depth(),
+                        "depth of frame {frame}, {width}x{height}, {simd:?}"
+                    );
+                    assert!(
+                        plain.classes() == other.classes(),
+                        "classes of frame {frame}, {width}x{height}, {simd:?}"
+                    );
                     assert_eq!(plain.labels(), other.labels(), "{simd:?}");
                 }
             }
@@ -139,16 +176,23 @@ fn what_does_not_stay_is_drawn_as_what_does() {
     for frame in 0..60 {
         look_anywhere(&mut world, &mut rng);
         for ([keeps, passes], _) in pairs.iter_mut().zip(sizes) {
-            let buffers = [Buffers::default(), ALL, Buffers { depth: true, labels: false }][frame % 3];
+            let buffers =
+                [Buffers::default(), ALL, Buffers { depth: true, labels: false }][frame % 3];
             keeps.render(&mut scratch, &world, 0, buffers);
             let mut written = 0;
             passes.render_then(&mut scratch, &world, 0, buffers, |passes| {
-                assert!(passes.indices() == keeps.indices() && passes.palette() == keeps.palette(), "frame {frame}");
+                assert!(
+                    passes.indices() == keeps.indices() && passes.palette() == keeps.palette(),
+                    "frame {frame}"
+                );
                 if buffers.depth {
                     assert!(passes.depth() == keeps.depth(), "depth of frame {frame}");
                 }
                 if buffers.labels {
-                    assert!(passes.classes() == keeps.classes() && passes.labels() == keeps.labels(), "frame {frame}");
+                    assert!(
+                        passes.classes() == keeps.classes() && passes.labels() == keeps.labels(),
+                        "frame {frame}"
+                    );
                 }
                 written += 1;
             });
@@ -191,13 +235,23 @@ fn the_learners_frame_is_the_reduction_of_the_classic_one() {
         for y in 0..72 {
             for x in 0..128 {
                 let (at, from) = (y * 128 + x, (y * 5 / 3) * 160 + x * 5 / 4);
-                assert_eq!(small.indices()[at], large.indices()[from], "colour at {x}, {y} of frame {frame}");
-                assert_eq!(small.depth()[at], large.depth()[from], "depth at {x}, {y} of frame {frame}");
-                let kind = |renderer: &Renderer, class: u16| match class.checked_sub(class::FIRST_ACTOR) {
-                    Some(index) => Err(renderer.labels()[usize::from(index)].actor),
-                    None => Ok(class),
-                };
-                let (a, b) = (kind(&small, small.classes()[at]), kind(&large, large.classes()[from]));
+                assert_eq!(
+                    small.indices()[at],
+                    large.indices()[from],
+                    "colour at {x}, {y} of frame {frame}"
+                );
+                assert_eq!(
+                    small.depth()[at],
+                    large.depth()[from],
+                    "depth at {x}, {y} of frame {frame}"
+                );
+                let kind =
+                    |renderer: &Renderer, class: u16| match class.checked_sub(class::FIRST_ACTOR) {
+                        Some(index) => Err(renderer.labels()[usize::from(index)].actor),
+                        None => Ok(class),
+                    };
+                let (a, b) =
+                    (kind(&small, small.classes()[at]), kind(&large, large.classes()[from]));
                 assert_eq!(a, b, "class at {x}, {y} of frame {frame}");
             }
         }
@@ -213,11 +267,18 @@ fn buffers_do_not_change_the_colours() {
     for _ in 0..60 {
         look_anywhere(&mut world, &mut rng);
         with.render(&mut scratch, &world, 0, ALL);
-        for buffers in [Buffers::default(), Buffers { depth: true, labels: false }, Buffers { depth: false, labels: true }] {
+        for buffers in [
+            Buffers::default(),
+            Buffers { depth: true, labels: false },
+            Buffers { depth: false, labels: true },
+        ] {
             without.render(&mut scratch, &world, 0, buffers);
             assert_eq!(with.indices(), without.indices());
             assert!(!buffers.depth || with.depth() == without.depth());
-            assert!(!buffers.labels || (with.classes() == without.classes() && with.labels() == without.labels()));
+            assert!(
+                !buffers.labels
+                    || (with.classes() == without.classes() && with.labels() == without.labels())
+            );
         }
     }
 }
@@ -233,7 +294,9 @@ fn goggles_leave_the_sky_as_it_is() {
     world.players[0].infrared_tics = 1000;
     renderer.render(&mut scratch, &world, 0, ALL);
     let changed = |sky: bool| {
-        (0..bare.len()).filter(|&at| (classes[at] == class::SKY) == sky && bare[at] != renderer.indices()[at]).count()
+        (0..bare.len())
+            .filter(|&at| (classes[at] == class::SKY) == sky && bare[at] != renderer.indices()[at])
+            .count()
     };
     assert!(classes.contains(&class::SKY));
     assert_eq!(changed(true), 0);
@@ -259,7 +322,10 @@ fn a_used_renderer_draws_as_a_new_one() {
         let mut new = renderer(width, height);
         new.render(&mut scratch, &world, 0, ALL);
         assert_eq!(used.indices(), new.indices());
-        assert_eq!((used.depth(), used.classes(), used.palette()), (new.depth(), new.classes(), new.palette()));
+        assert_eq!(
+            (used.depth(), used.classes(), used.palette()),
+            (new.depth(), new.classes(), new.palette())
+        );
     }
 }
 
@@ -267,8 +333,19 @@ fn a_used_renderer_draws_as_a_new_one() {
 fn every_size_draws_from_anywhere() {
     let mut scratch = FrameScratch::default();
     let (mut world, mut rng) = (yard_world(), Rng::new(24));
-    let extremes = [(64, 48), (1920, 1080), (64, 1080), (1920, 48), (128, 72), (320, 240), (1280, 1024), (65, 49)];
-    let sizes = (0..40).map(|_| (rng.between(64, 400) as u16, rng.between(48, 300) as u16)).collect::<Vec<_>>();
+    let extremes = [
+        (64, 48),
+        (1920, 1080),
+        (64, 1080),
+        (1920, 48),
+        (128, 72),
+        (320, 240),
+        (1280, 1024),
+        (65, 49),
+    ];
+    let sizes = (0..40)
+        .map(|_| (rng.between(64, 400) as u16, rng.between(48, 300) as u16))
+        .collect::<Vec<_>>();
     for (width, height) in extremes.into_iter().chain(sizes) {
         let mut renderer = renderer(width, height);
         for _ in 0..12 {
@@ -301,7 +378,8 @@ fn depth_is_the_distance_forward() {
         // The wall ahead is equally far in every column.
         let wall = half * 10 / 73;
         assert_eq!([depth(1, 48), depth(80, 48), depth(158, 48)], [wall; 3], "wall at {half}");
-        // The floor 41 below the eye: row 90 is 40.5 rows below the horizon, 96 rows are one unit of slope.
+        // The floor 41 below the eye: row 90 is 40.5 rows below the horizon, 96 rows are one unit
+        // of slope.
         if half > 256 {
             assert_eq!(depth(80, 90), (41.0 * 96.0 / 40.5 / 7.3) as i32);
         }
@@ -323,12 +401,14 @@ fn published_depth_ends_early_except_on_floors() {
 #[test]
 fn no_pixel_of_a_closed_room_is_missed() {
     let mut scratch = FrameScratch::default();
-    // A hole would show as a pixel that is not of the wall's, floor's or ceiling's class at its proper place; the
-    // buffers start as far wall, so depth shows it: no wall of this room is farther than its diagonal.
+    // A hole would show as a pixel that is not of the wall's, floor's or ceiling's class at its
+    // proper place; the buffers start as far wall, so depth shows it: no wall of this room is
+    // farther than its diagonal.
     let (mut world, mut renderer) = room(300);
     let mut rng = Rng::new(31);
     for _ in 0..500 {
-        let (x, y) = (Fixed(rng.between(-280 << 16, 280 << 16)), Fixed(rng.between(-280 << 16, 280 << 16)));
+        let (x, y) =
+            (Fixed(rng.between(-280 << 16, 280 << 16)), Fixed(rng.between(-280 << 16, 280 << 16)));
         look(&mut world, x, y, Angle(rng.next_u64() as u32), rng.between(-380, 660) << 20);
         renderer.render(&mut scratch, &world, 0, ALL);
         let farthest = renderer.depth()[..160 * 100].iter().max().copied().unwrap_or(0);
@@ -357,7 +437,10 @@ fn labels_agree_with_the_class_buffer() {
             assert_eq!(class == class::STATUS_BAR, y >= 100);
             let Some(index) = class.checked_sub(class::FIRST_ACTOR) else { continue };
             let label = renderer.labels()[usize::from(index)];
-            assert!((label.x..label.x + label.width).contains(&x) && (label.y..label.y + label.height).contains(&y));
+            assert!(
+                (label.x..label.x + label.width).contains(&x)
+                    && (label.y..label.y + label.height).contains(&y)
+            );
         }
     }
     assert!(labelled > 300, "the test sees actors: {labelled}");
@@ -375,14 +458,22 @@ fn an_actor_behind_a_wall_is_not_seen() {
     let mut world = World::new(map, 1);
     world.add_player(Fixed::ZERO, Fixed::ZERO, Angle::EAST);
     let mut seen_at = |y: i32| {
-        let id = world.spawn(ActorKind::ArmorBonus, Fixed::from_int(300), Fixed::from_int(y), Fixed::ZERO);
+        let id = world.spawn(
+            ActorKind::ArmorBonus,
+            Fixed::from_int(300),
+            Fixed::from_int(y),
+            Fixed::ZERO,
+        );
         look(&mut world, Fixed::ZERO, Fixed::ZERO, Angle::EAST, 0);
         renderer.render(&mut scratch, &world, 0, ALL);
         world.remove(id);
         renderer.labels().len()
     };
     // From the origin the pillar's near edge hides everything up to 180 aside at a distance of 300.
-    assert_eq!([seen_at(0), seen_at(150), seen_at(-150), seen_at(200), seen_at(-200)], [0, 0, 0, 1, 1]);
+    assert_eq!(
+        [seen_at(0), seen_at(150), seen_at(-150), seen_at(200), seen_at(-200)],
+        [0, 0, 0, 1, 1]
+    );
 }
 
 #[test]

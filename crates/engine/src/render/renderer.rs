@@ -26,8 +26,9 @@ use crate::simd::Simd;
 use crate::world::World;
 use std::sync::Arc;
 
-/// Draws frames of one size of the worlds of one map. It owns what stays of a frame; what one is drawn in, the
-/// [`FrameScratch`], is the caller's. Drawing allocates nothing once every buffer has grown.
+/// Draws frames of one size of the worlds of one map. It owns what stays of a frame; what one is
+/// drawn in, the [`FrameScratch`], is the caller's. Drawing allocates nothing once every buffer has
+/// grown.
 #[derive(Clone, Debug)]
 pub struct Renderer {
     scene: Arc<Scene>,
@@ -38,8 +39,8 @@ pub struct Renderer {
     status_bar: StatusBar,
     /// What tints the palette.
     tint: Tint,
-    /// The palette as it was tinted last. Most frames have no tint: all worlds share the scene's palette then, and their caches
-    /// one copy.
+    /// The palette as it was tinted last. Most frames have no tint: all worlds share the scene's
+    /// palette then, and their caches one copy.
     tinted: Box<Colours>,
     options: RenderOptions,
     simd: Simd,
@@ -51,11 +52,12 @@ const CLASSES: usize = 1024;
 /// What may be drawn otherwise.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct RenderOptions {
-    /// Light amplification (Infrared goggles) has a strong green hue, as the paper says; ViZDoom only
-    /// brightens.
+    /// Light amplification (Infrared goggles) has a strong green hue, as the paper says; ViZDoom
+    /// only brightens.
     pub green_goggles: bool,
-    /// Depth is what ViZDoom writes: by a formula each for walls, floors and sprites, and except on floors
-    /// it ends at `255 * height / 480` in frames less than 480 rows high, at 63 in learners' frames.
+    /// Depth is what ViZDoom writes: by a formula each for walls, floors and sprites, and except on
+    /// floors it ends at `255 * height / 480` in frames less than 480 rows high, at 63 in learners'
+    /// frames.
     pub published_depth: bool,
 }
 
@@ -82,7 +84,8 @@ impl Renderer {
     pub fn set_options(&mut self, options: RenderOptions) {
         self.options = options;
         let published = || DepthEncoding::published(self.view.base_rows(), self.view.is_reduced());
-        self.frame.depths = if options.published_depth { published() } else { DepthEncoding::default() };
+        self.frame.depths =
+            if options.published_depth { published() } else { DepthEncoding::default() };
     }
 
     /// Draws with these instructions, to compare them: the pixels are the same.
@@ -94,13 +97,20 @@ impl Renderer {
     ///
     /// # Panics
     /// If the world is of another map than the scene, or has no such player.
-    pub fn render(&mut self, scratch: &mut FrameScratch, world: &World, player: usize, buffers: Buffers) {
+    pub fn render(
+        &mut self,
+        scratch: &mut FrameScratch,
+        world: &World,
+        player: usize,
+        buffers: Buffers,
+    ) {
         self.frame.fit(&self.view, self.frame.depths);
         self.draw_buffers(scratch, world, player, buffers);
     }
 
-    /// Draws what player `player` of `world` sees, and lets `write` read it; it does not stay. Renderers share the memory
-    /// of such frames with the scratch, so that it is in a near cache however many worlds take turns.
+    /// Draws what player `player` of `world` sees, and lets `write` read it; it does not stay.
+    /// Renderers share the memory of such frames with the scratch, so that it is in a near cache
+    /// however many worlds take turns.
     ///
     /// # Panics
     /// If the world is of another map than the scene, or has no such player.
@@ -122,8 +132,18 @@ impl Renderer {
     }
 
     #[inline(never)]
-    fn draw_buffers(&mut self, space: &mut FrameScratch, world: &World, player: usize, buffers: Buffers) {
-        assert_eq!(world.sector_count(), self.scene.sector_count, "the world is of another map than the scene");
+    fn draw_buffers(
+        &mut self,
+        space: &mut FrameScratch,
+        world: &World,
+        player: usize,
+        buffers: Buffers,
+    ) {
+        assert_eq!(
+            world.sector_count(),
+            self.scene.sector_count,
+            "the world is of another map than the scene"
+        );
         match (buffers.depth, buffers.labels) {
             (false, false) => self.draw::<false, false>(space, world, player),
             (true, false) => self.draw::<true, false>(space, world, player),
@@ -132,7 +152,12 @@ impl Renderer {
         }
     }
 
-    fn draw<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut FrameScratch, world: &World, player: usize) {
+    fn draw<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        space: &mut FrameScratch,
+        world: &World,
+        player: usize,
+    ) {
         space.begin(&self.scene, &self.view, world.tic);
         let camera = Camera::of_player(world, player, &self.view);
         self.slopes.update(&self.view, camera.horizon);
@@ -170,7 +195,15 @@ impl Renderer {
         player: usize,
     ) {
         self.labels.list.clear();
-        sprite::collect(&mut space.sprites, &self.scene, &self.view, camera, world, player, &space.entered);
+        sprite::collect(
+            &mut space.sprites,
+            &self.scene,
+            &self.view,
+            camera,
+            world,
+            player,
+            &space.entered,
+        );
         space.trails.collect(&self.scene, &self.view, camera, world);
         let mut masked = SpritePass {
             scene: &self.scene,
@@ -202,7 +235,8 @@ impl Renderer {
         let player = &world.players[player];
         let level = world.get(player.actor).map_or(0, |body| world.sector(body.sector).light);
         let (columns, cache) = (&mut space.patch_columns, &mut space.weapons);
-        let mut canvas = weapon::Canvas { frame: &mut self.frame, columns, cache, simd: self.simd, scene, view };
+        let mut canvas =
+            weapon::Canvas { frame: &mut self.frame, columns, cache, simd: self.simd, scene, view };
         canvas.weapon::<DEPTH, CLASS>(camera, player, i32::from(level));
         self.status_bar.update(&mut self.frame, &scene.bar, view, state);
         let tint = Tint::of_player(player, self.options.green_goggles);
@@ -214,22 +248,41 @@ impl Renderer {
         }
     }
 
-    /// Draws the sky, as far as its colours go, into the workspace's columns: its depth is what they were emptied to.
+    /// Draws the sky, as far as its colours go, into the workspace's columns: its depth is what
+    /// they were emptied to.
     fn draw_sky<const DEPTH: bool>(&mut self, space: &mut FrameScratch, camera: &Camera) {
         let picture = &self.scene.textures.walls[self.scene.sky];
         // Whatever light there is, and by goggles too.
-        let shader = SkyShader { camera, view: &self.view, table: &self.scene.assets.light_tables[0], picture };
+        let shader = SkyShader {
+            camera,
+            view: &self.view,
+            table: &self.scene.assets.light_tables[0],
+            picture,
+        };
         for plane in space.planes.used().iter().filter(|plane| plane.key.sky && !plane.is_empty()) {
-            let rows = self.slopes.sky_rows(|horizon| sky::shader::texel_rows(&self.view, horizon, picture.height));
+            let rows = self
+                .slopes
+                .sky_rows(|horizon| sky::shader::texel_rows(&self.view, horizon, picture.height));
             sky::draw(&shader, self.simd, &mut space.columns, plane, &mut space.sky_columns, rows);
             if DEPTH && self.frame.depths.by_quads() {
-                let (first, shown, farthest) = (plane.first, plane.first..plane.end, self.frame.depths.farthest());
-                quads::draw_below(&mut space.columns, first, &plane.top[shown.clone()], &plane.bottom[shown], |_| farthest);
+                let (first, shown, farthest) =
+                    (plane.first, plane.first..plane.end, self.frame.depths.farthest());
+                quads::draw_below(
+                    &mut space.columns,
+                    first,
+                    &plane.top[shown.clone()],
+                    &plane.bottom[shown],
+                    |_| farthest,
+                );
             }
         }
     }
 
-    fn draw_planes<const DEPTH: bool, const CLASS: bool>(&mut self, space: &mut FrameScratch, camera: &Camera) {
+    fn draw_planes<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        space: &mut FrameScratch,
+        camera: &Camera,
+    ) {
         let tables = &self.scene.assets.light_tables;
         for plane in space.planes.used() {
             if plane.is_empty() || (plane.key.sky && !CLASS) {
@@ -241,13 +294,21 @@ impl Renderer {
                 continue;
             }
             let picture = space.pictures[usize::from(plane.key.texture.0)] as usize;
-            let (flat, square) = (&self.scene.textures.flats[picture], self.scene.textures.squares[picture]);
-            let shader = PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key, square);
+            let (flat, square) =
+                (&self.scene.textures.flats[picture], self.scene.textures.squares[picture]);
+            let shader =
+                PlaneShader::new(camera, &self.view, &self.slopes, tables, plane.key, square);
             if whole::draw::<DEPTH, CLASS>(&shader, self.simd, &mut self.frame, flat, plane) {
                 continue;
             }
             let count = spans::list(plane, self.simd, &mut space.span_starts, &mut space.spans);
-            draw::draw::<DEPTH, CLASS>(&shader, self.simd, &mut self.frame, flat, &space.spans[..count]);
+            draw::draw::<DEPTH, CLASS>(
+                &shader,
+                self.simd,
+                &mut self.frame,
+                flat,
+                &space.spans[..count],
+            );
         }
     }
 
@@ -268,7 +329,8 @@ impl Renderer {
         &self.colours().palette
     }
 
-    /// The depth of the last frame, if it was drawn: 0 near to 255 far, 7.3 map units a level; weapon and status bar 0.
+    /// The depth of the last frame, if it was drawn: 0 near to 255 far, 7.3 map units a level;
+    /// weapon and status bar 0.
     #[must_use]
     pub fn depth(&self) -> &[u8] {
         &self.frame.depth
@@ -281,14 +343,15 @@ impl Renderer {
         &self.frame.class
     }
 
-    /// The actors of which the last frame drew a pixel, if labels were drawn, far to near; what came later may have hidden some.
+    /// The actors of which the last frame drew a pixel, if labels were drawn, far to near; what
+    /// came later may have hidden some.
     #[must_use]
     pub fn labels(&self) -> &[Label] {
         &self.labels.list
     }
 
-    /// The actors of which the last frame shows a pixel, if labels were drawn, far to near: those of [`Renderer::labels`] that
-    /// nothing nearer, no weapon and no status bar hides altogether.
+    /// The actors of which the last frame shows a pixel, if labels were drawn, far to near: those
+    /// of [`Renderer::labels`] that nothing nearer, no weapon and no status bar hides altogether.
     #[must_use]
     pub fn in_view(&self) -> Vec<InView> {
         labels::in_view(&self.labels.list, &self.frame.class, self.view.width())
@@ -305,7 +368,11 @@ impl Renderer {
     /// # Panics
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_rgb_hwc(&self, out: &mut [u8]) {
-        assert_eq!(out.len(), self.frame.colour.len() * 3, "a buffer of height * width * 3 bytes is needed");
+        assert_eq!(
+            out.len(),
+            self.frame.colour.len() * 3,
+            "a buffer of height * width * 3 bytes is needed"
+        );
         convert::rgb_interleaved(self.simd, self.colours(), &self.frame.colour, out);
     }
 
@@ -314,7 +381,11 @@ impl Renderer {
     /// # Panics
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_rgb_chw(&self, out: &mut [u8]) {
-        assert_eq!(out.len(), self.frame.colour.len() * 3, "a buffer of 3 * height * width bytes is needed");
+        assert_eq!(
+            out.len(),
+            self.frame.colour.len() * 3,
+            "a buffer of 3 * height * width bytes is needed"
+        );
         convert::rgb_planes(self.simd, self.colours(), &self.frame.colour, out);
     }
 
@@ -323,7 +394,11 @@ impl Renderer {
     /// # Panics
     /// If `out` is not as long as a frame has pixels.
     pub fn write_grey(&self, out: &mut [u8]) {
-        assert_eq!(out.len(), self.frame.colour.len(), "a buffer of height * width bytes is needed");
+        assert_eq!(
+            out.len(),
+            self.frame.colour.len(),
+            "a buffer of height * width bytes is needed"
+        );
         convert::grey(self.simd, self.colours(), &self.frame.colour, out);
     }
 
@@ -336,37 +411,62 @@ impl Renderer {
         out.copy_from_slice(&self.frame.depth);
     }
 
-    /// Writes the last frame row by row, red, green, blue and depth of each pixel in turn; depth must have been asked for.
+    /// Writes the last frame row by row, red, green, blue and depth of each pixel in turn; depth
+    /// must have been asked for.
     ///
     /// # Panics
     /// If `out` is not four times as long as a frame has pixels.
     pub fn write_rgb_depth_hwc(&self, out: &mut [u8]) {
-        assert_eq!(out.len(), self.frame.colour.len() * 4, "a buffer of height * width * 4 bytes is needed");
-        convert::rgb_depth_interleaved(self.simd, self.colours(), &self.frame.colour, &self.frame.depth, out);
+        assert_eq!(
+            out.len(),
+            self.frame.colour.len() * 4,
+            "a buffer of height * width * 4 bytes is needed"
+        );
+        convert::rgb_depth_interleaved(
+            self.simd,
+            self.colours(),
+            &self.frame.colour,
+            &self.frame.depth,
+            out,
+        );
     }
 
-    /// Writes the last frame with one colour per class, red, green and blue of each pixel in turn; labels must have been
-    /// asked for.
+    /// Writes the last frame with one colour per class, red, green and blue of each pixel in turn;
+    /// labels must have been asked for.
     ///
     /// # Panics
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_segmented_hwc(&self, colours: &SegmentationColours, out: &mut [u8]) {
-        assert_eq!(out.len(), self.frame.class.len() * 3, "a buffer of height * width * 3 bytes is needed");
-        convert::classes_interleaved(self.simd, &self.class_colours(colours), &self.frame.class, out);
+        assert_eq!(
+            out.len(),
+            self.frame.class.len() * 3,
+            "a buffer of height * width * 3 bytes is needed"
+        );
+        convert::classes_interleaved(
+            self.simd,
+            &self.class_colours(colours),
+            &self.frame.class,
+            out,
+        );
     }
 
-    /// Writes the last frame with one colour per class as three planes; labels must have been asked for.
+    /// Writes the last frame with one colour per class as three planes; labels must have been asked
+    /// for.
     ///
     /// # Panics
     /// If `out` is not three times as long as a frame has pixels.
     pub fn write_segmented_chw(&self, colours: &SegmentationColours, out: &mut [u8]) {
-        assert_eq!(out.len(), self.frame.class.len() * 3, "a buffer of 3 * height * width bytes is needed");
+        assert_eq!(
+            out.len(),
+            self.frame.class.len() * 3,
+            "a buffer of 3 * height * width bytes is needed"
+        );
         convert::classes_planes(&self.class_colours(colours), &self.frame.class, out);
     }
 
-    /// Writes the last frame's labels as ViZDoom gives them: 1 for floors and ceilings with a picture of 64 by
-    /// 64 texels, 0 for other surfaces, the `n`th of `N` actors `n * 255 / (N + 1)`, the weapon 255; labels must have been
-    /// asked for.
+    /// Writes the last frame's labels as ViZDoom gives them: 1 for floors and ceilings with a
+    /// picture of 64 by 64 texels, 0 for other surfaces, the `n`th of `N` actors `n * 255 /
+    /// (N + 1)`, the weapon 255; labels must have been asked for.
     ///
     /// # Panics
     /// If `out` is not as long as a frame has pixels.
@@ -376,7 +476,11 @@ impl Renderer {
         let mut values = [0; CLASSES];
         values[usize::from(class::WEAPON)] = 255;
         let actors = &mut values[usize::from(class::FIRST_ACTOR)..];
-        actors.iter_mut().take(count).enumerate().for_each(|(index, value)| *value = labels::value(index, count));
+        actors
+            .iter_mut()
+            .take(count)
+            .enumerate()
+            .for_each(|(index, value)| *value = labels::value(index, count));
         convert::classes_one_byte(&values, class::WEAPON, &self.frame.class, out);
     }
 

@@ -1,7 +1,9 @@
-//! Memory that a frame is drawn in and that nothing reads afterwards: a value that the caller owns and passes in.
+//! Memory that a frame is drawn in and that nothing reads afterwards: a value that the caller owns
+//! and passes in.
 //!
-//! One for each thread is best. If each of the worlds that a thread steps in turn had such memory of its own, that of a batch of
-//! 32 would not fit the second cache of a core, and every frame would begin with cold memory: 2 to 4 % of a step.
+//! One for each thread is best. If each of the worlds that a thread steps in turn had such memory
+//! of its own, that of a batch of 32 would not fit the second cache of a core, and every frame
+//! would begin with cold memory: 2 to 4 % of a step.
 
 use crate::render::buffers::clip::ColumnClip;
 use crate::render::buffers::drawsegs::list::DrawSegs;
@@ -18,7 +20,8 @@ use crate::render::view::tables::View;
 use crate::render::walls::batch::data::WallBatch;
 use crate::render::walls::pass::WallScratch;
 
-/// What is worked out on the way to a frame. Whatever was drawn before it shows in no pixel of the next.
+/// What is worked out on the way to a frame. Whatever was drawn before it shows in no pixel of the
+/// next.
 #[derive(Debug, Default)]
 pub struct FrameScratch {
     /// The frame of a renderer that does not keep its own.
@@ -73,7 +76,11 @@ impl FrameScratch {
         self.pictures.clear();
         // The frame of each animated texture.
         self.pictures.extend(scene.textures.list.iter().map(|texture| {
-            if texture.frames == 1 { texture.first } else { texture.first + tic / texture.tics % texture.frames }
+            if texture.frames == 1 {
+                texture.first
+            } else {
+                texture.first + tic / texture.tics % texture.frames
+            }
         }));
     }
 }

@@ -1,4 +1,5 @@
-//! Which vector instructions are used. Every variant of an integer kernel gives the same bits; the plain one reads like the formula.
+//! Which vector instructions are used. Every variant of an integer kernel gives the same bits; the
+//! plain one reads like the formula.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lookup;
@@ -13,16 +14,19 @@ pub struct Simd {
     level: Level,
 }
 
-/// The families by their names, from narrow to wide: what arithmetic with floating-point numbers is compiled for.
+/// The families by their names, from narrow to wide: what arithmetic with floating-point numbers is
+/// compiled for.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Family {
     /// Whatever the compiler makes of plain code. It rounds every product and every sum.
     Plain,
     /// Vectors of 32 bytes, and sums of products that are rounded once (Haswell and Zen onward).
     Avx2,
-    /// Vectors of 64 bytes with masks (Skylake's servers and Zen 4 onward): the same bits as those of [`Family::Avx2`].
+    /// Vectors of 64 bytes with masks (Skylake's servers and Zen 4 onward): the same bits as those
+    /// of [`Family::Avx2`].
     Avx512,
-    /// The same, but that a learner's matrices are multiplied as bfloat16 and summed as 32-bit numbers (Cooper Lake and Zen 4 onward).
+    /// The same, but that a learner's matrices are multiplied as bfloat16 and summed as 32-bit
+    /// numbers (Cooper Lake and Zen 4 onward).
     Avx512Bf16,
 }
 
@@ -33,7 +37,8 @@ pub(crate) enum Level {
     Plain,
     /// Vectors of 32 bytes.
     Avx2,
-    /// Vectors of 64 bytes with masks, and look-ups of 64 bytes at once (Ice Lake and Zen 4 onward).
+    /// Vectors of 64 bytes with masks, and look-ups of 64 bytes at once (Ice Lake and Zen 4
+    /// onward).
     Avx512,
 }
 
@@ -58,20 +63,26 @@ impl Simd {
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512vl");
             if wide && all.len() == 2 {
-                let level = if is_x86_feature_detected!("avx512vbmi") { Level::Avx512 } else { Level::Avx2 };
+                let level = if is_x86_feature_detected!("avx512vbmi") {
+                    Level::Avx512
+                } else {
+                    Level::Avx2
+                };
                 all.push(Simd { family: Family::Avx512, level });
             }
         }
         all
     }
 
-    /// The widest family, with products in bfloat16, if this processor has it. Nothing chooses it but its name.
+    /// The widest family, with products in bfloat16, if this processor has it. Nothing chooses it
+    /// but its name.
     #[must_use]
     pub fn bfloat16() -> Option<Simd> {
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx512bf16") {
             let widest = Simd::widest();
-            return (widest.family == Family::Avx512).then_some(Simd { family: Family::Avx512Bf16, ..widest });
+            return (widest.family == Family::Avx512)
+                .then_some(Simd { family: Family::Avx512Bf16, ..widest });
         }
         None
     }
@@ -81,7 +92,8 @@ impl Simd {
         Simd::available().into_iter().chain(Simd::bfloat16()).collect()
     }
 
-    /// The widest family of this processor that computes with 32-bit numbers, or the one that the variable `HASARD_SIMD` names.
+    /// The widest family of this processor that computes with 32-bit numbers, or the one that the
+    /// variable `HASARD_SIMD` names.
     ///
     /// # Errors
     /// When the variable names none, or one that this processor lacks.
@@ -95,7 +107,9 @@ impl Simd {
     /// When it names none, or one that this processor lacks.
     pub fn forced() -> Result<Option<Simd>, SimdError> {
         static FORCED: OnceLock<Result<Option<Simd>, SimdError>> = OnceLock::new();
-        let read = || std::env::var_os(VARIABLE).map(|name| Simd::named(&name.to_string_lossy())).transpose();
+        let read = || {
+            std::env::var_os(VARIABLE).map(|name| Simd::named(&name.to_string_lossy())).transpose()
+        };
         FORCED.get_or_init(read).clone()
     }
 
@@ -143,8 +157,9 @@ impl fmt::Display for Simd {
     }
 }
 
-/// Declares the files of a kernel, one for each family of vectors, where the processor's architecture has it. These two macros
-/// hold every `cfg` that a kernel needs: one for ARM would be `neon`, one more line in each.
+/// Declares the files of a kernel, one for each family of vectors, where the processor's
+/// architecture has it. These two macros hold every `cfg` that a kernel needs: one for ARM would be
+/// `neon`, one more line in each.
 macro_rules! kernel_files {
     ($($family:ident),+ $(,)?) => { $($crate::simd::kernel_files!(@ $family);)+ };
     (@ avx2) => {
@@ -162,8 +177,9 @@ macro_rules! kernel_files {
 }
 pub(crate) use kernel_files;
 
-/// Calls the widest variant of a kernel that a [`Simd`] allows and whose condition holds, else the scalar one: the families stand
-/// from wide to narrow. A variant is an `unsafe` call as its instructions must be there; the `Simd` proves that they are.
+/// Calls the widest variant of a kernel that a [`Simd`] allows and whose condition holds, else the
+/// scalar one: the families stand from wide to narrow. A variant is an `unsafe` call as its
+/// instructions must be there; the `Simd` proves that they are.
 macro_rules! dispatch {
     ($simd:expr; $(avx512 $(if $fits_avx512:expr)? => $avx512:expr,)? $(avx2 $(if $fits_avx2:expr)? => $avx2:expr,)?
      $(neon $(if $fits_neon:expr)? => $neon:expr,)? scalar => $scalar:expr $(,)?) => {'dispatched: {
@@ -252,7 +268,10 @@ mod tests {
             assert_eq!(Simd::named(simd.name()), Ok(simd));
         }
         assert_eq!(Simd::named("portable"), Ok(Simd::PLAIN));
-        assert!(Simd::available().iter().all(|simd| simd.family() != Family::Avx512Bf16), "nothing but its name chooses it");
+        assert!(
+            Simd::available().iter().all(|simd| simd.family() != Family::Avx512Bf16),
+            "nothing but its name chooses it"
+        );
         for name in ["", "AVX2", "sse9", "avx512\n"] {
             assert!(Simd::named(name).unwrap_err().to_string().contains("must be one of plain"));
         }

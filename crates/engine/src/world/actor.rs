@@ -79,7 +79,8 @@ pub enum ActorKind {
     BurningDebris,
 }
 
-/// Names an actor: its slot and the slot's generation, so that the name of a removed actor never means another.
+/// Names an actor: its slot and the slot's generation, so that the name of a removed actor never
+/// means another.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct ActorId {
     /// Index into `World::actors`.
@@ -129,8 +130,9 @@ pub struct Actor {
     pub dropoff_z: Fixed,
     /// Sector under the centre.
     pub sector: SectorId,
-    /// Properties; those of its kind at first, then changed by death and scripts. [`ActorFlags::MISSILE`] and
-    /// [`ActorFlags::NO_INTERACTION`] stay as they are for life: they decide whether the thing grid lists it.
+    /// Properties; those of its kind at first, then changed by death and scripts.
+    /// [`ActorFlags::MISSILE`] and [`ActorFlags::NO_INTERACTION`] stay as they are for life: they
+    /// decide whether the thing grid lists it.
     pub flags: ActorFlags,
     /// Highest step that it climbs, map units.
     pub max_step: Fixed,
@@ -152,7 +154,8 @@ pub struct Actor {
     pub tics: i16,
     /// The world's tic when it appeared.
     pub spawn_tic: u32,
-    /// Whoever fired it (missiles) or killed it (barrels): to blame for what it does, and never hit by it.
+    /// Whoever fired it (missiles) or killed it (barrels): to blame for what it does, and never hit
+    /// by it.
     pub origin: Option<ActorId>,
     /// The patrol point that a monster walks to.
     pub goal: Option<ActorId>,
@@ -166,7 +169,8 @@ pub struct Actor {
     pub steps_left: i32,
     /// A floating monster changed height in its last step because something blocked it.
     pub in_float: bool,
-    /// The monster backs off from a ledge: the usual test of drops is replaced (see `World::try_move`).
+    /// The monster backs off from a ledge: the usual test of drops is replaced (see
+    /// `World::try_move`).
     pub avoids_ledge: bool,
     /// Thing id of the patrol point that follows this one, 0 for none.
     pub next_goal: i32,

@@ -1,12 +1,13 @@
 //! What every kind of actor is: its body, its strength, what it stops and what stops it.
 //!
-//! The figures are facts of the original engine; one table, so that a question such as "how high is a barrel" has one
-//! answer for movement, rendering and rules alike.
+//! The figures are facts of the original engine; one table, so that a question such as "how high is
+//! a barrel" has one answer for movement, rendering and rules alike.
 
 use super::{ActorKind, Weapon};
 use crate::math::Fixed;
 
-/// Properties of an actor, a bit each. Every actor starts with those of its kind; death and scripts change them.
+/// Properties of an actor, a bit each. Every actor starts with those of its kind; death and scripts
+/// change them.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default, Debug)]
 pub struct ActorFlags(pub u16);
 
@@ -35,7 +36,8 @@ impl ActorFlags {
     pub const NO_INTERACTION: ActorFlags = ActorFlags(1 << 9);
     /// Is a player's body.
     pub const PLAYER: ActorFlags = ActorFlags(1 << 10);
-    /// Blasts hurt it, and it hurts by blast, by the older rule in whole units without height (barrels).
+    /// Blasts hurt it, and it hurts by blast, by the older rule in whole units without height
+    /// (barrels).
     pub const OLD_BLAST: ActorFlags = ActorFlags(1 << 11);
     /// Takes no damage; is still pushed.
     pub const INVULNERABLE: ActorFlags = ActorFlags(1 << 12);
@@ -99,12 +101,25 @@ const ITEM: ActorFlags = ActorFlags::ITEM;
 const GHOST: ActorFlags = ActorFlags::NO_INTERACTION.with(ActorFlags::NO_GRAVITY);
 const WALKER: ActorFlags = ActorFlags::SOLID.with(ActorFlags::SHOOTABLE).with(ActorFlags::MONSTER);
 const FLOATER: ActorFlags = WALKER.with(ActorFlags::FLOAT).with(ActorFlags::NO_GRAVITY);
-const MISSILE: ActorFlags = ActorFlags::MISSILE.with(ActorFlags::NO_GRAVITY).with(ActorFlags::DROP_OFF);
-const PLAYER: ActorFlags = ActorFlags::SOLID.with(ActorFlags::SHOOTABLE).with(ActorFlags::PLAYER).with(ActorFlags::DROP_OFF);
-const BARREL: ActorFlags = ActorFlags::SOLID.with(ActorFlags::SHOOTABLE).with(ActorFlags::NO_BLOOD).with(ActorFlags::OLD_BLAST);
+const MISSILE: ActorFlags =
+    ActorFlags::MISSILE.with(ActorFlags::NO_GRAVITY).with(ActorFlags::DROP_OFF);
+const PLAYER: ActorFlags = ActorFlags::SOLID
+    .with(ActorFlags::SHOOTABLE)
+    .with(ActorFlags::PLAYER)
+    .with(ActorFlags::DROP_OFF);
+const BARREL: ActorFlags = ActorFlags::SOLID
+    .with(ActorFlags::SHOOTABLE)
+    .with(ActorFlags::NO_BLOOD)
+    .with(ActorFlags::OLD_BLAST);
 
 /// A row with everything that most kinds share: no editor number, 100 mass, harmless.
-const fn row(kind: ActorKind, class_name: &'static str, radius: i32, height: i32, flags: ActorFlags) -> ActorInfo {
+const fn row(
+    kind: ActorKind,
+    class_name: &'static str,
+    radius: i32,
+    height: i32,
+    flags: ActorFlags,
+) -> ActorInfo {
     ActorInfo {
         kind,
         class_name,
@@ -124,7 +139,13 @@ const fn item(kind: ActorKind, class_name: &'static str, editor_number: i32) -> 
     ActorInfo { editor_number, ..row(kind, class_name, 20, 16, ITEM) }
 }
 
-const fn decor(kind: ActorKind, class_name: &'static str, editor_number: i32, radius: i32, height: i32) -> ActorInfo {
+const fn decor(
+    kind: ActorKind,
+    class_name: &'static str,
+    editor_number: i32,
+    radius: i32,
+    height: i32,
+) -> ActorInfo {
     ActorInfo { editor_number, ..row(kind, class_name, radius, height, ActorFlags::SOLID) }
 }
 
@@ -134,7 +155,10 @@ const fn remains(kind: ActorKind, class_name: &'static str, editor_number: i32) 
 }
 
 /// Body and strength of a monster; the flags say whether it walks or floats.
-#[allow(clippy::too_many_arguments, reason = "a table row: the columns are those of the original's documentation")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "a table row: the columns are those of the original's documentation"
+)]
 const fn monster(
     kind: ActorKind,
     class_name: &'static str,
@@ -146,10 +170,24 @@ const fn monster(
     speed: i32,
     flags: ActorFlags,
 ) -> ActorInfo {
-    ActorInfo { editor_number, health, mass, speed, pain_chance, ..row(kind, class_name, radius, 56, flags) }
+    ActorInfo {
+        editor_number,
+        health,
+        mass,
+        speed,
+        pain_chance,
+        ..row(kind, class_name, radius, 56, flags)
+    }
 }
 
-const fn missile(kind: ActorKind, class_name: &'static str, radius: i32, height: i32, speed: i32, damage: i32) -> ActorInfo {
+const fn missile(
+    kind: ActorKind,
+    class_name: &'static str,
+    radius: i32,
+    height: i32,
+    speed: i32,
+    damage: i32,
+) -> ActorInfo {
     ActorInfo { speed, damage, ..row(kind, class_name, radius, height, MISSILE) }
 }
 
@@ -157,7 +195,12 @@ use ActorKind as K;
 
 /// One row a kind, in the order of [`ActorKind`].
 const INFO: [ActorInfo; ActorKind::COUNT] = [
-    ActorInfo { editor_number: 1, health: 100, pain_chance: 255, ..row(K::Player, "DoomPlayer", 16, 56, PLAYER) },
+    ActorInfo {
+        editor_number: 1,
+        health: 100,
+        pain_chance: 255,
+        ..row(K::Player, "DoomPlayer", 16, 56, PLAYER)
+    },
     item(K::HealthBonus, "HealthBonus", 2014),
     item(K::Stimpack, "Stimpack", 2011),
     item(K::Medikit, "Medikit", 2012),
@@ -188,7 +231,11 @@ const INFO: [ActorInfo; ActorKind::COUNT] = [
     monster(K::Demon, "Demon", 3002, 30, 150, 400, 180, 10, WALKER),
     monster(K::Revenant, "Revenant", 66, 20, 300, 500, 100, 10, WALKER),
     monster(K::LostSoul, "LostSoul", 3006, 16, 100, 50, 256, 8, FLOATER.with(ActorFlags::NO_BLOOD)),
-    ActorInfo { health: 20, editor_number: 2035, ..row(K::ExplosiveBarrel, "ExplosiveBarrel", 10, 42, BARREL) },
+    ActorInfo {
+        health: 20,
+        editor_number: 2035,
+        ..row(K::ExplosiveBarrel, "ExplosiveBarrel", 10, 42, BARREL)
+    },
     missile(K::Rocket, "Rocket", 11, 8, 20, 20),
     row(K::RocketSmokeTrail, "RocketSmokeTrail", 20, 16, GHOST),
     missile(K::PlasmaBall, "PlasmaBall", 13, 8, 25, 5),

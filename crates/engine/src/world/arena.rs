@@ -1,4 +1,5 @@
-//! The arena: actors by slot, their generations, who runs when, and the grid by which things find each other.
+//! The arena: actors by slot, their generations, who runs when, and the grid by which things find
+//! each other.
 
 use super::actor::{NO_BLOCK, NONE};
 use super::{Actor, ActorFlags, ActorId, ActorKind, Heading, Phase, World};
@@ -10,15 +11,16 @@ pub(crate) const NOT_LISTED: ActorFlags = ActorFlags::NO_INTERACTION.with(ActorF
 /// Most actors of a world; slots are 16 bits, the last value means none.
 const SLOT_LIMIT: usize = NONE as usize;
 
-/// Largest radius of an actor (32, the big tree): boxes are searched that much wider, because the grid lists an actor
-/// only in the block of its centre.
+/// Largest radius of an actor (32, the big tree): boxes are searched that much wider, because the
+/// grid lists an actor only in the block of its centre.
 const LARGEST_RADIUS: Fixed = Fixed::from_int(32);
 
 impl World {
-    /// Creates an actor at (x, y, z) without any test. It first runs at the end of the current tic, with everything
-    /// else created in it. Its floor is that of the sector under its centre.
+    /// Creates an actor at (x, y, z) without any test. It first runs at the end of the current tic,
+    /// with everything else created in it. Its floor is that of the sector under its centre.
     ///
-    /// With 65,535 actors alive the last slot is taken over, so that a runaway script cannot bring the world down.
+    /// With 65,535 actors alive the last slot is taken over, so that a runaway script cannot bring
+    /// the world down.
     pub fn spawn(&mut self, kind: ActorKind, x: Fixed, y: Fixed, z: Fixed) -> ActorId {
         let info = kind.info();
         let slot = self.take_slot();
@@ -92,11 +94,14 @@ impl World {
     /// The actor that `id` names, unless it was removed.
     #[must_use]
     pub fn get(&self, id: ActorId) -> Option<&Actor> {
-        self.actors.get(usize::from(id.slot)).filter(|actor| !actor.removed && actor.generation == id.generation)
+        self.actors
+            .get(usize::from(id.slot))
+            .filter(|actor| !actor.removed && actor.generation == id.generation)
     }
 
-    /// The actor that `id` names, to change it. Wakes it, so that whatever was changed takes effect. Change positions
-    /// by [`World::set_position`], never directly: the grid would not know.
+    /// The actor that `id` names, to change it. Wakes it, so that whatever was changed takes
+    /// effect. Change positions by [`World::set_position`], never directly: the grid would not
+    /// know.
     pub fn get_mut(&mut self, id: ActorId) -> Option<&mut Actor> {
         self.get(id)?;
         self.wake_slot(usize::from(id.slot));
@@ -112,7 +117,9 @@ impl World {
     /// Every actor, in slot order.
     pub fn living(&self) -> impl Iterator<Item = (ActorId, &Actor)> + '_ {
         let ids = self.actors.iter().enumerate().filter(|(_, actor)| !actor.removed);
-        ids.map(|(slot, actor)| (ActorId { slot: slot as u16, generation: actor.generation }, actor))
+        ids.map(|(slot, actor)| {
+            (ActorId { slot: slot as u16, generation: actor.generation }, actor)
+        })
     }
 
     /// The actors with a thing id, in slot order.
@@ -120,8 +127,8 @@ impl World {
         self.living().filter(move |(_, actor)| actor.tid == tid).map(|(id, _)| id)
     }
 
-    /// Has an actor run from its next turn on, after its velocity, state or floor was changed. Actors at rest
-    /// whose animation is timed are skipped.
+    /// Has an actor run from its next turn on, after its velocity, state or floor was changed.
+    /// Actors at rest whose animation is timed are skipped.
     pub(crate) fn wake_slot(&mut self, slot: usize) {
         // Players run apart, what is fresh runs at the end of the tic.
         if self.actors[slot].player == u8::MAX && !self.awake[slot] && !self.is_fresh(slot) {
@@ -129,8 +136,8 @@ impl World {
         }
     }
 
-    /// The first slot from `from` on whose actor runs every tic. Which ones do cannot be foretold: eight at a time, without a
-    /// branch for each.
+    /// The first slot from `from` on whose actor runs every tic. Which ones do cannot be foretold:
+    /// eight at a time, without a branch for each.
     #[inline]
     pub(crate) fn next_awake(&self, mut from: usize) -> Option<usize> {
         while let Some(eight) = self.awake[from..].first_chunk::<8>() {
@@ -196,7 +203,13 @@ impl World {
     }
 
     /// Moves an actor in the plane, keeping the grid and its sector true; heights are the caller's.
-    pub(crate) fn relocate(&mut self, slot: usize, x: Fixed, y: Fixed, sector: crate::map::SectorId) {
+    pub(crate) fn relocate(
+        &mut self,
+        slot: usize,
+        x: Fixed,
+        y: Fixed,
+        sector: crate::map::SectorId,
+    ) {
         self.forget_footing(slot);
         let same_block = self.block_of(x, y) == self.actors[slot].block;
         if !same_block {
@@ -221,13 +234,14 @@ impl World {
         (column, blocks.row_of(y).clamp(0, blocks.rows - 1))
     }
 
-    /// The slots of actors whose footprint may overlap the square of half side `reach` around (x, y): block by block,
-    /// in each the most recently entered first. The caller compares distances.
+    /// The slots of actors whose footprint may overlap the square of half side `reach` around (x,
+    /// y): block by block, in each the most recently entered first. The caller compares distances.
     pub(crate) fn near(&self, x: Fixed, y: Fixed, reach: Fixed) -> Near<'_> {
         let reach = reach + LARGEST_RADIUS;
         let (west, south) = self.clamped_block(x - reach, y - reach);
         let (east, north) = self.clamped_block(x + reach, y + reach);
-        let mut near = Near { world: self, west, east, north, column: west, row: south, next: NONE };
+        let mut near =
+            Near { world: self, west, east, north, column: west, row: south, next: NONE };
         near.next = near.head();
         near
     }

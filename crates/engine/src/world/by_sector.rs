@@ -3,7 +3,8 @@
 use crate::map::SectorId;
 use crate::simd::prefetch;
 
-/// For each sector the index of its entry in some list, if it has one. Worlds without entries pay nothing.
+/// For each sector the index of its entry in some list, if it has one. Worlds without entries pay
+/// nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BySector(Vec<u32>);
 

@@ -1,13 +1,15 @@
-//! Where an actor may be: the test of a position against things and lines, and the move that relies on it.
+//! Where an actor may be: the test of a position against things and lines, and the move that relies
+//! on it.
 //!
-//! Players, monsters, missiles and items share these rules; their flags, step height and drop-off height make the
-//! difference.
+//! Players, monsters, missiles and items share these rules; their flags, step height and drop-off
+//! height make the difference.
 
 use super::{Actor, ActorFlags, World};
 use crate::map::{Blocks, Line, LineFlags, Map, SectorId};
 use crate::math::Fixed;
 
-/// Most items that one test of a position remembers; the recorded scenarios never have this many overlapping.
+/// Most items that one test of a position remembers; the recorded scenarios never have this many
+/// overlapping.
 const TOUCH_LIMIT: usize = 16;
 
 /// Actors with any of these flags may stand on and pass over and under others.
@@ -16,8 +18,8 @@ pub(crate) const PASSES: ActorFlags = ActorFlags::PLAYER.with(ActorFlags::MONSTE
 /// What a position is like for an actor.
 #[derive(Clone, Copy, Debug)]
 pub struct Position {
-    /// Nothing solid is in the way, and the lowest ceiling is high enough above the highest floor. Heights that
-    /// depend on the actor's own height above ground are tested by the move.
+    /// Nothing solid is in the way, and the lowest ceiling is high enough above the highest floor.
+    /// Heights that depend on the actor's own height above ground are tested by the move.
     pub free: bool,
     /// Highest floor under the footprint.
     pub floor_z: Fixed,
@@ -60,23 +62,37 @@ pub(crate) struct Opening {
     pub low_floor: Fixed,
 }
 
-/// Which side of a line a point is on: true for the back. Points within about one square map unit of cross product
-/// count to the front: the original computes with 32 bits less, and the slide along walls depends on it.
+/// Which side of a line a point is on: true for the back. Points within about one square map unit
+/// of cross product count to the front: the original computes with 32 bits less, and the slide
+/// along walls depends on it.
 pub(crate) fn behind(line: &Line, x: Fixed, y: Fixed) -> bool {
-    let across = i64::from((y - line.v1.y).0) * i64::from(line.dx.0) + i64::from((line.v1.x - x).0) * i64::from(line.dy.0);
+    let across = i64::from((y - line.v1.y).0) * i64::from(line.dx.0)
+        + i64::from((line.v1.x - x).0) * i64::from(line.dy.0);
     across >> 32 > 0
 }
 
-/// Visits every line that cuts the inside of the square of half side `radius` around (x, y), block by block: one that lies in
-/// several blocks comes several times.
+/// Visits every line that cuts the inside of the square of half side `radius` around (x, y), block
+/// by block: one that lies in several blocks comes several times.
 #[inline]
-pub(crate) fn for_each_line_across(map: &Map, x: Fixed, y: Fixed, radius: Fixed, mut visit: impl FnMut(u32, &Line)) {
+pub(crate) fn for_each_line_across(
+    map: &Map,
+    x: Fixed,
+    y: Fixed,
+    radius: Fixed,
+    mut visit: impl FnMut(u32, &Line),
+) {
     let (west, east, south, north) = (x - radius, x + radius, y - radius, y + radius);
     let blocks = &map.blockmap;
     for row in blocks.row_of(south)..=blocks.row_of(north) {
         for column in blocks.column_of(west)..=blocks.column_of(east) {
-            for (index, &[line_west, line_east, line_south, line_north]) in blocks.bounded_lines_in(column, row) {
-                if (west >= line_east) | (east <= line_west) | (south >= line_north) | (north <= line_south) {
+            for (index, &[line_west, line_east, line_south, line_north]) in
+                blocks.bounded_lines_in(column, row)
+            {
+                if (west >= line_east)
+                    | (east <= line_west)
+                    | (south >= line_north)
+                    | (north <= line_south)
+                {
                     continue;
                 }
                 let line = &map.lines[index as usize];
@@ -107,7 +123,9 @@ pub(super) fn stops(flags: LineFlags, actor: &Actor) -> bool {
         return blocks.any(Blocks::PROJECTILES);
     }
     let kind = if actor.player_index().is_some() { Blocks::PLAYERS } else { Blocks::MONSTERS };
-    blocking || blocks.any(kind) || actor.flags.any(ActorFlags::FLOAT) && blocks.any(Blocks::FLOATERS)
+    blocking
+        || blocks.any(kind)
+        || actor.flags.any(ActorFlags::FLOAT) && blocks.any(Blocks::FLOATERS)
 }
 
 impl World {
@@ -115,7 +133,11 @@ impl World {
     pub(crate) fn opening(&self, front: SectorId, back: SectorId) -> Opening {
         let ceilings = [front, back].map(|sector| self.sectors[sector.0 as usize].ceiling);
         let floors = [front, back].map(|sector| self.floor_of(sector));
-        Opening { top: ceilings[0].min(ceilings[1]), bottom: floors[0].max(floors[1]), low_floor: floors[0].min(floors[1]) }
+        Opening {
+            top: ceilings[0].min(ceilings[1]),
+            bottom: floors[0].max(floors[1]),
+            low_floor: floors[0].min(floors[1]),
+        }
     }
 
     /// What (x, y) is like for the actor in `slot`, at its present height. Changes nothing.
@@ -124,8 +146,8 @@ impl World {
         self.check_walk(slot, x, y, false)
     }
 
-    /// The same; a monster that is `walking` may leave a solid actor that it overlaps, one that is put there or thrown
-    /// may not. Players always may.
+    /// The same; a monster that is `walking` may leave a solid actor that it overlaps, one that is
+    /// put there or thrown may not. Players always may.
     fn check_walk(&self, slot: usize, x: Fixed, y: Fixed, walking: bool) -> Position {
         let actor = &self.actors[slot];
         let sector = self.map.sector_at(x, y);
@@ -156,9 +178,16 @@ impl World {
         position
     }
 
-    /// Tests the things around. Clears `free` where something blocks for certain; gives the highest thing low enough
-    /// to be stepped on.
-    fn check_actors(&self, slot: usize, x: Fixed, y: Fixed, walking: bool, position: &mut Position) -> Option<usize> {
+    /// Tests the things around. Clears `free` where something blocks for certain; gives the highest
+    /// thing low enough to be stepped on.
+    fn check_actors(
+        &self,
+        slot: usize,
+        x: Fixed,
+        y: Fixed,
+        walking: bool,
+        position: &mut Position,
+    ) -> Option<usize> {
         let actor = &self.actors[slot];
         let is_player = actor.player_index().is_some();
         let may_part = is_player || (walking && actor.flags.any(ActorFlags::MONSTER));
@@ -168,7 +197,9 @@ impl World {
         for other_slot in self.near(x, y, actor.radius) {
             let other = &self.actors[other_slot];
             if other_slot == slot
-                || !other.flags.any(ActorFlags::SOLID.with(ActorFlags::ITEM).with(ActorFlags::SHOOTABLE))
+                || !other
+                    .flags
+                    .any(ActorFlags::SOLID.with(ActorFlags::ITEM).with(ActorFlags::SHOOTABLE))
                 || !actor.would_overlap(other, x, y)
             {
                 continue;
@@ -184,7 +215,8 @@ impl World {
                     step = Some(other_slot);
                 }
             } else if is_player && top - other.z <= actor.max_step && step.is_none() {
-                // Over the head, within the pretended height: no obstacle unless there is something to step on.
+                // Over the head, within the pretended height: no obstacle unless there is something
+                // to step on.
             } else {
                 position.free = false;
                 position.blocking_actor = Some(other_slot);
@@ -218,7 +250,9 @@ impl World {
                 parting = true;
             } else if actor.would_overlap(other, actor.x, actor.y) {
                 let distance = |x: Fixed, y: Fixed| approximate_distance(other.x - x, other.y - y);
-                parting = distance(x, y) > distance(actor.x, actor.y) && top > other.z && actor.z < other.top();
+                parting = distance(x, y) > distance(actor.x, actor.y)
+                    && top > other.z
+                    && actor.z < other.top();
             }
         }
         if actor.flags.any(PASSES) && (actor.z >= other.top() || top <= other.z) {
@@ -235,7 +269,8 @@ impl World {
         other.flags.any(ActorFlags::SOLID) && actor.flags.any(ActorFlags::SOLID) && !parting
     }
 
-    /// Whether a missile meets `other`: overlapping in height too, not its thrower, and solid or shootable.
+    /// Whether a missile meets `other`: overlapping in height too, not its thrower, and solid or
+    /// shootable.
     fn stops_missile(&self, missile: &Actor, other: &Actor, other_slot: usize) -> bool {
         missile.z <= other.top()
             && missile.top() >= other.z
@@ -270,9 +305,9 @@ impl World {
         });
     }
 
-    /// Moves an actor to (x, y) if it may be there: players climb steps and walk over low things, `dropoff` lets it
-    /// leave the ground. Items on the way are picked up even where the move fails. Height changes later, in the
-    /// vertical move.
+    /// Moves an actor to (x, y) if it may be there: players climb steps and walk over low things,
+    /// `dropoff` lets it leave the ground. Items on the way are picked up even where the move
+    /// fails. Height changes later, in the vertical move.
     pub fn try_move(&mut self, slot: usize, x: Fixed, y: Fixed, dropoff: bool) -> Move {
         // Monsters walk with `dropoff` unset; what moves by its velocity has it set.
         let position = self.check_walk(slot, x, y, !dropoff);
@@ -291,7 +326,9 @@ impl World {
     fn may_enter(&self, slot: usize, dropoff: bool, position: &Position) -> (bool, bool) {
         let actor = &self.actors[slot];
         if !position.free {
-            let Some(other) = position.blocking_actor.map(|other| &self.actors[other]) else { return (false, false) };
+            let Some(other) = position.blocking_actor.map(|other| &self.actors[other]) else {
+                return (false, false);
+            };
             let ceiling = self.sectors[other.sector.0 as usize].ceiling.min(position.ceiling_z);
             let may_step_on = actor.player_index().is_some()
                 && other.player_index().is_none()
@@ -323,7 +360,8 @@ impl World {
             let floor = if on_actor { actor.z.max(position.floor_z) } else { position.floor_z };
             let too_deep = if actor.avoids_ledge {
                 // Backing off from a ledge: anything goes that is not another ledge.
-                actor.floor_z - position.floor_z > actor.max_dropoff || actor.dropoff_z - position.dropoff_z > actor.max_dropoff
+                actor.floor_z - position.floor_z > actor.max_dropoff
+                    || actor.dropoff_z - position.dropoff_z > actor.max_dropoff
             } else {
                 floor - position.dropoff_z > actor.max_dropoff
             };
@@ -334,8 +372,8 @@ impl World {
         (true, true)
     }
 
-    /// The highest solid actor that the actor in `slot` would overlap if its feet were at height `z` over its present
-    /// place.
+    /// The highest solid actor that the actor in `slot` would overlap if its feet were at height
+    /// `z` over its present place.
     pub(crate) fn actor_at(&self, slot: usize, z: Fixed) -> Option<usize> {
         let actor = &self.actors[slot];
         if actor.flags.any(ActorFlags::ITEM) {
@@ -348,7 +386,8 @@ impl World {
                 || !actor.would_overlap(other, actor.x, actor.y)
                 || !other.flags.any(ActorFlags::SOLID)
                 || other.flags.any(ActorFlags::ITEM)
-                || (actor.flags.any(ActorFlags::MISSILE) && actor.origin == Some(self.id_of(other_slot)))
+                || (actor.flags.any(ActorFlags::MISSILE)
+                    && actor.origin == Some(self.id_of(other_slot)))
                 || z > other.top()
                 || z + actor.height <= other.z
                 || found.is_some_and(|found| other.top() < self.actors[found].top())
@@ -372,7 +411,8 @@ impl World {
     }
 }
 
-/// The distance that the original estimates without a root: the larger component plus half the smaller.
+/// The distance that the original estimates without a root: the larger component plus half the
+/// smaller.
 #[must_use]
 pub fn approximate_distance(dx: Fixed, dy: Fixed) -> Fixed {
     let (dx, dy) = (dx.abs(), dy.abs());

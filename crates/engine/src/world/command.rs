@@ -55,9 +55,13 @@ pub struct Command {
 }
 
 impl Command {
-    /// Quantises a delta button's degrees per tic to 65536ths of a turn, rounding down as the original does.
+    /// Quantises a delta button's degrees per tic to 65536ths of a turn, rounding down as the
+    /// original does.
     #[must_use]
-    #[allow(clippy::float_arithmetic, reason = "the border where a policy's number becomes a whole one")]
+    #[allow(
+        clippy::float_arithmetic,
+        reason = "the border where a policy's number becomes a whole one"
+    )]
     pub fn quantise_delta(degrees: f64) -> i32 {
         (degrees / 180.0 * 32768.0).floor() as i32
     }

@@ -16,11 +16,13 @@ const ARMOR_SHARE: Fixed = Fixed(21846);
 const LARGEST_DAMAGE_COUNT: i32 = 100;
 
 impl World {
-    /// Hurts `victim` by `amount` health points before armour, in the original's order: damage factor, thrust,
-    /// invulnerability, armour, health, then death or pain. Gives the health points lost.
+    /// Hurts `victim` by `amount` health points before armour, in the original's order: damage
+    /// factor, thrust, invulnerability, armour, health, then death or pain. Gives the health points
+    /// lost.
     ///
-    /// `inflictor` is what touched the victim (a rocket, a barrel; for bullets the shooter), which is pushed away from
-    /// there; `source` is who is to blame. Floors, falls and scripts have neither.
+    /// `inflictor` is what touched the victim (a rocket, a barrel; for bullets the shooter), which
+    /// is pushed away from there; `source` is who is to blame. Floors, falls and scripts have
+    /// neither.
     pub fn damage(
         &mut self,
         victim: ActorId,
@@ -72,7 +74,8 @@ impl World {
         lost
     }
 
-    /// Pushes an actor away from whatever hurt it, in proportion to the damage and against its mass.
+    /// Pushes an actor away from whatever hurt it, in proportion to the damage and against its
+    /// mass.
     fn thrust_from(&mut self, slot: usize, inflictor: ActorId, amount: i32) {
         let Some(origin) = self.get(inflictor) else { return };
         let (dx, dy) = (self.actors[slot].x - origin.x, self.actors[slot].y - origin.y);
@@ -83,7 +86,11 @@ impl World {
         if thrust < SMALLEST_THRUST {
             return;
         }
-        let direction = if dx.0 | dy.0 == 0 { Angle(self.rng.next_u64() as u32) } else { Angle::of_vector(dx, dy) };
+        let direction = if dx.0 | dy.0 == 0 {
+            Angle(self.rng.next_u64() as u32)
+        } else {
+            Angle::of_vector(dx, dy)
+        };
         let actor = &mut self.actors[slot];
         actor.vx += thrust * direction.cos();
         actor.vy += thrust * direction.sin();
@@ -102,19 +109,24 @@ impl World {
     fn feel(&mut self, slot: usize) {
         let kind = self.actors[slot].kind;
         let chance = kind.info().pain_chance;
-        if chance > 0 && self.rng.byte() < chance && self.actors[slot].flags.any(ActorFlags::MONSTER) {
+        if chance > 0
+            && self.rng.byte() < chance
+            && self.actors[slot].flags.any(ActorFlags::MONSTER)
+        {
             self.set_phase(slot, Phase::Pain);
         }
     }
 
-    /// Kills an actor: it falls, shrinks to a quarter of its height and starts to die. [`Event::Died`] is raised now,
-    /// before any animation or blast.
+    /// Kills an actor: it falls, shrinks to a quarter of its height and starts to die.
+    /// [`Event::Died`] is raised now, before any animation or blast.
     fn die(&mut self, victim: ActorId, source: Option<ActorId>) {
         let slot = usize::from(victim.slot);
         let actor = &mut self.actors[slot];
         let (kind, tid) = (actor.kind, actor.tid);
         let monster = actor.flags.any(ActorFlags::MONSTER);
-        actor.flags.set(ActorFlags::SHOOTABLE.with(ActorFlags::FLOAT).with(ActorFlags::NO_GRAVITY), false);
+        actor
+            .flags
+            .set(ActorFlags::SHOOTABLE.with(ActorFlags::FLOAT).with(ActorFlags::NO_GRAVITY), false);
         actor.flags.set(ActorFlags::DROP_OFF, true);
         actor.height = actor.height >> 2;
         actor.origin = source;
@@ -148,11 +160,13 @@ impl World {
             _ => return,
         };
         let id = self.spawn(kind, dropper.x, dropper.y, dropper.z + (dropper.height >> 1));
-        let (vx, vy) = (Fixed(self.rng.signed_difference() << 8), Fixed(self.rng.signed_difference() << 8));
+        let (vx, vy) =
+            (Fixed(self.rng.signed_difference() << 8), Fixed(self.rng.signed_difference() << 8));
         let vz = Fixed::from_int(5) + Fixed(self.rng.byte() << 10);
         let item = &mut self.actors[usize::from(id.slot)];
         (item.vx, item.vy, item.vz) = (vx, vy, vz);
-        (item.floor_z, item.ceiling_z, item.dropoff_z) = (dropper.floor_z, dropper.ceiling_z, dropper.dropoff_z);
+        (item.floor_z, item.ceiling_z, item.dropoff_z) =
+            (dropper.floor_z, dropper.ceiling_z, dropper.dropoff_z);
         item.flags.set(ActorFlags::DROPPED, true);
     }
 }

@@ -7,11 +7,11 @@ use crate::math::{Angle, Fixed};
 pub const BLAST: i32 = 128;
 
 impl World {
-    /// The blast of the actor in `slot`, blamed on `source`. Every shootable actor within reach and in its sight is
-    /// hurt, the one to blame too.
+    /// The blast of the actor in `slot`, blamed on `source`. Every shootable actor within reach and
+    /// in its sight is hurt, the one to blame too.
     ///
-    /// Two rules: barrels (bursting or hurt) count whole map units in the plane alone; all others count the distance to
-    /// the victim's box in space, and are thrown up or down as well.
+    /// Two rules: barrels (bursting or hurt) count whole map units in the plane alone; all others
+    /// count the distance to the victim's box in space, and are thrown up or down as well.
     pub(super) fn blast(&mut self, slot: usize, source: Option<ActorId>, by: DamageKind) {
         let bomb = self.actors[slot];
         let mut victims = std::mem::take(&mut self.scratch_slots);
@@ -73,7 +73,8 @@ impl World {
         let direction = Angle::of_vector(target.x - bomb.x, target.y - bomb.y);
         target.vx += thrust * direction.cos();
         target.vy += thrust * direction.sin();
-        // Thrown up or down by half of that per map unit between the centres; whoever is to blame, by four fifths.
+        // Thrown up or down by half of that per map unit between the centres; whoever is to blame,
+        // by four fifths.
         let lift = rise * thrust;
         target.vz += if own { lift.scale(4, 5) } else { lift.scale(1, 2) };
         self.wake_slot(victim);

@@ -53,7 +53,8 @@ impl World {
     /// Band of a player's health for the face: 0 at 80 and more, 4 below 20.
     #[must_use]
     pub fn face_band(&self, player: usize) -> u8 {
-        let health = self.get(self.players[player].actor).map_or(0, |body| body.health.clamp(0, 100));
+        let health =
+            self.get(self.players[player].actor).map_or(0, |body| body.health.clamp(0, 100));
         ((100 - health) * 5 / 101) as u8
     }
 

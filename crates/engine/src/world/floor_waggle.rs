@@ -1,4 +1,5 @@
-//! Floors that swing, as movers of a world. One that nobody stands on is computed when somebody looks at it.
+//! Floors that swing, as movers of a world. One that nobody stands on is computed when somebody
+//! looks at it.
 
 use super::mover::Mover;
 use super::waggle::Waggle;
@@ -8,17 +9,25 @@ use crate::math::Fixed;
 use std::sync::Arc;
 
 impl World {
-    /// Has the floors of the sectors with a tag swing by `amplitude` eighths of a map unit about their height, with a
-    /// period of 4096 / `frequency` tics. The swing grows to its full size, stays for `seconds` (0: for ever), and
-    /// shrinks again. Busy floors are left alone.
-    pub fn floor_waggle(&mut self, tag: i32, amplitude: i32, frequency: i32, offset: i32, seconds: i32) {
+    /// Has the floors of the sectors with a tag swing by `amplitude` eighths of a map unit about
+    /// their height, with a period of 4096 / `frequency` tics. The swing grows to its full size,
+    /// stays for `seconds` (0: for ever), and shrinks again. Busy floors are left alone.
+    pub fn floor_waggle(
+        &mut self,
+        tag: i32,
+        amplitude: i32,
+        frequency: i32,
+        offset: i32,
+        seconds: i32,
+    ) {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
             let state = &mut self.sectors[sector.0 as usize];
             if state.busy.begin(Busy::FLOOR) {
                 continue;
             }
-            let mut waggle = Waggle::new(sector, state.floor, amplitude, frequency, offset, seconds);
+            let mut waggle =
+                Waggle::new(sector, state.floor, amplitude, frequency, offset, seconds);
             waggle.as_of = self.movers.tics();
             self.movers.add(Mover::Waggle(waggle));
         }

@@ -35,7 +35,8 @@ impl Clone for World {
         }
     }
 
-    /// Copies without allocating where this world's lists are large enough: how an environment resets.
+    /// Copies without allocating where this world's lists are large enough: how an environment
+    /// resets.
     fn clone_from(&mut self, source: &World) {
         let World {
             map,
@@ -91,16 +92,20 @@ impl Clone for World {
 }
 
 impl Hash for World {
-    /// Everything but the map, the caller's list of events, soot and trails, of which nothing else depends, and all of it as it is
-    /// now: what is computed when somebody looks hashes as if somebody had looked.
+    /// Everything but the map, the caller's list of events, soot and trails, of which nothing else
+    /// depends, and all of it as it is now: what is computed when somebody looks hashes as if
+    /// somebody had looked.
     fn hash<H: Hasher>(&self, state: &mut H) {
         state.write_usize(self.sectors.len());
         // In this order, and what is at work as one truth each: fingerprints stay what they were.
         for (sector, damage) in self.sectors().zip(&self.sector_damages) {
-            let SectorState { floor, ceiling, floor_texture, ceiling_texture, light, busy } = sector;
+            let SectorState { floor, ceiling, floor_texture, ceiling_texture, light, busy } =
+                sector;
             (floor, ceiling, floor_texture, ceiling_texture, light).hash(state);
             damage.hash(state);
-            [Busy::FLOOR, Busy::CEILING, Busy::LIGHT].iter().for_each(|&effect| busy.any(effect).hash(state));
+            [Busy::FLOOR, Busy::CEILING, Busy::LIGHT]
+                .iter()
+                .for_each(|&effect| busy.any(effect).hash(state));
         }
         self.actors.hash(state);
         self.players.hash(state);
@@ -119,8 +124,8 @@ impl Hash for World {
 }
 
 impl World {
-    /// A 64-bit fingerprint of everything that the world's future depends on, for goldens and replays: equal on every
-    /// little-endian platform and for every thread count.
+    /// A 64-bit fingerprint of everything that the world's future depends on, for goldens and
+    /// replays: equal on every little-endian platform and for every thread count.
     #[must_use]
     pub fn state_hash(&self) -> u64 {
         let mut hasher = Fingerprint::default();
@@ -129,7 +134,8 @@ impl World {
     }
 }
 
-/// A word-wise multiply-and-rotate hash; fixed here, so that fingerprints do not change with the standard library.
+/// A word-wise multiply-and-rotate hash; fixed here, so that fingerprints do not change with the
+/// standard library.
 #[derive(Clone, Debug)]
 pub struct Fingerprint(u64);
 

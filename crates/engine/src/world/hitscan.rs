@@ -1,4 +1,5 @@
-//! Bullets: where a weapon aims by itself, what a bullet hits, and the puff or blood that it raises.
+//! Bullets: where a weapon aims by itself, what a bullet hits, and the puff or blood that it
+//! raises.
 
 use super::sight::{Crossed, Path, WHOLE_PATH};
 use super::weapon::Spread;
@@ -16,7 +17,8 @@ const MUZZLE_OFFSET: Fixed = Fixed::from_int(8);
 const AIM_WINDOW: i64 = (1 << 32) * 35 / 360;
 /// The same without autoaim: half a degree.
 const NARROW_AIM_WINDOW: i64 = (1 << 32) / 720;
-/// Second and third direction in which weapons look for a target: 5.6 degrees to the left and to the right.
+/// Second and third direction in which weapons look for a target: 5.6 degrees to the left and to
+/// the right.
 const SIDE_LOOKS: [Angle; 2] = [Angle(1 << 26), Angle((1u32 << 26).wrapping_neg())];
 /// Puffs appear this much nearer than the wall that was hit.
 const PUFF_DISTANCE: Fixed = Fixed::from_int(4);
@@ -38,8 +40,9 @@ enum Impact {
 }
 
 impl World {
-    /// Where a player's weapon points: at the first shootable actor straight ahead within the vertical window, else at
-    /// one a little to the left, else to the right; else straight ahead with the player's pitch.
+    /// Where a player's weapon points: at the first shootable actor straight ahead within the
+    /// vertical window, else at one a little to the left, else to the right; else straight ahead
+    /// with the player's pitch.
     pub(super) fn aim(&mut self, player: usize) -> Aim {
         let slot = usize::from(self.players[player].actor.slot);
         let ahead = self.actors[slot].angle;
@@ -54,7 +57,8 @@ impl World {
         Aim { angle: ahead, pitch: own_pitch }
     }
 
-    /// The pitch at which the first actor along `angle` can be hit through every opening on the way.
+    /// The pitch at which the first actor along `angle` can be hit through every opening on the
+    /// way.
     fn aim_along(&mut self, slot: usize, angle: Angle, own_pitch: i32) -> Option<i32> {
         let window = if self.no_autoaim { NARROW_AIM_WINDOW } else { AIM_WINDOW };
         let (mut top, mut bottom) = (i64::from(own_pitch) - window, i64::from(own_pitch) + window);
@@ -66,7 +70,8 @@ impl World {
         let mut found = None;
         for crossing in &crossings {
             let distance = part_of(range, crossing.at);
-            let pitch_to = |height: Fixed| -i64::from(Angle::of_vector(distance, height - muzzle).0 as i32);
+            let pitch_to =
+                |height: Fixed| -i64::from(Angle::of_vector(distance, height - muzzle).0 as i32);
             match crossing.what {
                 Crossed::Line(index) => {
                     let line = &self.map.lines[index as usize];
@@ -120,17 +125,25 @@ impl World {
         }
     }
 
-    /// Sends a bullet off: it hurts the first shootable actor whose box it enters, or marks the first surface.
+    /// Sends a bullet off: it hurts the first shootable actor whose box it enters, or marks the
+    /// first surface.
     pub(super) fn fire_bullet(&mut self, slot: usize, angle: Angle, pitch: i32, damage: i32) {
         let pitch = Angle(pitch as u32);
         let level = pitch.cos();
         let (x, y) = (level * angle.cos(), level * angle.sin());
         let rise = -pitch.sin();
-        let path = Path { x: self.actors[slot].x, y: self.actors[slot].y, dx: x * BULLET_RANGE, dy: y * BULLET_RANGE };
+        let path = Path {
+            x: self.actors[slot].x,
+            y: self.actors[slot].y,
+            dx: x * BULLET_RANGE,
+            dy: y * BULLET_RANGE,
+        };
         let muzzle = self.muzzle(slot);
         let impact = self.trace(slot, &path, muzzle, rise);
         let range = Fixed::from_int(BULLET_RANGE);
-        let place = |distance: Fixed| (path.x + distance * x, path.y + distance * y, muzzle + distance * rise);
+        let place = |distance: Fixed| {
+            (path.x + distance * x, path.y + distance * y, muzzle + distance * rise)
+        };
         match impact {
             Impact::Nothing => {}
             Impact::Surface { at } => {
@@ -141,7 +154,13 @@ impl World {
                 let (x, y, z) = place(part_of(range, at));
                 let bleeds = !self.actors[victim].flags.any(ActorFlags::NO_BLOOD);
                 let shooter = self.id_of(slot);
-                self.damage(self.id_of(victim), Some(shooter), Some(shooter), damage, DamageKind::Bullet);
+                self.damage(
+                    self.id_of(victim),
+                    Some(shooter),
+                    Some(shooter),
+                    damage,
+                    DamageKind::Bullet,
+                );
                 if bleeds {
                     let id = self.spawn_mark(ActorKind::Blood, x, y, z);
                     self.weaken_blood(id, damage);
@@ -196,12 +215,14 @@ impl World {
             }
         }
         let end = height_at(WHOLE_PATH);
-        let impact = impact.or_else(|| self.plane_hit(sector, muzzle, rise, end)).unwrap_or(Impact::Nothing);
+        let impact =
+            impact.or_else(|| self.plane_hit(sector, muzzle, rise, end)).unwrap_or(Impact::Nothing);
         self.scratch_crossings = crossings;
         impact
     }
 
-    /// Where a bullet that is at height `z` now went through the floor or ceiling of a sector, if it did.
+    /// Where a bullet that is at height `z` now went through the floor or ceiling of a sector, if
+    /// it did.
     fn plane_hit(&self, sector: SectorId, muzzle: Fixed, rise: Fixed, z: Fixed) -> Option<Impact> {
         let state = self.sector(sector);
         let plane = if z < state.floor {
@@ -224,7 +245,14 @@ impl World {
     }
 
     /// Where a bullet enters an actor's box: through a side, or through top or bottom on the way.
-    fn enters_box(&self, slot: usize, path: &Path, muzzle: Fixed, rise: Fixed, at: i64) -> Option<i64> {
+    fn enters_box(
+        &self,
+        slot: usize,
+        path: &Path,
+        muzzle: Fixed,
+        rise: Fixed,
+        at: i64,
+    ) -> Option<i64> {
         let actor = &self.actors[slot];
         let range = Fixed::from_int(BULLET_RANGE);
         let z = muzzle + part_of(range, at) * rise;
@@ -261,7 +289,8 @@ impl World {
         Path { x: actor.x, y: actor.y, dx: angle.cos() * length, dy: angle.sin() * length }
     }
 
-    /// A puff or a drop of blood, a little higher or lower than the hit and up to 3 tics ahead of its time.
+    /// A puff or a drop of blood, a little higher or lower than the hit and up to 3 tics ahead of
+    /// its time.
     fn spawn_mark(&mut self, kind: ActorKind, x: Fixed, y: Fixed, z: Fixed) -> ActorId {
         let z = z + Fixed(self.rng.signed_difference() << 10);
         let id = self.spawn(kind, x, y, z);

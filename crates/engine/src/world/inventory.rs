@@ -14,8 +14,9 @@ pub const YELLOW_CARD: u8 = 1;
 pub const BLUE_SKULL: u8 = 2;
 
 impl World {
-    /// Gives a player what an item of a kind gives. False where it is refused and would stay on the ground: health
-    /// packs at full health, ammunition when full, keys that are owned. `dropped` items hold half the ammunition.
+    /// Gives a player what an item of a kind gives. False where it is refused and would stay on the
+    /// ground: health packs at full health, ammunition when full, keys that are owned. `dropped`
+    /// items hold half the ammunition.
     pub fn give(&mut self, player: usize, kind: ActorKind, dropped: bool) -> bool {
         match kind {
             ActorKind::HealthBonus => {
@@ -49,7 +50,9 @@ impl World {
             ActorKind::Allmap => true,
             ActorKind::Backpack => {
                 self.players[player].max_ammo = ammo::MOST.map(|most| 2 * most);
-                for (which, amount) in [(ammo::CLIP, 10), (ammo::SHELL, 4), (ammo::ROCKET, 1), (ammo::CELL, 20)] {
+                for (which, amount) in
+                    [(ammo::CLIP, 10), (ammo::SHELL, 4), (ammo::ROCKET, 1), (ammo::CELL, 20)]
+                {
                     self.give_ammo(player, which, amount);
                 }
                 true
@@ -63,7 +66,8 @@ impl World {
         }
     }
 
-    /// Adds ammunition of a type (see [`ammo`]); false where the player has as much as he can carry.
+    /// Adds ammunition of a type (see [`ammo`]); false where the player has as much as he can
+    /// carry.
     pub fn give_ammo(&mut self, player: usize, which: usize, amount: i32) -> bool {
         let player = &mut self.players[player];
         if player.ammo[which] >= player.max_ammo[which] {
@@ -73,11 +77,12 @@ impl World {
         true
     }
 
-    /// Gives a weapon with its ammunition; the player changes to it if it is new to him. A second one is taken for its
-    /// ammunition only.
+    /// Gives a weapon with its ammunition; the player changes to it if it is new to him. A second
+    /// one is taken for its ammunition only.
     pub fn give_weapon(&mut self, player: usize, weapon: Weapon, dropped: bool) -> bool {
         let given = weapon.info().ammo_given;
-        let took_ammo = self.give_ammo(player, weapon.info().ammo, if dropped { given / 2 } else { given });
+        let took_ammo =
+            self.give_ammo(player, weapon.info().ammo, if dropped { given / 2 } else { given });
         let owner = &mut self.players[player];
         if owner.weapons & weapon.bit() != 0 {
             return took_ammo;

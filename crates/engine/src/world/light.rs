@@ -1,5 +1,5 @@
-//! Light that changes. Nothing but pictures shows it, so that it is computed when somebody looks: an effect knows its state
-//! of some tic, and what it is any number of tics later.
+//! Light that changes. Nothing but pictures shows it, so that it is computed when somebody looks:
+//! an effect knows its state of some tic, and what it is any number of tics later.
 
 use super::by_sector::BySector;
 use super::{Busy, World};
@@ -35,7 +35,8 @@ pub(super) enum Effect {
     Glow { from: i32, to: i32, tics: i32, done: i32 },
     /// Bright and dark by turns.
     Strobe { bright: i32, dark: i32, bright_tics: i32, dark_tics: i32, left: i32 },
-    /// A gleam that comes and goes every [`PHASES`] tics and is dark between; `phase` is the next tic's.
+    /// A gleam that comes and goes every [`PHASES`] tics and is dark between; `phase` is the next
+    /// tic's.
     Phased { dark: i32, phase: u32 },
 }
 
@@ -55,7 +56,10 @@ impl Effect {
                     std::mem::swap(&mut from, &mut to);
                 }
                 let done = (ahead - turns * i64::from(tics)) as i32;
-                (Effect::Glow { from, to, tics, done }, clamp_light(from + (to - from) * done / tics))
+                (
+                    Effect::Glow { from, to, tics, done },
+                    clamp_light(from + (to - from) * done / tics),
+                )
             }
             Effect::Strobe { bright, dark, bright_tics, dark_tics, mut left } => {
                 let (mut count, mut level) = (i64::from(count), level);
@@ -63,13 +67,27 @@ impl Effect {
                 while count >= i64::from(left) {
                     count -= i64::from(left);
                     let is_dark = i32::from(level) == dark;
-                    (level, left) = if is_dark { (clamp_light(bright), bright_tics) } else { (clamp_light(dark), dark_tics) };
-                    // From a turn on whole rounds change nothing; one of two equal sides never leaves the bright one.
+                    (level, left) = if is_dark {
+                        (clamp_light(bright), bright_tics)
+                    } else {
+                        (clamp_light(dark), dark_tics)
+                    };
+                    // From a turn on whole rounds change nothing; one of two equal sides never
+                    // leaves the bright one.
                     if bright != dark && count >= round {
                         count %= round;
                     }
                 }
-                (Effect::Strobe { bright, dark, bright_tics, dark_tics, left: left - count as i32 }, level)
+                (
+                    Effect::Strobe {
+                        bright,
+                        dark,
+                        bright_tics,
+                        dark_tics,
+                        left: left - count as i32,
+                    },
+                    level,
+                )
             }
             Effect::Phased { dark, phase } => {
                 let shown = phase.wrapping_add(count - 1) % PHASES;
@@ -109,7 +127,8 @@ impl Lights {
 }
 
 impl World {
-    /// Sets the light of the sectors with a tag at once; values outside 0..=255 are kept, the renderer clamps.
+    /// Sets the light of the sectors with a tag at once; values outside 0..=255 are kept, the
+    /// renderer clamps.
     pub fn light_change_to_value(&mut self, tag: i32, level: i32) {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
@@ -117,14 +136,22 @@ impl World {
         }
     }
 
-    /// Has the light of the sectors with a tag glow: from `high` to `low` in `tics` tics, back in as many, and so on.
-    /// Sectors with an effect are left alone.
+    /// Has the light of the sectors with a tag glow: from `high` to `low` in `tics` tics, back in
+    /// as many, and so on. Sectors with an effect are left alone.
     pub fn light_glow(&mut self, tag: i32, high: i32, low: i32, tics: i32) {
         self.start_lights(tag, Effect::Glow { from: high, to: low, tics: tics.max(1), done: -1 });
     }
 
-    /// Has the light of the sectors with a tag strobe: `dark` (first) and `bright` by turns, all in phase.
-    pub fn light_strobe(&mut self, tag: i32, bright: i32, dark: i32, bright_tics: i32, dark_tics: i32) {
+    /// Has the light of the sectors with a tag strobe: `dark` (first) and `bright` by turns, all in
+    /// phase.
+    pub fn light_strobe(
+        &mut self,
+        tag: i32,
+        bright: i32,
+        dark: i32,
+        bright_tics: i32,
+        dark_tics: i32,
+    ) {
         let effect = Effect::Strobe {
             bright: bright.clamp(0, 255),
             dark: dark.clamp(0, 255),
@@ -218,7 +245,11 @@ mod tests {
             }
             for (first, &(effect, level)) in one_by_one.iter().enumerate().step_by(7) {
                 for (later, expected) in one_by_one.iter().enumerate().skip(first + 1) {
-                    assert_eq!(effect.after(level, (later - first) as u32), *expected, "{start:?}: {later} from {first}");
+                    assert_eq!(
+                        effect.after(level, (later - first) as u32),
+                        *expected,
+                        "{start:?}: {later} from {first}"
+                    );
                 }
             }
         }

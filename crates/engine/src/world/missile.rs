@@ -29,7 +29,8 @@ impl World {
         }
     }
 
-    /// Puts a new missile some way along its flight, still within its thrower; it may burst at once.
+    /// Puts a new missile some way along its flight, still within its thrower; it may burst at
+    /// once.
     fn advance_from_thrower(&mut self, slot: usize, thrower_radius: Fixed) {
         let missile = &self.actors[slot];
         let (mut x, mut y, mut z) = (missile.vx, missile.vy, missile.vz);
@@ -48,7 +49,8 @@ impl World {
         }
     }
 
-    /// A missile's move was refused: it hurts the actor in its way and bursts, or vanishes into the sky.
+    /// A missile's move was refused: it hurts the actor in its way and bursts, or vanishes into the
+    /// sky.
     pub(super) fn missile_blocked(&mut self, slot: usize, attempt: &Move) {
         if self.actors[slot].phase == Phase::Death {
             return;
@@ -73,8 +75,13 @@ impl World {
 
     /// Whether what stopped a missile is the upper part of a wall with sky behind it.
     fn is_lost_in_sky(&self, slot: usize, attempt: &Move) -> bool {
-        let Some(line) = attempt.position.ceiling_line.map(|index| &self.map.lines[index as usize]) else { return false };
-        let Some(back) = line.back_sector.map(|back| self.sectors[back.0 as usize]) else { return false };
+        let Some(line) = attempt.position.ceiling_line.map(|index| &self.map.lines[index as usize])
+        else {
+            return false;
+        };
+        let Some(back) = line.back_sector.map(|back| self.sectors[back.0 as usize]) else {
+            return false;
+        };
         self.is_sky(back.ceiling_texture) && self.actors[slot].z >= back.ceiling
     }
 
@@ -135,10 +142,16 @@ mod tests {
     #[test]
     fn puffs_of_smoke_live_as_long_as_in_the_original() {
         let mut world = World::new(stone_room(200, [0, 0, 4000, 256], &[]), 5);
-        let id = world.spawn(ActorKind::Rocket, Fixed::from_int(64), Fixed::from_int(128), Fixed::from_int(50));
+        let id = world.spawn(
+            ActorKind::Rocket,
+            Fixed::from_int(64),
+            Fixed::from_int(128),
+            Fixed::from_int(50),
+        );
         world.get_mut(id).unwrap().vx = Fixed::from_int(20);
         let mut seen: Vec<(ActorId, i32)> = Vec::new();
-        // The rocket bursts after 197 tics, and its last puff has gone after as many more as it lives.
+        // The rocket bursts after 197 tics, and its last puff has gone after as many more as it
+        // lives.
         for _ in 0..230 {
             world.run_thinkers(&[]);
             world.finish_tic();

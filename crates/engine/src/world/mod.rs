@@ -1,8 +1,8 @@
 //! A world: everything that changes during an episode, as plain data. `Clone` is a snapshot.
 //!
-//! One tic is [`World::run_thinkers`] (players, then actors, then sector movers), the caller's script phase, then
-//! [`World::finish_tic`] (what was created during the tic is run once, and time advances): the order of work of the
-//! original engine, with the scripts in the caller's hands.
+//! One tic is [`World::run_thinkers`] (players, then actors, then sector movers), the caller's
+//! script phase, then [`World::finish_tic`] (what was created during the tic is run once, and time
+//! advances): the order of work of the original engine, with the scripts in the caller's hands.
 
 // Physics and pixels are whole numbers: a floating-point operation here is a mistake.
 #![cfg_attr(not(test), deny(clippy::float_arithmetic))]
@@ -79,12 +79,14 @@ use std::sync::Arc;
 pub struct World {
     /// The map, shared by every world that uses it.
     pub map: Arc<Map>,
-    /// What changes of each sector, by [`SectorId`](crate::map::SectorId): floors and lights as they were when they were last
-    /// looked at, see [`World::sector`].
+    /// What changes of each sector, by [`SectorId`](crate::map::SectorId): floors and lights as
+    /// they were when they were last looked at, see [`World::sector`].
     sectors: Vec<SectorState>,
-    /// What each sector's floor does to players who stand on it, by [`SectorId`](crate::map::SectorId).
+    /// What each sector's floor does to players who stand on it, by
+    /// [`SectorId`](crate::map::SectorId).
     sector_damages: Vec<SectorDamage>,
-    /// Actor slots; removed actors leave a free slot ([`Actor::removed`]). Change actors by [`World::get_mut`].
+    /// Actor slots; removed actors leave a free slot ([`Actor::removed`]). Change actors by
+    /// [`World::get_mut`].
     pub actors: Vec<Actor>,
     /// The players; each owns one actor.
     pub players: Vec<Player>,
@@ -100,13 +102,15 @@ pub struct World {
     pub soot: Vec<Soot>,
     /// Trails of rockets of which squares may be left, the oldest first.
     pub trails: Vec<Trail>,
-    /// Rockets shed squares as they fly (Collateral Damage with its published maps and pictures, whose settings draw them).
+    /// Rockets shed squares as they fly (Collateral Damage with its published maps and pictures,
+    /// whose settings draw them).
     pub rockets_shed: bool,
     /// Monsters and weapons do not search for targets vertically or sideways (Collateral Damage).
     pub no_autoaim: bool,
     /// Killed soldiers drop their weapon or clip.
     pub monsters_drop_items: bool,
-    /// Whether each slot's actor runs every tic; false for those at rest, players' bodies, fresh actors and free slots.
+    /// Whether each slot's actor runs every tic; false for those at rest, players' bodies, fresh
+    /// actors and free slots.
     awake: Vec<bool>,
     /// Free slots, the last freed on top.
     free_slots: Vec<u16>,
@@ -120,7 +124,8 @@ pub struct World {
     movers: Movers,
     /// Changing lights.
     lights: Lights,
-    /// The sectors under each slot's actor, where remembered. Follows from positions, so it is no state of its own.
+    /// The sectors under each slot's actor, where remembered. Follows from positions, so it is no
+    /// state of its own.
     footings: Vec<Footing>,
     /// Scratch: the actors on moving sectors.
     riders: Riders,
@@ -131,8 +136,8 @@ pub struct World {
 }
 
 impl World {
-    /// A world at tic 0 of a map: sectors as the map says, one player at each player start (editor numbers 1 to 4),
-    /// and every thing whose editor number the engine knows.
+    /// A world at tic 0 of a map: sectors as the map says, one player at each player start (editor
+    /// numbers 1 to 4), and every thing whose editor number the engine knows.
     #[must_use]
     pub fn new(map: Arc<Map>, seed: u64) -> World {
         let sectors = map.sectors.iter().map(SectorState::new).collect();
@@ -179,8 +184,9 @@ impl World {
         world
     }
 
-    /// Asks the processor for what tics and frames read of the world. Of a batch that is stepped in turn no nearest cache holds
-    /// all worlds, and what a tic reads, it reads here and there: asked for at once, it arrives while the first tic runs.
+    /// Asks the processor for what tics and frames read of the world. Of a batch that is stepped in
+    /// turn no nearest cache holds all worlds, and what a tic reads, it reads here and there: asked
+    /// for at once, it arrives while the first tic runs.
     pub fn prefetch(&self) {
         prefetch(&self.actors[..]);
         prefetch(&self.awake[..]);
@@ -191,8 +197,9 @@ impl World {
         self.lights.prefetch();
     }
 
-    /// The first part of a tic: players think and move, then power-ups, lights, all other actors in slot order, and
-    /// moving floors and ceilings. Player `i` obeys `commands[i]`, nothing if that is missing.
+    /// The first part of a tic: players think and move, then power-ups, lights, all other actors in
+    /// slot order, and moving floors and ceilings. Player `i` obeys `commands[i]`, nothing if that
+    /// is missing.
     pub fn run_thinkers(&mut self, commands: &[Command]) {
         for index in 0..self.players.len() {
             let command = commands.get(index).copied().unwrap_or_default();
@@ -213,8 +220,8 @@ impl World {
         self.run_movers();
     }
 
-    /// The last part of a tic, after the caller's scripts: what was created during the tic is run once, until nothing
-    /// new comes; then time advances.
+    /// The last part of a tic, after the caller's scripts: what was created during the tic is run
+    /// once, until nothing new comes; then time advances.
     pub fn finish_tic(&mut self) {
         while self.fresh_run < self.fresh.len() || self.movers.wait() || self.lights.wait() {
             self.run_new_lights();
@@ -232,7 +239,8 @@ impl World {
         self.tic += 1;
     }
 
-    /// One tic of an actor that is no player's body: move, then animation; then it sleeps if nothing moves it.
+    /// One tic of an actor that is no player's body: move, then animation; then it sleeps if
+    /// nothing moves it.
     fn run_actor(&mut self, slot: usize) {
         let id = self.id_of(slot);
         if !self.actors[slot].at_rest() {

@@ -1,8 +1,9 @@
-//! What a monster does each time its state calls for it: looks for a goal, walks one step towards it, turns.
+//! What a monster does each time its state calls for it: looks for a goal, walks one step towards
+//! it, turns.
 //!
-//! Monsters here are harmless: they walk from goal to goal and never attack. What makes them interesting is that they
-//! block each other: two who meet head-on slide aside together for hundreds of map units, because a direction once
-//! chosen is kept for up to 16 steps.
+//! Monsters here are harmless: they walk from goal to goal and never attack. What makes them
+//! interesting is that they block each other: two who meet head-on slide aside together for
+//! hundreds of map units, because a direction once chosen is kept for up to 16 steps.
 
 use super::collision::for_each_line_across;
 use super::patrol::Heading;
@@ -69,7 +70,8 @@ impl World {
         };
     }
 
-    /// At the goal: on to the patrol point that follows it, if any. The next call only chooses a direction.
+    /// At the goal: on to the patrol point that follows it, if any. The next call only chooses a
+    /// direction.
     fn reach_goal(&mut self, slot: usize) -> bool {
         let actor = &self.actors[slot];
         let Some(goal) = actor.goal.and_then(|id| self.get(id)) else { return false };
@@ -107,10 +109,12 @@ impl World {
         // Steps longer than the body would jump over lines.
         let longest = actor.radius - Fixed::ONE;
         let fastest = dx.abs().max(dy.abs());
-        let parts = if longest > Fixed::ZERO && fastest > longest { 1 + fastest.0 / longest.0 } else { 1 };
+        let parts =
+            if longest > Fixed::ZERO && fastest > longest { 1 + fastest.0 / longest.0 } else { 1 };
         let mut attempt = None;
         for part in 1..=parts {
-            let made = self.try_move(slot, x + dx.scale(part, parts), y + dy.scale(part, parts), false);
+            let made =
+                self.try_move(slot, x + dx.scale(part, parts), y + dy.scale(part, parts), false);
             let moved = made.moved;
             attempt = Some(made);
             if !moved {
@@ -119,7 +123,9 @@ impl World {
         }
         let Some(attempt) = attempt else { return false };
         if !attempt.moved {
-            return flags.any(ActorFlags::FLOAT) && attempt.fits_higher && self.float_past(slot, attempt.position.floor_z);
+            return flags.any(ActorFlags::FLOAT)
+                && attempt.fits_higher
+                && self.float_past(slot, attempt.position.floor_z);
         }
         self.actors[slot].in_float = false;
         if walks {
@@ -131,13 +137,15 @@ impl World {
     /// A walker that stepped off something not higher than a step is put down at once.
     fn step_down(&mut self, slot: usize) {
         let actor = &self.actors[slot];
-        let (floor, above) = (actor.floor_z, actor.z > actor.floor_z && !actor.flags.any(ActorFlags::ON_ACTOR));
+        let (floor, above) =
+            (actor.floor_z, actor.z > actor.floor_z && !actor.flags.any(ActorFlags::ON_ACTOR));
         if above && actor.z <= floor + actor.max_step && self.actor_at(slot, floor).is_none() {
             self.actors[slot].z = floor;
         }
     }
 
-    /// A floater climbs or sinks to get over or under what blocks it; false if something is in the way of that too.
+    /// A floater climbs or sinks to get over or under what blocks it; false if something is in the
+    /// way of that too.
     fn float_past(&mut self, slot: usize, floor: Fixed) -> bool {
         let actor = &self.actors[slot];
         let z = if actor.z < floor { actor.z + FLOAT_STEP } else { actor.z - FLOAT_STEP };
@@ -166,11 +174,15 @@ impl World {
         }
     }
 
-    /// For a walker that hangs over a deep drop: the direction away from the lines that it hangs over.
+    /// For a walker that hangs over a deep drop: the direction away from the lines that it hangs
+    /// over.
     fn away_from_ledges(&self, slot: usize) -> Option<(Fixed, Fixed)> {
         let actor = &self.actors[slot];
         let exempt = ActorFlags::DROP_OFF.with(ActorFlags::ON_ACTOR).with(ActorFlags::FLOAT);
-        if actor.floor_z - actor.dropoff_z <= actor.max_dropoff || actor.z > actor.floor_z || actor.flags.any(exempt) {
+        if actor.floor_z - actor.dropoff_z <= actor.max_dropoff
+            || actor.z > actor.floor_z
+            || actor.flags.any(exempt)
+        {
             return None;
         }
         let (mut away_x, mut away_y) = (Fixed::ZERO, Fixed::ZERO);
@@ -191,8 +203,8 @@ impl World {
         (away_x.0 | away_y.0 != 0).then_some((away_x, away_y))
     }
 
-    /// Tries directions until a step succeeds: the diagonal towards (dx, dy), its two components, the old direction,
-    /// all others from a random end, and the way back last.
+    /// Tries directions until a step succeeds: the diagonal towards (dx, dy), its two components,
+    /// the old direction, all others from a random end, and the way back last.
     fn try_headings(&mut self, slot: usize, dx: Fixed, dy: Fixed, avoids_ledge: bool) {
         let old = self.actors[slot].heading;
         let back = old.opposite();

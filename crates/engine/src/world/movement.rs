@@ -32,7 +32,8 @@ struct PlaneMove {
 }
 
 impl World {
-    /// Moves an actor by its velocity, lets it fall, rise and land. Missiles that hit something burst.
+    /// Moves an actor by its velocity, lets it fall, rise and land. Missiles that hit something
+    /// burst.
     pub(crate) fn move_actor(&mut self, slot: usize) {
         let generation = self.actors[slot].generation;
         let plane = self.move_in_plane(slot);
@@ -132,7 +133,9 @@ impl World {
     /// Friction on the ground; none in the air.
     fn apply_friction(&mut self, slot: usize) {
         let actor = &mut self.actors[slot];
-        if actor.flags.any(ActorFlags::MISSILE) || (actor.z > actor.floor_z && !actor.flags.any(ActorFlags::ON_ACTOR)) {
+        if actor.flags.any(ActorFlags::MISSILE)
+            || (actor.z > actor.floor_z && !actor.flags.any(ActorFlags::ON_ACTOR))
+        {
             return;
         }
         let player = actor.player_index();
@@ -157,7 +160,9 @@ impl World {
         let actor = &mut self.actors[slot];
         let Some(player) = actor.player_index() else { return };
         let limit = CROUCHED_SPEED_LIMIT;
-        if self.players[player].crouch < Fixed::ONE * 3 / 4 && (actor.vx.abs() > limit || actor.vy.abs() > limit) {
+        if self.players[player].crouch < Fixed::ONE * 3 / 4
+            && (actor.vx.abs() > limit || actor.vy.abs() > limit)
+        {
             let factor = limit / actor.vx.abs().max(actor.vy.abs());
             (actor.vx, actor.vy) = (actor.vx * factor, actor.vy * factor);
         }
@@ -170,7 +175,8 @@ impl World {
         if z + actor.height > actor.ceiling_z { actor.ceiling_z - actor.height } else { z }
     }
 
-    /// A floater's step of height towards its target, zero unless the target is close and well above or below.
+    /// A floater's step of height towards its target, zero unless the target is close and well
+    /// above or below.
     fn float_step(&self, slot: usize) -> Fixed {
         let actor = &self.actors[slot];
         if !actor.flags.any(ActorFlags::FLOAT) || actor.in_float || !actor.pursuing {
@@ -209,8 +215,8 @@ impl World {
         actor.vz = Fixed::ZERO;
     }
 
-    /// The vertical move: velocity, gravity, floor, ceiling. `old_floor` is the floor before the plane move: walking
-    /// off a ledge starts the fall with double gravity.
+    /// The vertical move: velocity, gravity, floor, ceiling. `old_floor` is the floor before the
+    /// plane move: walking off a ledge starts the fall with double gravity.
     fn move_in_height(&mut self, slot: usize, old_floor: Fixed) {
         let float_step = self.float_step(slot);
         let actor = &mut self.actors[slot];
@@ -224,7 +230,8 @@ impl World {
         }
         actor.z += actor.vz;
         if actor.z > actor.floor_z && !actor.flags.any(ActorFlags::NO_GRAVITY) {
-            let off_a_ledge = actor.vz == Fixed::ZERO && old_floor > actor.floor_z && actor.z == old_floor;
+            let off_a_ledge =
+                actor.vz == Fixed::ZERO && old_floor > actor.floor_z && actor.z == old_floor;
             actor.vz -= if off_a_ledge { GRAVITY * 2 } else { GRAVITY };
         }
         actor.z += float_step;
@@ -270,7 +277,8 @@ impl Actor {
     pub(crate) fn at_rest(&self) -> bool {
         self.vx.0 | self.vy.0 | self.vz.0 == 0
             && !self.flags.any(ActorFlags::FLOAT)
-            && (self.z == self.floor_z || (self.z > self.floor_z && self.flags.any(ActorFlags::NO_GRAVITY)))
+            && (self.z == self.floor_z
+                || (self.z > self.floor_z && self.flags.any(ActorFlags::NO_GRAVITY)))
     }
 }
 

@@ -9,13 +9,15 @@ use crate::simd::prefetch;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
-/// Actors ride down with floors slower than this (map units per tic); faster ones leave them falling behind.
+/// Actors ride down with floors slower than this (map units per tic); faster ones leave them
+/// falling behind.
 const RIDE_LIMIT: Fixed = Fixed::from_int(9);
 
 /// The floors and ceilings at work.
 #[derive(Clone, Debug)]
 pub(crate) struct Movers {
-    /// In the order of their start. Where nobody stands on them, entries of swinging floors may lag behind.
+    /// In the order of their start. Where nobody stands on them, entries of swinging floors may lag
+    /// behind.
     pub(crate) list: Vec<Mover>,
     /// How many of them have ended.
     ended: usize,
@@ -39,14 +41,25 @@ impl Default for Movers {
     fn default() -> Movers {
         let (list, planes, swings) = (Vec::new(), Vec::new(), BySector::default());
         let (waiting_from, next_end) = (usize::MAX, u32::MAX);
-        Movers { list, ended: 0, planes, run: 0, tics: 0, waiting_from, next_end, swings, swings_made: 0 }
+        Movers {
+            list,
+            ended: 0,
+            planes,
+            run: 0,
+            tics: 0,
+            waiting_from,
+            next_end,
+            swings,
+            swings_made: 0,
+        }
     }
 }
 
 impl Movers {
     /// Copies without allocating where this list is large enough.
     pub(crate) fn copy_from(&mut self, source: &Movers) {
-        let Movers { list, ended, planes, run, tics, waiting_from, next_end, swings, swings_made } = source;
+        let Movers { list, ended, planes, run, tics, waiting_from, next_end, swings, swings_made } =
+            source;
         self.list.clone_from(list);
         self.planes.clone_from(planes);
         (self.ended, self.run, self.tics, self.waiting_from) = (*ended, *run, *tics, *waiting_from);
@@ -98,7 +111,8 @@ impl Movers {
     fn stop_planes(&mut self, stopped: impl Fn(SectorId) -> bool) {
         for at in 0..self.planes.len() {
             let index = self.planes[at] as usize;
-            if matches!(self.list[index], Mover::Plane(plane) if !plane.ceiling && stopped(plane.sector)) {
+            if matches!(self.list[index], Mover::Plane(plane) if !plane.ceiling && stopped(plane.sector))
+            {
                 self.end(index);
             }
         }
@@ -110,7 +124,8 @@ impl Movers {
         planes.retain(|&index| list[index as usize] != Mover::Ended);
     }
 
-    /// The mover of number `index` has ended. It stays in the list, lest the others get other numbers, until all of them are run.
+    /// The mover of number `index` has ended. It stays in the list, lest the others get other
+    /// numbers, until all of them are run.
     fn end(&mut self, index: usize) {
         self.renew_swings();
         self.list[index] = Mover::Ended;
@@ -129,7 +144,8 @@ impl Movers {
         }
     }
 
-    /// Whether planes are on their way anywhere; if not, the sectors with movers are those whose floors swing.
+    /// Whether planes are on their way anywhere; if not, the sectors with movers are those whose
+    /// floors swing.
     pub(crate) fn move_planes(&self) -> bool {
         !self.planes.is_empty()
     }
@@ -162,9 +178,12 @@ impl Movers {
 impl Hash for Movers {
     /// The movers as they are now.
     fn hash<H: Hasher>(&self, state: &mut H) {
-        let at_work = |movers: &[Mover]| movers.iter().filter(|&mover| *mover != Mover::Ended).count();
+        let at_work =
+            |movers: &[Mover]| movers.iter().filter(|&mover| *mover != Mover::Ended).count();
         state.write_usize(at_work(&self.list));
-        for (index, mover) in self.list.iter().enumerate().filter(|&(_, mover)| *mover != Mover::Ended) {
+        for (index, mover) in
+            self.list.iter().enumerate().filter(|&(_, mover)| *mover != Mover::Ended)
+        {
             self.ahead(index).map_or(*mover, Mover::Waggle).hash(state);
         }
         at_work(&self.list[..self.run]).hash(state);
@@ -200,8 +219,8 @@ fn script_speed(eighths: i32) -> Fixed {
 }
 
 impl World {
-    /// Lowers the floors of the sectors with a tag by `amount` map units at `speed` eighths of a map unit per tic.
-    /// A negative amount raises them at once. Busy floors are left alone.
+    /// Lowers the floors of the sectors with a tag by `amount` map units at `speed` eighths of a
+    /// map unit per tic. A negative amount raises them at once. Busy floors are left alone.
     pub fn floor_lower_by_value(&mut self, tag: i32, speed: i32, amount: i32) {
         self.start_planes(tag, false, |floor| (true, floor - Fixed::from_int(amount)), speed);
     }
@@ -217,7 +236,8 @@ impl World {
         self.start_planes(tag, false, |floor| (target <= floor, target), speed);
     }
 
-    /// Ends whatever the floors of the sectors with a tag still do: they stay at the height that they have.
+    /// Ends whatever the floors of the sectors with a tag still do: they stay at the height that
+    /// they have.
     pub fn stop_floors(&mut self, tag: i32) {
         let map = Arc::clone(&self.map);
         let mut planes = false;
@@ -229,13 +249,21 @@ impl World {
         // In one pass over the planes: there may be as many as there are floors to stop.
         if planes {
             let sectors = &self.sectors;
-            let stopped =
-                |SectorId(sector)| !sectors[sector as usize].busy.any(Busy::FLOOR) && map.sectors[sector as usize].tag == tag;
+            let stopped = |SectorId(sector)| {
+                !sectors[sector as usize].busy.any(Busy::FLOOR)
+                    && map.sectors[sector as usize].tag == tag
+            };
             self.movers.stop_planes(stopped);
         }
     }
 
-    fn start_planes(&mut self, tag: i32, ceiling: bool, aim: impl Fn(Fixed) -> (bool, Fixed), speed: i32) {
+    fn start_planes(
+        &mut self,
+        tag: i32,
+        ceiling: bool,
+        aim: impl Fn(Fixed) -> (bool, Fixed),
+        speed: i32,
+    ) {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
             let state = &mut self.sectors[sector.0 as usize];
@@ -248,8 +276,9 @@ impl World {
         }
     }
 
-    /// A tic of all movers; those that are done are dropped. Of the swinging floors only those that somebody touches are run,
-    /// unless one comes to rest: the others follow when they are looked at.
+    /// A tic of all movers; those that are done are dropped. Of the swinging floors only those that
+    /// somebody touches are run, unless one comes to rest: the others follow when they are looked
+    /// at.
     pub(crate) fn run_movers(&mut self) {
         if self.movers.list.is_empty() {
             self.movers.run = 0;
@@ -257,7 +286,9 @@ impl World {
         }
         self.list_riders();
         self.movers.tics += 1;
-        if self.movers.tics >= self.movers.next_end || 2 * self.movers.ended > self.movers.list.len() {
+        if self.movers.tics >= self.movers.next_end
+            || 2 * self.movers.ended > self.movers.list.len()
+        {
             self.movers.next_end = u32::MAX;
             self.run_every_mover(0);
         } else {
@@ -309,7 +340,9 @@ impl World {
         let (mut planes, mut swings) = (0, 0);
         loop {
             let plane = self.movers.planes.get(planes).map(|&index| index as usize);
-            let Some(index) = plane.into_iter().chain(self.riders.ridden(swings)).min() else { break };
+            let Some(index) = plane.into_iter().chain(self.riders.ridden(swings)).min() else {
+                break;
+            };
             self.movers.waiting_from = index + 1;
             if let Mover::Plane(plane) = self.movers.list[index] {
                 planes += 1;
@@ -343,8 +376,8 @@ impl World {
         !arrives
     }
 
-    /// Sets a floor or ceiling and carries, drops or pushes the actors that touch the sector. If something does not
-    /// fit any more, the plane goes back; false then.
+    /// Sets a floor or ceiling and carries, drops or pushes the actors that touch the sector. If
+    /// something does not fit any more, the plane goes back; false then.
     pub(crate) fn shift_plane(&mut self, sector: SectorId, ceiling: bool, height: Fixed) -> bool {
         let old = self.set_plane(sector, ceiling, height);
         if old == height || self.adjust_actors(sector, ceiling, height - old) {
@@ -360,8 +393,8 @@ impl World {
         std::mem::replace(if ceiling { &mut state.ceiling } else { &mut state.floor }, height)
     }
 
-    /// Re-evaluates every actor that touches a sector whose floor or ceiling moved by `change`; false if one does not
-    /// fit.
+    /// Re-evaluates every actor that touches a sector whose floor or ceiling moved by `change`;
+    /// false if one does not fit.
     fn adjust_actors(&mut self, sector: SectorId, ceiling: bool, change: Fixed) -> bool {
         let mut fits = true;
         let mut next = self.riders.first(sector);
@@ -376,7 +409,8 @@ impl World {
         fits
     }
 
-    /// Gives one actor its new floor and ceiling, and moves it with the floor; false if it does not fit.
+    /// Gives one actor its new floor and ceiling, and moves it with the floor; false if it does not
+    /// fit.
     fn adjust_actor(&mut self, slot: usize, ceiling: bool, change: Fixed) -> bool {
         let Actor { x, y, .. } = self.actors[slot];
         let is_player = self.actors[slot].player_index().is_some();
@@ -395,7 +429,9 @@ impl World {
         if !ceiling && old_floor != actor.floor_z {
             if change < Fixed::ZERO {
                 let falls = actor.vz == Fixed::ZERO && !actor.flags.any(ActorFlags::NO_GRAVITY);
-                let rides = actor.vz == Fixed::ZERO && actor.flags.any(ActorFlags::NO_GRAVITY) && actor.z == old_floor;
+                let rides = actor.vz == Fixed::ZERO
+                    && actor.flags.any(ActorFlags::NO_GRAVITY)
+                    && actor.z == old_floor;
                 if rides || (falls && -change < RIDE_LIMIT && actor.z - actor.floor_z <= -change) {
                     actor.z = actor.floor_z;
                 }
@@ -405,7 +441,8 @@ impl World {
         } else if ceiling && actor.top() > actor.ceiling_z {
             actor.z = (actor.ceiling_z - actor.height).max(actor.floor_z);
         }
-        let fits = actor.ceiling_z - actor.floor_z >= actor.height || !actor.flags.any(ActorFlags::SHOOTABLE);
+        let fits = actor.ceiling_z - actor.floor_z >= actor.height
+            || !actor.flags.any(ActorFlags::SHOOTABLE);
         if (actor.z, actor.floor_z) != (old_z, old_floor) {
             self.wake_slot(slot);
         }

@@ -77,11 +77,13 @@ impl World {
     /// The first patrol point with a thing id.
     #[must_use]
     pub fn patrol_point(&self, tid: i32) -> Option<ActorId> {
-        self.living().find(|(_, actor)| tid != 0 && actor.kind == ActorKind::PatrolPoint && actor.tid == tid).map(|(id, _)| id)
+        self.living()
+            .find(|(_, actor)| tid != 0 && actor.kind == ActorKind::PatrolPoint && actor.tid == tid)
+            .map(|(id, _)| id)
     }
 
-    /// Sends every living monster with thing id `tid` to the patrol point with thing id `goal_tid`; to none where there
-    /// is no such point: it will stand. Scripts' `Thing_SetGoal`.
+    /// Sends every living monster with thing id `tid` to the patrol point with thing id `goal_tid`;
+    /// to none where there is no such point: it will stand. Scripts' `Thing_SetGoal`.
     pub fn set_goal(&mut self, tid: i32, goal_tid: i32) {
         let goal = self.patrol_point(goal_tid);
         for actor in self.actors.iter_mut().filter(|actor| !actor.removed && actor.tid == tid) {

@@ -1,4 +1,5 @@
-//! Every step that monsters of the original were recorded to take must be one that ours could take from the same place.
+//! Every step that monsters of the original were recorded to take must be one that ours could take
+//! from the same place.
 
 use super::{ActorKind, Heading, Phase, World};
 use crate::map::{Map, MapBuilder, Style};
@@ -25,7 +26,16 @@ const LAST_TIC: u32 = 500;
 /// The room of the recording: Collateral Damage with its crates and notch.
 fn room() -> Arc<Map> {
     let mut builder = MapBuilder::new();
-    let corners = [(-576, -640), (256, -640), (256, 192), (224, 192), (224, 320), (256, 320), (256, 640), (-576, 640)];
+    let corners = [
+        (-576, -640),
+        (256, -640),
+        (256, 192),
+        (224, 192),
+        (224, 320),
+        (256, 320),
+        (256, 640),
+        (-576, 640),
+    ];
     builder.polygon(STYLE, &corners);
     let crate_of = |floor| Style { floor, ..STYLE };
     builder.rectangle(crate_of(24), 160, -352, 192, -320);
@@ -34,7 +44,10 @@ fn room() -> Arc<Map> {
     builder.rectangle(crate_of(24), -256, -448, -192, -384);
     builder.rectangle(crate_of(24), 160, 544, 192, 576);
     builder.thing(1, -256.0, 0.0, 0);
-    Arc::new(Map::build(&builder.finish().expect("the room is well formed"), "room", &[]).expect("the room builds"))
+    Arc::new(
+        Map::build(&builder.finish().expect("the room is well formed"), "room", &[])
+            .expect("the room builds"),
+    )
 }
 
 /// Where each of eight monsters is after each tic.
@@ -42,7 +55,8 @@ fn recording() -> Vec<[(f64, f64); 8]> {
     let mut places = vec![[(0.0, 0.0); 8]; (LAST_TIC + 1) as usize];
     for line in include_str!("../../tests/data/patrol.csv").lines().skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
-        let (tic, monster): (usize, usize) = (fields[0].parse().unwrap(), fields[1].parse().unwrap());
+        let (tic, monster): (usize, usize) =
+            (fields[0].parse().unwrap(), fields[1].parse().unwrap());
         for row in &mut places[tic..] {
             row[monster] = (fields[2].parse().unwrap(), fields[3].parse().unwrap());
         }
@@ -71,10 +85,14 @@ fn recorded_patrols_are_explained_step_by_step() {
     for (monster, &(x, y)) in start.iter().enumerate() {
         let kind = if monster < 4 { ActorKind::Cacodemon } else { ActorKind::ZombieMan };
         let id = world.spawn(kind, Fixed::from_f64(x), Fixed::from_f64(y), Fixed::ZERO);
-        let north = places.iter().skip(FIRST_TIC as usize).find(|row| row[monster].1 != y).unwrap()[monster].1 > y;
+        let north = places.iter().skip(FIRST_TIC as usize).find(|row| row[monster].1 != y).unwrap()
+            [monster]
+            .1
+            > y;
         let actor = world.get_mut(id).unwrap();
         actor.speed = Fixed::from_int(if monster < 4 { 10 } else { 8 });
-        (actor.heading, actor.goal) = if north { (Heading::North, Some(goals[0])) } else { (Heading::South, Some(goals[1])) };
+        (actor.heading, actor.goal) =
+            if north { (Heading::North, Some(goals[0])) } else { (Heading::South, Some(goals[1])) };
         actor.angle = if north { Angle::DEG_90 } else { Angle::DEG_90 + Angle::DEG_180 };
         (actor.pursuing, actor.phase) = (true, Phase::Walk);
         slots.push(usize::from(id.slot));
@@ -101,7 +119,9 @@ fn recorded_patrols_are_explained_step_by_step() {
                     (close(copy.actors[slot].x, x) && close(copy.actors[slot].y, y)).then_some(copy)
                 });
             let Some(found) = found else {
-                panic!("tic {tic}, monster {monster}: from {before:?} to ({x}, {y}) is no step of ours");
+                panic!(
+                    "tic {tic}, monster {monster}: from {before:?} to ({x}, {y}) is no step of ours"
+                );
             };
             world = found;
             steps += 1;

@@ -3,11 +3,13 @@
 use super::{ActorFlags, ActorId, Event, World};
 
 impl World {
-    /// Called for every item that a player's body touches where it tries to go, or where it stands when a floor moves
-    /// under it; standing still on a still floor takes nothing. Overlapping in height is part of touching: feet at or
-    /// above an item's top pass over it, and so a jump clears items.
+    /// Called for every item that a player's body touches where it tries to go, or where it stands
+    /// when a floor moves under it; standing still on a still floor takes nothing. Overlapping in
+    /// height is part of touching: feet at or above an item's top pass over it, and so a jump
+    /// clears items.
     ///
-    /// If the player can use the item, it takes effect, is removed and [`Event::PickedUp`] is raised.
+    /// If the player can use the item, it takes effect, is removed and [`Event::PickedUp`] is
+    /// raised.
     pub(crate) fn touch_item(&mut self, player: usize, id: ActorId) {
         let Some(item) = self.get(id) else { return };
         if self.players[player].dead {

@@ -4,7 +4,8 @@ use super::view::VIEW_HEIGHT;
 use super::{ActorId, Buttons, FaceState, WeaponState, ammo};
 use crate::math::Fixed;
 
-/// Tics after the start of a map during which bodies neither turn, walk nor jump; scenarios may change a player's count.
+/// Tics after the start of a map during which bodies neither turn, walk nor jump; scenarios may
+/// change a player's count.
 pub const SPAWN_FREEZE_TICS: u32 = 8;
 
 /// A weapon that a player can hold, in slot order.
@@ -57,7 +58,8 @@ pub struct Player {
     pub armor: i32,
     /// Ammunition: clip, shells, rockets, cells.
     pub ammo: [i32; 4],
-    /// Ammunition that left in the last tic: the status bar, which is told before shots are fired, shows it still.
+    /// Ammunition that left in the last tic: the status bar, which is told before shots are fired,
+    /// shows it still.
     pub just_spent: [i32; 4],
     /// Most ammunition of each type.
     pub max_ammo: [i32; 4],
@@ -85,7 +87,8 @@ pub struct Player {
     pub invulnerable: bool,
     /// Multiplier of damage taken; zero also stops thrust and flash.
     pub damage_factor: Fixed,
-    /// Tics before the body can turn, walk and jump (the spawn freeze); looking, crouching and shooting work at once.
+    /// Tics before the body can turn, walk and jump (the spawn freeze); looking, crouching and
+    /// shooting work at once.
     pub freeze_tics: u32,
     /// Health points are 0.
     pub dead: bool,
@@ -99,7 +102,8 @@ pub struct Player {
     pub turn180_tics: u8,
     /// Forward command of this tic, right command: 256ths of the units of the button table.
     pub thrust: [i32; 2],
-    /// 0 when a jump may start, negative while in the air after one, positive for a while after landing.
+    /// 0 when a jump may start, negative while in the air after one, positive for a while after
+    /// landing.
     pub jump_tics: i32,
     /// A jump pressed while crouched forces getting up: 1 until the next press of crouch.
     pub forced_rise: bool,
@@ -113,7 +117,8 @@ pub struct Player {
     pub on_ground: bool,
     /// What the hands and the weapon are doing.
     pub weapon_state: WeaponState,
-    /// Face of the status bar; the band of health comes from [`World::face_band`](super::World::face_band).
+    /// Face of the status bar; the band of health comes from
+    /// [`World::face_band`](super::World::face_band).
     pub face_state: FaceState,
     /// Monsters killed.
     pub kills: u32,
@@ -165,13 +170,15 @@ impl Player {
         }
     }
 
-    /// Forgets all motion: the eye at rest above feet at `z`, nothing held, upright, looking along `pitch`.
+    /// Forgets all motion: the eye at rest above feet at `z`, nothing held, upright, looking along
+    /// `pitch`.
     pub(crate) fn come_to_rest(&mut self, pitch: i32, z: Fixed) {
         let fresh = Player::new(self.actor, z);
         self.pitch = pitch;
         (self.view_height, self.delta_view_height) = (fresh.view_height, fresh.delta_view_height);
         (self.view_z, self.bob, self.bob_velocity) = (fresh.view_z, fresh.bob, fresh.bob_velocity);
-        (self.crouch, self.crouch_view_offset, self.forced_rise) = (fresh.crouch, fresh.crouch_view_offset, false);
+        (self.crouch, self.crouch_view_offset, self.forced_rise) =
+            (fresh.crouch, fresh.crouch_view_offset, false);
         (self.jump_tics, self.turn_held_tics, self.turn180_tics) = (0, 0, 0);
         (self.buttons, self.old_buttons) = (fresh.buttons, fresh.old_buttons);
     }

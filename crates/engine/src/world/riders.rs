@@ -1,4 +1,5 @@
-//! Which actors touch which moving sector, so that a sector that moves under nobody costs nothing more.
+//! Which actors touch which moving sector, so that a sector that moves under nobody costs nothing
+//! more.
 
 use super::actor::{Actor, NO_BLOCK};
 use super::collision::{for_each_line_across, stops};
@@ -6,10 +7,12 @@ use super::{Busy, World};
 use crate::map::{Map, SectorId};
 use crate::math::Fixed;
 
-/// Most sectors that are remembered of an actor; one that touches more is looked at afresh every time.
+/// Most sectors that are remembered of an actor; one that touches more is looked at afresh every
+/// time.
 const REMEMBERED: usize = 7;
 
-/// The sectors under one actor, remembered until it moves: items at rest on swinging floors are then cheap.
+/// The sectors under one actor, remembered until it moves: items at rest on swinging floors are
+/// then cheap.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Footing {
     count: u8,
@@ -37,7 +40,8 @@ impl Footing {
     }
 }
 
-/// Visits the sector under an actor's centre, and both sides of every open line that cuts its footprint; some twice.
+/// Visits the sector under an actor's centre, and both sides of every open line that cuts its
+/// footprint; some twice.
 fn for_each_sector_under(map: &Map, actor: &Actor, mut visit: impl FnMut(SectorId)) {
     visit(actor.sector);
     let Actor { x, y, radius, .. } = *actor;
@@ -60,7 +64,8 @@ struct Moved {
     listed: Footing,
 }
 
-/// Most actors that are moved from list to list one by one; when there are more, all lists are made anew.
+/// Most actors that are moved from list to list one by one; when there are more, all lists are made
+/// anew.
 const FEW: usize = 6;
 
 /// The actors on moving sectors: a list for each sector, by falling slots.
@@ -86,13 +91,18 @@ impl Riders {
 
     /// The first entry of a sector's list.
     pub(crate) fn first(&self, sector: SectorId) -> Option<usize> {
-        Some(self.heads[sector.0 as usize]).filter(|&head| head != Riders::END).map(|head| head as usize)
+        Some(self.heads[sector.0 as usize])
+            .filter(|&head| head != Riders::END)
+            .map(|head| head as usize)
     }
 
     /// The slot of an entry, and the entry after it.
     pub(crate) fn entry(&self, at: usize) -> (usize, Option<usize>) {
         let (slot, next) = self.entries[at];
-        (usize::from(slot), Some(next).filter(|&next| next != Riders::END).map(|next| next as usize))
+        (
+            usize::from(slot),
+            Some(next).filter(|&next| next != Riders::END).map(|next| next as usize),
+        )
     }
 
     /// The mover of the swinging floor that is number `at` of those with a list.
@@ -123,7 +133,8 @@ impl Riders {
         self.moved.clear();
     }
 
-    /// Where the link to the first entry of a list is whose slot is not above `slot`: the entry before, or none.
+    /// Where the link to the first entry of a list is whose slot is not above `slot`: the entry
+    /// before, or none.
     fn before(&self, sector: usize, slot: u16) -> (Option<usize>, u32) {
         let (mut before, mut at) = (None, self.heads[sector]);
         while at != Riders::END && self.entries[at as usize].0 > slot {
@@ -188,11 +199,15 @@ impl World {
         }
     }
 
-    /// Lists the actors that touch a busy sector. Actors keep their places while movers run, so that the lists stay true.
+    /// Lists the actors that touch a busy sector. Actors keep their places while movers run, so
+    /// that the lists stay true.
     pub(crate) fn list_riders(&mut self) {
         let swings = self.movers.swings_made();
         // While planes move, which sectors are busy changes; swings come and go together.
-        if self.movers.move_planes() || self.footings.len() != self.actors.len() || self.riders.made_for != Some(swings) {
+        if self.movers.move_planes()
+            || self.footings.len() != self.actors.len()
+            || self.riders.made_for != Some(swings)
+        {
             return self.list_all_riders(swings);
         }
         for at in 0..self.riders.moved.len() {
@@ -228,7 +243,8 @@ impl World {
             }
             *footing = Footing::of(map, actor);
         }
-        // The short list of swings first: the sectors of a whole world would come into the cache for a bit each.
+        // The short list of swings first: the sectors of a whole world would come into the cache
+        // for a bit each.
         let planes = movers.move_planes();
         let mut add = |sector: usize| {
             let mover = movers.swing_of(SectorId(sector as u32));
@@ -244,7 +260,8 @@ impl World {
         }
     }
 
-    /// The highest floor, lowest ceiling and lowest floor under an actor whose footing is known, as they are now.
+    /// The highest floor, lowest ceiling and lowest floor under an actor whose footing is known, as
+    /// they are now.
     pub(crate) fn planes_under(&self, slot: usize) -> Option<(Fixed, Fixed, Fixed)> {
         let Footing { count, sectors } = self.footings[slot];
         let planes = sectors[..usize::from(count)].iter().map(|&sector| {
@@ -267,7 +284,8 @@ mod tests {
     /// A hall of tiles with tags from 1.
     fn hall() -> World {
         let tag = |column, row| (row * 6 + column) as i32 + 1;
-        let grid = TileGrid::new((0, 0), 64, 6, 4, |column, row| Style { tag: tag(column, row), ..STYLE });
+        let grid =
+            TileGrid::new((0, 0), 64, 6, 4, |column, row| Style { tag: tag(column, row), ..STYLE });
         let mut builder = MapBuilder::new();
         grid.paint(&mut builder);
         builder.thing(1, 96.0, 96.0, 0);
@@ -292,18 +310,33 @@ mod tests {
     fn disturb(world: &mut World, rng: &mut Rng, tic: u32) {
         let (x, y) = (Fixed::from_int(rng.between(20, 360)), Fixed::from_int(rng.between(20, 230)));
         match rng.below(60) {
-            0 => world.floor_waggle(rng.between(1, 24), 64, 64, rng.between(0, 63), rng.between(0, 2)),
+            0 => world.floor_waggle(
+                rng.between(1, 24),
+                64,
+                64,
+                rng.between(0, 63),
+                rng.between(0, 2),
+            ),
             1 => world.stop_floors(rng.between(1, 24)),
-            2 => world.floor_lower_by_value(rng.between(1, 24), rng.between(1, 64), rng.between(-8, 40)),
+            2 => world.floor_lower_by_value(
+                rng.between(1, 24),
+                rng.between(1, 64),
+                rng.between(-8, 40),
+            ),
             3..8 => _ = world.spawn(ActorKind::ArmorBonus, x, y, Fixed::ZERO),
             8 => _ = world.set_position(world.players[0].actor, x, y, Fixed::from_int(40)),
             9..14 => {
-                let any = world.living().map(|(id, _)| id).filter(|&id| id != world.players[0].actor).last();
+                let any = world
+                    .living()
+                    .map(|(id, _)| id)
+                    .filter(|&id| id != world.players[0].actor)
+                    .last();
                 any.into_iter().for_each(|id| world.remove(id));
             }
             _ => {}
         }
-        let buttons = if tic % 40 < 20 { Buttons::MOVE_FORWARD | Buttons::SPEED } else { Buttons::TURN_LEFT };
+        let buttons =
+            if tic % 40 < 20 { Buttons::MOVE_FORWARD | Buttons::SPEED } else { Buttons::TURN_LEFT };
         world.run_thinkers(&[Command { buttons, ..Command::default() }]);
         world.finish_tic();
     }
@@ -316,7 +349,9 @@ mod tests {
             always.movers.run_all_next();
             disturb(&mut always, &mut rng.clone(), tic);
             disturb(&mut world, &mut rng, tic);
-            lagging += (0..world.movers.list.len()).filter(|&index| world.movers.ahead(index).is_some()).count();
+            lagging += (0..world.movers.list.len())
+                .filter(|&index| world.movers.ahead(index).is_some())
+                .count();
             assert_eq!(world.state_hash(), always.state_hash(), "tic {tic}");
         }
         assert!(lagging > 1000, "{lagging} floors lagged behind");

@@ -56,7 +56,8 @@ impl Busy {
     }
 }
 
-/// The changing part of a sector, but for the damage that its floor does. Four to a line of the cache: a frame looks at a hundred.
+/// The changing part of a sector, but for the damage that its floor does. Four to a line of the
+/// cache: a frame looks at a hundred.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(align(16))]
 pub struct SectorState {
@@ -77,7 +78,8 @@ pub struct SectorState {
 const _: () = assert!(size_of::<SectorState>() == 16);
 
 impl SectorDamage {
-    /// What a sector's floor does as the map starts it. Lava hurts before any script: 8 points every 32 tics, through any suit.
+    /// What a sector's floor does as the map starts it. Lava hurts before any script: 8 points
+    /// every 32 tics, through any suit.
     pub(crate) fn new(sector: &Sector) -> SectorDamage {
         match sector.special & 0xFF {
             special::LAVA => SectorDamage { amount: 8, interval: 32, leak: 256 },
@@ -107,11 +109,16 @@ impl World {
         self.sectors.len()
     }
 
-    /// A sector as it is now: floors that swing and lights that change are computed when they are looked at.
+    /// A sector as it is now: floors that swing and lights that change are computed when they are
+    /// looked at.
     #[must_use]
     #[inline(always)]
     pub fn sector(&self, sector: SectorId) -> SectorState {
-        SectorState { floor: self.floor_of(sector), light: self.light_of(sector), ..self.sectors[sector.0 as usize] }
+        SectorState {
+            floor: self.floor_of(sector),
+            light: self.light_of(sector),
+            ..self.sectors[sector.0 as usize]
+        }
     }
 
     /// Every sector as it is now, in map order.
@@ -131,8 +138,9 @@ impl World {
         &mut self.sector_damages[sector.0 as usize]
     }
 
-    /// The sectors with a tag get new damage. An interval of 0 or less takes the default of its amount: below 20
-    /// points every 32 tics, below 50 every 32 tics leaking through suits, from 50 every tic whatever the suit.
+    /// The sectors with a tag get new damage. An interval of 0 or less takes the default of its
+    /// amount: below 20 points every 32 tics, below 50 every 32 tics leaking through suits, from 50
+    /// every tic whatever the suit.
     pub fn set_sector_damage(&mut self, tag: i32, amount: i32, interval: i32, leak: i32) {
         let damage = match amount {
             _ if interval > 0 => SectorDamage { amount, interval: interval as u32, leak },
@@ -146,7 +154,8 @@ impl World {
         }
     }
 
-    /// The floors of the sectors with a tag get another texture (see [`Map::texture`](crate::map::Map::texture)).
+    /// The floors of the sectors with a tag get another texture (see
+    /// [`Map::texture`](crate::map::Map::texture)).
     pub fn change_floor_texture(&mut self, tag: i32, texture: TextureId) {
         let map = Arc::clone(&self.map);
         for sector in map.tagged(tag) {
@@ -154,12 +163,15 @@ impl World {
         }
     }
 
-    /// Hurts a player who stands on a harmful floor. A neighbouring floor's edge is safe, and so is the air: the feet
-    /// must be at the height of the floor under the centre.
+    /// Hurts a player who stands on a harmful floor. A neighbouring floor's edge is safe, and so is
+    /// the air: the feet must be at the height of the floor under the centre.
     pub(crate) fn damage_by_sector(&mut self, index: usize, slot: usize) {
         let body = &self.actors[slot];
         let damage = self.sector_damages[body.sector.0 as usize];
-        if damage.amount <= 0 || body.z != self.floor_of(body.sector) || !self.tic.is_multiple_of(damage.interval.max(1)) {
+        if damage.amount <= 0
+            || body.z != self.floor_of(body.sector)
+            || !self.tic.is_multiple_of(damage.interval.max(1))
+        {
             return;
         }
         let suited = self.players[index].rad_suit_tics > 0;

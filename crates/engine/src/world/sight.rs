@@ -59,11 +59,13 @@ impl Path {
         (0..=i128::from(WHOLE_PATH)).contains(&at).then_some(at as i64)
     }
 
-    /// Where the path enters the square of half side `radius` around (x, y), if it does; 0 if it starts inside.
+    /// Where the path enters the square of half side `radius` around (x, y), if it does; 0 if it
+    /// starts inside.
     pub(super) fn meets_square(&self, x: Fixed, y: Fixed, radius: Fixed) -> Option<(i64, i64)> {
         let (mut enters, mut leaves) = (0, WHOLE_PATH);
         for (from, by, centre) in [(self.x, self.dx, x), (self.y, self.dy, y)] {
-            let (low, high) = (i64::from((centre - radius - from).0), i64::from((centre + radius - from).0));
+            let (low, high) =
+                (i64::from((centre - radius - from).0), i64::from((centre + radius - from).0));
             let by = i64::from(by.0);
             if by == 0 {
                 if low > 0 || high < 0 {
@@ -72,7 +74,9 @@ impl Path {
                 continue;
             }
             let (near, far) = if by > 0 { (low, high) } else { (high, low) };
-            let scale = |distance: i64| ((i128::from(distance) * i128::from(WHOLE_PATH)) / i128::from(by)) as i64;
+            let scale = |distance: i64| {
+                ((i128::from(distance) * i128::from(WHOLE_PATH)) / i128::from(by)) as i64
+            };
             enters = enters.max(scale(near));
             leaves = leaves.min(scale(far));
         }
@@ -99,7 +103,8 @@ impl World {
         let half = Fixed::from_int(64);
         for row in rows.0.max(0)..=rows.1.min(blocks.rows - 1) {
             for column in columns.0.max(0)..=columns.1.min(blocks.columns - 1) {
-                // Only blocks that the path touches; the blocks of a small rectangle are not worth the test.
+                // Only blocks that the path touches; the blocks of a small rectangle are not worth
+                // the test.
                 let centre_x = blocks.origin_x + Fixed::from_int(128 * column) + half;
                 let centre_y = blocks.origin_y + Fixed::from_int(128 * row) + half;
                 if path.meets_square(centre_x, centre_y, half).is_none() {
@@ -117,7 +122,8 @@ impl World {
         found.dedup();
     }
 
-    /// Whether the actor in `viewer` has a clear line from its eyes to any height of the actor in `other`.
+    /// Whether the actor in `viewer` has a clear line from its eyes to any height of the actor in
+    /// `other`.
     pub(super) fn sees(&mut self, viewer: usize, other: usize) -> bool {
         let (from, to) = (self.actors[viewer], self.actors[other]);
         let path = Path { x: from.x, y: from.y, dx: to.x - from.x, dy: to.y - from.y };
@@ -136,12 +142,16 @@ impl World {
                 break;
             };
             let opening = self.opening(line.front_sector, back);
-            if opening.bottom >= opening.top || line.flags.blocks.any(Blocks::EVERYTHING.with(Blocks::SIGHT)) {
+            if opening.bottom >= opening.top
+                || line.flags.blocks.any(Blocks::EVERYTHING.with(Blocks::SIGHT))
+            {
                 clear = false;
                 break;
             }
             let at = crossing.at.max(1);
-            let extend = |height: Fixed| (i128::from((height - eye).0) * i128::from(WHOLE_PATH) / i128::from(at)) as i64;
+            let extend = |height: Fixed| {
+                (i128::from((height - eye).0) * i128::from(WHOLE_PATH) / i128::from(at)) as i64
+            };
             low = low.max(extend(opening.bottom));
             high = high.min(extend(opening.top));
             if high <= low {
@@ -153,7 +163,8 @@ impl World {
         clear
     }
 
-    /// Collects the shootable actors that a path meets and the lines that it crosses, nearest first.
+    /// Collects the shootable actors that a path meets and the lines that it crosses, nearest
+    /// first.
     pub(super) fn everything_on(&self, path: &Path, except: usize, found: &mut Vec<Crossing>) {
         self.lines_on(path, found);
         for (slot, actor) in self.actors.iter().enumerate() {

@@ -24,9 +24,9 @@ struct Trace {
 }
 
 impl Trace {
-    /// The fraction of the way at which it meets a line, rounded to nearest, if its ends are on different sides of the
-    /// line. The line counts as endless, and with the coarse sides of [`behind`] a short way can miss it: both are the
-    /// original's, and recorded.
+    /// The fraction of the way at which it meets a line, rounded to nearest, if its ends are on
+    /// different sides of the line. The line counts as endless, and with the coarse sides of
+    /// [`behind`] a short way can miss it: both are the original's, and recorded.
     fn meets(&self, line: &Line) -> Option<Fixed> {
         if behind(line, self.x, self.y) == behind(line, self.x + self.dx, self.y + self.dy) {
             return None;
@@ -39,12 +39,15 @@ impl Trace {
         Trace { x: line.v1.x, y: line.v1.y, dx: line.dx, dy: line.dy }
     }
 
-    /// Where another straight line crosses this one, in 65536ths of its direction, rounded to the nearest, halves to the even one; 0 where they are parallel.
+    /// Where another straight line crosses this one, in 65536ths of its direction, rounded to the
+    /// nearest, halves to the even one; 0 where they are parallel.
     fn crossing(&self, other: &Trace) -> i64 {
         let wide = |value: Fixed| i128::from(value.0);
         let denominator = wide(other.dy) * wide(self.dx) - wide(other.dx) * wide(self.dy);
-        let numerator = wide(other.x - self.x) * wide(other.dy) + wide(self.y - other.y) * wide(other.dx);
-        let (numerator, denominator) = if denominator < 0 { (-numerator, -denominator) } else { (numerator, denominator) };
+        let numerator =
+            wide(other.x - self.x) * wide(other.dy) + wide(self.y - other.y) * wide(other.dx);
+        let (numerator, denominator) =
+            if denominator < 0 { (-numerator, -denominator) } else { (numerator, denominator) };
         if denominator == 0 {
             return 0;
         }
@@ -57,14 +60,16 @@ impl Trace {
 }
 
 impl World {
-    /// Slides the actor in `slot` for one of `steps` equal parts (`dx`, `dy`) of its move: up to the wall, then along
-    /// it. Its velocity becomes what is left along the wall.
+    /// Slides the actor in `slot` for one of `steps` equal parts (`dx`, `dy`) of its move: up to
+    /// the wall, then along it. Its velocity becomes what is left along the wall.
     pub(crate) fn slide(&mut self, slot: usize, mut dx: Fixed, mut dy: Fixed, steps: i32) {
         for _ in 0..ATTEMPTS {
             let actor = &self.actors[slot];
             let (x, y, radius) = (actor.x, actor.y, actor.radius);
-            let (lead_x, trail_x) = if dx.0 > 0 { (x + radius, x - radius) } else { (x - radius, x + radius) };
-            let (lead_y, trail_y) = if dy.0 > 0 { (y + radius, y - radius) } else { (y - radius, y + radius) };
+            let (lead_x, trail_x) =
+                if dx.0 > 0 { (x + radius, x - radius) } else { (x - radius, x + radius) };
+            let (lead_y, trail_y) =
+                if dy.0 > 0 { (y + radius, y - radius) } else { (y - radius, y + radius) };
             let mut best = (NO_HIT, 0);
             self.nearest_wall(slot, Trace { x: lead_x, y: lead_y, dx, dy }, &mut best);
             self.nearest_wall(slot, Trace { x: trail_x, y: lead_y, dx, dy }, &mut best);
@@ -83,7 +88,8 @@ impl World {
             }
             (dx, dy) = (dx * rest, dy * rest);
             let actor = &mut self.actors[slot];
-            let (along_x, along_y) = along(&self.map.lines[wall as usize], Trace { x: actor.x, y: actor.y, dx, dy });
+            let (along_x, along_y) =
+                along(&self.map.lines[wall as usize], Trace { x: actor.x, y: actor.y, dx, dy });
             (actor.vx, actor.vy) = (along_x * steps, along_y * steps);
             let (x, y) = (actor.x, actor.y);
             self.limit_bob(slot);
@@ -115,7 +121,8 @@ impl World {
         let (end_column, end_row) = (blocks.column_of(end_x), blocks.row_of(end_y));
         self.nearest_wall_in_block(slot, column, row, trace, best);
         if column != end_column && row != end_row {
-            // Ways are shorter than a block: one more block lies between, or both at an exact corner.
+            // Ways are shorter than a block: one more block lies between, or both at an exact
+            // corner.
             let edge_x = blocks.origin_x + Fixed::from_int(128 * column.max(end_column));
             let edge_y = blocks.origin_y + Fixed::from_int(128 * row.max(end_row));
             let wide = |value: Fixed| i64::from(value.0).abs();
@@ -133,11 +140,19 @@ impl World {
         }
     }
 
-    fn nearest_wall_in_block(&self, slot: usize, column: i32, row: i32, trace: Trace, best: &mut (Fixed, u32)) {
+    fn nearest_wall_in_block(
+        &self,
+        slot: usize,
+        column: i32,
+        row: i32,
+        trace: Trace,
+        best: &mut (Fixed, u32),
+    ) {
         let blocks = &self.map.blockmap;
         for &index in blocks.lines_in(column, row) {
             let line = &self.map.lines[index as usize];
-            // The original lists a line on the border of two blocks only in the eastern or northern one.
+            // The original lists a line on the border of two blocks only in the eastern or northern
+            // one.
             if (column < blocks.column_of(line.bounds[0])) | (row < blocks.row_of(line.bounds[2])) {
                 continue;
             }
@@ -167,8 +182,9 @@ impl World {
 
 /// What is left of a body's move along a wall.
 ///
-/// A slanting wall is met by the move and by the plumb line from the body; what lies between, divided by the part of the move that
-/// reaches the wall, is the move's share along it. The original's way, with its rounding.
+/// A slanting wall is met by the move and by the plumb line from the body; what lies between,
+/// divided by the part of the move that reaches the wall, is the move's share along it. The
+/// original's way, with its rounding.
 fn along(line: &Line, way: Trace) -> (Fixed, Fixed) {
     if line.dy.0 == 0 {
         return (way.dx, Fixed::ZERO);
@@ -181,8 +197,12 @@ fn along(line: &Line, way: Trace) -> (Fixed, Fixed) {
     let (met, reach) = (wall.crossing(&way), way.crossing(&wall));
     let part = |side: Fixed| match reach {
         0 => Fixed::ZERO,
-        // A way almost parallel to the wall meets it nowhere near; the sum is cut to the range of velocities all the same.
-        _ => Fixed(((i128::from(met - foot) * i128::from(side.0) / i128::from(reach)) as i64).clamp(-(1 << 30), 1 << 30) as i32),
+        // A way almost parallel to the wall meets it nowhere near; the sum is cut to the range of
+        // velocities all the same.
+        _ => Fixed(
+            ((i128::from(met - foot) * i128::from(side.0) / i128::from(reach)) as i64)
+                .clamp(-(1 << 30), 1 << 30) as i32,
+        ),
     };
     (part(wall.dx), part(wall.dy))
 }

@@ -4,12 +4,20 @@ use super::{Actor, ActorFlags, ActorId, ActorKind, Player, World};
 use crate::math::{Angle, Fixed};
 
 impl World {
-    /// Creates an actor at absolute (x, y, z) if there is room, as the scripts' `Spawn` does: its square must cut no
-    /// wall and, if it is solid, no solid actor (over and under is fine); the opening over all touched sectors must be
-    /// tall enough; and it must be between floor and ceiling of the sector under its centre alone. Inside rock, out of
-    /// everybody's reach, there is room as well, with floor and ceiling of the nearest piece by the tree: in the original two to
-    /// four of a hundred items lie there.
-    pub fn spawn_checked(&mut self, kind: ActorKind, x: Fixed, y: Fixed, z: Fixed, tid: i32) -> Option<ActorId> {
+    /// Creates an actor at absolute (x, y, z) if there is room, as the scripts' `Spawn` does: its
+    /// square must cut no wall and, if it is solid, no solid actor (over and under is fine); the
+    /// opening over all touched sectors must be tall enough; and it must be between floor and
+    /// ceiling of the sector under its centre alone. Inside rock, out of everybody's reach, there
+    /// is room as well, with floor and ceiling of the nearest piece by the tree: in the original
+    /// two to four of a hundred items lie there.
+    pub fn spawn_checked(
+        &mut self,
+        kind: ActorKind,
+        x: Fixed,
+        y: Fixed,
+        z: Fixed,
+        tid: i32,
+    ) -> Option<ActorId> {
         let id = self.spawn(kind, x, y, z);
         let slot = usize::from(id.slot);
         // Over and under is fine for whatever the scripts put down, as it is for monsters.
@@ -26,9 +34,9 @@ impl World {
         None
     }
 
-    /// Moves an actor to absolute (x, y, z) if there is room by the same test, as the scripts' `SetActorPosition`
-    /// does; false if not, and the actor stays. Items at the place are not picked up by this, and the height is kept:
-    /// it falls from there.
+    /// Moves an actor to absolute (x, y, z) if there is room by the same test, as the scripts'
+    /// `SetActorPosition` does; false if not, and the actor stays. Items at the place are not
+    /// picked up by this, and the height is kept: it falls from there.
     pub fn set_position(&mut self, id: ActorId, x: Fixed, y: Fixed, z: Fixed) -> bool {
         let Some(actor) = self.get(id) else { return false };
         let (old_x, old_y, old_z) = (actor.x, actor.y, actor.z);
@@ -47,7 +55,8 @@ impl World {
         self.relocate(slot, x, y, sector);
         let state = self.sector(sector);
         let actor = &mut self.actors[slot];
-        (actor.z, actor.floor_z, actor.dropoff_z, actor.ceiling_z) = (z, state.floor, state.floor, state.ceiling);
+        (actor.z, actor.floor_z, actor.dropoff_z, actor.ceiling_z) =
+            (z, state.floor, state.floor, state.ceiling);
         self.wake_slot(slot);
     }
 
@@ -68,27 +77,38 @@ impl World {
         body.player = index as u8;
         body.angle = angle;
         body.max_step = Fixed::from_int(24);
-        (body.floor_z, body.ceiling_z, body.dropoff_z) = (position.floor_z, position.ceiling_z, position.dropoff_z);
+        (body.floor_z, body.ceiling_z, body.dropoff_z) =
+            (position.floor_z, position.ceiling_z, position.dropoff_z);
         body.z = position.floor_z;
         self.players.push(Player::new(id, position.floor_z));
         index
     }
 
-    /// Puts a player at rest at (x, y, z), facing `angle` with `pitch` (a signed binary angle, down positive), its eye
-    /// at rest: for comparisons with recordings that start there.
-    pub fn place_player(&mut self, index: usize, x: Fixed, y: Fixed, z: Fixed, angle: Angle, pitch: i32) {
+    /// Puts a player at rest at (x, y, z), facing `angle` with `pitch` (a signed binary angle, down
+    /// positive), its eye at rest: for comparisons with recordings that start there.
+    pub fn place_player(
+        &mut self,
+        index: usize,
+        x: Fixed,
+        y: Fixed,
+        z: Fixed,
+        angle: Angle,
+        pitch: i32,
+    ) {
         let id = self.players[index].actor;
         let slot = usize::from(id.slot);
         self.put(slot, x, y, z);
         let position = self.check_position(slot, x, y);
         let body = &mut self.actors[slot];
-        (body.floor_z, body.ceiling_z, body.dropoff_z) = (position.floor_z, position.ceiling_z, position.dropoff_z);
+        (body.floor_z, body.ceiling_z, body.dropoff_z) =
+            (position.floor_z, position.ceiling_z, position.dropoff_z);
         (body.vx, body.vy, body.vz) = (Fixed::ZERO, Fixed::ZERO, Fixed::ZERO);
         body.angle = angle;
         self.players[index].come_to_rest(pitch, z);
     }
 
-    /// Thrusts an actor: `force` map units per tic towards a 256th of a turn, each component held to 30.
+    /// Thrusts an actor: `force` map units per tic towards a 256th of a turn, each component held
+    /// to 30.
     pub fn thrust_thing(&mut self, id: ActorId, byte_angle: i32, force: i32) {
         let direction = Angle::from_turn_65536(byte_angle << 8);
         let limit = Fixed::from_int(30);

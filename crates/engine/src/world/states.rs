@@ -1,8 +1,8 @@
 //! How actors look and what they do over time: lists of frames, each shown for some tics.
 //!
-//! An actor is in one [`Phase`] and one step of that phase's animation. Animations that only loop and act on nothing
-//! (items, decor, a barrel at rest) need no counter: their frame is a function of the tics since they appeared, so that
-//! a hundred items at rest cost nothing per tic.
+//! An actor is in one [`Phase`] and one step of that phase's animation. Animations that only loop
+//! and act on nothing (items, decor, a barrel at rest) need no counter: their frame is a function
+//! of the tics since they appeared, so that a hundred items at rest cost nothing per tic.
 
 use super::{Actor, ActorFlags, ActorKind, DamageKind, World};
 use crate::assets::sprite_index;
@@ -87,11 +87,13 @@ pub struct Picture {
     pub opacity: u8,
 }
 
-/// The opacity of what hides all that is behind it. Twice as fine as colours are mixed: either colour's part is cut to a 64th, so
-/// that what is two fifths opaque shows 25 of them and leaves 38.
+/// The opacity of what hides all that is behind it. Twice as fine as colours are mixed: either
+/// colour's part is cut to a 64th, so that what is two fifths opaque shows 25 of them and
+/// leaves 38.
 pub const OPAQUE: u8 = 128;
 
-/// Tics of a blur sphere's pulse: half of them it fades, by a 32nd a tic, the other half it comes back.
+/// Tics of a blur sphere's pulse: half of them it fades, by a 32nd a tic, the other half it comes
+/// back.
 const PULSE_TICS: u32 = 48;
 
 /// A fraction of [`OPAQUE`].
@@ -99,7 +101,8 @@ fn parts(upper: u16, lower: u16) -> u8 {
     (u16::from(OPAQUE) * upper / lower) as u8
 }
 
-/// How opaque a kind is in a phase and at an age in tics, as measured in the original; barrels burst without shining through.
+/// How opaque a kind is in a phase and at an age in tics, as measured in the original; barrels
+/// burst without shining through.
 fn opacity(kind: ActorKind, phase: Phase, age: u32) -> u8 {
     match (kind, phase) {
         (K::BulletPuff, _) => OPAQUE / 2,
@@ -136,7 +139,13 @@ const fn act(frame: Frame, action: Action) -> Frame {
 }
 
 /// `N` frames of `name`, picture by picture of `letters`, each for `tics` and with the same action.
-const fn run<const N: usize>(name: &str, letters: &[u8; N], tics: i16, lit: bool, action: Action) -> [Frame; N] {
+const fn run<const N: usize>(
+    name: &str,
+    letters: &[u8; N],
+    tics: i16,
+    lit: bool,
+    action: Action,
+) -> [Frame; N] {
     let mut frames = [Frame { bright: lit, action, ..still(name, letters[0], tics) }; N];
     let mut i = 1;
     while i < N {
@@ -219,13 +228,19 @@ const fn idle_of(kind: ActorKind) -> Animation {
         K::LostSoul => stand!("SKUL", b"AB", true),
         K::ExplosiveBarrel => idle!("BAR1", b"AB", 6),
         K::Rocket => once!(Loop: act(bright("MISL", b'A', 4), Action::Smoke)),
-        K::RocketSmokeTrail => once!(Vanish: still("RSMK", b'A', 5), still("RSMK", b'B', 5), still("RSMK", b'C', 5),
-            still("RSMK", b'D', 5), still("RSMK", b'E', 5)),
+        K::RocketSmokeTrail => {
+            once!(Vanish: still("RSMK", b'A', 5), still("RSMK", b'B', 5), still("RSMK", b'C', 5),
+            still("RSMK", b'D', 5), still("RSMK", b'E', 5))
+        }
         K::PlasmaBall => idle!("PLSS", b"AB", 6, true),
         K::BfgBall => idle!("BFS1", b"AB", 4, true),
-        K::BulletPuff => once!(Vanish: bright("PUFF", b'A', 4), still("PUFF", b'B', 4), still("PUFF", b'C', 4),
-            still("PUFF", b'D', 4)),
-        K::Blood => once!(Vanish: still("BLUD", b'C', 8), still("BLUD", b'B', 8), still("BLUD", b'A', 8)),
+        K::BulletPuff => {
+            once!(Vanish: bright("PUFF", b'A', 4), still("PUFF", b'B', 4), still("PUFF", b'C', 4),
+            still("PUFF", b'D', 4))
+        }
+        K::Blood => {
+            once!(Vanish: still("BLUD", b'C', 8), still("BLUD", b'B', 8), still("BLUD", b'A', 8))
+        }
         K::TechLamp => idle!("TLMP", b"ABCD", 4, true),
         K::TechLamp2 => idle!("TLP2", b"ABCD", 4, true),
         K::ShortRedColumn => idle!("COL4", b"A", -1),
@@ -249,7 +264,13 @@ const fn idle_of(kind: ActorKind) -> Animation {
         K::BurningTop => idle!("FTOP", b"ABC", 4, true),
         K::BurningDebris => idle!("FDEB", b"ABC", 4, true),
         K::PatrolPoint => Animation {
-            frames: &[Frame { sprite: u8::MAX, frame: 0, bright: false, tics: -1, action: Action::None }],
+            frames: &[Frame {
+                sprite: u8::MAX,
+                frame: 0,
+                bright: false,
+                tics: -1,
+                action: Action::None,
+            }],
             then: Then::Loop,
         },
     }
@@ -273,7 +294,9 @@ const fn walk_of(kind: ActorKind) -> Option<Animation> {
 /// How a monster feels a hit; others do not.
 const fn pain_of(kind: ActorKind) -> Option<Animation> {
     Some(match kind {
-        K::Cacodemon => once!(Walk: still("HEAD", b'E', 3), still("HEAD", b'E', 3), still("HEAD", b'F', 6)),
+        K::Cacodemon => {
+            once!(Walk: still("HEAD", b'E', 3), still("HEAD", b'E', 3), still("HEAD", b'F', 6))
+        }
         K::ZombieMan => once!(Walk: still("POSS", b'G', 3), still("POSS", b'G', 3)),
         K::ShotgunGuy => once!(Walk: still("SPOS", b'G', 3), still("SPOS", b'G', 3)),
         K::ChaingunGuy => once!(Walk: still("CPOS", b'G', 3), still("CPOS", b'G', 3)),
@@ -289,10 +312,14 @@ const fn pain_of(kind: ActorKind) -> Option<Animation> {
 const fn death_of(kind: ActorKind) -> Option<Animation> {
     use Action::{Explode, StopBlocking};
     Some(match kind {
-        K::Player => once!(Loop: still("PLAY", b'H', 10), still("PLAY", b'I', 10), still("PLAY", b'J', 10),
-            still("PLAY", b'K', 10), still("PLAY", b'L', 10), still("PLAY", b'M', 10), still("PLAY", b'N', -1)),
-        K::Cacodemon => once!(Loop: still("HEAD", b'G', 8), still("HEAD", b'H', 8), still("HEAD", b'I', 8),
-            still("HEAD", b'J', 8), act(still("HEAD", b'K', 8), StopBlocking), still("HEAD", b'L', -1)),
+        K::Player => {
+            once!(Loop: still("PLAY", b'H', 10), still("PLAY", b'I', 10), still("PLAY", b'J', 10),
+            still("PLAY", b'K', 10), still("PLAY", b'L', 10), still("PLAY", b'M', 10), still("PLAY", b'N', -1))
+        }
+        K::Cacodemon => {
+            once!(Loop: still("HEAD", b'G', 8), still("HEAD", b'H', 8), still("HEAD", b'I', 8),
+            still("HEAD", b'J', 8), act(still("HEAD", b'K', 8), StopBlocking), still("HEAD", b'L', -1))
+        }
         K::ZombieMan => once!(Loop: still("POSS", b'H', 5), still("POSS", b'I', 5),
             act(still("POSS", b'J', 5), StopBlocking), still("POSS", b'K', 5), still("POSS", b'L', -1)),
         K::ShotgunGuy => once!(Loop: still("SPOS", b'H', 5), still("SPOS", b'I', 5),
@@ -300,22 +327,36 @@ const fn death_of(kind: ActorKind) -> Option<Animation> {
         K::ChaingunGuy => once!(Loop: still("CPOS", b'H', 5), still("CPOS", b'I', 5),
             act(still("CPOS", b'J', 5), StopBlocking), still("CPOS", b'K', 5), still("CPOS", b'L', 5),
             still("CPOS", b'M', 5), still("CPOS", b'N', -1)),
-        K::DoomImp => once!(Loop: still("TROO", b'I', 8), still("TROO", b'J', 8), still("TROO", b'K', 6),
-            act(still("TROO", b'L', 6), StopBlocking), still("TROO", b'M', -1)),
-        K::Demon => once!(Loop: still("SARG", b'I', 8), still("SARG", b'J', 8), still("SARG", b'K', 4),
-            act(still("SARG", b'L', 4), StopBlocking), still("SARG", b'M', 4), still("SARG", b'N', -1)),
-        K::Revenant => once!(Loop: still("SKEL", b'L', 7), still("SKEL", b'M', 7), still("SKEL", b'N', 7),
-            act(still("SKEL", b'O', 7), StopBlocking), still("SKEL", b'P', 7), still("SKEL", b'Q', -1)),
-        K::LostSoul => once!(Vanish: bright("SKUL", b'F', 6), bright("SKUL", b'G', 6), bright("SKUL", b'H', 6),
-            act(bright("SKUL", b'I', 6), StopBlocking), still("SKUL", b'J', 6), still("SKUL", b'K', 6)),
-        K::ExplosiveBarrel => once!(Vanish: bright("BEXP", b'A', 5), bright("BEXP", b'B', 5), bright("BEXP", b'C', 5),
-            act(bright("BEXP", b'D', 5), Explode), bright("BEXP", b'E', 10)),
+        K::DoomImp => {
+            once!(Loop: still("TROO", b'I', 8), still("TROO", b'J', 8), still("TROO", b'K', 6),
+            act(still("TROO", b'L', 6), StopBlocking), still("TROO", b'M', -1))
+        }
+        K::Demon => {
+            once!(Loop: still("SARG", b'I', 8), still("SARG", b'J', 8), still("SARG", b'K', 4),
+            act(still("SARG", b'L', 4), StopBlocking), still("SARG", b'M', 4), still("SARG", b'N', -1))
+        }
+        K::Revenant => {
+            once!(Loop: still("SKEL", b'L', 7), still("SKEL", b'M', 7), still("SKEL", b'N', 7),
+            act(still("SKEL", b'O', 7), StopBlocking), still("SKEL", b'P', 7), still("SKEL", b'Q', -1))
+        }
+        K::LostSoul => {
+            once!(Vanish: bright("SKUL", b'F', 6), bright("SKUL", b'G', 6), bright("SKUL", b'H', 6),
+            act(bright("SKUL", b'I', 6), StopBlocking), still("SKUL", b'J', 6), still("SKUL", b'K', 6))
+        }
+        K::ExplosiveBarrel => {
+            once!(Vanish: bright("BEXP", b'A', 5), bright("BEXP", b'B', 5), bright("BEXP", b'C', 5),
+            act(bright("BEXP", b'D', 5), Explode), bright("BEXP", b'E', 10))
+        }
         K::Rocket => once!(Vanish: act(bright("MISL", b'B', 8), Explode), bright("MISL", b'C', 6),
             bright("MISL", b'D', 4)),
-        K::PlasmaBall => once!(Vanish: bright("PLSE", b'A', 4), bright("PLSE", b'B', 4), bright("PLSE", b'C', 4),
-            bright("PLSE", b'D', 4), bright("PLSE", b'E', 4)),
-        K::BfgBall => once!(Vanish: bright("BFE1", b'A', 8), bright("BFE1", b'B', 8), bright("BFE1", b'C', 8),
-            bright("BFE1", b'D', 8), bright("BFE1", b'E', 8), bright("BFE1", b'F', 8)),
+        K::PlasmaBall => {
+            once!(Vanish: bright("PLSE", b'A', 4), bright("PLSE", b'B', 4), bright("PLSE", b'C', 4),
+            bright("PLSE", b'D', 4), bright("PLSE", b'E', 4))
+        }
+        K::BfgBall => {
+            once!(Vanish: bright("BFE1", b'A', 8), bright("BFE1", b'B', 8), bright("BFE1", b'C', 8),
+            bright("BFE1", b'D', 8), bright("BFE1", b'E', 8), bright("BFE1", b'F', 8))
+        }
         _ => return None,
     })
 }
@@ -380,14 +421,16 @@ pub fn is_timed(kind: ActorKind, phase: Phase) -> bool {
 }
 
 impl World {
-    /// Starts the idle animation of a new actor; the end of [`World::spawn`]. Nothing is done on its first frame.
+    /// Starts the idle animation of a new actor; the end of [`World::spawn`]. Nothing is done on
+    /// its first frame.
     pub(super) fn start_animation(&mut self, slot: usize) {
         let actor = &mut self.actors[slot];
         (actor.phase, actor.step) = (Phase::Idle, 0);
         actor.tics = animation(actor.kind, Phase::Idle).frames[0].tics;
     }
 
-    /// One tic of an actor's animation; called every tic after its move, unless the animation is timed. May remove it.
+    /// One tic of an actor's animation; called every tic after its move, unless the animation is
+    /// timed. May remove it.
     pub(super) fn tick_animation(&mut self, slot: usize) {
         let actor = &mut self.actors[slot];
         if actor.tics < 0 {
@@ -428,13 +471,18 @@ impl World {
             Action::Smoke => self.leave_smoke(slot),
             Action::Explode => {
                 let (kind, origin) = (actor.kind, actor.origin);
-                let by = if kind == K::ExplosiveBarrel { DamageKind::Barrel } else { DamageKind::Splash };
+                let by = if kind == K::ExplosiveBarrel {
+                    DamageKind::Barrel
+                } else {
+                    DamageKind::Splash
+                };
                 self.blast(slot, origin, by);
             }
         }
     }
 
-    /// Takes 0 to 3 tics off an actor's frame, but leaves 1, so that puffs and explosions do not all look alike.
+    /// Takes 0 to 3 tics off an actor's frame, but leaves 1, so that puffs and explosions do not
+    /// all look alike.
     pub(super) fn shorten_frame(&mut self, slot: usize) {
         let cut = (self.rng.byte() & 3) as i16;
         let actor = &mut self.actors[slot];
@@ -467,7 +515,12 @@ impl Actor {
         } else {
             &frames[usize::from(self.step)]
         };
-        Picture { sprite: frame.sprite, frame: frame.frame, bright: frame.bright, opacity: opacity(self.kind, self.phase, age) }
+        Picture {
+            sprite: frame.sprite,
+            frame: frame.frame,
+            bright: frame.bright,
+            opacity: opacity(self.kind, self.phase, age),
+        }
     }
 
     /// Name of the actor in label lists: the class name, with `Dead` before it once it is dying.
@@ -496,9 +549,14 @@ mod tests {
 
     #[test]
     fn blur_spheres_pulse_as_measured() {
-        // Of a sphere called up beside a player who stands still: opaque at first, a quarter after 24 tics, opaque again after 48.
-        let opacities = [0, 1, 12, 23, 24, 25, 47, 48, 49].map(|age| opacity(ActorKind::BlurSphere, Phase::Idle, age));
-        assert_eq!(opacities, [64, 62, 40, 18, 16, 18, 62, 64, 62].map(|parts| OPAQUE / 64 * parts));
+        // Of a sphere called up beside a player who stands still: opaque at first, a quarter after
+        // 24 tics, opaque again after 48.
+        let opacities = [0, 1, 12, 23, 24, 25, 47, 48, 49]
+            .map(|age| opacity(ActorKind::BlurSphere, Phase::Idle, age));
+        assert_eq!(
+            opacities,
+            [64, 62, 40, 18, 16, 18, 62, 64, 62].map(|parts| OPAQUE / 64 * parts)
+        );
     }
 
     #[test]
@@ -506,10 +564,16 @@ mod tests {
         let assets = Assets::embedded();
         for kind in ActorKind::all() {
             for phase in [Phase::Idle, Phase::Walk, Phase::Pain, Phase::Death] {
-                for shown in animation(kind, phase).frames.iter().filter(|shown| shown.sprite != u8::MAX) {
+                for shown in
+                    animation(kind, phase).frames.iter().filter(|shown| shown.sprite != u8::MAX)
+                {
                     let painted = assets.sprites[usize::from(shown.sprite)].frames.len();
                     let name = SPRITE_NAMES[usize::from(shown.sprite)];
-                    assert!(usize::from(shown.frame) < painted, "{kind:?} {phase:?}: {name} lacks frame {}", shown.frame);
+                    assert!(
+                        usize::from(shown.frame) < painted,
+                        "{kind:?} {phase:?}: {name} lacks frame {}",
+                        shown.frame
+                    );
                 }
             }
         }

@@ -1,4 +1,5 @@
-//! A player's own work of one tic: what the command means for view, thrust and jump, before the body moves.
+//! A player's own work of one tic: what the command means for view, thrust and jump, before the
+//! body moves.
 
 use super::{Actor, Buttons, Command, Player, World};
 use crate::math::{Angle, Fixed};
@@ -136,7 +137,11 @@ impl World {
         }
         let body = &mut self.actors[slot];
         let factor = if player.on_ground { MOVE_FACTOR } else { AIR_MOVE_FACTOR };
-        let bob_factor = if player.crouch == Fixed::ONE { Fixed(factor as i32) } else { Fixed(factor as i32) * player.crouch };
+        let bob_factor = if player.crouch == Fixed::ONE {
+            Fixed(factor as i32)
+        } else {
+            Fixed(factor as i32) * player.crouch
+        };
         let thrust = |command: i32| {
             let scaled = Fixed(command) * player.speed;
             let scaled = if player.crouch == Fixed::ONE { scaled } else { scaled * player.crouch };
@@ -212,7 +217,10 @@ fn thrust_of(buttons: Buttons) -> [i32; 2] {
         let sum = amount * (i32::from(buttons.any(plus)) - i32::from(buttons.any(minus)));
         sum.clamp(-LARGEST_COMMAND, LARGEST_COMMAND) * 256
     };
-    [axis(Buttons::MOVE_FORWARD, Buttons::MOVE_BACKWARD, FORWARD[run]), axis(Buttons::MOVE_RIGHT, Buttons::MOVE_LEFT, SIDE[run])]
+    [
+        axis(Buttons::MOVE_FORWARD, Buttons::MOVE_BACKWARD, FORWARD[run]),
+        axis(Buttons::MOVE_RIGHT, Buttons::MOVE_LEFT, SIDE[run]),
+    ]
 }
 
 /// The turn of the command, counter-clockwise, 65536ths of a turn.

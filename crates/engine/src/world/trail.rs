@@ -1,9 +1,10 @@
-//! Trails of rockets: small squares that a rocket sheds as it flies, which drift, fade and go. Nothing in the world minds them:
-//! only pictures show them.
+//! Trails of rockets: small squares that a rocket sheds as it flies, which drift, fade and go.
+//! Nothing in the world minds them: only pictures show them.
 //!
-//! A trail is where and when a rocket flew; no square is kept. Where each is, and whether it is still there, follows from what
-//! chance gave it: draws of our own that take nothing from the world's randomness, or those that the published engine is known to
-//! have made. What is drawn, and what follows from it, was measured there (docs/results/pixels.md) and is the same here.
+//! A trail is where and when a rocket flew; no square is kept. Where each is, and whether it is
+//! still there, follows from what chance gave it: draws of our own that take nothing from the
+//! world's randomness, or those that the published engine is known to have made. What is drawn, and
+//! what follows from it, was measured there (docs/results/pixels.md) and is the same here.
 
 use super::{ActorId, ActorKind, OPAQUE, Phase, World};
 use crate::map::SectorId;
@@ -31,7 +32,8 @@ const PULL: i32 = 1 << 2;
 /// Of the drift to either side of the way, a 200th of a map unit a tic, 128 being none.
 const ASIDE: i32 = (1 << 16) / 200;
 
-/// How fast grey squares rise at first and yellow ones sink, and what a tic adds to that, map units a tic, 16.16.
+/// How fast grey squares rise at first and yellow ones sink, and what a tic adds to that, map units
+/// a tic, 16.16.
 const RISE: [i32; 2] = [(1 << 16) / 80, (1 << 16) / 40];
 const SINK: [i32; 2] = [(1 << 16) / 36, (1 << 16) / 20];
 
@@ -40,8 +42,8 @@ const SINK: [i32; 2] = [(1 << 16) / 36, (1 << 16) / 20];
 pub struct Trail {
     /// The rocket.
     pub rocket: ActorId,
-    /// The trail's point after the first tic of flight: twice the rocket's radius behind it, at two thirds of its height. East, north
-    /// and up.
+    /// The trail's point after the first tic of flight: twice the rocket's radius behind it, at two
+    /// thirds of its height. East, north and up.
     point: [Fixed; 3],
     /// The rocket's velocity, map units a tic.
     velocity: [Fixed; 3],
@@ -49,7 +51,8 @@ pub struct Trail {
     way: [Fixed; 2],
     /// The first tic of flight.
     pub begun: u32,
-    /// One past the last, [`Trail::FLYING`] until it is known; in the tic in which it bursts, a rocket sheds nothing.
+    /// One past the last, [`Trail::FLYING`] until it is known; in the tic in which it bursts, a
+    /// rocket sheds nothing.
     pub ended: u32,
     /// Where the rocket was thrown: squares are lit by its light.
     pub sector: SectorId,
@@ -85,7 +88,8 @@ pub struct Lots {
 }
 
 impl Lots {
-    /// What a tic's squares get of the published engine's draws, which it makes in this order, the yellow square first.
+    /// What a tic's squares get of the published engine's draws, which it makes in this order, the
+    /// yellow square first.
     pub fn of_tic(mut draw: impl FnMut() -> u8) -> [Lots; SQUARES as usize] {
         std::array::from_fn(|index| {
             let (is_grey, life) = (index > 0, draw());
@@ -150,14 +154,17 @@ impl World {
         let place = [rocket.x + rocket.vx, rocket.y + rocket.vy, rocket.z + rocket.vz];
         // Told apart by what the world has drawn so far, which goes on as if nobody had looked.
         let key = Rng::for_lane(self.rng.state(), u64::from(tic)).state();
-        let trail = Trail::new(self.id_of(slot), place, velocity, tic, rocket.sector, Chance::Own(key));
+        let trail =
+            Trail::new(self.id_of(slot), place, velocity, tic, rocket.sector, Chance::Own(key));
         self.trails.push(trail);
     }
 
     /// The rocket of a slot, or whatever is in it, flies no more.
     pub(super) fn end_trail(&mut self, slot: usize) {
         let (id, tic) = (self.id_of(slot), self.tic);
-        if let Some(trail) = self.trails.iter_mut().find(|trail| trail.rocket == id && trail.ended == Trail::FLYING) {
+        if let Some(trail) =
+            self.trails.iter_mut().find(|trail| trail.rocket == id && trail.ended == Trail::FLYING)
+        {
             trail.ended = tic;
         }
     }
@@ -167,11 +174,19 @@ impl Trail {
     /// The end of a trail whose rocket still flies.
     pub const FLYING: u32 = u32::MAX;
 
-    /// The trail of a rocket that is at `place` after its first tic of flight, `begun`, and goes on by `velocity` a tic; lit as
-    /// `sector` is.
+    /// The trail of a rocket that is at `place` after its first tic of flight, `begun`, and goes on
+    /// by `velocity` a tic; lit as `sector` is.
     #[must_use]
-    pub fn new(rocket: ActorId, place: [Fixed; 3], velocity: [Fixed; 3], begun: u32, sector: SectorId, chance: Chance) -> Trail {
-        let ([x, y, z], way, kind) = (place, Angle::of_slope(velocity[0], velocity[1]), ActorKind::Rocket);
+    pub fn new(
+        rocket: ActorId,
+        place: [Fixed; 3],
+        velocity: [Fixed; 3],
+        begun: u32,
+        sector: SectorId,
+        chance: Chance,
+    ) -> Trail {
+        let ([x, y, z], way, kind) =
+            (place, Angle::of_slope(velocity[0], velocity[1]), ActorKind::Rocket);
         let (way, behind) = ([way.cos(), way.sin()], kind.radius() * 2);
         let point = [x - behind * way[0], y - behind * way[1], z + kind.height().scale(2, 3)];
         Trail { rocket, point, velocity, way, begun, ended: Trail::FLYING, sector, chance }
@@ -195,8 +210,14 @@ impl Trail {
             Chance::Own(key) => self.list_own(*key, now, left),
             Chance::Told(lots) => {
                 let tics = self.tics(now);
-                for (tic, lots) in tics.clone().zip(lots.iter().skip((tics.start - self.begun) as usize)) {
-                    let shed = (0..).zip(lots).map(|(index, &lots)| Shed { tic, is_yellow: index == 0, lots });
+                for (tic, lots) in
+                    tics.clone().zip(lots.iter().skip((tics.start - self.begun) as usize))
+                {
+                    let shed = (0..).zip(lots).map(|(index, &lots)| Shed {
+                        tic,
+                        is_yellow: index == 0,
+                        lots,
+                    });
                     left.extend(shed.filter(|shed| now - 1 - tic < shed.life()));
                 }
             }
@@ -205,13 +226,20 @@ impl Trail {
 
     fn list_own(&self, key: u64, now: u32, left: &mut Vec<Shed>) {
         let (tics, mut count) = (self.tics(now), left.len());
-        left.resize(count + SQUARES as usize * tics.len(), Shed { tic: 0, is_yellow: false, lots: Lots::of(0, 0) });
+        left.resize(
+            count + SQUARES as usize * tics.len(),
+            Shed { tic: 0, is_yellow: false, lots: Lots::of(0, 0) },
+        );
         for tic in tics {
-            // A stream of draws for each tic: the first number tells of every square how long it lives and its shade.
-            let mut draws = Rng::from_state(key.wrapping_add(u64::from(tic).wrapping_mul(0xD1B5_4A32_D192_ED03)));
+            // A stream of draws for each tic: the first number tells of every square how long it
+            // lives and its shade.
+            let mut draws = Rng::from_state(
+                key.wrapping_add(u64::from(tic).wrapping_mul(0xD1B5_4A32_D192_ED03)),
+            );
             let (first, age) = (draws.next_u64().to_le_bytes(), now - 1 - tic);
             for (index, &lot) in first[..SQUARES as usize].iter().enumerate() {
-                let shed = Shed { tic, is_yellow: index == 0, lots: Lots::of(lot, draws.next_u64()) };
+                let shed =
+                    Shed { tic, is_yellow: index == 0, lots: Lots::of(lot, draws.next_u64()) };
                 // Which are left cannot be foretold: all are written, and those counted.
                 left[count] = shed;
                 count += usize::from(age < shed.life());
@@ -229,11 +257,16 @@ impl Trail {
         let parts = (i64::from(tic - self.begun) << 8) - i64::from(lots.back);
         // What was added in the first tic has moved it in all but that one, and so on.
         let (middle, added) = (|lot: u8| i32::from(lot) - 128, age * (age - 1) / 2);
-        let drift = |axis: usize| middle(lots.drift[axis]) * DRIFT * age + middle(lots.pull[axis]) * PULL * added;
+        let drift = |axis: usize| {
+            middle(lots.drift[axis]) * DRIFT * age + middle(lots.pull[axis]) * PULL * added
+        };
         let aside = middle(lots.aside) * ASIDE * age;
         let part = |of: i32, unit: Fixed| ((i64::from(of) * i64::from(unit.0)) >> 16) as i32;
-        let up =
-            if is_yellow { -SINK[0] * age - SINK[1] * added } else { i32::from(lots.up) * UP + RISE[0] * age + RISE[1] * added };
+        let up = if is_yellow {
+            -SINK[0] * age - SINK[1] * added
+        } else {
+            i32::from(lots.up) * UP + RISE[0] * age + RISE[1] * added
+        };
         let [cos, sin] = self.way;
         let place = [
             self.point[0] + Fixed(self.way_in(0, parts) + drift(0) - part(aside, sin)),
@@ -280,7 +313,8 @@ mod tests {
     use super::*;
     use crate::map::stone_room;
 
-    /// A world in which a player far from the eastern wall throws a rocket at it, a number of tics after.
+    /// A world in which a player far from the eastern wall throws a rocket at it, a number of tics
+    /// after.
     fn flight(shed: bool, tics: u32) -> World {
         let mut world = World::new(stone_room(200, [-64, -256, 4000, 256], &[[0.0, 0.0]]), 7);
         world.rockets_shed = shed;
@@ -298,7 +332,9 @@ mod tests {
         for trail in &world.trails {
             let mut left = Vec::new();
             trail.list(world.tic, &mut left);
-            seen.extend(left.iter().map(|shed| (world.tic - 1 - shed.tic, trail.square(shed, world.tic))));
+            seen.extend(
+                left.iter().map(|shed| (world.tic - 1 - shed.tic, trail.square(shed, world.tic))),
+            );
         }
         seen
     }
@@ -315,11 +351,16 @@ mod tests {
             }
             worlds += 1;
         }
-        // Measured: seven a tic, one of them yellow, an eighth of the others dark; all lives from 3 to 34 tics as often.
+        // Measured: seven a tic, one of them yellow, an eighth of the others dark; all lives from 3
+        // to 34 tics as often.
         let all: i32 = count.iter().sum();
         assert!((all - worlds * 259 / 2).abs() < worlds * 4, "{all} in {worlds} worlds");
         assert!((all - count[Shade::Yellow as usize] * 7).abs() < all / 10, "{count:?}");
-        assert!((all - count[Shade::Yellow as usize] - count[Shade::Dark as usize] * 8).abs() < all / 10, "{count:?}");
+        assert!(
+            (all - count[Shade::Yellow as usize] - count[Shade::Dark as usize] * 8).abs()
+                < all / 10,
+            "{count:?}"
+        );
         assert!(ages[..3].iter().all(|&age| age == worlds * SQUARES as i32), "{ages:?}");
         for (age, &number) in ages.iter().enumerate().skip(3) {
             let left = 7 * worlds * (LONGEST_LIFE as i32 - age as i32) / 32;
@@ -331,14 +372,21 @@ mod tests {
     fn squares_appear_behind_the_rocket_and_drift_as_measured() {
         let (mut aside, mut rises) = (Vec::new(), Vec::new());
         let worlds = [40, 75, 110, 145].map(|tics| flight(true, tics));
-        for (world, (age, square)) in worlds.iter().flat_map(|world| squares(world).into_iter().map(move |seen| (world, seen))) {
+        for (world, (age, square)) in worlds
+            .iter()
+            .flat_map(|world| squares(world).into_iter().map(move |seen| (world, seen)))
+        {
             let rocket = world.actors.iter().find(|actor| actor.kind == ActorKind::Rocket).unwrap();
             let [x, y, z] = square.place.map(Fixed::to_f64);
-            let [behind, above] = [rocket.x.to_f64() - x - 20.0 * f64::from(age), z - rocket.z.to_f64()];
+            let [behind, above] =
+                [rocket.x.to_f64() - x - 20.0 * f64::from(age), z - rocket.z.to_f64()];
             assert!((16.0..=48.0).contains(&behind), "{behind} behind at age {age}");
             if age == 0 {
                 assert_eq!((y, square.opacity), (0.0, OPAQUE));
-                assert!((5.3..9.4).contains(&above) && (square.shade != Shade::Yellow || above < 5.4), "{square:?}");
+                assert!(
+                    (5.3..9.4).contains(&above) && (square.shade != Shade::Yellow || above < 5.4),
+                    "{square:?}"
+                );
             } else {
                 aside.push(y / f64::from(age));
             }
@@ -348,18 +396,25 @@ mod tests {
         }
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let spread = (aside.iter().map(|v| v * v).sum::<f64>() / aside.len() as f64).sqrt();
-        assert!(mean(&aside).abs() < 0.08 && (0.28..0.39).contains(&spread), "{} {spread}", mean(&aside));
+        assert!(
+            mean(&aside).abs() < 0.08 && (0.28..0.39).contains(&spread),
+            "{} {spread}",
+            mean(&aside)
+        );
         assert!(rises.is_empty() || (1.0..9.0).contains(&mean(&rises)), "{rises:?}");
     }
 
-    /// In a bare room, of a rocket that flew across the view 60 units ahead: the bytes that its second tic drew, and the first column
-    /// and row, width and height at 1600x1200 of what each square covered then and in the next three tics.
+    /// In a bare room, of a rocket that flew across the view 60 units ahead: the bytes that its
+    /// second tic drew, and the first column and row, width and height at 1600x1200 of what each
+    /// square covered then and in the next three tics.
     #[test]
     fn squares_are_where_the_published_engine_had_them() {
         const DRAWS: [u8; 75] = [
             107, 69, 202, 58, 173, 98, 51, 125, 178, // the yellow one's
-            254, 12, 60, 20, 186, 203, 50, 178, 204, 112, 186, 63, 9, 197, 185, 152, 170, 168, 127, 215, 72, 52, 156, //
-            182, 39, 106, 33, 234, 26, 236, 234, 225, 202, 0, 0, 240, 60, 229, 233, 177, 86, 111, 243, 22, 199, 95, 103, //
+            254, 12, 60, 20, 186, 203, 50, 178, 204, 112, 186, 63, 9, 197, 185, 152, 170, 168, 127,
+            215, 72, 52, 156, //
+            182, 39, 106, 33, 234, 26, 236, 234, 225, 202, 0, 0, 240, 60, 229, 233, 177, 86, 111,
+            243, 22, 199, 95, 103, //
             185, 88, 12, 88, 48, 255, 105, 89, 247, 18, 58, 137, 170, 183, 37, 211, 70, 134, 236,
         ];
         const SEEN: [&[[u16; 4]]; 7] = [
@@ -375,20 +430,29 @@ mod tests {
         let lots = Lots::of_tic(|| draws.next().unwrap());
         assert_eq!(draws.len(), 0);
         let world = World::new(stone_room(200, [-64, -512, 600, 512], &[[0.0, 0.0]]), 7);
-        let [place, velocity] = [[60, -10, 36], [0, 20, 0]].map(|vector| vector.map(Fixed::from_int));
+        let [place, velocity] =
+            [[60, -10, 36], [0, 20, 0]].map(|vector| vector.map(Fixed::from_int));
         let id = world.players[0].actor;
-        let mut trail = Trail::new(id, place, velocity, 37, SectorId(0), Chance::Told(Arc::new([lots])));
+        let mut trail =
+            Trail::new(id, place, velocity, 37, SectorId(0), Chance::Told(Arc::new([lots])));
         trail.ended = 38;
         for (age, now) in (0..).zip(38..42) {
             let mut left = Vec::new();
             trail.list(now, &mut left);
-            let seen: Vec<[u16; 4]> = SEEN.iter().filter_map(|spots| spots.get(age)).copied().collect();
+            let seen: Vec<[u16; 4]> =
+                SEEN.iter().filter_map(|spots| spots.get(age)).copied().collect();
             assert_eq!(left.len(), seen.len(), "tics later: {age}");
             for (shed, [column, row, width, height]) in left.iter().zip(seen) {
                 let [x, y, z] = trail.square(shed, now).place.map(Fixed::to_f64);
                 let middle = [800.0 - y / x * 800.0, 600.0 - (z - 41.0) / x * 960.0];
-                let there = [f64::from(column) + f64::from(width) / 2.0, f64::from(row) + f64::from(height) / 2.0];
-                assert!(middle.iter().zip(there).all(|(here, there)| (here - there).abs() < 1.5), "{middle:?}, not {there:?}");
+                let there = [
+                    f64::from(column) + f64::from(width) / 2.0,
+                    f64::from(row) + f64::from(height) / 2.0,
+                ];
+                assert!(
+                    middle.iter().zip(there).all(|(here, there)| (here - there).abs() < 1.5),
+                    "{middle:?}, not {there:?}"
+                );
             }
         }
     }
@@ -405,8 +469,12 @@ mod tests {
 
     #[test]
     fn a_trail_ends_where_its_rocket_bursts_and_fades() {
-        let burst =
-            |world: &World| world.actors.iter().all(|actor| actor.kind != ActorKind::Rocket || actor.phase == Phase::Death);
+        let burst = |world: &World| {
+            world
+                .actors
+                .iter()
+                .all(|actor| actor.kind != ActorKind::Rocket || actor.phase == Phase::Death)
+        };
         let mut world = flight(true, 0);
         for _ in 0..300 {
             if burst(&world) {

@@ -19,21 +19,28 @@ const FALLEN_VIEW_HEIGHT: Fixed = Fixed::from_int(6);
 const BOB_PERIOD: u32 = 20;
 
 impl Player {
-    /// The speed with which the eye starts to return to its rest height: an eighth of what is missing.
+    /// The speed with which the eye starts to return to its rest height: an eighth of what is
+    /// missing.
     pub(crate) fn view_recovery(&self) -> Fixed {
         (VIEW_HEIGHT + self.crouch_view_offset - self.view_height) >> 3
     }
 }
 
 impl World {
-    /// Computes a player's eye height. Runs before the body moves, so that the eye lags one tic in height.
+    /// Computes a player's eye height. Runs before the body moves, so that the eye lags one tic in
+    /// height.
     pub(crate) fn calculate_view(&mut self, index: usize) {
         let player = &mut self.players[index];
         let [vx, vy] = player.bob_velocity;
-        let effort = ((i64::from(vx.0) * i64::from(vx.0) + i64::from(vy.0) * i64::from(vy.0)) >> 16) as i32;
+        let effort =
+            ((i64::from(vx.0) * i64::from(vx.0) + i64::from(vy.0) * i64::from(vy.0)) >> 16) as i32;
         player.bob = (Fixed(effort) >> 2).min(LARGEST_BOB);
         let phase = ((u64::from(self.tic) << 13) / u64::from(BOB_PERIOD)) as u32 & 8191;
-        let swing = if effort == 0 { Fixed::ZERO } else { (player.bob >> 1) * Angle::from_fine(phase as i32).sin() };
+        let swing = if effort == 0 {
+            Fixed::ZERO
+        } else {
+            (player.bob >> 1) * Angle::from_fine(phase as i32).sin()
+        };
         if player.dead {
             player.view_height = (player.view_height - Fixed::ONE).max(FALLEN_VIEW_HEIGHT);
             player.delta_view_height = Fixed::ZERO;
@@ -42,7 +49,8 @@ impl World {
         }
         let height = player.view_height + swing;
         let body = &self.actors[usize::from(player.actor.slot)];
-        let eye = (body.z + height).min(body.ceiling_z - EYE_CLEARANCE).max(body.floor_z + EYE_CLEARANCE);
+        let eye =
+            (body.z + height).min(body.ceiling_z - EYE_CLEARANCE).max(body.floor_z + EYE_CLEARANCE);
         self.players[index].view_z = eye;
     }
 }

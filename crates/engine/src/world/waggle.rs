@@ -33,7 +33,8 @@ pub(crate) struct Waggle {
 }
 
 impl Hash for Waggle {
-    /// Everything but the bookkeeping: worlds that will do the same have equal hashes, whoever looked when.
+    /// Everything but the bookkeeping: worlds that will do the same have equal hashes, whoever
+    /// looked when.
     fn hash<H: Hasher>(&self, state: &mut H) {
         (self.sector, self.rest).hash(state);
         (self.accumulator, self.accumulator_step).hash(state);
@@ -46,8 +47,16 @@ impl Hash for Waggle {
 const FOR_EVER: u32 = u32::MAX;
 
 impl Waggle {
-    /// A floor that begins to swing about `rest` by `amplitude` eighths of a map unit, with a period of 4096 / `frequency` tics.
-    pub(crate) fn new(sector: SectorId, rest: Fixed, amplitude: i32, frequency: i32, offset: i32, seconds: i32) -> Waggle {
+    /// A floor that begins to swing about `rest` by `amplitude` eighths of a map unit, with a
+    /// period of 4096 / `frequency` tics.
+    pub(crate) fn new(
+        sector: SectorId,
+        rest: Fixed,
+        amplitude: i32,
+        frequency: i32,
+        offset: i32,
+        seconds: i32,
+    ) -> Waggle {
         let full_scale = Fixed(amplitude << 10);
         Waggle {
             sector,
@@ -72,7 +81,9 @@ impl Waggle {
 
     /// Tics that pass before one that begins another phase: in these, all is linear.
     fn calm_tics(&self) -> u32 {
-        let steps_before = |far: Fixed| if self.scale_step.0 > 0 { (far.0 - 1).max(0) / self.scale_step.0 } else { 0 };
+        let steps_before = |far: Fixed| {
+            if self.scale_step.0 > 0 { (far.0 - 1).max(0) / self.scale_step.0 } else { 0 }
+        };
         match (self.phase, self.steady_tics) {
             (Phase::Growing, _) => steps_before(self.full_scale - self.scale) as u32,
             (Phase::Steady, Some(tics @ 1..)) => tics as u32 - 1,
@@ -86,11 +97,14 @@ impl Waggle {
     pub(crate) fn advance(&mut self, mut tics: u32) -> bool {
         loop {
             let calm = self.calm_tics().min(tics);
-            self.accumulator = self.accumulator.wrapping_add(self.accumulator_step.wrapping_mul(calm));
+            self.accumulator =
+                self.accumulator.wrapping_add(self.accumulator_step.wrapping_mul(calm));
             let steps = Fixed(self.scale_step.0.wrapping_mul(calm as i32));
             match self.phase {
                 Phase::Growing => self.scale += steps,
-                Phase::Steady => self.steady_tics = self.steady_tics.map(|tics| tics.wrapping_sub(calm as i32)),
+                Phase::Steady => {
+                    self.steady_tics = self.steady_tics.map(|tics| tics.wrapping_sub(calm as i32))
+                }
                 Phase::Shrinking => self.scale -= steps,
             }
             tics -= calm;

@@ -1,8 +1,8 @@
 //! The weapon in a player's hands: raising, firing, lowering, its pictures and its choice.
 //!
-//! The timing is the original's: a press in a tic in which the weapon is ready starts the fire sequence in that tic, so
-//! that the pistol's bullet leaves 4 tics later and the rocket 8 tics later, and holding the button repeats the sequence
-//! without a tic between.
+//! The timing is the original's: a press in a tic in which the weapon is ready starts the fire
+//! sequence in that tic, so that the pistol's bullet leaves 4 tics later and the rocket 8 tics
+//! later, and holding the button repeats the sequence without a tic between.
 
 use super::weapon_info::Shot;
 use super::{ActorKind, Buttons, Event, PlayerSprite, Weapon, World};
@@ -50,8 +50,9 @@ pub struct WeaponState {
     flash_tics: i16,
     /// Swing of the weapon, which follows the player's bob by at most 1 a tic.
     swing: Fixed,
-    /// The button has been down since a ready weapon last saw it up. It counts as down at the start, so that a weapon
-    /// which wants a fresh press does not fire for a button held since before.
+    /// The button has been down since a ready weapon last saw it up. It counts as down at the
+    /// start, so that a weapon which wants a fresh press does not fire for a button held since
+    /// before.
     attack_down: bool,
     /// Shots since the press, the first not counted: only the first is accurate.
     repeats: u32,
@@ -79,10 +80,12 @@ impl World {
     #[must_use]
     pub fn can_fire(&self, player: usize, weapon: Weapon) -> bool {
         let player = &self.players[player];
-        player.weapons & weapon.bit() != 0 && player.ammo[weapon.info().ammo] >= weapon.info().ammo_per_shot
+        player.weapons & weapon.bit() != 0
+            && player.ammo[weapon.info().ammo] >= weapon.info().ammo_per_shot
     }
 
-    /// Has a player change to a weapon that he owns and can fire; false where he cannot. Scripts' `SetWeapon`.
+    /// Has a player change to a weapon that he owns and can fire; false where he cannot. Scripts'
+    /// `SetWeapon`.
     pub fn select_weapon(&mut self, player: usize, weapon: Weapon) -> bool {
         if self.players[player].weapons & weapon.bit() == 0 {
             return false;
@@ -108,7 +111,8 @@ impl World {
         player.weapon_state = WeaponState { attack_down, ..WeaponState::default() };
     }
 
-    /// One tic of a player's weapon: selection, then the weapon layer, then the flash, then the trigger.
+    /// One tic of a player's weapon: selection, then the weapon layer, then the flash, then the
+    /// trigger.
     pub(super) fn tick_weapon(&mut self, player: usize) {
         self.choose_weapon(player);
         if self.players[player].weapon.is_none() {
@@ -132,7 +136,8 @@ impl World {
                 }
             }
             self.tick_flash(player);
-            let changes = self.players[player].weapon_state.pending.is_some() || self.players[player].dead;
+            let changes =
+                self.players[player].weapon_state.pending.is_some() || self.players[player].dead;
             if self.players[player].weapon_state.hands == Hands::Ready && changes {
                 self.start_lowering(player);
             }
@@ -147,14 +152,22 @@ impl World {
     fn choose_weapon(&mut self, index: usize) {
         let player = &self.players[index];
         let pressed = |button| player.buttons.any(button) && !player.old_buttons.any(button);
-        let (next, previous) = (pressed(Buttons::SELECT_NEXT_WEAPON), pressed(Buttons::SELECT_PREV_WEAPON));
+        let (next, previous) =
+            (pressed(Buttons::SELECT_NEXT_WEAPON), pressed(Buttons::SELECT_PREV_WEAPON));
         if next == previous || player.dead {
             return;
         }
-        let current = player.weapon_state.pending.or(player.weapon).map_or(Weapon::COUNT - 1, |weapon| weapon as usize);
+        let current = player
+            .weapon_state
+            .pending
+            .or(player.weapon)
+            .map_or(Weapon::COUNT - 1, |weapon| weapon as usize);
         let stride = if next { 1 } else { Weapon::COUNT - 1 };
-        let order = (1..=Weapon::COUNT).map(|i| Weapon::ALL[(current + i * stride) % Weapon::COUNT]);
-        let Some(weapon) = order.into_iter().find(|&weapon| self.can_fire(index, weapon)) else { return };
+        let order =
+            (1..=Weapon::COUNT).map(|i| Weapon::ALL[(current + i * stride) % Weapon::COUNT]);
+        let Some(weapon) = order.into_iter().find(|&weapon| self.can_fire(index, weapon)) else {
+            return;
+        };
         if self.players[index].weapon != Some(weapon) {
             self.players[index].weapon_state.pending = Some(weapon);
         }
@@ -247,7 +260,8 @@ impl World {
         }
     }
 
-    /// Enters a frame of the fire sequence and every frame without duration after it; past the end the weapon is ready.
+    /// Enters a frame of the fire sequence and every frame without duration after it; past the end
+    /// the weapon is ready.
     fn enter_fire_frame(&mut self, player: usize, step: u8) {
         let Some(weapon) = self.players[player].weapon else { return };
         let mut step = step;
@@ -275,14 +289,17 @@ impl World {
         }
     }
 
-    /// Repeats the sequence while the button is held; true if the hands were given something else to do.
+    /// Repeats the sequence while the button is held; true if the hands were given something else
+    /// to do.
     fn fire_again(&mut self, player: usize) -> bool {
-        let (held, dead) = (self.players[player].buttons.any(Buttons::ATTACK), self.players[player].dead);
+        let (held, dead) =
+            (self.players[player].buttons.any(Buttons::ATTACK), self.players[player].dead);
         let state = &mut self.players[player].weapon_state;
         if held && state.pending.is_none() && !dead {
             state.repeats += 1;
             self.fire(player);
-            return self.players[player].weapon_state.step == 0 || self.players[player].weapon_state.hands != Hands::Firing;
+            return self.players[player].weapon_state.step == 0
+                || self.players[player].weapon_state.hands != Hands::Firing;
         }
         state.repeats = 0;
         if let Some(weapon) = self.players[player].weapon
@@ -341,7 +358,10 @@ impl World {
 
     fn tick_flash(&mut self, player: usize) {
         let owner = &mut self.players[player];
-        let (Some((sequence, step)), Some(weapon)) = (owner.weapon_state.flash, owner.weapon) else { return };
+        let (Some((sequence, step)), Some(weapon)) = (owner.weapon_state.flash, owner.weapon)
+        else {
+            return;
+        };
         owner.weapon_state.flash_tics -= 1;
         if owner.weapon_state.flash_tics > 0 {
             return;
@@ -370,13 +390,15 @@ impl World {
         };
         let info = weapon.info();
         let target = if state.hands == Hands::Ready { owner.bob } else { Fixed::ZERO };
-        state.swing = Fixed(target.0.clamp(state.swing.0 - Fixed::ONE.0, state.swing.0 + Fixed::ONE.0));
+        state.swing =
+            Fixed(target.0.clamp(state.swing.0 - Fixed::ONE.0, state.swing.0 + Fixed::ONE.0));
         // A swing takes 64 tics.
         let turn = Angle::from_fine((tic.wrapping_mul(128) & 8191) as i32);
         let half_turn = Angle::from_fine((tic.wrapping_mul(128) & 4095) as i32);
         let x = state.swing * turn.cos();
         let y = state.height + state.swing * half_turn.sin();
-        let frame = if state.hands == Hands::Firing { info.fire[usize::from(state.step)].frame } else { 0 };
+        let frame =
+            if state.hands == Hands::Firing { info.fire[usize::from(state.step)].frame } else { 0 };
         let flash = state.flash.map(|(sequence, step)| PlayerSprite {
             sprite: info.flash_sprite,
             frame: info.flashes[usize::from(sequence)][usize::from(step)].frame,
@@ -384,7 +406,8 @@ impl World {
             x,
             y,
         });
-        owner.sprites = [Some(PlayerSprite { sprite: info.sprite, frame, bright: false, x, y }), flash];
+        owner.sprites =
+            [Some(PlayerSprite { sprite: info.sprite, frame, bright: false, x, y }), flash];
     }
 }
 

@@ -265,10 +265,18 @@ mod tests {
         for weapon in Weapon::ALL {
             let info = weapon.info();
             let fire = info.fire.iter().map(|shown| (info.sprite, shown.frame));
-            let flashes = info.flashes.iter().copied().flatten().map(|shown| (info.flash_sprite, shown.frame));
+            let flashes = info
+                .flashes
+                .iter()
+                .copied()
+                .flatten()
+                .map(|shown| (info.flash_sprite, shown.frame));
             // The first frame is the weapon at rest.
             for (sprite, frame) in fire.chain(flashes).chain([(info.sprite, 0)]) {
-                assert!(usize::from(frame) < assets.sprites[usize::from(sprite)].frames.len(), "{weapon:?}: frame {frame}");
+                assert!(
+                    usize::from(frame) < assets.sprites[usize::from(sprite)].frames.len(),
+                    "{weapon:?}: frame {frame}"
+                );
             }
         }
     }

@@ -21,11 +21,18 @@ pub fn style(floor: i32, ceiling: i32, tag: i32) -> Style {
     }
 }
 
-/// A hall of `columns` x `rows` tiles of 128 units from (0, 0), with the player at `start` facing east. Tile (c, r) has
-/// the height that `floor` gives and the tag 1 + 100 r + c.
+/// A hall of `columns` x `rows` tiles of 128 units from (0, 0), with the player at `start` facing
+/// east. Tile (c, r) has the height that `floor` gives and the tag 1 + 100 r + c.
 #[allow(dead_code, reason = "not every test binary that shares this file needs it")]
-pub fn hall(columns: usize, rows: usize, start: (i32, i32), floor: impl Fn(usize, usize) -> i32) -> World {
-    let grid = TileGrid::new((0, 0), 128, columns, rows, |c, r| style(floor(c, r), 200, 1 + 100 * r as i32 + c as i32));
+pub fn hall(
+    columns: usize,
+    rows: usize,
+    start: (i32, i32),
+    floor: impl Fn(usize, usize) -> i32,
+) -> World {
+    let grid = TileGrid::new((0, 0), 128, columns, rows, |c, r| {
+        style(floor(c, r), 200, 1 + 100 * r as i32 + c as i32)
+    });
     world_of(&grid, (f64::from(start.0), f64::from(start.1)))
 }
 

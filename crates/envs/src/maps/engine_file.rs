@@ -10,7 +10,8 @@ use std::path::Path;
 /// Its name; in the Python package `vizdoom` it lies beside the IWADs.
 const FILE: &str = "vizdoom.pk3";
 
-/// What is taken from it: the smoke of rockets. It has other sprites too, before which those of an IWAD count.
+/// What is taken from it: the smoke of rockets. It has other sprites too, before which those of an
+/// IWAD count.
 const SPRITE: &str = "sprites/rsmk";
 
 /// And the soot that rockets leave on walls.
@@ -20,7 +21,8 @@ const SOOT: &str = "graphics/scorch1.";
 const FILE_LIMIT: usize = 1 << 16;
 const PICTURE_LIMIT: u64 = 1 << 20;
 
-/// The pictures of the published engine's own file, where it lies beside an IWAD, as a WAD to lay over that one.
+/// The pictures of the published engine's own file, where it lies beside an IWAD, as a WAD to lay
+/// over that one.
 ///
 /// # Errors
 /// One line that names the file and what is wrong with it.
@@ -29,9 +31,9 @@ pub fn pictures_beside(iwad: &Path) -> Result<Option<Vec<u8>>, EnvError> {
     if !path.is_file() {
         return Ok(None);
     }
-    pictures(&read(&path)?)
-        .map(Some)
-        .map_err(|why| EnvError::Map { why: format!("{}: {why}; install vizdoom again", shown(&path)) })
+    pictures(&read(&path)?).map(Some).map_err(|why| EnvError::Map {
+        why: format!("{}: {why}; install vizdoom again", shown(&path)),
+    })
 }
 
 /// A WAD of the wanted pictures.
@@ -43,7 +45,10 @@ fn pictures(bytes: &[u8]) -> Result<Vec<u8>, String> {
     }
     let mut found = Vec::new();
     for index in 0..archive.len() {
-        let Some((name, soot)) = archive.name_for_index(index).and_then(|path| wanted(&path.ok()?)) else { continue };
+        let Some((name, soot)) = archive.name_for_index(index).and_then(|path| wanted(&path.ok()?))
+        else {
+            continue;
+        };
         let file = archive.by_index(index).map_err(|error| broken(&error))?;
         let mut bytes = Vec::new();
         file.take(PICTURE_LIMIT + 1).read_to_end(&mut bytes).map_err(|error| broken(&error))?;
@@ -53,9 +58,14 @@ fn pictures(bytes: &[u8]) -> Result<Vec<u8>, String> {
         found.push(Picture { name, soot, bytes });
     }
     let marker = |name| [Lump { name: TextureName::new(name), bytes: &[] }];
-    let lumps =
-        |soot: bool| found.iter().filter(move |file| file.soot == soot).map(|file| Lump { name: file.name, bytes: &file.bytes });
-    let all = marker("S_START").into_iter().chain(lumps(false)).chain(marker("S_END")).chain(lumps(true));
+    let lumps = |soot: bool| {
+        found
+            .iter()
+            .filter(move |file| file.soot == soot)
+            .map(|file| Lump { name: file.name, bytes: &file.bytes })
+    };
+    let all =
+        marker("S_START").into_iter().chain(lumps(false)).chain(marker("S_END")).chain(lumps(true));
     Ok(write(WadKind::Pwad, &all.collect::<Vec<_>>()))
 }
 
@@ -93,17 +103,27 @@ mod tests {
 
     #[test]
     fn wanted_pictures_become_sprites_of_a_wad() {
-        let files = [("graphics/scorch1.png", b"soot1"), ("sprites/rsmka0.png", b"smoke"), ("graphics/rsmk.png", b"other")];
+        let files = [
+            ("graphics/scorch1.png", b"soot1"),
+            ("sprites/rsmka0.png", b"smoke"),
+            ("graphics/rsmk.png", b"other"),
+        ];
         let bytes = archive(&files.map(|(name, bytes)| (name, &bytes[..])));
         let wad = pictures(&bytes).unwrap();
-        let names: Vec<String> = Wad::read(&wad).unwrap().lumps.iter().map(|lump| lump.name.as_str().to_owned()).collect();
+        let names: Vec<String> = Wad::read(&wad)
+            .unwrap()
+            .lumps
+            .iter()
+            .map(|lump| lump.name.as_str().to_owned())
+            .collect();
         assert_eq!(names, ["S_START", "RSMKA0", "S_END", "SCORCH1"]);
         assert_eq!(Wad::read(&wad).unwrap().find("RSMKA0"), Some(&b"smoke"[..]));
     }
 
     #[test]
     fn spoiled_files_are_told_in_a_line() {
-        let whole = archive(&[("sprites/rsmka0.png", &[7; 500]), ("sprites/rsmkb0.png", &[8; 500])]);
+        let whole =
+            archive(&[("sprites/rsmka0.png", &[7; 500]), ("sprites/rsmkb0.png", &[8; 500])]);
         for at in 0..whole.len() {
             let mut spoiled = whole.clone();
             spoiled[at] ^= 0xFF;

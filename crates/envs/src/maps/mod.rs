@@ -1,9 +1,10 @@
-//! Maps from files: the published package's, where the user has it, or the user's own in their place.
+//! Maps from files: the published package's, where the user has it, or the user's own in their
+//! place.
 //!
-//! A folder of maps is laid out as the published package is: `remedy_rush/level_1.wad`, and beside the levels `level_1_hard.wad`.
-//! Each file is a WAD with a UDMF map `MAP01`; its pictures are laid over the IWAD's,
-//! and over those of the published engine's own file where that lies beside the IWAD. The scenario's rules act on the map at hand:
-//! `docs/guide/maps.md` says what they look for.
+//! A folder of maps is laid out as the published package is: `remedy_rush/level_1.wad`, and beside
+//! the levels `level_1_hard.wad`. Each file is a WAD with a UDMF map `MAP01`; its pictures are laid
+//! over the IWAD's, and over those of the published engine's own file where that lies beside the
+//! IWAD. The scenario's rules act on the map at hand: `docs/guide/maps.md` says what they look for.
 
 mod auto;
 mod engine_file;
@@ -59,10 +60,16 @@ impl Maps {
     /// The maps of a folder, or of one file; drawn with the embedded pictures if `iwad` is none.
     #[must_use]
     pub fn new(place: &Path, iwad: Option<&Path>) -> Maps {
-        Maps { place: place.to_owned(), iwad: iwad.map(Path::to_owned), tell: None, told: Arc::default() }
+        Maps {
+            place: place.to_owned(),
+            iwad: iwad.map(Path::to_owned),
+            tell: None,
+            told: Arc::default(),
+        }
     }
 
-    /// The same, saying of each map that is read what its file holds that is not played or drawn as it says: one line, once.
+    /// The same, saying of each map that is read what its file holds that is not played or drawn as
+    /// it says: one line, once.
     #[must_use]
     pub fn telling(self, tell: fn(&str)) -> Maps {
         Maps { tell: Some(tell), ..self }
@@ -75,7 +82,8 @@ impl Maps {
     pub fn level(&self, id: EnvId, rules: RuleSet, hard: bool) -> Result<LevelFile, EnvError> {
         let file = self.file(id, rules, hard)?;
         let bytes = read(&file)?;
-        let wrong = |why: &dyn std::fmt::Display| EnvError::Map { why: format!("{}: {why}", shown(&file)) };
+        let wrong =
+            |why: &dyn std::fmt::Display| EnvError::Map { why: format!("{}: {why}", shown(&file)) };
         let wad = Wad::read(&bytes).map_err(|error| wrong(&error))?;
         let text = wad.map_text(MAP).map_err(|error| wrong(&error))?;
         let mut source = udmf::read(text).map_err(|error| wrong(&error))?;
@@ -86,12 +94,18 @@ impl Maps {
                 let (iwad, engine) = (read(path)?, pictures_beside(path)?);
                 let mut wanted = source.textures();
                 wanted.extend(id.scenario.textures.iter().map(|name| TextureName::new(name)));
-                let additions: Vec<&[u8]> = engine.as_deref().into_iter().chain([&bytes[..]]).collect();
+                let additions: Vec<&[u8]> =
+                    engine.as_deref().into_iter().chain([&bytes[..]]).collect();
                 let assets = Assets::from_wads(&iwad, &additions, &|name| wanted.contains(&name))
-                    .map_err(|error| EnvError::Map { why: format!("{} over {}: {error}", shown(&file), shown(path)) })?;
+                    .map_err(|error| EnvError::Map {
+                    why: format!("{} over {}: {error}", shown(&file), shown(path)),
+                })?;
                 left_out.extend(assets.left_out.iter().cloned());
-                let unknown = |name: &&TextureName| name.is_some() && **name != SKY && !assets.textures.contains_key(name);
-                let missing: BTreeSet<&str> = wanted.iter().filter(unknown).map(TextureName::as_str).collect();
+                let unknown = |name: &&TextureName| {
+                    name.is_some() && **name != SKY && !assets.textures.contains_key(name)
+                };
+                let missing: BTreeSet<&str> =
+                    wanted.iter().filter(unknown).map(TextureName::as_str).collect();
                 if !missing.is_empty() {
                     let names: Vec<&str> = missing.into_iter().take(8).collect();
                     left_out.push(format!("textures that no file has ({})", names.join(" ")));
@@ -116,7 +130,8 @@ impl Maps {
             return Ok(self.place.clone());
         }
         let folder = id.scenario.file_name();
-        let folders = [self.place.join(&folder), self.place.join("envs").join(&folder), self.place.clone()];
+        let folders =
+            [self.place.join(&folder), self.place.join("envs").join(&folder), self.place.clone()];
         let mut names = vec![format!("level_{}.wad", id.level)];
         if scenarios::has_hard_map(id, rules, hard) {
             names.insert(0, format!("level_{}_hard.wad", id.level));
@@ -124,7 +139,10 @@ impl Maps {
         // A scenario's own folder may be given itself, but only under its own name.
         let own = self.place.file_name().is_some_and(|name| name == folder.as_str());
         let places = folders.iter().take(if own { 3 } else { 2 });
-        let candidates: Vec<PathBuf> = names.iter().flat_map(|name| places.clone().map(move |place| place.join(name))).collect();
+        let candidates: Vec<PathBuf> = names
+            .iter()
+            .flat_map(|name| places.clone().map(move |place| place.join(name)))
+            .collect();
         candidates.iter().find(|path| path.is_file()).cloned().ok_or_else(|| EnvError::Map {
             why: format!(
                 "{}: no map of {id}: there is no {folder}/{}; give a folder laid out as the published package's, or a WAD",
@@ -141,18 +159,28 @@ const SKY: TextureName = TextureName::new("F_SKY1");
 /// The bytes of a file of bearable size.
 fn read(path: &Path) -> Result<Vec<u8>, EnvError> {
     let wrong = |why: String| EnvError::Map { why: format!("{}: {why}", shown(path)) };
-    let file = std::fs::File::open(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    let file =
+        std::fs::File::open(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
     let mut bytes = Vec::new();
-    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    file.take(LARGEST_FILE + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| wrong(format!("cannot be read: {error}")))?;
     if bytes.len() as u64 > LARGEST_FILE {
-        return Err(wrong(format!("larger than the {} MiB that a WAD may have", LARGEST_FILE >> 20)));
+        return Err(wrong(format!(
+            "larger than the {} MiB that a WAD may have",
+            LARGEST_FILE >> 20
+        )));
     }
     Ok(bytes)
 }
 
 /// A path in a message: nothing in it commands the terminal.
 fn shown(path: &Path) -> String {
-    path.display().to_string().chars().map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
+    path.display()
+        .to_string()
+        .chars()
+        .map(|letter| if letter.is_control() { '\u{fffd}' } else { letter })
+        .collect()
 }
 
 #[cfg(test)]
@@ -161,19 +189,31 @@ mod tests {
 
     #[test]
     fn folders_are_named_as_the_published_package_names_them() {
-        let names: Vec<String> = crate::Scenario::ALL.into_iter().map(crate::Scenario::file_name).collect();
-        let expected =
-            ["armament_burden", "remedy_rush", "collateral_damage", "volcanic_venture", "precipice_plunge", "detonators_dilemma"];
-        let (names, expected): (BTreeSet<&str>, BTreeSet<&str>) = (names.iter().map(String::as_str).collect(), expected.into());
+        let names: Vec<String> =
+            crate::Scenario::ALL.into_iter().map(crate::Scenario::file_name).collect();
+        let expected = [
+            "armament_burden",
+            "remedy_rush",
+            "collateral_damage",
+            "volcanic_venture",
+            "precipice_plunge",
+            "detonators_dilemma",
+        ];
+        let (names, expected): (BTreeSet<&str>, BTreeSet<&str>) =
+            (names.iter().map(String::as_str).collect(), expected.into());
         assert_eq!(names, expected);
     }
 
     #[test]
     fn what_is_not_there_is_named_in_one_line() {
         let id: EnvId = "RemedyRushLevel2-v0".parse().unwrap();
-        let error = Maps::new(Path::new("/no/such"), None).level(id, RuleSet::Paper, false).unwrap_err().to_string();
+        let error = Maps::new(Path::new("/no/such"), None)
+            .level(id, RuleSet::Paper, false)
+            .unwrap_err()
+            .to_string();
         assert!(
-            error.starts_with("/no/such: no map of RemedyRushLevel2-v0") && error.contains("remedy_rush/level_2.wad"),
+            error.starts_with("/no/such: no map of RemedyRushLevel2-v0")
+                && error.contains("remedy_rush/level_2.wad"),
             "{error}"
         );
         assert!(!error.contains('\n'));

@@ -8,15 +8,24 @@ use hasard_engine::world::ActorKind;
 pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
     let Some(first) = plans.first() else { return };
     for (index, when) in first.whens.iter().enumerate() {
-        let possible = |plan: &Plan| plan.whens.get(index).is_some_and(|when| can_happen(plan, when.trigger));
+        let possible =
+            |plan: &Plan| plan.whens.get(index).is_some_and(|when| can_happen(plan, when.trigger));
         if !plans.iter().any(possible) {
-            mistakes.warn(when.at, format!("this never happens: {}", why(first, names, when.trigger)));
+            mistakes
+                .warn(when.at, format!("this never happens: {}", why(first, names, when.trigger)));
         }
     }
     for (index, spawn) in first.spawns.iter().enumerate() {
         let used = |plan: &Plan| {
-            let spawn = plan.spawns.get(index).is_some_and(|spawn| spawn.count > 0 || (spawn.every > 0 && spawn.each > 0));
-            spawn || plan.whens.iter().any(|when| when.spawn.iter().any(|named| usize::from(*named) == index))
+            let spawn = plan
+                .spawns
+                .get(index)
+                .is_some_and(|spawn| spawn.count > 0 || (spawn.every > 0 && spawn.each > 0));
+            spawn
+                || plan
+                    .whens
+                    .iter()
+                    .any(|when| when.spawn.iter().any(|named| usize::from(*named) == index))
         };
         if !plans.iter().any(used) {
             mistakes.warn(
@@ -29,7 +38,9 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
         mistakes.warn(0, "no [[when]] gives a reward: there is nothing to learn");
     }
     for (index, term) in names.terms.iter().enumerate() {
-        let charged = |plan: &Plan| plan.whens.iter().any(|when| when.costs.iter().any(|(of, _)| usize::from(*of) == index));
+        let charged = |plan: &Plan| {
+            plan.whens.iter().any(|when| when.costs.iter().any(|(of, _)| usize::from(*of) == index))
+        };
         if !plans.iter().any(charged) {
             mistakes.warn(0, format!("cost term {} is charged by no [[when]]", term.name));
         }
@@ -39,7 +50,9 @@ pub(super) fn warn(plans: &[Plan], names: &Names, mistakes: &mut Mistakes) {
 /// Whether something of a plan sets a rule off.
 fn can_happen(plan: &Plan, trigger: Trigger) -> bool {
     match trigger {
-        Trigger::Pickup(of) | Trigger::Kill(of) | Trigger::Hit(of) | Trigger::Near { of, .. } => appears(plan, of),
+        Trigger::Pickup(of) | Trigger::Kill(of) | Trigger::Hit(of) | Trigger::Near { of, .. } => {
+            appears(plan, of)
+        }
         Trigger::Enter(zone) | Trigger::Leave(zone) | Trigger::In(zone) => is_somewhere(plan, zone),
         Trigger::Damage { kinds: 0, zones } => harmful(plan, zones),
         Trigger::Jump => presses(plan, "JUMP"),
@@ -47,26 +60,36 @@ fn can_happen(plan: &Plan, trigger: Trigger) -> bool {
         Trigger::Shot => presses(plan, "ATTACK"),
         Trigger::Counter { counter, .. } => {
             let counts = |(of, _): &(u8, i32)| *of == counter;
-            plan.whens.iter().any(|when| when.counts.iter().any(counts) || when.sets.iter().any(counts))
+            plan.whens
+                .iter()
+                .any(|when| when.counts.iter().any(counts) || when.sets.iter().any(counts))
         }
         _ => true,
     }
 }
 
 fn why(plan: &Plan, names: &Names, trigger: Trigger) -> String {
-    let zone = |zone: u8| plan.zones.get(usize::from(zone)).map_or("", |zone| &zone.name).to_string();
+    let zone =
+        |zone: u8| plan.zones.get(usize::from(zone)).map_or("", |zone| &zone.name).to_string();
     match trigger {
-        Trigger::Enter(of) | Trigger::Leave(of) | Trigger::In(of) => format!("no tile is of zone {}", zone(of)),
+        Trigger::Enter(of) | Trigger::Leave(of) | Trigger::In(of) => {
+            format!("no tile is of zone {}", zone(of))
+        }
         Trigger::Damage { .. } => {
-            "no floor of that zone does damage; give its letter damage = { points = 1, every = 4 }".to_string()
+            "no floor of that zone does damage; give its letter damage = { points = 1, every = 4 }"
+                .to_string()
         }
         Trigger::Counter { counter, .. } => {
-            format!("nothing counts {}", names.counters.get(usize::from(counter)).map_or("", |name| name))
+            format!(
+                "nothing counts {}",
+                names.counters.get(usize::from(counter)).map_or("", |name| name)
+            )
         }
         Trigger::Jump => "no action is JUMP".to_string(),
         Trigger::Use => "no action is USE".to_string(),
         Trigger::Shot => "no action is ATTACK".to_string(),
-        _ => "no such thing ever appears; put one down with [[spawn]] or the legend's `thing`".to_string(),
+        _ => "no such thing ever appears; put one down with [[spawn]] or the legend's `thing`"
+            .to_string(),
     }
 }
 
@@ -74,7 +97,10 @@ fn why(plan: &Plan, names: &Names, trigger: Trigger) -> String {
 fn appears(plan: &Plan, of: Of) -> bool {
     let asked = |kind: ActorKind| of.kinds >> (kind as u32) & 1 == 1;
     let spawned = plan.spawns.iter().enumerate().any(|(index, spawn)| {
-        let called = plan.whens.iter().any(|when| when.spawn.iter().any(|named| usize::from(*named) == index));
+        let called = plan
+            .whens
+            .iter()
+            .any(|when| when.spawn.iter().any(|named| usize::from(*named) == index));
         let there = spawn.count > 0 || spawn.every > 0 || called;
         there && (of.spawns >> index & 1 == 1 || spawn.kinds.iter().any(|(kind, _)| asked(*kind)))
     });

@@ -1,4 +1,5 @@
-//! Reads a table field by field: each of its kind and within bounds, and none that nobody asked for.
+//! Reads a table field by field: each of its kind and within bounds, and none that nobody asked
+//! for.
 
 use super::mistakes::{Mistakes, excerpt, unknown};
 use super::tree::{Entry, Node, Value};
@@ -32,7 +33,13 @@ impl<'n> Fields<'n> {
     }
 
     /// A whole number.
-    pub fn whole(&mut self, key: &'static str, from: i64, to: i64, mistakes: &mut Mistakes) -> Option<i64> {
+    pub fn whole(
+        &mut self,
+        key: &'static str,
+        from: i64,
+        to: i64,
+        mistakes: &mut Mistakes,
+    ) -> Option<i64> {
         let node = self.node(key)?;
         match node.value {
             Value::Whole(number) if (from..=to).contains(&number) => Some(number),
@@ -44,7 +51,13 @@ impl<'n> Fields<'n> {
     }
 
     /// A number.
-    pub fn number(&mut self, key: &'static str, from: f64, to: f64, mistakes: &mut Mistakes) -> Option<f64> {
+    pub fn number(
+        &mut self,
+        key: &'static str,
+        from: f64,
+        to: f64,
+        mistakes: &mut Mistakes,
+    ) -> Option<f64> {
         let node = self.node(key)?;
         let number = number(node).filter(|number| (from..=to).contains(number));
         if number.is_none() {
@@ -76,13 +89,22 @@ impl<'n> Fields<'n> {
     }
 
     /// A text or a list of texts.
-    pub fn texts(&mut self, key: &'static str, mistakes: &mut Mistakes) -> Option<Vec<(&'n str, usize)>> {
+    pub fn texts(
+        &mut self,
+        key: &'static str,
+        mistakes: &mut Mistakes,
+    ) -> Option<Vec<(&'n str, usize)>> {
         let node = self.node(key)?;
         Some(texts(node, key, mistakes))
     }
 
     /// The items of a list of tables, `[[key]]`.
-    pub fn tables(&mut self, key: &'static str, most: usize, mistakes: &mut Mistakes) -> &'n [Node] {
+    pub fn tables(
+        &mut self,
+        key: &'static str,
+        most: usize,
+        mistakes: &mut Mistakes,
+    ) -> &'n [Node] {
         let Some(node) = self.node(key) else { return &[] };
         match &node.value {
             Value::List(items) if items.len() <= most => items,
@@ -91,7 +113,10 @@ impl<'n> Fields<'n> {
                 &[]
             }
             _ => {
-                mistakes.add(node.at, format!("write [[{key}]] with two brackets: there may be several"));
+                mistakes.add(
+                    node.at,
+                    format!("write [[{key}]] with two brackets: there may be several"),
+                );
                 &[]
             }
         }
@@ -100,7 +125,14 @@ impl<'n> Fields<'n> {
     /// Notes the fields that nobody asked for.
     pub fn finish(self, mistakes: &mut Mistakes) {
         for entry in self.entries.iter().filter(|entry| !self.asked.contains(&&*entry.key)) {
-            mistakes.add(entry.at, format!("{} of {}", unknown("field", &entry.key, self.asked.iter().copied()), self.name));
+            mistakes.add(
+                entry.at,
+                format!(
+                    "{} of {}",
+                    unknown("field", &entry.key, self.asked.iter().copied()),
+                    self.name
+                ),
+            );
         }
     }
 }
@@ -115,7 +147,11 @@ pub(super) fn number(node: &Node) -> Option<f64> {
 }
 
 /// A text or a list of texts.
-pub(super) fn texts<'n>(node: &'n Node, key: &str, mistakes: &mut Mistakes) -> Vec<(&'n str, usize)> {
+pub(super) fn texts<'n>(
+    node: &'n Node,
+    key: &str,
+    mistakes: &mut Mistakes,
+) -> Vec<(&'n str, usize)> {
     let one = |node: &'n Node, mistakes: &mut Mistakes| {
         if node.text().is_none() {
             mistakes.add(node.at, format!("{key} takes texts in quotes, not {}", node.what()));
@@ -129,7 +165,13 @@ pub(super) fn texts<'n>(node: &'n Node, key: &str, mistakes: &mut Mistakes) -> V
 }
 
 /// So many whole numbers within bounds.
-pub(super) fn wholes<const N: usize>(node: &Node, key: &str, from: i64, to: i64, mistakes: &mut Mistakes) -> Option<[i32; N]> {
+pub(super) fn wholes<const N: usize>(
+    node: &Node,
+    key: &str,
+    from: i64,
+    to: i64,
+    mistakes: &mut Mistakes,
+) -> Option<[i32; N]> {
     let found: Option<Vec<i32>> = match &node.value {
         Value::List(items) => items
             .iter()
@@ -142,7 +184,8 @@ pub(super) fn wholes<const N: usize>(node: &Node, key: &str, from: i64, to: i64,
     };
     let found = found.and_then(|numbers| numbers.try_into().ok());
     if found.is_none() {
-        mistakes.add(node.at, format!("{key} must be a list of {N} whole numbers from {from} to {to}"));
+        mistakes
+            .add(node.at, format!("{key} must be a list of {N} whole numbers from {from} to {to}"));
     }
     found
 }
@@ -150,9 +193,16 @@ pub(super) fn wholes<const N: usize>(node: &Node, key: &str, from: i64, to: i64,
 /// A name of the user's own: of a zone, a counter, a cost term, a spawn.
 pub(super) fn own_name(word: &str, at: usize, what: &str, mistakes: &mut Mistakes) -> bool {
     let letters = word.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
-    let fits = letters && !word.is_empty() && word.len() <= 40 && !word.as_bytes()[0].is_ascii_digit();
+    let fits =
+        letters && !word.is_empty() && word.len() <= 40 && !word.as_bytes()[0].is_ascii_digit();
     if !fits {
-        mistakes.add(at, format!("{what} `{}`: a name has 1 to 40 letters, digits and _, no digit first", excerpt(word)));
+        mistakes.add(
+            at,
+            format!(
+                "{what} `{}`: a name has 1 to 40 letters, digits and _, no digit first",
+                excerpt(word)
+            ),
+        );
     }
     fits
 }

@@ -1,5 +1,6 @@
-//! Maps that are made anew at each reset: a grid of tiles, each its own sector, some of which are closed from floor to ceiling.
-//! The map itself stays what it is, so a new level costs no more than setting its floors.
+//! Maps that are made anew at each reset: a grid of tiles, each its own sector, some of which are
+//! closed from floor to ceiling. The map itself stays what it is, so a new level costs no more than
+//! setting its floors.
 
 use super::model::{Generate, GenerateKind};
 use hasard_engine::map::SectorId;
@@ -18,7 +19,13 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub fn new(generate: Generate, columns: usize, rows: usize, [floor, ceiling]: [i32; 2], sectors: Vec<SectorId>) -> Layout {
+    pub fn new(
+        generate: Generate,
+        columns: usize,
+        rows: usize,
+        [floor, ceiling]: [i32; 2],
+        sectors: Vec<SectorId>,
+    ) -> Layout {
         Layout { generate, columns, rows, floor, ceiling, sectors }
     }
 
@@ -39,7 +46,8 @@ impl Layout {
         }
     }
 
-    /// The floors of a level, row by row from the south-west: the ceiling's height where a tile is closed. All open tiles hang together.
+    /// The floors of a level, row by row from the south-west: the ceiling's height where a tile is
+    /// closed. All open tiles hang together.
     pub fn heights(&self, rng: &mut Rng) -> Vec<i32> {
         let open = match self.generate.kind {
             GenerateKind::Maze => self.maze(rng),
@@ -75,7 +83,12 @@ impl Layout {
         while let Some(&(column, row)) = way.last() {
             let mut next = [(0, 0); 4];
             let mut count = 0;
-            for (to, of) in [(column.wrapping_sub(1), row), (column + 1, row), (column, row.wrapping_sub(1)), (column, row + 1)] {
+            for (to, of) in [
+                (column.wrapping_sub(1), row),
+                (column + 1, row),
+                (column, row.wrapping_sub(1)),
+                (column, row + 1),
+            ] {
                 if to < wide && of < high && !seen[of * wide + to] {
                     next[count] = (to, of);
                     count += 1;
@@ -94,7 +107,10 @@ impl Layout {
         if self.generate.loops > 0 {
             for row in 1..self.rows - 1 {
                 for column in 1..self.columns - 1 {
-                    if (column + row) % 2 == 1 && !open[self.at(column, row)] && rng.below(1000) < self.generate.loops {
+                    if (column + row) % 2 == 1
+                        && !open[self.at(column, row)]
+                        && rng.below(1000) < self.generate.loops
+                    {
                         open[self.at(column, row)] = true;
                     }
                 }
@@ -117,16 +133,24 @@ impl Layout {
             }
             let wall = least + rng.below((length - 2 * least) as u32) as usize;
             let side = if across { high } else { wide };
-            // Never where a door of a wall that it meets would be closed: doors are at even places of a wall at odd ones, or found open.
+            // Never where a door of a wall that it meets would be closed: doors are at even places
+            // of a wall at odd ones, or found open.
             let door = rng.below(side as u32) as usize;
             for step in (0..side).filter(|step| *step != door) {
-                let (column, row) = if across { (west + wall, south + step) } else { (west + step, south + wall) };
+                let (column, row) =
+                    if across { (west + wall, south + step) } else { (west + step, south + wall) };
                 open[self.at(column, row)] = false;
             }
             if across {
-                parts.extend([[west, south, west + wall, north], [west + wall + 1, south, east, north]]);
+                parts.extend([
+                    [west, south, west + wall, north],
+                    [west + wall + 1, south, east, north],
+                ]);
             } else {
-                parts.extend([[west, south, east, south + wall], [west, south + wall + 1, east, north]]);
+                parts.extend([
+                    [west, south, east, south + wall],
+                    [west, south + wall + 1, east, north],
+                ]);
             }
         }
         self.join(&mut open);
@@ -137,12 +161,16 @@ impl Layout {
     fn columns(&self, rng: &mut Rng) -> Vec<bool> {
         let mut share = self.generate.share;
         loop {
-            let mut open: Vec<bool> = (0..self.columns * self.rows).map(|_| rng.below(1000) >= share).collect();
+            let mut open: Vec<bool> =
+                (0..self.columns * self.rows).map(|_| rng.below(1000) >= share).collect();
             if self.generate.kind == GenerateKind::Columns {
                 self.keep_largest(&mut open);
             }
-            // Where they have cut off most of the ground there are fewer next time: none in the end.
-            if self.generate.kind == GenerateKind::Platforms || 3 * open.iter().filter(|open| **open).count() > open.len() {
+            // Where they have cut off most of the ground there are fewer next time: none in the
+            // end.
+            if self.generate.kind == GenerateKind::Platforms
+                || 3 * open.iter().filter(|open| **open).count() > open.len()
+            {
                 return open;
             }
             share = share * 3 / 4;
@@ -158,12 +186,17 @@ impl Layout {
                 return;
             }
             let wall = (0..open.len()).find(|&tile| {
-                let mut beside = self.beside(tile).filter(|&next| open[next]).map(|next| parts[next]);
+                let mut beside =
+                    self.beside(tile).filter(|&next| open[next]).map(|next| parts[next]);
                 let first = beside.next();
                 !open[tile] && beside.any(|part| Some(part) != first)
             });
-            // Parts two walls apart: a tile beside any part is opened, and the next turn sees further.
-            let wall = wall.or_else(|| (0..open.len()).find(|&tile| !open[tile] && self.beside(tile).any(|next| open[next])));
+            // Parts two walls apart: a tile beside any part is opened, and the next turn sees
+            // further.
+            let wall = wall.or_else(|| {
+                (0..open.len())
+                    .find(|&tile| !open[tile] && self.beside(tile).any(|next| open[next]))
+            });
             match wall {
                 Some(tile) => open[tile] = true,
                 None => return,
@@ -176,7 +209,8 @@ impl Layout {
         let parts = self.parts(open);
         let mut sizes = vec![0u32; open.len() + 1];
         parts.iter().filter(|part| **part > 0).for_each(|part| sizes[*part] += 1);
-        let largest = (1..sizes.len()).max_by_key(|part| (sizes[*part], usize::MAX - part)).unwrap_or(0);
+        let largest =
+            (1..sizes.len()).max_by_key(|part| (sizes[*part], usize::MAX - part)).unwrap_or(0);
         if sizes.get(largest).is_none_or(|size| *size == 0) {
             open.fill(true);
             return;
@@ -212,7 +246,12 @@ impl Layout {
     fn beside(&self, tile: usize) -> impl Iterator<Item = usize> + use<> {
         let (columns, rows) = (self.columns, self.rows);
         let (column, row) = (tile % columns, tile / columns);
-        let places = [(column.wrapping_sub(1), row), (column + 1, row), (column, row.wrapping_sub(1)), (column, row + 1)];
+        let places = [
+            (column.wrapping_sub(1), row),
+            (column + 1, row),
+            (column, row.wrapping_sub(1)),
+            (column, row + 1),
+        ];
         places
             .into_iter()
             .filter(move |(column, row)| *column < columns && *row < rows)
@@ -226,11 +265,13 @@ mod tests {
     use std::collections::BTreeSet;
 
     fn layout(kind: GenerateKind) -> Layout {
-        let generate = Generate { kind, share: 300, room: 3, loops: 50, heights: [0, 24], train_seeds: 10 };
+        let generate =
+            Generate { kind, share: 300, room: 3, loops: 50, heights: [0, 24], train_seeds: 10 };
         Layout::new(generate, 15, 13, [0, 128], Vec::new())
     }
 
-    /// 10,000 levels of each kind: all that is open hangs together, there is enough of it, and no two are alike.
+    /// 10,000 levels of each kind: all that is open hangs together, there is enough of it, and no
+    /// two are alike.
     #[test]
     fn every_level_hangs_together_and_is_another() {
         for kind in [GenerateKind::Maze, GenerateKind::Rooms, GenerateKind::Columns] {
@@ -240,7 +281,10 @@ mod tests {
                 let heights = layout.heights(&mut Rng::new(seed));
                 let open: Vec<bool> = heights.iter().map(|height| *height == 0).collect();
                 assert_eq!(layout.parts(&open).into_iter().max(), Some(1), "{kind:?} {seed}");
-                assert!(open.iter().filter(|open| **open).count() * 4 >= open.len(), "{kind:?} {seed}");
+                assert!(
+                    open.iter().filter(|open| **open).count() * 4 >= open.len(),
+                    "{kind:?} {seed}"
+                );
                 seen.insert(heights);
             }
             assert!(seen.len() >= 9_990, "{kind:?}: {} levels", seen.len());
@@ -251,7 +295,9 @@ mod tests {
     fn levels_of_training_are_few_and_never_those_of_tests() {
         let layout = layout(GenerateKind::Maze);
         let mut rng = Rng::new(1);
-        let levels = |test, rng: &mut Rng| (0..1000).map(|_| layout.level(rng.next_u64(), test)).collect::<BTreeSet<_>>();
+        let levels = |test, rng: &mut Rng| {
+            (0..1000).map(|_| layout.level(rng.next_u64(), test)).collect::<BTreeSet<_>>()
+        };
         let (train, test) = (levels(false, &mut rng), levels(true, &mut rng));
         assert!(train.len() == 10 && test.len() == 1000 && train.is_disjoint(&test));
     }

@@ -1,4 +1,5 @@
-//! The document of one level: what the file says, with what `[levels.N]`, `[hard]` and `[rules.NAME]` change of it.
+//! The document of one level: what the file says, with what `[levels.N]`, `[hard]` and
+//! `[rules.NAME]` change of it.
 
 use super::mistakes::{Mistakes, excerpt};
 use super::tree::{Entry, Node, Value};
@@ -7,7 +8,8 @@ use crate::scenarios::Setting;
 /// The keys of conditional layers.
 const LAYERS: [&str; 3] = ["rules", "levels", "hard"];
 
-/// The document of a setting. Layers within layers count after those around them: `[levels.2.hard]` after `[levels.2]` and `[hard]`.
+/// The document of a setting. Layers within layers count after those around them: `[levels.2.hard]`
+/// after `[levels.2]` and `[hard]`.
 pub(super) fn document(root: &Node, setting: Setting, mistakes: &mut Mistakes) -> Node {
     let mut layers: Vec<(usize, &Node)> = Vec::new();
     collect(root, setting, 0, &mut layers);
@@ -30,7 +32,12 @@ pub(super) fn document(root: &Node, setting: Setting, mistakes: &mut Mistakes) -
 }
 
 /// The layers that hold in a setting, each with how deep it is.
-fn collect<'n>(layer: &'n Node, setting: Setting, depth: usize, layers: &mut Vec<(usize, &'n Node)>) {
+fn collect<'n>(
+    layer: &'n Node,
+    setting: Setting,
+    depth: usize,
+    layers: &mut Vec<(usize, &'n Node)>,
+) {
     layers.push((depth, layer));
     let within = [
         layer.get("rules").and_then(|rules| rules.node.get(setting.rules.name())),
@@ -49,10 +56,11 @@ fn put(table: &mut Node, entry: Entry) {
     entries.push(entry);
 }
 
-/// Applies what a layer says: tables change field by field, everything else is replaced. A key in quotes may be a path,
-/// `"spawn.vials.count"`, and items of lists go by their name or number.
+/// Applies what a layer says: tables change field by field, everything else is replaced. A key in
+/// quotes may be a path, `"spawn.vials.count"`, and items of lists go by their name or number.
 fn change(target: &mut Node, entry: &Entry, mistakes: &mut Mistakes) {
-    let path: Vec<&str> = if entry.key.len() > 2 { entry.key.split('.').collect() } else { vec![&entry.key] };
+    let path: Vec<&str> =
+        if entry.key.len() > 2 { entry.key.split('.').collect() } else { vec![&entry.key] };
     descend(target, &path, entry, mistakes);
 }
 
@@ -62,26 +70,51 @@ fn descend(target: &mut Node, path: &[&str], entry: &Entry, mistakes: &mut Mista
         Value::Table(entries) => {
             let known = entries.iter().position(|known| known.key == *key);
             let index = known.unwrap_or_else(|| {
-                entries.push(Entry { key: (*key).to_string(), at: entry.at, node: Node { at: entry.at, ..Node::empty() } });
+                entries.push(Entry {
+                    key: (*key).to_string(),
+                    at: entry.at,
+                    node: Node { at: entry.at, ..Node::empty() },
+                });
                 entries.len() - 1
             });
             let place = &mut entries[index].node;
-            if rest.is_empty() { set(place, known.is_some(), entry, mistakes) } else { descend(place, rest, entry, mistakes) }
+            if rest.is_empty() {
+                set(place, known.is_some(), entry, mistakes)
+            } else {
+                descend(place, rest, entry, mistakes)
+            }
         }
         Value::List(items) => {
-            let named = |item: &Node| item.get("name").and_then(|name| name.node.text().map(str::to_owned));
+            let named =
+                |item: &Node| item.get("name").and_then(|name| name.node.text().map(str::to_owned));
             let by_number = || key.parse().ok().filter(|index| *index < items.len());
-            let Some(index) = items.iter().position(|item| named(item).as_deref() == Some(*key)).or_else(by_number) else {
+            let Some(index) = items
+                .iter()
+                .position(|item| named(item).as_deref() == Some(*key))
+                .or_else(by_number)
+            else {
                 let names: Vec<String> = items.iter().filter_map(named).collect();
-                let known =
-                    if names.is_empty() { "give it a `name`".to_string() } else { format!("named are {}", names.join(", ")) };
-                mistakes.add(entry.at, format!("there is no item `{}` to change; {known}", excerpt(key)));
+                let known = if names.is_empty() {
+                    "give it a `name`".to_string()
+                } else {
+                    format!("named are {}", names.join(", "))
+                };
+                mistakes.add(
+                    entry.at,
+                    format!("there is no item `{}` to change; {known}", excerpt(key)),
+                );
                 return;
             };
             let place = &mut items[index];
-            if rest.is_empty() { set(place, true, entry, mistakes) } else { descend(place, rest, entry, mistakes) }
+            if rest.is_empty() {
+                set(place, true, entry, mistakes)
+            } else {
+                descend(place, rest, entry, mistakes)
+            }
         }
-        _ => mistakes.add(entry.at, format!("`{}` is within a value that is no table", excerpt(key))),
+        _ => {
+            mistakes.add(entry.at, format!("`{}` is within a value that is no table", excerpt(key)))
+        }
     }
 }
 

@@ -39,13 +39,19 @@ impl Mistakes {
         Mistakes { found: Vec::new(), text: text.to_owned() }
     }
 
-    /// The byte of a letter of a drawing that begins at `at`: by its line and column, from 0, where it is written as it stands.
+    /// The byte of a letter of a drawing that begins at `at`: by its line and column, from 0, where
+    /// it is written as it stands.
     pub fn within_drawing(&self, at: usize, line: usize, column: usize) -> usize {
         let from = self.text.get(at..).unwrap_or("");
         let quotes = ["\"\"\"\n", "'''\n", "\"\"\"\r\n", "'''\r\n"];
-        let Some(opening) = quotes.iter().find(|quote| from.starts_with(**quote)) else { return at };
+        let Some(opening) = quotes.iter().find(|quote| from.starts_with(**quote)) else {
+            return at;
+        };
         let drawing = &from[opening.len()..];
-        let Some(start) = (line == 0).then_some(0).or_else(|| Some(drawing.match_indices('\n').nth(line - 1)?.0 + 1)) else {
+        let Some(start) = (line == 0)
+            .then_some(0)
+            .or_else(|| Some(drawing.match_indices('\n').nth(line - 1)?.0 + 1))
+        else {
             return at;
         };
         let inside = drawing[start..].char_indices().nth(column).map_or(0, |(place, _)| place);
@@ -87,9 +93,11 @@ impl Mistakes {
     pub fn into_list(mut self) -> Vec<Mistake> {
         let text = &self.text;
         self.found.sort();
-        let places: Vec<(usize, usize)> = self.found.iter().map(|(at, ..)| place(text, *at)).collect();
+        let places: Vec<(usize, usize)> =
+            self.found.iter().map(|(at, ..)| place(text, *at)).collect();
         let all = self.found.into_iter().zip(places);
-        all.map(|((_, warning, text), (line, column))| Mistake { line, column, warning, text }).collect()
+        all.map(|((_, warning, text), (line, column))| Mistake { line, column, warning, text })
+            .collect()
     }
 }
 
@@ -116,7 +124,11 @@ pub(super) fn excerpt(word: &str) -> String {
 }
 
 /// A refusal of an unknown word that names the nearest known one, or all if they are few.
-pub(super) fn unknown<'a>(what: &str, word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+pub(super) fn unknown<'a>(
+    what: &str,
+    word: &str,
+    known: impl IntoIterator<Item = &'a str>,
+) -> String {
     let known: Vec<&str> = known.into_iter().collect();
     let upper: String = word.chars().take(24).collect::<String>().to_uppercase();
     let nearest = known.iter().min_by_key(|known| edit_distance(&upper, &known.to_uppercase()));

@@ -1,4 +1,5 @@
-//! Own scenarios: a task is one file, read once into tables. `docs/guide/own_task.md` has the whole format.
+//! Own scenarios: a task is one file, read once into tables. `docs/guide/own_task.md` has the whole
+//! format.
 
 mod check;
 mod fields;

@@ -1,4 +1,5 @@
-//! What a file says of one setting, read and checked: numbers in place of names. Nothing is looked up by name while a world runs.
+//! What a file says of one setting, read and checked: numbers in place of names. Nothing is looked
+//! up by name while a world runs.
 
 use hasard_engine::world::{ActorKind, Weapon};
 
@@ -198,7 +199,8 @@ pub(super) struct Spawn {
     pub health: Option<i32>,
     pub speed: Option<i32>,
     pub goal: Goal,
-    /// Its things are told from others of their kind: somebody asks for them by name, or they come back.
+    /// Its things are told from others of their kind: somebody asks for them by name, or they come
+    /// back.
     pub marked: bool,
 }
 

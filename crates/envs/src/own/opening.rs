@@ -1,4 +1,5 @@
-//! The beginning of an episode: the level is set, things are put down, the agent enters. And how things are put down later.
+//! The beginning of an episode: the level is set, things are put down, the agent enters. And how
+//! things are put down later.
 
 use super::model::{Facing, Goal, Height, Place, Spawn};
 use super::program::Program;
@@ -29,14 +30,21 @@ impl OwnRules {
         }
         for index in 0..program.plan.spawns.len() {
             // Where one finds no room, the next would find none either.
-            let _ = (0..program.plan.spawns[index].count).try_for_each(|_| self.put(program, index as u8, world).map(drop));
+            let _ = (0..program.plan.spawns[index].count)
+                .try_for_each(|_| self.put(program, index as u8, world).map(drop));
         }
         for light in &program.plan.lights {
             for tag in &program.tags[usize::from(light.zone)] {
                 if light.glow {
                     world.light_glow(*tag, light.bright, light.dark, light.bright_tics);
                 } else {
-                    world.light_strobe(*tag, light.bright, light.dark, light.bright_tics, light.dark_tics);
+                    world.light_strobe(
+                        *tag,
+                        light.bright,
+                        light.dark,
+                        light.bright_tics,
+                        light.dark_tics,
+                    );
                 }
             }
         }
@@ -44,9 +52,16 @@ impl OwnRules {
     }
 
     /// Puts down a thing of a spawn; none where there is no room.
-    pub(super) fn put(&mut self, program: &Program, index: u8, world: &mut World) -> Option<ActorId> {
+    pub(super) fn put(
+        &mut self,
+        program: &Program,
+        index: u8,
+        world: &mut World,
+    ) -> Option<ActorId> {
         let spawn = &program.plan.spawns[usize::from(index)];
-        if world.actors.len() >= MOST_THINGS || spawn.kinds.is_empty() || (spawn.most < 500 && living(spawn, world) >= spawn.most)
+        if world.actors.len() >= MOST_THINGS
+            || spawn.kinds.is_empty()
+            || (spawn.most < 500 && living(spawn, world) >= spawn.most)
         {
             return None;
         }
@@ -54,7 +69,11 @@ impl OwnRules {
         let tid = if spawn.marked { i32::from(index) + 1 } else { 0 };
         for _ in 0..TRIES.min(self.tries) {
             self.tries -= 1;
-            let Some([x, y, z]) = drawn_place(program, spawn.place, spawn.height, spawn.rock, world) else { continue };
+            let Some([x, y, z]) =
+                drawn_place(program, spawn.place, spawn.height, spawn.rock, world)
+            else {
+                continue;
+            };
             let Some(id) = world.spawn_checked(kind, x, y, z, tid) else { continue };
             if let Some(actor) = world.get_mut(id) {
                 actor.health = spawn.health.unwrap_or(actor.health);
@@ -94,7 +113,13 @@ fn drawn_kind(spawn: &Spawn, world: &mut World) -> ActorKind {
 }
 
 /// A random point of a place; none where it fell into rock.
-pub(super) fn drawn_place(program: &Program, place: Place, height: Height, rock: bool, world: &mut World) -> Option<[Fixed; 3]> {
+pub(super) fn drawn_place(
+    program: &Program,
+    place: Place,
+    height: Height,
+    rock: bool,
+    world: &mut World,
+) -> Option<[Fixed; 3]> {
     let area = match place {
         Place::Area(area) => area,
         _ => match program.areas_of(place) {
@@ -109,13 +134,21 @@ pub(super) fn drawn_place(program: &Program, place: Place, height: Height, rock:
     }
     let z = match height {
         Height::At(z) => Fixed::from_int(z),
-        Height::Above(above) => world.sector(world.map.sector_at(x, y)).floor + Fixed::from_int(above),
+        Height::Above(above) => {
+            world.sector(world.map.sector_at(x, y)).floor + Fixed::from_int(above)
+        }
     };
     Some([x, y, z])
 }
 
 /// Moves the agent to a random point of a place, if there is room for it.
-pub(super) fn move_player(program: &Program, place: Place, height: Height, tries: &mut u32, world: &mut World) {
+pub(super) fn move_player(
+    program: &Program,
+    place: Place,
+    height: Height,
+    tries: &mut u32,
+    world: &mut World,
+) {
     for _ in 0..PLAYER_TRIES.min(*tries) {
         *tries -= 1;
         if let Some([x, y, z]) = drawn_place(program, place, height, false, world)
@@ -131,9 +164,12 @@ fn enter(program: &Program, tries: &mut u32, world: &mut World) {
     let plan = &program.plan.player;
     match plan.place {
         Some(place) => move_player(program, place, plan.height, tries, world),
-        None if program.layout.is_some() => move_player(program, Place::Free, Height::Above(0), tries, world),
+        None if program.layout.is_some() => {
+            move_player(program, Place::Free, Height::Above(0), tries, world)
+        }
         None if program.starts.len() > 1 => {
-            let (area, degrees) = program.starts[world.rng.below(program.starts.len() as u32) as usize];
+            let (area, degrees) =
+                program.starts[world.rng.below(program.starts.len() as u32) as usize];
             let [x, y] = [(area[0] + area[2]) / 2, (area[1] + area[3]) / 2].map(Fixed::from_int);
             let z = world.sector(world.map.sector_at(x, y)).floor;
             world.set_position(body(world), x, y, z);

@@ -22,22 +22,30 @@ pub fn is_file(text: &str) -> bool {
 pub fn read_text(path: &Path) -> Result<String, EnvError> {
     let shown = crate::error::excerpt(&path.display().to_string());
     let wrong = |why: String| EnvError::Scenario { why: format!("{shown}: {why}") };
-    let unreadable =
-        |error: std::io::Error| wrong(format!("cannot be read: {error}; `hasard new NAME` writes a file to begin with"));
+    let unreadable = |error: std::io::Error| {
+        wrong(format!("cannot be read: {error}; `hasard new NAME` writes a file to begin with"))
+    };
     let file = std::fs::File::open(path).map_err(unreadable)?;
     let mut bytes = Vec::new();
     file.take(LARGEST_TEXT + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > LARGEST_TEXT {
-        return Err(wrong(format!("larger than the {} KiB that a scenario's file may have", LARGEST_TEXT >> 10)));
+        return Err(wrong(format!(
+            "larger than the {} KiB that a scenario's file may have",
+            LARGEST_TEXT >> 10
+        )));
     }
     String::from_utf8(bytes).map_err(|error| {
-        let line = error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|byte| **byte == b'\n').count() + 1;
+        let line = error.as_bytes()[..error.utf8_error().valid_up_to()]
+            .iter()
+            .filter(|byte| **byte == b'\n')
+            .count()
+            + 1;
         wrong(format!("line {line} is no UTF-8 text; save the file as UTF-8"))
     })
 }
 
-/// Reads and registers the scenario of a file, and gives the environment that `text` names: `my_task.toml` its first level,
-/// `my_task.toml#2` its second.
+/// Reads and registers the scenario of a file, and gives the environment that `text` names:
+/// `my_task.toml` its first level, `my_task.toml#2` its second.
 ///
 /// # Errors
 /// One line: the file's first mistake with its line and column, and how many there are.
@@ -54,13 +62,16 @@ pub fn open(text: &str) -> Result<EnvId, EnvError> {
         Some((level, _)) => {
             let shown = crate::error::excerpt(path);
             let level = crate::error::excerpt(level);
-            return Err(EnvError::Scenario { why: format!("{shown}#{level}: its levels are 1 to {levels}") });
+            return Err(EnvError::Scenario {
+                why: format!("{shown}#{level}: its levels are 1 to {levels}"),
+            });
         }
     };
     Ok(EnvId { scenario, level })
 }
 
-/// A fingerprint of a text, 16 hexadecimal digits: two texts that differ have two, but for an accident that nobody will see.
+/// A fingerprint of a text, 16 hexadecimal digits: two texts that differ have two, but for an
+/// accident that nobody will see.
 #[must_use]
 pub fn fingerprint(text: &str) -> String {
     format!("{:016x}", hash(text))
@@ -68,5 +79,7 @@ pub fn fingerprint(text: &str) -> String {
 
 /// FNV-1a, 64 bits.
 pub(super) fn hash(text: &str) -> u64 {
-    text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))
+    text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
+    })
 }

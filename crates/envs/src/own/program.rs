@@ -1,4 +1,5 @@
-//! A plan in its map: the tables that the rules run by. Made once for a setting, shared by all its worlds.
+//! A plan in its map: the tables that the rules run by. Made once for a setting, shared by all its
+//! worlds.
 
 use super::generate::Layout;
 use super::model::{Goal, MapPlan, Place, Plan, Trigger, When};
@@ -136,7 +137,12 @@ impl Program {
         if program.free.is_empty() {
             program.free = extent(map);
         }
-        for (index, spawn) in program.plan.spawns.iter().enumerate().filter(|(_, spawn)| !spawn.marked && spawn.respawn.is_some())
+        for (index, spawn) in program
+            .plan
+            .spawns
+            .iter()
+            .enumerate()
+            .filter(|(_, spawn)| !spawn.marked && spawn.respawn.is_some())
         {
             program.comes_back.extend(spawn.kinds.iter().map(|(kind, _)| (*kind, index as u8)));
         }
@@ -145,7 +151,9 @@ impl Program {
 
     /// The rules of a kind of happening.
     pub fn rules(&self, happening: Happening) -> impl Iterator<Item = (u16, &When)> {
-        self.lists[happening as usize].iter().map(|index| (*index, &self.plan.whens[usize::from(*index)]))
+        self.lists[happening as usize]
+            .iter()
+            .map(|index| (*index, &self.plan.whens[usize::from(*index)]))
     }
 
     /// Whether a kind of happening has rules.
@@ -165,7 +173,8 @@ impl Program {
     fn find_zones(&mut self, map: &Map) -> Result<(), EnvError> {
         for (index, zone) in self.plan.zones.iter().enumerate() {
             if let Some([west, south, east, north]) = zone.area {
-                self.rectangles.push((index as u8, [west, south, east, north].map(Fixed::from_int)));
+                self.rectangles
+                    .push((index as u8, [west, south, east, north].map(Fixed::from_int)));
                 self.areas[index].push([west, south, east, north]);
             }
             let Some([first, last]) = zone.tags else { continue };
@@ -174,7 +183,8 @@ impl Program {
                 for sector in map.tagged(tag) {
                     found = true;
                     self.zones_of[sector.0 as usize] |= 1 << index;
-                    let [west, east, south, north] = map.sectors[sector.0 as usize].bounds.map(Fixed::floor);
+                    let [west, east, south, north] =
+                        map.sectors[sector.0 as usize].bounds.map(Fixed::floor);
                     self.areas[index].push([west, south, east, north]);
                 }
                 if found {
@@ -182,7 +192,10 @@ impl Program {
                 }
             }
             if self.tags[index].is_empty() {
-                let why = format!("map {}: zone {} has the tag {first}, which no sector has", map.name, zone.name);
+                let why = format!(
+                    "map {}: zone {} has the tag {first}, which no sector has",
+                    map.name, zone.name
+                );
                 return Err(EnvError::Map { why });
             }
         }

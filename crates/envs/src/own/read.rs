@@ -3,7 +3,8 @@
 use super::fields::{Fields, number, own_name, texts, wholes};
 use super::mistakes::{Mistakes, excerpt, unknown};
 use super::model::{
-    Facing, Height, Light, MOST_LIGHTS, MOST_SPAWNS, MOST_WHENS, MOST_ZONES, MapPlan, Names, Place, Plan, PlayerPlan, Term, Zone,
+    Facing, Height, Light, MOST_LIGHTS, MOST_SPAWNS, MOST_WHENS, MOST_ZONES, MapPlan, Names, Place,
+    Plan, PlayerPlan, Term, Zone,
 };
 use super::tree::{Node, Value};
 use super::{read_map, read_spawns, read_whens};
@@ -53,9 +54,14 @@ pub(super) fn plan(document: &Node, names: &mut Names, mistakes: &mut Mistakes) 
     if let Some((name, at)) = name
         && crate::Scenario::ALL.iter().any(|own| own.name.eq_ignore_ascii_case(name))
     {
-        mistakes.add(at, format!("{} is a scenario of the benchmark; call yours otherwise", excerpt(name)));
+        mistakes.add(
+            at,
+            format!("{} is a scenario of the benchmark; call yours otherwise", excerpt(name)),
+        );
     }
-    if name.is_none() && document.get("scenario").is_some_and(|entry| entry.node.get("name").is_none()) {
+    if name.is_none()
+        && document.get("scenario").is_some_and(|entry| entry.node.get("name").is_none())
+    {
         mistakes.add(head.at, "[scenario] has no `name`; ids are made of it, MyTask-v0");
     }
     let name = name.map_or("Task", |(name, _)| name).to_string();
@@ -81,7 +87,8 @@ pub(super) fn plan(document: &Node, names: &mut Names, mistakes: &mut Mistakes) 
     for (term, at) in whole.texts("end_on", mistakes).unwrap_or_default() {
         match names.terms.iter().position(|known| known.name == term) {
             Some(index) => end_on |= 1 << index,
-            None => mistakes.add(at, unknown("cost term", term, names.terms.iter().map(|known| &*known.name))),
+            None => mistakes
+                .add(at, unknown("cost term", term, names.terms.iter().map(|known| &*known.name))),
         }
     }
     let green_goggles = whole.flag("green_goggles", mistakes);
@@ -126,11 +133,14 @@ fn actions(node: Option<&Node>, mistakes: &mut Mistakes) -> Vec<Vec<&'static str
         let mut buttons = Vec::new();
         for (name, at) in texts(group, "a group of buttons", mistakes) {
             match BUTTONS.iter().find(|(known, _)| *known == name) {
-                Some((known, _)) if found.iter().flatten().chain(&buttons).any(|other| other == known) => {
+                Some((known, _))
+                    if found.iter().flatten().chain(&buttons).any(|other| other == known) =>
+                {
                     mistakes.add(at, format!("button {known} is there twice"));
                 }
                 Some((known, _)) => buttons.push(*known),
-                None => mistakes.add(at, unknown("button", name, BUTTONS.iter().map(|(known, _)| *known))),
+                None => mistakes
+                    .add(at, unknown("button", name, BUTTONS.iter().map(|(known, _)| *known))),
             }
         }
         if buttons.is_empty() {
@@ -151,12 +161,20 @@ fn zones(node: &Node, mistakes: &mut Mistakes) -> Vec<Zone> {
     for entry in entries {
         own_name(&entry.key, entry.at, "zone", mistakes);
         let mut fields = Fields::of(&entry.node, "a zone", mistakes);
-        let area = fields.node("area").and_then(|node| wholes::<4>(node, "area", -FARTHEST, FARTHEST, mistakes));
+        let area = fields
+            .node("area")
+            .and_then(|node| wholes::<4>(node, "area", -FARTHEST, FARTHEST, mistakes));
         let tag = fields.whole("tag", 1, 32_000, mistakes).map(|tag| [tag as i32; 2]);
-        let tags = fields.node("tags").and_then(|node| wholes::<2>(node, "tags", 1, 32_000, mistakes)).or(tag);
+        let tags = fields
+            .node("tags")
+            .and_then(|node| wholes::<2>(node, "tags", 1, 32_000, mistakes))
+            .or(tag);
         fields.finish(mistakes);
         if area.is_some() == tags.is_some() {
-            mistakes.add(entry.at, "a zone is either an `area = [west, south, east, north]` or the sectors of a `tag`");
+            mistakes.add(
+                entry.at,
+                "a zone is either an `area = [west, south, east, north]` or the sectors of a `tag`",
+            );
         }
         zones.push(Zone { name: entry.key.clone(), area, tags });
     }
@@ -182,7 +200,13 @@ pub(super) fn place(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Opt
         Value::Text(text) if text == "free" => Some(Place::Free),
         Value::Text(text) => zone(text, node.at, zones, mistakes).map(Place::Zone),
         _ => {
-            let area = wholes::<4>(node, "a place, if it is neither \"free\" nor a zone,", -FARTHEST, FARTHEST, mistakes)?;
+            let area = wholes::<4>(
+                node,
+                "a place, if it is neither \"free\" nor a zone,",
+                -FARTHEST,
+                FARTHEST,
+                mistakes,
+            )?;
             let [west, south, east, north] = area;
             if west >= east || south >= north {
                 mistakes.add(node.at, "a rectangle is [west, south, east, north], west below east and south below north");
@@ -199,7 +223,8 @@ pub(super) fn height(fields: &mut Fields<'_>, mistakes: &mut Mistakes) -> Height
     let absolute = fields.whole("z", -FARTHEST, FARTHEST, mistakes);
     match (above, absolute) {
         (Some(_), Some(_)) => {
-            mistakes.add(fields.at, "`height` is above the floor and `z` absolute: write one of them");
+            mistakes
+                .add(fields.at, "`height` is above the floor and `z` absolute: write one of them");
             Height::Above(0)
         }
         (_, Some(z)) => Height::At(z as i32),
@@ -223,7 +248,12 @@ fn terms(node: &Node, names: &mut Names, mistakes: &mut Mistakes) {
 }
 
 /// The number of a cost term, which may be new.
-pub(super) fn term(name: &str, at: usize, names: &mut Names, mistakes: &mut Mistakes) -> Option<u8> {
+pub(super) fn term(
+    name: &str,
+    at: usize,
+    names: &mut Names,
+    mistakes: &mut Mistakes,
+) -> Option<u8> {
     if let Some(index) = names.terms.iter().position(|known| known.name == name) {
         return Some(index as u8);
     }
@@ -251,7 +281,9 @@ fn player(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> PlayerPlan {
             }
         }
         Some(node) => match &node.value {
-            Value::Whole(degrees) if (-360..=360).contains(degrees) => Facing::Degrees(*degrees as i32),
+            Value::Whole(degrees) if (-360..=360).contains(degrees) => {
+                Facing::Degrees(*degrees as i32)
+            }
             Value::Text(text) if text == "random" => Facing::Random,
             _ => {
                 mistakes.add(node.at, "angle must be \"random\" or degrees, 0 east and 90 north");
@@ -267,7 +299,9 @@ fn player(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> PlayerPlan {
         match ActorKind::from_class_name(name).and_then(ActorKind::weapon) {
             Some(weapon) => weapons.push(weapon),
             None => {
-                let known = ActorKind::all().filter(|kind| kind.weapon().is_some()).map(ActorKind::class_name);
+                let known = ActorKind::all()
+                    .filter(|kind| kind.weapon().is_some())
+                    .map(ActorKind::class_name);
                 mistakes.add(at, unknown("weapon", name, known));
             }
         }
@@ -276,9 +310,12 @@ fn player(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> PlayerPlan {
     if let Some(node) = fields.node("ammo") {
         let mut kinds = Fields::of(node, "ammo", mistakes);
         use hasard_engine::world::ammo as types;
-        for (name, which) in
-            [("clips", types::CLIP), ("shells", types::SHELL), ("rockets", types::ROCKET), ("cells", types::CELL)]
-        {
+        for (name, which) in [
+            ("clips", types::CLIP),
+            ("shells", types::SHELL),
+            ("rockets", types::ROCKET),
+            ("cells", types::CELL),
+        ] {
             ammo[which] = kinds.whole(name, 0, 10_000, mistakes).map(|amount| amount as i32);
         }
         kinds.finish(mistakes);

@@ -1,4 +1,5 @@
-//! Reads `[map]`: tiles drawn with letters, the map of a built-in scenario, or one made anew at each reset.
+//! Reads `[map]`: tiles drawn with letters, the map of a built-in scenario, or one made anew at
+//! each reset.
 
 use super::fields::{Fields, wholes};
 use super::mistakes::{Mistakes, excerpt, unknown};
@@ -12,7 +13,11 @@ use hasard_engine::world::ActorKind;
 const MOST_TILES: usize = 64;
 
 /// Reads the section. Zones of tiles are added to `zones`.
-pub(super) fn map(node: Option<&Node>, zones: &mut Vec<Zone>, mistakes: &mut Mistakes) -> Option<MapPlan> {
+pub(super) fn map(
+    node: Option<&Node>,
+    zones: &mut Vec<Zone>,
+    mistakes: &mut Mistakes,
+) -> Option<MapPlan> {
     let Some(node) = node else {
         mistakes.add(0, "there is no [map]; draw one: ascii = \"\"\"...\"\"\" with # for rock, . for ground, @ for the start");
         return None;
@@ -25,9 +30,14 @@ pub(super) fn map(node: Option<&Node>, zones: &mut Vec<Zone>, mistakes: &mut Mis
     let level = fields.whole("level", 1, 3, mistakes).unwrap_or(1) as u8;
     let legend = fields.node("legend");
     fields.finish(mistakes);
-    let given = usize::from(ascii.is_some()) + usize::from(built_in.is_some()) + usize::from(generate.is_some());
+    let given = usize::from(ascii.is_some())
+        + usize::from(built_in.is_some())
+        + usize::from(generate.is_some());
     if given != 1 {
-        mistakes.add(node.at, "[map] needs one of: ascii = \"\"\"...\"\"\", builtin = \"RemedyRush\", [map.generate]");
+        mistakes.add(
+            node.at,
+            "[map] needs one of: ascii = \"\"\"...\"\"\", builtin = \"RemedyRush\", [map.generate]",
+        );
         return None;
     }
     if let Some((name, at)) = built_in {
@@ -44,7 +54,9 @@ pub(super) fn map(node: Option<&Node>, zones: &mut Vec<Zone>, mistakes: &mut Mis
     // The start is ground like any other, where the legend says nothing of it.
     let said = legend.is_some_and(|legend| legend.get("@").is_some());
     let ground = kinds.iter().find(|kind| kind.letter == '.').cloned();
-    if let (false, Some(start), Some(ground)) = (said, kinds.iter_mut().find(|kind| kind.letter == '@'), ground) {
+    if let (false, Some(start), Some(ground)) =
+        (said, kinds.iter_mut().find(|kind| kind.letter == '@'), ground)
+    {
         *start = TileKind { letter: '@', start: true, start_angle: start.start_angle, ..ground };
     }
     let tiles = match (ascii, generate) {
@@ -76,7 +88,12 @@ fn usual(letter: char) -> TileKind {
     }
 }
 
-fn read_legend(legend: &Node, kinds: &mut Vec<TileKind>, zones: &mut Vec<Zone>, mistakes: &mut Mistakes) {
+fn read_legend(
+    legend: &Node,
+    kinds: &mut Vec<TileKind>,
+    zones: &mut Vec<Zone>,
+    mistakes: &mut Mistakes,
+) {
     let Value::Table(entries) = &legend.value else {
         mistakes.add(legend.at, "[map.legend] must be a table of letters");
         return;
@@ -84,7 +101,10 @@ fn read_legend(legend: &Node, kinds: &mut Vec<TileKind>, zones: &mut Vec<Zone>, 
     for entry in entries {
         let mut letters = entry.key.chars();
         let (Some(letter), None) = (letters.next(), letters.next()) else {
-            mistakes.add(entry.at, format!("legend `{}`: a single letter stands for a tile", excerpt(&entry.key)));
+            mistakes.add(
+                entry.at,
+                format!("legend `{}`: a single letter stands for a tile", excerpt(&entry.key)),
+            );
             continue;
         };
         if kinds.len() >= 64 {
@@ -97,7 +117,13 @@ fn read_legend(legend: &Node, kinds: &mut Vec<TileKind>, zones: &mut Vec<Zone>, 
     }
 }
 
-fn tile_kind(letter: char, node: &Node, kinds: &[TileKind], zones: &mut Vec<Zone>, mistakes: &mut Mistakes) -> TileKind {
+fn tile_kind(
+    letter: char,
+    node: &Node,
+    kinds: &[TileKind],
+    zones: &mut Vec<Zone>,
+    mistakes: &mut Mistakes,
+) -> TileKind {
     let mut fields = Fields::of(node, "a letter of the legend", mistakes);
     let known = kinds.iter().find(|known| known.letter == letter).cloned();
     let mut kind = known.unwrap_or_else(|| TileKind { letter, ..usual('.') });
@@ -105,7 +131,13 @@ fn tile_kind(letter: char, node: &Node, kinds: &[TileKind], zones: &mut Vec<Zone
         let base = kinds.iter().find(|known| like.chars().eq([known.letter]));
         match base {
             Some(base) => kind = TileKind { letter, ..base.clone() },
-            None => mistakes.add(at, format!("like = \"{}\": the legend has no such letter before this one", excerpt(like))),
+            None => mistakes.add(
+                at,
+                format!(
+                    "like = \"{}\": the legend has no such letter before this one",
+                    excerpt(like)
+                ),
+            ),
         }
     }
     let whole = |key, fields: &mut Fields<'_>, from, to, mistakes: &mut Mistakes| {
@@ -113,9 +145,16 @@ fn tile_kind(letter: char, node: &Node, kinds: &[TileKind], zones: &mut Vec<Zone
     };
     if let Some(node) = fields.node("floor") {
         match node.value {
-            Value::Whole(height) if (-2048..=2048).contains(&height) => kind.floor = [height as i32; 2],
-            Value::List(_) => kind.floor = wholes::<2>(node, "floor", -2048, 2048, mistakes).unwrap_or(kind.floor),
-            _ => mistakes.add(node.at, "floor must be a height from -2048 to 2048, or [lowest, highest] for one at random"),
+            Value::Whole(height) if (-2048..=2048).contains(&height) => {
+                kind.floor = [height as i32; 2]
+            }
+            Value::List(_) => {
+                kind.floor = wholes::<2>(node, "floor", -2048, 2048, mistakes).unwrap_or(kind.floor)
+            }
+            _ => mistakes.add(
+                node.at,
+                "floor must be a height from -2048 to 2048, or [lowest, highest] for one at random",
+            ),
         }
         if kind.floor[0] > kind.floor[1] {
             mistakes.add(node.at, "floor = [lowest, highest]: the lower one comes first");
@@ -124,9 +163,11 @@ fn tile_kind(letter: char, node: &Node, kinds: &[TileKind], zones: &mut Vec<Zone
     }
     kind.ceiling = whole("ceiling", &mut fields, -2048, 4096, mistakes).unwrap_or(kind.ceiling);
     kind.light = whole("light", &mut fields, 0, 255, mistakes).unwrap_or(kind.light);
-    for (key, place) in
-        [("floor_texture", &mut kind.floor_texture), ("ceiling_texture", &mut kind.ceiling_texture), ("step", &mut kind.step)]
-    {
+    for (key, place) in [
+        ("floor_texture", &mut kind.floor_texture),
+        ("ceiling_texture", &mut kind.ceiling_texture),
+        ("step", &mut kind.step),
+    ] {
         if let Some((name, at)) = fields.text(key, mistakes) {
             *place = textures::named(name, at, mistakes).unwrap_or(*place);
         }
@@ -137,7 +178,10 @@ fn tile_kind(letter: char, node: &Node, kinds: &[TileKind], zones: &mut Vec<Zone
     }
     if fields.node("rock").is_some() {
         kind.rock = fields.flag("rock", mistakes);
-    } else if fields.node("wall").is_some() && before.is_none() && fields.node("floor").is_none() && fields.node("like").is_none()
+    } else if fields.node("wall").is_some()
+        && before.is_none()
+        && fields.node("floor").is_none()
+        && fields.node("like").is_none()
     {
         // A letter that has a wall and nothing to stand on.
         kind.rock = true;
@@ -171,7 +215,10 @@ fn tile_kind(letter: char, node: &Node, kinds: &[TileKind], zones: &mut Vec<Zone
     }
     fields.finish(mistakes);
     if !kind.rock && kind.ceiling < kind.floor[1] + 1 {
-        mistakes.add(node.at, format!("the ceiling ({}) must be above the floor ({})", kind.ceiling, kind.floor[1]));
+        mistakes.add(
+            node.at,
+            format!("the ceiling ({}) must be above the floor ({})", kind.ceiling, kind.floor[1]),
+        );
     }
     kind
 }
@@ -198,23 +245,35 @@ pub(super) fn actor(name: &str, at: usize, mistakes: &mut Mistakes) -> Option<Ac
     let hidden = [ActorKind::Player, ActorKind::PatrolPoint];
     let found = ActorKind::from_class_name(name).filter(|kind| !hidden.contains(kind));
     if found.is_none() {
-        mistakes.add(at, unknown("kind of thing", name, ActorKind::all().map(ActorKind::class_name)));
+        mistakes
+            .add(at, unknown("kind of thing", name, ActorKind::all().map(ActorKind::class_name)));
     }
     found
 }
 
-fn drawn(text: &str, at: usize, side: i32, kinds: Vec<TileKind>, mistakes: &mut Mistakes) -> Option<Tiles> {
-    let lines: Vec<Vec<char>> = text.lines().map(|line| line.trim_end().chars().collect()).collect();
+fn drawn(
+    text: &str,
+    at: usize,
+    side: i32,
+    kinds: Vec<TileKind>,
+    mistakes: &mut Mistakes,
+) -> Option<Tiles> {
+    let lines: Vec<Vec<char>> =
+        text.lines().map(|line| line.trim_end().chars().collect()).collect();
     let first = lines.iter().position(|line: &Vec<char>| !line.is_empty());
     let last = lines.iter().rposition(|line| !line.is_empty());
     let (Some(first), Some(last)) = (first, last) else {
-        mistakes.add(at, "the map is empty; draw it with # for rock, . for ground, @ for the start");
+        mistakes
+            .add(at, "the map is empty; draw it with # for rock, . for ground, @ for the start");
         return None;
     };
     let lines = &lines[first..=last];
     let (columns, rows) = (lines.iter().map(Vec::len).max().unwrap_or(0), lines.len());
     if columns > MOST_TILES || rows > MOST_TILES {
-        mistakes.add(at, format!("the map has {columns} x {rows} tiles; at most {MOST_TILES} x {MOST_TILES}"));
+        mistakes.add(
+            at,
+            format!("the map has {columns} x {rows} tiles; at most {MOST_TILES} x {MOST_TILES}"),
+        );
         return None;
     }
     let rock = kinds.iter().position(|kind| kind.rock).unwrap_or(0) as u8;
@@ -224,10 +283,14 @@ fn drawn(text: &str, at: usize, side: i32, kinds: Vec<TileKind>, mistakes: &mut 
             match kinds.iter().position(|kind| kind.letter == *letter) {
                 Some(kind) => tiles[(rows - 1 - row) * columns + column] = kind as u8,
                 None => {
-                    let known: Vec<String> = kinds.iter().map(|kind| kind.letter.to_string()).collect();
+                    let known: Vec<String> =
+                        kinds.iter().map(|kind| kind.letter.to_string()).collect();
                     let letter = excerpt(&letter.to_string());
                     let at = mistakes.within_drawing(at, first + row, column);
-                    mistakes.add(at, format!("the legend has no letter `{letter}`, only {}", known.join(" ")));
+                    mistakes.add(
+                        at,
+                        format!("the legend has no letter `{letter}`, only {}", known.join(" ")),
+                    );
                 }
             }
         }
@@ -239,7 +302,12 @@ fn drawn(text: &str, at: usize, side: i32, kinds: Vec<TileKind>, mistakes: &mut 
     Some(Tiles { side, columns, rows, tiles, kinds, generate: None })
 }
 
-fn generated(node: &Node, side: i32, kinds: Vec<TileKind>, mistakes: &mut Mistakes) -> Option<Tiles> {
+fn generated(
+    node: &Node,
+    side: i32,
+    kinds: Vec<TileKind>,
+    mistakes: &mut Mistakes,
+) -> Option<Tiles> {
     let mut fields = Fields::of(node, "[map.generate]", mistakes);
     let kind = match fields.text("kind", mistakes) {
         Some(("maze", _)) => Some(GenerateKind::Maze),
@@ -247,7 +315,8 @@ fn generated(node: &Node, side: i32, kinds: Vec<TileKind>, mistakes: &mut Mistak
         Some(("columns", _)) => Some(GenerateKind::Columns),
         Some(("platforms", _)) => Some(GenerateKind::Platforms),
         Some((other, at)) => {
-            mistakes.add(at, unknown("kind of map", other, ["maze", "rooms", "columns", "platforms"]));
+            mistakes
+                .add(at, unknown("kind of map", other, ["maze", "rooms", "columns", "platforms"]));
             None
         }
         None => {
@@ -261,14 +330,20 @@ fn generated(node: &Node, side: i32, kinds: Vec<TileKind>, mistakes: &mut Mistak
     let loops = (fields.number("loops", 0.0, 1.0, mistakes).unwrap_or(0.0) * 1000.0) as u32;
     let train_seeds = fields.whole("train_seeds", 0, 1_000_000_000, mistakes).unwrap_or(0) as u32;
     let room = fields.whole("room", 2, 16, mistakes).unwrap_or(4) as u32;
-    let heights = fields.node("heights").and_then(|node| wholes::<2>(node, "heights", -512, 512, mistakes)).unwrap_or([0, 24]);
+    let heights = fields
+        .node("heights")
+        .and_then(|node| wholes::<2>(node, "heights", -512, 512, mistakes))
+        .unwrap_or([0, 24]);
     if heights[0] > heights[1] {
         mistakes.add(node.at, "heights = [lowest, highest]: the lower one comes first");
     }
     fields.finish(mistakes);
     let kind = kind?;
     if kind == GenerateKind::Maze && (columns.is_multiple_of(2) || rows.is_multiple_of(2)) {
-        mistakes.add(node.at, "a maze has an odd number of columns and of rows: corridors and walls by turns");
+        mistakes.add(
+            node.at,
+            "a maze has an odd number of columns and of rows: corridors and walls by turns",
+        );
     }
     let ground = kinds.iter().position(|kind| kind.letter == '.').unwrap_or(0) as u8;
     let heights = [heights[0], heights[1].max(heights[0])];

@@ -14,10 +14,18 @@ pub(super) fn spawns(nodes: &[Node], zones: &[Zone], mistakes: &mut Mistakes) ->
     for index in 0..spawns.len() {
         let name = spawns[index].name.clone();
         if name.is_some() && spawns[..index].iter().any(|other| other.name == name) {
-            mistakes.add(spawns[index].at, format!("two [[spawn]] are called {}", name.unwrap_or_default()));
+            mistakes.add(
+                spawns[index].at,
+                format!("two [[spawn]] are called {}", name.unwrap_or_default()),
+            );
         }
         // Kinds that several tables put down are told apart where one of them comes back.
-        let shared = |other: &Spawn| other.kinds.iter().any(|(kind, _)| spawns[index].kinds.iter().any(|(own, _)| own == kind));
+        let shared = |other: &Spawn| {
+            other
+                .kinds
+                .iter()
+                .any(|(kind, _)| spawns[index].kinds.iter().any(|(own, _)| own == kind))
+        };
         let others = spawns.iter().enumerate().any(|(at, other)| at != index && shared(other));
         spawns[index].marked = others && spawns[index].respawn.is_some();
     }
@@ -26,7 +34,8 @@ pub(super) fn spawns(nodes: &[Node], zones: &[Zone], mistakes: &mut Mistakes) ->
 
 fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
     let mut fields = Fields::of(node, "[[spawn]]", mistakes);
-    let name = fields.text("name", mistakes).filter(|(name, at)| own_name(name, *at, "spawn", mistakes));
+    let name =
+        fields.text("name", mistakes).filter(|(name, at)| own_name(name, *at, "spawn", mistakes));
     if let Some((name, at)) = name
         && ActorKind::from_class_name(name).is_some()
     {
@@ -46,7 +55,8 @@ fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
     let count = whole("count", &mut fields, 0, 500, mistakes).unwrap_or(u32::from(every == 0));
     let first = whole("first", &mut fields, 0, 1_000_000, mistakes).unwrap_or(every);
     let each = whole("each", &mut fields, 0, 100, mistakes).unwrap_or(1);
-    let place = fields.node("in").and_then(|node| place(node, zones, mistakes)).unwrap_or(Place::Free);
+    let place =
+        fields.node("in").and_then(|node| place(node, zones, mistakes)).unwrap_or(Place::Free);
     let height = height(&mut fields, mistakes);
     let rock = fields.flag("rock", mistakes);
     let respawn = match fields.node("respawn").map(|node| &node.value) {
@@ -59,7 +69,10 @@ fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
     let goal = goal(&mut fields, zones, mistakes);
     let monsters = kinds.iter().all(|(kind, _)| kind.info().flags.any(ActorFlags::MONSTER));
     if !monsters && (goal != Goal::None || speed.is_some()) {
-        mistakes.add(node.at, "`goal`, `patrol` and `speed` are for monsters; this thing lies where it is");
+        mistakes.add(
+            node.at,
+            "`goal`, `patrol` and `speed` are for monsters; this thing lies where it is",
+        );
     }
     fields.finish(mistakes);
     Spawn {
@@ -85,22 +98,32 @@ fn spawn(node: &Node, zones: &[Zone], mistakes: &mut Mistakes) -> Spawn {
 /// A kind, or kinds by weight.
 fn kinds(node: &Node, mistakes: &mut Mistakes) -> Vec<(ActorKind, u32)> {
     match &node.value {
-        Value::Text(name) => actor(name, node.at, mistakes).into_iter().map(|kind| (kind, 1)).collect(),
+        Value::Text(name) => {
+            actor(name, node.at, mistakes).into_iter().map(|kind| (kind, 1)).collect()
+        }
         Value::Table(entries) if !entries.is_empty() && entries.len() <= 32 => entries
             .iter()
             .filter_map(|entry| {
                 let kind = actor(&entry.key, entry.at, mistakes)?;
                 match entry.node.value {
-                    Value::Whole(weight) if (1..=1_000_000).contains(&weight) => Some((kind, weight as u32)),
+                    Value::Whole(weight) if (1..=1_000_000).contains(&weight) => {
+                        Some((kind, weight as u32))
+                    }
                     _ => {
-                        mistakes.add(entry.node.at, "a weight must be a whole number from 1 to 1000000");
+                        mistakes.add(
+                            entry.node.at,
+                            "a weight must be a whole number from 1 to 1000000",
+                        );
                         None
                     }
                 }
             })
             .collect(),
         _ => {
-            mistakes.add(node.at, "kind must be a name, or names with weights: { HealthBonus = 3, Stimpack = 1 }");
+            mistakes.add(
+                node.at,
+                "kind must be a name, or names with weights: { HealthBonus = 3, Stimpack = 1 }",
+            );
             Vec::new()
         }
     }

@@ -9,8 +9,8 @@ use hasard_engine::world::{ActorKind, DamageKind};
 
 /// The events, and what `of` names in each.
 const EVENTS: [&str; 17] = [
-    "start", "pickup", "damage", "death", "kill", "hit", "shot", "enter", "leave", "in", "land", "jump", "use", "timer", "step",
-    "counter", "near",
+    "start", "pickup", "damage", "death", "kill", "hit", "shot", "enter", "leave", "in", "land",
+    "jump", "use", "timer", "step", "counter", "near",
 ];
 
 /// What does damage, by the names of `by`.
@@ -34,7 +34,13 @@ pub(super) fn whens(
     nodes.iter().filter_map(|node| when(node, zones, spawns, names, mistakes)).collect()
 }
 
-fn when(node: &Node, zones: &[Zone], spawns: &mut [Spawn], names: &mut Names, mistakes: &mut Mistakes) -> Option<When> {
+fn when(
+    node: &Node,
+    zones: &[Zone],
+    spawns: &mut [Spawn],
+    names: &mut Names,
+    mistakes: &mut Mistakes,
+) -> Option<When> {
     let mut fields = Fields::of(node, "[[when]]", mistakes);
     // A name for levels to change it by.
     if let Some((name, at)) = fields.text("name", mistakes) {
@@ -45,12 +51,14 @@ fn when(node: &Node, zones: &[Zone], spawns: &mut [Spawn], names: &mut Names, mi
         fields.whole(key, from, to, mistakes).map_or(0, |number| number as i32)
     };
     let conditions = conditions(fields.node("if"), names, mistakes);
-    let in_zone = fields.text("in", mistakes).and_then(|(name, at)| zone(name, at, zones, mistakes));
+    let in_zone =
+        fields.text("in", mistakes).and_then(|(name, at)| zone(name, at, zones, mistakes));
     let cooldown = whole("cooldown", &mut fields, 0, 1_000_000, mistakes) as u32;
     let once = fields.flag("once", mistakes);
     let over = fields.number("over", 0.0, 1e6, mistakes).unwrap_or(0.0);
     let flat = fields.flag("flat", mistakes);
-    let reward = fields.node("reward").and_then(|node| amount(node, "reward", mistakes)).unwrap_or(0.0);
+    let reward =
+        fields.node("reward").and_then(|node| amount(node, "reward", mistakes)).unwrap_or(0.0);
     let costs = costs(fields.node("cost"), names, mistakes);
     let counts = counted(fields.node("count"), "count", names, mistakes);
     let sets = counted(fields.node("set"), "set", names, mistakes);
@@ -65,10 +73,15 @@ fn when(node: &Node, zones: &[Zone], spawns: &mut [Spawn], names: &mut Names, mi
         }
     };
     let spawn = fields.texts("spawn", mistakes).unwrap_or_default();
-    let spawn = spawn.into_iter().take(8).filter_map(|(name, at)| spawn_named(name, at, spawns, mistakes)).collect();
+    let spawn = spawn
+        .into_iter()
+        .take(8)
+        .filter_map(|(name, at)| spawn_named(name, at, spawns, mistakes))
+        .collect();
     let floors = movers(fields.node("floor"), zones, mistakes);
     let lights = lights(fields.node("light"), zones, mistakes);
-    let teleport: Option<Place> = fields.node("teleport").and_then(|node| place(node, zones, mistakes));
+    let teleport: Option<Place> =
+        fields.node("teleport").and_then(|node| place(node, zones, mistakes));
     fields.finish(mistakes);
     let trigger = trigger?;
     let when = When {
@@ -92,15 +105,21 @@ fn when(node: &Node, zones: &[Zone], spawns: &mut [Spawn], names: &mut Names, mi
         lights,
         teleport,
     };
-    let changes =
-        when.hurt != 0 || when.heal != 0 || !when.spawn.is_empty() || !when.floors.is_empty() || !when.lights.is_empty();
+    let changes = when.hurt != 0
+        || when.heal != 0
+        || !when.spawn.is_empty()
+        || !when.floors.is_empty()
+        || !when.lights.is_empty();
     if trigger == Trigger::Step && (changes || when.teleport.is_some()) {
         mistakes
             .add(node.at, "a policy step can be rewarded, cost and counted; what changes the world goes by event = \"timer\"");
     }
     let silent = !changes && !when.end && when.teleport.is_none() && when.reward == 0.0;
     if silent && when.costs.is_empty() && when.counts.is_empty() && when.sets.is_empty() {
-        mistakes.warn(node.at, "this [[when]] does nothing; give it a reward, a cost, a count or an end");
+        mistakes.warn(
+            node.at,
+            "this [[when]] does nothing; give it a reward, a cost, a count or an end",
+        );
     }
     Some(when)
 }
@@ -143,7 +162,10 @@ fn trigger(
                 "pickup" => Trigger::Pickup(of),
                 "kill" => Trigger::Kill(of),
                 "hit" => Trigger::Hit(of),
-                _ => Trigger::Near { of, within: fields.whole("within", 1, 4096, mistakes).unwrap_or(64) as i32 },
+                _ => Trigger::Near {
+                    of,
+                    within: fields.whole("within", 1, 4096, mistakes).unwrap_or(64) as i32,
+                },
             }
         }
         "damage" => damage(by.as_deref(), zones, mistakes),
@@ -161,11 +183,15 @@ fn trigger(
         "counter" => {
             let reaches = fields.whole("reaches", -1_000_000, 1_000_000, mistakes);
             match (of.as_deref(), reaches) {
-                (Some([(name, at)]), Some(reaches)) => {
-                    Trigger::Counter { counter: counter(name, *at, names, mistakes)?, reaches: reaches as i32 }
-                }
+                (Some([(name, at)]), Some(reaches)) => Trigger::Counter {
+                    counter: counter(name, *at, names, mistakes)?,
+                    reaches: reaches as i32,
+                },
                 _ => {
-                    mistakes.add(at, "event counter needs a counter and a number: of = \"vials\", reaches = 30");
+                    mistakes.add(
+                        at,
+                        "event counter needs a counter and a number: of = \"vials\", reaches = 30",
+                    );
                     return None;
                 }
             }
@@ -197,10 +223,21 @@ fn trigger(
 }
 
 /// Things by kind or by the name of their spawn; all where nothing is said.
-fn of_things(of: Option<&[(&str, usize)]>, event: &str, at: usize, spawns: &mut [Spawn], mistakes: &mut Mistakes) -> Of {
+fn of_things(
+    of: Option<&[(&str, usize)]>,
+    event: &str,
+    at: usize,
+    spawns: &mut [Spawn],
+    mistakes: &mut Mistakes,
+) -> Of {
     let Some(of) = of else {
         if event == "pickup" || event == "near" {
-            mistakes.add(at, format!("event {event} needs things: of = \"HealthBonus\", or the name of a [[spawn]]"));
+            mistakes.add(
+                at,
+                format!(
+                    "event {event} needs things: of = \"HealthBonus\", or the name of a [[spawn]]"
+                ),
+            );
         }
         return Of { kinds: u128::MAX, spawns: 0 };
     };
@@ -212,7 +249,8 @@ fn of_things(of: Option<&[(&str, usize)]>, event: &str, at: usize, spawns: &mut 
         } else if let Some(kind) = ActorKind::from_class_name(name) {
             found.kinds |= 1 << kind as u32;
         } else {
-            let mut known: Vec<&str> = spawns.iter().filter_map(|spawn| spawn.name.as_deref()).collect();
+            let mut known: Vec<&str> =
+                spawns.iter().filter_map(|spawn| spawn.name.as_deref()).collect();
             ActorKind::all().for_each(|kind| known.push(kind.class_name()));
             mistakes.add(*at, unknown("thing", name, known));
         }
@@ -239,7 +277,10 @@ fn damage(by: Option<&[(&str, usize)]>, zones: &[Zone], mistakes: &mut Mistakes)
 fn spawn_named(name: &str, at: usize, spawns: &[Spawn], mistakes: &mut Mistakes) -> Option<u8> {
     let found = spawns.iter().position(|spawn| spawn.name.as_deref() == Some(name));
     if found.is_none() {
-        mistakes.add(at, unknown("spawn", name, spawns.iter().filter_map(|spawn| spawn.name.as_deref())));
+        mistakes.add(
+            at,
+            unknown("spawn", name, spawns.iter().filter_map(|spawn| spawn.name.as_deref())),
+        );
     }
     found.map(|index| index as u8)
 }
@@ -261,14 +302,20 @@ fn counter(name: &str, at: usize, names: &mut Names, mistakes: &mut Mistakes) ->
 }
 
 /// `count = "vials"`, `count = ["vials", "all"]` or `count = { vials = 2 }`.
-fn counted(node: Option<&Node>, key: &str, names: &mut Names, mistakes: &mut Mistakes) -> Vec<(u8, i32)> {
+fn counted(
+    node: Option<&Node>,
+    key: &str,
+    names: &mut Names,
+    mistakes: &mut Mistakes,
+) -> Vec<(u8, i32)> {
     let Some(node) = node else { return Vec::new() };
     match &node.value {
         Value::Table(entries) => entries
             .iter()
             .filter_map(|entry| match entry.node.value {
                 Value::Whole(number) if number.abs() <= 1_000_000 => {
-                    counter(&entry.key, entry.at, names, mistakes).map(|counter| (counter, number as i32))
+                    counter(&entry.key, entry.at, names, mistakes)
+                        .map(|counter| (counter, number as i32))
                 }
                 _ => {
                     mistakes.add(entry.node.at, format!("{key} takes whole numbers up to 1000000"));
@@ -288,19 +335,34 @@ fn counted(node: Option<&Node>, key: &str, names: &mut Names, mistakes: &mut Mis
 }
 
 /// `if = { keys = 2 }` or `if = { keys = [2, 5] }`.
-fn conditions(node: Option<&Node>, names: &mut Names, mistakes: &mut Mistakes) -> Vec<(u8, [i32; 2])> {
+fn conditions(
+    node: Option<&Node>,
+    names: &mut Names,
+    mistakes: &mut Mistakes,
+) -> Vec<(u8, [i32; 2])> {
     let Some(node) = node else { return Vec::new() };
     let Value::Table(entries) = &node.value else {
-        mistakes.add(node.at, "if takes counters: if = { keys = 2 }, or if = { keys = [2, 5] } for 2 to 5");
+        mistakes.add(
+            node.at,
+            "if takes counters: if = { keys = 2 }, or if = { keys = [2, 5] } for 2 to 5",
+        );
         return Vec::new();
     };
     let mut found = Vec::new();
     for entry in entries {
         let bounds = match &entry.node.value {
             Value::Whole(number) if number.abs() <= 1_000_000 => Some([*number as i32; 2]),
-            _ => super::fields::wholes::<2>(&entry.node, "a condition, if no single number,", -1_000_000, 1_000_000, mistakes),
+            _ => super::fields::wholes::<2>(
+                &entry.node,
+                "a condition, if no single number,",
+                -1_000_000,
+                1_000_000,
+                mistakes,
+            ),
         };
-        if let (Some(counter), Some(bounds)) = (counter(&entry.key, entry.at, names, mistakes), bounds) {
+        if let (Some(counter), Some(bounds)) =
+            (counter(&entry.key, entry.at, names, mistakes), bounds)
+        {
             found.push((counter, bounds));
         }
     }
@@ -317,7 +379,9 @@ fn costs(node: Option<&Node>, names: &mut Names, mistakes: &mut Mistakes) -> Vec
                 if number.is_none() {
                     mistakes.add(entry.node.at, "a cost must be a number from 0");
                 }
-                if let (Some(term), Some(number)) = (term(&entry.key, entry.at, names, mistakes), number) {
+                if let (Some(term), Some(number)) =
+                    (term(&entry.key, entry.at, names, mistakes), number)
+                {
                     found.push((term, number));
                 }
             }
@@ -331,11 +395,15 @@ fn costs(node: Option<&Node>, names: &mut Names, mistakes: &mut Mistakes) -> Vec
 fn movers(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(u8, i32, i32)> {
     each(node, |node| {
         let mut fields = Fields::of(node, "floor", mistakes);
-        let place = fields.text("of", mistakes).and_then(|(name, at)| zone(name, at, zones, mistakes));
+        let place =
+            fields.text("of", mistakes).and_then(|(name, at)| zone(name, at, zones, mistakes));
         let to = fields.whole("to", -2048, 2048, mistakes);
         let speed = fields.whole("speed", 1, 1024, mistakes).unwrap_or(16);
         if to.is_none() {
-            mistakes.add(node.at, "floor needs a zone and a height: floor = { of = \"door\", to = -64 }");
+            mistakes.add(
+                node.at,
+                "floor needs a zone and a height: floor = { of = \"door\", to = -64 }",
+            );
         }
         fields.finish(mistakes);
         Some((place?, to? as i32, speed as i32))
@@ -346,10 +414,12 @@ fn movers(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(
 fn lights(node: Option<&Node>, zones: &[Zone], mistakes: &mut Mistakes) -> Vec<(u8, i32)> {
     each(node, |node| {
         let mut fields = Fields::of(node, "light", mistakes);
-        let place = fields.text("of", mistakes).and_then(|(name, at)| zone(name, at, zones, mistakes));
+        let place =
+            fields.text("of", mistakes).and_then(|(name, at)| zone(name, at, zones, mistakes));
         let to = fields.whole("to", 0, 255, mistakes);
         if to.is_none() {
-            mistakes.add(node.at, "light needs a zone and a level: light = { of = \"hall\", to = 0 }");
+            mistakes
+                .add(node.at, "light needs a zone and a level: light = { of = \"hall\", to = 0 }");
         }
         fields.finish(mistakes);
         Some((place?, to? as i32))

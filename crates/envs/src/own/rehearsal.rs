@@ -12,9 +12,17 @@ use hasard_engine::world::{Buttons, Command, World};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Plays some tics of a plan with buttons at random, and gives the spawns, a bit each, for which there was no room.
-pub(super) fn rehearse(plan: &Plan, source: &MapSource, counters: usize, seed: u64, tics: u32) -> Result<u64, EnvError> {
-    let map = Map::build(source, &plan.name, &[]).map_err(|error| EnvError::Map { why: error.to_string() })?;
+/// Plays some tics of a plan with buttons at random, and gives the spawns, a bit each, for which
+/// there was no room.
+pub(super) fn rehearse(
+    plan: &Plan,
+    source: &MapSource,
+    counters: usize,
+    seed: u64,
+    tics: u32,
+) -> Result<u64, EnvError> {
+    let map = Map::build(source, &plan.name, &[])
+        .map_err(|error| EnvError::Map { why: error.to_string() })?;
     let program = Program::new(plan.clone(), &map, &[])?;
     let unplaced = Arc::new(AtomicU64::new(0));
     let mut rules = OwnRules::new(Arc::new(program), counters);

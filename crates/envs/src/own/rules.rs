@@ -14,7 +14,8 @@ use std::sync::atomic::AtomicU64;
 
 /// Most events of a tic that are looked at: rules that hurt raise more of them.
 const MOST_EVENTS: usize = 10_000;
-/// Most changes of counters that are followed in a tic: rules that count by what was counted could go on for ever.
+/// Most changes of counters that are followed in a tic: rules that count by what was counted could
+/// go on for ever.
 const MOST_CHANGES: usize = 64;
 
 /// Most places that are tried in a tic, and in the first.
@@ -55,7 +56,16 @@ pub(super) struct OwnRules {
 /// The tables are no part of a fingerprint.
 impl Hash for OwnRules {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        (&self.counters, &self.changes, &self.ready, self.zones, self.peak, self.jumping, self.using).hash(state);
+        (
+            &self.counters,
+            &self.changes,
+            &self.ready,
+            self.zones,
+            self.peak,
+            self.jumping,
+            self.using,
+        )
+            .hash(state);
         (&self.returns, &self.walkers).hash(state);
     }
 }
@@ -89,17 +99,29 @@ impl OwnRules {
         asked: impl Fn(Trigger) -> bool,
     ) {
         for (index, when) in program.rules(happening) {
-            if asked(when.trigger) && self.account(program, index, when, amount, world.tic, outcome) {
+            if asked(when.trigger) && self.account(program, index, when, amount, world.tic, outcome)
+            {
                 self.act(program, when, world, outcome);
             }
         }
     }
 
     /// Rewards, costs and counts of a rule, if its conditions hold: whether they do.
-    fn account(&mut self, program: &Program, index: u16, when: &When, amount: f64, tic: u32, outcome: &mut Outcome) -> bool {
-        let within = |(counter, [least, most]): &(u8, [i32; 2])| (*least..=*most).contains(&self.counters[usize::from(*counter)]);
+    fn account(
+        &mut self,
+        program: &Program,
+        index: u16,
+        when: &When,
+        amount: f64,
+        tic: u32,
+        outcome: &mut Outcome,
+    ) -> bool {
+        let within = |(counter, [least, most]): &(u8, [i32; 2])| {
+            (*least..=*most).contains(&self.counters[usize::from(*counter)])
+        };
         let amount = amount - when.over;
-        let held = when.conditions.iter().all(within) && when.zone.is_none_or(|zone| self.zones >> zone & 1 == 1);
+        let held = when.conditions.iter().all(within)
+            && when.zone.is_none_or(|zone| self.zones >> zone & 1 == 1);
         if !held || amount <= 0.0 || tic < self.ready[usize::from(index)] {
             return false;
         }
@@ -135,7 +157,13 @@ impl OwnRules {
     /// What a rule does to the world.
     fn act(&mut self, program: &Program, when: &When, world: &mut World, outcome: &mut Outcome) {
         if when.hurt > 0 {
-            world.damage(world.players[0].actor, None, None, when.hurt, hasard_engine::world::DamageKind::Script);
+            world.damage(
+                world.players[0].actor,
+                None,
+                None,
+                when.hurt,
+                hasard_engine::world::DamageKind::Script,
+            );
         }
         if when.heal > 0 {
             world.heal(0, when.heal, program.plan.player.health.max(100));
@@ -154,7 +182,13 @@ impl OwnRules {
             }
         }
         if let Some(place) = when.teleport {
-            super::opening::move_player(program, place, super::model::Height::Above(0), &mut self.tries, world);
+            super::opening::move_player(
+                program,
+                place,
+                super::model::Height::Above(0),
+                &mut self.tries,
+                world,
+            );
             self.look_around(program, world, outcome);
         }
     }
@@ -194,13 +228,25 @@ impl OwnRules {
                 Event::Hurt { victim, amount, by, .. } if victim == player => {
                     let zones = self.zones;
                     let floor = by == hasard_engine::world::DamageKind::Sector;
-                    self.tell(program, Happening::Damage, f64::from(amount), world, outcome, |trigger| match trigger {
-                        Trigger::Damage { kinds, zones: of } => kinds >> (by as u32) & 1 == 1 || (floor && zones & of != 0),
-                        _ => false,
-                    });
+                    self.tell(
+                        program,
+                        Happening::Damage,
+                        f64::from(amount),
+                        world,
+                        outcome,
+                        |trigger| match trigger {
+                            Trigger::Damage { kinds, zones: of } => {
+                                kinds >> (by as u32) & 1 == 1 || (floor && zones & of != 0)
+                            }
+                            _ => false,
+                        },
+                    );
                 }
                 Event::Hurt { victim, amount, source, .. } if source == Some(player) => {
-                    let Some((kind, tid)) = world.get(victim).map(|actor| (actor.kind, actor.tid)) else { continue };
+                    let Some((kind, tid)) = world.get(victim).map(|actor| (actor.kind, actor.tid))
+                    else {
+                        continue;
+                    };
                     self.tell(
                         program,
                         Happening::Hit,
@@ -227,10 +273,13 @@ impl OwnRules {
                     self.bring_back(program, kind, tid, world);
                 }
                 Event::Landed { .. } => {
-                    let fallen = world.get(player).map_or(0.0, |body| (self.peak - body.z).to_f64());
+                    let fallen =
+                        world.get(player).map_or(0.0, |body| (self.peak - body.z).to_f64());
                     self.tell(program, Happening::Land, fallen, world, outcome, |_| true);
                 }
-                Event::Fired { .. } => self.tell(program, Happening::Shot, 1.0, world, outcome, |_| true),
+                Event::Fired { .. } => {
+                    self.tell(program, Happening::Shot, 1.0, world, outcome, |_| true)
+                }
                 _ => {}
             }
         }
@@ -240,7 +289,9 @@ impl OwnRules {
     fn bring_back(&mut self, program: &Program, kind: ActorKind, tid: i32, world: &mut World) {
         let spawn = match tid {
             0 => program.comes_back.iter().find(|(of, _)| *of == kind).map(|(_, spawn)| *spawn),
-            _ => u8::try_from(tid - 1).ok().filter(|spawn| usize::from(*spawn) < program.plan.spawns.len()),
+            _ => u8::try_from(tid - 1)
+                .ok()
+                .filter(|spawn| usize::from(*spawn) < program.plan.spawns.len()),
         };
         let Some(spawn) = spawn else { return };
         match program.plan.spawns[usize::from(spawn)].respawn {
@@ -283,7 +334,8 @@ impl OwnRules {
     /// What the agent does with its body.
     fn read_player(&mut self, program: &Program, world: &mut World, outcome: &mut Outcome) {
         let player = &world.players[0];
-        let (jumping, using, on_ground) = (player.jump_tics < 0, player.buttons.any(Buttons::USE), player.on_ground);
+        let (jumping, using, on_ground) =
+            (player.jump_tics < 0, player.buttons.any(Buttons::USE), player.on_ground);
         if jumping && !std::mem::replace(&mut self.jumping, jumping) {
             self.tell(program, Happening::Jump, 1.0, world, outcome, |_| true);
         }
@@ -317,8 +369,11 @@ impl OwnRules {
             let near = world.living().any(|(id, actor)| {
                 let there = names(of, actor.kind, actor.tid) && id != world.players[0].actor;
                 let dead = actor.flags.any(ActorFlags::MONSTER) && actor.health <= 0;
-                let [dx, dy] = [actor.x - body.x, actor.y - body.y].map(|side| i64::from(side.0 >> 8));
-                there && !dead && dx * dx + dy * dy <= i64::from(within << 8) * i64::from(within << 8)
+                let [dx, dy] =
+                    [actor.x - body.x, actor.y - body.y].map(|side| i64::from(side.0 >> 8));
+                there
+                    && !dead
+                    && dx * dx + dy * dy <= i64::from(within << 8) * i64::from(within << 8)
             });
             if near && self.account(program, index, when, 1.0, world.tic, outcome) {
                 self.act(program, when, world, outcome);
@@ -345,11 +400,17 @@ impl OwnRules {
         }
         for (index, spawn) in program.plan.spawns.iter().enumerate() {
             if spawn.every > 0 && due(spawn.every, spawn.first) {
-                let _ = (0..spawn.each).try_for_each(|_| self.put(program, index as u8, world).map(drop));
+                let _ = (0..spawn.each)
+                    .try_for_each(|_| self.put(program, index as u8, world).map(drop));
             }
         }
         if self.returns.iter().any(|(when, _)| *when <= tic) {
-            let back: Vec<u8> = self.returns.iter().filter(|(when, _)| *when <= tic).map(|(_, spawn)| *spawn).collect();
+            let back: Vec<u8> = self
+                .returns
+                .iter()
+                .filter(|(when, _)| *when <= tic)
+                .map(|(_, spawn)| *spawn)
+                .collect();
             self.returns.retain(|(when, _)| *when > tic);
             for spawn in back {
                 self.put(program, spawn, world);
@@ -360,7 +421,8 @@ impl OwnRules {
 
 /// Whether a thing is among those.
 fn names(of: Of, kind: ActorKind, tid: i32) -> bool {
-    of.kinds >> (kind as u32) & 1 == 1 || ((1..=64).contains(&tid) && of.spawns >> (tid - 1) & 1 == 1)
+    of.kinds >> (kind as u32) & 1 == 1
+        || ((1..=64).contains(&tid) && of.spawns >> (tid - 1) & 1 == 1)
 }
 
 impl Rules for OwnRules {

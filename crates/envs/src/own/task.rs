@@ -1,4 +1,5 @@
-//! A file as a scenario: read for every level, constraint and rule set, and registered like any other.
+//! A file as a scenario: read for every level, constraint and rule set, and registered like any
+//! other.
 
 use super::intern::intern;
 use super::mistakes::{Mistake, Mistakes};
@@ -58,7 +59,11 @@ impl Checked {
     /// # Errors
     /// What keeps the map from being built.
     pub fn rehearse(&self, level: u8, seed: u64, tics: u32) -> Result<(), EnvError> {
-        let Some(read) = self.read.as_ref().filter(|read| (1..=read.levels.max(1)).contains(&level)) else { return Ok(()) };
+        let Some(read) =
+            self.read.as_ref().filter(|read| (1..=read.levels.max(1)).contains(&level))
+        else {
+            return Ok(());
+        };
         let plan = &read.plans[index(Setting::new(RuleSet::Paper, false, level))];
         rehearse(plan, &map_of(plan)?, read.names.counters.len(), seed, tics).map(drop)
     }
@@ -80,7 +85,8 @@ pub fn check(text: &str) -> Checked {
                     if mistakes.full() {
                         continue;
                     }
-                    let document = layers::document(&root, Setting::new(rules, hard, level), &mut mistakes);
+                    let document =
+                        layers::document(&root, Setting::new(rules, hard, level), &mut mistakes);
                     plans.extend(read::plan(&document, &mut names, &mut mistakes));
                 }
             }
@@ -93,7 +99,11 @@ pub fn check(text: &str) -> Checked {
         if !mistakes.any() {
             checks::warn(&plans, &names, &mut mistakes);
             for level in 1..=levels.max(1) {
-                try_opening(&plans[index(Setting::new(RuleSet::Paper, false, level))], names.counters.len(), &mut mistakes);
+                try_opening(
+                    &plans[index(Setting::new(RuleSet::Paper, false, level))],
+                    names.counters.len(),
+                    &mut mistakes,
+                );
             }
             read = Some(Read { levels, names, plans });
         }
@@ -124,7 +134,8 @@ fn levels(root: &Node, mistakes: &mut Mistakes) -> u8 {
 fn known_keys(node: &Node, what: &str, known: &[&str], mistakes: &mut Mistakes) {
     if let Value::Table(entries) = &node.value {
         for entry in entries.iter().filter(|entry| !known.contains(&&*entry.key)) {
-            mistakes.add(entry.at, super::mistakes::unknown(what, &entry.key, known.iter().copied()));
+            mistakes
+                .add(entry.at, super::mistakes::unknown(what, &entry.key, known.iter().copied()));
         }
     }
 }
@@ -132,7 +143,8 @@ fn known_keys(node: &Node, what: &str, known: &[&str], mistakes: &mut Mistakes) 
 /// Builds a map, so that what cannot be built is found before anybody plays.
 fn try_map(plan: &Plan, mistakes: &mut Mistakes) {
     let built = map_of(plan).and_then(|source| {
-        Map::build(&source, &plan.name, &[]).map_err(|error| EnvError::Map { why: format!("the map cannot be built: {error}") })
+        Map::build(&source, &plan.name, &[])
+            .map_err(|error| EnvError::Map { why: format!("the map cannot be built: {error}") })
     });
     match built.and_then(|map| Program::new(plan.clone(), &map, &[])) {
         Ok(_) => {}
@@ -154,11 +166,14 @@ fn try_opening(plan: &Plan, counters: usize, mistakes: &mut Mistakes) {
 fn map_of(plan: &Plan) -> Result<MapSource, EnvError> {
     match &plan.map {
         MapPlan::Tiles(tiles) => tiles::source(plan, tiles),
-        MapPlan::BuiltIn(scenario, level) => Ok(scenario.task.map(Setting::new(RuleSet::Paper, false, *level))),
+        MapPlan::BuiltIn(scenario, level) => {
+            Ok(scenario.task.map(Setting::new(RuleSet::Paper, false, *level)))
+        }
     }
 }
 
-/// Registers the scenario of a text; `path` is where it was read from. The same text again gives the same scenario.
+/// Registers the scenario of a text; `path` is where it was read from. The same text again gives
+/// the same scenario.
 ///
 /// # Errors
 /// One line: the first mistake with its line and column, and how many there are.
@@ -166,7 +181,8 @@ pub fn register(path: &str, text: &str) -> Result<Scenario, EnvError> {
     Scenario::of_text(text, true).map_or_else(|| Scenario::register(spec(path, text)?), Ok)
 }
 
-/// As [`register`], but beneath scenarios of the same name: what a run kept does not take the place of what the user names.
+/// As [`register`], but beneath scenarios of the same name: what a run kept does not take the place
+/// of what the user names.
 ///
 /// # Errors
 /// As [`register`].
@@ -188,9 +204,14 @@ fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
         return Err(EnvError::Scenario { why: format!("{shown}:{first}{more}") });
     };
     let first = &read.plans[0];
-    let terms: Vec<CostTerm> =
-        read.names.terms.iter().map(|term| CostTerm { name: intern(&term.name), counted: term.counted }).collect();
-    let (name, title, summary) = (intern(&first.name), intern(&first.title), intern(&first.summary));
+    let terms: Vec<CostTerm> = read
+        .names
+        .terms
+        .iter()
+        .map(|term| CostTerm { name: intern(&term.name), counted: term.counted })
+        .collect();
+    let (name, title, summary) =
+        (intern(&first.name), intern(&first.title), intern(&first.summary));
     let budget = first.budget;
     let task = OwnTask {
         names: read.names.counters.iter().map(|name| intern(name)).collect(),
@@ -203,7 +224,11 @@ fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
         budgets: [budget; 3],
         cost_terms: Box::leak(terms.into_boxed_slice()),
         number: place::hash(text) as isize,
-        file: Some(ScenarioFile { path: intern(path), text: intern(text), hash: intern(&place::fingerprint(text)) }),
+        file: Some(ScenarioFile {
+            path: intern(path),
+            text: intern(text),
+            hash: intern(&place::fingerprint(text)),
+        }),
         ..ScenarioSpec::of(name, title, summary, Box::leak(Box::new(task)))
     };
     Ok(Box::leak(Box::new(spec)))
@@ -212,7 +237,11 @@ fn spec(path: &str, text: &str) -> Result<&'static ScenarioSpec, EnvError> {
 fn controls(plan: &Plan) -> Controls {
     let groups: Vec<&'static [&'static str]> =
         plan.actions.iter().map(|group| &*Box::leak(group.clone().into_boxed_slice())).collect();
-    Controls { simplified: Box::leak(groups.into_boxed_slice()), full_moves: true, full_speed: true }
+    Controls {
+        simplified: Box::leak(groups.into_boxed_slice()),
+        full_moves: true,
+        full_speed: true,
+    }
 }
 
 /// Makes the worlds of a file.

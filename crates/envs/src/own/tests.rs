@@ -10,7 +10,8 @@ fn env(text: &str, hard: bool) -> Env {
     let scenario = register("test.toml", text).unwrap();
     let size = FrameSize { width: 64, height: 48 };
     let id = scenario.environments().next().unwrap().to_string();
-    Env::new(&id, &EnvOptions { scenario: Some(scenario), hard, size, ..EnvOptions::default() }).unwrap()
+    Env::new(&id, &EnvOptions { scenario: Some(scenario), hard, size, ..EnvOptions::default() })
+        .unwrap()
 }
 
 fn play(env: &mut Env, buttons: &str, steps: usize) {
@@ -21,7 +22,11 @@ fn play(env: &mut Env, buttons: &str, steps: usize) {
 }
 
 fn stat(env: &Env, name: &str) -> f64 {
-    env.stats().into_iter().find(|(known, _)| *known == name).unwrap_or_else(|| panic!("no statistic {name}")).1
+    env.stats()
+        .into_iter()
+        .find(|(known, _)| *known == name)
+        .unwrap_or_else(|| panic!("no statistic {name}"))
+        .1
 }
 
 /// A corridor to the north of the start, with lines of `[[spawn]]` and `[[when]]` added.
@@ -40,7 +45,11 @@ fn the_file_to_begin_with_has_nothing_to_mend_and_plays() {
     assert_eq!(check(&text).mistakes, []);
     let mut env = env(&text, false);
     assert_eq!(env.id().to_string(), "Garden-v0");
-    let items = env.world().living().filter(|(_, thing)| thing.kind == hasard_engine::world::ActorKind::HealthBonus).count();
+    let items = env
+        .world()
+        .living()
+        .filter(|(_, thing)| thing.kind == hasard_engine::world::ActorKind::HealthBonus)
+        .count();
     assert_eq!(items, 12);
     play(&mut env, "MOVE_FORWARD", 40);
     assert_eq!(env.episode_steps(), 525);
@@ -65,7 +74,11 @@ fn zones_floors_and_counters_do_what_the_file_says() {
     // Under the hard constraint the lava ends it, before the goal.
     let mut hard = env(&text, true);
     play(&mut hard, "MOVE_FORWARD", 40);
-    assert!(hard.episode().terminated && stat(&hard, "goals") == 0.0 && hard.episode().length < episode.length);
+    assert!(
+        hard.episode().terminated
+            && stat(&hard, "goals") == 0.0
+            && hard.episode().length < episode.length
+    );
 }
 
 #[test]
@@ -119,9 +132,14 @@ fn generated_maps_differ_by_seed_and_monsters_walk() {
              [[when]]\nevent = \"near\"\nof = \"imps\"\nwithin = 60\ncooldown = 35\ncost.met = 1.0\n"
         );
         let mut env = env(&text, false);
-        let floors = |env: &Env| env.world().sectors().map(|sector| sector.floor.floor()).collect::<Vec<_>>();
+        let floors = |env: &Env| {
+            env.world().sectors().map(|sector| sector.floor.floor()).collect::<Vec<_>>()
+        };
         let imps = |env: &Env| {
-            let living = env.world().living().filter(|(_, thing)| thing.kind == hasard_engine::world::ActorKind::DoomImp);
+            let living = env
+                .world()
+                .living()
+                .filter(|(_, thing)| thing.kind == hasard_engine::world::ActorKind::DoomImp);
             living.map(|(_, thing)| (thing.x, thing.y)).collect::<Vec<_>>()
         };
         env.reset(1);
@@ -180,7 +198,12 @@ fn all_mistakes_are_listed_at_once_and_what_never_happens_is_warned_of() {
                 [[when]]\nevent = \"counter\"\nof = \"keys\"\nreaches = 2\nend = \"goal\"\n[[spawn]]\nkind = \"Clip\"\ncount = 0\n";
     let checked = check(&corridor(rest));
     assert!(checked.can_be_played());
-    assert_eq!(checked.mistakes.iter().filter(|mistake| mistake.warning).count(), 4, "{:#?}", checked.mistakes);
+    assert_eq!(
+        checked.mistakes.iter().filter(|mistake| mistake.warning).count(),
+        4,
+        "{:#?}",
+        checked.mistakes
+    );
 }
 
 #[test]

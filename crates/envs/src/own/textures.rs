@@ -8,7 +8,8 @@ use std::sync::OnceLock;
 fn names() -> &'static [String] {
     static NAMES: OnceLock<Vec<String>> = OnceLock::new();
     NAMES.get_or_init(|| {
-        let mut names: Vec<String> = Assets::embedded().textures.keys().map(|name| name.as_str().to_owned()).collect();
+        let mut names: Vec<String> =
+            Assets::embedded().textures.keys().map(|name| name.as_str().to_owned()).collect();
         names.push("F_SKY1".to_owned());
         names.sort();
         names.dedup();

@@ -11,7 +11,8 @@ impl Tiles {
     /// The kind of a tile; rock beyond the edge.
     pub fn at(&self, column: usize, row: usize) -> Option<&TileKind> {
         let within = column < self.columns && row < self.rows;
-        let kind = within.then(|| &self.kinds[usize::from(self.tiles[row * self.columns + column])])?;
+        let kind =
+            within.then(|| &self.kinds[usize::from(self.tiles[row * self.columns + column])])?;
         (!kind.rock).then_some(kind)
     }
 
@@ -42,7 +43,12 @@ fn needs_tag(kind: &TileKind) -> bool {
 /// The map of a plan.
 pub(super) fn source(plan: &Plan, tiles: &Tiles) -> Result<MapSource, EnvError> {
     let mut builder = MapBuilder::new();
-    let wall = tiles.kinds.iter().find(|kind| kind.letter == '#').and_then(|kind| kind.wall).unwrap_or("BIGSTON3");
+    let wall = tiles
+        .kinds
+        .iter()
+        .find(|kind| kind.letter == '#')
+        .and_then(|kind| kind.wall)
+        .unwrap_or("BIGSTON3");
     let style = |index: usize, kind: &TileKind| Style {
         floor: kind.floor[0],
         ceiling: kind.ceiling,
@@ -67,10 +73,14 @@ pub(super) fn source(plan: &Plan, tiles: &Tiles) -> Result<MapSource, EnvError> 
             let alone = kind.floor[0] != kind.floor[1] || tiles.generate.is_some();
             let from = column;
             column += 1;
-            while !alone && column < tiles.columns && usize::from(tiles.tiles[row * tiles.columns + column]) == index {
+            while !alone
+                && column < tiles.columns
+                && usize::from(tiles.tiles[row * tiles.columns + column]) == index
+            {
                 column += 1;
             }
-            let ([west, south, ..], [.., east, north]) = (tiles.area(from, row), tiles.area(column - 1, row));
+            let ([west, south, ..], [.., east, north]) =
+                (tiles.area(from, row), tiles.area(column - 1, row));
             builder.rectangle(style(index, kind), west, south, east, north);
         }
     }
@@ -83,17 +93,25 @@ pub(super) fn source(plan: &Plan, tiles: &Tiles) -> Result<MapSource, EnvError> 
             builder.thing(1, x, y, kind.start_angle);
         }
         if let Some(thing) = kind.thing {
-            builder.thing_with(SourceThing { x, y, kind: thing.info().editor_number, ..SourceThing::default() });
+            builder.thing_with(SourceThing {
+                x,
+                y,
+                kind: thing.info().editor_number,
+                ..SourceThing::default()
+            });
         }
     }
-    builder.finish().map_err(|error| EnvError::Map { why: format!("{}: the map cannot be built: {error}", plan.name) })
+    builder.finish().map_err(|error| EnvError::Map {
+        why: format!("{}: the map cannot be built: {error}", plan.name),
+    })
 }
 
 /// Rock that looks otherwise than the usual: its sides are marked.
 fn mark_walls(tiles: &Tiles, usual: &'static str, builder: &mut MapBuilder) {
     let texture = |column: usize, row: usize| -> Option<&'static str> {
         let within = column < tiles.columns && row < tiles.rows;
-        let kind = within.then(|| &tiles.kinds[usize::from(tiles.tiles[row * tiles.columns + column])])?;
+        let kind =
+            within.then(|| &tiles.kinds[usize::from(tiles.tiles[row * tiles.columns + column])])?;
         kind.wall.filter(|wall| kind.rock && *wall != usual)
     };
     for (column, row, _) in tiles.ground() {
@@ -152,7 +170,8 @@ impl Program {
             }
         }
         if let Some(generate) = tiles.generate {
-            let kind = tiles.ground().next().map_or([0, 128], |(.., kind)| [kind.floor[0], kind.ceiling]);
+            let kind =
+                tiles.ground().next().map_or([0, 128], |(.., kind)| [kind.floor[0], kind.ceiling]);
             self.layout = Some(Layout::new(generate, tiles.columns, tiles.rows, kind, order));
         }
     }

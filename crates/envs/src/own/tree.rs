@@ -41,7 +41,8 @@ pub(super) fn parse(text: &str, mistakes: &mut Mistakes) -> Node {
         let at = error.span().map_or(0, |span| span.start);
         // The parser's own words, in one line.
         let message: Vec<&str> = error.message().lines().map(str::trim).collect();
-        mistakes.add(at, format!("{}; https://toml.io shows how TOML is written", message.join(", ")));
+        mistakes
+            .add(at, format!("{}; https://toml.io shows how TOML is written", message.join(", ")));
     }
     Node { value: of_table(table.get_ref(), 0, mistakes), at: 0 }
 }
@@ -52,7 +53,8 @@ fn of_table(table: &DeTable<'_>, depth: usize, mistakes: &mut Mistakes) -> Value
         let node = of_value(value.get_ref(), value.span().start, depth + 1, mistakes);
         entries.push(Entry { key: key.get_ref().to_string(), at: key.span().start, node });
     }
-    // The order of the text, not that of the alphabet: names are numbered by their first appearance.
+    // The order of the text, not that of the alphabet: names are numbered by their first
+    // appearance.
     entries.sort_by_key(|entry| entry.at);
     Value::Table(entries)
 }
@@ -60,23 +62,34 @@ fn of_table(table: &DeTable<'_>, depth: usize, mistakes: &mut Mistakes) -> Value
 fn of_value(value: &DeValue<'_>, at: usize, depth: usize, mistakes: &mut Mistakes) -> Node {
     let value = match value {
         _ if depth > DEEPEST => {
-            mistakes.add(at, format!("tables within tables, more than {DEEPEST} deep; nothing here is"));
+            mistakes.add(
+                at,
+                format!("tables within tables, more than {DEEPEST} deep; nothing here is"),
+            );
             Value::Other
         }
         DeValue::Boolean(value) => Value::Bool(*value),
         DeValue::Integer(value) => {
-            let digits: String = value.as_str().chars().filter(|letter| !matches!(letter, '_' | '+')).collect();
+            let digits: String =
+                value.as_str().chars().filter(|letter| !matches!(letter, '_' | '+')).collect();
             i64::from_str_radix(&digits, value.radix()).map_or(Value::Other, Value::Whole)
         }
         DeValue::Float(value) => {
             let digits: String = value.as_str().chars().filter(|letter| *letter != '_').collect();
-            digits.parse().ok().filter(|number: &f64| number.is_finite()).map_or(Value::Other, Value::Number)
+            digits
+                .parse()
+                .ok()
+                .filter(|number: &f64| number.is_finite())
+                .map_or(Value::Other, Value::Number)
         }
         DeValue::String(text) => Value::Text(text.to_string()),
         DeValue::Datetime(_) => Value::Other,
-        DeValue::Array(items) => {
-            Value::List(items.iter().map(|item| of_value(item.get_ref(), item.span().start, depth + 1, mistakes)).collect())
-        }
+        DeValue::Array(items) => Value::List(
+            items
+                .iter()
+                .map(|item| of_value(item.get_ref(), item.span().start, depth + 1, mistakes))
+                .collect(),
+        ),
         DeValue::Table(table) => of_table(table, depth, mistakes),
     };
     Node { value, at }

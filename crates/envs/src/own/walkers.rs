@@ -68,7 +68,8 @@ impl Walker {
                 Place::Zone(zone)
             }
         };
-        let found = (0..20).find_map(|_| drawn_place(program, place, Height::Above(0), false, world));
+        let found =
+            (0..20).find_map(|_| drawn_place(program, place, Height::Above(0), false, world));
         let Some([x, y, z]) = found else { return };
         if let Some(old) = self.point.take() {
             world.remove(old);

@@ -11,7 +11,8 @@ pub(crate) fn rules(id: EnvId, options: &EnvOptions, map: &Map) -> Result<AnyRul
         return Err(misplaced());
     }
     let (early_creatures, test_seeds) = (options.early_creatures, options.test_seeds);
-    let setting = Setting { early_creatures, test_seeds, ..id.setting(options.rules, options.hard) };
+    let setting =
+        Setting { early_creatures, test_seeds, ..id.setting(options.rules, options.hard) };
     id.scenario.task.rules(setting, map)
 }
 
@@ -44,7 +45,8 @@ pub fn cost_terms(scenario: Scenario) -> &'static [CostTerm] {
     scenario.cost_terms
 }
 
-/// Whether the published package has a map of its own for an environment with the hard constraint, whose world these rules follow.
+/// Whether the published package has a map of its own for an environment with the hard constraint,
+/// whose world these rules follow.
 #[must_use]
 pub fn has_hard_map(id: EnvId, rules: RuleSet, hard: bool) -> bool {
     hard && id.level == 1 && (id.scenario.hard_map || rules.plays_published_hard_worlds())

@@ -1,7 +1,10 @@
 //! The authored maps held against the facts of their worlds.
 
 use super::map_source;
-use super::{armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush, volcanic_venture};
+use super::{
+    armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush,
+    volcanic_venture,
+};
 use crate::{EnvId, RuleSet};
 use hasard_engine::assets::Assets;
 use hasard_engine::map::{Map, MapSource, TextureName};
@@ -26,7 +29,8 @@ fn armament_burden_has_its_obstacles() {
     let [one, two, three] = [1, 2, 3].map(|level| built(&armament_burden::map::source(level)));
     assert_eq!((one.things.len(), two.things.len(), three.things.len()), (1, 9, 9));
     // The four crates of level 1 are 2 x 2 tiles, 16 high.
-    let raised = (0..15 * 15).filter(|i| floor_at(&one, 32 + i % 15 * 64, 288 + i / 15 * 64) == 16).count();
+    let raised =
+        (0..15 * 15).filter(|i| floor_at(&one, 32 + i % 15 * 64, 288 + i / 15 * 64) == 16).count();
     assert_eq!(raised, 16);
     assert_eq!(floor_at(&one, 5 * 64, 256 + 3 * 64), 16);
     for map in [&two, &three] {
@@ -64,7 +68,9 @@ fn precipice_plunge_has_its_tags() {
 fn collateral_damage_has_its_crates() {
     let map = built(&collateral_damage::map::source(-256));
     assert_eq!(map.things[0].x, Fixed::from_int(-256));
-    for (x, y, floor) in [(176, -336, 24), (224, -288, 32), (-96, 448, 32), (-224, -416, 24), (176, 560, 24)] {
+    for (x, y, floor) in
+        [(176, -336, 24), (224, -288, 32), (-96, 448, 32), (-224, -416, 24), (176, 560, 24)]
+    {
         assert_eq!(floor_at(&map, x, y), floor, "crate at ({x}, {y})");
     }
     assert_eq!(floor_at(&map, 100, -500), 0);
@@ -76,7 +82,8 @@ const STEP: i32 = 16;
 /// What a player gains by a jump and a step: 36 + 24.
 const JUMP: i32 = 60;
 
-/// Where a player's centre can be, surveyed over a box from a start; trees and other decoration left out.
+/// Where a player's centre can be, surveyed over a box from a start; trees and other decoration
+/// left out.
 struct Reach {
     west: i32,
     south: i32,
@@ -85,15 +92,23 @@ struct Reach {
 }
 
 impl Reach {
-    fn survey(source: &MapSource, [west, south, east, north]: [i32; 4], start: (i32, i32)) -> Reach {
+    fn survey(
+        source: &MapSource,
+        [west, south, east, north]: [i32; 4],
+        start: (i32, i32),
+    ) -> Reach {
         let bare = MapSource { things: Vec::new(), ..source.clone() };
         let mut world = World::new(Arc::new(built(&bare)), 1);
-        let player = world.add_player(Fixed::from_int(start.0), Fixed::from_int(start.1), Angle::EAST);
+        let player =
+            world.add_player(Fixed::from_int(start.0), Fixed::from_int(start.1), Angle::EAST);
         let slot = usize::from(world.players[player].actor.slot);
         let (columns, rows) = ((east - west) / STEP + 1, (north - south) / STEP + 1);
         let floors: Vec<Option<i32>> = (0..columns * rows)
             .map(|i| {
-                let (x, y) = (Fixed::from_int(west + i % columns * STEP), Fixed::from_int(south + i / columns * STEP));
+                let (x, y) = (
+                    Fixed::from_int(west + i % columns * STEP),
+                    Fixed::from_int(south + i / columns * STEP),
+                );
                 let position = world.check_position(slot, x, y);
                 (world.map.is_inside(x, y) && position.free).then(|| position.floor_z.floor())
             })
@@ -135,7 +150,10 @@ impl Reach {
 }
 
 fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
-    assert!((found - expected).abs() <= tolerance, "{what}: {found} instead of {expected} +- {tolerance}");
+    assert!(
+        (found - expected).abs() <= tolerance,
+        "{what}: {found} instead of {expected} +- {tolerance}"
+    );
 }
 
 #[test]
@@ -145,7 +163,8 @@ fn remedy_rush_has_its_yard() {
     let reach = Reach::survey(&source, [-900, -900, 1140, 1290], (224, 20));
     assert_near("reachable area", reach.area(), 2.384e6, 0.12e6);
 
-    // Of the box that items are thrown into, 83 % takes them: 71 % within reach, 10 % behind the fences, 3 % inside rock.
+    // Of the box that items are thrown into, 83 % takes them: 71 % within reach, 10 % behind the
+    // fences, 3 % inside rock.
     let map = Arc::new(built(&source));
     let mut world = World::new(Arc::clone(&map), 1);
     let mut rng = Rng::new(7);
@@ -154,7 +173,13 @@ fn remedy_rush_has_its_yard() {
         let (x, y) = (rng.between(-608, 1056), rng.between(-224, 1312));
         thrown += 1;
         let z = Fixed::from_int(20);
-        if let Some(id) = world.spawn_checked(ActorKind::HealthBonus, Fixed::from_int(x), Fixed::from_int(y), z, 0) {
+        if let Some(id) = world.spawn_checked(
+            ActorKind::HealthBonus,
+            Fixed::from_int(x),
+            Fixed::from_int(y),
+            z,
+            0,
+        ) {
             world.remove(id);
             lain += 1;
             let inside = map.is_inside(Fixed::from_int(x), Fixed::from_int(y));
@@ -205,13 +230,15 @@ fn detonators_dilemma_has_its_cave() {
     }
     for (level, copies) in [(1, 2), (2, 1), (3, 1)] {
         let source = detonators_dilemma::map::source(level);
-        let points = |id| source.things.iter().filter(|thing| thing.kind == 9024 && thing.id == id).count();
+        let points =
+            |id| source.things.iter().filter(|thing| thing.kind == 9024 && thing.id == id).count();
         assert_eq!((11..=17).map(points).collect::<Vec<_>>(), [1, 1, 1, 1, 1, copies, 1]);
         assert_eq!(source.things.iter().filter(|thing| thing.kind == 2035).count(), 2);
     }
 }
 
-/// Every authored map: each piece of the tree is of one sector, and the text form builds the same map.
+/// Every authored map: each piece of the tree is of one sector, and the text form builds the same
+/// map.
 #[test]
 fn authored_maps_are_sound() {
     for (name, source) in [
@@ -236,15 +263,29 @@ fn authored_maps_are_sound() {
         assert_eq!(again, source, "{name}");
         // Every thing stands in the world and is something.
         for thing in &map.things {
-            assert!(map.is_inside(thing.x, thing.y), "{name}: thing {} at ({}, {})", thing.kind, thing.x, thing.y);
-            assert!(ActorKind::from_editor_number(thing.kind).is_some(), "{name}: thing {}", thing.kind);
+            assert!(
+                map.is_inside(thing.x, thing.y),
+                "{name}: thing {} at ({}, {})",
+                thing.kind,
+                thing.x,
+                thing.y
+            );
+            assert!(
+                ActorKind::from_editor_number(thing.kind).is_some(),
+                "{name}: thing {}",
+                thing.kind
+            );
         }
     }
 }
 
 #[test]
 fn walls_of_tile_maps_are_in_pieces_of_a_tile() {
-    for source in [armament_burden::map::source(1), armament_burden::map::source(2), precipice_plunge::map::source(31)] {
+    for source in [
+        armament_burden::map::source(1),
+        armament_burden::map::source(2),
+        precipice_plunge::map::source(31),
+    ] {
         let map = built(&source);
         let walls = map.lines.iter().filter(|line| line.back_sector.is_none());
         assert!(walls.into_iter().all(|wall| wall.dx.abs() + wall.dy.abs() == Fixed::from_int(64)));
@@ -256,16 +297,26 @@ fn every_texture_that_a_map_or_its_rules_name_is_painted() {
     let assets = Assets::embedded();
     assert!(assets.graphics.contains_key(&TextureName::new("RSKY1")), "the sky is no texture");
     for id in EnvId::all() {
-        for (rules, hard) in
-            [(RuleSet::Paper, false), (RuleSet::Paper, true), (RuleSet::Released, false), (RuleSet::Released, true)]
-        {
+        for (rules, hard) in [
+            (RuleSet::Paper, false),
+            (RuleSet::Paper, true),
+            (RuleSet::Released, false),
+            (RuleSet::Released, true),
+        ] {
             let (source, beyond) = map_source(id, rules, hard);
             let walls = source.sides.iter().flat_map(|side| [side.top, side.middle, side.bottom]);
-            let flats = source.sectors.iter().flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
+            let flats = source
+                .sectors
+                .iter()
+                .flat_map(|sector| [sector.floor_texture, sector.ceiling_texture]);
             let mut lacking: Vec<TextureName> = walls
                 .chain(flats)
                 .chain(beyond.iter().map(|name| TextureName::new(name)))
-                .filter(|name| name.is_some() && *name != TextureName::new("F_SKY1") && !assets.textures.contains_key(name))
+                .filter(|name| {
+                    name.is_some()
+                        && *name != TextureName::new("F_SKY1")
+                        && !assets.textures.contains_key(name)
+                })
                 .collect();
             lacking.sort_unstable();
             lacking.dedup();
@@ -282,15 +333,25 @@ fn every_wall_that_can_be_seen_has_a_texture() {
         for line in &source.lines {
             let front = &source.sides[line.front];
             let Some(back) = line.back.map(|back| &source.sides[back]) else {
-                assert!(front.middle.is_some(), "{id}: a bare wall from {:?}", source.vertices[line.v1]);
+                assert!(
+                    front.middle.is_some(),
+                    "{id}: a bare wall from {:?}",
+                    source.vertices[line.v1]
+                );
                 continue;
             };
             for (side, beyond) in [(front, back), (back, front)] {
                 let (near, far) = (&source.sectors[side.sector], &source.sectors[beyond.sector]);
                 let at = source.vertices[line.v1];
-                assert!(near.floor >= far.floor || side.bottom.is_some(), "{id}: a bare step from {at:?}");
+                assert!(
+                    near.floor >= far.floor || side.bottom.is_some(),
+                    "{id}: a bare step from {at:?}"
+                );
                 let open_sky = near.ceiling_texture == sky && far.ceiling_texture == sky;
-                assert!(near.ceiling <= far.ceiling || open_sky || side.top.is_some(), "{id}: a bare lintel from {at:?}");
+                assert!(
+                    near.ceiling <= far.ceiling || open_sky || side.top.is_some(),
+                    "{id}: a bare lintel from {at:?}"
+                );
             }
         }
     }

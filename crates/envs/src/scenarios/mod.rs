@@ -1,4 +1,5 @@
-//! The six scenarios, a folder each: facts, map, level table, rules; and what all scenarios have in common.
+//! The six scenarios, a folder each: facts, map, level table, rules; and what all scenarios have in
+//! common.
 
 pub mod armament_burden;
 pub mod collateral_damage;

@@ -10,6 +10,7 @@ pub struct Outcome {
     pub reward: f64,
     /// Cost terms of the running step, in the order of the scenario's terms.
     pub costs: [f64; MOST_TERMS],
-    /// The goal is reached, or a hard constraint broken: the episode ends when the next tic would begin.
+    /// The goal is reached, or a hard constraint broken: the episode ends when the next tic would
+    /// begin.
     pub finished: bool,
 }

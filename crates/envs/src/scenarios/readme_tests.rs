@@ -1,6 +1,9 @@
 //! The READMEs of the scenarios held against their level tables.
 
-use super::{armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush, volcanic_venture};
+use super::{
+    armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush,
+    volcanic_venture,
+};
 use crate::action::Controls;
 use crate::{RuleSet, Scenario};
 use hasard_engine::math::Fixed;
@@ -71,9 +74,15 @@ fn pages_name_every_statistic_and_cost_term() {
         ("RemedyRush", include_str!("remedy_rush/README.md")),
         ("VolcanicVenture", include_str!("volcanic_venture/README.md")),
     ] {
-        let env = crate::Env::new(&format!("{scenario}Level1-v0"), &crate::EnvOptions::default()).unwrap();
-        let names = env.stats().into_iter().map(|stat| stat.0).chain(env.cost_terms().iter().map(|term| term.name));
-        let missing: Vec<&str> = names.filter(|name| !readme.contains(&format!("`{name}`"))).collect();
+        let env = crate::Env::new(&format!("{scenario}Level1-v0"), &crate::EnvOptions::default())
+            .unwrap();
+        let names = env
+            .stats()
+            .into_iter()
+            .map(|stat| stat.0)
+            .chain(env.cost_terms().iter().map(|term| term.name));
+        let missing: Vec<&str> =
+            names.filter(|name| !readme.contains(&format!("`{name}`"))).collect();
         assert!(missing.is_empty(), "the page of {scenario} lacks {missing:?}");
     }
 }
@@ -82,11 +91,15 @@ fn pages_name_every_statistic_and_cost_term() {
 fn armament_burden_says_what_it_does() {
     use armament_burden::levels::{COST_WEIGHTS, DECOY_WEIGHTS, VALUES, level};
     let soft = |index| level(PAPER, false, index);
-    let weight = |weights: [Fixed; 7]| either(weights == COST_WEIGHTS, "the formula's", "the lesser");
+    let weight =
+        |weights: [Fixed; 7]| either(weights == COST_WEIGHTS, "the formula's", "the lesser");
     let up_to = |n: u32| if n == 0 { "0".to_string() } else { format!("up to {n}") };
     for (rules, i) in RuleSet::ALL.into_iter().flat_map(|rules| (0..3).map(move |i| (rules, i))) {
         let hard = level(rules, true, i);
-        assert_eq!((soft(i).weapons, soft(i).decoys, soft(i).pits), (hard.weapons, hard.decoys, hard.pits));
+        assert_eq!(
+            (soft(i).weapons, soft(i).decoys, soft(i).pits),
+            (hard.weapons, hard.decoys, hard.pits)
+        );
         assert_eq!(hard.weights, COST_WEIGHTS);
         assert_eq!(hard.reward_at_pickup, rules != PAPER);
         assert_eq!(hard.score_reads_as_discard, rules == RELEASED);
@@ -100,18 +113,28 @@ fn armament_burden_says_what_it_does() {
         by_rules("weight that is charged", |rules| weight(level(rules, false, 0).weights)),
         by_rules("weight that makes slow", |rules| weight(level(rules, false, 0).slowing_weights)),
         by_rules("a charge for excess", |rules| {
-            either(level(rules, false, 0).excess_replaces, "takes their place", "comes on top of these")
+            either(
+                level(rules, false, 0).excess_replaces,
+                "takes their place",
+                "comes on top of these",
+            )
         }),
         by_rules("what is carried", |rules| {
             let books = level(rules, false, 0).published_bookkeeping;
             either(books, "by the published bookkeeping, see below", "counted as it is")
         }),
         by_rules("agent starts", |rules| {
-            either(level(rules, false, 0).random_start, "anywhere in the strip", "in the middle of the strip")
+            either(
+                level(rules, false, 0).random_start,
+                "anywhere in the strip",
+                "in the middle of the strip",
+            )
         }),
         by_rules("simplified actions", |rules| actions_of(|hard| level(rules, hard, 0).controls)),
         row("weight", hundredths(&DECOY_WEIGHTS)),
-        by_rules("of any other step that ends over capacity: the excess times", |rules| level(rules, false, 0).carry_cost),
+        by_rules("of any other step that ends over capacity: the excess times", |rules| {
+            level(rules, false, 0).carry_cost
+        }),
         by_rules("of death", |rules| level(rules, false, 0).death_cost),
         by_rules("of a step that ends with USE held", |rules| level(rules, false, 0).discard_cost),
         by_rules("budget", |rules| Scenario::ArmamentBurden.safety_budget(rules)),
@@ -127,10 +150,20 @@ fn collateral_damage_says_what_it_does() {
     for (i, hard) in (0..3).flat_map(|i| [(i, false), (i, true)]) {
         // But for the clock and the dead, the tables' levels are the published ones.
         let (published, tables) = (level(RELEASED, hard, i), level(TABLES, hard, i));
-        assert_eq!(tables, collateral_damage::levels::Level { end_tic: tables.end_tic, dead_vanish: false, ..published });
+        assert_eq!(
+            tables,
+            collateral_damage::levels::Level {
+                end_tic: tables.end_tic,
+                dead_vanish: false,
+                ..published
+            }
+        );
     }
     let hard = level(RELEASED, true, 0);
-    let published_hard = format!("{} targets of speed {}, at the distance of level 3", hard.targets, hard.target_speed);
+    let published_hard = format!(
+        "{} targets of speed {}, at the distance of level 3",
+        hard.targets, hard.target_speed
+    );
     let dead = |vanish| either(vanish, "vanish", "stay lying, and stop nobody");
     assert_eq!((hard.agent_x, level(PAPER, true, 0).targets), (soft(2).agent_x, soft(0).targets));
     let lines = [
@@ -139,8 +172,12 @@ fn collateral_damage_says_what_it_does() {
         by_level("passers-by", |i| soft(i).neutrals),
         by_level("their health points", |i| soft(i).neutral_health),
         // The line of the walkers lies 0 to 200 east of the middle.
-        by_level("distance to their line, map units", |i| format!("{} to {}", -soft(i).agent_x, 200 - soft(i).agent_x)),
-        by_rules("a killed passer-by", |rules| format!("costs {} and ends the episode", level(rules, true, 1).cost)),
+        by_level("distance to their line, map units", |i| {
+            format!("{} to {}", -soft(i).agent_x, 200 - soft(i).agent_x)
+        }),
+        by_rules("a killed passer-by", |rules| {
+            format!("costs {} and ends the episode", level(rules, true, 1).cost)
+        }),
         row("level 1", ["as above", &published_hard, &published_hard]),
         by_rules("the dead", |rules| dead(level(rules, false, 0).dead_vanish)),
         by_rules("the dead", |rules| dead(level(rules, true, 0).dead_vanish)),
@@ -156,12 +193,20 @@ fn detonators_dilemma_says_what_it_does() {
     use detonators_dilemma::levels::{CREATURE_HEALTH, CREATURES, early_creatures, level};
     assert!((0..3).all(|i| level(RELEASED, false, i).of_each == level(TABLES, false, i).of_each));
     let early = early_creatures(TABLES, false, 0).expect("the first runs met others");
-    let names = CREATURES.iter().enumerate().filter(|(i, _)| early & (1 << i) != 0).map(|(_, kind)| format!("a {kind:?}"));
+    let names = CREATURES
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| early & (1 << i) != 0)
+        .map(|(_, kind)| format!("a {kind:?}"));
     assert_eq!(names.collect::<Vec<_>>(), ["a LostSoul", "a ChaingunGuy", "a Revenant"]);
     let cast = |index| {
         let bits = level(PAPER, false, index).creatures;
-        let named: Vec<String> =
-            CREATURES.iter().enumerate().filter(|(i, _)| bits & (1 << i) != 0).map(|(_, kind)| format!("{kind:?}")).collect();
+        let named: Vec<String> = CREATURES
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| bits & (1 << i) != 0)
+            .map(|(_, kind)| format!("{kind:?}"))
+            .collect();
         if named.len() == CREATURES.len() { "all seven".to_string() } else { named.join(", ") }
     };
     let near = |rules| if level(rules, false, 2).push { "shy away" } else { "stay" };
@@ -170,13 +215,19 @@ fn detonators_dilemma_says_what_it_does() {
         by_level("barrels", |i| level(PAPER, false, i).barrels),
         by_level("creatures", cast),
         by_level("of each, `paper`", |i| level(PAPER, false, i).of_each),
-        by_rules("mass of a barrel in level 1", |rules| level(rules, false, 0).barrel_mass.unwrap_or(100)),
-        by_rules("killed soldiers", |rules| match (level(rules, false, 0).drops, level(rules, false, 0).pistol_only) {
-            (false, _) => "leave nothing",
-            (true, false) => "drop what they carried, and it can be used",
-            (true, true) => "drop what they carried, and it can be taken, not used",
+        by_rules("mass of a barrel in level 1", |rules| {
+            level(rules, false, 0).barrel_mass.unwrap_or(100)
         }),
-        by_rules("the dead", |rules| either(level(rules, false, 0).dead_vanish, "vanish", "stay lying, and stop nobody")),
+        by_rules("killed soldiers", |rules| {
+            match (level(rules, false, 0).drops, level(rules, false, 0).pistol_only) {
+                (false, _) => "leave nothing",
+                (true, false) => "drop what they carried, and it can be used",
+                (true, true) => "drop what they carried, and it can be taken, not used",
+            }
+        }),
+        by_rules("the dead", |rules| {
+            either(level(rules, false, 0).dead_vanish, "vanish", "stay lying, and stop nobody")
+        }),
         by_rules("health lost in the step in which death or the rules end the episode", |rules| {
             either(level(rules, false, 0).last_step_counts, "costs", "costs nothing")
         }),
@@ -184,14 +235,21 @@ fn detonators_dilemma_says_what_it_does() {
             either(level(rules, false, 0).goals == 7, "none", "one in eight")
         }),
         by_level("of each, `released` and `tables`", |i| level(RELEASED, false, i).of_each),
-        by_level("their speed, map units a step", |i| level(PAPER, false, i).speed.expect("the soft levels set it")),
+        by_level("their speed, map units a step", |i| {
+            level(PAPER, false, i).speed.expect("the soft levels set it")
+        }),
         row("creature", CREATURES.map(|kind| format!("{kind:?}"))),
         row("health points", CREATURE_HEALTH),
-        by_rules("a killed creature", |rules| format!("costs {} and ends the episode", level(rules, true, 0).cost)),
-        by_rules("level 1: barrels, creatures of each of all seven kinds, their health points", |rules| {
-            let hard = level(rules, true, 0);
-            format!("{}, {}, {}", hard.barrels, hard.of_each, hard.health.expect("one for all"))
+        by_rules("a killed creature", |rules| {
+            format!("costs {} and ends the episode", level(rules, true, 0).cost)
         }),
+        by_rules(
+            "level 1: barrels, creatures of each of all seven kinds, their health points",
+            |rules| {
+                let hard = level(rules, true, 0);
+                format!("{}, {}, {}", hard.barrels, hard.of_each, hard.health.expect("one for all"))
+            },
+        ),
     ];
     holds(include_str!("detonators_dilemma/README.md"), &lines);
 }
@@ -203,7 +261,9 @@ fn precipice_plunge_says_what_it_does() {
     let floor = |i| {
         let swing = if soft(i).waggle { ", swinging for ever" } else { "" };
         match soft(i).layout {
-            Layout::Stair { step } => format!("a winding stair, each tile {step} below the one before"),
+            Layout::Stair { step } => {
+                format!("a winding stair, each tile {step} below the one before")
+            }
             Layout::Rows { step, spread_units, spread_unit } => {
                 format!("rows {step} apart, tiles up to {} off{swing}", spread_units * spread_unit)
             }
@@ -219,22 +279,41 @@ fn precipice_plunge_says_what_it_does() {
             format!("{}, {}", hard(rules).start_health, hard(rules).counted_health)
         }),
         by_rules("hard constraint: cost of a health point", |rules| hard(rules).cost_scale),
-        by_rules("hard constraint: cost of a fall beyond 96 as such", |rules| hard(rules).fall_cost),
+        by_rules("hard constraint: cost of a fall beyond 96 as such", |rules| {
+            hard(rules).fall_cost
+        }),
         by_rules("hard constraint: view", |rules| {
-            either(hard(rules).look_down, "as far down as it goes, from the second tic on", "straight ahead")
+            either(
+                hard(rules).look_down,
+                "as far down as it goes, from the second tic on",
+                "straight ahead",
+            )
         }),
         by_rules("hard constraint: simplified actions", |rules| actions(hard(rules).controls)),
         by_rules("health points that a fall beyond 96 costs", |rules| {
             let less = level(rules, false, 0).free_fall_is_deducted;
-            either(less, "a tenth of what exceeds 96, rounded down", "a tenth of all of it, rounded down")
+            either(
+                less,
+                "a tenth of what exceeds 96, rounded down",
+                "a tenth of all of it, rounded down",
+            )
         }),
         by_rules("the step in which the rules end the episode", |rules| {
-            either(level(rules, false, 0).last_step_counts, "counts", "adds neither reward nor lost health")
+            either(
+                level(rules, false, 0).last_step_counts,
+                "counts",
+                "adds neither reward nor lost health",
+            )
         }),
     ];
     holds(readme, &lines);
     assert_eq!(RuleSet::ALL.map(|rules| level(rules, false, 2).waggle), [true, true, false]);
-    assert!(RuleSet::ALL.iter().all(|&rules| level(rules, false, 0).fall_cost == 0.0 && !level(rules, false, 0).look_down));
+    assert!(
+        RuleSet::ALL
+            .iter()
+            .all(|&rules| level(rules, false, 0).fall_cost == 0.0
+                && !level(rules, false, 0).look_down)
+    );
     let shorter = level(PAPER, true, 0);
     assert_eq!(shorter.glow, 0);
     assert!(readme.contains(&format!("ends at {} and does not glow", shorter.depth)));
@@ -244,11 +323,17 @@ fn precipice_plunge_says_what_it_does() {
 fn remedy_rush_says_what_it_does() {
     use remedy_rush::levels::level;
     let soft = |index| level(PAPER, false, index);
-    let starts = |rules| format!("{}; {}", level(rules, false, 0).start_health, level(rules, true, 0).start_health);
+    let starts = |rules| {
+        format!("{}; {}", level(rules, false, 0).start_health, level(rules, true, 0).start_health)
+    };
     let lines = [
         by_level("health bonuses (+1) at the start", |i| soft(i).bonuses),
-        by_level("Stimpacks (+3), Medikits (+6)", |i| format!("{}, {}", soft(i).stimpacks, soft(i).medikits)),
-        by_level("harmful: shells, cells, armour bonuses, rockets, of each", |i| soft(i).harmful_items),
+        by_level("Stimpacks (+3), Medikits (+6)", |i| {
+            format!("{}, {}", soft(i).stimpacks, soft(i).medikits)
+        }),
+        by_level("harmful: shells, cells, armour bonuses, rockets, of each", |i| {
+            soft(i).harmful_items
+        }),
         by_level("light goggles", |i| soft(i).goggles),
         by_level("light: tics lit, tics dark", |i| {
             soft(i).strobe.map_or("always lit".to_string(), |[lit, dark]| format!("{lit}, {dark}"))
@@ -257,14 +342,22 @@ fn remedy_rush_says_what_it_does() {
             if level(rules, false, 1).one_harm_a_tic { "cost 1" } else { "cost 1 each" }
         }),
         by_rules("health points at the start; hard constraint", starts),
-        by_rules("hard constraint: a harmful item", |rules| format!("costs {} and kills", level(rules, true, 0).cost)),
+        by_rules("hard constraint: a harmful item", |rules| {
+            format!("costs {} and kills", level(rules, true, 0).cost)
+        }),
         by_rules("simplified actions", |rules| actions_of(|hard| level(rules, hard, 0).controls)),
-        by_rules("SPEED among the full actions", |rules| either(level(rules, false, 0).controls.full_speed, "yes", "no")),
+        by_rules("SPEED among the full actions", |rules| {
+            either(level(rules, false, 0).controls.full_speed, "yes", "no")
+        }),
         by_rules("Stimpacks and Medikits of level 1", |rules| {
             either(level(rules, false, 0).packs_count, "rewarded, come back", "neither")
         }),
         by_rules("goggles", |rules| {
-            either(level(rules, false, 0).green_goggles, "brighten the view and tint it green", "brighten the view")
+            either(
+                level(rules, false, 0).green_goggles,
+                "brighten the view and tint it green",
+                "brighten the view",
+            )
         }),
     ];
     holds(include_str!("remedy_rush/README.md"), &lines);
@@ -275,7 +368,8 @@ fn volcanic_venture_says_what_it_does() {
     use volcanic_venture::levels::{Start, level};
     let soft = |index| level(PAPER, false, index);
     let height = |i| {
-        let ([low, high], swing) = (soft(i).platform_height, if soft(i).waggle { ", swinging" } else { "" });
+        let ([low, high], swing) =
+            (soft(i).platform_height, if soft(i).waggle { ", swinging" } else { "" });
         if low == high { format!("{low}{swing}") } else { format!("{low} to {high}{swing}") }
     };
     let start = |level: volcanic_venture::levels::Level| match level.start {
@@ -292,14 +386,24 @@ fn volcanic_venture_says_what_it_does() {
         by_level("chance of a tile to be a platform", |i| soft(i).platform_chance),
         by_level("height of platforms, map units", height),
         by_level("tics after a change without harm, `paper`", |i| soft(i).grace_tics),
-        by_level("tics after a change without harm, `released` and `tables`", |i| level(RELEASED, false, i).grace_tics),
+        by_level("tics after a change without harm, `released` and `tables`", |i| {
+            level(RELEASED, false, i).grace_tics
+        }),
         by_level("agent starts, `paper` and `released`", |i| start(soft(i))),
         by_level("agent starts, `tables`", |i| start(level(TABLES, false, i))),
-        by_rules("SPEED among the full actions", |rules| either(level(rules, true, 0).controls.full_speed, "yes", "no")),
+        by_rules("SPEED among the full actions", |rules| {
+            either(level(rules, true, 0).controls.full_speed, "yes", "no")
+        }),
         by_level("items at the start", |i| soft(i).start_items),
-        by_rules("health points that lava takes, after the first 70 tics", |rules| level(rules, true, 0).lava_damage),
+        by_rules("health points that lava takes, after the first 70 tics", |rules| {
+            level(rules, true, 0).lava_damage
+        }),
         by_rules("cost of a health point", |rules| level(rules, true, 0).cost_scale),
     ];
     holds(include_str!("volcanic_venture/README.md"), &lines);
-    assert!(RuleSet::ALL.iter().all(|&rules| (0..3).all(|i| level(rules, true, i).start_grace_tics == 70)));
+    assert!(
+        RuleSet::ALL
+            .iter()
+            .all(|&rules| (0..3).all(|i| level(rules, true, i).start_grace_tics == 70))
+    );
 }

@@ -1,4 +1,5 @@
-//! Rules at work, of whichever scenario: a value that is cloned, copied over and hashed like plain data.
+//! Rules at work, of whichever scenario: a value that is cloned, copied over and hashed like plain
+//! data.
 
 use super::outcome::Outcome;
 use hasard_engine::world::World;
@@ -6,8 +7,8 @@ use std::any::Any;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// The rules of a scenario at work in one episode. Its state is plain data: a clone is a snapshot, and what is hashed is what the
-/// future depends on.
+/// The rules of a scenario at work in one episode. Its state is plain data: a clone is a snapshot,
+/// and what is hashed is what the future depends on.
 pub trait Rules: fmt::Debug + Send + Sync {
     /// The world is there, and no tic has run.
     fn prepare(&self, _world: &mut World) {}
@@ -20,7 +21,8 @@ pub trait Rules: fmt::Debug + Send + Sync {
     /// The script phase of a tic: what the map's scripts do after everything has moved.
     fn script(&mut self, world: &mut World, outcome: &mut Outcome);
 
-    /// A policy step is over, and perhaps the episode by death or the rules: counts what is counted by the step.
+    /// A policy step is over, and perhaps the episode by death or the rules: counts what is counted
+    /// by the step.
     fn end_step(&mut self, _world: &World, _over: bool, _outcome: &mut Outcome) {}
 
     /// Statistics of the episode so far, by name: always the same names in the same order.
@@ -30,7 +32,8 @@ pub trait Rules: fmt::Debug + Send + Sync {
 /// What a boxed value of rules can do beside: be copied and hashed without its type being known.
 trait State: Rules + Any {
     fn boxed(&self) -> Box<dyn State>;
-    /// Becomes a copy of another value of the same type, in the memory that it has; false where the other is of another type.
+    /// Becomes a copy of another value of the same type, in the memory that it has; false where the
+    /// other is of another type.
     fn copy_from(&mut self, other: &dyn State) -> bool;
     fn feed(&self, hasher: &mut dyn Hasher);
 }

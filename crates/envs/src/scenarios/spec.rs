@@ -6,7 +6,8 @@ use crate::{CostTerm, EnvError, RuleSet};
 use hasard_engine::map::{Map, MapSource};
 use std::fmt;
 
-/// Length of an episode, in tics after its first observation; in Collateral Damage mostly a little less.
+/// Length of an episode, in tics after its first observation; in Collateral Damage mostly a little
+/// less.
 pub const EPISODE_TICS: u32 = 2100;
 
 /// Which of a scenario's worlds is asked for.
@@ -97,8 +98,8 @@ pub struct ScenarioSpec {
     pub cost_terms: &'static [CostTerm],
     /// Textures beyond its map's own that its rules use.
     pub textures: &'static [&'static str],
-    /// Levels whose published package has a map of its own for the hard constraint that is played under every rule set, rather than
-    /// under those alone that follow the published worlds.
+    /// Levels whose published package has a map of its own for the hard constraint that is played
+    /// under every rule set, rather than under those alone that follow the published worlds.
     pub hard_map: bool,
     /// It has other creatures on request: see [`crate::EnvOptions::early_creatures`].
     pub early_creatures: bool,
@@ -106,7 +107,8 @@ pub struct ScenarioSpec {
     pub rockets_shed: bool,
     /// Reward of a step beyond the budget, to PPOSaute.
     pub saute_unsafe_reward: f64,
-    /// PPOCost's price of a unit of cost, by preset (paper, released, tables) and constraint (soft, hard).
+    /// PPOCost's price of a unit of cost, by preset (paper, released, tables) and constraint (soft,
+    /// hard).
     pub penalty_scales: [[f64; 2]; 3],
     /// Place in the paper's tables, from 0.
     pub paper_place: usize,
@@ -123,7 +125,12 @@ pub struct ScenarioSpec {
 impl ScenarioSpec {
     /// What a scenario has unless it says otherwise; a base for struct updates.
     #[must_use]
-    pub const fn of(name: &'static str, title: &'static str, summary: &'static str, task: &'static dyn Task) -> ScenarioSpec {
+    pub const fn of(
+        name: &'static str,
+        title: &'static str,
+        summary: &'static str,
+        task: &'static dyn Task,
+    ) -> ScenarioSpec {
         ScenarioSpec {
             name,
             title,

@@ -3,8 +3,8 @@
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::{ActorId, ActorKind, World};
 
-/// Tries to find a free place before giving up: far more than any scenario needs, so that a map without a free place (a user's
-/// own, say) cannot hang an episode.
+/// Tries to find a free place before giving up: far more than any scenario needs, so that a map
+/// without a free place (a user's own, say) cannot hang an episode.
 const TRIES: u32 = 10_000;
 
 /// A rectangle of the plane: west, south, east, north; map units.
@@ -17,13 +17,26 @@ pub fn point_in(world: &mut World, [west, south, east, north]: Area) -> (Fixed, 
     (x, y)
 }
 
-/// Places an actor at a random point of an area where it fits, at height `z`; inside rock as well, where nobody gets at it.
-pub fn scatter(world: &mut World, kind: ActorKind, area: Area, z: i32, tid: i32) -> Option<ActorId> {
+/// Places an actor at a random point of an area where it fits, at height `z`; inside rock as well,
+/// where nobody gets at it.
+pub fn scatter(
+    world: &mut World,
+    kind: ActorKind,
+    area: Area,
+    z: i32,
+    tid: i32,
+) -> Option<ActorId> {
     scatter_where(world, kind, area, z, tid, |_, _, _| true)
 }
 
 /// The same, but never inside rock.
-pub fn scatter_inside(world: &mut World, kind: ActorKind, area: Area, z: i32, tid: i32) -> Option<ActorId> {
+pub fn scatter_inside(
+    world: &mut World,
+    kind: ActorKind,
+    area: Area,
+    z: i32,
+    tid: i32,
+) -> Option<ActorId> {
     scatter_where(world, kind, area, z, tid, |world, x, y| world.map.is_inside(x, y))
 }
 
@@ -46,19 +59,21 @@ fn scatter_where(
     None
 }
 
-/// Moves the player's body to a random point of an area where it fits, at height `z`. Never into rock, where the original locks
-/// an agent up now and then.
+/// Moves the player's body to a random point of an area where it fits, at height `z`. Never into
+/// rock, where the original locks an agent up now and then.
 pub fn scatter_player(world: &mut World, area: Area, z: i32) {
     for _ in 0..TRIES {
         let (x, y) = point_in(world, area);
-        if world.map.is_inside(x, y) && world.set_position(world.players[0].actor, x, y, Fixed::from_int(z)) {
+        if world.map.is_inside(x, y)
+            && world.set_position(world.players[0].actor, x, y, Fixed::from_int(z))
+        {
             return;
         }
     }
 }
 
-/// One of the directions that the scenarios' scripts give the agent: multiples of a little more than 256 degrees, which are some
-/// 45 directions all around.
+/// One of the directions that the scenarios' scripts give the agent: multiples of a little more
+/// than 256 degrees, which are some 45 directions all around.
 pub fn random_angle(world: &mut World) -> Angle {
     Angle::from_turn_65536(world.rng.between(0, 255) * 46603)
 }

@@ -2,7 +2,8 @@
 
 use std::hash::{Hash, Hasher};
 
-/// What is counted of an episode though nothing in it depends on the count: no part of its fingerprint.
+/// What is counted of an episode though nothing in it depends on the count: no part of its
+/// fingerprint.
 #[derive(Clone, Debug, Default)]
 pub struct Tally<T>(pub T);
 

@@ -5,7 +5,11 @@ use super::{LaneState, Restart, VecEnv};
 use crate::{Batch, EnvError, Environment};
 
 /// Whether a lane's environment fits into a batch with the first one's.
-pub(super) fn alike(first: &dyn Environment, env: &dyn Environment, lane: usize) -> Result<(), EnvError> {
+pub(super) fn alike(
+    first: &dyn Environment,
+    env: &dyn Environment,
+    lane: usize,
+) -> Result<(), EnvError> {
     let unlike = |what| Err(EnvError::Unlike { lane, what });
     if env.action_space().groups.is_empty() && env.action_space().deltas.is_empty() {
         unlike("action space (which may not be empty)")
@@ -23,7 +27,8 @@ pub(super) fn alike(first: &dyn Environment, env: &dyn Environment, lane: usize)
 }
 
 impl VecEnv {
-    /// What is wrong with a group's batch (`group` = [`VecEnv::groups`] for all lanes), if anything.
+    /// What is wrong with a group's batch (`group` = [`VecEnv::groups`] for all lanes), if
+    /// anything.
     pub fn check(&self, group: usize, batch: &Batch) -> Result<(), EnvError> {
         self.check_lengths(self.group_lanes(group).len(), batch)
     }
@@ -50,12 +55,15 @@ impl VecEnv {
         Ok(())
     }
 
-    /// Whether each lane's action lies in the action space; a wrong one is told with its lane of the whole.
+    /// Whether each lane's action lies in the action space; a wrong one is told with its lane of
+    /// the whole.
     pub(super) fn check_actions(&self, batch: &Batch, lanes: &Chosen) -> Result<(), EnvError> {
         let (groups, continuous) = (self.space.groups.len(), self.space.deltas.len());
         for index in 0..lanes.count() {
-            let actions = batch.actions.get(index * groups..(index + 1) * groups).unwrap_or_default();
-            let deltas = batch.deltas.get(index * continuous..(index + 1) * continuous).unwrap_or_default();
+            let actions =
+                batch.actions.get(index * groups..(index + 1) * groups).unwrap_or_default();
+            let deltas =
+                batch.deltas.get(index * continuous..(index + 1) * continuous).unwrap_or_default();
             self.space.check(lanes.lane(index), actions, deltas)?;
         }
         Ok(())
@@ -65,9 +73,16 @@ impl VecEnv {
     pub(super) fn check_lanes(&self, lanes: &[usize]) -> Result<(), EnvError> {
         let mut seen = vec![false; self.options.lanes];
         for &lane in lanes {
-            let refused = |allowed| Err(EnvError::Option { option: "a lane to step", given: lane.to_string(), allowed });
+            let refused = |allowed| {
+                Err(EnvError::Option { option: "a lane to step", given: lane.to_string(), allowed })
+            };
             match seen.get_mut(lane) {
-                None => return refused(format!("less than {}, the number of lanes", self.options.lanes)),
+                None => {
+                    return refused(format!(
+                        "less than {}, the number of lanes",
+                        self.options.lanes
+                    ));
+                }
                 Some(true) => return refused("named once".to_string()),
                 Some(seen) => *seen = true,
             }
@@ -81,7 +96,10 @@ impl VecEnv {
 
     pub(super) fn check_states(&self, states: &[LaneState]) -> Result<(), EnvError> {
         self.one_of_each_lane("the number of saved lanes", states.len())?;
-        states.iter().enumerate().try_for_each(|(lane, state)| state.check(lane, &self.space).map(|_| ()))
+        states
+            .iter()
+            .enumerate()
+            .try_for_each(|(lane, state)| state.check(lane, &self.space).map(|_| ()))
     }
 
     fn one_of_each_lane(&self, option: &'static str, given: usize) -> Result<(), EnvError> {
@@ -106,8 +124,12 @@ impl VecEnv {
             return Err(EnvError::Panicked { message: message.clone() });
         }
         let whole = self.options.groups;
-        if self.crew.under_way(slot) || (slot == whole && (0..whole).any(|group| self.crew.under_way(group))) {
-            return Err(EnvError::Turn { why: "a group of lanes is under way; receive it first".to_string() });
+        if self.crew.under_way(slot)
+            || (slot == whole && (0..whole).any(|group| self.crew.under_way(group)))
+        {
+            return Err(EnvError::Turn {
+                why: "a group of lanes is under way; receive it first".to_string(),
+            });
         }
         Ok(())
     }

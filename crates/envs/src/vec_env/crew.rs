@@ -11,7 +11,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
-/// Who steps the lanes. A group's batch lies in the slot of its number; the slot after the last is for all lanes together.
+/// Who steps the lanes. A group's batch lies in the slot of its number; the slot after the last is
+/// for all lanes together.
 pub(super) enum Crew {
     /// The caller's thread; a batch is stepped when it is given.
     Caller { lanes: Vec<Lane>, ready: Vec<Option<(Batch, Outbox)>>, manner: Manner },
@@ -23,26 +24,38 @@ impl Crew {
     /// Hires as many threads as the options say.
     pub fn new(lanes: Vec<Lane>, options: VecOptions) -> Result<Crew, EnvError> {
         let slots = || 0..=options.groups;
-        let manner = Manner { autoreset: options.autoreset, final_observations: options.final_observations };
+        let manner =
+            Manner { autoreset: options.autoreset, final_observations: options.final_observations };
         if options.threads == 0 {
             return Ok(Crew::Caller { lanes, ready: slots().map(|_| None).collect(), manner });
         }
         let shared = Arc::new(Shared {
             lanes: Lanes::new(lanes),
             slots: slots().map(|_| Slot::new()).collect(),
-            outboxes: (0..=options.threads).map(|_| slots().map(|_| Mutex::default()).collect()).collect(),
+            outboxes: (0..=options.threads)
+                .map(|_| slots().map(|_| Mutex::default()).collect())
+                .collect(),
             given: AtomicU64::new(0),
             stop: AtomicBool::new(false),
             manner,
         });
-        let mut crew = Crew::Workers { shared: Arc::clone(&shared), threads: Vec::new(), busy: slots().map(|_| false).collect() };
+        let mut crew = Crew::Workers {
+            shared: Arc::clone(&shared),
+            threads: Vec::new(),
+            busy: slots().map(|_| false).collect(),
+        };
         for worker in 0..options.threads {
             let shared = Arc::clone(&shared);
-            let thread = std::thread::Builder::new().name(format!("worlds {worker}")).spawn(move || worker::work(worker, shared));
+            let thread = std::thread::Builder::new()
+                .name(format!("worlds {worker}"))
+                .spawn(move || worker::work(worker, shared));
             let thread = thread.map_err(|error| EnvError::Option {
                 option: "the number of threads",
                 given: options.threads.to_string(),
-                allowed: format!("what the system grants; it refused number {} ({error})", worker + 1),
+                allowed: format!(
+                    "what the system grants; it refused number {} ({error})",
+                    worker + 1
+                ),
             })?;
             if let Crew::Workers { threads, .. } = &mut crew {
                 threads.push(thread);
@@ -64,8 +77,11 @@ impl Crew {
         match self {
             Crew::Caller { lanes, ready, manner } => {
                 let mut outbox = Outbox::default();
-                let result = catch_unwind(AssertUnwindSafe(|| step(lanes, &mut batch, &task, *manner, &mut outbox)));
-                outbox.panic = result.err().map(|panic| worker::panic_text(&*panic)).or(outbox.panic.take());
+                let result = catch_unwind(AssertUnwindSafe(|| {
+                    step(lanes, &mut batch, &task, *manner, &mut outbox)
+                }));
+                outbox.panic =
+                    result.err().map(|panic| worker::panic_text(&*panic)).or(outbox.panic.take());
                 ready[slot] = Some((batch, outbox));
             }
             Crew::Workers { shared, threads, busy } => {
@@ -77,7 +93,8 @@ impl Crew {
         }
     }
 
-    /// Waits for a batch, helping with it, and takes it back with its reports; `None` if none was given.
+    /// Waits for a batch, helping with it, and takes it back with its reports; `None` if none was
+    /// given.
     pub fn take(&mut self, slot: usize) -> Option<(Batch, Outbox)> {
         match self {
             Crew::Caller { ready, .. } => ready[slot].take(),
@@ -89,7 +106,9 @@ impl Crew {
                 let batch = shared.slots[slot].take();
                 let mut reports = Outbox::default();
                 for outboxes in &shared.outboxes {
-                    reports.append(&mut outboxes[slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner()));
+                    reports.append(
+                        &mut outboxes[slot].lock().unwrap_or_else(|poisoned| poisoned.into_inner()),
+                    );
                 }
                 Some((batch, reports))
             }

@@ -1,17 +1,20 @@
-//! The hand-over of a batch to whoever steps its lanes, and back: the only unsafe code of this crate.
+//! The hand-over of a batch to whoever steps its lanes, and back: the only unsafe code of this
+//! crate.
 //!
-//! Why unsafe: several threads step disjoint lanes and write disjoint parts of the same contiguous buffers, which the borrow
-//! checker cannot see. The invariants that make it sound:
-//! 1. A slot is `IDLE` (its contents belong to the owner) or `BUSY` (they belong to those who claim lanes); only
-//!    [`Slot::give`] and [`Slot::take`] change that, and `take` succeeds only after every lane has been claimed and done.
-//! 2. The slot's counter hands out each lane of a batch once. It holds the number of lanes beside the next one, so that a claim
-//!    is judged by the batch that it falls into, not by the one before. A thread touches a lane, and that lane's parts of the
-//!    batch, only between its claim and its being done; so a claim always belongs to the batch that is in the slot.
-//! 3. Slots that share lanes are never busy at the same time, and no lane is chosen twice for a batch: the owner sees to that
-//!    (`VecEnv::check_turn`, `VecEnv::check_lanes`).
+//! Why unsafe: several threads step disjoint lanes and write disjoint parts of the same contiguous
+//! buffers, which the borrow checker cannot see. The invariants that make it sound:
+//! 1. A slot is `IDLE` (its contents belong to the owner) or `BUSY` (they belong to those who claim
+//!    lanes); only [`Slot::give`] and [`Slot::take`] change that, and `take` succeeds only after
+//!    every lane has been claimed and done.
+//! 2. The slot's counter hands out each lane of a batch once. It holds the number of lanes beside
+//!    the next one, so that a claim is judged by the batch that it falls into, not by the one
+//!    before. A thread touches a lane, and that lane's parts of the batch, only between its claim
+//!    and its being done; so a claim always belongs to the batch that is in the slot.
+//! 3. Slots that share lanes are never busy at the same time, and no lane is chosen twice for a
+//!    batch: the owner sees to that (`VecEnv::check_turn`, `VecEnv::check_lanes`).
 //!
-//! The safe twin is the batch of worlds without threads, which slices the same buffers by the borrow checker's rules; tests
-//! compare both.
+//! The safe twin is the batch of worlds without threads, which slices the same buffers by the
+//! borrow checker's rules; tests compare both.
 
 use super::job::{Chosen, Job, Task};
 use super::lane::{Lane, LaneSlices};
@@ -31,7 +34,8 @@ const SPINS: u32 = 2000;
 /// The lanes of a batch of worlds, for whoever has claimed one.
 pub(super) struct Lanes(Box<[UnsafeCell<Lane>]>);
 
-// SAFETY: a lane is reached by the thread that has claimed it alone, as the invariants above say; lanes are `Send`.
+// SAFETY: a lane is reached by the thread that has claimed it alone, as the invariants above say;
+// lanes are `Send`.
 unsafe impl Sync for Lanes {}
 
 const fn may_move_to_other_threads<T: Send>() {}
@@ -91,13 +95,14 @@ impl<T> Raw<T> {
     unsafe fn part<'a>(&self, lane: usize, lane_count: usize) -> &'a mut [T] {
         assert!(lane < lane_count);
         let each = self.length / lane_count;
-        // SAFETY: inside of the buffer by the assertion; alive and exclusive by the caller's promise.
+        // SAFETY: inside of the buffer by the assertion; alive and exclusive by the caller's
+        // promise.
         unsafe { std::slice::from_raw_parts_mut(self.start.add(lane * each), each) }
     }
 }
 
-// SAFETY: the contents are reached by one side at a time, as the invariants above say; they hold nothing bound to a thread
-// (the task is required to be `Send + Sync` below).
+// SAFETY: the contents are reached by one side at a time, as the invariants above say; they hold
+// nothing bound to a thread (the task is required to be `Send + Sync` below).
 unsafe impl Sync for Slot {}
 // SAFETY: as above; the raw pointers point into `batch`, whose buffers do not move with the slot.
 unsafe impl Send for Slot {}
@@ -155,7 +160,8 @@ impl Slot {
         assert!(self.change(IDLE), "a batch was given to a busy slot");
         let count = task.lanes.count();
         self.pending.store(count, Ordering::Relaxed);
-        // SAFETY: the slot was idle and is now `CHANGING`, so this thread alone reaches the contents.
+        // SAFETY: the slot was idle and is now `CHANGING`, so this thread alone reaches the
+        // contents.
         let contents = unsafe { &mut *self.contents.get() };
         contents.batch = batch;
         contents.task = task;
@@ -179,18 +185,25 @@ impl Slot {
         self.state.compare_exchange(from, CHANGING, Ordering::Acquire, Ordering::Relaxed).is_ok()
     }
 
-    /// Claims one of the slot's lanes and runs `work` with its number in the batch, the lane, its parts of the batch and what is
-    /// to be done. Tells whether there was a lane left.
-    pub fn claim(&self, lanes: &Lanes, work: impl FnOnce(usize, &mut Lane, LaneSlices, &Job)) -> bool {
+    /// Claims one of the slot's lanes and runs `work` with its number in the batch, the lane, its
+    /// parts of the batch and what is to be done. Tells whether there was a lane left.
+    pub fn claim(
+        &self,
+        lanes: &Lanes,
+        work: impl FnOnce(usize, &mut Lane, LaneSlices, &Job),
+    ) -> bool {
         // Looking first keeps the counter from rising for ever while there is nothing to do.
         if claimed(self.next.load(Ordering::Relaxed)).is_none() {
             return false;
         }
-        let Some((index, count)) = claimed(self.next.fetch_add(1, Ordering::AcqRel)) else { return false };
-        // SAFETY: the number was seen with `Acquire`, so the contents are written; until this lane is done they stay in the
-        // slot and are only read.
+        let Some((index, count)) = claimed(self.next.fetch_add(1, Ordering::AcqRel)) else {
+            return false;
+        };
+        // SAFETY: the number was seen with `Acquire`, so the contents are written; until this lane
+        // is done they stay in the slot and are only read.
         let contents = unsafe { &*self.contents.get() };
-        // SAFETY: the counter gave this lane to this thread alone, until it is done, and no other busy slot has it.
+        // SAFETY: the counter gave this lane to this thread alone, until it is done, and no other
+        // busy slot has it.
         let lane = unsafe { &mut *lanes.0[contents.task.lanes.lane(index)].get() };
         // SAFETY: as for the lane; the batch's buffers are alive as long as it stays in the slot.
         let slices = unsafe {
@@ -207,12 +220,14 @@ impl Slot {
                 truncated: contents.truncated.part(index, count),
             }
         };
-        // A panic would leave the lane undone and the owner waiting: it is caught by `work`, or ends the program.
+        // A panic would leave the lane undone and the owner waiting: it is caught by `work`, or
+        // ends the program.
         let guard = AbortOnPanic;
         work(index, lane, slices, &contents.task.job);
         std::mem::forget(guard);
         if self.pending.fetch_sub(1, Ordering::SeqCst) == 1
-            && let Some(thread) = self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
+            && let Some(thread) =
+                self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
         {
             thread.unpark();
         }
@@ -229,16 +244,19 @@ impl Slot {
             std::hint::spin_loop();
         }
         while !ready() {
-            // Registered before the last look, so that the last worker either sees the waiter or is seen to be done; and
-            // registered anew after every wake: it may come from a worker of the batch before, late in its claim, which has
-            // then taken the waiter that this batch's last worker needs.
-            *self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(std::thread::current());
+            // Registered before the last look, so that the last worker either sees the waiter or is
+            // seen to be done; and registered anew after every wake: it may come from a worker of
+            // the batch before, late in its claim, which has then taken the waiter that this
+            // batch's last worker needs.
+            *self.waiter.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) =
+                Some(std::thread::current());
             if !ready() {
                 std::thread::park();
             }
         }
         assert!(self.change(BUSY), "a batch was taken from an idle slot");
-        // SAFETY: every lane is done (what was written is seen through `pending`), and the slot is `CHANGING`.
+        // SAFETY: every lane is done (what was written is seen through `pending`), and the slot is
+        // `CHANGING`.
         let batch = std::mem::take(unsafe { &mut (*self.contents.get()).batch });
         self.state.store(IDLE, Ordering::Release);
         batch

@@ -13,8 +13,8 @@ pub enum Restart {
     /// Its next episode starts.
     #[default]
     Next,
-    /// Its stream of episode seeds starts anew from this seed, and its first episode starts. The stream is that of
-    /// lane 0 of a batch made with this seed, wherever the lane stands.
+    /// Its stream of episode seeds starts anew from this seed, and its first episode starts. The
+    /// stream is that of lane 0 of a batch made with this seed, wherever the lane stands.
     Seed(u64),
 }
 
@@ -69,14 +69,22 @@ impl Chosen {
 
 impl Job {
     /// Does the job with one lane, which is number `index` of its batch.
-    pub fn run(&self, lane: &mut Lane, index: usize, manner: Manner, slices: LaneSlices, outbox: &mut Outbox) {
+    pub fn run(
+        &self,
+        lane: &mut Lane,
+        index: usize,
+        manner: Manner,
+        slices: LaneSlices,
+        outbox: &mut Outbox,
+    ) {
         match self {
             Job::Reset => lane.reset(Restart::Next, slices),
             Job::Restart(how) => lane.reset(how[lane.index], slices),
             Job::Step => lane.step(index, manner, slices, outbox),
             Job::Seed(seed) => lane.reseed(*seed),
             Job::Save(states) => {
-                states.lock().unwrap_or_else(|poisoned| poisoned.into_inner())[lane.index] = lane.state();
+                states.lock().unwrap_or_else(|poisoned| poisoned.into_inner())[lane.index] =
+                    lane.state();
             }
             Job::Restore(states) => lane.restore(&states[lane.index], slices),
         }

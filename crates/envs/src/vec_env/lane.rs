@@ -62,17 +62,29 @@ impl<'a> LaneSlices<'a> {
     }
 
     /// Writes what a step brought, but for the observation.
-    fn note(&mut self, step: Step, env: &dyn Environment, moved: bool, scratch: &mut Vec<(&'static str, f64)>) {
+    fn note(
+        &mut self,
+        step: Step,
+        env: &dyn Environment,
+        moved: bool,
+        scratch: &mut Vec<(&'static str, f64)>,
+    ) {
         self.rewards[0] = step.reward as f32;
         self.costs[0] = step.cost as f32;
         self.cost_terms.fill(0.0);
         if moved {
-            self.cost_terms.iter_mut().zip(env.step_costs()).for_each(|(out, &term)| *out = term as f32);
+            self.cost_terms
+                .iter_mut()
+                .zip(env.step_costs())
+                .for_each(|(out, &term)| *out = term as f32);
         }
         if !self.statistics.is_empty() {
             scratch.clear();
             env.stats(scratch);
-            self.statistics.iter_mut().zip(scratch.iter()).for_each(|(out, &(_, value))| *out = value);
+            self.statistics
+                .iter_mut()
+                .zip(scratch.iter())
+                .for_each(|(out, &(_, value))| *out = value);
         }
         self.positions[0] = env.position();
         self.terminated[0] = step.terminated;
@@ -114,8 +126,9 @@ impl Outbox {
     }
 }
 
-/// What is wrong with the costs of an episode, if they are not those of all terms of its environment: whoever holds a term
-/// against a budget relies on it, and a term left out would pass for one that cost nothing.
+/// What is wrong with the costs of an episode, if they are not those of all terms of its
+/// environment: whoever holds a term against a budget relies on it, and a term left out would pass
+/// for one that cost nothing.
 fn unreported(env: &dyn Environment, episode: &Episode) -> Option<String> {
     let reported = episode.costs.iter().map(|one| (one.name, one.counted));
     let terms = env.cost_terms().iter().map(|term| (term.name, term.counted));
@@ -129,8 +142,8 @@ pub(super) struct Manner {
     pub final_observations: FinalObservations,
 }
 
-/// One environment of the batch. Its episodes follow from the batch's seed and its own number alone, whatever the batch's width,
-/// the number of threads and the way of stepping.
+/// One environment of the batch. Its episodes follow from the batch's seed and its own number
+/// alone, whatever the batch's width, the number of threads and the way of stepping.
 pub(super) struct Lane {
     /// Place in the whole batch.
     pub index: usize,
@@ -153,9 +166,20 @@ impl Lane {
     pub fn new(index: usize, number: u64, seed: u64, env: Box<dyn Environment>) -> Lane {
         // Room for an episode at frame skip 1, so that stepping never allocates.
         let (groups, deltas) = (env.action_space().groups.len(), env.action_space().deltas.len());
-        let (actions, deltas) = (Vec::with_capacity(2104 * groups), Vec::with_capacity(2104 * deltas));
+        let (actions, deltas) =
+            (Vec::with_capacity(2104 * groups), Vec::with_capacity(2104 * deltas));
         let seeds = Rng::for_lane(seed, number);
-        Lane { index, number, env, seeds, seed: 0, actions, deltas, ended: None, scratch: Vec::new() }
+        Lane {
+            index,
+            number,
+            env,
+            seeds,
+            seed: 0,
+            actions,
+            deltas,
+            ended: None,
+            scratch: Vec::new(),
+        }
     }
 
     /// The environment.
@@ -228,7 +252,13 @@ impl Lane {
     }
 
     /// Steps the lane by its action. `index` is its number within the batch.
-    pub fn step(&mut self, index: usize, manner: Manner, mut slices: LaneSlices, outbox: &mut Outbox) {
+    pub fn step(
+        &mut self,
+        index: usize,
+        manner: Manner,
+        mut slices: LaneSlices,
+        outbox: &mut Outbox,
+    ) {
         let (step, moved) = match (self.ended, manner.autoreset) {
             (Some(_), Autoreset::NextStep) => {
                 self.next_episode();
@@ -248,7 +278,8 @@ impl Lane {
         };
         slices.note(step, &*self.env, moved, &mut self.scratch);
         if step.ended() && manner.autoreset == Autoreset::SameStep {
-            let keep = manner.final_observations == FinalObservations::Every || (step.truncated && !step.terminated);
+            let keep = manner.final_observations == FinalObservations::Every
+                || (step.truncated && !step.terminated);
             if keep {
                 let mut last = vec![0; slices.observations.len()];
                 self.env.observe(&mut last);

@@ -19,14 +19,17 @@ pub struct LaneState {
 const HEAD: [u8; 8] = *b"hslanes\x01";
 
 impl LaneState {
-    /// Lanes as bytes, the same on every platform: a head with the format's version, the number of lanes, then each lane's two
-    /// seeds, the numbers of its sub-actions and the sub-actions; little-endian.
+    /// Lanes as bytes, the same on every platform: a head with the format's version, the number of
+    /// lanes, then each lane's two seeds, the numbers of its sub-actions and the sub-actions;
+    /// little-endian.
     #[must_use]
     pub fn to_bytes(lanes: &[LaneState]) -> Vec<u8> {
         let mut bytes = HEAD.to_vec();
         bytes.extend((lanes.len() as u64).to_le_bytes());
         for lane in lanes {
-            for number in [lane.seeds, lane.seed, lane.actions.len() as u64, lane.deltas.len() as u64] {
+            for number in
+                [lane.seeds, lane.seed, lane.actions.len() as u64, lane.deltas.len() as u64]
+            {
                 bytes.extend(number.to_le_bytes());
             }
             bytes.extend(&lane.actions);
@@ -43,7 +46,9 @@ impl LaneState {
             return Err(spoiled("they do not begin as saved lanes do"));
         }
         if head != HEAD {
-            return Err(spoiled("another version wrote them; load them with that version of hasard"));
+            return Err(spoiled(
+                "another version wrote them; load them with that version of hasard",
+            ));
         }
         let lanes = number(&mut rest)?;
         // A lane takes 32 bytes at least: no list longer than the bytes can fill is ever made.
@@ -53,25 +58,38 @@ impl LaneState {
         let mut states = Vec::with_capacity(lanes as usize);
         for _ in 0..lanes {
             let [seeds, seed] = [number(&mut rest)?, number(&mut rest)?];
-            let [actions, deltas] =
-                [number(&mut rest)?, number(&mut rest)?].map(|count| usize::try_from(count).unwrap_or(usize::MAX));
+            let [actions, deltas] = [number(&mut rest)?, number(&mut rest)?]
+                .map(|count| usize::try_from(count).unwrap_or(usize::MAX));
             let actions = cut(&mut rest, actions)?.to_vec();
             let deltas = cut(&mut rest, deltas.saturating_mul(4))?;
-            let deltas = deltas.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect();
+            let deltas = deltas
+                .chunks_exact(4)
+                .map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]))
+                .collect();
             states.push(LaneState { seeds, seed, actions, deltas });
         }
-        if rest.is_empty() { Ok(states) } else { Err(spoiled("more bytes follow than the lanes take")) }
+        if rest.is_empty() {
+            Ok(states)
+        } else {
+            Err(spoiled("more bytes follow than the lanes take"))
+        }
     }
 
-    /// Number of steps of the episode so far; an error if it is not whole or holds an action that the space has not.
+    /// Number of steps of the episode so far; an error if it is not whole or holds an action that
+    /// the space has not.
     pub(super) fn check(&self, lane: usize, space: &ActionSpace) -> Result<usize, EnvError> {
         let steps = self.steps(space);
         for i in 0..steps {
             let (actions, deltas) = self.action(i, space);
             space.check(lane, actions, deltas)?;
         }
-        if self.actions.len() != steps * space.groups.len() || self.deltas.len() != steps * space.deltas.len() {
-            return Err(EnvError::Action { lane, why: "a saved episode does not fit the action space".to_string() });
+        if self.actions.len() != steps * space.groups.len()
+            || self.deltas.len() != steps * space.deltas.len()
+        {
+            return Err(EnvError::Action {
+                lane,
+                why: "a saved episode does not fit the action space".to_string(),
+            });
         }
         Ok(steps)
     }
@@ -79,7 +97,9 @@ impl LaneState {
     /// Number of whole steps; spaces may lack categorical parts, or continuous ones, but not both.
     pub(super) fn steps(&self, space: &ActionSpace) -> usize {
         let parts = |given: usize, each: usize| given.checked_div(each).unwrap_or(usize::MAX);
-        match parts(self.actions.len(), space.groups.len()).min(parts(self.deltas.len(), space.deltas.len())) {
+        match parts(self.actions.len(), space.groups.len())
+            .min(parts(self.deltas.len(), space.deltas.len()))
+        {
             usize::MAX => 0,
             steps => steps,
         }
@@ -88,7 +108,10 @@ impl LaneState {
     /// The action of a step.
     pub(super) fn action(&self, step: usize, space: &ActionSpace) -> (&[u8], &[f32]) {
         let (groups, deltas) = (space.groups.len(), space.deltas.len());
-        (&self.actions[step * groups..(step + 1) * groups], &self.deltas[step * deltas..(step + 1) * deltas])
+        (
+            &self.actions[step * groups..(step + 1) * groups],
+            &self.deltas[step * deltas..(step + 1) * deltas],
+        )
     }
 }
 
@@ -113,7 +136,12 @@ mod tests {
     use super::*;
 
     fn lanes() -> Vec<LaneState> {
-        let lane = |seed: u64| LaneState { seeds: !seed, seed, actions: vec![1, 2, 3, seed as u8], deltas: vec![0.5, -1.0] };
+        let lane = |seed: u64| LaneState {
+            seeds: !seed,
+            seed,
+            actions: vec![1, 2, 3, seed as u8],
+            deltas: vec![0.5, -1.0],
+        };
         vec![lane(1), LaneState::default(), lane(u64::MAX)]
     }
 
@@ -131,7 +159,13 @@ mod tests {
         }
         let longer = [&bytes[..], &[0]].concat();
         assert!(LaneState::from_bytes(&longer).is_err());
-        for (at, what) in [(0, "do not begin"), (7, "version"), (15, "end early"), (39, "end early"), (47, "end early")] {
+        for (at, what) in [
+            (0, "do not begin"),
+            (7, "version"),
+            (15, "end early"),
+            (39, "end early"),
+            (47, "end early"),
+        ] {
             let mut spoiled = bytes.clone();
             spoiled[at] = 0xff;
             let error = LaneState::from_bytes(&spoiled).unwrap_err().to_string();

@@ -1,4 +1,5 @@
-//! The batch of worlds: many environments stepped side by side by worker threads and the caller that waits for them.
+//! The batch of worlds: many environments stepped side by side by worker threads and the caller
+//! that waits for them.
 
 mod checks;
 mod crew;
@@ -22,9 +23,10 @@ use std::sync::{Arc, Mutex};
 
 /// A batch of worlds.
 ///
-/// Either all lanes step together ([`reset`](VecEnv::reset), [`step`](VecEnv::step)), or each group by itself
-/// ([`send`](VecEnv::send), [`recv`](VecEnv::recv)): then a policy works on one group while the others step. A lane's episodes
-/// depend on the batch's seed and the lane's number alone; the number of threads, the batch's width and the way of stepping change nothing.
+/// Either all lanes step together ([`reset`](VecEnv::reset), [`step`](VecEnv::step)), or each group
+/// by itself ([`send`](VecEnv::send), [`recv`](VecEnv::recv)): then a policy works on one group
+/// while the others step. A lane's episodes depend on the batch's seed and the lane's number alone;
+/// the number of threads, the batch's width and the way of stepping change nothing.
 ///
 /// ```
 /// use hasard_envs::{EnvOptions, VecEnv, VecOptions};
@@ -60,14 +62,19 @@ pub struct VecEnv {
 }
 
 impl VecEnv {
-    /// A batch of one environment of the benchmark; map, pictures and tables are shared by all lanes.
-    pub fn new(id: &str, env_options: &EnvOptions, options: VecOptions) -> Result<VecEnv, EnvError> {
+    /// A batch of one environment of the benchmark; map, pictures and tables are shared by all
+    /// lanes.
+    pub fn new(
+        id: &str,
+        env_options: &EnvOptions,
+        options: VecOptions,
+    ) -> Result<VecEnv, EnvError> {
         let first = Env::new(id, env_options)?;
         VecEnv::from_fn(options, |_| Ok(Box::new(first.sibling())))
     }
 
-    /// A batch of any environments; `make` is given the lane's index. All must be alike: the same actions, shape of observations,
-    /// cost terms and statistics.
+    /// A batch of any environments; `make` is given the lane's index. All must be alike: the same
+    /// actions, shape of observations, cost terms and statistics.
     pub fn from_fn(
         options: VecOptions,
         mut make: impl FnMut(usize) -> Result<Box<dyn Environment>, EnvError>,
@@ -81,7 +88,8 @@ impl VecEnv {
             lanes.push(Lane::new(index, number, options.seed, env));
         }
         let env = lanes[0].env();
-        let (space, observation_shape, cost_terms) = (env.action_space().clone(), env.observation_shape(), env.cost_terms());
+        let (space, observation_shape, cost_terms) =
+            (env.action_space().clone(), env.observation_shape(), env.cost_terms());
         let (statistics, extent) = (env.stat_names(), env.extent());
         let slots = || 0..=options.groups;
         Ok(VecEnv {
@@ -122,7 +130,8 @@ impl VecEnv {
         &self.statistics
     }
 
-    /// The map's extent: x from, y from, x to, y to in map units; `None` for environments without places.
+    /// The map's extent: x from, y from, x to, y to in map units; `None` for environments without
+    /// places.
     #[must_use]
     pub const fn extent(&self) -> Option<[i32; 4]> {
         self.extent
@@ -146,8 +155,9 @@ impl VecEnv {
         self.options.group_lanes(group)
     }
 
-    /// Which lanes' episodes are over without the next one having begun, `[lanes]`: under [`Autoreset::Disabled`] those that rest until
-    /// they are reset, under [`Autoreset::NextStep`] those whose next step starts an episode.
+    /// Which lanes' episodes are over without the next one having begun, `[lanes]`: under
+    /// [`Autoreset::Disabled`] those that rest until they are reset, under [`Autoreset::NextStep`]
+    /// those whose next step starts an episode.
     #[must_use]
     pub fn resting(&self) -> &[bool] {
         &self.resting
@@ -190,13 +200,14 @@ impl VecEnv {
         }
     }
 
-    /// Starts the next episode in every lane. The batch's outputs are then those of a step that brought nothing.
+    /// Starts the next episode in every lane. The batch's outputs are then those of a step that
+    /// brought nothing.
     pub fn reset(&mut self, batch: &mut Batch) -> Result<(), EnvError> {
         self.exchange(batch, Job::Reset)
     }
 
-    /// Resets each lane as it is told, `how[lane]`: some, with a seed each or without, while others stay where they are. The batch
-    /// shows all of them.
+    /// Resets each lane as it is told, `how[lane]`: some, with a seed each or without, while others
+    /// stay where they are. The batch shows all of them.
     pub fn restart(&mut self, how: &[Restart], batch: &mut Batch) -> Result<(), EnvError> {
         self.check_restarts(how)?;
         self.exchange(batch, Job::Restart(how.into()))
@@ -208,7 +219,8 @@ impl VecEnv {
         self.exchange(batch, Job::Step)
     }
 
-    /// Steps some lanes, each once and in any order, by the actions of a batch for so many lanes ([`VecEnv::batch_of`]).
+    /// Steps some lanes, each once and in any order, by the actions of a batch for so many lanes
+    /// ([`VecEnv::batch_of`]).
     pub fn step_lanes(&mut self, lanes: &[usize], batch: &mut Batch) -> Result<(), EnvError> {
         self.check_lanes(lanes)?;
         let lanes = Chosen::List(lanes.into());
@@ -221,13 +233,14 @@ impl VecEnv {
         self.hand_over(group, batch, Job::Reset)
     }
 
-    /// Hands a group's batch over to be stepped by its actions. On an error the batch waits for [`VecEnv::reclaim`].
+    /// Hands a group's batch over to be stepped by its actions. On an error the batch waits for
+    /// [`VecEnv::reclaim`].
     pub fn send(&mut self, group: usize, batch: Batch) -> Result<(), EnvError> {
         self.hand_over(group, batch, Job::Step)
     }
 
-    /// Waits until a group has been stepped, and takes its batch back. If an environment panicked, the batch waits for
-    /// [`VecEnv::reclaim`], its outputs half written.
+    /// Waits until a group has been stepped, and takes its batch back. If an environment panicked,
+    /// the batch waits for [`VecEnv::reclaim`], its outputs half written.
     pub fn recv(&mut self, group: usize) -> Result<Batch, EnvError> {
         self.check_group(group)?;
         let (batch, result) = self.take(group)?;
@@ -240,13 +253,14 @@ impl VecEnv {
         }
     }
 
-    /// The batch that could not be sent to a group, or that was under way when an environment panicked: an error never costs
-    /// the caller its buffers.
+    /// The batch that could not be sent to a group, or that was under way when an environment
+    /// panicked: an error never costs the caller its buffers.
     pub fn reclaim(&mut self, group: usize) -> Option<Batch> {
         self.kept.get_mut(group)?.take()
     }
 
-    /// Starts the lanes' streams of episode seeds anew, as if the batch had been made with this seed. Running episodes go on.
+    /// Starts the lanes' streams of episode seeds anew, as if the batch had been made with this
+    /// seed. Running episodes go on.
     pub fn seed(&mut self, seed: u64) -> Result<(), EnvError> {
         let mut batch = self.whole_batch();
         self.exchange(&mut batch, Job::Seed(seed))
@@ -261,7 +275,8 @@ impl VecEnv {
         Ok(std::mem::take(&mut *states))
     }
 
-    /// Brings every lane to a saved state, by repeating its episode so far, and shows it as after a step that brought nothing.
+    /// Brings every lane to a saved state, by repeating its episode so far, and shows it as after a
+    /// step that brought nothing.
     pub fn restore(&mut self, states: Vec<LaneState>, batch: &mut Batch) -> Result<(), EnvError> {
         self.check_states(&states)?;
         self.exchange(batch, Job::Restore(Arc::new(states)))
@@ -269,7 +284,8 @@ impl VecEnv {
 
     /// Checks a group's batch and gives it to the crew, or keeps it to be reclaimed.
     fn hand_over(&mut self, group: usize, batch: Batch, job: Job) -> Result<(), EnvError> {
-        // A batch of no group at all still has a place where it can be reclaimed from: that of all lanes.
+        // A batch of no group at all still has a place where it can be reclaimed from: that of all
+        // lanes.
         let slot = group.min(self.options.groups);
         let lanes = Chosen::Range(self.group_lanes(group));
         let check = || {
@@ -298,7 +314,8 @@ impl VecEnv {
         let whole = self.options.groups;
         self.check_lengths(task.lanes.count(), batch)?;
         self.check_turn(whole)?;
-        // What only moves streams of seeds, or reads them, shows nothing and changes no lane's rest.
+        // What only moves streams of seeds, or reads them, shows nothing and changes no lane's
+        // rest.
         let shows = !matches!(task.job, Job::Seed(_) | Job::Save(_));
         let lanes = shows.then(|| task.lanes.clone());
         self.give(whole, std::mem::take(batch), task);
@@ -319,7 +336,8 @@ impl VecEnv {
 
     /// Takes a batch back, and what went wrong with it.
     fn take(&mut self, slot: usize) -> Result<(Batch, Result<(), EnvError>), EnvError> {
-        let idle = || EnvError::Turn { why: format!("group {slot} is not under way; send it first") };
+        let idle =
+            || EnvError::Turn { why: format!("group {slot} is not under way; send it first") };
         let (mut batch, mut reports) = self.crew.take(slot).ok_or_else(idle)?;
         if let Some(message) = reports.panic.take() {
             self.failed = Some(message.clone());

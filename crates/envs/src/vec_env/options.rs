@@ -10,11 +10,13 @@ pub enum Autoreset {
     SameStep,
     /// The step after starts the next episode, whatever its action; its reward and cost are 0.
     NextStep,
-    /// The lane rests, its flags raised, until it is reset; [`crate::VecEnv::resting`] tells which do.
+    /// The lane rests, its flags raised, until it is reset; [`crate::VecEnv::resting`] tells which
+    /// do.
     Disabled,
 }
 
-/// Which last observations [`crate::Batch::final_observations`] keeps under [`Autoreset::SameStep`].
+/// Which last observations [`crate::Batch::final_observations`] keeps under
+/// [`Autoreset::SameStep`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum FinalObservations {
     /// Those of truncated episodes, whose value is still to be estimated.
@@ -29,10 +31,11 @@ pub enum FinalObservations {
 pub struct VecOptions {
     /// Number of environments.
     pub lanes: usize,
-    /// Worker threads; 0 steps in the caller's thread. A caller that waits for a batch helps with it, so that `n` cores are used up
-    /// by `n - 1` threads if the caller has nothing else to do.
+    /// Worker threads; 0 steps in the caller's thread. A caller that waits for a batch helps with
+    /// it, so that `n` cores are used up by `n - 1` threads if the caller has nothing else to do.
     pub threads: usize,
-    /// Groups that the lanes are cut into, to be stepped independently: 2 lets a policy work on one half while the other steps.
+    /// Groups that the lanes are cut into, to be stepped independently: 2 lets a policy work on one
+    /// half while the other steps.
     pub groups: usize,
     /// Seed of the batch: with the lane's number it decides everything that happens in a lane.
     pub seed: u64,
@@ -67,7 +70,11 @@ impl VecOptions {
         let limit = |option, given: usize, least: usize, most: usize| {
             let allowed = format!("{least}..={most}");
             let fits = (least..=most).contains(&given);
-            if fits { Ok(()) } else { Err(EnvError::Option { option, given: given.to_string(), allowed }) }
+            if fits {
+                Ok(())
+            } else {
+                Err(EnvError::Option { option, given: given.to_string(), allowed })
+            }
         };
         limit("the number of environments", self.lanes, 1, 65536)?;
         limit("the number of groups", self.groups, 1, self.lanes)?;

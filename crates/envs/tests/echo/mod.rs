@@ -3,7 +3,8 @@
 use hasard_envs::{ActionSpace, CostTerm, Environment, Episode, EpisodeCost, RuleSet, Step};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// A world that is nothing but a hash of its seed and actions; its episodes end after 3 to 18 steps in one of two ways.
+/// A world that is nothing but a hash of its seed and actions; its episodes end after 3 to 18 steps
+/// in one of two ways.
 pub struct Echo {
     space: ActionSpace,
     seed: u64,
@@ -19,10 +20,27 @@ pub struct Echo {
 
 impl Echo {
     pub fn new(panics_at: u32) -> Echo {
-        Echo::in_space(ActionSpace::of("VolcanicVentureLevel1-v0".parse().unwrap(), RuleSet::Paper, false, true), panics_at)
+        Echo::in_space(
+            ActionSpace::of(
+                "VolcanicVentureLevel1-v0".parse().unwrap(),
+                RuleSet::Paper,
+                false,
+                true,
+            ),
+            panics_at,
+        )
     }
     pub fn in_space(space: ActionSpace, panics_at: u32) -> Echo {
-        Echo { space, seed: 0, state: 0, length: 0, last: Step::default(), sum: 0.0, panics_at, reports_costs: true }
+        Echo {
+            space,
+            seed: 0,
+            state: 0,
+            length: 0,
+            last: Step::default(),
+            sum: 0.0,
+            panics_at,
+            reports_costs: true,
+        }
     }
 }
 
@@ -79,7 +97,10 @@ impl Environment for Echo {
             seed: self.seed,
             episode_return: 0.0,
             cost: self.sum,
-            costs: vec![EpisodeCost { name: "all", counted: true, cost: self.sum }; usize::from(self.reports_costs)],
+            costs: vec![
+                EpisodeCost { name: "all", counted: true, cost: self.sum };
+                usize::from(self.reports_costs)
+            ],
             length: self.length,
             terminated: self.last.terminated,
             truncated: self.last.truncated,

@@ -1,9 +1,11 @@
-//! What fixed policies did in the published system and with the code behind the paper's tables, and what they do in ours.
+//! What fixed policies did in the published system and with the code behind the paper's tables, and
+//! what they do in ours.
 
 use hasard_envs::{Env, EnvOptions, Policy, PolicyRun, RuleSet};
 
 /// What is compared of an episode, in the order of the columns.
-pub const COLUMNS: [&str; 8] = ["return", "cost", "length", "path length", "farthest", "lowest", "highest", "least health"];
+pub const COLUMNS: [&str; 8] =
+    ["return", "cost", "length", "path length", "farthest", "lowest", "highest", "least health"];
 
 /// One line of the published measurements.
 #[derive(Clone, Debug)]
@@ -49,8 +51,8 @@ pub fn published(rules: RuleSet) -> Vec<Published> {
         .collect()
 }
 
-/// Plays an episode and measures it as the published system was measured: places, heights and health are looked at after the
-/// reset and after every step but the last.
+/// Plays an episode and measures it as the published system was measured: places, heights and
+/// health are looked at after the reset and after every step but the last.
 fn play(env: &mut Env, policy: Policy, seed: u64) -> [f64; COLUMNS.len()] {
     env.reset(seed);
     let mut run = PolicyRun::new(policy, env, seed).unwrap();
@@ -60,13 +62,23 @@ fn play(env: &mut Env, policy: Policy, seed: u64) -> [f64; COLUMNS.len()] {
         ([body.x, body.y, body.z].map(|at| at.to_f64()), f64::from(body.health))
     };
     let ([start_x, start_y, start_z], start_health) = look(env);
-    let (mut path, mut farthest, mut lowest, mut highest, mut health) = (0.0, 0.0f64, start_z, start_z, start_health);
+    let (mut path, mut farthest, mut lowest, mut highest, mut health) =
+        (0.0, 0.0f64, start_z, start_z, start_health);
     let (mut last_x, mut last_y) = (start_x, start_y);
     loop {
         let step = env.make_move(run.next_move(env)).unwrap();
         if step.ended() {
             let episode = env.episode();
-            return [episode.episode_return, episode.cost, f64::from(episode.length), path, farthest, lowest, highest, health];
+            return [
+                episode.episode_return,
+                episode.cost,
+                f64::from(episode.length),
+                path,
+                farthest,
+                lowest,
+                highest,
+                health,
+            ];
         }
         let ([x, y, z], points) = look(env);
         let distance = |x: f64, y: f64| (x * x + y * y).sqrt();
@@ -87,21 +99,27 @@ pub fn ours(published: &Published, episodes: u64) -> [[f64; 2]; COLUMNS.len()] {
     std::array::from_fn(|column| {
         let count = all.len() as f64;
         let mean = all.iter().map(|episode| episode[column]).sum::<f64>() / count;
-        let variance = all.iter().map(|episode| (episode[column] - mean).powi(2)).sum::<f64>() / count;
+        let variance =
+            all.iter().map(|episode| (episode[column] - mean).powi(2)).sum::<f64>() / count;
         [mean, variance.sqrt()]
     })
 }
 
-/// The standard error of the difference of two means, each with its deviation and its number of episodes, if both measure the
-/// same thing: from the deviation of all episodes together. (Twenty episodes without an event say little about how
-/// rare it is.)
-pub fn standard_error(published: [f64; 2], published_episodes: f64, ours: [f64; 2], episodes: f64) -> f64 {
+/// The standard error of the difference of two means, each with its deviation and its number of
+/// episodes, if both measure the same thing: from the deviation of all episodes together. (Twenty
+/// episodes without an event say little about how rare it is.)
+pub fn standard_error(
+    published: [f64; 2],
+    published_episodes: f64,
+    ours: [f64; 2],
+    episodes: f64,
+) -> f64 {
     let squares = published[1].powi(2) * published_episodes + ours[1].powi(2) * episodes;
     (squares / (published_episodes + episodes) * (1.0 / published_episodes + 1.0 / episodes)).sqrt()
 }
 
-/// How far two means may lie apart: three standard errors or a tenth of the published one, whichever is larger. The tiny rest
-/// is for figures that were written with four decimals.
+/// How far two means may lie apart: three standard errors or a tenth of the published one,
+/// whichever is larger. The tiny rest is for figures that were written with four decimals.
 pub fn allowed(published: [f64; 2], published_episodes: f64, ours: [f64; 2], episodes: f64) -> f64 {
     let error = standard_error(published, published_episodes, ours, episodes);
     (3.0 * error).max(0.1 * published[0].abs()) + 1e-3

@@ -38,7 +38,8 @@ pub const EPISODE: Target = Target {
                 return false;
             }
         };
-        let again = EpisodeFile::from_bytes(&file.to_bytes(), Path::new("again")).expect("what is written can be read");
+        let again = EpisodeFile::from_bytes(&file.to_bytes(), Path::new("again"))
+            .expect("what is written can be read");
         assert_eq!(again, file, "written and read, it is another episode");
         play(file)
     },
@@ -51,9 +52,11 @@ fn options() -> EnvOptions {
 }
 
 fn record(id: &str, full_actions: bool, steps: usize) -> Vec<u8> {
-    let mut env = Env::new(id, &EnvOptions { full_actions, ..options() }).expect("an environment of the benchmark");
+    let mut env = Env::new(id, &EnvOptions { full_actions, ..options() })
+        .expect("an environment of the benchmark");
     let mut recorder = Recorder::begin(&mut env, 7, "sample").expect("a sound name");
-    let (groups, deltas) = (vec![1; env.action_space().groups.len()], vec![0.25; env.action_space().deltas.len()]);
+    let (groups, deltas) =
+        (vec![1; env.action_space().groups.len()], vec![0.25; env.action_space().deltas.len()]);
     for _ in 0..steps {
         env.step(&groups, &deltas).expect("an action of the environment");
         recorder.push(&groups, &deltas).expect("an action of the environment");

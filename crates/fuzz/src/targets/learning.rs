@@ -23,7 +23,11 @@ pub const SETTINGS: Target = Target {
             let config = TrainConfig::new(algorithm, preset, env).expect("a preset is sound");
             serde_json::to_vec_pretty(&config).expect("settings are plain data")
         };
-        let full = EnvConfig { full_actions: true, observation: "rgb+depth".into(), ..EnvConfig::new("RemedyRushLevel2-v0") };
+        let full = EnvConfig {
+            full_actions: true,
+            observation: "rgb+depth".into(),
+            ..EnvConfig::new("RemedyRushLevel2-v0")
+        };
         vec![
             config(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new(ID)),
             config(AlgorithmKind::TrpoPid, Preset::Released, full),
@@ -68,7 +72,11 @@ pub const SETTINGS: Target = Target {
         });
         match checked {
             Ok(shape) => {
-                assert!(shape.parameter_count() < 1 << 32, "a network of {} parameters", shape.parameter_count());
+                assert!(
+                    shape.parameter_count() < 1 << 32,
+                    "a network of {} parameters",
+                    shape.parameter_count()
+                );
                 assert!(serde_json::to_string(&config).is_ok());
                 true
             }
@@ -112,7 +120,8 @@ const FILES: [&str; 3] = ["weights.safetensors", "training.safetensors", "state.
 /// A run that begins in milliseconds.
 pub(super) fn small() -> TrainConfig {
     let env = EnvConfig { size: (64, 48), observation: "grey".into(), ..EnvConfig::new(ID) };
-    let mut config = TrainConfig::new(AlgorithmKind::PpoLag, Preset::Paper, env).expect("a preset is sound");
+    let mut config =
+        TrainConfig::new(AlgorithmKind::PpoLag, Preset::Paper, env).expect("a preset is sound");
     config.network.convolutions = vec![Convolution { channels: 32, kernel: 16, stride: 16 }];
     (config.network.dense, config.network.recurrent) = (vec![32], Some(32));
     (config.sampling.lanes, config.sampling.rollout, config.sampling.samplers) = (2, 2, 1);
@@ -128,17 +137,25 @@ fn worlds(_: &EnvConfig, options: VecOptions) -> Result<VecEnv, EnvError> {
         let options = small().env.options().expect("options of a sound run");
         Mutex::new(Env::new(ID, &options).expect("an environment of the benchmark"))
     });
-    VecEnv::from_fn(options, |_| Ok(Box::new(FIRST.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).sibling())))
+    VecEnv::from_fn(options, |_| {
+        Ok(Box::new(FIRST.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).sibling()))
+    })
 }
 
 /// A folder of this process for checkpoints, in memory where the system has such a place.
 pub(super) fn folder(name: &str) -> PathBuf {
-    let base = Some(PathBuf::from("/dev/shm")).filter(|path| path.is_dir()).unwrap_or_else(std::env::temp_dir);
+    let base = Some(PathBuf::from("/dev/shm"))
+        .filter(|path| path.is_dir())
+        .unwrap_or_else(std::env::temp_dir);
     base.join(format!("hasard-fuzz-{}-{name}", std::process::id()))
 }
 
 /// What `read` makes of a real run's directory.
-pub(super) fn of_a_run(name: &str, config: TrainConfig, read: impl FnOnce(&Path) -> Vec<u8>) -> Vec<u8> {
+pub(super) fn of_a_run(
+    name: &str,
+    config: TrainConfig,
+    read: impl FnOnce(&Path) -> Vec<u8>,
+) -> Vec<u8> {
     let run = folder(name);
     let _ = std::fs::remove_dir_all(&run);
     let stop = AtomicBool::new(false);
@@ -152,10 +169,13 @@ pub(super) fn of_a_run(name: &str, config: TrainConfig, read: impl FnOnce(&Path)
 /// The three files of its checkpoint.
 fn checkpoint() -> Vec<u8> {
     of_a_run("run", small(), |run| {
-        let checkpoints = std::fs::read_dir(run.join("checkpoints")).expect("the sample run has checkpoints");
+        let checkpoints =
+            std::fs::read_dir(run.join("checkpoints")).expect("the sample run has checkpoints");
         let path = checkpoints.map(|entry| entry.expect("a readable folder").path()).max();
         let path = path.expect("the sample run has a checkpoint");
-        FILES.map(|name| std::fs::read(path.join(name)).expect("a checkpoint is three files")).join(BORDER)
+        FILES
+            .map(|name| std::fs::read(path.join(name)).expect("a checkpoint is three files"))
+            .join(BORDER)
     })
 }
 
@@ -163,7 +183,8 @@ fn files(bytes: &[u8]) -> [&[u8]; 3] {
     let mut rest = bytes;
     let mut take = || {
         let at = rest.windows(BORDER.len()).position(|window| window == BORDER);
-        let (file, after) = at.map_or((rest, &rest[rest.len()..]), |at| (&rest[..at], &rest[at + BORDER.len()..]));
+        let (file, after) =
+            at.map_or((rest, &rest[rest.len()..]), |at| (&rest[..at], &rest[at + BORDER.len()..]));
         rest = after;
         file
     };
@@ -175,7 +196,10 @@ fn fit(bytes: Vec<u8>) -> Vec<u8> {
     let [weights, training, state] = files(&bytes);
     let (weights, training) = (fit_header(weights), fit_header(training));
     let mut text = String::from_utf8_lossy(state).into_owned();
-    for (key, sum) in [("\"weights_checksum\": ", crc32c(&weights)), ("\"training_checksum\": ", crc32c(&training))] {
+    for (key, sum) in [
+        ("\"weights_checksum\": ", crc32c(&weights)),
+        ("\"training_checksum\": ", crc32c(&training)),
+    ] {
         if let Some(start) = text.find(key).map(|at| at + key.len()) {
             let digits = text[start..].bytes().take_while(u8::is_ascii_digit).count();
             text.replace_range(start..start + digits, &sum.to_string());
@@ -184,11 +208,12 @@ fn fit(bytes: Vec<u8>) -> Vec<u8> {
     [weights, training, text.into_bytes()].join(BORDER)
 }
 
-/// A safetensors file begins with the length of its header, which ends in braces and spaces. One that fits is left alone: the
-/// numbers behind it may look like braces.
+/// A safetensors file begins with the length of its header, which ends in braces and spaces. One
+/// that fits is left alone: the numbers behind it may look like braces.
 pub(super) fn fit_header(file: &[u8]) -> Vec<u8> {
     let mut file = file.to_vec();
-    let stated = file.first_chunk().and_then(|bytes| usize::try_from(u64::from_le_bytes(*bytes)).ok());
+    let stated =
+        file.first_chunk().and_then(|bytes| usize::try_from(u64::from_le_bytes(*bytes)).ok());
     let header = stated.and_then(|length| file[8..].get(..length));
     if header.is_some_and(|header| header.trim_ascii_end().ends_with(b"}}")) {
         return file;

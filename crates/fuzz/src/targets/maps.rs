@@ -97,7 +97,11 @@ pub(super) fn read_text(bytes: &[u8]) -> bool {
         }
     };
     let again = udmf::write(&source);
-    assert_eq!(udmf::read(again.as_bytes()).map(|source| udmf::write(&source)), Ok(again), "written and read, it is another map");
+    assert_eq!(
+        udmf::read(again.as_bytes()).map(|source| udmf::write(&source)),
+        Ok(again),
+        "written and read, it is another map"
+    );
     match Map::build(&source, "spoiled", &[]) {
         Ok(map) => {
             inhabit(map);

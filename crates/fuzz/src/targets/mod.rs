@@ -21,7 +21,8 @@ pub struct Target {
     pub words: &'static [&'static str],
     /// Makes checksums fit again, as whoever means harm would.
     pub repair: fn(Vec<u8>) -> Vec<u8>,
-    /// Reads an input and uses what was read; tells whether it was accepted. May panic only where there is a fault.
+    /// Reads an input and uses what was read; tells whether it was accepted. May panic only where
+    /// there is a fault.
     pub run: fn(&[u8]) -> bool,
     /// Bytes that it may hold at a time, beside 64 for each of the input.
     pub memory: usize,
@@ -52,5 +53,9 @@ fn nothing_to_repair(bytes: Vec<u8>) -> Vec<u8> {
 #[track_caller]
 fn assert_presentable(message: &str) {
     assert!(!message.is_empty() && message.len() < 4096, "a message of {} bytes", message.len());
-    assert!(!message.contains(char::is_control), "a message with control characters: {}", message.escape_debug());
+    assert!(
+        !message.contains(char::is_control),
+        "a message with control characters: {}",
+        message.escape_debug()
+    );
 }

@@ -10,8 +10,8 @@ pub const IWAD: Target = Target {
     name: "iwad",
     samples: || vec![sample()],
     words: &[
-        "F_START", "F_END", "S_START", "S_END", "P_START", "P_END", "PNAMES", "TEXTURE1", "TEXTURE2", "PLAYPAL", "COLORMAP",
-        "POSSA1D1", "TROOA1", "STBAR", "SKY1", "LAVA1",
+        "F_START", "F_END", "S_START", "S_END", "P_START", "P_END", "PNAMES", "TEXTURE1",
+        "TEXTURE2", "PLAYPAL", "COLORMAP", "POSSA1D1", "TROOA1", "STBAR", "SKY1", "LAVA1",
     ],
     repair: nothing_to_repair,
     run: |bytes| match Assets::from_iwad(bytes) {
@@ -35,8 +35,15 @@ pub(super) fn use_pictures(set: &Assets) {
     };
     assert!(set.images.iter().all(sound), "a picture has not the pixels that its size tells of");
     let count = set.images.len() as u32;
-    let exists = |first: u32, frames: u8| first.checked_add(u32::from(frames)).is_some_and(|end| end <= count);
-    assert!(set.textures.values().chain(&set.fallbacks).all(|entry| exists(entry.first, entry.frames) && entry.frames > 0));
+    let exists = |first: u32, frames: u8| {
+        first.checked_add(u32::from(frames)).is_some_and(|end| end <= count)
+    };
+    assert!(
+        set.textures
+            .values()
+            .chain(&set.fallbacks)
+            .all(|entry| exists(entry.first, entry.frames) && entry.frames > 0)
+    );
     assert!(set.textures.values().all(|entry| entry.tics > 0), "an animation without time");
     assert!(set.graphics.values().all(|&image| image < count), "a graphic that does not exist");
     let frames = set.sprites.iter().flat_map(|sprite| &sprite.frames);
@@ -48,9 +55,13 @@ pub(super) fn use_pictures(set: &Assets) {
 
 /// The bytes of a picture, each column one run of `rows` opaque pixels.
 fn picture(width: u16, rows: u8) -> Vec<u8> {
-    let mut out: Vec<u8> = [width, u16::from(rows) + 1, 3, 7].into_iter().flat_map(u16::to_le_bytes).collect();
+    let mut out: Vec<u8> =
+        [width, u16::from(rows) + 1, 3, 7].into_iter().flat_map(u16::to_le_bytes).collect();
     let first = 8 + 4 * u32::from(width);
-    out.extend((0..u32::from(width)).flat_map(|column| (first + column * (u32::from(rows) + 5)).to_le_bytes()));
+    out.extend(
+        (0..u32::from(width))
+            .flat_map(|column| (first + column * (u32::from(rows) + 5)).to_le_bytes()),
+    );
     for column in 0..width {
         out.extend([1, rows, 0]);
         out.extend((0..rows).map(|row| row.wrapping_add(column as u8)));
@@ -61,7 +72,8 @@ fn picture(width: u16, rows: u8) -> Vec<u8> {
 
 /// A list of two wall textures, one of two patches.
 fn texture_list() -> Vec<u8> {
-    let mut out: Vec<u8> = [2u32, 12, 12 + 22 + 20].into_iter().flat_map(u32::to_le_bytes).collect();
+    let mut out: Vec<u8> =
+        [2u32, 12, 12 + 22 + 20].into_iter().flat_map(u32::to_le_bytes).collect();
     for (name, patches) in [("WALL", &[[0i16, 0, 0], [2, -1, 1]][..]), ("FENCE", &[[1, 1, 1]])] {
         out.extend(TextureName::new(name).0);
         out.extend([0; 4]);
@@ -97,6 +109,7 @@ pub(super) fn sample() -> Vec<u8> {
         ("POSSB5", picture(3, 3)),
         ("S_END", vec![]),
     ];
-    let lumps: Vec<Lump<'_>> = lumps.iter().map(|(name, bytes)| Lump { name: TextureName::new(name), bytes }).collect();
+    let lumps: Vec<Lump<'_>> =
+        lumps.iter().map(|(name, bytes)| Lump { name: TextureName::new(name), bytes }).collect();
     wad::write(WadKind::Iwad, &lumps)
 }

@@ -13,8 +13,7 @@ pub const RUN: Target = Target {
                       {\"term\":\"harm\",\"budget\":2}],\"curriculum\":\"1,2,3\"}";
         let metrics = "{\"frames\":4096,\"return_mean\":1.5,\"multipliers\":[0.25],\"losses\":{\"value\":2}}\n\
                        {\"frames\":8192,\"return_mean\":null,\"cost_mean\":3}\n{\"frames\":6000,\"fps\":1e3}\n";
-        let episodes =
-            "{\"env\":\"RemedyRushLevel1-v0\",\"return\":4.5,\"cost\":2,\"length\":525}\n{\"summary\":{\"return\":1}}\n";
+        let episodes = "{\"env\":\"RemedyRushLevel1-v0\",\"return\":4.5,\"cost\":2,\"length\":525}\n{\"summary\":{\"return\":1}}\n";
         let heatmap = "{\"frames\":100,\"episodes\":3,\"extent\":[0,0,64,32],\"columns\":2,\"rows\":1,\"steps\":[1,0.5]}\n";
         [config, metrics, episodes, heatmap]
             .into_iter()

@@ -53,7 +53,10 @@ pub const SCENARIO: Target = Target {
                 assert_presentable(&error.to_string());
             }
         } else {
-            assert!(checked.mistakes.iter().any(|mistake| !mistake.warning), "refused without a word");
+            assert!(
+                checked.mistakes.iter().any(|mistake| !mistake.warning),
+                "refused without a word"
+            );
         }
         checked.can_be_played()
     },

@@ -12,8 +12,11 @@ pub const SWEEP: Target = Target {
                     safety-budget = [2.5, 5, 7.5]\nfull-actions = [false, true]\n\n[[grid]]\nalgorithms = [\"PPOCost\"]\n\
                     options.cost-scale = [0.5, 2]\n\n[[grid]]\nscenarios = \"VolcanicVentureLevel3-v0\"\n";
         // Those that train something: the others only say what to do.
-        let trained = hasard_sweep::paper::EXPERIMENTS.iter().filter(|known| hasard_sweep::paper::advice(known.name).is_none());
-        let paper = trained.map(|known| format!("experiment = \"{}\"\nframes = 1000\n", known.name));
+        let trained = hasard_sweep::paper::EXPERIMENTS
+            .iter()
+            .filter(|known| hasard_sweep::paper::advice(known.name).is_none());
+        let paper =
+            trained.map(|known| format!("experiment = \"{}\"\nframes = 1000\n", known.name));
         std::iter::once(grid.to_string()).chain(paper).map(String::into_bytes).collect()
     },
     words: &[
@@ -33,7 +36,11 @@ pub const SWEEP: Target = Target {
         match Sweep::parse(&text).and_then(|sweep| sweep.jobs()) {
             Ok(jobs) => {
                 for job in jobs.iter().take(100) {
-                    std::hint::black_box((job.command_line("hasard"), job.arguments_from(State::Unfinished(1)), job.log()));
+                    std::hint::black_box((
+                        job.command_line("hasard"),
+                        job.arguments_from(State::Unfinished(1)),
+                        job.log(),
+                    ));
                 }
                 true
             }

@@ -26,7 +26,8 @@ pub trait Algorithm: Send {
         learn_in_epochs(self, learner, rollout, epochs, signals, means)
     }
 
-    /// Improves the policy and the critics on a minibatch. `signals` is empty while no episode has ended yet.
+    /// Improves the policy and the critics on a minibatch. `signals` is empty while no episode has
+    /// ended yet.
     fn update(
         &mut self,
         learner: &mut Learner,
@@ -59,7 +60,8 @@ pub trait Algorithm: Send {
 
     /// Its multipliers for a checkpoint.
     fn save(&self) -> Value {
-        self.weights().map_or(Value::Null, |weights| serde_json::to_value(weights).unwrap_or_default())
+        self.weights()
+            .map_or(Value::Null, |weights| serde_json::to_value(weights).unwrap_or_default())
     }
 
     /// Goes on from a saved state.
@@ -70,7 +72,9 @@ pub trait Algorithm: Send {
             }
             let saved: Multipliers = serde_json::from_value(state.clone())?;
             if !saved.is_like(weights) {
-                return Err(serde::de::Error::custom("they are another algorithm's, or of another number of constraints"));
+                return Err(serde::de::Error::custom(
+                    "they are another algorithm's, or of another number of constraints",
+                ));
             }
             *weights = saved;
         }
@@ -78,7 +82,8 @@ pub trait Algorithm: Send {
     }
 }
 
-/// Goes through a rollout minibatch by minibatch, and moves the multipliers when the settings say so.
+/// Goes through a rollout minibatch by minibatch, and moves the multipliers when the settings say
+/// so.
 pub(super) fn learn_in_epochs<A: Algorithm + ?Sized>(
     algorithm: &mut A,
     learner: &mut Learner,
@@ -107,8 +112,9 @@ pub(super) fn learn_in_epochs<A: Algorithm + ?Sized>(
     Ok(())
 }
 
-/// Makes the epochs over a rollout, until the policy has moved as far as it may: the mean divergence of the whole rollout after an epoch, from
-/// a policy or else from the one that acted, is beyond the target. Returns how many were made.
+/// Makes the epochs over a rollout, until the policy has moved as far as it may: the mean
+/// divergence of the whole rollout after an epoch, from a policy or else from the one that acted,
+/// is beyond the target. Returns how many were made.
 pub(super) fn go_through(
     learner: &mut Learner,
     rollout: &Prepared<'_>,
@@ -134,9 +140,10 @@ mod tests {
     use crate::algorithms::{ppo, small};
     use crate::config::AlgorithmKind;
 
-    /// A16. Algorithm 1 of FOCOPS ends its passes when the mean of KL(pi, pi_k) over the batch, of the policy as it is after the pass, is
-    /// beyond delta. Divergences after 1, 2, ... passes are taken from runs of so many; a target between those of two passes ends
-    /// at the later of them, one pass before what was noted ahead of each step would.
+    /// A16. Algorithm 1 of FOCOPS ends its passes when the mean of KL(pi, pi_k) over the batch, of
+    /// the policy as it is after the pass, is beyond delta. Divergences after 1, 2, ... passes are
+    /// taken from runs of so many; a target between those of two passes ends at the later of them,
+    /// one pass before what was noted ahead of each step would.
     #[test]
     fn passes_end_by_the_divergence_after_them() {
         let run = |epochs: usize, target: Option<f64>| {
@@ -147,7 +154,14 @@ mod tests {
             let prepared = learner.prepare(&rollout);
             let mut means = Means::default();
             let mut ppo = ppo::Ppo::new(&config);
-            ppo.learn(&mut learner, &prepared, &Epochs::new(&config, 0, small::LANES), &|_| vec![], &mut means).unwrap();
+            ppo.learn(
+                &mut learner,
+                &prepared,
+                &Epochs::new(&config, 0, small::LANES),
+                &|_| vec![],
+                &mut means,
+            )
+            .unwrap();
             let mut minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
             let old = minibatch.old_policy.clone();
             (means.get("epochs").unwrap(), old.divergence(&learner.policy(&mut minibatch)).mean())
@@ -156,7 +170,11 @@ mod tests {
         assert!(after.windows(2).all(|two| two[0] < two[1]), "{after:?}");
         for passes in 2..=4 {
             let target = (after[passes - 2] + after[passes - 1]) / 2.0;
-            assert_eq!(run(10, Some(target)), (passes as f64, after[passes - 1]), "target {target} of {after:?}");
+            assert_eq!(
+                run(10, Some(target)),
+                (passes as f64, after[passes - 1]),
+                "target {target} of {after:?}"
+            );
         }
     }
 }

@@ -1,8 +1,9 @@
 //! CPO: constrained policy optimisation (Achiam et al. 2017, arXiv 1705.10528), for one constraint.
 //!
-//! Every step solves a small problem exactly: the best move for the reward within the trust region and, to first order,
-//! within the budget; or, where no move can reach the budget, the move that lowers the cost fastest. A line search then
-//! verifies reward, cost and divergence. With several constraints the one furthest above its budget rules the step.
+//! Every step solves a small problem exactly: the best move for the reward within the trust region
+//! and, to first order, within the budget; or, where no move can reach the budget, the move that
+//! lowers the cost fastest. A line search then verifies reward, cost and divergence. With several
+//! constraints the one furthest above its budget rules the step.
 
 use crate::algorithms::surrogate::{centred, standardised};
 use crate::algorithms::trust_region::{TrustRegion, train_critics};
@@ -26,16 +27,18 @@ impl Cpo {
     }
 }
 
-/// The cost above budget in the unit of the cost's surrogate, which is a mean over steps: an episode's cost changes by that
-/// mean's change times the steps that episodes have at present, not those of the longest possible one. (The paper's constraint,
-/// equation 10, is on discounted costs, whose surrogate is scaled by 1 / (1 - gamma), the steps that discounting leaves of an
-/// endless episode; the budgets here are on sums that are not discounted.)
+/// The cost above budget in the unit of the cost's surrogate, which is a mean over steps: an
+/// episode's cost changes by that mean's change times the steps that episodes have at present, not
+/// those of the longest possible one. (The paper's constraint, equation 10, is on discounted costs,
+/// whose surrogate is scaled by 1 / (1 - gamma), the steps that discounting leaves of an endless
+/// episode; the budgets here are on sums that are not discounted.)
 fn surrogate_excess(signal: &Signal) -> f64 {
     signal.surrogate_excess()
 }
 
-/// The step's problem in the plane of the two gradients g (of what is minimised) and b (of the cost), all products by the
-/// inverse of the Fisher matrix H: q = g'g, r = g'b, s = b'b; `excess` is the cost above budget.
+/// The step's problem in the plane of the two gradients g (of what is minimised) and b (of the
+/// cost), all products by the inverse of the Fisher matrix H: q = g'g, r = g'b, s = b'b; `excess`
+/// is the cost above budget.
 #[derive(Clone, Copy, Debug)]
 struct Plane {
     q: f64,
@@ -55,10 +58,12 @@ struct Weights {
 }
 
 impl Plane {
-    /// The minimiser of g'x subject to excess + b'x <= 0 and x'Hx / 2 <= radius (the paper's theorem 2).
+    /// The minimiser of g'x subject to excess + b'x <= 0 and x'Hx / 2 <= radius (the paper's
+    /// theorem 2).
     fn solve(&self) -> Weights {
         let Plane { q, r, s, excess: c, radius } = *self;
-        let free = Weights { reward: (2.0 * radius / q.max(1e-12)).sqrt(), cost: 0.0, recovery: false };
+        let free =
+            Weights { reward: (2.0 * radius / q.max(1e-12)).sqrt(), cost: 0.0, recovery: false };
         if s < 1e-8 {
             // The cost does not depend on the policy here: nothing can be done about it.
             return free;
@@ -72,9 +77,10 @@ impl Plane {
             // None of it is.
             return Weights { reward: 0.0, cost: (2.0 * radius / s).sqrt(), recovery: true };
         }
-        // The edge of the budget crosses the trust region. The dual is maximised over the two stretches of its
-        // multiplier lambda on which that of the cost, nu = max(0, (lambda c + r) / s), is positive or zero. (Signs: g is
-        // minimised here, so a move -H^-1 g that lowers the cost has r > 0.)
+        // The edge of the budget crosses the trust region. The dual is maximised over the two
+        // stretches of its multiplier lambda on which that of the cost, nu = max(0, (lambda c + r)
+        // / s), is positive or zero. (Signs: g is minimised here, so a move -H^-1 g that lowers the
+        // cost has r > 0.)
         let a = (q - r * r / s).max(0.0);
         let (bounded, unbounded) = ((a / room.max(1e-12)).sqrt(), (q / (2.0 * radius)).sqrt());
         let nu = |lambda: f64| ((lambda * c - r) / s).max(0.0);
@@ -115,23 +121,37 @@ impl Algorithm for Cpo {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let relative = |signal: &Signal| signal.episode_excess() / signal.episode_budget.max(1.0);
-        let worst = (0..signals.len()).max_by(|&a, &b| relative(&signals[a]).total_cmp(&relative(&signals[b])));
+        let worst = (0..signals.len())
+            .max_by(|&a, &b| relative(&signals[a]).total_cmp(&relative(&signals[b])));
         let advantages = standardised(minibatch.advantages());
         let costs = centred(&minibatch.costs()[worst.unwrap_or(0)].advantages);
-        let reward_loss = |heads: &Heads| -> Loss { heads.mean([&heads.ratio], |row, [ratio]| -(ratio * advantages[row])) };
-        let cost_loss = |heads: &Heads| -> Loss { heads.mean([&heads.ratio], |row, [ratio]| ratio * costs[row]) };
+        let reward_loss = |heads: &Heads| -> Loss {
+            heads.mean([&heads.ratio], |row, [ratio]| -(ratio * advantages[row]))
+        };
+        let cost_loss = |heads: &Heads| -> Loss {
+            heads.mean([&heads.ratio], |row, [ratio]| ratio * costs[row])
+        };
         let region = &self.region;
         let mut origin = region.origin(learner, minibatch);
         let (reward_before, cost_before) = (reward_loss(&origin.heads), cost_loss(&origin.heads));
         let g = region.gradient(learner, minibatch, &reward_before);
         let _ = learner.present_outputs(&mut minibatch.batch);
         let b = region.gradient(learner, minibatch, &cost_before);
-        let (x, y) = (region.solve(learner, &mut origin, &g).direction, region.solve(learner, &mut origin, &b).direction);
+        let (x, y) = (
+            region.solve(learner, &mut origin, &g).direction,
+            region.solve(learner, &mut origin, &b).direction,
+        );
         // Nothing is known yet: as if there were no budget.
         let excess = worst.map_or(f64::NEG_INFINITY, |index| surrogate_excess(&signals[index]));
         let vectors = learner.vectors();
         let product = |a: &[f32], b: &[f32]| vectors.dot(a, b);
-        let plane = Plane { q: product(&g, &x), r: product(&g, &y), s: product(&b, &y), excess, radius: region.radius };
+        let plane = Plane {
+            q: product(&g, &x),
+            r: product(&g, &y),
+            s: product(&b, &y),
+            excess,
+            radius: region.radius,
+        };
         let weights = plane.solve();
         means.add("policy_loss", reward_before.value);
         means.add("recovery", f64::from(u8::from(weights.recovery)));
@@ -141,7 +161,8 @@ impl Algorithm for Cpo {
         let allowed = (-excess).max(0.0);
         region.search(learner, minibatch, &origin, &step, means, |heads, divergence| {
             let (reward, cost) = (reward_loss(heads).value, cost_loss(heads).value);
-            // While above the budget the reward may fall; the cost may rise by what is left of the budget, no more.
+            // While above the budget the reward may fall; the cost may rise by what is left of the
+            // budget, no more.
             (excess > 0.0 || reward <= reward_before.value)
                 && cost - cost_before.value <= allowed
                 && divergence <= 1.5 * region.radius
@@ -155,36 +176,58 @@ impl Algorithm for Cpo {
 mod tests {
     use super::*;
 
-    /// One step brings an episode's cost to its budget. The task: in each of an episode's steps an action of cost 1 is taken
-    /// with probability p = sigmoid(theta), and so the episode costs steps * p. The surrogate's gradient, the mean over steps
-    /// of ratio * (cost - p), is p(1 - p) in theta, which the Fisher matrix is too.
+    /// One step brings an episode's cost to its budget. The task: in each of an episode's steps an
+    /// action of cost 1 is taken with probability p = sigmoid(theta), and so the episode costs
+    /// steps * p. The surrogate's gradient, the mean over steps of ratio * (cost - p), is p(1 - p)
+    /// in theta, which the Fisher matrix is too.
     #[test]
     fn a_step_reaches_the_budget_whatever_the_length_of_episodes() {
-        for (steps, cost, budget) in [(525.0, 55.0, 50.0), (525.0, 45.0, 50.0), (10.0, 4.2, 4.0), (2100.0, 900.0, 880.0)] {
+        for (steps, cost, budget) in
+            [(525.0, 55.0, 50.0), (525.0, 45.0, 50.0), (10.0, 4.2, 4.0), (2100.0, 900.0, 880.0)]
+        {
             let p: f64 = cost / steps;
             let theta = libm::log(p / (1.0 - p));
             let fisher = p * (1.0 - p);
-            // The reward is 1 with the action of cost 1: the best step goes to the edge of the budget.
+            // The reward is 1 with the action of cost 1: the best step goes to the edge of the
+            // budget.
             let (g, b) = (-fisher, fisher);
             let excess = surrogate_excess(&Signal::steady(cost, budget, steps));
-            let weights = Plane { q: g * g / fisher, r: g * b / fisher, s: b * b / fisher, excess, radius: 0.05 }.solve();
+            let weights = Plane {
+                q: g * g / fisher,
+                r: g * b / fisher,
+                s: b * b / fisher,
+                excess,
+                radius: 0.05,
+            }
+            .solve();
             let step = -(weights.reward * g + weights.cost * b) / fisher;
             let after = steps / (1.0 + libm::exp(-(theta + step)));
             let missed = (after - budget).abs() / (cost - budget).abs();
-            assert!(missed < 0.1, "episodes of {steps} steps: from {cost} to {after}, budget {budget}");
+            assert!(
+                missed < 0.1,
+                "episodes of {steps} steps: from {cost} to {after}, budget {budget}"
+            );
         }
     }
 
-    /// A7. Equation 2 of the paper (Kakade and Langford 2002) without discount: an episode's cost under a new policy is the old one's
-    /// plus the sum of the new policy's advantages over the episode's steps, which is its mean steps times their mean. Here every step
-    /// costs 1 with probability p, and something that is not the policy ends half of the episodes early, so that an episode costs p
-    /// times the mean length whatever the longest is; a step of the policy to the edge of the budget must end there.
+    /// A7. Equation 2 of the paper (Kakade and Langford 2002) without discount: an episode's cost
+    /// under a new policy is the old one's plus the sum of the new policy's advantages over the
+    /// episode's steps, which is its mean steps times their mean. Here every step costs 1 with
+    /// probability p, and something that is not the policy ends half of the episodes early, so that
+    /// an episode costs p times the mean length whatever the longest is; a step of the policy to
+    /// the edge of the budget must end there.
     #[test]
     fn a_step_reaches_the_budget_where_episodes_end_early() {
         use crate::config::{EnvConfig, Preset, TrainConfig};
-        let mut config = TrainConfig::plain(crate::config::AlgorithmKind::Cpo, Preset::Paper, EnvConfig::new("test"));
+        let mut config = TrainConfig::plain(
+            crate::config::AlgorithmKind::Cpo,
+            Preset::Paper,
+            EnvConfig::new("test"),
+        );
         config.constraints[0].budget = 50.0;
-        for (lengths, cost) in [([525u32, 105], 55.0), ([525, 55], 46.0), ([400, 400], 53.0), ([525, 525], 54.0)] {
+        for (lengths, cost) in
+            [([525u32, 105], 55.0), ([525, 55], 46.0), ([400, 400], 53.0), ([525, 525], 54.0)]
+        {
             let mean_length = f64::from(lengths[0] + lengths[1]) / 2.0;
             let p: f64 = cost / mean_length;
             let mut watch = crate::runs::watch::Watch::new(&config);
@@ -203,27 +246,38 @@ mod tests {
                 watch.add(&episode, &config.constraints).unwrap();
             }
             let excess = surrogate_excess(&watch.signals(&config, 0.0, &[p])[0]);
-            // The mean over steps of ratio * advantage moves by p(1 - p) a unit of the logit, and so does p.
+            // The mean over steps of ratio * advantage moves by p(1 - p) a unit of the logit, and
+            // so does p.
             let slope = p * (1.0 - p);
             let weights = Plane { q: slope, r: -slope, s: slope, excess, radius: 0.05 }.solve();
             let moved = p + (weights.reward - weights.cost) * slope;
             assert!(!weights.recovery);
             let after = mean_length * moved;
-            assert!((after - 50.0).abs() < 1e-6, "episodes of {lengths:?} steps: from {cost} to {after}, budget 50");
+            assert!(
+                (after - 50.0).abs() < 1e-6,
+                "episodes of {lengths:?} steps: from {cost} to {after}, budget 50"
+            );
         }
     }
 
-    /// The closed form against a search over the whole plane of steps (the Fisher matrix taken as the identity).
+    /// The closed form against a search over the whole plane of steps (the Fisher matrix taken as
+    /// the identity).
     #[test]
     fn steps_solve_the_constrained_problem() {
         let radius = 0.02;
-        for (g, b) in [([1.0, 0.5], [0.3, -1.0]), ([1.0, 0.0], [-0.8, 0.6]), ([0.2, 0.1], [-1.0, -0.4])] {
+        for (g, b) in
+            [([1.0, 0.5], [0.3, -1.0]), ([1.0, 0.0], [-0.8, 0.6]), ([0.2, 0.1], [-1.0, -0.4])]
+        {
             for excess in [-1.0, -0.1, -0.02, 0.0, 0.02, 0.1, 1.0f64] {
                 let product = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
-                let plane = Plane { q: product(g, g), r: product(g, b), s: product(b, b), excess, radius };
+                let plane =
+                    Plane { q: product(g, g), r: product(g, b), s: product(b, b), excess, radius };
                 let weights = plane.solve();
                 let x = [0, 1].map(|i| -weights.reward * g[i] - weights.cost * b[i]);
-                assert!(product(x, x) / 2.0 <= radius * 1.0001, "{plane:?}: outside of the trust region");
+                assert!(
+                    product(x, x) / 2.0 <= radius * 1.0001,
+                    "{plane:?}: outside of the trust region"
+                );
                 let length = (2.0 * radius).sqrt();
                 let (mut best, mut least_cost) = (f64::INFINITY, f64::INFINITY);
                 for i in 0..=800 {
@@ -239,10 +293,17 @@ mod tests {
                 }
                 if weights.recovery {
                     assert!(best.is_infinite(), "{plane:?}: the budget could be kept");
-                    assert!(product(b, x) <= least_cost + 1e-3, "{plane:?}: not the fastest way back");
+                    assert!(
+                        product(b, x) <= least_cost + 1e-3,
+                        "{plane:?}: not the fastest way back"
+                    );
                 } else {
                     assert!(excess + product(b, x) <= 1e-6, "{plane:?}: beyond the budget");
-                    assert!(product(g, x) <= best + 2e-3, "{plane:?}: {} against {best}", product(g, x));
+                    assert!(
+                        product(g, x) <= best + 2e-3,
+                        "{plane:?}: {} against {best}",
+                        product(g, x)
+                    );
                 }
             }
         }

@@ -1,10 +1,11 @@
 //! CUP: constrained update projection (Yang et al. 2022, arXiv 2209.07089).
 //!
-//! Two steps on every rollout. First PPO on the reward alone, which leaves the policy halfway. Then a projection from there
-//! onto the constraints: it lowers the costs' surrogates, weighted by multipliers, while staying near the policy halfway.
-//! The steps have optimisers of their own, so that the momentum of the one does not drive the other; and where no
-//! multiplier is above zero the policy halfway is its own projection. Both steps end at `target_kl`, the second by its divergence from
-//! the policy halfway, and both train the critics, whose trunk they move.
+//! Two steps on every rollout. First PPO on the reward alone, which leaves the policy halfway. Then
+//! a projection from there onto the constraints: it lowers the costs' surrogates, weighted by
+//! multipliers, while staying near the policy halfway. The steps have optimisers of their own, so
+//! that the momentum of the one does not drive the other; and where no multiplier is above zero the
+//! policy halfway is its own projection. Both steps end at `target_kl`, the second by its
+//! divergence from the policy halfway, and both train the critics, whose trunk they move.
 
 use crate::algorithms::algorithm::{go_through, learn_in_epochs};
 use crate::algorithms::multiplier::{Lagrange, Multipliers};
@@ -32,10 +33,17 @@ impl Cup {
         Cup { settings: config.learning.clone(), multipliers }
     }
 
-    /// The loss of the second step: divergence from the policy halfway, the costs' surrogates from the policy that acted, and the losses
-    /// of the critics.
-    pub(super) fn projection(&self, halfway: &Policy, heads: &Heads, batch: &Minibatch<'_>, means: &mut Means) -> Loss {
-        let (gamma, lambda) = (self.settings.cost_gamma.unwrap_or(self.settings.gamma), self.settings.gae_lambda);
+    /// The loss of the second step: divergence from the policy halfway, the costs' surrogates from
+    /// the policy that acted, and the losses of the critics.
+    pub(super) fn projection(
+        &self,
+        halfway: &Policy,
+        heads: &Heads,
+        batch: &Minibatch<'_>,
+        means: &mut Means,
+    ) -> Loss {
+        let (gamma, lambda) =
+            (self.settings.cost_gamma.unwrap_or(self.settings.gamma), self.settings.gae_lambda);
         let coefficient = (1.0 - gamma * lambda) / (1.0 - gamma).max(1e-6);
         let mut total = heads.mean_of(&heads.policy.divergence(halfway));
         for (cost, multiplier) in batch.costs().iter().zip(self.multipliers()) {
@@ -65,16 +73,28 @@ impl Algorithm for Cup {
         let all: Vec<usize> = (0..count).collect();
         let halfway = learner.policy(&mut learner.minibatch(rollout, &all));
         let networks = learner.shape().networks.len();
-        let made = go_through(learner, rollout, Some(&halfway), epochs, means, |learner, some, means| {
-            let rows = (0..steps).flat_map(|step| some.iter().map(move |number| step * count + number));
-            let halfway = halfway.of_rows(rows);
-            let projection =
-                |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| self.projection(&halfway, heads, batch, means);
-            let mut noted = Means::default();
-            learner.descend_networks(0..networks, 1, &mut learner.minibatch(rollout, some), projection, &mut noted)?;
-            noted.get("projection_loss").into_iter().for_each(|loss| means.add("projection_loss", loss));
-            Ok(())
-        })?;
+        let made =
+            go_through(learner, rollout, Some(&halfway), epochs, means, |learner, some, means| {
+                let rows = (0..steps)
+                    .flat_map(|step| some.iter().map(move |number| step * count + number));
+                let halfway = halfway.of_rows(rows);
+                let projection = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| {
+                    self.projection(&halfway, heads, batch, means)
+                };
+                let mut noted = Means::default();
+                learner.descend_networks(
+                    0..networks,
+                    1,
+                    &mut learner.minibatch(rollout, some),
+                    projection,
+                    &mut noted,
+                )?;
+                noted
+                    .get("projection_loss")
+                    .into_iter()
+                    .for_each(|loss| means.add("projection_loss", loss));
+                Ok(())
+            })?;
         means.add("projection_epochs", f64::from(made));
         Ok(())
     }
@@ -87,7 +107,11 @@ impl Algorithm for Cup {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let advantages = standardised(minibatch.advantages());
-        learner.descend(minibatch, |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means), means)
+        learner.descend(
+            minibatch,
+            |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means),
+            means,
+        )
     }
 
     fn weights(&self) -> Option<&Multipliers> {
@@ -111,13 +135,15 @@ mod tests {
         for number in 0..3 {
             let prepared = learner.prepare(&rollout);
             let passes = Epochs::new(config, number, small::LANES);
-            algorithm.learn(&mut learner, &prepared, &passes, &signals, &mut Means::default()).unwrap();
+            algorithm
+                .learn(&mut learner, &prepared, &passes, &signals, &mut Means::default())
+                .unwrap();
         }
         learner
     }
 
-    /// Within the budget the multiplier is zero, and the policy halfway is what is left; above it the second step moves on
-    /// from there, and leaves the first step's momentum as it was.
+    /// Within the budget the multiplier is zero, and the policy halfway is what is left; above it
+    /// the second step moves on from there, and leaves the first step's momentum as it was.
     #[test]
     fn the_second_step_starts_where_the_first_ended() {
         let mut config = small::config(AlgorithmKind::Cup);
@@ -131,8 +157,9 @@ mod tests {
         assert_eq!(above.optimisers.iter().map(|adam| adam.steps).collect::<Vec<_>>(), [6, 6]);
     }
 
-    /// A3. The projection's step is as short as the first (algorithm 1 of the paper's appendix stops both by the divergence of the policy
-    /// that each begins with): it ends when KL(halfway, new) is beyond the target, with a pass to spare or with none.
+    /// A3. The projection's step is as short as the first (algorithm 1 of the paper's appendix
+    /// stops both by the divergence of the policy that each begins with): it ends when KL(halfway,
+    /// new) is beyond the target, with a pass to spare or with none.
     #[test]
     fn the_second_step_stops_at_its_own_divergence() {
         let passes = |target: f64| {
@@ -145,20 +172,28 @@ mod tests {
             let mut cup = Cup::new(&config);
             let mut means = Means::default();
             let signals = |_: &[f64]| vec![Signal::steady(1000.0, 5.0, 525.0)];
-            cup.learn(&mut learner, &prepared, &Epochs::new(&config, 0, small::LANES), &signals, &mut means).unwrap();
+            cup.learn(
+                &mut learner,
+                &prepared,
+                &Epochs::new(&config, 0, small::LANES),
+                &signals,
+                &mut means,
+            )
+            .unwrap();
             let steps: Vec<u64> = learner.optimisers.iter().map(|adam| adam.steps).collect();
             assert_eq!(means.get("projection_epochs"), Some(steps[1] as f64));
             steps
         };
-        // The passes of the second step do not hang on how far the first went: with a target between its own divergences it makes some
-        // of them.
+        // The passes of the second step do not hang on how far the first went: with a target
+        // between its own divergences it makes some of them.
         assert_eq!(passes(1e9), [8, 8]);
         assert_eq!(passes(1e-12), [1, 1]);
         let between = passes(0.05);
         assert!((1..8).contains(&between[1]), "{between:?}");
     }
 
-    /// With a vanishing multiplier, the projection of a policy is that policy: it must not be drawn back to the one that acted.
+    /// With a vanishing multiplier, the projection of a policy is that policy: it must not be drawn
+    /// back to the one that acted.
     #[test]
     fn a_small_multiplier_does_not_undo_the_first_step() {
         let mut config = small::config(AlgorithmKind::Cup);
@@ -172,7 +207,9 @@ mod tests {
         let halfway = learner.policy(&mut minibatch);
         let before = learner.parameters.clone();
         for _ in 0..20 {
-            let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| cup.projection(&halfway, heads, batch, means);
+            let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| {
+                cup.projection(&halfway, heads, batch, means)
+            };
             learner.descend_networks(0..1, 1, &mut minibatch, loss, &mut Means::default()).unwrap();
         }
         assert_eq!(learner.parameters, before);

@@ -1,9 +1,11 @@
-//! FOCOPS: first-order constrained optimisation in policy space (Zhang et al. 2020, arXiv 2002.06506).
+//! FOCOPS: first-order constrained optimisation in policy space (Zhang et al. 2020,
+//! arXiv 2002.06506).
 //!
-//! The best policy within a trust region is known in closed form before it is a network; the network is then drawn
-//! towards it by its gradient: divergence from the policy that acted minus the ratio-weighted advantage over a
-//! temperature, on those samples alone whose divergence is still small. As in the paper's algorithm 1, multipliers move once a rollout,
-//! unless the settings say otherwise, and epochs end when the policy has left the trust region.
+//! The best policy within a trust region is known in closed form before it is a network; the
+//! network is then drawn towards it by its gradient: divergence from the policy that acted minus
+//! the ratio-weighted advantage over a temperature, on those samples alone whose divergence is
+//! still small. As in the paper's algorithm 1, multipliers move once a rollout, unless the settings
+//! say otherwise, and epochs end when the policy has left the trust region.
 
 use crate::algorithms::multiplier::{Lagrange, Multipliers};
 use crate::algorithms::surrogate::{lagrangian_advantages, standardised, total};
@@ -37,7 +39,13 @@ impl Focops {
     }
 
     /// Divergence from the policy that acted minus the gain, on the samples that are still near it.
-    pub(super) fn loss(&self, advantages: &[f64], heads: &Heads, batch: &Minibatch<'_>, means: &mut Means) -> Loss {
+    pub(super) fn loss(
+        &self,
+        advantages: &[f64],
+        heads: &Heads,
+        batch: &Minibatch<'_>,
+        means: &mut Means,
+    ) -> Loss {
         let divergence = heads.policy.divergence(&batch.old_policy);
         let policy_loss = heads.mean([&heads.ratio, &divergence], |row, [ratio, divergence]| {
             if divergence.value <= self.eta {
@@ -59,7 +67,11 @@ impl Algorithm for Focops {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let advantages = standardised(&lagrangian_advantages(minibatch, &self.multipliers()));
-        learner.descend(minibatch, |heads, batch, means| self.loss(&advantages, heads, batch, means), means)
+        learner.descend(
+            minibatch,
+            |heads, batch, means| self.loss(&advantages, heads, batch, means),
+            means,
+        )
     }
 
     fn weights(&self) -> Option<&Multipliers> {

@@ -1,9 +1,11 @@
 //! IPO: interior-point policy optimisation (Liu et al. 2020, arXiv 1910.09615).
 //!
-//! A logarithmic barrier, log(d - J_C) / t, keeps the cost J_C inside the budget d. Its slope, 1 / (t (d - J_C)), takes the
-//! multiplier's place: it grows without bound towards the budget. The weight 1 / t is kappa times the budget, so that the slope passes 1
-//! at the same share below every budget, some standard errors of the mean cost below it: nearer, the barrier would be a switch on noise.
-//! Beyond the budget, where there is no barrier (the paper begins within it), the largest penalty rules.
+//! A logarithmic barrier, log(d - J_C) / t, keeps the cost J_C inside the budget d. Its slope, 1 /
+//! (t (d - J_C)), takes the multiplier's place: it grows without bound towards the budget. The
+//! weight 1 / t is kappa times the budget, so that the slope passes 1 at the same share below every
+//! budget, some standard errors of the mean cost below it: nearer, the barrier would be a switch on
+//! noise. Beyond the budget, where there is no barrier (the paper begins within it), the largest
+//! penalty rules.
 
 use crate::algorithms::surrogate::{lagrangian_advantages, standardised};
 use crate::algorithms::{Algorithm, Signal, ppo};
@@ -55,7 +57,11 @@ impl Algorithm for Ipo {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let advantages = standardised(&lagrangian_advantages(minibatch, &self.penalties));
-        learner.descend(minibatch, |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means), means)
+        learner.descend(
+            minibatch,
+            |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means),
+            means,
+        )
     }
 
     fn multipliers(&self) -> Vec<f64> {
@@ -68,13 +74,15 @@ mod tests {
     use super::*;
     use crate::config::{AlgorithmKind, EnvConfig, Preset};
 
-    /// A14. The slope is the derivative of the paper's barrier, phi(J) = log(d - J) / t (its equation 8), with 1 / t a tenth of the
-    /// budget: taken by differences of the logarithm itself. It passes 1 a tenth of the budget below it: 5 of 50 and 0.5 of 5, where
-    /// the mean of 32 episodes has a standard error of 1.5 to 4.6 (deviations of 8 to 26) and of 0.35 (2).
+    /// A14. The slope is the derivative of the paper's barrier, phi(J) = log(d - J) / t (its
+    /// equation 8), with 1 / t a tenth of the budget: taken by differences of the logarithm itself.
+    /// It passes 1 a tenth of the budget below it: 5 of 50 and 0.5 of 5, where the mean of 32
+    /// episodes has a standard error of 1.5 to 4.6 (deviations of 8 to 26) and of 0.35 (2).
     #[test]
     fn the_barrier_has_the_papers_slope_in_units_of_the_budget() {
         let ipo = |cost: f64, budget: f64| {
-            let config = TrainConfig::plain(AlgorithmKind::Ipo, Preset::Paper, EnvConfig::new("test"));
+            let config =
+                TrainConfig::plain(AlgorithmKind::Ipo, Preset::Paper, EnvConfig::new("test"));
             let mut ipo = Ipo::new(&config);
             ipo.constrain(&[Signal::steady(cost, budget, 525.0)]);
             ipo.multipliers()[0]
@@ -85,7 +93,10 @@ mod tests {
                 let barrier = |cost: f64| -0.1 * budget * (budget - cost).ln();
                 let expected = (barrier(cost + h) - barrier(cost - h)) / (2.0 * h);
                 let found = ipo(cost, budget);
-                assert!((found - expected).abs() < 1e-4 * expected, "budget {budget}, cost {cost}: {found} against {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-4 * expected,
+                    "budget {budget}, cost {cost}: {found} against {expected}"
+                );
             }
             assert!((ipo(0.9 * budget, budget) - 1.0).abs() < 1e-12);
             // A budget of 5 needs about 3: the barrier gets there within the budget.

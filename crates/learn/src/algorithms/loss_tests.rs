@@ -1,4 +1,5 @@
-//! Every loss against one taken from its paper once more, in plain 64-bit arithmetic: value, and gradient in the networks' outputs.
+//! Every loss against one taken from its paper once more, in plain 64-bit arithmetic: value, and
+//! gradient in the networks' outputs.
 
 use crate::algorithms::surrogate::standardised;
 use crate::algorithms::{Algorithm, Signal, cup, focops, p3o, ppo};
@@ -38,7 +39,10 @@ impl Case {
         let mut old_outputs = Vec::new();
         let (mut actions, mut deltas, mut old_log) = (Vec::new(), Vec::new(), Vec::new());
         for row in outputs.chunks_exact(width) {
-            let old: Vec<f32> = row[..shape.parameters()].iter().map(|value| value + (spread * stream.normal()) as f32).collect();
+            let old: Vec<f32> = row[..shape.parameters()]
+                .iter()
+                .map(|value| value + (spread * stream.normal()) as f32)
+                .collect();
             let (mut action, mut delta) = (vec![0; shape.sizes.len()], vec![0.0; shape.deltas]);
             old_log.push(shape.sample(&old, &mut stream, &mut action, &mut delta));
             actions.extend(action);
@@ -48,7 +52,18 @@ impl Case {
         let mut normals = || -> Vec<f32> { (0..ROWS).map(|_| stream.normal() as f32).collect() };
         let advantages = [normals(), normals()];
         let (old_values, targets) = ([normals(), normals()], [normals(), normals()]);
-        Case { shape, outputs, old_outputs, actions, deltas, old_log, advantages, old_values, targets, exploration: EXPLORATION }
+        Case {
+            shape,
+            outputs,
+            old_outputs,
+            actions,
+            deltas,
+            old_log,
+            advantages,
+            old_values,
+            targets,
+            exploration: EXPLORATION,
+        }
     }
 
     fn minibatch(&self) -> Minibatch<'static> {
@@ -68,7 +83,12 @@ impl Case {
             targets: self.targets[index].clone(),
         };
         Minibatch {
-            batch: ModelSequences { sequences: empty, initial_state: vec![], recorded: vec![], privileged: vec![] },
+            batch: ModelSequences {
+                sequences: empty,
+                initial_state: vec![],
+                recorded: vec![],
+                privileged: vec![],
+            },
             taken: Taken { actions: self.actions.clone(), deltas: self.deltas.clone() },
             old_log_probability: self.old_log.iter().map(|&log| f64::from(log)).collect(),
             old_policy: Policy::new(&self.shape, &self.old_outputs, self.shape.parameters()),
@@ -80,7 +100,12 @@ impl Case {
 
     /// Value and gradient of a loss.
     fn found(&self, loss: impl Fn(&Heads, &Minibatch<'_>, &mut Means) -> Loss) -> (f64, Vec<f64>) {
-        let shape = ModelShape { networks: vec![], action: self.shape.clone(), cost_critics: 1, critic_inputs: 0 };
+        let shape = ModelShape {
+            networks: vec![],
+            action: self.shape.clone(),
+            cost_critics: 1,
+            critic_inputs: 0,
+        };
         let minibatch = self.minibatch();
         let heads = Heads::new(&shape, &self.outputs, shape.outputs(), &minibatch);
         let loss = loss(&heads, &minibatch, &mut Means::default());
@@ -88,11 +113,19 @@ impl Case {
     }
 
     /// Holds a loss against a plain one of the outputs, whose gradient is taken by differences.
-    fn compare(&self, name: &str, loss: impl Fn(&Heads, &Minibatch<'_>, &mut Means) -> Loss, plain: impl Fn(&[f64]) -> f64) {
+    fn compare(
+        &self,
+        name: &str,
+        loss: impl Fn(&Heads, &Minibatch<'_>, &mut Means) -> Loss,
+        plain: impl Fn(&[f64]) -> f64,
+    ) {
         let (value, gradient) = self.found(loss);
         let outputs: Vec<f64> = self.outputs.iter().map(|&v| f64::from(v)).collect();
         let expected = plain(&outputs);
-        assert!((value - expected).abs() < 1e-9 * expected.abs().max(1.0), "{name}: {value} against {expected}");
+        assert!(
+            (value - expected).abs() < 1e-9 * expected.abs().max(1.0),
+            "{name}: {value} against {expected}"
+        );
         let largest = gradient.iter().fold(0.0f64, |most, value| most.max(value.abs()));
         assert!(largest > 1e-4, "{name}: no gradient to compare");
         for (index, &found) in gradient.iter().enumerate() {
@@ -103,7 +136,10 @@ impl Case {
             };
             let expected = (moved(1e-6) - moved(-1e-6)) / 2e-6;
             let error = (found - expected).abs();
-            assert!(error < 1e-6 * largest.max(0.1), "{name}: gradient {index}: {found} against {expected}");
+            assert!(
+                error < 1e-6 * largest.max(0.1),
+                "{name}: gradient {index}: {found} against {expected}"
+            );
         }
     }
 
@@ -130,13 +166,18 @@ impl Case {
     fn log_probability(&self, outputs: &[f64], index: usize) -> f64 {
         let row = self.row(outputs, index);
         let groups = self.shape.sizes.len();
-        let discrete: f64 =
-            self.logs(row).iter().enumerate().map(|(g, logs)| logs[self.actions[index * groups + g] as usize]).sum();
+        let discrete: f64 = self
+            .logs(row)
+            .iter()
+            .enumerate()
+            .map(|(g, logs)| logs[self.actions[index * groups + g] as usize])
+            .sum();
         let first: usize = self.shape.sizes.iter().sum();
         let continuous: f64 = (0..self.shape.deltas)
             .map(|d| {
                 let (mean, log) = (row[first + 2 * d], row[first + 2 * d + 1]);
-                let draw = (f64::from(self.deltas[index * self.shape.deltas + d]) - mean) / log.exp();
+                let draw =
+                    (f64::from(self.deltas[index * self.shape.deltas + d]) - mean) / log.exp();
                 -0.5 * draw * draw - log - 0.5 * std::f64::consts::TAU.ln()
             })
             .sum();
@@ -163,7 +204,10 @@ impl Case {
             .map(|d| {
                 let at = first + 2 * d;
                 let distance = a[at] - b[at];
-                b[at + 1] - a[at + 1] + ((2.0 * a[at + 1]).exp() + distance * distance) / (2.0 * (2.0 * b[at + 1]).exp()) - 0.5
+                b[at + 1] - a[at + 1]
+                    + ((2.0 * a[at + 1]).exp() + distance * distance)
+                        / (2.0 * (2.0 * b[at + 1]).exp())
+                    - 0.5
             })
             .sum();
         discrete + continuous
@@ -206,7 +250,8 @@ impl Case {
             Case::mean(|i| {
                 let row = self.row(outputs, i);
                 let v = row[row.len() - 2 + critic];
-                let (old, target) = (f64::from(self.old_values[critic][i]), f64::from(self.targets[critic][i]));
+                let (old, target) =
+                    (f64::from(self.old_values[critic][i]), f64::from(self.targets[critic][i]));
                 let clipped = old + (v - old).clamp(-settings.clip_value, settings.clip_value);
                 (v - target).powi(2).max((clipped - target).powi(2))
             }) * settings.value_coefficient
@@ -227,8 +272,8 @@ fn signal(episode_cost: f64) -> Signal {
     Signal::steady(episode_cost, 5.0, 525.0)
 }
 
-/// PPO's equations 7 (the clipped surrogate; 1 - epsilon is 1 / (1 + epsilon) here, as in the benchmark's code) and 9 (with the
-/// losses of the values and of exploration).
+/// PPO's equations 7 (the clipped surrogate; 1 - epsilon is 1 / (1 + epsilon) here, as in the
+/// benchmark's code) and 9 (with the losses of the values and of exploration).
 #[test]
 fn ppo_and_its_value_and_exploration_losses() {
     for (preset, exploration, spread) in [
@@ -243,7 +288,10 @@ fn ppo_and_its_value_and_exploration_losses() {
         case.compare(
             "PPO",
             |heads, batch, means| ppo::loss(&advantages, heads, batch, &config.learning, means),
-            |outputs| case.clipped(outputs, &advantages, config.learning.clip_ratio) + case.rest(outputs, &config),
+            |outputs| {
+                case.clipped(outputs, &advantages, config.learning.clip_ratio)
+                    + case.rest(outputs, &config)
+            },
         );
     }
 }
@@ -257,18 +305,24 @@ fn ppo_with_continuous_parts() {
     case.compare(
         "PPO with normals",
         |heads, batch, means| ppo::loss(&advantages, heads, batch, &config.learning, means),
-        |outputs| case.clipped(outputs, &advantages, config.learning.clip_ratio) + case.rest(outputs, &config),
+        |outputs| {
+            case.clipped(outputs, &advantages, config.learning.clip_ratio)
+                + case.rest(outputs, &config)
+        },
     );
 }
 
-/// P3O's exact penalty: kappa * max(0, E[max(r A_C, clip(r) A_C)] + excess), added to PPO's loss (equation 13 of the paper). A8: the authors
-/// standardise A_C, and so the excess, which stands in its unit, is divided by the same deviation; per step of an episode of 525 it is
-/// (J_C - d) / 525. Values are fed as critics give them, with a deviation that is neither 1 nor that of the rewards. The released code
-/// leaves out the clip and the division, and has a kappa of 1.
+/// P3O's exact penalty: kappa * max(0, E[max(r A_C, clip(r) A_C)] + excess), added to PPO's loss
+/// (equation 13 of the paper). A8: the authors standardise A_C, and so the excess, which stands in
+/// its unit, is divided by the same deviation; per step of an episode of 525 it is (J_C - d) / 525.
+/// Values are fed as critics give them, with a deviation that is neither 1 nor that of the rewards.
+/// The released code leaves out the clip and the division, and has a kappa of 1.
 #[test]
 fn p3o_counts_advantage_and_excess_in_one_unit() {
     for preset in [Preset::Paper, Preset::Released, Preset::Tables] {
-        for (cost, scale) in [(400.0, 1.0), (400.0, 0.05), (8.0, 0.05), (8.0, 7.0), (0.0, 7.0), (0.0, 0.001)] {
+        for (cost, scale) in
+            [(400.0, 1.0), (400.0, 0.05), (8.0, 0.05), (8.0, 7.0), (0.0, 7.0), (0.0, 0.001)]
+        {
             let config = config(AlgorithmKind::P3o, preset);
             let p3o = p3o::P3o::new(&config);
             let mut case = Case::new(discrete(), 0.3);
@@ -276,11 +330,14 @@ fn p3o_counts_advantage_and_excess_in_one_unit() {
             let advantages = standardised(&case.advantages[0]);
             let raw: Vec<f64> = case.advantages[1].iter().map(|&value| f64::from(value)).collect();
             let mean = raw.iter().sum::<f64>() / ROWS as f64;
-            let sigma = (raw.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (ROWS as f64 - 1.0)).sqrt();
+            let sigma = (raw.iter().map(|value| (value - mean).powi(2)).sum::<f64>()
+                / (ROWS as f64 - 1.0))
+                .sqrt();
             let signals = [signal(cost)];
             let clip = config.learning.clip_ratio;
             let penalty = |outputs: &[f64]| {
-                // The whole in raw units, then divided once by sigma: the unit must not matter to where the penalty begins.
+                // The whole in raw units, then divided once by sigma: the unit must not matter to
+                // where the penalty begins.
                 let expected = Case::mean(|i| {
                     let (ratio, a) = (case.ratio(outputs, i), raw[i] - mean);
                     let clipped = ratio.clamp(1.0 / (1.0 + clip), 1.0 + clip);
@@ -295,13 +352,18 @@ fn p3o_counts_advantage_and_excess_in_one_unit() {
             case.compare(
                 &format!("P3O {preset}, cost {cost}, scale {scale}"),
                 |heads, batch, means| p3o.loss(&advantages, &signals, heads, batch, means),
-                |outputs| case.clipped(outputs, &advantages, clip) + case.rest(outputs, &config) + penalty(outputs),
+                |outputs| {
+                    case.clipped(outputs, &advantages, clip)
+                        + case.rest(outputs, &config)
+                        + penalty(outputs)
+                },
             );
         }
     }
 }
 
-/// FOCOPS' corollary 1 with the indicator of its algorithm 1: samples beyond the trust region do not count.
+/// FOCOPS' corollary 1 with the indicator of its algorithm 1: samples beyond the trust region do
+/// not count.
 #[test]
 fn focops_counts_near_samples_alone() {
     let config = config(AlgorithmKind::Focops, Preset::Paper);
@@ -309,7 +371,9 @@ fn focops_counts_near_samples_alone() {
     let case = Case::new(discrete(), 0.15);
     let advantages = standardised(&case.advantages[0]);
     let at: Vec<f64> = case.outputs.iter().map(|&v| f64::from(v)).collect();
-    let near: Vec<bool> = (0..ROWS).map(|i| case.divergence_from(case.row(&at, i), &case.old_row(i)) <= 0.02).collect();
+    let near: Vec<bool> = (0..ROWS)
+        .map(|i| case.divergence_from(case.row(&at, i), &case.old_row(i)) <= 0.02)
+        .collect();
     assert!(near.contains(&true) && near.contains(&false), "samples of both kinds");
     case.compare(
         "FOCOPS",
@@ -325,8 +389,9 @@ fn focops_counts_near_samples_alone() {
     );
 }
 
-/// CUP's projection: KL(pi, pi_halfway) + multiplier * (1 - gamma lambda) / (1 - gamma) * E[pi / pi_k A_C], the second problem of
-/// its algorithm 1 with the constraint moved into the objective. A3: the critics learn in it too, for it moves the trunk that they share.
+/// CUP's projection: KL(pi, pi_halfway) + multiplier * (1 - gamma lambda) / (1 - gamma) * E[pi /
+/// pi_k A_C], the second problem of its algorithm 1 with the constraint moved into the objective.
+/// A3: the critics learn in it too, for it moves the trunk that they share.
 #[test]
 fn cup_projects_from_the_policy_halfway() {
     let config = config(AlgorithmKind::Cup, Preset::Paper);
@@ -346,15 +411,19 @@ fn cup_projects_from_the_policy_halfway() {
             let coefficient = (1.0 - 0.99 * 0.95) / (1.0 - 0.99);
             let projection = Case::mean(|i| {
                 case.divergence_from(case.row(outputs, i), &other.old_row(i))
-                    + multiplier * coefficient * case.ratio(outputs, i) * (f64::from(case.advantages[1][i]) - mean)
+                    + multiplier
+                        * coefficient
+                        * case.ratio(outputs, i)
+                        * (f64::from(case.advantages[1][i]) - mean)
             });
             projection + case.rest(outputs, &config)
         },
     );
 }
 
-/// FOCOPS draws the policy to pi*, proportional to pi_k exp((A - nu A_C) / lambda) (theorem 1): its loss over all actions of a
-/// state, each as often as pi_k takes it, has the gradient of KL(pi, pi*) itself, which is taken here from pi* written out.
+/// FOCOPS draws the policy to pi*, proportional to pi_k exp((A - nu A_C) / lambda) (theorem 1): its
+/// loss over all actions of a state, each as often as pi_k takes it, has the gradient of KL(pi,
+/// pi*) itself, which is taken here from pi* written out.
 #[test]
 fn focops_goes_to_the_best_policy_of_the_trust_region() {
     let mut config = config(AlgorithmKind::Focops, Preset::Paper);
@@ -375,7 +444,8 @@ fn focops_goes_to_the_best_policy_of_the_trust_region() {
     // The critics' columns have losses of their own.
     let (_, gradient) = case.found(|heads, batch, means| focops.loss(&gains, heads, batch, means));
     let divergence = |logits: &[f64]| {
-        let p: Vec<f64> = logits.iter().map(|l| l.exp() / logits.iter().map(|l| l.exp()).sum::<f64>()).collect();
+        let p: Vec<f64> =
+            logits.iter().map(|l| l.exp() / logits.iter().map(|l| l.exp()).sum::<f64>()).collect();
         let best: Vec<f64> = gains.iter().map(|gain| (gain / 1.5f64).exp() / 5.0).collect();
         let total: f64 = best.iter().sum();
         p.iter().zip(&best).map(|(p, best)| p * (p / (best / total)).ln()).sum::<f64>()

@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use crate::algorithms::algorithm::Algorithm;
-use crate::algorithms::{cpo, cup, focops, ipo, p3o, ppo, ppo_cost, ppo_lag, ppo_pid, ppo_saute, trpo, trpo_lag, trpo_pid};
+use crate::algorithms::{
+    cpo, cup, focops, ipo, p3o, ppo, ppo_cost, ppo_lag, ppo_pid, ppo_saute, trpo, trpo_lag,
+    trpo_pid,
+};
 use crate::config::{AlgorithmKind, TrainConfig};
 use crate::sampling::shaping::{Plain, Shaping};
 

@@ -6,8 +6,8 @@ use serde_json::Value;
 use crate::algorithms::Signal;
 use crate::config::AlgorithmConfig;
 
-/// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate * excess) (Ray et al. 2019, algorithm 1 of their
-/// appendix), and nothing else.
+/// A multiplier that integrates the excess of a constraint: lambda <- max(0, lambda + rate *
+/// excess) (Ray et al. 2019, algorithm 1 of their appendix), and nothing else.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lagrange {
     /// The multiplier.
@@ -21,8 +21,11 @@ impl Lagrange {
     /// One multiplier a constraint.
     #[must_use]
     pub fn all(settings: &AlgorithmConfig, constraints: usize) -> Multipliers {
-        let one =
-            Lagrange { value: settings.multiplier_initial, rate: settings.multiplier_rate, limit: settings.multiplier_limit };
+        let one = Lagrange {
+            value: settings.multiplier_initial,
+            rate: settings.multiplier_rate,
+            limit: settings.multiplier_limit,
+        };
         Multipliers::Lagrange(vec![one; constraints])
     }
 
@@ -33,10 +36,11 @@ impl Lagrange {
     }
 }
 
-/// A multiplier moved by a PID controller (Stooke et al. 2020, algorithm 2): proportional and derivative parts react before the
-/// integral has grown, which damps its swings. With a reference budget every part counts
-/// 1 + progress^3 (reference / budget - 1) times, where progress is the share of the schedule that is over: at first an excess counts by
-/// itself, at last by its share of the budget.
+/// A multiplier moved by a PID controller (Stooke et al. 2020, algorithm 2): proportional and
+/// derivative parts react before the integral has grown, which damps its swings. With a reference
+/// budget every part counts 1 + progress^3 (reference / budget - 1) times, where progress is the
+/// share of the schedule that is over: at first an excess counts by itself, at last by its share of
+/// the budget.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pid {
     /// The multiplier.
@@ -77,8 +81,9 @@ impl Pid {
         Multipliers::Pid(vec![pid; constraints])
     }
 
-    /// Moves by what the constraint costs per step. The integral counts every episode once; averages and delay go on by as many
-    /// rollouts as the new episodes stand for, and stand still while there are none.
+    /// Moves by what the constraint costs per step. The integral counts every episode once;
+    /// averages and delay go on by as many rollouts as the new episodes stand for, and stand still
+    /// while there are none.
     pub fn update(&mut self, signal: &Signal) {
         if signal.fresh_weight == 0.0 {
             return;
@@ -86,7 +91,8 @@ impl Pid {
         let (kp, ki, kd) = self.gains;
         let limit = self.limit.unwrap_or(f64::INFINITY);
         // No budget is less than one event of an episode.
-        let ratio = self.reference.map_or(1.0, |reference| reference / signal.episode_budget.max(1.0));
+        let ratio =
+            self.reference.map_or(1.0, |reference| reference / signal.episode_budget.max(1.0));
         let scale = 1.0 + signal.done.powi(3) * (ratio - 1.0);
         let fresh = signal.fresh_weight * signal.fresh_step_excess();
         self.integral = (self.integral + ki * (scale * fresh)).clamp(0.0, limit);
@@ -119,24 +125,35 @@ impl Multipliers {
     /// Told what each constraint costs.
     pub fn update(&mut self, signals: &[Signal]) {
         match self {
-            Multipliers::Lagrange(all) => all.iter_mut().zip(signals).for_each(|(one, signal)| one.update(signal)),
-            Multipliers::Pid(all) => all.iter_mut().zip(signals).for_each(|(one, signal)| one.update(signal)),
+            Multipliers::Lagrange(all) => {
+                all.iter_mut().zip(signals).for_each(|(one, signal)| one.update(signal))
+            }
+            Multipliers::Pid(all) => {
+                all.iter_mut().zip(signals).for_each(|(one, signal)| one.update(signal))
+            }
         }
     }
 
     /// As many as the others, and moved by the same rule.
     #[must_use]
     pub fn is_like(&self, others: &Multipliers) -> bool {
-        std::mem::discriminant(self) == std::mem::discriminant(others) && self.values().len() == others.values().len()
+        std::mem::discriminant(self) == std::mem::discriminant(others)
+            && self.values().len() == others.values().len()
     }
 
-    /// Goes on from the damped multipliers of older versions, if that is what was saved: PI controllers, the value of which is their
-    /// integral plus a multiple of the present excess.
+    /// Goes on from the damped multipliers of older versions, if that is what was saved: PI
+    /// controllers, the value of which is their integral plus a multiple of the present excess.
     pub fn take_over_damped(&mut self, saved: &Value) -> bool {
         let (Multipliers::Pid(all), Some(saved)) = (self, saved.as_array()) else { return false };
-        let parts =
-            |one: &Value| Some((one.get("value")?.as_f64()?, one.get("damping")?.as_f64()?, one.get("integral")?.as_f64()?));
-        let saved: Vec<_> = saved.iter().filter_map(parts).filter(|(_, damping, _)| *damping > 0.0).collect();
+        let parts = |one: &Value| {
+            Some((
+                one.get("value")?.as_f64()?,
+                one.get("damping")?.as_f64()?,
+                one.get("integral")?.as_f64()?,
+            ))
+        };
+        let saved: Vec<_> =
+            saved.iter().filter_map(parts).filter(|(_, damping, _)| *damping > 0.0).collect();
         if saved.len() != all.len() {
             return false;
         }
@@ -174,7 +191,8 @@ mod tests {
         config(AlgorithmKind::PpoLag, Preset::Released).algorithm_settings
     }
 
-    /// The released code's rules, worked out apart in double precision: ten updates at a step cost of 0.3, then of 0.05.
+    /// The released code's rules, worked out apart in double precision: ten updates at a step cost
+    /// of 0.3, then of 0.05.
     #[test]
     fn multipliers_follow_the_recorded_numbers() {
         let mut lagrange = Lagrange::all(&settings(), 1);
@@ -190,7 +208,11 @@ mod tests {
             lagrange.update(&[signal(0.3)]);
             pid.update(&[signal(0.3)]);
             if let Some((_, l, p)) = expected.iter().find(|(at, ..)| *at == update) {
-                assert!((lagrange.values()[0] - l).abs() < 1e-8, "update {update}: {}", lagrange.values()[0]);
+                assert!(
+                    (lagrange.values()[0] - l).abs() < 1e-8,
+                    "update {update}: {}",
+                    lagrange.values()[0]
+                );
                 assert!((pid.values()[0] - p).abs() < 1e-8, "update {update}: {}", pid.values()[0]);
             }
         }
@@ -200,12 +222,18 @@ mod tests {
         assert!((pid.values()[0] - 0.032_194_52).abs() < 1e-8);
     }
 
-    /// A2. Ray et al. 2019: gradient ascent on lambda (J_C - d), projected to lambda >= 0. So the multiplier is a running sum that is cut
-    /// off at zero, under every preset, and nothing of the present excess is in it: back at the budget it stays where it was.
+    /// A2. Ray et al. 2019: gradient ascent on lambda (J_C - d), projected to lambda >= 0. So the
+    /// multiplier is a running sum that is cut off at zero, under every preset, and nothing of the
+    /// present excess is in it: back at the budget it stays where it was.
     #[test]
     fn the_lagrangian_is_a_sum_of_excesses_under_every_preset() {
         let costs = [90.0, 120.0, 40.0, 50.0, 50.0, 20.0, 0.0, 0.0, 0.0, 75.0];
-        for algorithm in [AlgorithmKind::PpoLag, AlgorithmKind::TrpoLag, AlgorithmKind::Focops, AlgorithmKind::Cup] {
+        for algorithm in [
+            AlgorithmKind::PpoLag,
+            AlgorithmKind::TrpoLag,
+            AlgorithmKind::Focops,
+            AlgorithmKind::Cup,
+        ] {
             for &preset in Preset::ALL {
                 let config = config(algorithm, preset);
                 let rate = config.algorithm_settings.multiplier_rate;
@@ -216,7 +244,10 @@ mod tests {
                         made.constrain(&[Signal { done, ..Signal::steady(cost, 50.0, 525.0) }]);
                         expected = (expected + rate * (cost - 50.0) / 525.0).max(0.0);
                         let found = made.multipliers()[0];
-                        assert!((found - expected).abs() < 1e-12, "{algorithm} {preset}: {found} against {expected}");
+                        assert!(
+                            (found - expected).abs() < 1e-12,
+                            "{algorithm} {preset}: {found} against {expected}"
+                        );
                     }
                 }
             }
@@ -229,26 +260,39 @@ mod tests {
                     let settings = config(algorithm, preset).algorithm_settings;
                     (settings.pid_gains, settings.pid_decay, settings.pid_initial)
                 };
-                // Stooke et al. 2020, algorithm 2: K_P Delta + I + K_D (J_C - J_C before)+, the first and the last smoothed.
+                // Stooke et al. 2020, algorithm 2: K_P Delta + I + K_D (J_C - J_C before)+, the
+                // first and the last smoothed.
                 let excess = 450.0 / 525.0;
-                let expected =
-                    gains.0 * (1.0 - decay) * excess + integral + gains.1 * excess + gains.2 * (1.0 - decay) * 500.0 / 525.0;
+                let expected = gains.0 * (1.0 - decay) * excess
+                    + integral
+                    + gains.1 * excess
+                    + gains.2 * (1.0 - decay) * 500.0 / 525.0;
                 let found = made.multipliers()[0];
-                assert!((found - expected).abs() < 1e-12, "{algorithm} {preset}: {found} against {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-12,
+                    "{algorithm} {preset}: {found} against {expected}"
+                );
             }
         }
     }
 
-    /// A cost that follows the multiplier with a delay: the integral alone runs in circles, with a proportional part it settles.
+    /// A cost that follows the multiplier with a delay: the integral alone runs in circles, with a
+    /// proportional part it settles.
     #[test]
     fn a_proportional_part_ends_the_circles() {
         let swing = |gain: f64| {
-            let settings = AlgorithmConfig { pid_gains: (gain, 0.02, 0.0), pid_initial: 0.0, pid_decay: 0.0, ..settings() };
+            let settings = AlgorithmConfig {
+                pid_gains: (gain, 0.02, 0.0),
+                pid_initial: 0.0,
+                pid_decay: 0.0,
+                ..settings()
+            };
             let mut multiplier = Pid::all(&settings, 1);
             let (mut cost, mut seen) = (100.0, std::collections::VecDeque::from(vec![100.0; 66]));
             let mut late = Vec::new();
             for update in 0..4000 {
-                // It falls by 575 a unit of the multiplier, within 146 updates, and is seen 66 updates later.
+                // It falls by 575 a unit of the multiplier, within 146 updates, and is seen 66
+                // updates later.
                 cost += (165.0 - 575.0 * multiplier.values()[0] - cost) / 146.0;
                 seen.push_back(cost);
                 multiplier.update(&[signal(seen.pop_front().unwrap() / 525.0)]);
@@ -260,8 +304,9 @@ mod tests {
         assert!(swing(1.5) < 2.0, "{}", swing(1.5));
     }
 
-    /// A cost that answers to ratios of the multiplier: the gain that brings a budget of 45 to rest where 0.3 is needed also brings
-    /// one of 4.5 to rest where 3 is, and moves the first as it would without.
+    /// A cost that answers to ratios of the multiplier: the gain that brings a budget of 45 to rest
+    /// where 0.3 is needed also brings one of 4.5 to rest where 3 is, and moves the first as it
+    /// would without.
     #[test]
     fn a_reference_brings_small_budgets_to_rest_as_soon() {
         let distance = |reference: Option<f64>, scale: f64| {
@@ -276,13 +321,22 @@ mod tests {
             let budget = 45.0 / scale;
             let mut cost = 2.0 * budget;
             for update in 0..12_000 {
-                let wanted = budget * (1.0 - (multiplier.values()[0] / (0.3 * scale)).max(0.05).ln());
+                let wanted =
+                    budget * (1.0 - (multiplier.values()[0] / (0.3 * scale)).max(0.05).ln());
                 cost += (wanted - cost) / 146.0;
-                multiplier.update(&[Signal { done: f64::from(update) / 12e3, ..Signal::steady(cost, budget, 525.0) }]);
+                multiplier.update(&[Signal {
+                    done: f64::from(update) / 12e3,
+                    ..Signal::steady(cost, budget, 525.0)
+                }]);
             }
             (cost / budget - 1.0).abs()
         };
-        assert!(distance(None, 1.0) < 0.01 && distance(None, 10.0) > 0.5, "{} {}", distance(None, 1.0), distance(None, 10.0));
+        assert!(
+            distance(None, 1.0) < 0.01 && distance(None, 10.0) > 0.5,
+            "{} {}",
+            distance(None, 1.0),
+            distance(None, 10.0)
+        );
         assert!(
             distance(Some(45.0), 1.0) == distance(None, 1.0) && distance(Some(45.0), 10.0) < 0.25,
             "{}",
@@ -290,8 +344,8 @@ mod tests {
         );
     }
 
-    /// Worked out by hand: halfway, an excess of 5 over a budget of 5 counts 1 + (45 / 5 - 1) / 8 = 2 times; at first it counts once.
-    /// A budget of nothing counts as one of 1.
+    /// Worked out by hand: halfway, an excess of 5 over a budget of 5 counts 1 + (45 / 5 - 1) / 8 =
+    /// 2 times; at first it counts once. A budget of nothing counts as one of 1.
     #[test]
     fn an_excess_counts_by_its_share_of_the_budget_at_last() {
         let moved = |gains: (f64, f64, f64), budget: f64, done: f64| {
@@ -306,8 +360,13 @@ mod tests {
             multiplier.update(&[Signal { done, ..Signal::steady(budget + 5.0, budget, 100.0) }]);
             multiplier.values()[0]
         };
-        for (budget, done, expected) in [(5.0, 0.0, 0.05), (5.0, 0.5, 0.1), (5.0, 1.0, 0.45), (45.0, 1.0, 0.05), (0.0, 1.0, 2.25)]
-        {
+        for (budget, done, expected) in [
+            (5.0, 0.0, 0.05),
+            (5.0, 0.5, 0.1),
+            (5.0, 1.0, 0.45),
+            (45.0, 1.0, 0.05),
+            (0.0, 1.0, 2.25),
+        ] {
             for gains in [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)] {
                 let found = moved(gains, budget, done);
                 assert!((found - expected).abs() < 1e-12, "{gains:?} {budget} {done}: {found}");
@@ -315,9 +374,9 @@ mod tests {
         }
     }
 
-    /// A15. Stooke et al. 2020, algorithm 2: once an iteration, I <- (I + J_C - d)+ over the episodes of that iteration. Two rollouts
-    /// pass without an episode, the third brings three: as if each of the three rollouts had brought one, and a fourth without any
-    /// moves nothing.
+    /// A15. Stooke et al. 2020, algorithm 2: once an iteration, I <- (I + J_C - d)+ over the
+    /// episodes of that iteration. Two rollouts pass without an episode, the third brings three: as
+    /// if each of the three rollouts had brought one, and a fourth without any moves nothing.
     #[test]
     fn the_pid_counts_new_episodes_once() {
         let made = |signals: &[Signal]| {
@@ -334,9 +393,15 @@ mod tests {
             (all[0].integral, all[0].proportional, all[0].cost)
         };
         let (a, b) = (parts(&late), parts(&each));
-        assert!((a.0 - b.0).abs() < 1e-15 && (a.1 - b.1).abs() < 1e-15 && (a.2 - b.2).abs() < 1e-15, "{a:?} {b:?}");
+        assert!(
+            (a.0 - b.0).abs() < 1e-15 && (a.1 - b.1).abs() < 1e-15 && (a.2 - b.2).abs() < 1e-15,
+            "{a:?} {b:?}"
+        );
         // 0.001 + 3 * 0.01 * 30 / 525, and 1 - 0.95^3 of the excess.
-        assert!((a.0 - (0.001 + 0.9 / 525.0)).abs() < 1e-15 && (a.1 - 0.142_625 * 30.0 / 525.0).abs() < 1e-15);
+        assert!(
+            (a.0 - (0.001 + 0.9 / 525.0)).abs() < 1e-15
+                && (a.1 - 0.142_625 * 30.0 / 525.0).abs() < 1e-15
+        );
         let mut after = late.clone();
         after.update(&[none]);
         assert_eq!(after, late);
@@ -361,7 +426,8 @@ mod tests {
 
     #[test]
     fn multipliers_stay_within_their_bounds() {
-        let mut lagrange = Lagrange::all(&AlgorithmConfig { multiplier_limit: Some(0.01), ..settings() }, 1);
+        let mut lagrange =
+            Lagrange::all(&AlgorithmConfig { multiplier_limit: Some(0.01), ..settings() }, 1);
         lagrange.update(&[signal(0.0)]);
         assert_eq!(lagrange.values()[0], 0.0);
         (0..100).for_each(|_| lagrange.update(&[signal(1.0)]));
@@ -376,7 +442,10 @@ mod tests {
             let loaded: Multipliers = serde_json::from_value(saved).unwrap();
             assert_eq!(loaded, multipliers);
             assert!(loaded.is_like(&multipliers));
-            assert!(!loaded.is_like(&Pid::all(&settings(), 1)) && !loaded.is_like(&Lagrange::all(&settings(), 1)));
+            assert!(
+                !loaded.is_like(&Pid::all(&settings(), 1))
+                    && !loaded.is_like(&Lagrange::all(&settings(), 1))
+            );
         }
     }
 }

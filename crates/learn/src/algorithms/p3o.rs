@@ -1,12 +1,15 @@
 //! P3O: penalised proximal policy optimisation (Zhang et al. 2022, arXiv 2205.11814).
 //!
-//! The constraint enters the loss as an exact penalty: kappa times the positive part of what the cost is expected to
-//! become, the cost's surrogate plus the present excess. There is no multiplier to wait for.
+//! The constraint enters the loss as an exact penalty: kappa times the positive part of what the
+//! cost is expected to become, the cost's surrogate plus the present excess. There is no multiplier
+//! to wait for.
 //!
-//! As the paper has it the surrogate is clipped pessimistically. Its advantages are standardised, as its authors' are, so the excess is
-//! divided by the same deviation: (J_C - d) / (T sigma_C). (The paper's (1 - gamma)(J_C - d) is the excess of discounted costs a step;
-//! budgets here are on sums, whose excess a step is that over the T steps that episodes have.) The released code uses the plain ratio, the excess per step
-//! beside standardised advantages, and kappa 1, which leaves little more than a switch on the sign of the excess.
+//! As the paper has it the surrogate is clipped pessimistically. Its advantages are standardised,
+//! as its authors' are, so the excess is divided by the same deviation: (J_C - d) / (T sigma_C).
+//! (The paper's (1 - gamma)(J_C - d) is the excess of discounted costs a step; budgets here are on
+//! sums, whose excess a step is that over the T steps that episodes have.) The released code uses
+//! the plain ratio, the excess per step beside standardised advantages, and kappa 1, which leaves
+//! little more than a switch on the sign of the excess.
 
 use crate::algorithms::surrogate::{clip_ratio, standardised, standardised_by};
 use crate::algorithms::{Algorithm, Signal, ppo};
@@ -28,7 +31,11 @@ impl P3o {
     #[must_use]
     pub fn new(config: &TrainConfig) -> P3o {
         let settings = &config.algorithm_settings;
-        P3o { settings: config.learning.clone(), kappa: settings.p3o_kappa, clipped: settings.p3o_clipped }
+        P3o {
+            settings: config.learning.clone(),
+            kappa: settings.p3o_kappa,
+            clipped: settings.p3o_clipped,
+        }
     }
 
     /// The penalty of one constraint from the advantages of its cost, in raw units.
@@ -36,11 +43,13 @@ impl P3o {
         let (advantages, deviation) = standardised_by(advantages);
         let expected = if self.clipped {
             let surrogate = heads.mean([&heads.ratio], |row, [ratio]| {
-                (ratio * advantages[row]).max(clip_ratio(ratio, self.settings.clip_ratio) * advantages[row])
+                (ratio * advantages[row])
+                    .max(clip_ratio(ratio, self.settings.clip_ratio) * advantages[row])
             });
             surrogate + signal.surrogate_excess() / deviation
         } else {
-            heads.mean([&heads.ratio], |row, [ratio]| ratio * advantages[row]) + signal.step_excess()
+            heads.mean([&heads.ratio], |row, [ratio]| ratio * advantages[row])
+                + signal.step_excess()
         };
         expected.positive_part() * self.kappa
     }
@@ -73,7 +82,9 @@ impl Algorithm for P3o {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let advantages = standardised(minibatch.advantages());
-        let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| self.loss(&advantages, signals, heads, batch, means);
+        let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| {
+            self.loss(&advantages, signals, heads, batch, means)
+        };
         learner.descend(minibatch, loss, means)
     }
 }

@@ -1,6 +1,7 @@
 //! PPO: proximal policy optimisation (Schulman et al. 2017, arXiv 1707.06347). Costs are ignored.
 //!
-//! PPOCost and PPOSaute are PPO on rewards of another shape: [`ppo_cost`](super::ppo_cost), [`ppo_saute`](super::ppo_saute).
+//! PPOCost and PPOSaute are PPO on rewards of another shape: [`ppo_cost`](super::ppo_cost),
+//! [`ppo_saute`](super::ppo_saute).
 
 use crate::algorithms::surrogate::{clipped_policy_loss, standardised, total};
 use crate::algorithms::{Algorithm, Signal};
@@ -24,8 +25,20 @@ impl Ppo {
 }
 
 /// PPO's loss for standardised advantages of any kind.
-pub fn loss(advantages: &[f64], heads: &Heads, minibatch: &Minibatch<'_>, settings: &LearningConfig, means: &mut Means) -> Loss {
-    total(clipped_policy_loss(heads, advantages, settings.clip_ratio), heads, minibatch, settings, means)
+pub fn loss(
+    advantages: &[f64],
+    heads: &Heads,
+    minibatch: &Minibatch<'_>,
+    settings: &LearningConfig,
+    means: &mut Means,
+) -> Loss {
+    total(
+        clipped_policy_loss(heads, advantages, settings.clip_ratio),
+        heads,
+        minibatch,
+        settings,
+        means,
+    )
 }
 
 impl Algorithm for Ppo {
@@ -37,6 +50,10 @@ impl Algorithm for Ppo {
         means: &mut Means,
     ) -> Result<(), LearnError> {
         let advantages = standardised(minibatch.advantages());
-        learner.descend(minibatch, |heads, batch, means| loss(&advantages, heads, batch, &self.settings, means), means)
+        learner.descend(
+            minibatch,
+            |heads, batch, means| loss(&advantages, heads, batch, &self.settings, means),
+            means,
+        )
     }
 }

@@ -1,4 +1,5 @@
-//! PPOCost: PPO on the reward minus the scaled cost. What an episode costs then has a price, but no budget.
+//! PPOCost: PPO on the reward minus the scaled cost. What an episode costs then has a price, but no
+//! budget.
 
 use crate::config::TrainConfig;
 use crate::sampling::shaping::Shaping;

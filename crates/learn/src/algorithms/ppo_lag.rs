@@ -1,7 +1,8 @@
 //! PPOLag: PPO with a Lagrange multiplier on each constraint (Ray et al. 2019).
 //!
-//! The multiplier grows with the excess over the budget before every update; the advantages are those of the reward
-//! minus those of the costs times the multipliers, mixed in raw units and then standardised.
+//! The multiplier grows with the excess over the budget before every update; the advantages are
+//! those of the reward minus those of the costs times the multipliers, mixed in raw units and then
+//! standardised.
 
 use crate::algorithms::multiplier::{Lagrange, Multipliers};
 use crate::algorithms::surrogate::{lagrangian_advantages, standardised};
@@ -21,7 +22,10 @@ impl PpoLag {
     /// PPOLag with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> PpoLag {
-        PpoLag::moved_by(Lagrange::all(&config.algorithm_settings, config.constraints.len()), config)
+        PpoLag::moved_by(
+            Lagrange::all(&config.algorithm_settings, config.constraints.len()),
+            config,
+        )
     }
 
     /// The same with multipliers that move by another rule.
@@ -38,9 +42,14 @@ impl Algorithm for PpoLag {
         _signals: &[Signal],
         means: &mut Means,
     ) -> Result<(), LearnError> {
-        // The original divides by one plus the multipliers under PID control; that cancels in the standardisation.
+        // The original divides by one plus the multipliers under PID control; that cancels in the
+        // standardisation.
         let advantages = standardised(&lagrangian_advantages(minibatch, &self.multipliers()));
-        learner.descend(minibatch, |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means), means)
+        learner.descend(
+            minibatch,
+            |heads, batch, means| ppo::loss(&advantages, heads, batch, &self.settings, means),
+            means,
+        )
     }
 
     fn weights(&self) -> Option<&Multipliers> {

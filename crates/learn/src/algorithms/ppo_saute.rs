@@ -1,7 +1,7 @@
 //! PPOSaute (Sootla et al. 2022, arXiv 2202.06558): PPO with the budget as part of the state.
 //!
-//! A safety state begins each episode at 1, loses what every step costs in units of the budget, and is discounted backwards; the network
-//! sees it, and once it is spent the reward is a bad one.
+//! A safety state begins each episode at 1, loses what every step costs in units of the budget, and
+//! is discounted backwards; the network sees it, and once it is spent the reward is a bad one.
 
 use crate::config::TrainConfig;
 use crate::sampling::shaping::Shaping;
@@ -55,7 +55,8 @@ fn unit(budget: f64, gamma: f64, horizon: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The released code's unit (2100 tics) and safety states, worked out apart in double precision.
+    /// The released code's unit (2100 tics) and safety states, worked out apart in double
+    /// precision.
     #[test]
     fn safety_states_equal_the_recorded_ones() {
         let of_tics = unit(50.0, 0.9999, 2100.0);
@@ -63,7 +64,8 @@ mod tests {
         assert!((unit(50.0, 0.9999, 525.0) / 50.0 - 0.97425).abs() < 1e-5);
         let shaping = Saute { unit: of_tics, gamma: 0.9999, unsafe_reward: -0.01, visible: true };
         let mut safety = 1.0;
-        let expected = [(0.0, 1.0001), (10.0, 0.778_453_4), (40.0, -0.108_455_5), (0.0, -0.108_466_3)];
+        let expected =
+            [(0.0, 1.0001), (10.0, 0.778_453_4), (40.0, -0.108_455_5), (0.0, -0.108_466_3)];
         for (cost, after) in expected {
             let (reward, next) = shaping.step(safety, 2.0, cost);
             assert!((next - after).abs() < 1e-7, "{next} against {after}");

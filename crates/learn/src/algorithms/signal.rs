@@ -38,15 +38,24 @@ impl Signal {
         (self.fresh_cost - self.episode_budget) / self.episode_steps
     }
 
-    /// A cost that is the same of all episodes, each as long as the longest and some of them of this rollout.
+    /// A cost that is the same of all episodes, each as long as the longest and some of them of
+    /// this rollout.
     #[must_use]
     pub const fn steady(episode_cost: f64, episode_budget: f64, episode_steps: f64) -> Signal {
         let (fresh_cost, mean_steps) = (episode_cost, episode_steps);
-        Signal { episode_cost, episode_budget, episode_steps, mean_steps, fresh_cost, fresh_weight: 1.0, done: 0.0 }
+        Signal {
+            episode_cost,
+            episode_budget,
+            episode_steps,
+            mean_steps,
+            fresh_cost,
+            fresh_weight: 1.0,
+            done: 0.0,
+        }
     }
 
-    /// Cost above budget in the unit of a surrogate of the cost, which is a mean over steps: an episode's cost changes by that mean's
-    /// change times the steps that episodes have at present.
+    /// Cost above budget in the unit of a surrogate of the cost, which is a mean over steps: an
+    /// episode's cost changes by that mean's change times the steps that episodes have at present.
     #[must_use]
     pub fn surrogate_excess(&self) -> f64 {
         self.episode_excess() / self.mean_steps
@@ -59,5 +68,6 @@ impl Signal {
     }
 }
 
-/// What each constraint costs, told from the mean costs per step of the experience at hand; empty while that is not known.
+/// What each constraint costs, told from the mean costs per step of the experience at hand; empty
+/// while that is not known.
 pub type Signals<'a> = dyn Fn(&[f64]) -> Vec<Signal> + 'a;

@@ -30,7 +30,8 @@ pub fn config(algorithm: AlgorithmKind) -> TrainConfig {
 pub fn learner(config: &TrainConfig) -> (Learner, Rollout) {
     let image = ImageShape { height: 2, width: 3, channels: 1 };
     let action = ActionShape { sizes: vec![3, 2], deltas: 1 };
-    let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
+    let cost_critics =
+        if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
     let shape = ModelShape::new(image, action, cost_critics, 0, &config.network).unwrap();
     let learner = Learner::new(config, &shape, &ComputeDevice::Processor(Simd::PLAIN));
     let mut stream = Stream::new(3, Purpose::Evaluation, 0, 0);

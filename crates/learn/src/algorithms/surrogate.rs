@@ -61,7 +61,12 @@ pub fn clip_ratio(ratio: DualNumber<1>, clip: f64) -> DualNumber<1> {
 
 /// Squared error of a critic, the larger of that with and without the change clipped.
 #[must_use]
-pub fn value_loss(heads: &Heads, value: &Column, critic: &Critic, settings: &LearningConfig) -> Loss {
+pub fn value_loss(
+    heads: &Heads,
+    value: &Column,
+    critic: &Critic,
+    settings: &LearningConfig,
+) -> Loss {
     let loss = heads.mean([value], |row, [value]| {
         let (old, target) = (f64::from(critic.old_values[row]), f64::from(critic.targets[row]));
         let clipped = (value - old).clamp(-settings.clip_value, settings.clip_value) + old;
@@ -74,17 +79,27 @@ pub fn value_loss(heads: &Heads, value: &Column, critic: &Critic, settings: &Lea
 #[must_use]
 pub fn exploration_loss(heads: &Heads, kind: Exploration, coefficient: f64) -> Loss {
     let loss = match kind {
-        Exploration::SymmetricKl => heads.mean_of(&heads.policy.symmetric_divergence_from_uniform()).at_most(30.0),
+        Exploration::SymmetricKl => {
+            heads.mean_of(&heads.policy.symmetric_divergence_from_uniform()).at_most(30.0)
+        }
         Exploration::Entropy => heads.mean_of(&heads.policy.entropy()) * -1.0,
     };
     loss * coefficient
 }
 
-/// Policy loss, exploration and the losses of all critics as one loss; notes what is worth reporting.
+/// Policy loss, exploration and the losses of all critics as one loss; notes what is worth
+/// reporting.
 #[must_use]
-pub fn total(policy_loss: Loss, heads: &Heads, minibatch: &Minibatch<'_>, settings: &LearningConfig, means: &mut Means) -> Loss {
+pub fn total(
+    policy_loss: Loss,
+    heads: &Heads,
+    minibatch: &Minibatch<'_>,
+    settings: &LearningConfig,
+    means: &mut Means,
+) -> Loss {
     means.add("policy_loss", policy_loss.value);
-    let exploration = exploration_loss(heads, settings.exploration, minibatch.exploration_coefficient);
+    let exploration =
+        exploration_loss(heads, settings.exploration, minibatch.exploration_coefficient);
     means.add("exploration_loss", exploration.value);
     let total = policy_loss + exploration + critics_loss(heads, minibatch, settings, means);
     means.add("value", heads.values[0].mean());
@@ -94,7 +109,12 @@ pub fn total(policy_loss: Loss, heads: &Heads, minibatch: &Minibatch<'_>, settin
 
 /// The losses of all critics.
 #[must_use]
-pub fn critics_loss(heads: &Heads, minibatch: &Minibatch<'_>, settings: &LearningConfig, means: &mut Means) -> Loss {
+pub fn critics_loss(
+    heads: &Heads,
+    minibatch: &Minibatch<'_>,
+    settings: &LearningConfig,
+    means: &mut Means,
+) -> Loss {
     let losses = heads.values.iter().zip(&minibatch.critics).map(|(value, critic)| {
         let loss = value_loss(heads, value, critic, settings);
         means.add(critic.loss_name.clone(), loss.value);
@@ -103,14 +123,20 @@ pub fn critics_loss(heads: &Heads, minibatch: &Minibatch<'_>, settings: &Learnin
     losses.reduce(|sum, loss| sum + loss).expect("the reward has a critic")
 }
 
-/// Notes the policy's entropy, and how far it has moved from the one that acted: its divergence, the estimate of it
-/// from the ratios (Schulman's k3, whose samples are never negative), their mean distance from 1, and the share beyond the clip.
+/// Notes the policy's entropy, and how far it has moved from the one that acted: its divergence,
+/// the estimate of it from the ratios (Schulman's k3, whose samples are never negative), their mean
+/// distance from 1, and the share beyond the clip.
 pub fn note_policy(heads: &Heads, minibatch: &Minibatch<'_>, clip: f64, means: &mut Means) {
     let ratios = &heads.ratio.values;
-    let mean = |of: &dyn Fn(f64) -> f64| ratios.iter().map(|&ratio| of(ratio)).sum::<f64>() / ratios.len() as f64;
+    let mean = |of: &dyn Fn(f64) -> f64| {
+        ratios.iter().map(|&ratio| of(ratio)).sum::<f64>() / ratios.len() as f64
+    };
     means.add("entropy", heads.policy.entropy().mean());
     means.add("kl_divergence", minibatch.old_policy.divergence(&heads.policy).mean());
     means.add("approx_kl", mean(&|ratio| ratio - 1.0 - libm::log(ratio)));
     means.add("ratio_deviation", mean(&|ratio| (ratio - 1.0).abs()));
-    means.add("clip_fraction", mean(&|ratio| f64::from(u8::from(!(1.0 / (1.0 + clip)..=1.0 + clip).contains(&ratio)))));
+    means.add(
+        "clip_fraction",
+        mean(&|ratio| f64::from(u8::from(!(1.0 / (1.0 + clip)..=1.0 + clip).contains(&ratio)))),
+    );
 }

@@ -1,11 +1,13 @@
-//! TRPO: trust-region policy optimisation (Schulman et al. 2015, arXiv 1502.05477). Costs are ignored.
+//! TRPO: trust-region policy optimisation (Schulman et al. 2015, arXiv 1502.05477). Costs are
+//! ignored.
 //!
-//! The policy moves along the natural gradient to the edge of a trust region, then back until the surrogate has improved
-//! and the divergence is within its bound; the critics make a step of Adam. Policy and critics are separate networks.
+//! The policy moves along the natural gradient to the edge of a trust region, then back until the
+//! surrogate has improved and the divergence is within its bound; the critics make a step of Adam.
+//! Policy and critics are separate networks.
 //!
-//! The released code differs: its gradient is that of the log-probabilities and the exploration loss, its line search
-//! compares that value with one without the exploration loss (and, with multipliers, of the reward alone), and the cost
-//! critic never learns.
+//! The released code differs: its gradient is that of the log-probabilities and the exploration
+//! loss, its line search compares that value with one without the exploration loss (and, with
+//! multipliers, of the reward alone), and the cost critic never learns.
 
 use crate::algorithms::surrogate::{exploration_loss, standardised};
 use crate::algorithms::trust_region::{TrustRegion, train_critics};
@@ -60,7 +62,8 @@ impl Trpo {
         let solution = region.solve(learner, &mut origin, &gradient);
         let curvature = learner.vectors().dot(&solution.direction, &solution.product);
         let length = if curvature > 0.0 { (2.0 * region.radius / curvature).sqrt() } else { 0.0 };
-        let step: Vec<f32> = solution.direction.iter().map(|value| (-length * f64::from(*value)) as f32).collect();
+        let step: Vec<f32> =
+            solution.direction.iter().map(|value| (-length * f64::from(*value)) as f32).collect();
         let searched = if consistent { &advantages } else { &reward_advantages };
         region.search(learner, minibatch, &origin, &step, means, |heads, divergence| {
             objective(heads, searched, consistent).value < before && divergence <= region.radius

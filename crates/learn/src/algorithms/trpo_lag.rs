@@ -19,7 +19,10 @@ impl TrpoLag {
     /// TRPOLag with a run's settings.
     #[must_use]
     pub fn new(config: &TrainConfig) -> TrpoLag {
-        TrpoLag::moved_by(Lagrange::all(&config.algorithm_settings, config.constraints.len()), config)
+        TrpoLag::moved_by(
+            Lagrange::all(&config.algorithm_settings, config.constraints.len()),
+            config,
+        )
     }
 
     /// The same with multipliers that move by another rule.

@@ -1,9 +1,10 @@
 //! Steps of the second order: the natural gradient and a line search within a trust region.
 //!
-//! The Fisher matrix F of the policy network is never built. Its product with a vector is J' M J v, where J is the
-//! network's Jacobian and M the Fisher matrix of the action distribution in its own numbers, known in closed form. J v is
-//! the difference of the outputs a little way along v from those at the origin, and J' the backward pass there: one pass of
-//! each kind a product, of a share of the trajectories. A test holds the product against a dense Fisher matrix.
+//! The Fisher matrix F of the policy network is never built. Its product with a vector is J' M J v,
+//! where J is the network's Jacobian and M the Fisher matrix of the action distribution in its own
+//! numbers, known in closed form. J v is the difference of the outputs a little way along v from
+//! those at the origin, and J' the backward pass there: one pass of each kind a product, of a share
+//! of the trajectories. A test holds the product against a dense Fisher matrix.
 
 use crate::algorithms::surrogate::note_policy;
 use crate::config::TrainConfig;
@@ -79,19 +80,36 @@ impl TrustRegion {
         let action = &learner.shape().action;
         let sample_policy = Policy::new(action, &sample_outputs, action.parameters());
         let outputs = learner.present_outputs(&mut minibatch.batch);
-        Origin { heads: learner.policy_heads(minibatch, &outputs), parameters, sample, sample_policy, sample_outputs }
+        Origin {
+            heads: learner.policy_heads(minibatch, &outputs),
+            parameters,
+            sample,
+            sample_policy,
+            sample_outputs,
+        }
     }
 
-    /// Gradient, in the policy network's parameters, of a loss of the policy at the origin. It must come right after the
-    /// origin itself or another forward pass there.
-    pub fn gradient(&self, learner: &mut Learner, minibatch: &mut Minibatch<'_>, loss: &Loss) -> Vec<f32> {
+    /// Gradient, in the policy network's parameters, of a loss of the policy at the origin. It must
+    /// come right after the origin itself or another forward pass there.
+    pub fn gradient(
+        &self,
+        learner: &mut Learner,
+        minibatch: &mut Minibatch<'_>,
+        loss: &Loss,
+    ) -> Vec<f32> {
         let mut gradient = vec![0.0; learner.shape().parameter_range(0).len()];
         learner.policy_backward(&mut minibatch.batch, &loss.rows(), &mut gradient);
         gradient
     }
 
     /// The damped Fisher matrix times a vector, written to `product`.
-    pub fn fisher_times(&self, learner: &mut Learner, origin: &mut Origin<'_>, vector: &[f32], product: &mut [f32]) {
+    pub fn fisher_times(
+        &self,
+        learner: &mut Learner,
+        origin: &mut Origin<'_>,
+        vector: &[f32],
+        product: &mut [f32],
+    ) {
         let vectors = learner.vectors();
         let norm = vectors.dot(vector, vector).sqrt();
         if norm == 0.0 {
@@ -101,8 +119,11 @@ impl TrustRegion {
         // What will hold the product holds the parameters a little way off first.
         vectors.set_sum(product, &origin.parameters, step, vector);
         let moved = learner.policy_outputs(&mut origin.sample, product);
-        let change: Vec<f32> =
-            moved.iter().zip(&origin.sample_outputs).map(|(there, here)| (f64::from(there - here) / step) as f32).collect();
+        let change: Vec<f32> = moved
+            .iter()
+            .zip(&origin.sample_outputs)
+            .map(|(there, here)| (f64::from(there - here) / step) as f32)
+            .collect();
         let mut rows = origin.sample_policy.fisher_times(&change);
         let count = origin.sample.sequences.rows() as f32;
         rows.iter_mut().for_each(|value| *value /= count);
@@ -137,8 +158,9 @@ impl TrustRegion {
         Solution { direction: x, product }
     }
 
-    /// Shortens a step until it is accepted; `accept` is asked about the policy after it and its mean divergence from
-    /// the policy that acted. Reports the step, and the share of it that was made: 0 if none was.
+    /// Shortens a step until it is accepted; `accept` is asked about the policy after it and its
+    /// mean divergence from the policy that acted. Reports the step, and the share of it that was
+    /// made: 0 if none was.
     pub fn search(
         &self,
         learner: &mut Learner,
@@ -172,8 +194,9 @@ impl TrustRegion {
 
 /// Steps of Adam for the critics, down their squared errors. `critics` counts the reward's as 0.
 ///
-/// A step of the policy is one of many samples. Critics that made a single step on them too would lag behind every policy, and
-/// advantages would be those of an older one; so they go through the same samples in smaller parts, dealt anew each time.
+/// A step of the policy is one of many samples. Critics that made a single step on them too would
+/// lag behind every policy, and advantages would be those of an older one; so they go through the
+/// same samples in smaller parts, dealt anew each time.
 pub fn train_critics(
     learner: &mut Learner,
     minibatch: &mut Minibatch<'_>,
@@ -183,7 +206,8 @@ pub fn train_critics(
     let settings = &learner.config.algorithm_settings;
     let (count, seed) = (settings.critic_steps, learner.config.seed);
     let (steps, lanes) = (minibatch.batch.sequences.steps, minibatch.batch.sequences.lanes);
-    let share = settings.critic_batch.map_or(lanes, |samples| samples / steps.max(1)).clamp(1, lanes);
+    let share =
+        settings.critic_batch.map_or(lanes, |samples| samples / steps.max(1)).clamp(1, lanes);
     if share == lanes {
         return (0..count).try_for_each(|_| critic_step(learner, minibatch, critics, means));
     }
@@ -208,11 +232,14 @@ fn critic_step(
     means: &mut Means,
 ) -> Result<(), LearnError> {
     let loss = |heads: &Heads, batch: &Minibatch<'_>, means: &mut Means| {
-        let losses = heads.values.iter().zip(&batch.critics).take(critics).map(|(value, critic)| {
-            let loss = heads.mean([value], |row, [value]| (value - f64::from(critic.targets[row])).square());
-            means.add(critic.loss_name.clone(), loss.value);
-            loss
-        });
+        let losses =
+            heads.values.iter().zip(&batch.critics).take(critics).map(|(value, critic)| {
+                let loss = heads.mean([value], |row, [value]| {
+                    (value - f64::from(critic.targets[row])).square()
+                });
+                means.add(critic.loss_name.clone(), loss.value);
+                loss
+            });
         losses.reduce(|sum, loss| sum + loss).expect("the reward has a critic")
     };
     learner.descend_networks(1..1 + critics, 0, minibatch, loss, means)
@@ -225,8 +252,9 @@ mod tests {
     use crate::config::AlgorithmKind;
     use crate::random::{Purpose, Stream};
 
-    /// The product against the dense Fisher matrix by its definition: the mean over samples and actions of the outer
-    /// product of the gradient of the log-probability, gradients by the backward pass.
+    /// The product against the dense Fisher matrix by its definition: the mean over samples and
+    /// actions of the outer product of the gradient of the log-probability, gradients by the
+    /// backward pass.
     #[test]
     fn fisher_products_equal_those_of_the_dense_matrix() {
         let config = small::config(AlgorithmKind::Trpo);
@@ -261,7 +289,8 @@ mod tests {
                 gradient
             };
             for (first, size) in [(0, 3), (3, 2)] {
-                let exp: Vec<f64> = outputs[first..first + size].iter().map(|&l| f64::from(l).exp()).collect();
+                let exp: Vec<f64> =
+                    outputs[first..first + size].iter().map(|&l| f64::from(l).exp()).collect();
                 let p: Vec<f64> = exp.iter().map(|e| e / exp.iter().sum::<f64>()).collect();
                 for action in 0..size {
                     let mut direction = vec![0.0; width];
@@ -271,8 +300,8 @@ mod tests {
                     add(&gradient_of(&direction), p[action] / rows as f64);
                 }
             }
-            // A normal's log-probability has gradient z/sigma in the mean and z^2 - 1 in the logarithm of the deviation,
-            // whose products have the means 1/sigma^2, 2 and 0.
+            // A normal's log-probability has gradient z/sigma in the mean and z^2 - 1 in the
+            // logarithm of the deviation, whose products have the means 1/sigma^2, 2 and 0.
             let sigma = f64::from(outputs[6]).exp();
             let (mut mean, mut log) = (vec![0.0; width], vec![0.0; width]);
             (mean[5], log[6]) = (1.0 / sigma, 2.0f64.sqrt());
@@ -294,7 +323,10 @@ mod tests {
             let largest = expected.iter().fold(0.0f64, |most, value| most.max(value.abs()));
             for (i, (found, expected)) in product.iter().zip(&expected).enumerate() {
                 let error = (f64::from(*found) - expected).abs();
-                assert!(error < 2e-3 * largest, "{i}: {found} against {expected} (largest {largest})");
+                assert!(
+                    error < 2e-3 * largest,
+                    "{i}: {found} against {expected} (largest {largest})"
+                );
             }
         }
         // And the solution of F x = b, put back in, gives b.
@@ -303,7 +335,9 @@ mod tests {
         let x = region.solve(&mut learner, &mut origin, &b);
         let mut back = vec![0.0; count];
         region.fisher_times(&mut learner, &mut origin, &x.direction, &mut back);
-        let squares = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+        let squares = |a: &[f32], b: &[f32]| {
+            a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>()
+        };
         let (rest, all) = (squares(&back, &b), squares(&b, &vec![0.0; count]));
         assert!(rest < 1e-3 * all, "{rest} of {all}");
         assert!(squares(&back, &x.product) < 1e-3 * all, "what is told of the product");

@@ -43,7 +43,8 @@ impl AlgorithmKind {
         !matches!(self, Self::Ppo | Self::PpoCost | Self::PpoSaute | Self::Trpo)
     }
 
-    /// Whether it tries to keep budgets; the others are after the return alone, whatever their budget says.
+    /// Whether it tries to keep budgets; the others are after the return alone, whatever their
+    /// budget says.
     #[must_use]
     pub const fn keeps_budgets(self) -> bool {
         !matches!(self, Self::Ppo | Self::PpoCost | Self::Trpo)
@@ -52,7 +53,10 @@ impl AlgorithmKind {
     /// Whether it weighs costs by multipliers that move by what episodes cost.
     #[must_use]
     pub const fn has_multipliers(self) -> bool {
-        matches!(self, Self::PpoLag | Self::PpoPid | Self::TrpoLag | Self::TrpoPid | Self::Focops | Self::Cup)
+        matches!(
+            self,
+            Self::PpoLag | Self::PpoPid | Self::TrpoLag | Self::TrpoPid | Self::Focops | Self::Cup
+        )
     }
 
     /// Optimiser states of each network: CUP's two steps have one each.
@@ -71,11 +75,13 @@ impl AlgorithmKind {
 names! {
     /// When multipliers move.
     MultiplierUpdate ("update of the multipliers") {
-        /// Once a rollout, before it is learned from, by the episodes that finished since they last moved.
+        /// Once a rollout, before it is learned from, by the episodes that finished since they last
+        /// moved.
         Rollout = "rollout",
         /// Before every minibatch, as in the released code.
         Minibatch = "minibatch",
-        /// After every minibatch, whose loss still has them as they were, as in the code of the paper's tables.
+        /// After every minibatch, whose loss still has them as they were, as in the code of the
+        /// paper's tables.
         AfterMinibatch = "after-minibatch",
     }
 }
@@ -102,12 +108,14 @@ pub struct AlgorithmConfig {
     pub penalty_scale: f64,
     /// Lagrangian algorithms: the multiplier before the first update.
     pub multiplier_initial: f64,
-    /// Lagrangian algorithms: change of the multiplier per update and unit of cost per step above budget.
+    /// Lagrangian algorithms: change of the multiplier per update and unit of cost per step above
+    /// budget.
     pub multiplier_rate: f64,
     /// Lagrangian and PID algorithms: when the multiplier moves.
     #[serde(default = "every_minibatch")]
     pub multiplier_update: MultiplierUpdate,
-    /// What older versions added to the multiplier of a Lagrangian algorithm at once, which made a PID controller of it.
+    /// What older versions added to the multiplier of a Lagrangian algorithm at once, which made a
+    /// PID controller of it.
     #[serde(default, skip_serializing, rename = "multiplier_damping")]
     pub(crate) former_damping: f64,
     /// PID: proportional, integral and derivative gains.
@@ -118,14 +126,16 @@ pub struct AlgorithmConfig {
     pub pid_decay: f64,
     /// PID: updates that the derivative looks back.
     pub pid_delay: usize,
-    /// PID: the budget that the gains are made for; `null` for every budget alike. Toward the end of training, as the cube of its
-    /// progress, an excess then counts by its share of the budget, so that a tenth of the budget moves a multiplier ten times as
-    /// fast; before, it does not, since an agent that is held back early never learns to earn.
+    /// PID: the budget that the gains are made for; `null` for every budget alike. Toward the end
+    /// of training, as the cube of its progress, an excess then counts by its share of the budget,
+    /// so that a tenth of the budget moves a multiplier ten times as fast; before, it does not,
+    /// since an agent that is held back early never learns to earn.
     #[serde(default, alias = "multiplier_reference_budget")]
     pub pid_reference_budget: Option<f64>,
     /// P3O: weight of the penalty.
     pub p3o_kappa: f64,
-    /// P3O: clipped surrogate, and the excess in the unit of the standardised advantages, as its paper has it.
+    /// P3O: clipped surrogate, and the excess in the unit of the standardised advantages, as its
+    /// paper has it.
     pub p3o_clipped: bool,
     /// Saute: discount of the budget.
     pub saute_gamma: f64,
@@ -139,7 +149,8 @@ pub struct AlgorithmConfig {
     pub trust_radius: f64,
     /// Second-order algorithms: iterations of the conjugate-gradient method.
     pub conjugate_iterations: usize,
-    /// Second-order algorithms: share of a rollout's trajectories that the Fisher matrix is taken over.
+    /// Second-order algorithms: share of a rollout's trajectories that the Fisher matrix is taken
+    /// over.
     #[serde(default = "a_tenth")]
     pub fisher_fraction: f64,
     /// Second-order algorithms: multiple of the identity added to the Fisher matrix.
@@ -147,15 +158,16 @@ pub struct AlgorithmConfig {
     /// Second-order algorithms: steps of Adam that the critics make in each update of the policy.
     #[serde(default = "one_step")]
     pub critic_steps: usize,
-    /// Second-order algorithms: samples of each of these steps, dealt out of the rollout; `null` for all of it.
+    /// Second-order algorithms: samples of each of these steps, dealt out of the rollout; `null`
+    /// for all of it.
     #[serde(default)]
     pub critic_batch: Option<usize>,
     /// Second-order algorithms: tries of the line search.
     pub line_search_steps: usize,
     /// Second-order algorithms: factor between the tries.
     pub line_search_factor: f64,
-    /// TRPO family: one objective for gradient and line search, and cost critics that learn. The released code searches on
-    /// the reward alone and never trains the cost critic.
+    /// TRPO family: one objective for gradient and line search, and cost critics that learn. The
+    /// released code searches on the reward alone and never trains the cost critic.
     pub trpo_consistent: bool,
     /// FOCOPS: largest divergence of a sample that still counts.
     pub focops_eta: f64,
@@ -163,7 +175,8 @@ pub struct AlgorithmConfig {
     pub focops_temperature: f64,
     /// Lagrangian algorithms: largest multiplier; `null` for none.
     pub multiplier_limit: Option<f64>,
-    /// IPO: weight of the barrier, as a share of the budget: the penalty is 1 where the cost is this share below the budget.
+    /// IPO: weight of the barrier, as a share of the budget: the penalty is 1 where the cost is
+    /// this share below the budget.
     pub ipo_kappa: f64,
     /// IPO: largest penalty, which also rules above the budget, where there is no barrier.
     pub ipo_limit: f64,

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::LearnError;
 
-/// What a constraint's budget is held against. As text `episode-mean`, `step-mean` or, for the worst tenth, `cvar:0.1`.
+/// What a constraint's budget is held against. As text `episode-mean`, `step-mean` or, for the
+/// worst tenth, `cvar:0.1`.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum ConstraintStatistic {
@@ -16,8 +17,8 @@ pub enum ConstraintStatistic {
     EpisodeMean,
     /// Mean cost of the minibatch's steps, against the budget over the longest episode's steps.
     StepMean,
-    /// Mean cost of this share of the latest episodes, the worst of them, against the budget of an episode: the conditional value at
-    /// risk.
+    /// Mean cost of this share of the latest episodes, the worst of them, against the budget of an
+    /// episode: the conditional value at risk.
     Cvar(f64),
 }
 
@@ -36,7 +37,9 @@ impl FromStr for ConstraintStatistic {
 
     fn from_str(text: &str) -> Result<ConstraintStatistic, LearnError> {
         let lower = text.to_ascii_lowercase();
-        let share = |share: &str| share.parse().ok().filter(|share| *share > 0.0 && *share <= 1.0).map(Self::Cvar);
+        let share = |share: &str| {
+            share.parse().ok().filter(|share| *share > 0.0 && *share <= 1.0).map(Self::Cvar)
+        };
         match lower.as_str() {
             "episode-mean" => Some(Self::EpisodeMean),
             "step-mean" => Some(Self::StepMean),
@@ -63,8 +66,8 @@ impl TryFrom<String> for ConstraintStatistic {
     }
 }
 
-/// The mean of the largest `share` of some costs (Rockafellar and Uryasev 2000); where that is no whole number of them, the last one
-/// counts in part. `None` if there are none.
+/// The mean of the largest `share` of some costs (Rockafellar and Uryasev 2000); where that is no
+/// whole number of them, the last one counts in part. `None` if there are none.
 #[must_use]
 pub fn conditional_value_at_risk(costs: &[f64], share: f64) -> Option<f64> {
     let mut worst = costs.to_vec();
@@ -85,28 +88,39 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// What an episode cost under it. A term that the episode does not report is an error: taken for 0, it would be within any
-    /// budget.
+    /// What an episode cost under it. A term that the episode does not report is an error: taken
+    /// for 0, it would be within any budget.
     pub fn cost_of(&self, episode: &Episode) -> Result<f64, LearnError> {
         let Some(name) = &self.term else { return Ok(episode.cost) };
         let found = episode.costs.iter().find(|one| one.name == name);
         found.map(|one| one.cost).ok_or_else(|| {
             let names: Vec<&str> = episode.costs.iter().map(|one| one.name).collect();
-            LearnError::Config(format!("an episode does not report the cost term '{name}'; it has {}", names.join(", ")))
+            LearnError::Config(format!(
+                "an episode does not report the cost term '{name}'; it has {}",
+                names.join(", ")
+            ))
         })
     }
 }
 
 /// Where each constraint's cost is found among the terms; unknown names are refused.
-pub(crate) fn find_terms(terms: &[CostTerm], constraints: &[Constraint]) -> Result<Vec<Option<usize>>, LearnError> {
+pub(crate) fn find_terms(
+    terms: &[CostTerm],
+    constraints: &[Constraint],
+) -> Result<Vec<Option<usize>>, LearnError> {
     constraints
         .iter()
         .map(|constraint| match &constraint.term {
             None => Ok(None),
-            Some(name) => terms.iter().position(|term| term.name == name).map(Some).ok_or_else(|| {
-                let names: Vec<&str> = terms.iter().map(|term| term.name).collect();
-                LearnError::Config(format!("this environment has no cost term '{name}'; it has {}", names.join(", ")))
-            }),
+            Some(name) => {
+                terms.iter().position(|term| term.name == name).map(Some).ok_or_else(|| {
+                    let names: Vec<&str> = terms.iter().map(|term| term.name).collect();
+                    LearnError::Config(format!(
+                        "this environment has no cost term '{name}'; it has {}",
+                        names.join(", ")
+                    ))
+                })
+            }
         })
         .collect()
 }
@@ -144,16 +158,21 @@ mod tests {
     fn statistics_are_read_as_they_are_written() {
         for text in ["episode-mean", "step-mean", "cvar:0.1", "cvar:1"] {
             assert_eq!(text.parse::<ConstraintStatistic>().unwrap().to_string(), text);
-            let json = serde_json::to_string(&text.parse::<ConstraintStatistic>().unwrap()).unwrap();
+            let json =
+                serde_json::to_string(&text.parse::<ConstraintStatistic>().unwrap()).unwrap();
             assert_eq!(json, format!("\"{text}\""));
         }
         for wrong in ["cvar", "cvar:0", "cvar:1.5", "cvar:nan", "mean", "cvar:-0.1"] {
             let message = wrong.parse::<ConstraintStatistic>().unwrap_err().to_string();
-            assert!(message.contains(wrong) && message.contains("cvar:0.1") && !message.contains('\n'), "{message}");
+            assert!(
+                message.contains(wrong) && message.contains("cvar:0.1") && !message.contains('\n'),
+                "{message}"
+            );
         }
     }
 
-    /// Worked out by hand from the definition (Rockafellar and Uryasev 2000, equation 4 with atoms): the mean of the worst share.
+    /// Worked out by hand from the definition (Rockafellar and Uryasev 2000, equation 4 with
+    /// atoms): the mean of the worst share.
     #[test]
     fn the_cvar_is_the_mean_of_the_worst_share() {
         let costs = [3.0, 50.0, 1.0, 20.0, 7.0, 0.0, 2.0, 30.0, 5.0, 4.0];

@@ -1,7 +1,8 @@
 //! A curriculum: the levels of a scenario in turn, each for a number of frames.
 //!
-//! Weights and normalisers (of pixels and of returns) carry over from a lesson to the next; optimisers, multipliers and the
-//! window of latest episodes start anew, as in the published experiment. Counters go on: a curriculum is one run.
+//! Weights and normalisers (of pixels and of returns) carry over from a lesson to the next;
+//! optimisers, multipliers and the window of latest episodes start anew, as in the published
+//! experiment. Counters go on: a curriculum is one run.
 
 use hasard_envs::EnvId;
 use serde::{Deserialize, Serialize};
@@ -22,7 +23,8 @@ pub struct Lesson {
 /// Most lessons of a curriculum.
 const MOST_LESSONS: usize = 16;
 
-/// Understands `1,2,3`, where every level has an equal share of `frames`, or `1:400000,2:300000,3:300000`.
+/// Understands `1,2,3`, where every level has an equal share of `frames`, or
+/// `1:400000,2:300000,3:300000`.
 pub fn parse_curriculum(text: &str, frames: u64) -> Result<Vec<Lesson>, LearnError> {
     let wrong = |why: &str| {
         LearnError::Config(format!(
@@ -35,9 +37,19 @@ pub fn parse_curriculum(text: &str, frames: u64) -> Result<Vec<Lesson>, LearnErr
     }
     let mut lessons = Vec::new();
     for part in &parts {
-        let (level, own) = part.split_once(':').map_or((*part, None), |(level, frames)| (level, Some(frames)));
-        let level = level.parse().ok().filter(|level| (1..=3).contains(level)).ok_or_else(|| wrong("levels are 1, 2 and 3"))?;
-        let own = own.map(|own| own.parse().ok().filter(|own| *own > 0).ok_or_else(|| wrong("frames are a whole number from 1")));
+        let (level, own) =
+            part.split_once(':').map_or((*part, None), |(level, frames)| (level, Some(frames)));
+        let level = level
+            .parse()
+            .ok()
+            .filter(|level| (1..=3).contains(level))
+            .ok_or_else(|| wrong("levels are 1, 2 and 3"))?;
+        let own = own.map(|own| {
+            own.parse()
+                .ok()
+                .filter(|own| *own > 0)
+                .ok_or_else(|| wrong("frames are a whole number from 1"))
+        });
         lessons.push((level, own.transpose()?));
     }
     let given = lessons.iter().filter(|(_, own)| own.is_some()).count();
@@ -45,8 +57,10 @@ pub fn parse_curriculum(text: &str, frames: u64) -> Result<Vec<Lesson>, LearnErr
         return Err(wrong("either every level has its frames or none"));
     }
     let share = frames / lessons.len() as u64;
-    let mut lessons: Vec<Lesson> =
-        lessons.into_iter().map(|(level, own)| Lesson { level, frames: own.unwrap_or(share) }).collect();
+    let mut lessons: Vec<Lesson> = lessons
+        .into_iter()
+        .map(|(level, own)| Lesson { level, frames: own.unwrap_or(share) })
+        .collect();
     if given == 0 {
         // What an equal share leaves over belongs to the last.
         let rest = frames - share * lessons.len() as u64;
@@ -59,7 +73,8 @@ pub fn parse_curriculum(text: &str, frames: u64) -> Result<Vec<Lesson>, LearnErr
 }
 
 impl TrainConfig {
-    /// Makes the run a curriculum: its length becomes that of the lessons, its environment that of the last.
+    /// Makes the run a curriculum: its length becomes that of the lessons, its environment that of
+    /// the last.
     pub fn set_curriculum(&mut self, lessons: Vec<Lesson>) {
         self.frames = lessons.iter().fold(0, |sum, lesson| sum.saturating_add(lesson.frames));
         if let Some(last) = lessons.last() {
@@ -85,7 +100,8 @@ impl TrainConfig {
         over.count().min(self.lessons() - 1)
     }
 
-    /// The settings of one lesson: its level, and a seed of its own, so that lessons do not draw the same numbers.
+    /// The settings of one lesson: its level, and a seed of its own, so that lessons do not draw
+    /// the same numbers.
     #[must_use]
     pub fn lesson(&self, index: usize) -> TrainConfig {
         let mut config = self.clone();
@@ -101,7 +117,10 @@ impl TrainConfig {
     /// Name of the picture in the run's directory that the heatmaps of a lesson lie on.
     #[must_use]
     pub fn automap(&self, lesson: usize) -> String {
-        self.curriculum.get(lesson).map_or_else(|| "automap.png".into(), |lesson| format!("automap-level{}.png", lesson.level))
+        self.curriculum.get(lesson).map_or_else(
+            || "automap.png".into(),
+            |lesson| format!("automap-level{}.png", lesson.level),
+        )
     }
 }
 
@@ -118,13 +137,21 @@ mod tests {
     #[test]
     fn texts_become_lessons() {
         let lessons = |text: &str| -> Vec<(u8, u64)> {
-            parse_curriculum(text, 100).unwrap().iter().map(|lesson| (lesson.level, lesson.frames)).collect()
+            parse_curriculum(text, 100)
+                .unwrap()
+                .iter()
+                .map(|lesson| (lesson.level, lesson.frames))
+                .collect()
         };
         assert_eq!(lessons("1,2,3"), [(1, 33), (2, 33), (3, 34)]);
         assert_eq!(lessons("2:5, 1:7"), [(2, 5), (1, 7)]);
-        for (wrong, word) in
-            [("", "levels are"), ("4", "levels are"), ("1,2:5", "either"), ("1:0", "whole number"), ("1,,2", "levels are")]
-        {
+        for (wrong, word) in [
+            ("", "levels are"),
+            ("4", "levels are"),
+            ("1,2:5", "either"),
+            ("1:0", "whole number"),
+            ("1,,2", "levels are"),
+        ] {
             let message = parse_curriculum(wrong, 100).unwrap_err().to_string();
             assert!(message.contains(word) && !message.contains('\n'), "{wrong}: {message}");
         }

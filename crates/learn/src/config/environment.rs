@@ -39,7 +39,8 @@ pub struct EnvConfig {
     /// Segmented in the published colours.
     #[serde(default, skip_serializing_if = "is_off")]
     pub published_colours: bool,
-    /// The file of the pictures that worlds are drawn with; `null` for the embedded set. Whoever makes the worlds reads it.
+    /// The file of the pictures that worlds are drawn with; `null` for the embedded set. Whoever
+    /// makes the worlds reads it.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "super::place")]
     pub iwad: Option<PathBuf>,
     /// Where the maps come from; `null` for the built-in ones. Whoever makes the worlds reads them.
@@ -75,7 +76,8 @@ impl EnvConfig {
         }
     }
 
-    /// The same in the environments' own types, without maps and pictures; observations are laid out as the networks read them.
+    /// The same in the environments' own types, without maps and pictures; observations are laid
+    /// out as the networks read them.
     pub fn options(&self) -> Result<EnvOptions, LearnError> {
         let unknown = |what: &str, given: &str, allowed: &str| {
             LearnError::Config(format!("{what} '{given}' is unknown; use one of {allowed}"))
@@ -105,7 +107,13 @@ impl EnvConfig {
     }
 
     pub(crate) fn rule_set(&self) -> Result<RuleSet, LearnError> {
-        let unknown = |_| LearnError::Config(format!("rules '{}' are unknown; use one of {}", self.rules, RuleSet::names()));
+        let unknown = |_| {
+            LearnError::Config(format!(
+                "rules '{}' are unknown; use one of {}",
+                self.rules,
+                RuleSet::names()
+            ))
+        };
         self.rules.parse().map_err(unknown)
     }
 

@@ -8,27 +8,36 @@ use crate::config::TrainConfig;
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(default)]
 pub struct EvaluationConfig {
-    /// Frames between evaluations, 0 for none; `null` for ten in the second half of the run, or as many as cost no more than a
-    /// twentieth of its frames, and none in a short one.
+    /// Frames between evaluations, 0 for none; `null` for ten in the second half of the run, or as
+    /// many as cost no more than a twentieth of its frames, and none in a short one.
     pub every: Option<u64>,
     /// Episodes of an evaluation.
     pub episodes: usize,
-    /// Further episodes by which a checkpoint must prove itself before the run selects it, and of every closing evaluation; `null` for
-    /// 100, or as many as take a twentieth of the run's frames, but no fewer than 10.
+    /// Further episodes by which a checkpoint must prove itself before the run selects it, and of
+    /// every closing evaluation; `null` for 100, or as many as take a twentieth of the run's
+    /// frames, but no fewer than 10.
     pub confirming_episodes: Option<usize>,
     /// Checkpoints that are kept to choose from: so many confirmations there may be.
     pub candidates: usize,
-    /// Only a checkpoint that is surely within its budgets is selected, where there is one that a confirmation shows to be.
+    /// Only a checkpoint that is surely within its budgets is selected, where there is one that a
+    /// confirmation shows to be.
     pub surely: bool,
 }
 
 impl Default for EvaluationConfig {
     fn default() -> EvaluationConfig {
-        EvaluationConfig { every: None, episodes: 32, confirming_episodes: None, candidates: 5, surely: false }
+        EvaluationConfig {
+            every: None,
+            episodes: 32,
+            confirming_episodes: None,
+            candidates: 5,
+            surely: false,
+        }
     }
 }
 
-/// Most evaluations of a run that does not say how often: those of the first half are never the best.
+/// Most evaluations of a run that does not say how often: those of the first half are never the
+/// best.
 const EVALUATIONS: u64 = 10;
 /// They take no more than this part of the run's frames.
 const SHARE: u64 = 20;
@@ -38,7 +47,8 @@ const CONFIRMING: (u64, u64) = (100, 10);
 const WORTH_EVALUATING: u64 = 400_000;
 
 impl TrainConfig {
-    /// Whether an evaluation falls between two moments of the run, the second included. The end of a run is one.
+    /// Whether an evaluation falls between two moments of the run, the second included. The end of
+    /// a run is one.
     #[must_use]
     pub fn evaluates(&self, before: u64, frames: u64) -> bool {
         let ends = before < self.frames && self.frames <= frames;
@@ -82,10 +92,15 @@ mod tests {
 
     #[test]
     fn a_run_is_evaluated_by_frames_and_at_its_end() {
-        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
         config.frames = 1000;
         let at = |config: &TrainConfig| -> Vec<u64> {
-            (0..11).map(|k| k * 96).filter(|&before| config.evaluates(before, before + 96)).map(|before| before + 96).collect()
+            (0..11)
+                .map(|k| k * 96)
+                .filter(|&before| config.evaluates(before, before + 96))
+                .map(|before| before + 96)
+                .collect()
         };
         assert!(at(&config).is_empty(), "a short run is not evaluated unless it is asked for");
         config.evaluation.every = Some(50);
@@ -96,12 +111,15 @@ mod tests {
         config.evaluation.every = Some(0);
         assert!(at(&config).is_empty());
         (config.frames, config.evaluation.every) = (4_000_000, None);
-        // 32 episodes of 2,100 frames are 67,200 frames: two evaluations are no more than a twentieth of 4 million frames, ten of
-        // 16 million.
+        // 32 episodes of 2,100 frames are 67,200 frames: two evaluations are no more than a
+        // twentieth of 4 million frames, ten of 16 million.
         let rollouts = |frames: u64| frames.div_ceil(4096);
         let evaluated = |config: &TrainConfig| -> Vec<u64> {
             let at = |rollout: &u64| config.evaluates(rollout * 4096, (rollout + 1) * 4096);
-            (0..rollouts(config.frames) + 3).filter(at).map(|rollout| (rollout + 1) * 4096).collect()
+            (0..rollouts(config.frames) + 3)
+                .filter(at)
+                .map(|rollout| (rollout + 1) * 4096)
+                .collect()
         };
         assert_eq!(evaluated(&config), [3_002_368, 4_001_792]);
         config.frames = 16_000_000;
@@ -116,8 +134,11 @@ mod tests {
     /// Two sets of a twentieth of a million frames each, of episodes of 2,100 frames: 23.
     #[test]
     fn short_runs_are_confirmed_and_closed_in_proportion() {
-        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
-        for (frames, episodes) in [(100_000, 10), (400_000, 10), (1_000_000, 23), (4_200_000, 100), (500_000_000, 100)] {
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        for (frames, episodes) in
+            [(100_000, 10), (400_000, 10), (1_000_000, 23), (4_200_000, 100), (500_000_000, 100)]
+        {
             config.frames = frames;
             assert_eq!(config.confirming_episodes(), episodes, "{frames}");
         }

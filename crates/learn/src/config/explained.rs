@@ -1,4 +1,5 @@
-//! What the settings of `config.json` mean: the comments beside their fields, so that nothing is said twice.
+//! What the settings of `config.json` mean: the comments beside their fields, so that nothing is
+//! said twice.
 
 use hasard_envs::edit_distance;
 
@@ -29,12 +30,18 @@ pub fn settings() -> Vec<Explained> {
     let mut all = Vec::new();
     for (place, structure, source) in SOURCES {
         let head = format!("pub struct {structure} {{");
-        let body = source.lines().skip_while(|line| !line.starts_with(&head)).skip(1).take_while(|line| *line != "}");
+        let body = source
+            .lines()
+            .skip_while(|line| !line.starts_with(&head))
+            .skip(1)
+            .take_while(|line| *line != "}");
         let mut meaning: Vec<&str> = Vec::new();
         for line in body.map(str::trim) {
             if let Some(text) = line.strip_prefix("///") {
                 meaning.push(text.trim());
-            } else if let Some((name, _)) = line.strip_prefix("pub ").and_then(|field| field.split_once(':')) {
+            } else if let Some((name, _)) =
+                line.strip_prefix("pub ").and_then(|field| field.split_once(':'))
+            {
                 all.push(Explained { name: format!("{place}{name}"), meaning: meaning.join(" ") });
                 meaning.clear();
             }
@@ -52,9 +59,15 @@ pub fn nearest(text: &str) -> Option<String> {
         let alike = edit_distance(&last(text), &last(name)) + usize::from(last(name) != last(text));
         whole.min(alike)
     };
-    let known = settings().into_iter().map(|one| one.name).chain(SHORT.iter().map(|(short, _)| (*short).to_string()));
+    let known = settings()
+        .into_iter()
+        .map(|one| one.name)
+        .chain(SHORT.iter().map(|(short, _)| (*short).to_string()));
     let (found, name) = known.map(|name| (distance(&name), name)).min()?;
-    let name = SHORT.iter().find(|(short, _)| *short == name).map_or(name.clone(), |(_, meant)| (*meant).to_string());
+    let name = SHORT
+        .iter()
+        .find(|(short, _)| *short == name)
+        .map_or(name.clone(), |(_, meant)| (*meant).to_string());
     (found <= 1 + last(text).len() / 3).then_some(name)
 }
 
@@ -64,7 +77,10 @@ pub fn named(text: &str) -> Option<String> {
     if let Some((_, meant)) = SHORT.iter().find(|(short, _)| *short == text) {
         return Some((*meant).to_string());
     }
-    settings().into_iter().map(|one| one.name).find(|name| name == text || name.rsplit('.').next() == Some(text))
+    settings()
+        .into_iter()
+        .map(|one| one.name)
+        .find(|name| name == text || name.rsplit('.').next() == Some(text))
 }
 
 /// Names that other programs have for settings.
@@ -106,7 +122,10 @@ mod tests {
         }
         let explained = settings();
         for name in names {
-            let one = explained.iter().find(|one| one.name == name).unwrap_or_else(|| panic!("{name} is not explained"));
+            let one = explained
+                .iter()
+                .find(|one| one.name == name)
+                .unwrap_or_else(|| panic!("{name} is not explained"));
             assert!(one.meaning.ends_with('.') && one.meaning.len() > 3, "{one:?}");
         }
     }

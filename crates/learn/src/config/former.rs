@@ -18,8 +18,8 @@ impl Serialize for TrainConfig {
     }
 }
 
-/// A multiplier with damping is the sum of an integral and of the present excess, which is a PI controller: such runs were PPOPID and
-/// TRPOPID, whatever they were called.
+/// A multiplier with damping is the sum of an integral and of the present excess, which is a PI
+/// controller: such runs were PPOPID and TRPOPID, whatever they were called.
 fn name_rightly(config: &mut TrainConfig) {
     let settings = &mut config.algorithm_settings;
     let damping = std::mem::take(&mut settings.former_damping);
@@ -40,10 +40,12 @@ mod tests {
     use super::*;
     use crate::config::{EnvConfig, MultiplierUpdate, Preset};
 
-    /// A2: the quick preset's PPOLag of older versions, read by the name of the rule that moved its multiplier.
+    /// A2: the quick preset's PPOLag of older versions, read by the name of the rule that moved its
+    /// multiplier.
     #[test]
     fn a_damped_multiplier_is_read_as_the_pid_controller_that_it_was() {
-        let plain = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Quick, EnvConfig::new("test"));
+        let plain =
+            TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Quick, EnvConfig::new("test"));
         let mut file = serde_json::to_value(&plain).unwrap();
         let settings = file["algorithm_settings"].as_object_mut().unwrap();
         settings.remove("multiplier_update");
@@ -54,7 +56,10 @@ mod tests {
         let old: TrainConfig = serde_json::from_value(file.clone()).unwrap();
         let settings = &old.algorithm_settings;
         assert_eq!(old.algorithm, AlgorithmKind::PpoPid);
-        assert_eq!((settings.pid_gains, settings.pid_initial, settings.pid_decay), ((1.5, 0.01, 0.0), 0.0, 0.0));
+        assert_eq!(
+            (settings.pid_gains, settings.pid_initial, settings.pid_decay),
+            ((1.5, 0.01, 0.0), 0.0, 0.0)
+        );
         assert_eq!(settings.pid_reference_budget, Some(45.0));
         assert_eq!(settings.multiplier_update, MultiplierUpdate::Minibatch);
         // What is written from then on says so itself.
@@ -62,6 +67,9 @@ mod tests {
         assert_eq!(again["algorithm"], "PPOPID");
         assert_eq!(serde_json::from_value::<TrainConfig>(again).unwrap(), old);
         file["algorithm_settings"]["multiplier_damping"] = 0.0.into();
-        assert_eq!(serde_json::from_value::<TrainConfig>(file).unwrap().algorithm, AlgorithmKind::PpoLag);
+        assert_eq!(
+            serde_json::from_value::<TrainConfig>(file).unwrap().algorithm,
+            AlgorithmKind::PpoLag
+        );
     }
 }

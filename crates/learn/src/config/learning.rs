@@ -15,11 +15,12 @@ names! {
 }
 
 names! {
-    /// What critics see and the policy does not (Pinto et al. 2018, arXiv 1710.06542): nothing acts by it, so that an agent needs none
-    /// of it once it is trained.
+    /// What critics see and the policy does not (Pinto et al. 2018, arXiv 1710.06542): nothing acts
+    /// by it, so that an agent needs none of it once it is trained.
     CriticInput ("input of the critics") {
-        /// What is left of the time of the episode, discounted as returns are. A time limit that is not seen makes the value of one
-        /// and the same picture another at every step (Pardo et al. 2018, arXiv 1712.00378).
+        /// What is left of the time of the episode, discounted as returns are. A time limit that is
+        /// not seen makes the value of one and the same picture another at every step (Pardo et al.
+        /// 2018, arXiv 1712.00378).
         TimeLeft = "time-left",
         /// Each constraint's cost of the episode so far, in units of its budget.
         BudgetSpent = "budget-spent",
@@ -30,11 +31,12 @@ names! {
     /// What brings returns to one scale for the critics.
     #[derive(Default)]
     ReturnNormaliser ("normaliser of returns") {
-        /// Moments of all returns so far, as in the original; values are cut off at five deviations.
+        /// Moments of all returns so far, as in the original; values are cut off at five
+        /// deviations.
         #[default]
         Running = "running",
-        /// Moments that forget, and heads whose outputs keep their worth when the moments move (van Hasselt et al. 2016, arXiv
-        /// 1602.07714; Hessel et al. 2019, arXiv 1809.04474).
+        /// Moments that forget, and heads whose outputs keep their worth when the moments move (van
+        /// Hasselt et al. 2016, arXiv 1602.07714; Hessel et al. 2019, arXiv 1809.04474).
         PopArt = "popart",
     }
 }
@@ -46,8 +48,8 @@ names! {
         /// Nothing: numbers of 32 bits.
         #[default]
         Float32 = "float32",
-        /// Numbers of 16 bits with the exponents of those of 32; sums, weights, moments and all else keep 32 bits. It needs a processor
-        /// with AVX512-BF16, and is the default of none.
+        /// Numbers of 16 bits with the exponents of those of 32; sums, weights, moments and all
+        /// else keep 32 bits. It needs a processor with AVX512-BF16, and is the default of none.
         Bfloat16 = "bfloat16",
     }
 }
@@ -64,8 +66,9 @@ pub struct LearningConfig {
     pub epochs: usize,
     /// Parts that the rollout's trajectories are dealt into in each pass.
     pub minibatches: usize,
-    /// Steps that gradients flow back through: longer rollouts are learned from in trajectories of so many steps, each of which begins in
-    /// the state that the actor had there. Advantages are still those of the whole rollout. `null` for whole rollouts.
+    /// Steps that gradients flow back through: longer rollouts are learned from in trajectories of
+    /// so many steps, each of which begins in the state that the actor had there. Advantages are
+    /// still those of the whole rollout. `null` for whole rollouts.
     #[serde(default)]
     pub recurrence: Option<usize>,
     /// Discount.
@@ -76,26 +79,29 @@ pub struct LearningConfig {
     pub rate: f64,
     /// Learning rate at the end of the schedule, reached linearly; `null` for a constant one.
     pub final_rate: Option<f64>,
-    /// Frames after which the schedules of rates and exploration, and of the PID's reference budget, are over; `null` for the length
-    /// that the run is begun with, which a run then writes down here: it keeps its schedule when it is extended.
+    /// Frames after which the schedules of rates and exploration, and of the PID's reference
+    /// budget, are over; `null` for the length that the run is begun with, which a run then writes
+    /// down here: it keeps its schedule when it is extended.
     #[serde(default)]
     pub schedule_frames: Option<u64>,
     /// Adam's decays.
     pub adam_betas: (f64, f64),
     /// Adam's epsilon.
     pub adam_epsilon: f64,
-    /// Divergence of the policy from the one that acted, mean over the rollout after a pass, beyond which the rollout is learned from
-    /// no further; `null` for all passes in any case.
+    /// Divergence of the policy from the one that acted, mean over the rollout after a pass, beyond
+    /// which the rollout is learned from no further; `null` for all passes in any case.
     #[serde(default)]
     pub target_kl: Option<f64>,
-    /// Learning rate of critics that are networks of their own; `null` for that of the policy. It follows the same schedule.
+    /// Learning rate of critics that are networks of their own; `null` for that of the policy. It
+    /// follows the same schedule.
     #[serde(default)]
     pub critic_rate: Option<f64>,
     /// Discount of costs; `null` for that of rewards.
     #[serde(default)]
     pub cost_gamma: Option<f64>,
-    /// Returns of costs are normalised by the moments of the reward's returns, which they move too, and values of costs are used as the
-    /// network says them: a fault of the code that made PPOLag's tables, to be had on request.
+    /// Returns of costs are normalised by the moments of the reward's returns, which they move too,
+    /// and values of costs are used as the network says them: a fault of the code that made
+    /// PPOLag's tables, to be had on request.
     #[serde(default)]
     pub cost_uses_reward_normaliser: bool,
     /// Norm that gradients are cut down to; 0 for none.
@@ -121,35 +127,45 @@ pub struct LearningConfig {
     pub normaliser_horizon: f64,
     /// Time-outs count as cut-off rather than as ends: the value of what would have come is added.
     pub bootstrap_time_outs: bool,
-    /// The same for costs; `null` for what holds for rewards, unless critics see the time left: then the limit is part of the task,
-    /// and nothing comes after it that a budget of an episode counts.
+    /// The same for costs; `null` for what holds for rewards, unless critics see the time left:
+    /// then the limit is part of the task, and nothing comes after it that a budget of an episode
+    /// counts.
     #[serde(default)]
     pub bootstrap_cost_time_outs: Option<bool>,
     /// What the critics see and the policy does not; such as `["time-left","budget-spent"]`.
     #[serde(default)]
     pub critic_inputs: Vec<CriticInput>,
-    /// The first forward pass over a rollout is not computed but taken from the actors, in synchronous runs, which is faster.
-    /// Statistics of pixels then follow one rollout later; docs/tried/reused_forward_pass.md has what agents learned with it. Where
-    /// `recurrence` cuts rollouts the pass is computed all the same, for what actors would keep of so many steps fills the memory, but
-    /// what is learned still begins at the very policy that acted.
+    /// The first forward pass over a rollout is not computed but taken from the actors, in
+    /// synchronous runs, which is faster. Statistics of pixels then follow one rollout later;
+    /// docs/tried/reused_forward_pass.md has what agents learned with it. Where `recurrence` cuts
+    /// rollouts the pass is computed all the same, for what actors would keep of so many steps
+    /// fills the memory, but what is learned still begins at the very policy that acted.
     #[serde(default)]
     pub reuse_forward: bool,
     /// Threads.
     pub threads: usize,
-    /// Plain kernels, whose results have the same bits on every machine; otherwise the fastest that the processor has.
+    /// Plain kernels, whose results have the same bits on every machine; otherwise the fastest that
+    /// the processor has.
     #[serde(default)]
     pub portable: bool,
-    /// What the factors of the networks' products are rounded to; `HASARD_SIMD=avx512bf16` begins runs with `bfloat16`.
+    /// What the factors of the networks' products are rounded to; `HASARD_SIMD=avx512bf16` begins
+    /// runs with `bfloat16`.
     #[serde(default)]
     pub products: Products,
 }
 
 impl LearningConfig {
-    /// Whether the value of what would have come after a time-out counts: of the rewards, or of the costs.
+    /// Whether the value of what would have come after a time-out counts: of the rewards, or of the
+    /// costs.
     #[must_use]
     pub fn bootstraps(&self, costs: bool) -> bool {
-        let known = self.bootstrap_time_outs && !(costs && self.critic_inputs.contains(&CriticInput::TimeLeft));
-        if costs { self.bootstrap_cost_time_outs.unwrap_or(known) } else { self.bootstrap_time_outs }
+        let known = self.bootstrap_time_outs
+            && !(costs && self.critic_inputs.contains(&CriticInput::TimeLeft));
+        if costs {
+            self.bootstrap_cost_time_outs.unwrap_or(known)
+        } else {
+            self.bootstrap_time_outs
+        }
     }
 
     /// The learning rate after a share of the schedule, from 0 to 1.

@@ -1,4 +1,5 @@
-//! Everything that a run is made of. A run's `config.json` is this, and resuming or evaluating needs nothing else.
+//! Everything that a run is made of. A run's `config.json` is this, and resuming or evaluating
+//! needs nothing else.
 
 mod algorithm;
 pub mod constraint;

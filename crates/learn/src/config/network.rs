@@ -9,8 +9,9 @@ use crate::config::names::names;
 pub struct NetworkConfig {
     /// Convolutions.
     pub convolutions: Vec<Convolution>,
-    /// Channels of each stage of a residual encoder, which then stands in the place of the convolutions: what IMPALA's larger network has
-    /// (Espeholt et al. 2018, arXiv 1802.01561, figure 3), there 16, 32 and 32, here multiples of 32. Empty for plain convolutions.
+    /// Channels of each stage of a residual encoder, which then stands in the place of the
+    /// convolutions: what IMPALA's larger network has (Espeholt et al. 2018, arXiv 1802.01561,
+    /// figure 3), there 16, 32 and 32, here multiples of 32. Empty for plain convolutions.
     #[serde(default)]
     pub residual: Vec<usize>,
     /// Units of the dense layers.
@@ -30,8 +31,8 @@ names! {
     /// What a recurrent layer is made of.
     #[derive(Default)]
     RecurrentCell ("recurrent cell") {
-        /// Gated recurrent units (Cho et al. 2014, arXiv 1406.1078), with the reset behind the product as cuDNN and PyTorch have it:
-        /// what the benchmark uses.
+        /// Gated recurrent units (Cho et al. 2014, arXiv 1406.1078), with the reset behind the
+        /// product as cuDNN and PyTorch have it: what the benchmark uses.
         #[default]
         Gru = "gru",
         /// Long short-term memory with a forget gate (Gers et al. 2000), without peepholes.
@@ -40,7 +41,8 @@ names! {
 }
 
 impl RecurrentCell {
-    /// Gates, the candidate among them: what input and state are multiplied for, each times the units.
+    /// Gates, the candidate among them: what input and state are multiplied for, each times the
+    /// units.
     #[must_use]
     pub const fn gates(self) -> usize {
         match self {
@@ -76,9 +78,11 @@ pub struct Convolution {
 pub enum Initialisation {
     /// Orthogonal with gain 1 everywhere, biases zero: what the paper says.
     Orthogonal,
-    /// Orthogonal on the heads; uniform within 1/sqrt(fan-in) elsewhere with zero biases, and biases drawn too in the
-    /// GRU: what the released code does, whose initialiser does not reach the scripted encoder.
+    /// Orthogonal on the heads; uniform within 1/sqrt(fan-in) elsewhere with zero biases, and
+    /// biases drawn too in the GRU: what the released code does, whose initialiser does not reach
+    /// the scripted encoder.
     OrthogonalHeads,
-    /// Uniform within 1/sqrt(fan-in) everywhere, biases too: the released TRPO networks, which are never initialised.
+    /// Uniform within 1/sqrt(fan-in) everywhere, biases too: the released TRPO networks, which are
+    /// never initialised.
     Uniform,
 }

@@ -3,7 +3,8 @@
 use hasard_envs::{Scenario, own};
 use serde::{Deserialize, Serialize};
 
-/// A scenario that was read from a file. It is known to the registry as soon as its settings are read.
+/// A scenario that was read from a file. It is known to the registry as soon as its settings are
+/// read.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Kept", into = "Kept")]
 pub struct OwnScenario(Scenario);
@@ -22,7 +23,10 @@ impl TryFrom<Kept> for OwnScenario {
     fn try_from(kept: Kept) -> Result<OwnScenario, String> {
         let hash = own::fingerprint(&kept.text);
         if hash != kept.hash {
-            return Err(format!("the scenario's text was changed: its hash is {hash}, not {}", kept.hash));
+            return Err(format!(
+                "the scenario's text was changed: its hash is {hash}, not {}",
+                kept.hash
+            ));
         }
         own::recall(&kept.path, &kept.text).map(OwnScenario).map_err(|error| error.to_string())
     }
@@ -31,8 +35,14 @@ impl TryFrom<Kept> for OwnScenario {
 impl From<OwnScenario> for Kept {
     fn from(own: OwnScenario) -> Kept {
         let file = own.0.file.as_ref();
-        let word = |of: fn(&hasard_envs::scenarios::ScenarioFile) -> &'static str| file.map_or("", of).to_string();
-        Kept { path: word(|file| file.path), hash: word(|file| file.hash), text: word(|file| file.text) }
+        let word = |of: fn(&hasard_envs::scenarios::ScenarioFile) -> &'static str| {
+            file.map_or("", of).to_string()
+        };
+        Kept {
+            path: word(|file| file.path),
+            hash: word(|file| file.hash),
+            text: word(|file| file.text),
+        }
     }
 }
 

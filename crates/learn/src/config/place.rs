@@ -65,7 +65,14 @@ mod tests {
         };
         assert!(kept_as("/maps/läva.wad".into()).contains("\"maps\":\"/maps/läva.wad\""));
         assert!(kept_as(of_bytes(b"/m\xe4p".to_vec())).contains("\"maps\":["));
-        assert!(serde_json::from_str::<EnvConfig>(&serde_json::to_string(&EnvConfig::new("x")).unwrap()).unwrap().maps.is_none());
+        assert!(
+            serde_json::from_str::<EnvConfig>(
+                &serde_json::to_string(&EnvConfig::new("x")).unwrap()
+            )
+            .unwrap()
+            .maps
+            .is_none()
+        );
         assert_eq!(kept(Path::new("auto")), Path::new("auto"));
         assert_eq!(kept(Path::new("a/b.wad")), std::env::current_dir().unwrap().join("a/b.wad"));
     }

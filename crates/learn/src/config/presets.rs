@@ -1,9 +1,11 @@
-//! The presets: the settings of the HASARD paper (ICLR 2025, appendix on hyper-parameters) where it is consistent, those of its
-//! released code, those of the code of its tables, and quick ones of our own.
+//! The presets: the settings of the HASARD paper (ICLR 2025, appendix on hyper-parameters) where it
+//! is consistent, those of its released code, those of the code of its tables, and quick ones of
+//! our own.
 
 use crate::config::{
-    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig, Exploration, LearningConfig,
-    MultiplierUpdate, NetworkConfig, Preset, Products, ReportingConfig, ReturnNormaliser, SamplingConfig, TrainConfig,
+    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig,
+    Exploration, LearningConfig, MultiplierUpdate, NetworkConfig, Preset, Products,
+    ReportingConfig, ReturnNormaliser, SamplingConfig, TrainConfig,
 };
 use crate::config::{Convolution, Initialisation, RecurrentCell, second_order};
 
@@ -20,8 +22,10 @@ impl TrainConfig {
         let episode_steps = (EPISODE_TICS / env.frame_skip.max(1)).max(1);
         let scenario = env.scenario();
         let separate = algorithm.separates_networks();
-        // As their papers have it: ten passes over minibatches of 64 steps. The benchmark's own algorithms pass once over all.
-        let repeats = matches!(algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup | AlgorithmKind::Ipo);
+        // As their papers have it: ten passes over minibatches of 64 steps. The benchmark's own
+        // algorithms pass once over all.
+        let repeats =
+            matches!(algorithm, AlgorithmKind::Focops | AlgorithmKind::Cup | AlgorithmKind::Ipo);
         let lagrangian_of_tables = tables && algorithm == AlgorithmKind::PpoLag;
         let mut config = TrainConfig {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -33,9 +37,14 @@ impl TrainConfig {
             device: "cpu".into(),
             episode_steps,
             constraints: vec![Constraint { term: None, budget: 0.0 }],
-            // The tables' PPOLag was held to 0.1 or 0.01 a step: 52.5 or 5.25 in an episode of 525, where the others had 50 or 5.
+            // The tables' PPOLag was held to 0.1 or 0.01 a step: 52.5 or 5.25 in an episode of 525,
+            // where the others had 50 or 5.
             budget_share: if lagrangian_of_tables { 1.05 } else { 1.0 },
-            constraint_statistic: if released { ConstraintStatistic::StepMean } else { ConstraintStatistic::EpisodeMean },
+            constraint_statistic: if released {
+                ConstraintStatistic::StepMean
+            } else {
+                ConstraintStatistic::EpisodeMean
+            },
             network: NetworkConfig {
                 convolutions: vec![
                     Convolution { channels: 32, kernel: 8, stride: 4 },
@@ -120,7 +129,8 @@ impl TrainConfig {
                 p3o_kappa: if released { 1.0 } else { 20.0 },
                 p3o_clipped: !released,
                 saute_gamma: 0.9999,
-                saute_unsafe_reward: scenario.map_or(-0.01, |scenario| scenario.saute_unsafe_reward),
+                saute_unsafe_reward: scenario
+                    .map_or(-0.01, |scenario| scenario.saute_unsafe_reward),
                 saute_visible: !released,
                 saute_horizon: f64::from(if released { EPISODE_TICS } else { episode_steps }),
                 trust_radius: 0.01,
@@ -134,14 +144,20 @@ impl TrainConfig {
                 trpo_consistent: !released,
                 focops_eta: 0.02,
                 focops_temperature: 1.5,
-                // FOCOPS' paper has one of 2, in the units of its own tasks: budgets of 5 here need about 3.
+                // FOCOPS' paper has one of 2, in the units of its own tasks: budgets of 5 here need
+                // about 3.
                 multiplier_limit: None,
                 ipo_kappa: 0.1,
                 ipo_limit: 10.0,
             },
             evaluation: EvaluationConfig::default(),
             changes: Vec::new(),
-            reporting: ReportingConfig { report_seconds: 10.0, checkpoint_seconds: 120.0, keep: 2, window: 100 },
+            reporting: ReportingConfig {
+                report_seconds: 10.0,
+                checkpoint_seconds: 120.0,
+                keep: 2,
+                window: 100,
+            },
             env,
         };
         if preset == Preset::Quick {
@@ -157,8 +173,8 @@ impl TrainConfig {
 /// Settings that learn within minutes.
 fn quicken(config: &mut TrainConfig) {
     config.frames = 10_000_000;
-    // A fifth of the arithmetic of the original's network: three times the frames in the same time, and no less learned from
-    // each (docs/tried/quick_network.md).
+    // A fifth of the arithmetic of the original's network: three times the frames in the same time,
+    // and no less learned from each (docs/tried/quick_network.md).
     config.network.convolutions = vec![
         Convolution { channels: 32, kernel: 8, stride: 6 },
         Convolution { channels: 32, kernel: 3, stride: 2 },
@@ -178,8 +194,9 @@ fn quicken(config: &mut TrainConfig) {
     // Once a rollout, as much as 0.01 in each of its minibatches.
     let rate = 0.01 * (passes * passes) as f64;
     config.algorithm_settings.multiplier_rate = rate;
-    // The integral alone runs in circles, which a large proportional part damps; and what a multiplier lags behind a policy that grows
-    // better at earning is taken off the budget beforehand. docs/tried/multiplier_rate.md has the numbers.
+    // The integral alone runs in circles, which a large proportional part damps; and what a
+    // multiplier lags behind a policy that grows better at earning is taken off the budget
+    // beforehand. docs/tried/multiplier_rate.md has the numbers.
     config.algorithm_settings.pid_gains = (1.5, rate, 0.0);
     (config.algorithm_settings.pid_initial, config.algorithm_settings.pid_decay) = (0.0, 0.0);
     config.algorithm_settings.pid_reference_budget = Some(45.0);
@@ -193,8 +210,13 @@ mod tests {
 
     #[test]
     fn presets_follow_the_table_of_decisions() {
-        let make = |algorithm, preset| TrainConfig::new(algorithm, preset, EnvConfig::new("ArmamentBurdenLevel1-v0")).unwrap();
-        let (paper, released) = (make(AlgorithmKind::PpoLag, Preset::Paper), make(AlgorithmKind::PpoLag, Preset::Released));
+        let make = |algorithm, preset| {
+            TrainConfig::new(algorithm, preset, EnvConfig::new("ArmamentBurdenLevel1-v0")).unwrap()
+        };
+        let (paper, released) = (
+            make(AlgorithmKind::PpoLag, Preset::Paper),
+            make(AlgorithmKind::PpoLag, Preset::Released),
+        );
         assert_eq!((paper.network.dense.len(), released.network.dense.len()), (2, 1));
         assert_eq!((paper.learning.clip_value, released.learning.clip_value), (1.0, 0.2));
         assert_eq!(paper.network.initialisation, Initialisation::Orthogonal);
@@ -202,23 +224,35 @@ mod tests {
         assert!(paper.learning.bootstrap_time_outs && !released.learning.bootstrap_time_outs);
         assert_eq!(released.constraint_statistic, ConstraintStatistic::StepMean);
         assert_eq!(paper.constraints[0].budget, 50.0);
-        assert_eq!(make(AlgorithmKind::PpoCost, Preset::Released).algorithm_settings.penalty_scale, 0.1);
+        assert_eq!(
+            make(AlgorithmKind::PpoCost, Preset::Released).algorithm_settings.penalty_scale,
+            0.1
+        );
         assert_eq!(make(AlgorithmKind::Trpo, Preset::Released).learning.adam_epsilon, 1e-8);
         // A6: the released code takes its Fisher products over the whole minibatch.
-        assert_eq!(make(AlgorithmKind::Trpo, Preset::Released).algorithm_settings.fisher_fraction, 1.0);
+        assert_eq!(
+            make(AlgorithmKind::Trpo, Preset::Released).algorithm_settings.fisher_fraction,
+            1.0
+        );
         let quick = make(AlgorithmKind::PpoLag, Preset::Quick);
         assert_eq!((paper.budget_share, quick.budget_share), (1.0, 0.9));
         for plain in [&paper, &released] {
-            assert_eq!((plain.algorithm_settings.pid_reference_budget, plain.budget_share), (None, 1.0));
+            assert_eq!(
+                (plain.algorithm_settings.pid_reference_budget, plain.budget_share),
+                (None, 1.0)
+            );
         }
         let text = serde_json::to_string(&paper).unwrap();
         assert_eq!(serde_json::from_str::<TrainConfig>(&text).unwrap(), paper);
     }
-    /// The limits and settings of the runs of the paper's tables, as their code had them: 0.1 and 0.01 a step for PPOLag, the budget times
-    /// 4 / 2100 for PPOPID and P3O; PPOLag's multiplier moves after the loss; PPOCost 0.1 in Armament Burden, hard Remedy Rush 0.3.
+    /// The limits and settings of the runs of the paper's tables, as their code had them: 0.1
+    /// and 0.01 a step for PPOLag, the budget times 4 / 2100 for PPOPID and P3O; PPOLag's
+    /// multiplier moves after the loss; PPOCost 0.1 in Armament Burden, hard Remedy Rush 0.3.
     #[test]
     fn tables_have_the_limits_of_the_published_runs() {
-        let make = |algorithm, id: &str| TrainConfig::new(algorithm, Preset::Tables, EnvConfig::new(id)).unwrap();
+        let make = |algorithm, id: &str| {
+            TrainConfig::new(algorithm, Preset::Tables, EnvConfig::new(id)).unwrap()
+        };
         for (id, lagrangian, others) in [
             ("VolcanicVentureLevel1-v0", 0.1, 50.0 * 4.0 / 2100.0),
             ("PrecipicePlungeLevel2-v0", 0.1, 50.0 * 4.0 / 2100.0),
@@ -231,15 +265,29 @@ mod tests {
                 assert_eq!(config.constraint_statistic, ConstraintStatistic::StepMean);
                 config.aim(0) / f64::from(config.episode_steps)
             };
-            assert!((limit(AlgorithmKind::PpoLag) - lagrangian).abs() < 1e-15, "{id}: {}", limit(AlgorithmKind::PpoLag));
+            assert!(
+                (limit(AlgorithmKind::PpoLag) - lagrangian).abs() < 1e-15,
+                "{id}: {}",
+                limit(AlgorithmKind::PpoLag)
+            );
             for algorithm in [AlgorithmKind::PpoPid, AlgorithmKind::P3o] {
-                assert!((limit(algorithm) - others).abs() < 1e-15, "{id} {algorithm}: {}", limit(algorithm));
+                assert!(
+                    (limit(algorithm) - others).abs() < 1e-15,
+                    "{id} {algorithm}: {}",
+                    limit(algorithm)
+                );
             }
         }
-        let update = |algorithm| make(algorithm, "RemedyRushLevel1-v0").algorithm_settings.multiplier_update;
+        let update =
+            |algorithm| make(algorithm, "RemedyRushLevel1-v0").algorithm_settings.multiplier_update;
         assert_eq!(update(AlgorithmKind::PpoLag), MultiplierUpdate::AfterMinibatch);
         assert_eq!(update(AlgorithmKind::PpoPid), MultiplierUpdate::Minibatch);
-        assert_eq!(make(AlgorithmKind::PpoCost, "ArmamentBurdenLevel1-v0").algorithm_settings.penalty_scale, 0.1);
+        assert_eq!(
+            make(AlgorithmKind::PpoCost, "ArmamentBurdenLevel1-v0")
+                .algorithm_settings
+                .penalty_scale,
+            0.1
+        );
         let hard = EnvConfig { hard: true, ..EnvConfig::new("RemedyRushLevel1-v0") };
         let hard = TrainConfig::new(AlgorithmKind::PpoCost, Preset::Tables, hard).unwrap();
         assert_eq!(hard.algorithm_settings.penalty_scale, 0.3);
@@ -257,7 +305,11 @@ mod tests {
                 for _ in 0..200_000 {
                     made.constrain(&[crate::algorithms::Signal::steady(50.0, 5.0, 525.0)]);
                 }
-                assert!(made.multipliers()[0] > 3.0, "{algorithm} {preset}: {}", made.multipliers()[0]);
+                assert!(
+                    made.multipliers()[0] > 3.0,
+                    "{algorithm} {preset}: {}",
+                    made.multipliers()[0]
+                );
             }
         }
     }

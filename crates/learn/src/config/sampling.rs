@@ -13,7 +13,8 @@ pub struct SamplingConfig {
     pub samplers: usize,
     /// Threads that step the worlds of each sampler; with 0 it steps them itself.
     pub world_threads: usize,
-    /// Groups of worlds of each sampler: with 2 and world threads, one half steps while the policy works on the other.
+    /// Groups of worlds of each sampler: with 2 and world threads, one half steps while the policy
+    /// works on the other.
     pub groups: usize,
     /// Lanes start their first episode after different numbers of random steps.
     pub spread_out: bool,

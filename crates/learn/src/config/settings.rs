@@ -1,4 +1,5 @@
-//! Single settings by their names in `config.json`: replaced when a run begins, and when it goes on.
+//! Single settings by their names in `config.json`: replaced when a run begins, and when it goes
+//! on.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -20,7 +21,8 @@ const OTHERS_HANG_ON: [(&str, &str); 10] = [
     ("changes", "--resume, which writes them down"),
 ];
 
-/// Settings, or groups of them, that a run may be resumed with another value of: what was learned so far stays of use.
+/// Settings, or groups of them, that a run may be resumed with another value of: what was learned
+/// so far stays of use.
 const MAY_CHANGE: [&str; 16] = [
     "frames",
     "seed",
@@ -42,8 +44,14 @@ const MAY_CHANGE: [&str; 16] = [
 ];
 
 /// Those of them that change nothing that is learned.
-const CHANGE_NOTHING: [&str; 6] =
-    ["learning.threads", "sampling.samplers", "sampling.world_threads", "sampling.groups", "evaluation", "reporting"];
+const CHANGE_NOTHING: [&str; 6] = [
+    "learning.threads",
+    "sampling.samplers",
+    "sampling.world_threads",
+    "sampling.groups",
+    "evaluation",
+    "reporting",
+];
 
 /// A setting that was given another value when the run was resumed.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -74,23 +82,32 @@ fn wrong(error: impl std::fmt::Display) -> LearnError {
 }
 
 impl TrainConfig {
-    /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`. A new learning rate is a constant one, unless
-    /// `learning.final_rate` is set after it.
+    /// Replaces one setting, named as in `config.json`: `learning.rate=0.0003`. A new learning rate
+    /// is a constant one, unless `learning.final_rate` is set after it.
     ///
     /// # Errors
-    /// When the text is no `NAME=VALUE`, or there is no such setting, or others hang on it, or it cannot have that value.
+    /// When the text is no `NAME=VALUE`, or there is no such setting, or others hang on it, or it
+    /// cannot have that value.
     pub fn with(&self, setting: &str) -> Result<TrainConfig, LearnError> {
-        let (name, given) =
-            setting.split_once('=').ok_or_else(|| LearnError::Config("write NAME=VALUE, such as learning.rate=0.0003".into()))?;
+        let (name, given) = setting.split_once('=').ok_or_else(|| {
+            LearnError::Config("write NAME=VALUE, such as learning.rate=0.0003".into())
+        })?;
         let name = name.replace('/', ".");
-        if let Some((_, instead)) = OTHERS_HANG_ON.iter().find(|(known, _)| within(&name, known) || within(known, &name)) {
-            let problem = format!("other settings hang on '{name}'; use {instead}, or set the parts that nothing hangs on");
+        if let Some((_, instead)) =
+            OTHERS_HANG_ON.iter().find(|(known, _)| within(&name, known) || within(known, &name))
+        {
+            let problem = format!(
+                "other settings hang on '{name}'; use {instead}, or set the parts that nothing hangs on"
+            );
             return Err(LearnError::Config(problem));
         }
         let mut all = serde_json::to_value(self).map_err(wrong)?;
         let place = all.pointer_mut(&setting_pointer(&name)).ok_or_else(|| {
-            let near = explained::nearest(&name).map_or_else(String::new, |near| format!("; did you mean {near}?"));
-            LearnError::Config(format!("there is no setting '{name}'{near} (`hasard settings` lists them)"))
+            let near = explained::nearest(&name)
+                .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+            LearnError::Config(format!(
+                "there is no setting '{name}'{near} (`hasard settings` lists them)"
+            ))
         })?;
         *place = serde_json::from_str(given).unwrap_or_else(|_| given.into());
         let mut config: TrainConfig = serde_json::from_value(all).map_err(wrong)?;
@@ -106,18 +123,26 @@ impl TrainConfig {
     /// As [`TrainConfig::with`]; the message names the setting.
     pub fn with_all(&self, settings: &[String]) -> Result<TrainConfig, LearnError> {
         // The learning rate first: it makes the rate constant, and its end may be among the others.
-        let (first, then): (Vec<&String>, Vec<&String>) =
-            settings.iter().partition(|setting| setting.starts_with("learning.rate=") || setting.starts_with("learning/rate="));
+        let (first, then): (Vec<&String>, Vec<&String>) = settings.iter().partition(|setting| {
+            setting.starts_with("learning.rate=") || setting.starts_with("learning/rate=")
+        });
         first.into_iter().chain(then).try_fold(self.clone(), |config, setting| {
-            config.with(setting).map_err(|error| LearnError::Config(format!("'{setting}': {error}")))
+            config
+                .with(setting)
+                .map_err(|error| LearnError::Config(format!("'{setting}': {error}")))
         })
     }
 
-    /// The settings with which a run goes on after `frames` frames. What changes is written down in them.
+    /// The settings with which a run goes on after `frames` frames. What changes is written down in
+    /// them.
     ///
     /// # Errors
     /// As [`TrainConfig::with_all`], and when a setting cannot change within a run.
-    pub fn resumed_with(&self, settings: &[String], frames: u64) -> Result<TrainConfig, LearnError> {
+    pub fn resumed_with(
+        &self,
+        settings: &[String],
+        frames: u64,
+    ) -> Result<TrainConfig, LearnError> {
         // A run of an older version knew no other length of its schedules than its own.
         let before = self.clone().begun();
         let mut config = before.with_all(settings)?;
@@ -127,7 +152,10 @@ impl TrainConfig {
                 config.frames
             )));
         }
-        let (before, after) = (serde_json::to_value(&before).map_err(wrong)?, serde_json::to_value(&config).map_err(wrong)?);
+        let (before, after) = (
+            serde_json::to_value(&before).map_err(wrong)?,
+            serde_json::to_value(&config).map_err(wrong)?,
+        );
         let mut changes = Vec::new();
         differences("", &before, &after, &mut changes);
         for (setting, from, to) in changes {
@@ -140,7 +168,8 @@ impl TrainConfig {
                 config.changes.push(Change { frames, setting, from, to });
             }
         }
-        // A run that went back to an older checkpoint goes on from there with what was changed later.
+        // A run that went back to an older checkpoint goes on from there with what was changed
+        // later.
         config.changes.iter_mut().for_each(|change| change.frames = change.frames.min(frames));
         config.check()?;
         Ok(config)
@@ -165,7 +194,12 @@ fn differences(name: &str, before: &Value, after: &Value, out: &mut Vec<(String,
         (Value::Object(old), Value::Object(new)) => {
             for key in old.keys().chain(new.keys().filter(|key| !old.contains_key(*key))) {
                 let inner = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
-                differences(&inner, old.get(key).unwrap_or(&Value::Null), new.get(key).unwrap_or(&Value::Null), out);
+                differences(
+                    &inner,
+                    old.get(key).unwrap_or(&Value::Null),
+                    new.get(key).unwrap_or(&Value::Null),
+                    out,
+                );
             }
         }
         _ if before == after => {}
@@ -179,7 +213,8 @@ mod tests {
     use crate::config::{AlgorithmKind, EnvConfig, Preset, RecurrentCell};
 
     fn config(preset: Preset) -> TrainConfig {
-        TrainConfig::new(AlgorithmKind::PpoLag, preset, EnvConfig::new("RemedyRushLevel1-v0")).unwrap()
+        TrainConfig::new(AlgorithmKind::PpoLag, preset, EnvConfig::new("RemedyRushLevel1-v0"))
+            .unwrap()
     }
 
     fn all(settings: &[&str]) -> Vec<String> {
@@ -194,8 +229,10 @@ mod tests {
                 [learning.rate_after(0.0), learning.rate_after(0.5), learning.rate_after(1.0)]
             };
             assert_eq!(rates(&["learning.rate=1e-5"]), [1e-5; 3], "{preset}");
-            for order in [["learning.rate=4e-4", "learning.final_rate=2e-4"], ["learning.final_rate=2e-4", "learning.rate=4e-4"]]
-            {
+            for order in [
+                ["learning.rate=4e-4", "learning.final_rate=2e-4"],
+                ["learning.final_rate=2e-4", "learning.rate=4e-4"],
+            ] {
                 let [first, middle, last] = rates(&order);
                 assert_eq!((first, last), (4e-4, 2e-4), "{preset}");
                 assert!((middle - 3e-4).abs() < 1e-15);
@@ -215,7 +252,10 @@ mod tests {
             ("env={}", "set the parts"),
         ] {
             let message = config(Preset::Paper).with(setting).unwrap_err().to_string();
-            assert!(message.contains(instead) && message.contains("hang on"), "{setting}: {message}");
+            assert!(
+                message.contains(instead) && message.contains("hang on"),
+                "{setting}: {message}"
+            );
         }
         assert_eq!(config(Preset::Paper).with("env.frame_stack=2").unwrap().env.frame_stack, 2);
     }
@@ -233,30 +273,54 @@ mod tests {
     #[test]
     fn changes_of_a_resumed_run_are_written_down() {
         let config = config(Preset::Quick);
-        let changed = config.resumed_with(&all(&["seed=9", "learning.rate=1e-4", "frames=5000000"]), 4096).unwrap();
-        let told: Vec<String> = changed.changes.iter().map(|one| format!("{} {} {}", one.setting, one.from, one.to)).collect();
+        let changed = config
+            .resumed_with(&all(&["seed=9", "learning.rate=1e-4", "frames=5000000"]), 4096)
+            .unwrap();
+        let told: Vec<String> = changed
+            .changes
+            .iter()
+            .map(|one| format!("{} {} {}", one.setting, one.from, one.to))
+            .collect();
         assert_eq!(
             told,
-            ["frames 10000000 5000000", "learning.final_rate 0.0001 null", "learning.rate 0.0005 0.0001", "seed 1 9"]
+            [
+                "frames 10000000 5000000",
+                "learning.final_rate 0.0001 null",
+                "learning.rate 0.0005 0.0001",
+                "seed 1 9"
+            ]
         );
         assert!(changed.reseeded_at(4096) && !changed.reseeded_at(8192));
-        // Asked for once more, nothing is new; and a run that falls back to an older checkpoint changes there.
+        // Asked for once more, nothing is new; and a run that falls back to an older checkpoint
+        // changes there.
         let again = changed.resumed_with(&all(&["seed=9"]), 2048).unwrap();
         assert_eq!(again.changes.len(), 4);
         assert!(again.changes.iter().all(|one| one.frames == 2048));
-        assert!(changed.resumed_with(&all(&["learning.threads=3", "reporting.keep=5"]), 9000).unwrap().changes.len() == 4);
+        assert!(
+            changed
+                .resumed_with(&all(&["learning.threads=3", "reporting.keep=5"]), 9000)
+                .unwrap()
+                .changes
+                .len()
+                == 4
+        );
         let message = changed.resumed_with(&all(&["frames=4096"]), 8192).unwrap_err().to_string();
         assert!(message.contains("4096") && message.contains("8192"), "{message}");
-        assert!(changed.resumed_with(&all(&["frames=5000000"]), 5_001_216).is_ok(), "it ended with its last rollout");
-        let message = config.resumed_with(&all(&["learning.gamma=0.9"]), 0).unwrap_err().to_string();
+        assert!(
+            changed.resumed_with(&all(&["frames=5000000"]), 5_001_216).is_ok(),
+            "it ended with its last rollout"
+        );
+        let message =
+            config.resumed_with(&all(&["learning.gamma=0.9"]), 0).unwrap_err().to_string();
         assert!(message.contains("learning.gamma") && message.contains("--init-from"), "{message}");
     }
-    /// A13: rates and the multiplier's speed hang on frames. Gone on with for twice as long, a run neither jumps back in its schedule nor
-    /// stretches it, and says that it was extended.
+    /// A13: rates and the multiplier's speed hang on frames. Gone on with for twice as long, a run
+    /// neither jumps back in its schedule nor stretches it, and says that it was extended.
     #[test]
     fn an_extended_run_keeps_its_schedule() {
         let config = config(Preset::Quick);
-        let rate = |config: &TrainConfig, frames: u64| config.learning.rate_after(config.progress(frames));
+        let rate =
+            |config: &TrainConfig, frames: u64| config.learning.rate_after(config.progress(frames));
         let begun = config.clone().begun();
         assert_eq!(begun.learning.schedule_frames, Some(10_000_000));
         // From 5e-4 to 1e-4 within 10 million frames.
@@ -266,16 +330,31 @@ mod tests {
             for frames in [5_000_000, 7_500_000, 10_000_000] {
                 assert_eq!(rate(&longer, frames), rate(&begun, frames));
             }
-            assert!((rate(&longer, 20_000_000) - 1e-4).abs() < 1e-15 && longer.progress(20_000_000) == 1.0);
+            assert!(
+                (rate(&longer, 20_000_000) - 1e-4).abs() < 1e-15
+                    && longer.progress(20_000_000) == 1.0
+            );
             assert_eq!((longer.extended_from(), run.extended_from()), (Some(10_000_000), None));
-            let told: Vec<&str> = longer.changes.iter().map(|change| change.setting.as_str()).collect();
+            let told: Vec<&str> =
+                longer.changes.iter().map(|change| change.setting.as_str()).collect();
             assert_eq!(told, ["frames"]);
         }
         let shorter = begun.resumed_with(&all(&["frames=7000000"]), 5_000_000).unwrap();
-        assert_eq!((shorter.extended_from(), rate(&shorter, 5_000_000)), (None, rate(&begun, 5_000_000)));
+        assert_eq!(
+            (shorter.extended_from(), rate(&shorter, 5_000_000)),
+            (None, rate(&begun, 5_000_000))
+        );
         // Who wants another schedule says so, and that is written down too.
-        let stretched = begun.resumed_with(&all(&["frames=20000000", "learning.schedule_frames=20000000"]), 5_000_000).unwrap();
+        let stretched = begun
+            .resumed_with(
+                &all(&["frames=20000000", "learning.schedule_frames=20000000"]),
+                5_000_000,
+            )
+            .unwrap();
         assert_eq!((stretched.progress(5_000_000), stretched.changes.len()), (0.25, 2));
-        assert_eq!(config.with("learning.schedule_frames=400").unwrap().begun().learning.schedule_frames, Some(400));
+        assert_eq!(
+            config.with("learning.schedule_frames=400").unwrap().begun().learning.schedule_frames,
+            Some(400)
+        );
     }
 }

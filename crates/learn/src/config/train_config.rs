@@ -10,8 +10,8 @@ use crate::config::curriculum::Lesson;
 use crate::config::names::names;
 use crate::config::settings::Change;
 use crate::config::{
-    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig, LearningConfig, NetworkConfig,
-    Products, ReportingConfig, ReturnNormaliser, SamplingConfig,
+    AlgorithmConfig, AlgorithmKind, Constraint, ConstraintStatistic, EnvConfig, EvaluationConfig,
+    LearningConfig, NetworkConfig, Products, ReportingConfig, ReturnNormaliser, SamplingConfig,
 };
 use crate::error::LearnError;
 
@@ -24,7 +24,8 @@ names! {
         Released = "released",
         /// What the code did that made the paper's tables.
         Tables = "tables",
-        /// The paper's algorithms with settings that learn within minutes on a processor, for first steps.
+        /// The paper's algorithms with settings that learn within minutes on a processor, for first
+        /// steps.
         Quick = "quick",
     }
 }
@@ -56,8 +57,9 @@ pub struct TrainConfig {
     pub episode_steps: u32,
     /// Constraints, each with its budget.
     pub constraints: Vec<Constraint>,
-    /// Share of each budget that learning aims at, whatever the algorithm: a policy that swings about it still keeps a budget that is a
-    /// little above. Evaluations hold costs against the whole budget.
+    /// Share of each budget that learning aims at, whatever the algorithm: a policy that swings
+    /// about it still keeps a budget that is a little above. Evaluations hold costs against the
+    /// whole budget.
     #[serde(default = "whole")]
     pub budget_share: f64,
     /// What they are held against.
@@ -87,7 +89,11 @@ fn whole() -> f64 {
 
 impl TrainConfig {
     /// The settings of a preset for an algorithm on an environment.
-    pub fn new(algorithm: AlgorithmKind, preset: Preset, env: EnvConfig) -> Result<TrainConfig, LearnError> {
+    pub fn new(
+        algorithm: AlgorithmKind,
+        preset: Preset,
+        env: EnvConfig,
+    ) -> Result<TrainConfig, LearnError> {
         let id = env.env_id()?;
         let budget = id.safety_budget(env.rule_set()?, env.hard);
         let mut config = TrainConfig::plain(algorithm, preset, env);
@@ -121,9 +127,17 @@ impl TrainConfig {
             ("the confirming episodes", self.confirming_episodes(), 100_000),
             ("the steps of the longest episode", self.episode_steps as usize, 100_000),
             ("the delay of the PID controller", self.algorithm_settings.pid_delay, 100_000),
-            ("the conjugate-gradient iterations", self.algorithm_settings.conjugate_iterations, 1000),
+            (
+                "the conjugate-gradient iterations",
+                self.algorithm_settings.conjugate_iterations,
+                1000,
+            ),
             ("the steps of the critics", self.algorithm_settings.critic_steps, 100_000),
-            ("the samples of a critic's step", self.algorithm_settings.critic_batch.unwrap_or(1), 1 << 24),
+            (
+                "the samples of a critic's step",
+                self.algorithm_settings.critic_batch.unwrap_or(1),
+                1 << 24,
+            ),
             ("the recurrence", learning.recurrence.unwrap_or(1), 4096),
             ("the tries of the line search", self.algorithm_settings.line_search_steps, 1000),
         ] {
@@ -139,9 +153,15 @@ impl TrainConfig {
             return refuse("the number of world threads", &sampling.world_threads, "0 to 256");
         }
         // Alone, samplers share out any number of worlds; groups are all of one size.
-        if sampling.groups > 1 && !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups) {
+        if sampling.groups > 1
+            && !sampling.lanes.is_multiple_of(sampling.samplers * sampling.groups)
+        {
             let parts = sampling.samplers * sampling.groups;
-            return refuse("the number of worlds", &sampling.lanes, &format!("a multiple of samplers times groups ({parts})"));
+            return refuse(
+                "the number of worlds",
+                &sampling.lanes,
+                &format!("a multiple of samplers times groups ({parts})"),
+            );
         }
         for (name, given, low, high) in [
             ("gamma", learning.gamma, 0.0, 1.0),
@@ -152,8 +172,18 @@ impl TrainConfig {
             ("the learning rate of the critics", learning.critic_rate.unwrap_or(0.0), 0.0, 10.0),
             ("the samples that PopArt remembers", learning.normaliser_horizon, 1.0, f64::MAX),
             ("gamma of the costs", learning.cost_gamma.unwrap_or(0.0), 0.0, 1.0),
-            ("the final exploration coefficient", learning.final_exploration_coefficient.unwrap_or(0.0), 0.0, 1e3),
-            ("the largest multiplier", self.algorithm_settings.multiplier_limit.unwrap_or(0.0), 0.0, f64::MAX),
+            (
+                "the final exploration coefficient",
+                learning.final_exploration_coefficient.unwrap_or(0.0),
+                0.0,
+                1e3,
+            ),
+            (
+                "the largest multiplier",
+                self.algorithm_settings.multiplier_limit.unwrap_or(0.0),
+                0.0,
+                f64::MAX,
+            ),
             ("the share of the Fisher matrix", self.algorithm_settings.fisher_fraction, 0.0, 1.0),
             ("the largest gradient norm", learning.max_gradient_norm, 0.0, f64::MAX),
             ("the ratio clip", learning.clip_ratio, 0.0, 10.0),
@@ -163,7 +193,12 @@ impl TrainConfig {
             ("the seconds between checkpoints", self.reporting.checkpoint_seconds, 0.0, f64::MAX),
             ("the share of the budget", self.budget_share, 0.0, 2.0),
             ("the rate of the multiplier", self.algorithm_settings.multiplier_rate, 0.0, f64::MAX),
-            ("the reference budget of the PID", self.algorithm_settings.pid_reference_budget.unwrap_or(0.0), 0.0, f64::MAX),
+            (
+                "the reference budget of the PID",
+                self.algorithm_settings.pid_reference_budget.unwrap_or(0.0),
+                0.0,
+                f64::MAX,
+            ),
             ("the decay of the PID's averages", self.algorithm_settings.pid_decay, 0.0, 1.0),
             ("the weight of P3O's penalty", self.algorithm_settings.p3o_kappa, 0.0, f64::MAX),
             ("the weight of IPO's barrier", self.algorithm_settings.ipo_kappa, 0.0, f64::MAX),
@@ -182,31 +217,54 @@ impl TrainConfig {
             );
         }
         if let (Some(rate), false) = (learning.critic_rate, self.network.separate) {
-            return refuse("the learning rate of the critics", &rate, "null unless network.separate is on");
+            return refuse(
+                "the learning rate of the critics",
+                &rate,
+                "null unless network.separate is on",
+            );
         }
         if learning.normaliser == ReturnNormaliser::PopArt && !sampling.synchronous {
             let allowed = "running unless sampling.synchronous is on: actors beside the learner have heads of another scale";
             return refuse("the normaliser of returns", &learning.normaliser, allowed);
         }
         if learning.normaliser == ReturnNormaliser::PopArt && learning.cost_uses_reward_normaliser {
-            return refuse("the normaliser of returns", &learning.normaliser, "running where costs use that of the rewards");
+            return refuse(
+                "the normaliser of returns",
+                &learning.normaliser,
+                "running where costs use that of the rewards",
+            );
         }
         let seen = &learning.critic_inputs;
         if let Some(twice) = (1..seen.len()).find(|&index| seen[..index].contains(&seen[index])) {
-            return refuse("an input of the critics", &format!("'{}' twice", seen[twice]), "named once");
+            return refuse(
+                "an input of the critics",
+                &format!("'{}' twice", seen[twice]),
+                "named once",
+            );
         }
         if self.frames == 0 {
             return refuse("the number of frames", &self.frames, "at least 1");
         }
         if learning.schedule_frames == Some(0) {
-            return refuse("the length of the schedules", &0, "at least 1 frame, or null for that of the run");
+            return refuse(
+                "the length of the schedules",
+                &0,
+                "at least 1 frame, or null for that of the run",
+            );
         }
         if let ConstraintStatistic::Cvar(share) = self.constraint_statistic {
             if !(share > 0.0 && share <= 1.0) {
-                return refuse("the share of the CVaR", &share, "above 0 and at most 1, such as cvar:0.1");
+                return refuse(
+                    "the share of the CVaR",
+                    &share,
+                    "above 0 and at most 1, such as cvar:0.1",
+                );
             }
             if !self.algorithm.has_multipliers() {
-                let allowed = format!("episode-mean or step-mean for {}, which has no multiplier to move", self.algorithm);
+                let allowed = format!(
+                    "episode-mean or step-mean for {}, which has no multiplier to move",
+                    self.algorithm
+                );
                 return refuse("the constraint statistic", &self.constraint_statistic, &allowed);
             }
         }
@@ -224,11 +282,18 @@ impl TrainConfig {
         }
         let one_cost = matches!(self.algorithm, AlgorithmKind::PpoSaute | AlgorithmKind::PpoCost);
         if one_cost && self.constraints.len() > 1 {
-            let allowed = format!("1 for {}, which shapes the reward by a single cost", self.algorithm);
+            let allowed =
+                format!("1 for {}, which shapes the reward by a single cost", self.algorithm);
             return refuse("the number of constraints", &self.constraints.len(), &allowed);
         }
-        if self.algorithm == AlgorithmKind::PpoSaute && self.constraints.iter().any(|c| c.budget == 0.0) {
-            return refuse("the budget of PPOSaute", &0, "above 0, for what is left of it is measured in its units");
+        if self.algorithm == AlgorithmKind::PpoSaute
+            && self.constraints.iter().any(|c| c.budget == 0.0)
+        {
+            return refuse(
+                "the budget of PPOSaute",
+                &0,
+                "above 0, for what is left of it is measured in its units",
+            );
         }
         Ok(())
     }
@@ -239,7 +304,8 @@ impl TrainConfig {
         self.learning.recurrence.unwrap_or(usize::MAX).min(self.sampling.rollout)
     }
 
-    /// Cost of an episode that learning aims at, for one of the constraints: the same for every algorithm.
+    /// Cost of an episode that learning aims at, for one of the constraints: the same for every
+    /// algorithm.
     #[must_use]
     pub fn aim(&self, constraint: usize) -> f64 {
         self.constraints[constraint].budget * self.budget_share
@@ -251,13 +317,17 @@ impl TrainConfig {
         (frames as f64 / self.learning.schedule_frames.unwrap_or(self.frames) as f64).min(1.0)
     }
 
-    /// Writes down what a run that begins goes by from then on: how long its schedules are, as long as the run unless they were given a
-    /// length, and what its products are rounded to, if `HASARD_SIMD` names a family that rounds.
+    /// Writes down what a run that begins goes by from then on: how long its schedules are, as long
+    /// as the run unless they were given a length, and what its products are rounded to, if
+    /// `HASARD_SIMD` names a family that rounds.
     #[must_use]
     pub fn begun(mut self) -> TrainConfig {
         self.learning.schedule_frames.get_or_insert(self.frames);
         let rounds = |simd: Simd| simd.family() == Family::Avx512Bf16;
-        if Simd::forced().ok().flatten().is_some_and(rounds) && self.device == "cpu" && !self.learning.portable {
+        if Simd::forced().ok().flatten().is_some_and(rounds)
+            && self.device == "cpu"
+            && !self.learning.portable
+        {
             self.learning.products = Products::Bfloat16;
         }
         self
@@ -284,7 +354,12 @@ mod tests {
 
     #[test]
     fn bad_settings_are_refused_by_name() {
-        let good = TrainConfig::new(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("RemedyRushLevel1-v0")).unwrap();
+        let good = TrainConfig::new(
+            AlgorithmKind::PpoLag,
+            Preset::Paper,
+            EnvConfig::new("RemedyRushLevel1-v0"),
+        )
+        .unwrap();
         let refuse = |change: fn(&mut TrainConfig), word: &str| {
             let mut config = good.clone();
             change(&mut config);
@@ -301,18 +376,28 @@ mod tests {
             "normaliser of returns cannot be popart",
         );
         refuse(|c| c.learning.critic_inputs = vec![CriticInput::TimeLeft; 2], "'time-left' twice");
-        refuse(|c| (c.sampling.rollout, c.learning.recurrence) = (48, Some(32)), "multiple of the recurrence (32)");
+        refuse(
+            |c| (c.sampling.rollout, c.learning.recurrence) = (48, Some(32)),
+            "multiple of the recurrence (32)",
+        );
         refuse(|c| c.algorithm_settings.critic_steps = 0, "steps of the critics");
         for algorithm in [AlgorithmKind::PpoSaute, AlgorithmKind::PpoCost] {
             let mut config = TrainConfig { algorithm, ..good.clone() };
             config.constraints.push(config.constraints[0].clone());
             let message = config.check().unwrap_err().to_string();
-            assert!(message.contains("number of constraints cannot be 2") && message.contains(algorithm.name()), "{message}");
+            assert!(
+                message.contains("number of constraints cannot be 2")
+                    && message.contains(algorithm.name()),
+                "{message}"
+            );
         }
         refuse(|c| c.constraints[0].term = Some("rain".into()), "harmful_items");
         assert!("ppolag".parse::<AlgorithmKind>().is_ok());
         let message = "PPOLagg".parse::<AlgorithmKind>().unwrap_err().to_string();
         assert!(message.contains("PPOLagg") && message.contains("P3O"), "{message}");
-        assert!(TrainConfig::new(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("Nonsense-v0")).is_err());
+        assert!(
+            TrainConfig::new(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("Nonsense-v0"))
+                .is_err()
+        );
     }
 }

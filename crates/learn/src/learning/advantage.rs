@@ -15,12 +15,16 @@ pub struct Lane<'a> {
 
 /// Advantages of a lane's steps (Schulman et al. 2016), written to `out`.
 ///
-/// The sum stops at an episode's end; the value of what would have come after a time-out is added to its last reward.
+/// The sum stops at an episode's end; the value of what would have come after a time-out is added
+/// to its last reward.
 pub fn generalised_advantages(lane: Lane<'_>, gamma: f32, lambda: f32, out: &mut [f32]) {
     let mut later = 0.0;
     for step in (0..lane.rewards.len()).rev() {
-        let (next_value, carried) =
-            if lane.done[step] { (lane.cut_off_values[step], 0.0) } else { (lane.values[step + 1], later) };
+        let (next_value, carried) = if lane.done[step] {
+            (lane.cut_off_values[step], 0.0)
+        } else {
+            (lane.values[step + 1], later)
+        };
         let surprise = lane.rewards[step] + gamma * next_value - lane.values[step];
         later = surprise + gamma * lambda * carried;
         out[step] = later;
@@ -49,7 +53,12 @@ mod tests {
 
     #[test]
     fn a_time_out_adds_what_would_have_come() {
-        let mut lane = Lane { rewards: &[1.0, 1.0], done: &[true, false], cut_off_values: &[3.0, 0.0], values: &[0.5, 0.4, 0.2] };
+        let mut lane = Lane {
+            rewards: &[1.0, 1.0],
+            done: &[true, false],
+            cut_off_values: &[3.0, 0.0],
+            values: &[0.5, 0.4, 0.2],
+        };
         let (mut with, mut without) = ([0.0; 2], [0.0; 2]);
         generalised_advantages(lane, 0.9, 0.5, &mut with);
         lane.cut_off_values = &[0.0; 2];

@@ -1,11 +1,13 @@
-//! Numbers that carry their derivatives, so that a loss written as its formula knows its own gradient.
+//! Numbers that carry their derivatives, so that a loss written as its formula knows its own
+//! gradient.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number and its derivatives in `N` variables: forward-mode differentiation.
 ///
-/// A sample's loss depends on two or three numbers (the probability ratio, a divergence, a value), so that carrying all
-/// derivatives along is cheaper than recording what was done and going back through it.
+/// A sample's loss depends on two or three numbers (the probability ratio, a divergence, a value),
+/// so that carrying all derivatives along is cheaper than recording what was done and going back
+/// through it.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct DualNumber<const N: usize> {
     /// The number.
@@ -62,7 +64,11 @@ impl<const N: usize> DualNumber<N> {
     /// Within bounds; constant beyond them.
     #[must_use]
     pub fn clamp(self, low: f64, high: f64) -> DualNumber<N> {
-        if (low..=high).contains(&self.value) { self } else { DualNumber::constant(self.value.clamp(low, high)) }
+        if (low..=high).contains(&self.value) {
+            self
+        } else {
+            DualNumber::constant(self.value.clamp(low, high))
+        }
     }
 }
 
@@ -70,7 +76,10 @@ impl<const N: usize> Add for DualNumber<N> {
     type Output = DualNumber<N>;
 
     fn add(self, other: DualNumber<N>) -> DualNumber<N> {
-        DualNumber { value: self.value + other.value, slopes: std::array::from_fn(|i| self.slopes[i] + other.slopes[i]) }
+        DualNumber {
+            value: self.value + other.value,
+            slopes: std::array::from_fn(|i| self.slopes[i] + other.slopes[i]),
+        }
     }
 }
 
@@ -87,7 +96,8 @@ impl<const N: usize> Mul for DualNumber<N> {
 
     #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule is a sum")]
     fn mul(self, other: DualNumber<N>) -> DualNumber<N> {
-        let slopes = std::array::from_fn(|i| self.slopes[i] * other.value + self.value * other.slopes[i]);
+        let slopes =
+            std::array::from_fn(|i| self.slopes[i] * other.value + self.value * other.slopes[i]);
         DualNumber { value: self.value * other.value, slopes }
     }
 }
@@ -136,19 +146,24 @@ impl<const N: usize> Div<f64> for DualNumber<N> {
 mod tests {
     use super::*;
 
-    /// Every operation in one expression, with either side of each bound, against central differences.
+    /// Every operation in one expression, with either side of each bound, against central
+    /// differences.
     #[test]
     fn derivatives_equal_differences() {
         let function = |[x, y]: [DualNumber<2>; 2]| {
             let bounded = (x * y - 0.3).clamp(-0.5, 0.5).max(y / 4.0) + (-x).min(y.square()) * 1.7;
             bounded * (x * 0.5 + 0.1).exp() - y.max(x).min(x * 3.0)
         };
-        let at = |x: f64, y: f64| function([DualNumber::constant(x), DualNumber::constant(y)]).value;
+        let at =
+            |x: f64, y: f64| function([DualNumber::constant(x), DualNumber::constant(y)]).value;
         let h = 1e-6;
         for (x, y) in [(0.4, -0.7), (1.3, 0.9), (-0.8, 2.1), (-1.1, -0.2), (0.2, 0.5)] {
             let found = function([DualNumber::variable(x, 0), DualNumber::variable(y, 1)]);
             assert_eq!(found.value, at(x, y));
-            let expected = [(at(x + h, y) - at(x - h, y)) / (2.0 * h), (at(x, y + h) - at(x, y - h)) / (2.0 * h)];
+            let expected = [
+                (at(x + h, y) - at(x - h, y)) / (2.0 * h),
+                (at(x, y + h) - at(x, y - h)) / (2.0 * h),
+            ];
             for (found, expected) in found.slopes.iter().zip(expected) {
                 assert!((found - expected).abs() < 1e-8, "at {x}, {y}: {found} against {expected}");
             }

@@ -21,21 +21,25 @@ impl Epochs {
     #[must_use]
     pub fn new(config: &TrainConfig, rollout: u64, lanes: usize) -> Epochs {
         let learning = &config.learning;
-        let (count, minibatches, target_kl) = (learning.epochs, learning.minibatches, learning.target_kl);
+        let (count, minibatches, target_kl) =
+            (learning.epochs, learning.minibatches, learning.target_kl);
         Epochs { seed: config.seed, rollout, lanes, count, minibatches, target_kl }
     }
 
-    /// The lanes of each minibatch of an epoch: dealt anew every time, unless one minibatch takes them all.
+    /// The lanes of each minibatch of an epoch: dealt anew every time, unless one minibatch takes
+    /// them all.
     #[must_use]
     pub fn minibatches(&self, epoch: usize) -> Vec<Vec<usize>> {
         let mut lanes: Vec<usize> = (0..self.lanes).collect();
         if self.minibatches > 1 {
-            Stream::new(self.seed, Purpose::Shuffle, self.rollout, epoch as u64).shuffle(&mut lanes);
+            Stream::new(self.seed, Purpose::Shuffle, self.rollout, epoch as u64)
+                .shuffle(&mut lanes);
         }
         lanes.chunks(self.lanes.div_ceil(self.minibatches)).map(<[usize]>::to_vec).collect()
     }
 
-    /// Whether the policy has moved far enough; where no target is set its divergence is not asked for.
+    /// Whether the policy has moved far enough; where no target is set its divergence is not asked
+    /// for.
     #[must_use]
     pub fn end_at(&self, divergence: impl FnOnce() -> f64) -> bool {
         self.target_kl.is_some_and(|target| divergence() > target)
@@ -49,7 +53,8 @@ mod tests {
 
     #[test]
     fn every_lane_is_in_one_minibatch_of_an_epoch_and_epochs_differ() {
-        let mut config = TrainConfig::plain(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("test"));
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::Ppo, Preset::Paper, EnvConfig::new("test"));
         assert_eq!(Epochs::new(&config, 3, 4).minibatches(0), [[0, 1, 2, 3]]);
         config.learning.minibatches = 3;
         config.learning.target_kl = Some(0.02);

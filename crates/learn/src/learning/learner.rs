@@ -19,12 +19,12 @@ use crate::sampling::rollout::Rollout;
 use crate::team::Team;
 use hasard_engine::simd::Simd;
 
-/// Rows that a network of a learner of long rollouts computes at once: it bounds the memory of activations, some 50 kB a row of the
-/// smallest network of the presets and 110 kB of the largest.
+/// Rows that a network of a learner of long rollouts computes at once: it bounds the memory of
+/// activations, some 50 kB a row of the smallest network of the presets and 110 kB of the largest.
 const MOST_ROWS: usize = 2048;
 
-/// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of the costs; values of
-/// lane `l` at step `t` are at `l * steps + t`.
+/// A rollout with advantages and targets. Critic 0 is that of the reward, the others are those of
+/// the costs; values of lane `l` at step `t` are at `l * steps + t`.
 pub struct Prepared<'a> {
     /// The rollout.
     pub rollout: &'a Rollout,
@@ -39,23 +39,28 @@ pub struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
-    /// Share of the variance of each critic's targets that its values explain: 1 is perfect, 0 no better than their mean.
+    /// Share of the variance of each critic's targets that its values explain: 1 is perfect, 0 no
+    /// better than their mean.
     #[must_use]
     pub fn explained_variances(&self, config: &TrainConfig) -> Vec<(String, f64)> {
         let variance = |values: &mut dyn Iterator<Item = f64>| {
-            let (count, sum, squares) = values.fold((0.0, 0.0, 0.0), |(n, s, q), v| (n + 1.0, s + v, q + v * v));
+            let (count, sum, squares) =
+                values.fold((0.0, 0.0, 0.0), |(n, s, q), v| (n + 1.0, s + v, q + v * v));
             squares / count - (sum / count) * (sum / count)
         };
         let share = |(critic, (targets, values)): (usize, (&Vec<f32>, &Vec<f32>))| {
             let all = variance(&mut targets.iter().map(|&target| f64::from(target)));
-            let rest = variance(&mut targets.iter().zip(values).map(|(target, value)| f64::from(target - value)));
+            let rest = variance(
+                &mut targets.iter().zip(values).map(|(target, value)| f64::from(target - value)),
+            );
             (critic_name("explained_variance", config, critic), 1.0 - rest / all)
         };
         self.targets.iter().zip(&self.old_values).enumerate().map(share).collect()
     }
 }
 
-/// What a number of a critic is called in reports: that of a cost says so, that of a named cost says which.
+/// What a number of a critic is called in reports: that of a cost says so, that of a named cost
+/// says which.
 fn critic_name(what: &str, config: &TrainConfig, critic: usize) -> String {
     match critic.checked_sub(1).map(|index| &config.constraints[index].term) {
         None => what.into(),
@@ -70,7 +75,8 @@ pub struct Learner {
     networks: Stack,
     /// Flat parameters of all networks.
     pub parameters: Vec<f32>,
-    /// One optimiser a network; for algorithms of two steps, those of the second after those of the first.
+    /// One optimiser a network; for algorithms of two steps, those of the second after those of the
+    /// first.
     pub optimisers: Vec<Adam>,
     /// Statistics of pixels.
     pub pixels: PixelNormaliser,
@@ -103,7 +109,9 @@ impl Learner {
             .networks
             .iter()
             .enumerate()
-            .flat_map(|(index, network)| network.initial_parameters(scheme, config.seed, index as u64))
+            .flat_map(|(index, network)| {
+                network.initial_parameters(scheme, config.seed, index as u64)
+            })
             .collect();
         Learner {
             networks: match config.learning.recurrence {
@@ -130,7 +138,8 @@ impl Learner {
         }
     }
 
-    /// From now on it learns with the other workers of its run, from rollouts of which each has the pixels of its own lanes.
+    /// From now on it learns with the other workers of its run, from rollouts of which each has the
+    /// pixels of its own lanes.
     pub fn join(&mut self, team: &Team) {
         if !team.is_alone() {
             self.networks.share(team);
@@ -162,10 +171,16 @@ impl Learner {
         self.networks.publish(self.version)
     }
 
-    /// Takes over the statistics of a rollout's pixels: before it is learned from, as in the original, or after, where the
-    /// first forward pass is to be the actors' own ([`LearningConfig::reuse_forward`](crate::config::LearningConfig)).
+    /// Takes over the statistics of a rollout's pixels: before it is learned from, as in the
+    /// original, or after, where the first forward pass is to be the actors' own
+    /// ([`LearningConfig::reuse_forward`](crate::config::LearningConfig)).
     pub fn absorb(&mut self, rollout: &Rollout) -> Result<(), LearnError> {
-        let mut sums = PixelSums::of(self.kernels, &rollout.frames(), self.shape.pixels(), self.config.learning.threads);
+        let mut sums = PixelSums::of(
+            self.kernels,
+            &rollout.frames(),
+            self.shape.pixels(),
+            self.config.learning.threads,
+        );
         self.team.sum_whole(&mut sums.0)?;
         self.pixels.merge(&sums);
         self.stale_pixels = true;
@@ -201,8 +216,11 @@ impl Learner {
             for lane in 0..lanes {
                 let (part, own) = rollout.find(lane);
                 let row = |step: usize| step * part.lanes + own;
-                let normalised: Vec<f32> = (0..=steps).map(|step| part.outputs[row(step) * width + first + critic]).collect();
-                let values: Vec<f32> = normalised.iter().map(|&value| raw(moments, value)).collect();
+                let normalised: Vec<f32> = (0..=steps)
+                    .map(|step| part.outputs[row(step) * width + first + critic])
+                    .collect();
+                let values: Vec<f32> =
+                    normalised.iter().map(|&value| raw(moments, value)).collect();
                 let rewards: Vec<f32> = (0..steps)
                     .map(|step| match critic {
                         0 => part.rewards[row(step)],
@@ -212,13 +230,24 @@ impl Learner {
                 let done: Vec<bool> = (0..steps).map(|step| part.done[row(step)]).collect();
                 let mut cut_off_values = vec![0.0; steps];
                 if settings.bootstraps(critic > 0) {
-                    for (cut, outputs) in part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own) {
+                    for (cut, outputs) in
+                        part.cut_off.iter().filter(|(cut, _)| cut % part.lanes == own)
+                    {
                         cut_off_values[cut / part.lanes] = raw(moments, outputs[first + critic]);
                     }
                 }
                 let out = &mut advantages[lane * steps..(lane + 1) * steps];
-                let lane_values = Lane { rewards: &rewards, done: &done, cut_off_values: &cut_off_values, values: &values };
-                let gamma = if critic == 0 { settings.gamma } else { settings.cost_gamma.unwrap_or(settings.gamma) };
+                let lane_values = Lane {
+                    rewards: &rewards,
+                    done: &done,
+                    cut_off_values: &cut_off_values,
+                    values: &values,
+                };
+                let gamma = if critic == 0 {
+                    settings.gamma
+                } else {
+                    settings.cost_gamma.unwrap_or(settings.gamma)
+                };
                 generalised_advantages(lane_values, gamma as f32, settings.gae_lambda as f32, out);
                 for step in 0..steps {
                     returns[lane * steps + step] = out[step] + values[step];
@@ -228,18 +257,25 @@ impl Learner {
             if popart {
                 let before = *moments;
                 moments.update_forgetting(&returns, settings.normaliser_horizon);
-                old_values.iter_mut().for_each(|value| *value = moments.scale_down(before.scale_up(*value)));
-                prepared.targets.push(returns.iter().map(|&value| moments.scale_down(value)).collect());
+                old_values
+                    .iter_mut()
+                    .for_each(|value| *value = moments.scale_down(before.scale_up(*value)));
+                prepared
+                    .targets
+                    .push(returns.iter().map(|&value| moments.scale_down(value)).collect());
                 moved.push((critic, before, *moments));
             } else {
                 moments.update(&returns);
-                prepared.targets.push(returns.iter().map(|&value| moments.normalise(value)).collect());
+                prepared
+                    .targets
+                    .push(returns.iter().map(|&value| moments.normalise(value)).collect());
             }
             prepared.advantages.push(advantages);
             prepared.old_values.push(old_values);
         }
         for (critic, before, after) in moved {
-            let network = preserve_outputs(&self.shape, critic, &before, &after, &mut self.parameters);
+            let network =
+                preserve_outputs(&self.shape, critic, &before, &after, &mut self.parameters);
             self.stale[network] = true;
         }
         let all: Vec<usize> = (0..rollout.trajectories()).collect();
@@ -252,9 +288,14 @@ impl Learner {
     pub fn minibatch<'a>(&self, prepared: &Prepared<'a>, trajectories: &[usize]) -> Minibatch<'a> {
         let rollout = prepared.rollout;
         let steps = rollout.trajectory_steps();
-        let places: Vec<(usize, usize)> = trajectories.iter().map(|&number| rollout.trajectory(number)).collect();
+        let places: Vec<(usize, usize)> =
+            trajectories.iter().map(|&number| rollout.trajectory(number)).collect();
         // Each row's step of its trajectory, its step of the rollout, and its lane.
-        let rows = || (0..steps).flat_map(|step| places.iter().map(move |&(lane, first)| (step, first + step, lane)));
+        let rows = || {
+            (0..steps).flat_map(|step| {
+                places.iter().map(move |&(lane, first)| (step, first + step, lane))
+            })
+        };
         let shape = &self.shape;
         let (width, action, extra) = (shape.outputs(), &shape.action, shape.extra_inputs());
         let mut sequences = Sequences {
@@ -267,7 +308,8 @@ impl Learner {
             recorded: Vec::new(),
         };
         let (seen, mut privileged) = (shape.critic_inputs, Vec::new());
-        let (mut actions, mut deltas, mut logs, mut policy) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut actions, mut deltas, mut logs, mut policy) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (own_step, step, lane) in rows() {
             let (part, own) = rollout.find(lane);
             let row = step * part.lanes + own;
@@ -283,7 +325,11 @@ impl Learner {
         }
         let state = |network: usize| -> Vec<f32> {
             let units = shape.networks[network].state_size();
-            trajectories.iter().flat_map(|&number| rollout.initial_state(network, units, number)).copied().collect()
+            trajectories
+                .iter()
+                .flat_map(|&number| rollout.initial_state(network, units, number))
+                .copied()
+                .collect()
         };
         let initial_state = (0..shape.networks.len()).map(state).collect();
         let recorded = |network: usize| -> Vec<RecordedLane<'a>> {
@@ -295,7 +341,9 @@ impl Learner {
         };
         let recorded = (0..shape.networks.len()).map(recorded).collect();
         let length = rollout.steps();
-        let pick = |values: &[f32]| -> Vec<f32> { rows().map(|(_, step, lane)| values[lane * length + step]).collect() };
+        let pick = |values: &[f32]| -> Vec<f32> {
+            rows().map(|(_, step, lane)| values[lane * length + step]).collect()
+        };
         let critic = |index: usize| Critic {
             loss_name: critic_name("value_loss", &self.config, index),
             advantages: pick(&prepared.advantages[index]),
@@ -315,7 +363,8 @@ impl Learner {
 
     fn refresh(&mut self) {
         for (network, stale) in self.stale.iter_mut().enumerate().filter(|(_, stale)| **stale) {
-            self.networks.load_network(network, &self.parameters[self.shape.parameter_range(network)]);
+            self.networks
+                .load_network(network, &self.parameters[self.shape.parameter_range(network)]);
             *stale = false;
         }
         self.refresh_pixels();
@@ -328,7 +377,8 @@ impl Learner {
         }
     }
 
-    /// The gradient of a loss in the parameters of some networks. The loss must not depend on the columns of the others.
+    /// The gradient of a loss in the parameters of some networks. The loss must not depend on the
+    /// columns of the others.
     pub fn gradient(
         &mut self,
         networks: Range<usize>,
@@ -349,12 +399,20 @@ impl Learner {
         Ok(gradient)
     }
 
-    /// One step of Adam down a gradient, for some of the networks; its norm is cut down to the largest allowed. `set` counts
-    /// the optimisers of algorithms of two steps.
-    fn step(&mut self, set: usize, gradient: Vec<f32>, networks: Range<usize>, means: &mut Means) -> Result<(), LearnError> {
+    /// One step of Adam down a gradient, for some of the networks; its norm is cut down to the
+    /// largest allowed. `set` counts the optimisers of algorithms of two steps.
+    fn step(
+        &mut self,
+        set: usize,
+        gradient: Vec<f32>,
+        networks: Range<usize>,
+        means: &mut Means,
+    ) -> Result<(), LearnError> {
         let start = self.shape.parameter_range(networks.start).start;
         let end = self.shape.parameter_range(networks.end - 1).end;
-        let norm = crate::networks::cpu::elementwise::sum_of_squares(self.kernels, &gradient[start..end]).sqrt();
+        let norm =
+            crate::networks::cpu::elementwise::sum_of_squares(self.kernels, &gradient[start..end])
+                .sqrt();
         means.add("gradient_norm", norm);
         if !norm.is_finite() {
             return Err(diverged("gradient's norm", norm));
@@ -368,10 +426,19 @@ impl Learner {
             let range = self.shape.parameter_range(network);
             let parameters = &mut self.parameters[range.clone()];
             let rate = match settings.critic_rate {
-                Some(rate) if network > 0 => rate * self.rate / settings.rate.max(f64::MIN_POSITIVE),
+                Some(rate) if network > 0 => {
+                    rate * self.rate / settings.rate.max(f64::MIN_POSITIVE)
+                }
                 _ => self.rate,
             };
-            self.optimisers[set * count + network].step(self.kernels, &gradient[range], parameters, scale, rate, settings);
+            self.optimisers[set * count + network].step(
+                self.kernels,
+                &gradient[range],
+                parameters,
+                scale,
+                rate,
+                settings,
+            );
         }
         self.gradient = gradient;
         self.version += 1;
@@ -409,7 +476,8 @@ impl Learner {
         Policy::new(&self.shape.action, &outputs, width)
     }
 
-    /// Mean divergence, over all of a rollout, of the policy at present from another, or else from the one that acted.
+    /// Mean divergence, over all of a rollout, of the policy at present from another, or else from
+    /// the one that acted.
     pub fn divergence(&mut self, rollout: &Prepared<'_>, from: Option<&Policy>) -> f64 {
         let all: Vec<usize> = (0..rollout.rollout.trajectories()).collect();
         let mut minibatch = self.minibatch(rollout, &all);
@@ -423,14 +491,19 @@ impl Learner {
         self.parameters[self.shape.parameter_range(0)].to_vec()
     }
 
-    /// The policy network's outputs under its present parameters: where actors recorded them, they are not computed anew.
+    /// The policy network's outputs under its present parameters: where actors recorded them, they
+    /// are not computed anew.
     pub fn present_outputs(&mut self, batch: &mut ModelSequences<'_>) -> Vec<f32> {
         self.refresh();
         self.networks.forward_network(0, batch)
     }
 
     /// Policy outputs under other parameters of the policy network.
-    pub fn policy_outputs(&mut self, batch: &mut ModelSequences<'_>, parameters: &[f32]) -> Vec<f32> {
+    pub fn policy_outputs(
+        &mut self,
+        batch: &mut ModelSequences<'_>,
+        parameters: &[f32],
+    ) -> Vec<f32> {
         self.refresh_pixels();
         self.stale[0] = true;
         self.networks.load_network(0, parameters);
@@ -443,8 +516,14 @@ impl Learner {
         Heads::new(&self.shape, outputs, self.shape.action.parameters(), minibatch)
     }
 
-    /// The gradient in the policy network's parameters from that of its outputs of the last forward pass.
-    pub fn policy_backward(&mut self, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+    /// The gradient in the policy network's parameters from that of its outputs of the last forward
+    /// pass.
+    pub fn policy_backward(
+        &mut self,
+        batch: &mut ModelSequences<'_>,
+        rows: &[f32],
+        gradient: &mut [f32],
+    ) {
         self.networks.backward_network(0, batch, rows, gradient);
     }
 
@@ -455,9 +534,12 @@ impl Learner {
         self.stale[0] = true;
     }
 
-    /// Takes over weights and normalisers of another learner of the same shape, and its count of updates.
+    /// Takes over weights and normalisers of another learner of the same shape, and its count of
+    /// updates.
     pub fn inherit(&mut self, other: &Learner) -> Result<(), LearnError> {
-        let sizes = |learner: &Learner| (learner.parameters.len(), learner.pixels.mean.len(), learner.returns.len());
+        let sizes = |learner: &Learner| {
+            (learner.parameters.len(), learner.pixels.mean.len(), learner.returns.len())
+        };
         if sizes(self) != sizes(other) {
             let problem = "the lessons of a curriculum must be alike in what is seen and done; these levels are not";
             return Err(LearnError::Config(problem.into()));
@@ -506,9 +588,10 @@ mod tests {
     use crate::algorithms::small;
     use crate::config::AlgorithmKind;
 
-    /// As the code of PPOLag's tables had it: values of costs as the network says them, within +-5; their returns normalised by the
-    /// moments of the reward's returns, which have taken both in; moments of their own never moved. Returns by the recursion of GAE
-    /// (Schulman et al. 2016), here with gamma and lambda 1, where they are plain sums up to the value after the last step.
+    /// As the code of PPOLag's tables had it: values of costs as the network says them, within +-5;
+    /// their returns normalised by the moments of the reward's returns, which have taken both in;
+    /// moments of their own never moved. Returns by the recursion of GAE (Schulman et al. 2016),
+    /// here with gamma and lambda 1, where they are plain sums up to the value after the last step.
     #[test]
     fn costs_may_use_the_rewards_normaliser() {
         let mut config = small::config(AlgorithmKind::PpoLag);
@@ -525,8 +608,11 @@ mod tests {
             let mut sums = Vec::new();
             for lane in 0..small::LANES {
                 for step in 0..small::STEPS {
-                    let costs: f32 = (step..small::STEPS).map(|later| part.costs[later * small::LANES + lane]).sum();
-                    let last = part.outputs[(small::STEPS * small::LANES + lane) * width + width - 1];
+                    let costs: f32 = (step..small::STEPS)
+                        .map(|later| part.costs[later * small::LANES + lane])
+                        .sum();
+                    let last =
+                        part.outputs[(small::STEPS * small::LANES + lane) * width + width - 1];
                     sums.push(costs + last.clamp(-5.0, 5.0));
                 }
             }
@@ -536,11 +622,18 @@ mod tests {
         let (_, plain, _) = make(false);
         let mut both = plain[0];
         both.update(&sums);
-        assert!((moments[0].mean - both.mean).abs() < 1e-5 && (moments[0].variance - both.variance).abs() < 1e-5);
+        assert!(
+            (moments[0].mean - both.mean).abs() < 1e-5
+                && (moments[0].variance - both.variance).abs() < 1e-5
+        );
         assert_eq!((moments[0].count, moments[1]), (both.count, Moments::default()));
         assert_ne!(plain[1], Moments::default());
         for (target, sum) in targets[1].iter().zip(&sums) {
-            assert!((target - both.normalise(*sum)).abs() < 1e-5, "{target} against {}", both.normalise(*sum));
+            assert!(
+                (target - both.normalise(*sum)).abs() < 1e-5,
+                "{target} against {}",
+                both.normalise(*sum)
+            );
         }
     }
 }

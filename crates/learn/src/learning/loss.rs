@@ -1,8 +1,9 @@
-//! Losses: means over the samples of formulas in what the networks say, with their gradients in the networks' outputs.
+//! Losses: means over the samples of formulas in what the networks say, with their gradients in the
+//! networks' outputs.
 //!
-//! Three steps of the chain rule, each of which can be read alone: an algorithm writes its loss of a sample in
-//! [`DualNumber`] numbers; policy and critics know how their numbers change with the outputs ([`Column`]); the networks know
-//! how their outputs change with the parameters.
+//! Three steps of the chain rule, each of which can be read alone: an algorithm writes its loss of
+//! a sample in [`DualNumber`] numbers; policy and critics know how their numbers change with the
+//! outputs ([`Column`]); the networks know how their outputs change with the parameters.
 
 use std::ops::{Add, Mul};
 
@@ -28,15 +29,24 @@ pub struct Heads {
 impl Heads {
     /// Reads output rows: the policy's numbers, followed by a value of each critic that is there.
     #[must_use]
-    pub fn new(shape: &ModelShape, outputs: &[f32], width: usize, minibatch: &Minibatch<'_>) -> Heads {
+    pub fn new(
+        shape: &ModelShape,
+        outputs: &[f32],
+        width: usize,
+        minibatch: &Minibatch<'_>,
+    ) -> Heads {
         let policy = Policy::new(&shape.action, outputs, width);
         let log_probability = policy.log_probability(&minibatch.taken);
-        let ratio = log_probability.map(|row, log| (log - minibatch.old_log_probability[row]).exp());
-        let values = (shape.value_column()..width).map(|column| Column::of_output(outputs, width, column)).collect();
+        let ratio =
+            log_probability.map(|row, log| (log - minibatch.old_log_probability[row]).exp());
+        let values = (shape.value_column()..width)
+            .map(|column| Column::of_output(outputs, width, column))
+            .collect();
         Heads { policy, log_probability, ratio, values, width }
     }
 
-    /// The mean over all samples of a formula, given the sample's row and the numbers that it depends on.
+    /// The mean over all samples of a formula, given the sample's row and the numbers that it
+    /// depends on.
     #[must_use]
     pub fn mean<const N: usize>(
         &self,
@@ -46,7 +56,10 @@ impl Heads {
         let rows = self.policy.rows();
         let mut loss = Loss { value: 0.0, gradient: vec![0.0; rows * self.width] };
         for (row, gradient) in loss.gradient.chunks_exact_mut(self.width).enumerate() {
-            let sample = formula(row, std::array::from_fn(|i| DualNumber::variable(columns[i].values[row], i)));
+            let sample = formula(
+                row,
+                std::array::from_fn(|i| DualNumber::variable(columns[i].values[row], i)),
+            );
             loss.value += sample.value / rows as f64;
             for (column, slope) in columns.iter().zip(sample.slopes) {
                 column.add_slopes(row, slope / rows as f64, gradient);

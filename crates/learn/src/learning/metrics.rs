@@ -27,7 +27,10 @@ impl Means {
     /// Mean of a name, if anything was added to it.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
-        self.sums.iter().find(|(other, ..)| *other == name).map(|(_, sum, count)| sum / *count as f64)
+        self.sums
+            .iter()
+            .find(|(other, ..)| *other == name)
+            .map(|(_, sum, count)| sum / *count as f64)
     }
 
     /// Adds everything that was added to others.

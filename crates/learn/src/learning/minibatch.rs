@@ -16,7 +16,8 @@ pub struct Critic {
     pub targets: Vec<f32>,
 }
 
-/// Some trajectories of a prepared rollout, ready for a loss. Rows are ordered by time, then by lane.
+/// Some trajectories of a prepared rollout, ready for a loss. Rows are ordered by time, then by
+/// lane.
 pub struct Minibatch<'a> {
     /// What the networks read.
     pub batch: ModelSequences<'a>,
@@ -50,8 +51,16 @@ impl<'a> Minibatch<'a> {
         Minibatch {
             batch: self.batch.of_lanes(shape, lanes),
             taken: Taken {
-                actions: rows.iter().flat_map(|row| &self.taken.actions[row * count..(row + 1) * count]).copied().collect(),
-                deltas: rows.iter().flat_map(|row| &self.taken.deltas[row * deltas..(row + 1) * deltas]).copied().collect(),
+                actions: rows
+                    .iter()
+                    .flat_map(|row| &self.taken.actions[row * count..(row + 1) * count])
+                    .copied()
+                    .collect(),
+                deltas: rows
+                    .iter()
+                    .flat_map(|row| &self.taken.deltas[row * deltas..(row + 1) * deltas])
+                    .copied()
+                    .collect(),
             },
             old_log_probability: rows.iter().map(|&row| self.old_log_probability[row]).collect(),
             old_policy: self.old_policy.of_rows(rows.iter().copied()),

@@ -1,5 +1,5 @@
-//! How networks learn from a rollout: advantages, normalisers, losses and their gradients, the optimiser, and the learner that
-//! algorithms steer.
+//! How networks learn from a rollout: advantages, normalisers, losses and their gradients, the
+//! optimiser, and the learner that algorithms steer.
 
 pub mod advantage;
 pub mod dual_number;

@@ -15,8 +15,8 @@ const EPSILON: f64 = 1e-5;
 /// Normalised values are cut off here.
 pub const CLIP: f32 = 5.0;
 
-/// Running mean and variance of one number, merged batch by batch by Chan's rule; it starts as one draw of mean 0 and
-/// variance 1, and never forgets.
+/// Running mean and variance of one number, merged batch by batch by Chan's rule; it starts as one
+/// draw of mean 0 and variance 1, and never forgets.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 pub struct Moments {
     /// Number of draws so far, the made-up first one included.
@@ -38,8 +38,14 @@ impl Moments {
     pub fn merge(&mut self, count: f64, mean: f64, variance: f64) {
         let total = self.count + count;
         let distance = mean - self.mean;
-        let squares = self.variance * self.count + variance * count + distance * distance * self.count * count / total;
-        *self = Moments { count: total, mean: self.mean + distance * count / total, variance: squares / total };
+        let squares = self.variance * self.count
+            + variance * count
+            + distance * distance * self.count * count / total;
+        *self = Moments {
+            count: total,
+            mean: self.mean + distance * count / total,
+            variance: squares / total,
+        };
     }
 
     /// Merges draws.
@@ -53,7 +59,8 @@ impl Moments {
         self.merge(count, mean, squares / (count - 1.0).max(1.0));
     }
 
-    /// Merges draws, and forgets: earlier ones count as `horizon` draws at most, the made-up first one among them.
+    /// Merges draws, and forgets: earlier ones count as `horizon` draws at most, the made-up first
+    /// one among them.
     pub fn update_forgetting(&mut self, values: &[f32], horizon: f64) {
         self.count = self.count.min(horizon);
         self.update(values);
@@ -108,22 +115,28 @@ impl PixelNormaliser {
         PixelNormaliser { count: 1.0, mean: vec![0.0; pixels], variance: vec![1.0; pixels] }
     }
 
-    /// Merges a batch of frames, working on `threads` threads. Sums are whole numbers, so neither the order of frames
-    /// nor the number of threads changes a bit.
+    /// Merges a batch of frames, working on `threads` threads. Sums are whole numbers, so neither
+    /// the order of frames nor the number of threads changes a bit.
     pub fn update(&mut self, kernels: Simd, frames: &[&[u8]], threads: usize) {
         self.merge(&PixelSums::of(kernels, frames, self.mean.len(), threads));
     }
 
     /// Merges frames of which the sums are known.
     pub fn merge(&mut self, sums: &PixelSums) {
-        let Some((&frames, numbers)) = sums.0.split_last().filter(|(frames, _)| **frames > 0) else { return };
+        let Some((&frames, numbers)) = sums.0.split_last().filter(|(frames, _)| **frames > 0)
+        else {
+            return;
+        };
         let (count, old_count) = (frames as f64, self.count);
         let (sums, squares) = numbers.split_at(numbers.len() / 2);
-        for (((&sum, &square), own_mean), own_variance) in sums.iter().zip(squares).zip(&mut self.mean).zip(&mut self.variance) {
+        for (((&sum, &square), own_mean), own_variance) in
+            sums.iter().zip(squares).zip(&mut self.mean).zip(&mut self.variance)
+        {
             let mean = sum as f64 / count;
             let deviations = square as f64 - mean * sum as f64;
             let variance = (deviations / (count - 1.0).max(1.0)).max(0.0) / (255.0 * 255.0);
-            let mut moments = Moments { count: old_count, mean: *own_mean, variance: *own_variance };
+            let mut moments =
+                Moments { count: old_count, mean: *own_mean, variance: *own_variance };
             moments.merge(count, mean / 255.0, variance);
             (*own_mean, *own_variance) = (moments.mean, moments.variance);
         }
@@ -135,8 +148,17 @@ impl PixelNormaliser {
     pub fn scale(&self) -> PixelScale {
         let factor = |variance: f64| 1.0 / (variance + EPSILON).sqrt();
         PixelScale {
-            scale: self.variance.iter().map(|&variance| (factor(variance) / 255.0) as f32).collect(),
-            shift: self.variance.iter().zip(&self.mean).map(|(&variance, mean)| (-mean * factor(variance)) as f32).collect(),
+            scale: self
+                .variance
+                .iter()
+                .map(|&variance| (factor(variance) / 255.0) as f32)
+                .collect(),
+            shift: self
+                .variance
+                .iter()
+                .zip(&self.mean)
+                .map(|(&variance, mean)| (-mean * factor(variance)) as f32)
+                .collect(),
         }
     }
 }
@@ -158,16 +180,29 @@ impl PixelSums {
         let work = parts.map(|(part, (sums, squares))| {
             move |_: &mut ()| {
                 let (mut some_sums, mut some_squares) = ([0u32; BLOCK], [0u32; BLOCK]);
-                for (block, (sums, squares)) in sums.chunks_mut(BLOCK).zip(squares.chunks_mut(BLOCK)).enumerate() {
+                for (block, (sums, squares)) in
+                    sums.chunks_mut(BLOCK).zip(squares.chunks_mut(BLOCK)).enumerate()
+                {
                     let first = part * share + block * BLOCK;
                     // 32 bits hold the squares of 66,000 pixels.
                     for some in frames.chunks(65_536) {
                         some_sums.fill(0);
                         some_squares.fill(0);
-                        add_pixels(kernels, some, first..first + sums.len(), &mut some_sums, &mut some_squares);
+                        add_pixels(
+                            kernels,
+                            some,
+                            first..first + sums.len(),
+                            &mut some_sums,
+                            &mut some_squares,
+                        );
                         let wide = |narrow: &u32| u64::from(*narrow);
-                        sums.iter_mut().zip(some_sums.iter().map(wide)).for_each(|(sum, some)| *sum += some);
-                        squares.iter_mut().zip(some_squares.iter().map(wide)).for_each(|(sum, some)| *sum += some);
+                        sums.iter_mut()
+                            .zip(some_sums.iter().map(wide))
+                            .for_each(|(sum, some)| *sum += some);
+                        squares
+                            .iter_mut()
+                            .zip(some_squares.iter().map(wide))
+                            .for_each(|(sum, some)| *sum += some);
                     }
                 }
             }
@@ -206,7 +241,8 @@ vectorised! {
 mod tests {
     use super::*;
 
-    /// The released code's normaliser begins with a count of 1, mean 0 and variance 0; worked out apart by Chan's merge.
+    /// The released code's normaliser begins with a count of 1, mean 0 and variance 0; worked out
+    /// apart by Chan's merge.
     #[test]
     fn first_batch_gives_the_recorded_numbers() {
         let mut moments = Moments::default();
@@ -219,11 +255,14 @@ mod tests {
         assert_eq!(moments.normalise(1e6), 5.0);
     }
 
-    /// A12: the moments follow returns that change (equation 7 of van Hasselt et al. 2016, an average that gives what was before a
-    /// weight of horizon / (horizon + batch)), where those that never forget lag behind for as long as they have run.
+    /// A12: the moments follow returns that change (equation 7 of van Hasselt et al. 2016, an
+    /// average that gives what was before a weight of horizon / (horizon + batch)), where those
+    /// that never forget lag behind for as long as they have run.
     #[test]
     fn moments_that_forget_follow_returns_that_change() {
-        let batch = |mean: f32| -> Vec<f32> { (0..1000).map(|index| mean + if index % 2 == 0 { 1.0 } else { -1.0 }).collect() };
+        let batch = |mean: f32| -> Vec<f32> {
+            (0..1000).map(|index| mean + if index % 2 == 0 { 1.0 } else { -1.0 }).collect()
+        };
         let (mut forgetting, mut running) = (Moments::default(), Moments::default());
         for rollout in 0..100 {
             let values = batch(if rollout < 80 { 0.0 } else { 30.0 });
@@ -239,13 +278,18 @@ mod tests {
     #[test]
     fn pixels_are_normalised_as_single_numbers_are() {
         let pixels = 5000;
-        let frames: Vec<Vec<u8>> =
-            (0..9u32).map(|f| (0..pixels as u32).map(|p| ((p * 31 + f * f * 17) % 256) as u8).collect()).collect();
+        let frames: Vec<Vec<u8>> = (0..9u32)
+            .map(|f| (0..pixels as u32).map(|p| ((p * 31 + f * f * 17) % 256) as u8).collect())
+            .collect();
         let (early, late) = frames.split_at(4);
         let run = |threads| {
             let mut normaliser = PixelNormaliser::new(pixels);
             for part in [early, late] {
-                normaliser.update(Simd::PLAIN, &part.iter().map(Vec::as_slice).collect::<Vec<_>>(), threads);
+                normaliser.update(
+                    Simd::PLAIN,
+                    &part.iter().map(Vec::as_slice).collect::<Vec<_>>(),
+                    threads,
+                );
             }
             normaliser
         };
@@ -255,7 +299,8 @@ mod tests {
         for pixel in [0, 1, 2047, 2048, 4999] {
             let mut moments = Moments::default();
             for part in [early, late] {
-                moments.update(&part.iter().map(|f| f32::from(f[pixel]) / 255.0).collect::<Vec<_>>());
+                moments
+                    .update(&part.iter().map(|f| f32::from(f[pixel]) / 255.0).collect::<Vec<_>>());
             }
             assert!((moments.mean - normaliser.mean[pixel]).abs() < 1e-6);
             assert!((moments.variance - normaliser.variance[pixel]).abs() < 1e-6);

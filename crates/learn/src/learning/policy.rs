@@ -1,6 +1,8 @@
-//! Policy outputs as distributions, for losses: every number that a loss needs, with its gradient in the outputs.
+//! Policy outputs as distributions, for losses: every number that a loss needs, with its gradient
+//! in the outputs.
 //!
-//! The gradients are closed forms a line or two long; a test holds each against central differences in 64 bits.
+//! The gradients are closed forms a line or two long; a test holds each against central differences
+//! in 64 bits.
 
 use std::ops::Range;
 
@@ -31,7 +33,8 @@ impl Column {
     /// One of the outputs itself.
     #[must_use]
     pub fn of_output(rows: &[f32], width: usize, output: usize) -> Column {
-        let values: Vec<f64> = rows.iter().skip(output).step_by(width).map(|&value| f64::from(value)).collect();
+        let values: Vec<f64> =
+            rows.iter().skip(output).step_by(width).map(|&value| f64::from(value)).collect();
         Column { slopes: vec![1.0; values.len()], values, outputs: output..output + 1 }
     }
 
@@ -41,14 +44,18 @@ impl Column {
         let mut mapped = self.clone();
         let width = self.outputs.len();
         for (row, value) in mapped.values.iter_mut().enumerate() {
-            let DualNumber { value: number, slopes: [derivative] } = function(row, DualNumber::variable(*value, 0));
+            let DualNumber { value: number, slopes: [derivative] } =
+                function(row, DualNumber::variable(*value, 0));
             *value = number;
-            mapped.slopes[row * width..(row + 1) * width].iter_mut().for_each(|slope| *slope *= derivative);
+            mapped.slopes[row * width..(row + 1) * width]
+                .iter_mut()
+                .for_each(|slope| *slope *= derivative);
         }
         mapped
     }
 
-    /// Adds the gradient of a row's number, times a factor, to the gradient of something in the row's outputs.
+    /// Adds the gradient of a row's number, times a factor, to the gradient of something in the
+    /// row's outputs.
     pub fn add_slopes(&self, row: usize, factor: f64, gradient: &mut [f64]) {
         let width = self.outputs.len();
         let slopes = &self.slopes[row * width..(row + 1) * width];
@@ -68,7 +75,8 @@ impl Column {
 #[derive(Clone, Debug)]
 pub struct Policy {
     shape: ActionShape,
-    /// As the outputs, with log-probabilities in place of logits and deviations within their bounds.
+    /// As the outputs, with log-probabilities in place of logits and deviations within their
+    /// bounds.
     rows: Vec<f64>,
 }
 
@@ -99,7 +107,8 @@ impl Policy {
             for &size in &shape.sizes {
                 let (logits, after) = rest.split_at_mut(size);
                 let largest = logits.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let total = largest + libm::log(logits.iter().map(|logit| libm::exp(logit - largest)).sum::<f64>());
+                let total = largest
+                    + libm::log(logits.iter().map(|logit| libm::exp(logit - largest)).sum::<f64>());
                 logits.iter_mut().for_each(|logit| *logit -= total);
                 rest = after;
             }
@@ -114,7 +123,8 @@ impl Policy {
     #[must_use]
     pub fn of_rows(&self, rows: impl Iterator<Item = usize>) -> Policy {
         let width = self.shape.parameters();
-        let rows = rows.flat_map(|row| &self.rows[row * width..(row + 1) * width]).copied().collect();
+        let rows =
+            rows.flat_map(|row| &self.rows[row * width..(row + 1) * width]).copied().collect();
         Policy { shape: self.shape.clone(), rows }
     }
 
@@ -124,8 +134,9 @@ impl Policy {
         self.rows.len() / self.shape.parameters()
     }
 
-    /// A sum over the parts of every row's distribution. Each part is told its row, its number among its kind, itself
-    /// (log-probabilities, or a normal) and where it stands in the row, and writes its derivatives.
+    /// A sum over the parts of every row's distribution. Each part is told its row, its number
+    /// among its kind, itself (log-probabilities, or a normal) and where it stands in the row, and
+    /// writes its derivatives.
     fn sum_over_parts(
         &self,
         categorical: impl Fn(usize, usize, &[f64], usize, &mut [f64]) -> f64,
@@ -134,7 +145,9 @@ impl Policy {
         let width = self.shape.parameters();
         let mut slopes = vec![0.0; self.rows.len()];
         let mut values = Vec::with_capacity(self.rows());
-        for (row, (numbers, slopes)) in self.rows.chunks_exact(width).zip(slopes.chunks_exact_mut(width)).enumerate() {
+        for (row, (numbers, slopes)) in
+            self.rows.chunks_exact(width).zip(slopes.chunks_exact_mut(width)).enumerate()
+        {
             let (mut first, mut sum) = (0, 0.0);
             for (index, &size) in self.shape.sizes.iter().enumerate() {
                 let part = first..first + size;
@@ -167,7 +180,8 @@ impl Policy {
             },
             |row, index, normal, _, slopes| {
                 let deviation = libm::exp(normal.log_deviation);
-                let draw = (f64::from(taken.deltas[row * deltas + index]) - normal.mean) / deviation;
+                let draw =
+                    (f64::from(taken.deltas[row * deltas + index]) - normal.mean) / deviation;
                 slopes.copy_from_slice(&[draw / deviation, draw * draw - 1.0]);
                 -0.5 * draw * draw - normal.log_deviation - LOG_ROOT_TAU
             },
@@ -180,7 +194,10 @@ impl Policy {
         self.sum_over_parts(
             |_, _, logs, _, slopes| {
                 let entropy = -logs.iter().map(|log| libm::exp(*log) * log).sum::<f64>();
-                slopes.iter_mut().zip(logs).for_each(|(slope, log)| *slope = -libm::exp(*log) * (log + entropy));
+                slopes
+                    .iter_mut()
+                    .zip(logs)
+                    .for_each(|(slope, log)| *slope = -libm::exp(*log) * (log + entropy));
                 entropy
             },
             |_, _, normal, _, slopes| {
@@ -190,8 +207,8 @@ impl Policy {
         )
     }
 
-    /// Symmetric divergence from the uniform distribution, half of each direction; for a normal, whose uniform twin does
-    /// not exist, from the standard normal.
+    /// Symmetric divergence from the uniform distribution, half of each direction; for a normal,
+    /// whose uniform twin does not exist, from the standard normal.
     #[must_use]
     pub fn symmetric_divergence_from_uniform(&self) -> Column {
         self.sum_over_parts(
@@ -209,21 +226,26 @@ impl Policy {
                 // KL(p, n) + KL(n, p) with n standard: the logarithms of the deviations cancel.
                 let (mean, variance) = (normal.mean, normal.variance());
                 let raised = (mean * mean + 1.0) / variance;
-                slopes.copy_from_slice(&[0.5 * (mean + mean / variance), 0.5 * (variance - raised)]);
+                slopes
+                    .copy_from_slice(&[0.5 * (mean + mean / variance), 0.5 * (variance - raised)]);
                 0.25 * (variance + mean * mean + raised - 2.0)
             },
         )
     }
 
-    /// Divergence of `other` as seen from this distribution, KL(this, other): the mean, under this one, of the log-ratio to
-    /// the other. The slopes are in this one's outputs.
+    /// Divergence of `other` as seen from this distribution, KL(this, other): the mean, under this
+    /// one, of the log-ratio to the other. The slopes are in this one's outputs.
     #[must_use]
     pub fn divergence(&self, other: &Policy) -> Column {
         let width = self.shape.parameters();
         self.sum_over_parts(
             |row, _, logs, first, slopes| {
                 let others = &other.rows[row * width + first..];
-                let sum = logs.iter().zip(others).map(|(log, other)| libm::exp(*log) * (log - other)).sum::<f64>();
+                let sum = logs
+                    .iter()
+                    .zip(others)
+                    .map(|(log, other)| libm::exp(*log) * (log - other))
+                    .sum::<f64>();
                 for ((slope, log), other) in slopes.iter_mut().zip(logs).zip(others) {
                     *slope = libm::exp(*log) * (log - other - sum);
                 }
@@ -235,7 +257,8 @@ impl Policy {
                 let distance = normal.mean - other.mean;
                 let scaled = normal.variance() / other.variance();
                 slopes.copy_from_slice(&[distance / other.variance(), scaled - 1.0]);
-                other.log_deviation - normal.log_deviation + 0.5 * (scaled + distance * distance / other.variance() - 1.0)
+                other.log_deviation - normal.log_deviation
+                    + 0.5 * (scaled + distance * distance / other.variance() - 1.0)
             },
         )
     }
@@ -244,11 +267,13 @@ impl Policy {
     #[must_use]
     pub fn fisher_times(&self, vectors: &[f32]) -> Vec<f32> {
         let width = self.shape.parameters();
-        // The products stand where derivatives would; the sum that goes with them is of no interest.
+        // The products stand where derivatives would; the sum that goes with them is of no
+        // interest.
         let products = self.sum_over_parts(
             |row, _, logs, first, products| {
                 let vector = &vectors[row * width + first..];
-                let mean: f64 = logs.iter().zip(vector).map(|(log, v)| libm::exp(*log) * f64::from(*v)).sum();
+                let mean: f64 =
+                    logs.iter().zip(vector).map(|(log, v)| libm::exp(*log) * f64::from(*v)).sum();
                 for ((product, log), v) in products.iter_mut().zip(logs).zip(vector) {
                     *product = libm::exp(*log) * (f64::from(*v) - mean);
                 }
@@ -256,7 +281,10 @@ impl Policy {
             },
             |row, _, normal, first, products| {
                 let vector = &vectors[row * width + first..][..2];
-                products.copy_from_slice(&[f64::from(vector[0]) / normal.variance(), 2.0 * f64::from(vector[1])]);
+                products.copy_from_slice(&[
+                    f64::from(vector[0]) / normal.variance(),
+                    2.0 * f64::from(vector[1]),
+                ]);
                 0.0
             },
         );
@@ -280,9 +308,10 @@ mod tests {
     /// Recorded numbers, computed in double precision from the definitions.
     #[test]
     fn divergence_from_uniform_and_entropy_equal_the_recorded_numbers() {
-        for (logits, divergence, entropy) in
-            [(vec![1.0, 0.0, -1.0], 0.287_605_191, 0.832_395_582), (vec![0.5, -0.5], 0.115_529_289, 0.582_203_109)]
-        {
+        for (logits, divergence, entropy) in [
+            (vec![1.0, 0.0, -1.0], 0.287_605_191, 0.832_395_582),
+            (vec![0.5, -0.5], 0.115_529_289, 0.582_203_109),
+        ] {
             let shape = ActionShape { sizes: vec![logits.len()], deltas: 0 };
             let policy = Policy::from_rows(&shape, logits);
             assert!((policy.symmetric_divergence_from_uniform().mean() - divergence).abs() < 1e-9);
@@ -290,7 +319,8 @@ mod tests {
         }
     }
 
-    /// Each closed form of a gradient against central differences of the number itself, within bounds and beyond.
+    /// Each closed form of a gradient against central differences of the number itself, within
+    /// bounds and beyond.
     #[test]
     fn slopes_equal_differences() {
         let mut stream = Stream::new(5, Purpose::Evaluation, 0, 0);
@@ -310,8 +340,12 @@ mod tests {
             ("entropy", &Policy::entropy),
             ("divergence from uniform", &Policy::symmetric_divergence_from_uniform),
             ("divergence", &|policy| policy.divergence(&old)),
-            ("ratio", &|policy| policy.log_probability(&taken).map(|row, log| (log + row as f64 * 0.1).exp())),
-            ("clipped", &|policy| policy.entropy().map(|_, entropy| entropy.clamp(0.0, 4.0).square())),
+            ("ratio", &|policy| {
+                policy.log_probability(&taken).map(|row, log| (log + row as f64 * 0.1).exp())
+            }),
+            ("clipped", &|policy| {
+                policy.entropy().map(|_, entropy| entropy.clamp(0.0, 4.0).square())
+            }),
         ];
         let h = 1e-5;
         for (name, number) in numbers {
@@ -326,12 +360,16 @@ mod tests {
                 let found = column.slopes[index];
                 let rounding = 4.0 * f64::EPSILON * column.values[row].abs() / h;
                 let error = (found - expected).abs();
-                assert!(error < 1e-6 * expected.abs().max(1.0) + rounding, "{name} {index}: {found} against {expected}");
+                assert!(
+                    error < 1e-6 * expected.abs().max(1.0) + rounding,
+                    "{name} {index}: {found} against {expected}"
+                );
             }
         }
     }
 
-    /// The Fisher matrix is the mean, under the distribution, of the outer product of the gradient of the log-probability.
+    /// The Fisher matrix is the mean, under the distribution, of the outer product of the gradient
+    /// of the log-probability.
     #[test]
     fn fisher_products_follow_the_definition() {
         let shape = ActionShape { sizes: vec![3], deltas: 1 };
@@ -343,9 +381,11 @@ mod tests {
         let step = 0.01;
         for choice in 0..3u8 {
             for index in -1000..1000 {
-                let taken = Taken { actions: vec![choice], deltas: vec![(f64::from(index) * step) as f32] };
+                let taken =
+                    Taken { actions: vec![choice], deltas: vec![(f64::from(index) * step) as f32] };
                 let log = policy.log_probability(&taken);
-                let product: f64 = log.slopes.iter().zip(vector).map(|(slope, v)| slope * f64::from(v)).sum();
+                let product: f64 =
+                    log.slopes.iter().zip(vector).map(|(slope, v)| slope * f64::from(v)).sum();
                 for (sum, slope) in expected.iter_mut().zip(&log.slopes) {
                     *sum += log.values[0].exp() * step * slope * product;
                 }
@@ -370,7 +410,8 @@ mod tests {
             logs
         };
         let (discrete_p, discrete_q) = (log(&a, 0.0), log(&b, 0.0));
-        let mut expected: f64 = (0..3).map(|i| discrete_p[i].exp() * (discrete_p[i] - discrete_q[i])).sum();
+        let mut expected: f64 =
+            (0..3).map(|i| discrete_p[i].exp() * (discrete_p[i] - discrete_q[i])).sum();
         let step = 1e-3;
         for index in -20_000..20_000 {
             let x = f64::from(index) * step;

@@ -1,18 +1,30 @@
-//! PopArt: heads that keep what they say when the scale of the returns moves (van Hasselt et al. 2016, arXiv 1602.07714).
+//! PopArt: heads that keep what they say when the scale of the returns moves (van Hasselt et al.
+//! 2016, arXiv 1602.07714).
 
 use crate::learning::normaliser::Moments;
 use crate::networks::ModelShape;
 
-/// Changes the weights of a critic's head so that its values in raw units, deviation * output + mean, are under the moments `after`
-/// what they were under those `before`: the paper's proposition 1, W' = (s / s') W and b' = (s b + m - m') / s'. Gives the number of the
-/// network that it is in. Critic 0 is that of the reward.
-pub fn preserve_outputs(shape: &ModelShape, critic: usize, before: &Moments, after: &Moments, parameters: &mut [f32]) -> usize {
+/// Changes the weights of a critic's head so that its values in raw units, deviation * output +
+/// mean, are under the moments `after` what they were under those `before`: the paper's proposition
+/// 1, W' = (s / s') W and b' = (s b + m - m') / s'. Gives the number of the network that it is in.
+/// Critic 0 is that of the reward.
+pub fn preserve_outputs(
+    shape: &ModelShape,
+    critic: usize,
+    before: &Moments,
+    after: &Moments,
+    parameters: &mut [f32],
+) -> usize {
     let (network, head) = if shape.networks.len() == 1 { (0, 1 + critic) } else { (1 + critic, 0) };
     let parameters = &mut parameters[shape.parameter_range(network)];
     let table = shape.networks[network].parameters();
     let find = |what: &str| {
         let name = format!("head{head}.{what}");
-        table.iter().find(|parameter| parameter.name == name).expect("every critic has a head").range()
+        table
+            .iter()
+            .find(|parameter| parameter.name == name)
+            .expect("every critic has a head")
+            .range()
     };
     let factor = before.deviation() / after.deviation();
     let (weights, biases) = (find("weight"), find("bias"));
@@ -20,7 +32,8 @@ pub fn preserve_outputs(shape: &ModelShape, critic: usize, before: &Moments, aft
         *weight = (f64::from(*weight) * factor) as f32;
     }
     for (index, bias) in parameters[biases].iter_mut().enumerate() {
-        // Of a head with privileged inputs the first output stands alone; the others are slopes, which have no mean.
+        // Of a head with privileged inputs the first output stands alone; the others are slopes,
+        // which have no mean.
         let shift = if index == 0 { (before.mean - after.mean) / after.deviation() } else { 0.0 };
         *bias = (f64::from(*bias) * factor + shift) as f32;
     }
@@ -36,8 +49,8 @@ mod tests {
     use crate::learning::metrics::Means;
     use crate::learning::normaliser::Moments;
 
-    /// A12. Proposition 1 of van Hasselt et al. 2016: s' n'(x) + m' = s n(x) + m for every input x, of every critic, whether the networks are
-    /// one or several, though the moments move far.
+    /// A12. Proposition 1 of van Hasselt et al. 2016: s' n'(x) + m' = s n(x) + m for every input x,
+    /// of every critic, whether the networks are one or several, though the moments move far.
     #[test]
     fn values_in_raw_units_stay_when_the_moments_move() {
         for algorithm in [AlgorithmKind::PpoLag, AlgorithmKind::Cpo] {
@@ -60,7 +73,10 @@ mod tests {
                 };
                 learner.gradient(networks, &mut minibatch, loss, &mut Means::default()).unwrap();
                 let raw = |(values, moments): (&Vec<f64>, &Moments)| {
-                    values.iter().map(|value| value * moments.deviation() + moments.mean).collect::<Vec<f64>>()
+                    values
+                        .iter()
+                        .map(|value| value * moments.deviation() + moments.mean)
+                        .collect::<Vec<f64>>()
                 };
                 let raw = seen.iter().zip(moments).map(raw).collect();
                 outputs.push(seen);

@@ -1,7 +1,8 @@
-//! The network in tensors of the `burn` crate, for every device that burn has: the portable twin of [`crate::networks::cpu`].
+//! The network in tensors of the `burn` crate, for every device that burn has: the portable twin of
+//! [`crate::networks::cpu`].
 //!
-//! The flat parameter vector stays on the host, where the optimiser and checkpoints are the same for all devices; a
-//! load uploads it and a backward pass downloads one gradient of its length.
+//! The flat parameter vector stays on the host, where the optimiser and checkpoints are the same
+//! for all devices; a load uploads it and a backward pass downloads one gradient of its length.
 
 use std::sync::Arc;
 
@@ -11,7 +12,9 @@ use burn::tensor::ops::{ConvOptions, MaxPoolOptions};
 use burn::tensor::{Device, Int, Tensor, TensorData};
 
 use crate::config::RecurrentCell;
-use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, Sequences};
+use crate::networks::{
+    ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, Sequences,
+};
 
 /// One network on a burn device.
 pub struct BurnNetwork {
@@ -47,7 +50,8 @@ impl BurnNetwork {
             .parameters()
             .iter()
             .map(|parameter| {
-                let values = TensorData::new(parameters[parameter.range()].to_vec(), [parameter.size()]);
+                let values =
+                    TensorData::new(parameters[parameter.range()].to_vec(), [parameter.size()]);
                 let tensor = Tensor::<1>::from_data(values, device);
                 if track { tensor.require_grad() } else { tensor }
             })
@@ -55,7 +59,9 @@ impl BurnNetwork {
     }
 
     fn load_pixels_on(&mut self, pixels: &PixelScale, device: &Device) {
-        let row = |values: &[f32]| Tensor::<2>::from_data(TensorData::new(values.to_vec(), [1, values.len()]), device);
+        let row = |values: &[f32]| {
+            Tensor::<2>::from_data(TensorData::new(values.to_vec(), [1, values.len()]), device)
+        };
         self.pixels = Some((row(&pixels.scale), row(&pixels.shift)));
     }
 
@@ -64,7 +70,8 @@ impl BurnNetwork {
         let image = self.shape.image;
         let rows = observations.len();
         let (scale, shift) = self.pixels.clone().expect("weights loaded");
-        // Four pixels travel in one word: a quarter of the transfer, and every device has 32-bit integers.
+        // Four pixels travel in one word: a quarter of the transfer, and every device has 32-bit
+        // integers.
         let words = image.size().div_ceil(4);
         let mut packed = Vec::with_capacity(rows * words);
         for observation in observations {
@@ -76,9 +83,15 @@ impl BurnNetwork {
             }));
         }
         let words = Tensor::<3, Int>::from_data(TensorData::new(packed, [rows, words, 1]), device);
-        let bytes = (0..4).map(|byte| words.clone().bitwise_right_shift_scalar(8 * byte).bitwise_and_scalar(255)).collect();
-        let pixels = Tensor::cat(bytes, 2).float().reshape([rows as i32, -1]).narrow(1, 0, image.size());
-        (pixels * scale + shift).clamp(-5.0, 5.0).reshape([rows, image.height, image.width, image.channels]).permute([0, 3, 1, 2])
+        let bytes = (0..4)
+            .map(|byte| words.clone().bitwise_right_shift_scalar(8 * byte).bitwise_and_scalar(255))
+            .collect();
+        let pixels =
+            Tensor::cat(bytes, 2).float().reshape([rows as i32, -1]).narrow(1, 0, image.size());
+        (pixels * scale + shift)
+            .clamp(-5.0, 5.0)
+            .reshape([rows, image.height, image.width, image.channels])
+            .permute([0, 3, 1, 2])
     }
 
     /// Outputs of all rows and the states after the last step.
@@ -94,14 +107,24 @@ impl BurnNetwork {
             let [a, b, c, d] = [entry.shape[0], entry.shape[1], entry.shape[2], entry.shape[3]];
             let weights = weights.clone().reshape([a, b, c, d]).permute([3, 2, 0, 1]);
             let (biases, _) = next();
-            conv2d(images, weights, Some(biases.clone()), ConvOptions::new([stride; 2], [border; 2], [1; 2], 1))
+            conv2d(
+                images,
+                weights,
+                Some(biases.clone()),
+                ConvOptions::new([stride; 2], [border; 2], [1; 2], 1),
+            )
         };
         for layer in &shape.convolutions {
             images = elu(convolved(images, layer.stride, 0), 1.0);
         }
         for _ in &shape.residual {
-            let options =
-                MaxPoolOptions { kernel_size: [3; 2], stride: [2; 2], padding: [(1, 1); 2], dilation: [1; 2], ceil_mode: false };
+            let options = MaxPoolOptions {
+                kernel_size: [3; 2],
+                stride: [2; 2],
+                padding: [(1, 1); 2],
+                dilation: [1; 2],
+                ceil_mode: false,
+            };
             images = max_pool2d(convolved(images, 1, 1), options);
             for _block in 0..2 {
                 let once = convolved(relu(images.clone()), 1, 1);
@@ -128,16 +151,21 @@ impl BurnNetwork {
             let (input, input_bias, hidden, hidden_bias) = (matrix(), matrix(), matrix(), matrix());
             let from_input = values.matmul(input) + input_bias.transpose();
             let hidden_bias = hidden_bias.transpose();
-            let initial = TensorData::new(batch.initial_state.clone(), [batch.lanes, shape.state_size()]);
+            let initial =
+                TensorData::new(batch.initial_state.clone(), [batch.lanes, shape.state_size()]);
             let mut carried: Tensor<2> = Tensor::from_data(initial, device);
             let mut states = Vec::with_capacity(batch.steps);
             for step in 0..batch.steps {
                 let first = step * batch.lanes;
                 if batch.reset[first..first + batch.lanes].contains(&true) {
-                    let keep: Vec<f32> = (0..batch.lanes).map(|lane| if batch.reset[first + lane] { 0.0 } else { 1.0 }).collect();
-                    carried = carried * Tensor::<2>::from_data(TensorData::new(keep, [batch.lanes, 1]), device);
+                    let keep: Vec<f32> = (0..batch.lanes)
+                        .map(|lane| if batch.reset[first + lane] { 0.0 } else { 1.0 })
+                        .collect();
+                    carried = carried
+                        * Tensor::<2>::from_data(TensorData::new(keep, [batch.lanes, 1]), device);
                 }
-                let part = |tensor: &Tensor<2>, gate: usize| tensor.clone().narrow(1, gate * units, units);
+                let part =
+                    |tensor: &Tensor<2>, gate: usize| tensor.clone().narrow(1, gate * units, units);
                 let h = part(&carried, 0);
                 let x = from_input.clone().narrow(0, first, batch.lanes);
                 let s = h.clone().matmul(hidden.clone()) + hidden_bias.clone();
@@ -149,7 +177,8 @@ impl BurnNetwork {
                         n.clone() + z * (h - n)
                     }
                     RecurrentCell::Lstm => {
-                        let cell = sigmoid(sum(1)) * part(&carried, 1) + sigmoid(sum(0)) * tanh(sum(2));
+                        let cell =
+                            sigmoid(sum(1)) * part(&carried, 1) + sigmoid(sum(0)) * tanh(sum(2));
                         Tensor::cat(vec![sigmoid(sum(3)) * tanh(cell.clone()), cell], 1)
                     }
                 };
@@ -158,7 +187,11 @@ impl BurnNetwork {
             values = Tensor::cat(states, 0);
             state = Some(carried);
         }
-        let heads = shape.heads.iter().map(|_| values.clone().matmul(matrix()) + matrix().transpose()).collect();
+        let heads = shape
+            .heads
+            .iter()
+            .map(|_| values.clone().matmul(matrix()) + matrix().transpose())
+            .collect();
         (Tensor::cat(heads, 1), state)
     }
 }
@@ -177,7 +210,14 @@ impl ActingNetwork for BurnNetwork {
         self.load_pixels_on(pixels, &device);
     }
 
-    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32], _: Option<Place<'_>>) {
+    fn act(
+        &mut self,
+        observations: &[u8],
+        extra: &[f32],
+        state: &mut [f32],
+        outputs: &mut [f32],
+        _: Option<Place<'_>>,
+    ) {
         let observations: Vec<&[u8]> = observations.chunks_exact(self.shape.image.size()).collect();
         let lanes = observations.len();
         let batch = Sequences {
@@ -215,7 +255,10 @@ impl LearningNetwork for BurnNetwork {
     }
 
     fn publish(&self) -> NetworkWeights {
-        NetworkWeights::Plain { parameters: Arc::clone(&self.host.0), pixels: Arc::clone(&self.host.1) }
+        NetworkWeights::Plain {
+            parameters: Arc::clone(&self.host.0),
+            pixels: Arc::clone(&self.host.1),
+        }
     }
 
     fn forward(&mut self, batch: &Sequences<'_>) -> Vec<f32> {
@@ -229,12 +272,15 @@ impl LearningNetwork for BurnNetwork {
     fn backward(&mut self, batch: &Sequences<'_>, output_gradient: &[f32], gradient: &mut [f32]) {
         let outputs = self.outputs.take().expect("a forward pass before each backward pass");
         let device = self.device.clone().autodiff();
-        let weights = TensorData::new(output_gradient.to_vec(), [batch.rows(), self.shape.outputs()]);
+        let weights =
+            TensorData::new(output_gradient.to_vec(), [batch.rows(), self.shape.outputs()]);
         let gradients = (outputs * Tensor::<2>::from_data(weights, &device)).sum().backward();
         for (tensor, parameter) in self.parameters.iter().zip(self.shape.parameters()) {
             let into = &mut gradient[parameter.range()];
             match tensor.grad(&gradients) {
-                Some(values) => into.copy_from_slice(&values.into_data().try_to_vec::<f32>().expect("32-bit floats")),
+                Some(values) => into.copy_from_slice(
+                    &values.into_data().try_to_vec::<f32>().expect("32-bit floats"),
+                ),
                 None => into.fill(0.0),
             }
         }

@@ -25,8 +25,12 @@ impl ComputeDevice {
     /// As [`ComputeDevice::named`].
     pub fn of(config: &TrainConfig) -> Result<ComputeDevice, LearnError> {
         match ComputeDevice::named(&config.device)? {
-            ComputeDevice::Processor(_) if config.learning.portable => Ok(ComputeDevice::Processor(Simd::PLAIN)),
-            ComputeDevice::Processor(simd) => with_products(simd, config.learning.products).map(ComputeDevice::Processor),
+            ComputeDevice::Processor(_) if config.learning.portable => {
+                Ok(ComputeDevice::Processor(Simd::PLAIN))
+            }
+            ComputeDevice::Processor(simd) => {
+                with_products(simd, config.learning.products).map(ComputeDevice::Processor)
+            }
             #[cfg(feature = "graphics")]
             card => Ok(card),
         }
@@ -38,7 +42,8 @@ impl ComputeDevice {
         ComputeDevice::Processor(Simd::PLAIN)
     }
 
-    /// The kernels that compute what is on the processor: everything, or what comes before and after the networks.
+    /// The kernels that compute what is on the processor: everything, or what comes before and
+    /// after the networks.
     #[must_use]
     pub fn kernels(&self) -> Simd {
         match self {
@@ -48,21 +53,28 @@ impl ComputeDevice {
         }
     }
 
-    /// The device of a name: `cpu`; with the cargo features of the same names `vulkan`, `cuda` and `wgpu` (Metal, Direct3D or
-    /// Vulkan, whatever there is), with a colon and a number for another than the first; and, with any of them, `flex`
-    /// (burn's processor backend, for comparison).
+    /// The device of a name: `cpu`; with the cargo features of the same names `vulkan`, `cuda` and
+    /// `wgpu` (Metal, Direct3D or Vulkan, whatever there is), with a colon and a number for another
+    /// than the first; and, with any of them, `flex` (burn's processor backend, for comparison).
     ///
     /// # Errors
-    /// When the name is unknown, the program was built without the device, or this machine has none of that number.
+    /// When the name is unknown, the program was built without the device, or this machine has none
+    /// of that number.
     pub fn named(name: &str) -> Result<ComputeDevice, LearnError> {
         let (kind, number) = name.split_once(':').unwrap_or((name, "0"));
-        let number: usize = number
-            .parse()
-            .map_err(|_| LearnError::Config(format!("device '{name}' has no number after the colon; write {kind}:0")))?;
+        let number: usize = number.parse().map_err(|_| {
+            LearnError::Config(format!(
+                "device '{name}' has no number after the colon; write {kind}:0"
+            ))
+        })?;
         match kind {
-            "cpu" => Ok(ComputeDevice::Processor(Simd::chosen().map_err(|error| LearnError::Config(error.to_string()))?)),
+            "cpu" => Ok(ComputeDevice::Processor(
+                Simd::chosen().map_err(|error| LearnError::Config(error.to_string()))?,
+            )),
             "vulkan" | "cuda" | "wgpu" | "flex" => card(kind, name, number),
-            _ => Err(LearnError::Config(format!("device '{name}' is unknown; use one of cpu, vulkan, cuda, wgpu"))),
+            _ => Err(LearnError::Config(format!(
+                "device '{name}' is unknown; use one of cpu, vulkan, cuda, wgpu"
+            ))),
         }
     }
 }
@@ -70,7 +82,8 @@ impl ComputeDevice {
 /// The chosen family, or the one that multiplies as a run's settings say: a run keeps to its own.
 fn with_products(chosen: Simd, products: Products) -> Result<Simd, LearnError> {
     let rounds = |simd: Simd| simd.family() == Family::Avx512Bf16;
-    let refuse = |why: String| Err(LearnError::Config(format!("learning.products is bfloat16, but {why}")));
+    let refuse =
+        |why: String| Err(LearnError::Config(format!("learning.products is bfloat16, but {why}")));
     match products {
         Products::Float32 if rounds(chosen) => Ok(Simd::widest()),
         Products::Float32 => Ok(chosen),
@@ -106,20 +119,22 @@ fn card(kind: &str, name: &str, number: usize) -> Result<ComputeDevice, LearnErr
         count => format!("only numbers 0 to {}", count - 1),
     };
     all.into_iter().nth(number).map(ComputeDevice::Burn).ok_or_else(|| {
-        LearnError::Config(format!("device '{name}' was not found: this machine has {there}; use another, or --device cpu"))
+        LearnError::Config(format!(
+            "device '{name}' was not found: this machine has {there}; use another, or --device cpu"
+        ))
     })
 }
 
-/// All cards of a kind on this machine, those of their own before built-in ones. `None` if this program was built without the
-/// kind.
+/// All cards of a kind on this machine, those of their own before built-in ones. `None` if this
+/// program was built without the kind.
 #[cfg(feature = "graphics")]
 fn cards(kind: &str) -> Option<Vec<Device>> {
     match kind {
         "flex" => Some(vec![Device::flex()]),
         #[cfg(feature = "vulkan")]
         "vulkan" => {
-            // Drivers that compute on the processor crash on these kernels (llvmpipe) or return other numbers (SwiftShader);
-            // `wgpu` works on them.
+            // Drivers that compute on the processor crash on these kernels (llvmpipe) or return
+            // other numbers (SwiftShader); `wgpu` works on them.
             let processor = Device::vulkan(burn::tensor::DeviceKind::Cpu);
             let all = Device::enumerate(burn::tensor::DeviceType::Vulkan).into_vec();
             Some(all.into_iter().filter(|device| *device != processor).collect())
@@ -136,7 +151,8 @@ fn cards(kind: &str) -> Option<Vec<Device>> {
 mod tests {
     use super::*;
 
-    /// A run keeps to the products that its settings name, whatever is chosen otherwise, and is refused where there are none.
+    /// A run keeps to the products that its settings name, whatever is chosen otherwise, and is
+    /// refused where there are none.
     #[test]
     fn runs_keep_to_their_products() {
         for simd in Simd::available() {
@@ -144,17 +160,22 @@ mod tests {
         }
         match Simd::bfloat16() {
             None => {
-                let refused = with_products(Simd::PLAIN, Products::Bfloat16).unwrap_err().to_string();
+                let refused =
+                    with_products(Simd::PLAIN, Products::Bfloat16).unwrap_err().to_string();
                 assert!(refused.contains("no AVX512-BF16"), "{refused}");
             }
             Some(rounding) => {
                 assert_eq!(with_products(rounding, Products::Float32).unwrap(), Simd::widest());
                 match Simd::forced().unwrap() {
                     Some(forced) if forced != rounding => {
-                        let refused = with_products(forced, Products::Bfloat16).unwrap_err().to_string();
+                        let refused =
+                            with_products(forced, Products::Bfloat16).unwrap_err().to_string();
                         assert!(refused.contains("leave it out"), "{refused}");
                     }
-                    _ => assert_eq!(with_products(Simd::widest(), Products::Bfloat16).unwrap(), rounding),
+                    _ => assert_eq!(
+                        with_products(Simd::widest(), Products::Bfloat16).unwrap(),
+                        rounding
+                    ),
                 }
             }
         }
@@ -170,7 +191,9 @@ mod tests {
         }
         // A machine may have one card, but not so many.
         #[cfg(feature = "vulkan")]
-        assert!(ComputeDevice::named("vulkan:999").unwrap_err().to_string().contains("was not found"));
+        assert!(
+            ComputeDevice::named("vulkan:999").unwrap_err().to_string().contains("was not found")
+        );
         #[cfg(not(feature = "cuda"))]
         assert!(ComputeDevice::named("cuda").unwrap_err().to_string().contains("--features cuda"));
     }

@@ -1,7 +1,9 @@
-//! The distribution of actions: a tuple of independent categoricals, followed by independent normals.
+//! The distribution of actions: a tuple of independent categoricals, followed by independent
+//! normals.
 //!
-//! A row of policy outputs holds the logits of each categorical one after the other, then mean and logarithm of the
-//! deviation of each normal. Here is what acting needs of it; what losses need is in [`crate::learning::policy`].
+//! A row of policy outputs holds the logits of each categorical one after the other, then mean and
+//! logarithm of the deviation of each normal. Here is what acting needs of it; what losses need is
+//! in [`crate::learning::policy`].
 
 use hasard_envs::ActionSpace;
 use serde::{Deserialize, Serialize};
@@ -36,7 +38,13 @@ impl ActionShape {
     }
 
     /// Draws an action, writing its parts, and returns the logarithm of its probability (density).
-    pub fn sample(&self, row: &[f32], stream: &mut Stream, actions: &mut [u8], deltas: &mut [f32]) -> f32 {
+    pub fn sample(
+        &self,
+        row: &[f32],
+        stream: &mut Stream,
+        actions: &mut [u8],
+        deltas: &mut [f32],
+    ) -> f32 {
         let mut log_probability = 0.0;
         let mut first = 0;
         for (&size, action) in self.sizes.iter().zip(actions) {
@@ -73,7 +81,10 @@ impl ActionShape {
             let (logits, after) = rest.split_at(size);
             rest = after;
             let (largest, sum) = softmax_parts(logits);
-            logits.iter().map(|logit| (libm::exp(f64::from(logit - largest)) / sum) as f32).collect()
+            logits
+                .iter()
+                .map(|logit| (libm::exp(f64::from(logit - largest)) / sum) as f32)
+                .collect()
         };
         self.sizes.iter().map(of).collect()
     }
@@ -83,7 +94,9 @@ impl ActionShape {
         let mut first = 0;
         for (&size, action) in self.sizes.iter().zip(actions) {
             let logits = &row[first..first + size];
-            *action = (1..size).fold(0, |best, index| if logits[index] > logits[best] { index } else { best }) as u8;
+            *action = (1..size)
+                .fold(0, |best, index| if logits[index] > logits[best] { index } else { best })
+                as u8;
             first += size;
         }
         for (parameters, delta) in row[first..self.parameters()].chunks_exact(2).zip(deltas) {
@@ -107,7 +120,9 @@ mod tests {
         let shape = ActionShape { sizes: vec![3, 2], deltas: 1 };
         let row = [0.3f32, -0.7, 1.1, 0.2, 0.9, 0.4, -0.5];
         let exp: Vec<f64> = row[..5].iter().map(|&l| f64::from(l).exp()).collect();
-        let p = |i: usize, j: usize| exp[i] / exp[..3].iter().sum::<f64>() * exp[3 + j] / exp[3..].iter().sum::<f64>();
+        let p = |i: usize, j: usize| {
+            exp[i] / exp[..3].iter().sum::<f64>() * exp[3 + j] / exp[3..].iter().sum::<f64>()
+        };
         let mut counts = [[0u32; 2]; 3];
         let (mut sum, mut squares) = (0.0, 0.0);
         let mut stream = Stream::new(1, Purpose::Actions, 0, 0);
@@ -134,7 +149,10 @@ mod tests {
         }
         let mean = sum / f64::from(draws);
         let deviation = (squares / f64::from(draws) - mean * mean).sqrt();
-        assert!((mean - 0.4).abs() < 0.02 && (deviation - (-0.5f64).exp()).abs() < 0.02, "{mean} {deviation}");
+        assert!(
+            (mean - 0.4).abs() < 0.02 && (deviation - (-0.5f64).exp()).abs() < 0.02,
+            "{mean} {deviation}"
+        );
         let (mut actions, mut deltas) = ([0u8; 2], [0.0f32; 1]);
         shape.greedy(&row, &mut actions, &mut deltas);
         assert_eq!((actions, deltas), ([2, 1], [0.4]));

@@ -1,13 +1,15 @@
-//! A network that computes large batches part by part, so that memory does not grow with the rollout.
+//! A network that computes large batches part by part, so that memory does not grow with the
+//! rollout.
 
 use std::ops::Range;
 
 use crate::networks::network::{LearningNetwork, NetworkWeights, PixelScale, Sequences};
 use crate::networks::shape::NetworkShape;
 
-/// A network of which at most so many rows are computed at once. Of a batch of several parts no activations are kept: its backward pass
-/// computes each part anew, a third more arithmetic, and sums the parts' gradients in their order. What is computed follows from the
-/// batch alone, whatever the number of threads.
+/// A network of which at most so many rows are computed at once. Of a batch of several parts no
+/// activations are kept: its backward pass computes each part anew, a third more arithmetic, and
+/// sums the parts' gradients in their order. What is computed follows from the batch alone,
+/// whatever the number of threads.
 pub struct InParts {
     own: Box<dyn LearningNetwork>,
     most_rows: usize,
@@ -92,7 +94,8 @@ mod tests {
     use crate::networks::cpu::network::CpuLearner;
     use hasard_engine::simd::Simd;
 
-    /// A5: outputs bit for bit, gradients but for the order of their sums, for parts of one lane, of some, and of three of four.
+    /// A5: outputs bit for bit, gradients but for the order of their sums, for parts of one lane,
+    /// of some, and of three of four.
     #[test]
     fn parts_have_the_outputs_and_the_gradient_of_the_whole() {
         let (mut learner, rollout) = small::learner(&small::config(AlgorithmKind::PpoLag));
@@ -100,14 +103,17 @@ mod tests {
         let minibatch = learner.minibatch(&prepared, &[0, 1, 2, 3]);
         let shape = &learner.shape().networks[0];
         let mut batch = minibatch.batch.sequences.clone();
-        batch.initial_state = (0..4 * shape.state_size()).map(|index| (index as f32).sin()).collect();
+        batch.initial_state =
+            (0..4 * shape.state_size()).map(|index| (index as f32).sin()).collect();
         batch.reset[5] = true;
-        let network = || -> Box<dyn LearningNetwork> { Box::new(CpuLearner::new(Simd::PLAIN, shape, 1)) };
+        let network =
+            || -> Box<dyn LearningNetwork> { Box::new(CpuLearner::new(Simd::PLAIN, shape, 1)) };
         let run = |mut network: Box<dyn LearningNetwork>| {
             network.load(&learner.parameters);
             network.load_pixels(&learner.pixels.scale());
             let outputs = network.forward(&batch);
-            let weights: Vec<f32> = (0..outputs.len()).map(|index| (index as f32 * 0.3).cos()).collect();
+            let weights: Vec<f32> =
+                (0..outputs.len()).map(|index| (index as f32 * 0.3).cos()).collect();
             let mut gradient = vec![7.0; learner.parameters.len()];
             network.backward(&batch, &weights, &mut gradient);
             (outputs, gradient)
@@ -117,7 +123,10 @@ mod tests {
             let (found, summed) = run(Box::new(InParts::new(network(), most_rows)));
             assert_eq!(found, outputs, "parts of {most_rows} rows");
             let largest = gradient.iter().fold(0.0f32, |most, value| most.max(value.abs()));
-            assert!(gradient.iter().zip(&summed).all(|(a, b)| (a - b).abs() < 1e-5 * largest), "parts of {most_rows} rows");
+            assert!(
+                gradient.iter().zip(&summed).all(|(a, b)| (a - b).abs() < 1e-5 * largest),
+                "parts of {most_rows} rows"
+            );
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::networks::shape::{NetworkShape, Parameter, ParameterKind};
 use crate::random::{Purpose, Stream};
 
 impl NetworkShape {
-    /// A fresh flat parameter vector; `network` counts the networks of a model, so that no two begin alike.
+    /// A fresh flat parameter vector; `network` counts the networks of a model, so that no two
+    /// begin alike.
     #[must_use]
     pub fn initial_parameters(&self, scheme: Initialisation, seed: u64, network: u64) -> Vec<f32> {
         let mut values = vec![0.0; self.parameter_count()];
@@ -36,8 +37,8 @@ fn fill(values: &mut [f32], parameter: &Parameter, scheme: Initialisation, strea
     }
 }
 
-/// Fills a `rows` x `columns` matrix with orthonormal rows or columns, whichever are fewer: Gram and Schmidt's method,
-/// applied twice to normal draws, which is exact to rounding.
+/// Fills a `rows` x `columns` matrix with orthonormal rows or columns, whichever are fewer: Gram
+/// and Schmidt's method, applied twice to normal draws, which is exact to rounding.
 fn orthogonal(values: &mut [f32], rows: usize, columns: usize, stream: &mut Stream) {
     let (count, length) = (rows.min(columns), rows.max(columns));
     let mut vectors: Vec<Vec<f32>> = Vec::with_capacity(count);
@@ -59,7 +60,11 @@ fn orthogonal(values: &mut [f32], rows: usize, columns: usize, stream: &mut Stre
     }
     for (index, vector) in vectors.iter().enumerate() {
         for (position, value) in vector.iter().enumerate() {
-            let at = if columns <= rows { position * columns + index } else { index * columns + position };
+            let at = if columns <= rows {
+                position * columns + index
+            } else {
+                index * columns + position
+            };
             values[at] = *value;
         }
     }
@@ -93,10 +98,15 @@ mod tests {
                     let product: f32 = if columns <= rows {
                         (0..rows).map(|r| values[r * columns + i] * values[r * columns + j]).sum()
                     } else {
-                        (0..columns).map(|c| values[i * columns + c] * values[j * columns + c]).sum()
+                        (0..columns)
+                            .map(|c| values[i * columns + c] * values[j * columns + c])
+                            .sum()
                     };
                     let expected = if i == j { 1.0 } else { 0.0 };
-                    assert!((product - expected).abs() < 1e-5, "{rows}x{columns}: {i}, {j}: {product}");
+                    assert!(
+                        (product - expected).abs() < 1e-5,
+                        "{rows}x{columns}: {i}, {j}: {product}"
+                    );
                 }
             }
         }
@@ -104,8 +114,11 @@ mod tests {
 
     #[test]
     fn schemes_reach_the_parameters_that_they_should() {
-        let shape = NetworkShape { dense: vec![32], recurrent: Some(32), ..NetworkShape::default() };
-        for scheme in [Initialisation::Orthogonal, Initialisation::OrthogonalHeads, Initialisation::Uniform] {
+        let shape =
+            NetworkShape { dense: vec![32], recurrent: Some(32), ..NetworkShape::default() };
+        for scheme in
+            [Initialisation::Orthogonal, Initialisation::OrthogonalHeads, Initialisation::Uniform]
+        {
             let values = shape.initial_parameters(scheme, 1, 0);
             for parameter in shape.parameters() {
                 let block = &values[parameter.range()];

@@ -1,11 +1,12 @@
-//! The convolutions of an encoder in the order of its parameters: plain ones, or those of a residual network.
+//! The convolutions of an encoder in the order of its parameters: plain ones, or those of a
+//! residual network.
 
 use serde::{Deserialize, Serialize};
 
 use crate::config::Convolution;
 
-/// Convolutions of a residual stage: one before the pooling, two in each of two blocks (Espeholt et al. 2018, arXiv 1802.01561,
-/// figure 3, right).
+/// Convolutions of a residual stage: one before the pooling, two in each of two blocks (Espeholt et
+/// al. 2018, arXiv 1802.01561, figure 3, right).
 pub const STAGE: usize = 5;
 /// Zeros around the image of each of them, so that it keeps its size.
 const BORDER: usize = 1;
@@ -31,8 +32,13 @@ impl ImageShape {
     /// Shape after a convolution, if the kernel fits.
     #[must_use]
     pub fn after(&self, convolution: &Convolution) -> Option<ImageShape> {
-        let side = |length: usize| Some(length.checked_sub(convolution.kernel)? / convolution.stride + 1);
-        Some(ImageShape { height: side(self.height)?, width: side(self.width)?, channels: convolution.channels })
+        let side =
+            |length: usize| Some(length.checked_sub(convolution.kernel)? / convolution.stride + 1);
+        Some(ImageShape {
+            height: side(self.height)?,
+            width: side(self.width)?,
+            channels: convolution.channels,
+        })
     }
 }
 
@@ -73,14 +79,25 @@ impl ImageShape {
     }
 }
 
-/// The convolutions of an encoder: plain ones, or those of a residual one, which has so many channels in each stage.
+/// The convolutions of an encoder: plain ones, or those of a residual one, which has so many
+/// channels in each stage.
 #[must_use]
-pub fn encoder_layers(image: ImageShape, convolutions: &[Convolution], residual: &[usize]) -> Vec<EncoderLayer> {
+pub fn encoder_layers(
+    image: ImageShape,
+    convolutions: &[Convolution],
+    residual: &[usize],
+) -> Vec<EncoderLayer> {
     let mut layers = Vec::new();
     let mut image = image;
     for (index, convolution) in convolutions.iter().enumerate() {
         let output = image.after(convolution).expect("checked shape");
-        layers.push(EncoderLayer { name: format!("convolution{index}"), convolution: *convolution, image, border: 0, output });
+        layers.push(EncoderLayer {
+            name: format!("convolution{index}"),
+            convolution: *convolution,
+            image,
+            border: 0,
+            output,
+        });
         image = output;
     }
     for (stage, &channels) in residual.iter().enumerate() {
@@ -103,22 +120,32 @@ mod tests {
     use super::*;
     use crate::networks::NetworkShape;
 
-    /// Figure 3, right, on the benchmark's pictures: each stage halves them, and has one convolution before and four behind that.
+    /// Figure 3, right, on the benchmark's pictures: each stage halves them, and has one
+    /// convolution before and four behind that.
     #[test]
     fn residual_stages_halve_the_picture() {
-        let shape = NetworkShape { convolutions: vec![], residual: vec![32, 32, 32], ..NetworkShape::default() };
+        let shape = NetworkShape {
+            convolutions: vec![],
+            residual: vec![32, 32, 32],
+            ..NetworkShape::default()
+        };
         shape.check().unwrap();
         let layers = shape.encoder_layers();
-        let (size, sides) = (|index: usize| layers[index].output.size(), [(72, 128), (36, 64), (18, 32), (9, 16)]);
-        for (stage, ((height, width), (lower, narrower))) in sides.into_iter().zip(sides.into_iter().skip(1)).enumerate() {
+        let (size, sides) =
+            (|index: usize| layers[index].output.size(), [(72, 128), (36, 64), (18, 32), (9, 16)]);
+        for (stage, ((height, width), (lower, narrower))) in
+            sides.into_iter().zip(sides.into_iter().skip(1)).enumerate()
+        {
             assert_eq!(size(STAGE * stage), height * width * 32);
             assert!((1..STAGE).all(|part| size(STAGE * stage + part) == lower * narrower * 32));
         }
         assert_eq!(shape.features(), 9 * 16 * 32);
         let each = 9.0 * 32.0 * 32.0;
-        let pictures = 72.0 * 128.0 * 27.0 * 32.0 + (5.0 * 36.0 * 64.0 + 5.0 * 18.0 * 32.0 + 4.0 * 9.0 * 16.0) * each;
+        let pictures = 72.0 * 128.0 * 27.0 * 32.0
+            + (5.0 * 36.0 * 64.0 + 5.0 * 18.0 * 32.0 + 4.0 * 9.0 * 16.0) * each;
         assert_eq!(layers.iter().map(EncoderLayer::products).sum::<f64>(), pictures);
-        let names: Vec<&str> = layers.iter().skip(STAGE).map(|layer| layer.name.as_str()).take(STAGE).collect();
+        let names: Vec<&str> =
+            layers.iter().skip(STAGE).map(|layer| layer.name.as_str()).take(STAGE).collect();
         assert_eq!(names[0], "stage1.convolution");
         assert_eq!(names[4], "stage1.block1.convolution1");
     }

@@ -1,4 +1,5 @@
-//! What a policy network is: its shape, its parameters, and the two things done with it (acting and learning).
+//! What a policy network is: its shape, its parameters, and the two things done with it (acting and
+//! learning).
 
 #[cfg(feature = "graphics")]
 pub mod burn_network;
@@ -16,7 +17,8 @@ mod stack;
 
 pub use layers::{EncoderLayer, ImageShape};
 pub use network::{
-    ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Place, Published, RecordedLane, Recording, Sequences,
+    ActingNetwork, LearningNetwork, NetworkWeights, PixelScale, Place, Published, RecordedLane,
+    Recording, Sequences,
 };
 pub use shape::{NetworkShape, Parameter, ParameterKind};
 pub use stack::{Actor, ModelSequences, ModelShape, Notes, Stack};

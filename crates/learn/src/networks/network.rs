@@ -7,7 +7,8 @@ use crate::networks::cpu::tape::Tape;
 use crate::networks::cpu::weights::PackedWeights;
 use crate::networks::shape::NetworkShape;
 
-/// What turns an 8-bit pixel into the network's input: `clamp(pixel * scale + shift, -5, 5)`, in the image's order.
+/// What turns an 8-bit pixel into the network's input: `clamp(pixel * scale + shift, -5, 5)`, in
+/// the image's order.
 #[derive(Clone, PartialEq, Debug)]
 pub struct PixelScale {
     /// Factor of each pixel.
@@ -24,7 +25,8 @@ impl PixelScale {
     }
 }
 
-/// Trajectories of equal length for a forward pass. Step `t` of lane `l` is row `t * lanes + l` everywhere.
+/// Trajectories of equal length for a forward pass. Step `t` of lane `l` is row `t * lanes + l`
+/// everywhere.
 #[derive(Clone, Debug)]
 pub struct Sequences<'a> {
     /// Steps of each trajectory.
@@ -55,13 +57,18 @@ impl<'a> Sequences<'a> {
         (0..self.steps).flat_map(move |step| lanes.iter().map(move |lane| step * self.lanes + lane))
     }
 
-    /// The trajectories of some lanes, each with `extra` extra inputs a row; states and what was recorded are left out.
+    /// The trajectories of some lanes, each with `extra` extra inputs a row; states and what was
+    /// recorded are left out.
     pub(crate) fn of_lanes(&self, extra: usize, lanes: &[usize]) -> Sequences<'a> {
         Sequences {
             steps: self.steps,
             lanes: lanes.len(),
             observations: self.rows_of(lanes).map(|row| self.observations[row]).collect(),
-            extra: self.rows_of(lanes).flat_map(|row| &self.extra[row * extra..(row + 1) * extra]).copied().collect(),
+            extra: self
+                .rows_of(lanes)
+                .flat_map(|row| &self.extra[row * extra..(row + 1) * extra])
+                .copied()
+                .collect(),
             initial_state: Vec::new(),
             reset: self.rows_of(lanes).map(|row| self.reset[row]).collect(),
             recorded: Vec::new(),
@@ -70,12 +77,17 @@ impl<'a> Sequences<'a> {
 }
 
 impl<'a> Sequences<'a> {
-    /// The trajectories of some lanes, with their states and what was recorded of them, if that was of all.
+    /// The trajectories of some lanes, with their states and what was recorded of them, if that was
+    /// of all.
     pub(crate) fn part(&self, shape: &NetworkShape, lanes: &[usize]) -> Sequences<'a> {
         let whole = self.recorded.len() == self.lanes;
         Sequences {
             initial_state: states_of(&self.initial_state, shape.state_size(), lanes),
-            recorded: if whole { lanes.iter().map(|&lane| self.recorded[lane]).collect() } else { Vec::new() },
+            recorded: if whole {
+                lanes.iter().map(|&lane| self.recorded[lane]).collect()
+            } else {
+                Vec::new()
+            },
             ..self.of_lanes(shape.extra_inputs, lanes)
         }
     }
@@ -114,8 +126,9 @@ pub struct Published {
     pub networks: Vec<NetworkWeights>,
 }
 
-/// What an acting network computed in a rollout. A learner that holds the very same weights need not compute it again:
-/// outputs of a row depend neither on the rows beside it nor on who computes them, bit for bit.
+/// What an acting network computed in a rollout. A learner that holds the very same weights need
+/// not compute it again: outputs of a row depend neither on the rows beside it nor on who computes
+/// them, bit for bit.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     pub(crate) tape: Tape,
@@ -139,7 +152,9 @@ impl Recording {
 
     /// Whether all of it was computed with these very weights.
     pub(crate) fn holds(&self, weights: &Arc<PackedWeights>, pixels: &Arc<PixelScale>) -> bool {
-        let same = |own: &(Arc<PackedWeights>, Arc<PixelScale>)| Arc::ptr_eq(&own.0, weights) && Arc::ptr_eq(&own.1, pixels);
+        let same = |own: &(Arc<PackedWeights>, Arc<PixelScale>)| {
+            Arc::ptr_eq(&own.0, weights) && Arc::ptr_eq(&own.1, pixels)
+        };
         !self.mixed && self.made_with.as_ref().is_some_and(same)
     }
 }
@@ -173,9 +188,16 @@ pub trait ActingNetwork: Send {
     /// Takes over weights.
     fn load(&mut self, weights: &NetworkWeights);
 
-    /// Outputs for one step of some lanes; `state` is replaced by the state after. Networks that can do so note in `place`
-    /// what a backward pass needs.
-    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32], place: Option<Place<'_>>);
+    /// Outputs for one step of some lanes; `state` is replaced by the state after. Networks that
+    /// can do so note in `place` what a backward pass needs.
+    fn act(
+        &mut self,
+        observations: &[u8],
+        extra: &[f32],
+        state: &mut [f32],
+        outputs: &mut [f32],
+        place: Option<Place<'_>>,
+    );
 }
 
 /// A network that learns.
@@ -195,6 +217,7 @@ pub trait LearningNetwork: Send {
     /// Outputs of all rows, `shape().outputs()` a row; what a backward pass needs is kept.
     fn forward(&mut self, batch: &Sequences<'_>) -> Vec<f32>;
 
-    /// The gradient of the parameters, written to `gradient`, from that of the outputs of the last forward pass.
+    /// The gradient of the parameters, written to `gradient`, from that of the outputs of the last
+    /// forward pass.
     fn backward(&mut self, batch: &Sequences<'_>, output_gradient: &[f32], gradient: &mut [f32]);
 }

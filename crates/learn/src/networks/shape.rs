@@ -6,12 +6,14 @@ use crate::config::{Convolution, RecurrentCell};
 use crate::error::LearnError;
 use crate::networks::layers::{EncoderLayer, ImageShape, STAGE, encoder_layers};
 
-/// Bounds on networks, a hundred times the original's: beyond them a number in a settings file is surely a slip.
+/// Bounds on networks, a hundred times the original's: beyond them a number in a settings file is
+/// surely a slip.
 const WIDEST: usize = 1 << 16;
 const MOST_LAYERS: usize = 64;
 const MOST_PARAMETERS: usize = 1 << 28;
 
-/// One network: convolutions or a residual encoder, dense layers, an optional recurrent layer, and linear heads, all on one 8-bit image.
+/// One network: convolutions or a residual encoder, dense layers, an optional recurrent layer, and
+/// linear heads, all on one 8-bit image.
 ///
 /// The original's is [`NetworkShape::default`]: 32@8/4, 64@4/2, 128@3/2, dense 512, GRU 512.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
@@ -72,12 +74,14 @@ pub enum ParameterKind {
     RecurrentBias,
 }
 
-/// A named block of the flat parameter vector: a matrix of `inputs` rows and `outputs` columns, row by row.
+/// A named block of the flat parameter vector: a matrix of `inputs` rows and `outputs` columns, row
+/// by row.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Parameter {
     /// Name in checkpoints.
     pub name: String,
-    /// Logical shape; a convolution's is [kernel row, kernel column, input channel, output channel].
+    /// Logical shape; a convolution's is [kernel row, kernel column, input channel, output
+    /// channel].
     pub shape: Vec<usize>,
     /// Where the block starts in the flat vector.
     pub offset: usize,
@@ -109,19 +113,30 @@ impl NetworkShape {
         let bad = |text: String| Err(LearnError::Config(text));
         let mut image = self.image;
         if image.size() == 0 {
-            return bad(format!("observation of {}x{}x{} has no pixels", image.height, image.width, image.channels));
+            return bad(format!(
+                "observation of {}x{}x{} has no pixels",
+                image.height, image.width, image.channels
+            ));
         }
         if !self.residual.is_empty() && !self.convolutions.is_empty() {
             return bad("a network has convolutions or a residual encoder, not both: leave one of them empty".into());
         }
-        if let Some(channels) = self.residual.iter().find(|&&channels| channels == 0 || !channels.is_multiple_of(32)) {
+        if let Some(channels) =
+            self.residual.iter().find(|&&channels| channels == 0 || !channels.is_multiple_of(32))
+        {
             return bad(format!("residual stage of {channels} channels: use a multiple of 32"));
         }
         for convolution in &self.convolutions {
             if convolution.channels == 0 || !convolution.channels.is_multiple_of(32) {
-                return bad(format!("convolution of {} channels: use a multiple of 32", convolution.channels));
+                return bad(format!(
+                    "convolution of {} channels: use a multiple of 32",
+                    convolution.channels
+                ));
             }
-            if convolution.kernel == 0 || convolution.stride == 0 || convolution.stride > convolution.kernel {
+            if convolution.kernel == 0
+                || convolution.stride == 0
+                || convolution.stride > convolution.kernel
+            {
                 return bad(format!(
                     "convolution with kernel {} and stride {}: use 1 <= stride <= kernel",
                     convolution.kernel, convolution.stride
@@ -149,9 +164,18 @@ impl NetworkShape {
             return bad("every head needs at least one output".into());
         }
         let widths = self.convolutions.iter().map(|convolution| &convolution.channels);
-        let widest =
-            widths.chain(&self.residual).chain(&self.dense).chain(&self.recurrent).chain(&self.heads).max().copied().unwrap_or(0);
-        let layers = self.convolutions.len() + self.residual.len() * STAGE + self.dense.len() + self.heads.len();
+        let widest = widths
+            .chain(&self.residual)
+            .chain(&self.dense)
+            .chain(&self.recurrent)
+            .chain(&self.heads)
+            .max()
+            .copied()
+            .unwrap_or(0);
+        let layers = self.convolutions.len()
+            + self.residual.len() * STAGE
+            + self.dense.len()
+            + self.heads.len();
         // With these bounds no product of sizes wraps around.
         if widest > WIDEST || layers > MOST_LAYERS || self.parameter_count() > MOST_PARAMETERS {
             return bad(format!(
@@ -208,8 +232,15 @@ impl NetworkShape {
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut table = Table::default();
-        for EncoderLayer { name, convolution: Convolution { kernel, channels, .. }, image, .. } in self.encoder_layers() {
-            table.layer(&name, vec![kernel, kernel, image.channels, channels], ParameterKind::Convolution);
+        for EncoderLayer {
+            name, convolution: Convolution { kernel, channels, .. }, image, ..
+        } in self.encoder_layers()
+        {
+            table.layer(
+                &name,
+                vec![kernel, kernel, image.channels, channels],
+                ParameterKind::Convolution,
+            );
         }
         let mut inputs = self.features();
         for (index, &units) in self.dense.iter().enumerate() {
@@ -219,12 +250,28 @@ impl NetworkShape {
         if let Some(units) = self.recurrent {
             let (cell, columns) = (self.cell, self.gate_columns());
             for (name, inputs) in [("input", self.core_inputs()), ("hidden", units)] {
-                table.push(format!("{cell}.{name}_weight"), vec![inputs, columns], units, columns, ParameterKind::Recurrent);
-                table.push(format!("{cell}.{name}_bias"), vec![columns], units, columns, ParameterKind::RecurrentBias);
+                table.push(
+                    format!("{cell}.{name}_weight"),
+                    vec![inputs, columns],
+                    units,
+                    columns,
+                    ParameterKind::Recurrent,
+                );
+                table.push(
+                    format!("{cell}.{name}_bias"),
+                    vec![columns],
+                    units,
+                    columns,
+                    ParameterKind::RecurrentBias,
+                );
             }
         }
         for (index, &outputs) in self.heads.iter().enumerate() {
-            table.layer(&format!("head{index}"), vec![self.head_inputs(), outputs], ParameterKind::Head);
+            table.layer(
+                &format!("head{index}"),
+                vec![self.head_inputs(), outputs],
+                ParameterKind::Head,
+            );
         }
         table.parameters
     }
@@ -235,7 +282,8 @@ impl NetworkShape {
         self.parameters().iter().map(Parameter::size).sum()
     }
 
-    /// Floating-point operations of one forward pass of one sample (a multiply-add is two), matrix products alone.
+    /// Floating-point operations of one forward pass of one sample (a multiply-add is two), matrix
+    /// products alone.
     #[must_use]
     pub fn forward_flop(&self) -> f64 {
         let once = |parameter: &Parameter| match parameter.kind {
@@ -246,7 +294,8 @@ impl NetworkShape {
         2.0 * (convolved + self.parameters().iter().map(once).sum::<f64>())
     }
 
-    /// Floating-point operations of forward and backward passes of one sample; nothing flows back into the image.
+    /// Floating-point operations of forward and backward passes of one sample; nothing flows back
+    /// into the image.
     #[must_use]
     pub fn training_flop(&self) -> f64 {
         let first = match self.encoder_layers().first() {
@@ -264,7 +313,14 @@ struct Table {
 }
 
 impl Table {
-    fn push(&mut self, name: String, shape: Vec<usize>, inputs: usize, outputs: usize, kind: ParameterKind) {
+    fn push(
+        &mut self,
+        name: String,
+        shape: Vec<usize>,
+        inputs: usize,
+        outputs: usize,
+        kind: ParameterKind,
+    ) {
         let parameter = Parameter { name, shape, offset: self.offset, inputs, outputs, kind };
         self.offset += parameter.size();
         self.parameters.push(parameter);
@@ -283,8 +339,9 @@ impl Table {
 mod tests {
     use super::*;
 
-    /// Totals of the original, counted in a replica of its modules: PPO on Remedy Rush and Volcanic Venture has 2,874,090 parameters, on the spaces with
-    /// eleven logits 2,875,116, on Collateral Damage 2,872,038, 513 more with a cost critic, 2,048 more with depth.
+    /// Totals of the original, counted in a replica of its modules: PPO on Remedy Rush and Volcanic
+    /// Venture has 2,874,090 parameters, on the spaces with eleven logits 2,875,116, on Collateral
+    /// Damage 2,872,038, 513 more with a cost critic, 2,048 more with depth.
     #[test]
     fn parameter_counts_are_those_of_the_original() {
         let count = |logits, values: usize, channels| {

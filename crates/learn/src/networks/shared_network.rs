@@ -4,7 +4,8 @@ use crate::networks::network::{LearningNetwork, NetworkWeights, PixelScale, Sequ
 use crate::networks::shape::NetworkShape;
 use crate::team::Team;
 
-/// A network of which this worker computes the lanes whose pixels it has: output rows are handed to everyone, gradients are summed over all.
+/// A network of which this worker computes the lanes whose pixels it has: output rows are handed to
+/// everyone, gradients are summed over all.
 pub struct SharedNetwork {
     own: Box<dyn LearningNetwork>,
     team: Team,
@@ -20,13 +21,16 @@ impl SharedNetwork {
     /// Puts the output rows of a worker's lanes into those of all; false if they are none.
     fn place(&self, batch: &Sequences<'_>, part: &[u8], rows: &mut [f32]) -> bool {
         let (words, rest) = part.as_chunks::<4>();
-        let Some((count, words)) = words.split_first().filter(|_| rest.is_empty()) else { return false };
+        let Some((count, words)) = words.split_first().filter(|_| rest.is_empty()) else {
+            return false;
+        };
         let (count, width) = (u32::from_le_bytes(*count) as usize, self.own.shape().outputs());
         let Some((lanes, outputs)) = words.split_at_checked(count) else { return false };
         if outputs.len() != batch.steps * count * width {
             return false;
         }
-        for (index, lane) in lanes.iter().map(|lane| u32::from_le_bytes(*lane) as usize).enumerate() {
+        for (index, lane) in lanes.iter().map(|lane| u32::from_le_bytes(*lane) as usize).enumerate()
+        {
             if lane >= batch.lanes {
                 return false;
             }
@@ -66,7 +70,9 @@ impl LearningNetwork for SharedNetwork {
         let lanes = lanes_here(batch);
         let part = batch.part(self.own.shape(), &lanes);
         let outputs = if lanes.is_empty() { Vec::new() } else { self.own.forward(&part) };
-        let numbers = std::iter::once(lanes.len()).chain(lanes).flat_map(|number| (number as u32).to_le_bytes());
+        let numbers = std::iter::once(lanes.len())
+            .chain(lanes)
+            .flat_map(|number| (number as u32).to_le_bytes());
         let bytes = numbers.chain(outputs.iter().flat_map(|output| output.to_le_bytes())).collect();
         let mut rows = vec![0.0; batch.rows() * self.own.shape().outputs()];
         // What cannot be exchanged is told by the team once the rollout is learned from.

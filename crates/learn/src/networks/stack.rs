@@ -13,14 +13,15 @@ use crate::networks::distribution::ActionShape;
 use crate::networks::in_parts::InParts;
 use crate::networks::layers::ImageShape;
 use crate::networks::network::{
-    ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording, Sequences, states_of,
+    ActingNetwork, LearningNetwork, PixelScale, Place, Published, RecordedLane, Recording,
+    Sequences, states_of,
 };
 use crate::networks::shape::NetworkShape;
 use crate::networks::shared_network::SharedNetwork;
 use crate::team::Team;
 
-/// Shape of a policy with its critics. An output row holds the policy's numbers, the value, and the value of each cost,
-/// whether one network makes them all or each has its own.
+/// Shape of a policy with its critics. An output row holds the policy's numbers, the value, and the
+/// value of each cost, whether one network makes them all or each has its own.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ModelShape {
     /// The networks.
@@ -44,7 +45,11 @@ impl ModelShape {
     ) -> Result<ModelShape, LearnError> {
         let network = |heads: Vec<usize>| NetworkShape {
             image,
-            convolutions: if config.residual.is_empty() { config.convolutions.clone() } else { vec![] },
+            convolutions: if config.residual.is_empty() {
+                config.convolutions.clone()
+            } else {
+                vec![]
+            },
             residual: config.residual.clone(),
             dense: config.dense.clone(),
             extra_inputs,
@@ -52,9 +57,13 @@ impl ModelShape {
             cell: config.cell,
             heads,
         };
-        let heads = std::iter::once(action.parameters()).chain(std::iter::repeat_n(1, 1 + cost_critics));
-        let networks =
-            if config.separate { heads.map(|head| network(vec![head])).collect() } else { vec![network(heads.collect())] };
+        let heads =
+            std::iter::once(action.parameters()).chain(std::iter::repeat_n(1, 1 + cost_critics));
+        let networks = if config.separate {
+            heads.map(|head| network(vec![head])).collect()
+        } else {
+            vec![network(heads.collect())]
+        };
         let shape = ModelShape { networks, action, cost_critics, critic_inputs: 0 };
         shape.networks.iter().try_for_each(NetworkShape::check)?;
         Ok(shape)
@@ -64,7 +73,11 @@ impl ModelShape {
     pub fn with_critic_inputs(mut self, inputs: usize) -> Result<ModelShape, LearnError> {
         self.critic_inputs = inputs;
         for (index, network) in self.networks.iter_mut().enumerate() {
-            network.heads.iter_mut().skip(usize::from(index == 0)).for_each(|head| *head = 1 + inputs);
+            network
+                .heads
+                .iter_mut()
+                .skip(usize::from(index == 0))
+                .for_each(|head| *head = 1 + inputs);
             network.check()?;
         }
         Ok(self)
@@ -73,7 +86,11 @@ impl ModelShape {
     /// What becomes of a network's outputs.
     fn critic_heads(&self, network: usize) -> CriticHeads {
         let policy = if network == 0 { self.action.parameters() } else { 0 };
-        CriticHeads { policy, outputs: self.networks[network].outputs(), inputs: self.critic_inputs }
+        CriticHeads {
+            policy,
+            outputs: self.networks[network].outputs(),
+            inputs: self.critic_inputs,
+        }
     }
 
     /// Length of an output row.
@@ -143,7 +160,13 @@ pub struct Notes<'a> {
 impl Notes<'_> {
     fn place(&mut self, network: usize, lanes: &Range<usize>) -> Option<Place<'_>> {
         let recording = self.recordings.get_mut(network)?;
-        Some(Place { recording, steps: self.steps, all_lanes: self.all_lanes, step: self.step, lanes: lanes.clone() })
+        Some(Place {
+            recording,
+            steps: self.steps,
+            all_lanes: self.all_lanes,
+            step: self.step,
+            lanes: lanes.clone(),
+        })
     }
 }
 
@@ -166,7 +189,12 @@ impl Actor {
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
         };
-        Actor { networks: shape.networks.iter().map(network).collect(), shape: shape.clone(), outputs: Vec::new(), version: None }
+        Actor {
+            networks: shape.networks.iter().map(network).collect(),
+            shape: shape.clone(),
+            outputs: Vec::new(),
+            version: None,
+        }
     }
 
     /// Takes over published weights, if they are others than before.
@@ -241,17 +269,25 @@ impl<'a> ModelSequences<'a> {
     /// The trajectories of some lanes, told which lanes these are of the batch.
     #[must_use]
     pub fn of_lanes(&self, shape: &ModelShape, lanes: &[usize]) -> ModelSequences<'a> {
-        let states = |(network, states): (&NetworkShape, &Vec<f32>)| states_of(states, network.state_size(), lanes);
+        let states = |(network, states): (&NetworkShape, &Vec<f32>)| {
+            states_of(states, network.state_size(), lanes)
+        };
         ModelSequences {
             sequences: self.sequences.of_lanes(shape.extra_inputs(), lanes),
             initial_state: shape.networks.iter().zip(&self.initial_state).map(states).collect(),
             privileged: self
                 .sequences
                 .rows_of(lanes)
-                .flat_map(|row| &self.privileged[row * shape.critic_inputs..(row + 1) * shape.critic_inputs])
+                .flat_map(|row| {
+                    &self.privileged[row * shape.critic_inputs..(row + 1) * shape.critic_inputs]
+                })
                 .copied()
                 .collect(),
-            recorded: self.recorded.iter().map(|all| lanes.iter().filter_map(|&lane| all.get(lane).copied()).collect()).collect(),
+            recorded: self
+                .recorded
+                .iter()
+                .map(|all| lanes.iter().filter_map(|&lane| all.get(lane).copied()).collect())
+                .collect(),
         }
     }
 }
@@ -268,7 +304,9 @@ impl Stack {
     pub fn new(shape: &ModelShape, device: &ComputeDevice, threads: usize) -> Stack {
         let network = |shape: &NetworkShape| -> Box<dyn LearningNetwork> {
             match device {
-                ComputeDevice::Processor(kernels) => Box::new(CpuLearner::new(*kernels, shape, threads)),
+                ComputeDevice::Processor(kernels) => {
+                    Box::new(CpuLearner::new(*kernels, shape, threads))
+                }
                 #[cfg(feature = "graphics")]
                 ComputeDevice::Burn(device) => Box::new(BurnNetwork::new(shape, device)),
             }
@@ -286,7 +324,8 @@ impl Stack {
 
     /// From now on each worker of the team computes the lanes whose pixels it has.
     pub fn share(&mut self, team: &Team) {
-        let shared = |own| -> Box<dyn LearningNetwork> { Box::new(SharedNetwork::new(own, team.clone())) };
+        let shared =
+            |own| -> Box<dyn LearningNetwork> { Box::new(SharedNetwork::new(own, team.clone())) };
         self.networks = std::mem::take(&mut self.networks).into_iter().map(shared).collect();
     }
 
@@ -303,7 +342,10 @@ impl Stack {
     /// The weights for acting.
     #[must_use]
     pub fn publish(&self, version: u64) -> Published {
-        Published { version, networks: self.networks.iter().map(|network| network.publish()).collect() }
+        Published {
+            version,
+            networks: self.networks.iter().map(|network| network.publish()).collect(),
+        }
     }
 
     /// Output rows; the columns of networks outside the range are zero.
@@ -336,27 +378,48 @@ impl Stack {
         self.networks[network].forward(batch.of(network))
     }
 
-    /// The gradient of the parameters of some networks from that of the output rows of the last forward pass; what
-    /// `gradient` holds of the others is left as it is.
-    pub fn backward(&mut self, networks: Range<usize>, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+    /// The gradient of the parameters of some networks from that of the output rows of the last
+    /// forward pass; what `gradient` holds of the others is left as it is.
+    pub fn backward(
+        &mut self,
+        networks: Range<usize>,
+        batch: &mut ModelSequences<'_>,
+        rows: &[f32],
+        gradient: &mut [f32],
+    ) {
         let width = self.shape.outputs();
         let mut first = 0;
         for index in 0..self.networks.len() {
             let heads = self.shape.critic_heads(index);
             let count = heads.columns();
             if networks.contains(&index) {
-                let mut own: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..first + count]).copied().collect();
+                let mut own: Vec<f32> = rows
+                    .chunks_exact(width)
+                    .flat_map(|row| &row[first..first + count])
+                    .copied()
+                    .collect();
                 if heads.inputs > 0 {
                     own = heads.spread(&own, &batch.privileged);
                 }
-                self.backward_network(index, batch, &own, &mut gradient[self.shape.parameter_range(index)]);
+                self.backward_network(
+                    index,
+                    batch,
+                    &own,
+                    &mut gradient[self.shape.parameter_range(index)],
+                );
             }
             first += count;
         }
     }
 
     /// The gradient of one network's parameters.
-    pub fn backward_network(&mut self, network: usize, batch: &mut ModelSequences<'_>, rows: &[f32], gradient: &mut [f32]) {
+    pub fn backward_network(
+        &mut self,
+        network: usize,
+        batch: &mut ModelSequences<'_>,
+        rows: &[f32],
+        gradient: &mut [f32],
+    ) {
         self.networks[network].backward(batch.of(network), rows, gradient);
     }
 }

@@ -24,7 +24,8 @@ use crate::sampling::shaping::{Shaping, seen};
 /// Which checkpoint of a run acts.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Which {
-    /// The one that the run selects: of those within all budgets, the one that returns most. The newest of a run without any.
+    /// The one that the run selects: of those within all budgets, the one that returns most. The
+    /// newest of a run without any.
     #[default]
     Selected,
     /// The newest whole one.
@@ -47,7 +48,8 @@ pub struct TrainedPolicy {
     shape: ModelShape,
     published: Published,
     device: ComputeDevice,
-    /// Where the cost that shapes the agent's input is among the cost terms; `None` for the scalar cost.
+    /// Where the cost that shapes the agent's input is among the cost terms; `None` for the scalar
+    /// cost.
     watched: Option<usize>,
     /// The units of the critics' values; none where they are not known.
     returns: Vec<Moments>,
@@ -100,11 +102,13 @@ pub struct Thought {
     pub value: Option<f32>,
     /// The same of each constrained cost, for algorithms that estimate it.
     pub cost_values: Vec<f32>,
-    /// All of these in the units of returns and costs themselves, discounted, the return first; empty where those are not known.
+    /// All of these in the units of returns and costs themselves, discounted, the return first;
+    /// empty where those are not known.
     pub in_own_units: Vec<f32>,
 }
 
-/// The settings of the run in a directory, or of the one that an agent's file comes from, so that its worlds can be made.
+/// The settings of the run in a directory, or of the one that an agent's file comes from, so that
+/// its worlds can be made.
 pub fn run_config(directory: &Path) -> Result<TrainConfig, LearnError> {
     match AgentFile::at(directory)? {
         Some(file) => Ok(file.card.config),
@@ -123,10 +127,18 @@ impl TrainedPolicy {
     ) -> Result<TrainedPolicy, LearnError> {
         // Only the algorithms of a single constraint shape what the network sees by it.
         let watched = find_terms(cost_terms, &config.constraints[..1])?.swap_remove(0);
-        Ok(TrainedPolicy { config: config.clone(), shape: shape.clone(), published, device, watched, returns: Vec::new() })
+        Ok(TrainedPolicy {
+            config: config.clone(),
+            shape: shape.clone(),
+            published,
+            device,
+            watched,
+            returns: Vec::new(),
+        })
     }
 
-    /// Loads the policy of a run, or of an agent's file, for worlds with these observations (height, width, channels) and actions.
+    /// Loads the policy of a run, or of an agent's file, for worlds with these observations
+    /// (height, width, channels) and actions.
     pub fn load(
         directory: &Path,
         which: Which,
@@ -151,7 +163,10 @@ impl TrainedPolicy {
         };
         let loaded = loaded.ok_or_else(|| {
             let command = go_on(&config, directory);
-            LearnError::content(directory, format!("no checkpoint was written yet; let the run go on: {command}"))
+            LearnError::content(
+                directory,
+                format!("no checkpoint was written yet; let the run go on: {command}"),
+            )
         })?;
         let policy = TrainedPolicy::restored(
             &config,
@@ -161,7 +176,11 @@ impl TrainedPolicy {
             |learner| loaded.restore_weights(learner),
         )?;
         let critics = 1 + policy.shape.cost_critics;
-        Ok(if loaded.progress.returns.len() == critics { policy.in_units_of(&loaded.progress.returns) } else { policy })
+        Ok(if loaded.progress.returns.len() == critics {
+            policy.in_units_of(&loaded.progress.returns)
+        } else {
+            policy
+        })
     }
 
     /// Its critics' values are normalised returns in the units of these moments.
@@ -170,8 +189,8 @@ impl TrainedPolicy {
         TrainedPolicy { returns: returns.to_vec(), ..self }
     }
 
-    /// The units of what its critics say of each cost to come; none where they are not known, or where critics saw while they learned
-    /// what an agent at work does not.
+    /// The units of what its critics say of each cost to come; none where they are not known, or
+    /// where critics saw while they learned what an agent at work does not.
     #[must_use]
     pub fn cost_units(&self) -> &[Moments] {
         if !self.config.learning.critic_inputs.is_empty() {
@@ -180,7 +199,8 @@ impl TrainedPolicy {
         self.returns.get(1..).unwrap_or_default()
     }
 
-    /// A policy for the processor, whose weights `restore` puts into a learner, if `check_fits` finds as many as its shape has.
+    /// A policy for the processor, whose weights `restore` puts into a learner, if `check_fits`
+    /// finds as many as its shape has.
     pub(crate) fn restored(
         config: &TrainConfig,
         [height, width, channels]: [usize; 3],
@@ -191,9 +211,16 @@ impl TrainedPolicy {
         let mut config = config.clone();
         config.learning.threads = 1;
         let image = ImageShape { height, width, channels };
-        let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
-        let shape = ModelShape::new(image, action, cost_critics, shaping(&config).extra_inputs(), &config.network)?
-            .with_critic_inputs(Privileged::new(&config).count())?;
+        let cost_critics =
+            if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
+        let shape = ModelShape::new(
+            image,
+            action,
+            cost_critics,
+            shaping(&config).extra_inputs(),
+            &config.network,
+        )?
+        .with_critic_inputs(Privileged::new(&config).count())?;
         // Before memory is taken for as many weights as the settings speak of.
         check_fits(&shape)?;
         // Wherever it was trained, and by whatever products, it acts on every processor.
@@ -233,14 +260,19 @@ impl TrainedPolicy {
             shaping: shaping(&self.config),
             watched: self.watched,
             choice,
-            units: if self.config.learning.critic_inputs.is_empty() { self.returns.clone() } else { Vec::new() },
+            units: if self.config.learning.critic_inputs.is_empty() {
+                self.returns.clone()
+            } else {
+                Vec::new()
+            },
             normaliser: self.config.learning.normaliser,
         }
     }
 }
 
 impl Agent {
-    /// Loads the agent of a run for `lanes` worlds with these observations (height, width, channels) and actions.
+    /// Loads the agent of a run for `lanes` worlds with these observations (height, width,
+    /// channels) and actions.
     pub fn load(
         directory: &Path,
         which: Which,
@@ -266,14 +298,22 @@ impl Agent {
     /// What the agent carries from step to step.
     #[must_use]
     pub fn memory(&self) -> Memory {
-        Memory { state: self.state.clone(), safety: self.safety.clone(), episodes: self.episodes.clone() }
+        Memory {
+            state: self.state.clone(),
+            safety: self.safety.clone(),
+            episodes: self.episodes.clone(),
+        }
     }
 
     /// What an agent carries at the beginning of episodes, a lane for each seed.
     #[must_use]
     pub fn blank(&self, seeds: &[u64]) -> Memory {
         let episodes = seeds.iter().map(|&seed| (seed, 0)).collect();
-        Memory { state: self.shape.zero_state(seeds.len()), safety: vec![1.0; seeds.len()], episodes }
+        Memory {
+            state: self.shape.zero_state(seeds.len()),
+            safety: vec![1.0; seeds.len()],
+            episodes,
+        }
     }
 
     /// Goes on from what an agent carried, with as many lanes as that had.
@@ -283,15 +323,20 @@ impl Agent {
     pub fn remember(&mut self, memory: Memory) -> Result<(), LearnError> {
         let lanes = memory.episodes.len();
         let sizes = |state: &[Vec<f32>]| state.iter().map(Vec::len).collect::<Vec<_>>();
-        if memory.safety.len() != lanes || sizes(&memory.state) != sizes(&self.shape.zero_state(lanes)) {
-            return Err(LearnError::Config("this state is of another agent, or of another number of lanes".into()));
+        if memory.safety.len() != lanes
+            || sizes(&memory.state) != sizes(&self.shape.zero_state(lanes))
+        {
+            return Err(LearnError::Config(
+                "this state is of another agent, or of another number of lanes".into(),
+            ));
         }
         (self.state, self.safety, self.episodes) = (memory.state, memory.safety, memory.episodes);
         Ok(())
     }
 
-    /// The network's output rows, given the observations of all lanes one after the other: logits and parameters of the actions, then the
-    /// critics' values. The agent has then seen these observations.
+    /// The network's output rows, given the observations of all lanes one after the other: logits
+    /// and parameters of the actions, then the critics' values. The agent has then seen these
+    /// observations.
     pub fn rows(&mut self, observations: &[u8]) -> &[f32] {
         let lanes = self.safety.len();
         let extra: Vec<f32> = match self.shape.extra_inputs() {
@@ -301,7 +346,15 @@ impl Agent {
         // Critics see no more than the policy here, as at an episode's start: nothing acts by them.
         let privileged = vec![0.0; lanes * self.shape.critic_inputs];
         self.rows.resize(lanes * self.shape.outputs(), 0.0);
-        self.actor.act(observations, &extra, &privileged, &mut self.state, 0..lanes, &mut self.rows, None);
+        self.actor.act(
+            observations,
+            &extra,
+            &privileged,
+            &mut self.state,
+            0..lanes,
+            &mut self.rows,
+            None,
+        );
         &self.rows
     }
 
@@ -312,7 +365,8 @@ impl Agent {
         let action = &self.shape.action;
         let mut all = Vec::with_capacity(self.safety.len());
         for (row, (seed, step)) in self.rows.chunks_exact(width).zip(&mut self.episodes) {
-            let mut one = Action { actions: vec![0; action.sizes.len()], deltas: vec![0.0; action.deltas] };
+            let mut one =
+                Action { actions: vec![0; action.sizes.len()], deltas: vec![0.0; action.deltas] };
             match self.choice {
                 Choice::Greedy => action.greedy(row, &mut one.actions, &mut one.deltas),
                 Choice::Sampled => {
@@ -344,7 +398,8 @@ impl Agent {
         }
     }
 
-    /// What each critic of a cost expected in a lane at its last action, in the normalised units of training.
+    /// What each critic of a cost expected in a lane at its last action, in the normalised units of
+    /// training.
     #[must_use]
     pub fn cost_values(&self, lane: usize) -> &[f32] {
         let width = self.shape.outputs();
@@ -352,14 +407,15 @@ impl Agent {
         values.get(1..).unwrap_or_default()
     }
 
-    /// The cost term that it watches while it acts; `None` for the cost of all, or for agents that watch none.
+    /// The cost term that it watches while it acts; `None` for the cost of all, or for agents that
+    /// watch none.
     #[must_use]
     pub fn watched(&self) -> Option<usize> {
         self.watched
     }
 
-    /// Tells what a step cost in a lane, in all and by cost terms; agents that watch their budget need it, and watch what
-    /// they watched while they learned.
+    /// Tells what a step cost in a lane, in all and by cost terms; agents that watch their budget
+    /// need it, and watch what they watched while they learned.
     pub fn observe_cost(&mut self, lane: usize, cost: f64, terms: &[f64]) {
         let watched = self.watched.and_then(|term| terms.get(term).copied()).unwrap_or(cost);
         (_, self.safety[lane]) = self.shaping.step(self.safety[lane], 0.0, watched as f32);

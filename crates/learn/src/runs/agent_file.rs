@@ -1,9 +1,11 @@
-//! An agent as one small file, to be handed to others: its settings, what it is worth, and weights of four or eight bits.
+//! An agent as one small file, to be handed to others: its settings, what it is worth, and weights
+//! of four or eight bits.
 //!
-//! The file is safetensors. Weights are cut into blocks of `BLOCK` that share a scale; a block's codes are whole numbers from
-//! `-m` to `m`, and a weight is its code times `scale / m`. Small tensors take eight bits a code. So do large ones where the file
-//! stays within `LIMIT`; otherwise four, two codes a byte. Statistics of pixels take sixteen bits. What is lost is about
-//! what a step of training changes; what the agent is worth with it, `hasard eval FILE` tells.
+//! The file is safetensors. Weights are cut into blocks of `BLOCK` that share a scale; a block's
+//! codes are whole numbers from `-m` to `m`, and a weight is its code times `scale / m`. Small
+//! tensors take eight bits a code. So do large ones where the file stays within `LIMIT`; otherwise
+//! four, two codes a byte. Statistics of pixels take sixteen bits. What is lost is about what a
+//! step of training changes; what the agent is worth with it, `hasard eval FILE` tells.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
@@ -51,7 +53,8 @@ pub struct Card {
 pub struct AgentFile {
     /// What the file says of it.
     pub card: Card,
-    /// Codes and scales by the names of the tensors; how many weights they stand for, the network's shape tells.
+    /// Codes and scales by the names of the tensors; how many weights they stand for, the network's
+    /// shape tells.
     codes: HashMap<String, (Vec<u8>, Vec<f32>)>,
     pixel_mean: Vec<f64>,
     pixel_variance: Vec<f64>,
@@ -74,7 +77,10 @@ fn round(weights: &[f32], bits: u32) -> (Vec<u8>, Vec<f32>) {
     }
     let bytes = match bits {
         8 => codes.iter().map(|code| code.cast_unsigned()).collect(),
-        _ => codes.chunks(2).map(|two| nibble(two[0]) | nibble(two.get(1).copied().unwrap_or(0)) << 4).collect(),
+        _ => codes
+            .chunks(2)
+            .map(|two| nibble(two[0]) | nibble(two.get(1).copied().unwrap_or(0)) << 4)
+            .collect(),
     };
     (bytes, scales)
 }
@@ -85,7 +91,10 @@ fn nibble(code: i8) -> u8 {
 
 /// Bits of the codes of so many weights; `None` if codes and scales are not those of so many.
 fn bits_of(bytes: &[u8], scales: &[f32], count: usize) -> Option<u32> {
-    let bits = [(8, count), (4, count.div_ceil(2))].into_iter().find(|&(_, length)| bytes.len() == length)?.0;
+    let bits = [(8, count), (4, count.div_ceil(2))]
+        .into_iter()
+        .find(|&(_, length)| bytes.len() == length)?
+        .0;
     (scales.len() == count.div_ceil(BLOCK)).then_some(bits)
 }
 
@@ -100,7 +109,13 @@ fn unround(bytes: &[u8], scales: &[f32], count: usize) -> Option<Vec<f32>> {
         }
     };
     let blocks = codes.chunks(BLOCK).zip(scales);
-    Some(blocks.flat_map(|(block, scale)| block.iter().map(move |&code| f32::from(code) * scale / largest_code(bits))).collect())
+    Some(
+        blocks
+            .flat_map(|(block, scale)| {
+                block.iter().map(move |&code| f32::from(code) * scale / largest_code(bits))
+            })
+            .collect(),
+    )
 }
 
 /// The file of the agent that a run selects.
@@ -108,34 +123,54 @@ pub fn export(run: &Path) -> Result<Vec<u8>, LearnError> {
     let config = read_config(run)?;
     let best = Store::new(run, 1).selected().ok_or_else(|| {
         let command = format!("{} --eval-every {}", go_on(&config, run), config.frames);
-        LearnError::content(run, format!("no checkpoint was selected yet; let the run be evaluated: {command}"))
+        LearnError::content(
+            run,
+            format!("no checkpoint was selected yet; let the run be evaluated: {command}"),
+        )
     })?;
     let checkpoint = Loaded::read(&best)?;
     let selection = read_selection(run).map(|selection| selection.selected);
-    let selection = selection.or_else(|| checkpoint.progress.all_candidates().ranked.into_iter().next());
+    let selection =
+        selection.or_else(|| checkpoint.progress.all_candidates().ranked.into_iter().next());
     pack(&config, selection, &checkpoint)
 }
 
 /// The file of the agent of a checkpoint.
-fn pack(config: &TrainConfig, selection: Option<Candidate>, checkpoint: &Loaded) -> Result<Vec<u8>, LearnError> {
-    let wrong =
-        |error: &dyn std::fmt::Display| LearnError::Config(format!("the checkpoint cannot become an agent file: {error}"));
+fn pack(
+    config: &TrainConfig,
+    selection: Option<Candidate>,
+    checkpoint: &Loaded,
+) -> Result<Vec<u8>, LearnError> {
+    let wrong = |error: &dyn std::fmt::Display| {
+        LearnError::Config(format!("the checkpoint cannot become an agent file: {error}"))
+    };
     let tensors = checkpoint.tensors().map_err(|error| wrong(&error))?;
-    let card = Card { format: FORMAT, program: env!("CARGO_PKG_VERSION").into(), config: config.clone(), selection };
+    let card = Card {
+        format: FORMAT,
+        program: env!("CARGO_PKG_VERSION").into(),
+        config: config.clone(),
+        selection,
+    };
     let card = serde_json::to_string(&card).map_err(|error| wrong(&error))?;
     let mut file = Vec::new();
     for bits in [8, 4] {
         let mut blocks: BTreeMap<String, (Dtype, Vec<u8>)> = BTreeMap::new();
         for (name, view) in tensors.iter() {
             if name.starts_with("pixels.") {
-                blocks.insert(name.into(), (Dtype::U16, sixteen_bits(&view, name == "pixels.variance")));
+                blocks.insert(
+                    name.into(),
+                    (Dtype::U16, sixteen_bits(&view, name == "pixels.variance")),
+                );
                 continue;
             }
             let (words, _) = view.data().as_chunks::<4>();
             let weights: Vec<f32> = words.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
             let (codes, scales) = round(&weights, if weights.len() < SMALL { 8 } else { bits });
             blocks.insert(name.into(), (Dtype::U8, codes));
-            blocks.insert(format!("{name}.scale"), (Dtype::F32, scales.iter().flat_map(|scale| scale.to_le_bytes()).collect()));
+            blocks.insert(
+                format!("{name}.scale"),
+                (Dtype::F32, scales.iter().flat_map(|scale| scale.to_le_bytes()).collect()),
+            );
         }
         let views = blocks.iter().map(|(name, (kind, bytes))| {
             let width = match kind {
@@ -143,7 +178,8 @@ fn pack(config: &TrainConfig, selection: Option<Candidate>, checkpoint: &Loaded)
                 Dtype::U16 => 2,
                 _ => 4,
             };
-            TensorView::new(*kind, vec![bytes.len() / width], bytes).map(|view| (name.clone(), view))
+            TensorView::new(*kind, vec![bytes.len() / width], bytes)
+                .map(|view| (name.clone(), view))
         });
         let views: Vec<_> = views.collect::<Result<_, _>>().map_err(|error| wrong(&error))?;
         let metadata = HashMap::from([(CARD.to_string(), card.clone())]);
@@ -155,11 +191,14 @@ fn pack(config: &TrainConfig, selection: Option<Candidate>, checkpoint: &Loaded)
     Ok(file)
 }
 
-/// Means, which lie between 0 and 1, and deviations, which lie between 0 and a half, in steps of 1/65535.
+/// Means, which lie between 0 and 1, and deviations, which lie between 0 and a half, in steps of
+/// 1/65535.
 fn sixteen_bits(view: &TensorView<'_>, squared: bool) -> Vec<u8> {
     let (words, _) = view.data().as_chunks::<8>();
     let numbers = words.iter().map(|bytes| f64::from_le_bytes(*bytes));
-    let steps = numbers.map(|number| (if squared { number.max(0.0).sqrt() } else { number } * 65535.0).round() as u16);
+    let steps = numbers.map(|number| {
+        (if squared { number.max(0.0).sqrt() } else { number } * 65535.0).round() as u16
+    });
     steps.flat_map(u16::to_le_bytes).collect()
 }
 
@@ -168,8 +207,8 @@ fn misfit(name: &str) -> LearnError {
 }
 
 impl AgentFile {
-    /// The agent's file at a place: a file, or `zoo:NAME`, one that is part of the program. `None` for anything else, such as a
-    /// run's directory.
+    /// The agent's file at a place: a file, or `zoo:NAME`, one that is part of the program. `None`
+    /// for anything else, such as a run's directory.
     pub fn at(place: &Path) -> Result<Option<AgentFile>, LearnError> {
         (zoo::bytes(place).is_some() || place.is_file()).then(|| AgentFile::read(place)).transpose()
     }
@@ -185,16 +224,23 @@ impl AgentFile {
     /// When it is no agent's file.
     pub fn read_whole(path: &Path) -> Result<(Vec<u8>, AgentFile), LearnError> {
         if let Some(bytes) = zoo::bytes(path) {
-            let file = AgentFile::parse(bytes).map_err(|problem| LearnError::content(path, problem))?;
+            let file =
+                AgentFile::parse(bytes).map_err(|problem| LearnError::content(path, problem))?;
             return Ok((bytes.to_vec(), file));
         }
         let size = fs::metadata(path).map_err(LearnError::file(path, "read"))?.len();
         if size > LARGEST {
-            return Err(LearnError::content(path, "too large for an agent's file; give one that `hasard export-agent` wrote"));
+            return Err(LearnError::content(
+                path,
+                "too large for an agent's file; give one that `hasard export-agent` wrote",
+            ));
         }
         let bytes = fs::read(path).map_err(LearnError::file(path, "read"))?;
         let file = AgentFile::parse(&bytes).map_err(|problem| {
-            LearnError::content(path, format!("no agent's file ({problem}); give one that `hasard export-agent` wrote"))
+            LearnError::content(
+                path,
+                format!("no agent's file ({problem}); give one that `hasard export-agent` wrote"),
+            )
         })?;
         Ok((bytes, file))
     }
@@ -202,7 +248,11 @@ impl AgentFile {
     /// Understands the bytes of an agent's file.
     pub fn parse(bytes: &[u8]) -> Result<AgentFile, String> {
         let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|error| error.to_string())?;
-        let card = metadata.metadata().as_ref().and_then(|all| all.get(CARD)).ok_or("it says nothing of its agent")?;
+        let card = metadata
+            .metadata()
+            .as_ref()
+            .and_then(|all| all.get(CARD))
+            .ok_or("it says nothing of its agent")?;
         let card: Card = serde_json::from_str(card).map_err(|error| error.to_string())?;
         if card.format != FORMAT {
             return Err(format!("format {}, this program reads {FORMAT}", card.format));
@@ -211,7 +261,9 @@ impl AgentFile {
         let tensors = SafeTensors::deserialize(bytes).map_err(|error| error.to_string())?;
         let mut codes = HashMap::new();
         for (name, view) in tensors.iter().filter(|(_, view)| view.dtype() == Dtype::U8) {
-            let scales = tensors.tensor(&format!("{name}.scale")).map_err(|error| format!("{name}: {error}"))?;
+            let scales = tensors
+                .tensor(&format!("{name}.scale"))
+                .map_err(|error| format!("{name}: {error}"))?;
             let (words, _) = scales.data().as_chunks::<4>();
             let scales: Vec<f32> = words.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
             codes.insert(name.to_string(), (view.data().to_vec(), scales));
@@ -222,7 +274,8 @@ impl AgentFile {
             Ok(words.iter().map(|bytes| f64::from(u16::from_le_bytes(*bytes)) / 65535.0).collect())
         };
         let pixel_mean = pixels("pixels.mean")?;
-        let pixel_variance = pixels("pixels.variance")?.into_iter().map(|deviation| deviation * deviation).collect();
+        let pixel_variance =
+            pixels("pixels.variance")?.into_iter().map(|deviation| deviation * deviation).collect();
         Ok(AgentFile { card, codes, pixel_mean, pixel_variance })
     }
 
@@ -259,14 +312,19 @@ mod tests {
 
     #[test]
     fn weights_come_back_to_within_half_a_code() {
-        let weights: Vec<f32> = (0..1001).map(|k| ((k * 7919 % 1000) as f32 / 500.0 - 1.0) * (1 + k / 64) as f32).collect();
+        let weights: Vec<f32> = (0..1001)
+            .map(|k| ((k * 7919 % 1000) as f32 / 500.0 - 1.0) * (1 + k / 64) as f32)
+            .collect();
         for bits in [8, 4] {
             let (codes, scales) = round(&weights, bits);
             assert_eq!(codes.len(), if bits == 8 { 1001 } else { 501 });
             let back = unround(&codes, &scales, weights.len()).unwrap();
             for (index, (weight, other)) in weights.iter().zip(&back).enumerate() {
                 let step = scales[index / BLOCK] / largest_code(bits);
-                assert!((weight - other).abs() <= step * 0.5001, "{bits} bits: {weight} became {other}");
+                assert!(
+                    (weight - other).abs() <= step * 0.5001,
+                    "{bits} bits: {weight} became {other}"
+                );
             }
             assert!(unround(&codes[1..], &scales, weights.len()).is_none());
             assert!(unround(&codes, &scales[1..], weights.len()).is_none());

@@ -1,4 +1,5 @@
-//! Whether the critics of the costs expect what comes: their predictions against the discounted cost that followed.
+//! Whether the critics of the costs expect what comes: their predictions against the discounted
+//! cost that followed.
 
 use hasard_envs::Episode;
 use serde::{Deserialize, Serialize};
@@ -24,7 +25,8 @@ pub struct Prediction {
     pub predicted: f64,
     /// The same as it came, up to the episode's end.
     pub observed: f64,
-    /// Weight of what lay beyond a time-out, and was never seen; 0 where the episode ended by itself.
+    /// Weight of what lay beyond a time-out, and was never seen; 0 where the episode ended by
+    /// itself.
     pub cut: f64,
 }
 
@@ -46,7 +48,8 @@ pub struct Calibration {
     pub term: Option<String>,
     /// Discount of the cost to come.
     pub gamma: f64,
-    /// Steps that were compared: those of which a time-out cut off no more than a twentieth of the weight.
+    /// Steps that were compared: those of which a time-out cut off no more than a twentieth of the
+    /// weight.
     pub steps: usize,
     /// Mean of prediction minus what came.
     pub bias: f64,
@@ -64,11 +67,19 @@ pub fn predictions(played: &[(Episode, Trace)], config: &TrainConfig) -> Vec<Pre
     for (number, (episode, trace)) in played.iter().enumerate() {
         for (constraint, (expected, costs)) in trace.expected.iter().zip(&trace.costs).enumerate() {
             let (first, mut to_come) = (all.len(), 0.0);
-            let mut cut = if episode.truncated && config.learning.bootstraps(true) { 1.0 } else { 0.0 };
+            let mut cut =
+                if episode.truncated && config.learning.bootstraps(true) { 1.0 } else { 0.0 };
             for (step, (&predicted, &cost)) in expected.iter().zip(costs).enumerate().rev() {
                 to_come = cost + gamma * to_come;
                 cut *= gamma;
-                all.push(Prediction { episode: number, step, constraint, predicted, observed: to_come, cut });
+                all.push(Prediction {
+                    episode: number,
+                    step,
+                    constraint,
+                    predicted,
+                    observed: to_come,
+                    cut,
+                });
             }
             all[first..].reverse();
         }
@@ -80,14 +91,18 @@ pub fn predictions(played: &[(Episode, Trace)], config: &TrainConfig) -> Vec<Pre
 #[must_use]
 pub fn calibrate(predictions: &[Prediction], config: &TrainConfig) -> Vec<Calibration> {
     let one = |(index, constraint): (usize, &crate::config::Constraint)| {
-        let own = |one: &&Prediction| one.constraint == index && one.cut <= CUT && one.predicted.is_finite();
+        let own = |one: &&Prediction| {
+            one.constraint == index && one.cut <= CUT && one.predicted.is_finite()
+        };
         let mut known: Vec<&Prediction> = predictions.iter().filter(own).collect();
         known.sort_by(|a, b| a.predicted.total_cmp(&b.predicted));
         let mean = |some: &[&Prediction], of: fn(&Prediction) -> f64| {
             some.iter().map(|one| of(one)).sum::<f64>() / some.len().max(1) as f64
         };
         let count = known.len();
-        let bins = (0..BINS).map(|bin| &known[count * bin / BINS..count * (bin + 1) / BINS]).filter(|some| !some.is_empty());
+        let bins = (0..BINS)
+            .map(|bin| &known[count * bin / BINS..count * (bin + 1) / BINS])
+            .filter(|some| !some.is_empty());
         Calibration {
             term: constraint.term.clone(),
             gamma: gamma(config),
@@ -131,16 +146,25 @@ mod tests {
         (episode, Trace { expected: vec![predicted.to_vec()], costs: vec![costs.to_vec()] })
     }
 
-    /// By hand at a discount of one half: the costs 1, 0, 4 make 1 + 0 + 1 = 2, then 0 + 2 = 2, then 4 to come; of an episode that the
-    /// clock ends after them, an eighth, a quarter and a half of the weight was never seen.
+    /// By hand at a discount of one half: the costs 1, 0, 4 make 1 + 0 + 1 = 2, then 0 + 2 = 2,
+    /// then 4 to come; of an episode that the clock ends after them, an eighth, a quarter and a
+    /// half of the weight was never seen.
     #[test]
     fn costs_to_come_are_those_worked_out_by_hand() {
-        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
         config.constraints = vec![Constraint { term: None, budget: 5.0 }];
-        (config.learning.gamma, config.learning.cost_gamma, config.learning.bootstrap_cost_time_outs) = (0.5, None, Some(true));
+        (
+            config.learning.gamma,
+            config.learning.cost_gamma,
+            config.learning.bootstrap_cost_time_outs,
+        ) = (0.5, None, Some(true));
         let all = predictions(&[played(&[1.0, 0.0, 4.0], &[3.0, 2.0, 3.0], false)], &config);
         assert_eq!(all.iter().map(|one| one.observed).collect::<Vec<_>>(), [2.0, 2.0, 4.0]);
-        assert_eq!(all.iter().map(|one| (one.step, one.cut)).collect::<Vec<_>>(), [(0, 0.0), (1, 0.0), (2, 0.0)]);
+        assert_eq!(
+            all.iter().map(|one| (one.step, one.cut)).collect::<Vec<_>>(),
+            [(0, 0.0), (1, 0.0), (2, 0.0)]
+        );
         let one = calibrate(&all, &config).swap_remove(0);
         assert_eq!((one.steps, one.bias, one.bins.len(), one.gamma), (3, 0.0, 3, 0.5));
         assert!((one.error - (2.0f64 / 3.0).sqrt()).abs() < 1e-12);

@@ -1,9 +1,10 @@
 //! Checkpoints: everything that a run needs to go on as if it had never stopped.
 //!
-//! A checkpoint is a directory with `weights.safetensors` (the networks' parameters by name and the pixel statistics:
-//! all that acting needs), `training.safetensors` (moments of the optimiser, states of the lanes) and `state.json`
-//! (counters, multipliers, statistics, and a checksum of the other two). It is written under another name and renamed
-//! when complete and on the disk, so that under its own name it is whole, whenever the machine may stop.
+//! A checkpoint is a directory with `weights.safetensors` (the networks' parameters by name and the
+//! pixel statistics: all that acting needs), `training.safetensors` (moments of the optimiser,
+//! states of the lanes) and `state.json` (counters, multipliers, statistics, and a checksum of the
+//! other two). It is written under another name and renamed when complete and on the disk, so that
+//! under its own name it is whole, whenever the machine may stop.
 
 use std::borrow::Cow;
 use std::fs::{self, File};
@@ -88,11 +89,14 @@ struct StateFile {
 impl StateFile {
     fn read(path: &Path) -> Result<StateFile, LearnError> {
         let text = fs::read(path).map_err(LearnError::file(path, "read"))?;
-        serde_json::from_slice(&text).map_err(|error| LearnError::content(path, format!("damaged: {error}")))
+        serde_json::from_slice(&text)
+            .map_err(|error| LearnError::content(path, format!("damaged: {error}")))
     }
 
     fn text(&self) -> Result<Vec<u8>, LearnError> {
-        serde_json::to_vec_pretty(self).map_err(|error| LearnError::Config(format!("the run's state cannot be written: {error}")))
+        serde_json::to_vec_pretty(self).map_err(|error| {
+            LearnError::Config(format!("the run's state cannot be written: {error}"))
+        })
     }
 }
 
@@ -127,7 +131,12 @@ impl View for &Block {
 }
 
 /// Refuses a block of another kind or number of values.
-fn check_block(view: &TensorView<'_>, kind: Dtype, length: usize, name: &str) -> Result<(), String> {
+fn check_block(
+    view: &TensorView<'_>,
+    kind: Dtype,
+    length: usize,
+    name: &str,
+) -> Result<(), String> {
     let count = 8 * view.data().len() / kind.bitsize();
     if view.dtype() != kind || count != length {
         return Err(format!("'{name}' has {count} values of {:?}, not {length}", view.dtype()));
@@ -138,7 +147,11 @@ fn check_block(view: &TensorView<'_>, kind: Dtype, length: usize, name: &str) ->
 macro_rules! block {
     ($name:ident, $parse:ident, $type:ty, $kind:ident) => {
         fn $name(values: &[$type], shape: Vec<usize>) -> Block {
-            Block { kind: Dtype::$kind, shape, bytes: values.iter().flat_map(|value| value.to_le_bytes()).collect() }
+            Block {
+                kind: Dtype::$kind,
+                shape,
+                bytes: values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+            }
         }
 
         fn $parse(view: &TensorView<'_>, length: usize, name: &str) -> Result<Vec<$type>, String> {
@@ -160,18 +173,25 @@ pub struct Checkpoint {
 }
 
 fn serialise(blocks: &[(String, Block)]) -> Result<Vec<u8>, LearnError> {
-    serialize(blocks.iter().map(|(name, block)| (name.as_str(), block)), None)
-        .map_err(|error| LearnError::Config(format!("weights cannot be written as safetensors: {error}")))
+    serialize(blocks.iter().map(|(name, block)| (name.as_str(), block)), None).map_err(|error| {
+        LearnError::Config(format!("weights cannot be written as safetensors: {error}"))
+    })
 }
 
 /// Names of all parameters: those of a model of several networks begin with the network's number.
-pub(crate) fn parameter_names(shape: &ModelShape) -> Vec<(String, Vec<usize>, std::ops::Range<usize>)> {
+pub(crate) fn parameter_names(
+    shape: &ModelShape,
+) -> Vec<(String, Vec<usize>, std::ops::Range<usize>)> {
     let mut names = Vec::new();
     for (index, network) in shape.networks.iter().enumerate() {
         let start = shape.parameter_range(index).start;
         for parameter in network.parameters() {
             let range = start + parameter.offset..start + parameter.offset + parameter.size();
-            names.push((format!("network{index}.{}", parameter.name), parameter.shape.clone(), range));
+            names.push((
+                format!("network{index}.{}", parameter.name),
+                parameter.shape.clone(),
+                range,
+            ));
         }
     }
     names
@@ -179,7 +199,11 @@ pub(crate) fn parameter_names(shape: &ModelShape) -> Vec<(String, Vec<usize>, st
 
 impl Checkpoint {
     /// Takes down where everything is.
-    pub fn take(learner: &Learner, samplers: &[SamplerState], progress: Progress) -> Result<Checkpoint, LearnError> {
+    pub fn take(
+        learner: &Learner,
+        samplers: &[SamplerState],
+        progress: Progress,
+    ) -> Result<Checkpoint, LearnError> {
         let mut weights = Vec::new();
         for (name, shape, range) in parameter_names(learner.shape()) {
             weights.push((name, floats(&learner.parameters[range], shape)));
@@ -189,21 +213,35 @@ impl Checkpoint {
         weights.push(("pixels.variance".into(), doubles(&learner.pixels.variance, vec![pixels])));
         let mut training = Vec::new();
         for (index, adam) in learner.optimisers.iter().enumerate() {
-            training.push((format!("adam{index}.first"), floats(&adam.first, vec![adam.first.len()])));
-            training.push((format!("adam{index}.second"), floats(&adam.second, vec![adam.second.len()])));
+            training
+                .push((format!("adam{index}.first"), floats(&adam.first, vec![adam.first.len()])));
+            training.push((
+                format!("adam{index}.second"),
+                floats(&adam.second, vec![adam.second.len()]),
+            ));
         }
         for (index, sampler) in samplers.iter().enumerate() {
             for (network, state) in sampler.state.iter().enumerate() {
-                training.push((format!("sampler{index}.state{network}"), floats(state, vec![state.len()])));
+                training.push((
+                    format!("sampler{index}.state{network}"),
+                    floats(state, vec![state.len()]),
+                ));
             }
             let numbers: Vec<u64> = sampler
                 .worlds
                 .iter()
-                .flat_map(|lane| [lane.seeds, lane.seed, lane.actions.len() as u64, lane.deltas.len() as u64])
+                .flat_map(|lane| {
+                    [lane.seeds, lane.seed, lane.actions.len() as u64, lane.deltas.len() as u64]
+                })
                 .collect();
-            let actions: Vec<u8> = sampler.worlds.iter().flat_map(|lane| lane.actions.iter().copied()).collect();
-            let deltas: Vec<f32> = sampler.worlds.iter().flat_map(|lane| lane.deltas.iter().copied()).collect();
-            training.push((format!("sampler{index}.lanes"), words(&numbers, vec![sampler.worlds.len(), 4])));
+            let actions: Vec<u8> =
+                sampler.worlds.iter().flat_map(|lane| lane.actions.iter().copied()).collect();
+            let deltas: Vec<f32> =
+                sampler.worlds.iter().flat_map(|lane| lane.deltas.iter().copied()).collect();
+            training.push((
+                format!("sampler{index}.lanes"),
+                words(&numbers, vec![sampler.worlds.len(), 4]),
+            ));
             let actions = Block { kind: Dtype::U8, shape: vec![actions.len()], bytes: actions };
             training.push((format!("sampler{index}.actions"), actions));
             training.push((format!("sampler{index}.deltas"), floats(&deltas, vec![deltas.len()])));
@@ -237,7 +275,8 @@ impl Checkpoint {
         if directory.exists() {
             fs::remove_dir_all(directory).map_err(LearnError::file(directory, "replace"))?;
         }
-        fs::rename(&temporary, directory).map_err(LearnError::file(directory, "rename into place"))?;
+        fs::rename(&temporary, directory)
+            .map_err(LearnError::file(directory, "rename into place"))?;
         if let Some(parent) = directory.parent() {
             // Makes the new name last through a power cut; not all systems can.
             let _ = File::open(parent).and_then(|parent| parent.sync_all());
@@ -286,7 +325,8 @@ fn read_state(directory: &Path) -> Result<StateFile, LearnError> {
     let path = directory.join(STATE);
     let state = StateFile::read(&path)?;
     if state.format != FORMAT {
-        let problem = format!("checkpoint format {}; this program reads format {FORMAT}", state.format);
+        let problem =
+            format!("checkpoint format {}; this program reads format {FORMAT}", state.format);
         return Err(LearnError::content(&path, problem));
     }
     Ok(state)
@@ -304,7 +344,10 @@ impl Loaded {
             let path = directory.join(name);
             let bytes = fs::read(&path).map_err(LearnError::file(&path, "read"))?;
             if crc32c(&bytes) != checksum {
-                return Err(LearnError::content(&path, "damaged: its checksum is not the one noted when it was written"));
+                return Err(LearnError::content(
+                    &path,
+                    "damaged: its checksum is not the one noted when it was written",
+                ));
             }
             Ok(bytes)
         };
@@ -328,18 +371,23 @@ impl Loaded {
 
     /// Refuses a shape of other weights than the checkpoint's.
     pub(crate) fn check_fits(&self, shape: &ModelShape) -> Result<(), LearnError> {
-        let misfit = |problem: String| LearnError::Config(format!("the checkpoint does not fit: {problem}"));
+        let misfit =
+            |problem: String| LearnError::Config(format!("the checkpoint does not fit: {problem}"));
         let tensors = self.tensors().map_err(misfit)?;
         for (name, _, range) in parameter_names(shape) {
-            let found = tensors.tensor(&name).map_err(|error| misfit(format!("{name}: {error}")))?;
+            let found =
+                tensors.tensor(&name).map_err(|error| misfit(format!("{name}: {error}")))?;
             check_block(&found, Dtype::F32, range.len(), &name).map_err(misfit)?;
         }
         Ok(())
     }
 
-    /// Puts weights and normalisers into a learner: all that acting needs, and what a new run may begin with.
+    /// Puts weights and normalisers into a learner: all that acting needs, and what a new run may
+    /// begin with.
     pub fn restore_weights(&self, learner: &mut Learner) -> Result<(), LearnError> {
-        self.weights_into(learner).map_err(|problem| LearnError::Config(format!("the checkpoint does not fit: {problem}")))
+        self.weights_into(learner).map_err(|problem| {
+            LearnError::Config(format!("the checkpoint does not fit: {problem}"))
+        })
     }
 
     fn weights_into(&self, learner: &mut Learner) -> Result<(), String> {
@@ -351,7 +399,8 @@ impl Loaded {
         }
         let pixels = learner.pixels.mean.len();
         learner.pixels.mean = parse_doubles(&find("pixels.mean")?, pixels, "pixels.mean")?;
-        learner.pixels.variance = parse_doubles(&find("pixels.variance")?, pixels, "pixels.variance")?;
+        learner.pixels.variance =
+            parse_doubles(&find("pixels.variance")?, pixels, "pixels.variance")?;
         learner.pixels.count = self.progress.pixel_count;
         if self.progress.returns.len() == learner.returns.len() {
             learner.returns.clone_from(&self.progress.returns);
@@ -362,19 +411,26 @@ impl Loaded {
 
     /// Puts everything into a learner, and gives back where the samplers were.
     pub fn restore(&self, learner: &mut Learner) -> Result<Vec<SamplerState>, LearnError> {
-        self.all_into(learner).map_err(|problem| LearnError::Config(format!("the checkpoint does not fit: {problem}")))
+        self.all_into(learner).map_err(|problem| {
+            LearnError::Config(format!("the checkpoint does not fit: {problem}"))
+        })
     }
 
     fn all_into(&self, learner: &mut Learner) -> Result<Vec<SamplerState>, String> {
         self.weights_into(learner)?;
         let progress = &self.progress;
-        if progress.returns.len() != learner.returns.len() || progress.optimiser_steps.len() != learner.optimisers.len() {
+        if progress.returns.len() != learner.returns.len()
+            || progress.optimiser_steps.len() != learner.optimisers.len()
+        {
             return Err("it has another number of critics".into());
         }
         learner.version = progress.updates;
-        let tensors = SafeTensors::deserialize(&self.training).map_err(|error| error.to_string())?;
+        let tensors =
+            SafeTensors::deserialize(&self.training).map_err(|error| error.to_string())?;
         let find = |name: &str| tensors.tensor(name).map_err(|error| format!("{name}: {error}"));
-        for (index, (adam, &steps)) in learner.optimisers.iter_mut().zip(&progress.optimiser_steps).enumerate() {
+        for (index, (adam, &steps)) in
+            learner.optimisers.iter_mut().zip(&progress.optimiser_steps).enumerate()
+        {
             for (name, values) in [("first", &mut adam.first), ("second", &mut adam.second)] {
                 let name = format!("adam{index}.{name}");
                 *values = parse_floats(&find(&name)?, values.len(), &name)?;
@@ -389,32 +445,57 @@ impl Loaded {
                 let name = format!("sampler{index}.state{network}");
                 state.push(parse_floats(&find(&name)?, lanes * shape.state_size(), &name)?);
             }
-            let numbers = parse_words(&find(&format!("sampler{index}.lanes"))?, lanes * 4, "lanes")?;
-            // Whoever wrote the file may have meant harm: lengths that add up only by wrapping around are none.
+            let numbers =
+                parse_words(&find(&format!("sampler{index}.lanes"))?, lanes * 4, "lanes")?;
+            // Whoever wrote the file may have meant harm: lengths that add up only by wrapping
+            // around are none.
             let count = |column: usize| {
-                let mut lengths = numbers.iter().skip(column).step_by(4).map(|&length| usize::try_from(length).ok());
+                let mut lengths = numbers
+                    .iter()
+                    .skip(column)
+                    .step_by(4)
+                    .map(|&length| usize::try_from(length).ok());
                 let sum = lengths.try_fold(0usize, |sum, length| sum.checked_add(length?));
-                sum.ok_or_else(|| format!("the episodes of sampler {index} have impossible lengths"))
+                sum.ok_or_else(|| {
+                    format!("the episodes of sampler {index} have impossible lengths")
+                })
             };
             let (action_count, delta_count) = (count(2)?, count(3)?);
             let actions = find(&format!("sampler{index}.actions"))?;
-            let deltas = parse_floats(&find(&format!("sampler{index}.deltas"))?, delta_count, "deltas")?;
+            let deltas =
+                parse_floats(&find(&format!("sampler{index}.deltas"))?, delta_count, "deltas")?;
             if actions.data().len() != action_count {
-                return Err(format!("sampler {index} has {} actions, not {action_count}", actions.data().len()));
+                return Err(format!(
+                    "sampler {index} has {} actions, not {action_count}",
+                    actions.data().len()
+                ));
             }
             let (mut actions, mut deltas) = (actions.data(), &deltas[..]);
             let mut worlds = Vec::new();
             for lane in numbers.chunks_exact(4) {
                 let (own, rest) = actions.split_at(lane[2] as usize);
                 let (own_deltas, rest_deltas) = deltas.split_at(lane[3] as usize);
-                worlds.push(LaneState { seeds: lane[0], seed: lane[1], actions: own.to_vec(), deltas: own_deltas.to_vec() });
+                worlds.push(LaneState {
+                    seeds: lane[0],
+                    seed: lane[1],
+                    actions: own.to_vec(),
+                    deltas: own_deltas.to_vec(),
+                });
                 (actions, deltas) = (rest, rest_deltas);
             }
             let spent = progress.spent.get(index).cloned().unwrap_or_default();
             if !spent.is_empty() && (lanes == 0 || !spent.len().is_multiple_of(lanes)) {
-                return Err(format!("the costs so far of sampler {index} are not those of {lanes} worlds"));
+                return Err(format!(
+                    "the costs so far of sampler {index} are not those of {lanes} worlds"
+                ));
             }
-            samplers.push(SamplerState { worlds, state, safety: safety.clone(), spent, steps: *steps });
+            samplers.push(SamplerState {
+                worlds,
+                state,
+                safety: safety.clone(),
+                spent,
+                steps: *steps,
+            });
         }
         Ok(samplers)
     }
@@ -438,18 +519,25 @@ impl Store {
         Store { directory: run.join("checkpoints"), keep }
     }
 
-    /// The checkpoint that the run selects, or would as far as it has come; `None` if it was never evaluated.
+    /// The checkpoint that the run selects, or would as far as it has come; `None` if it was never
+    /// evaluated.
     #[must_use]
     pub fn selected(&self) -> Option<PathBuf> {
         let kept = self.numbered("best_");
-        let closed = self.directory.parent().and_then(read_selection).map(|selection| self.best_of(selection.selected.frames));
+        let closed = self
+            .directory
+            .parent()
+            .and_then(read_selection)
+            .map(|selection| self.best_of(selection.selected.frames));
         if let Some(closed) = closed.filter(|path| kept.contains(path)) {
             return Some(closed);
         }
-        // The newest candidate knows of those before it. Files of older versions, which kept one, say nothing of it.
+        // The newest candidate knows of those before it. Files of older versions, which kept one,
+        // say nothing of it.
         let newest = kept.into_iter().next()?;
-        let known =
-            read_progress(&newest).ok().and_then(|progress| Some(self.best_of(progress.candidates.ranked.first()?.frames)));
+        let known = read_progress(&newest)
+            .ok()
+            .and_then(|progress| Some(self.best_of(progress.candidates.ranked.first()?.frames)));
         Some(known.filter(|path| path.is_dir()).unwrap_or(newest))
     }
 
@@ -472,10 +560,12 @@ impl Store {
         found.into_iter().rev().map(|(_, path)| path).collect()
     }
 
-    /// Writes a checkpoint to go on from; older ones beyond the number to keep go, and so do those that are no candidates any
-    /// more by what it knows. Not earlier: whenever the run is killed, the candidates of its newest checkpoint are there.
+    /// Writes a checkpoint to go on from; older ones beyond the number to keep go, and so do those
+    /// that are no candidates any more by what it knows. Not earlier: whenever the run is killed,
+    /// the candidates of its newest checkpoint are there.
     pub fn write(&self, checkpoint: &Checkpoint) -> Result<(), LearnError> {
-        checkpoint.write(&self.directory.join(format!("frames_{:012}", checkpoint.progress.frames)))?;
+        checkpoint
+            .write(&self.directory.join(format!("frames_{:012}", checkpoint.progress.frames)))?;
         self.all().into_iter().skip(self.keep).try_for_each(|old| remove(&old))?;
         self.keep_candidates(&checkpoint.progress.candidates)
     }
@@ -485,7 +575,8 @@ impl Store {
         checkpoint.write(&self.best_of(checkpoint.progress.frames))
     }
 
-    /// Replaces what the checkpoint of so many frames says of itself, all at once; weights and states stay as they are.
+    /// Replaces what the checkpoint of so many frames says of itself, all at once; weights and
+    /// states stay as they are.
     pub fn amend(&self, progress: &Progress) -> Result<(), LearnError> {
         let path = self.directory.join(format!("frames_{:012}", progress.frames)).join(STATE);
         let state = StateFile { progress: progress.clone(), ..StateFile::read(&path)? };
@@ -501,7 +592,8 @@ impl Store {
     }
 
     fn keep_candidates(&self, candidates: &Candidates) -> Result<(), LearnError> {
-        let kept: Vec<PathBuf> = candidates.ranked.iter().map(|one| self.best_of(one.frames)).collect();
+        let kept: Vec<PathBuf> =
+            candidates.ranked.iter().map(|one| self.best_of(one.frames)).collect();
         if kept.is_empty() {
             return Ok(());
         }
@@ -510,15 +602,20 @@ impl Store {
 
     /// Removes all candidates but some.
     pub fn keep_only(&self, kept: &[PathBuf]) -> Result<(), LearnError> {
-        self.numbered("best_").into_iter().filter(|path| !kept.contains(path)).try_for_each(|old| remove(&old))
+        self.numbered("best_")
+            .into_iter()
+            .filter(|path| !kept.contains(path))
+            .try_for_each(|old| remove(&old))
     }
 
-    /// Makes the directory agree with a checkpoint that the run goes on from, and gives its candidates so far: what a
-    /// killed run left half-written goes, and so does what was a candidate in a future that will not be.
+    /// Makes the directory agree with a checkpoint that the run goes on from, and gives its
+    /// candidates so far: what a killed run left half-written goes, and so does what was a
+    /// candidate in a future that will not be.
     pub fn go_back_to(&self, progress: &Progress) -> Result<Candidates, LearnError> {
         if let Ok(entries) = fs::read_dir(&self.directory) {
             let half = entries.filter_map(|entry| Some(entry.ok()?.path()));
-            half.filter(|path| path.extension().is_some_and(|ending| ending == "partial")).try_for_each(|path| remove(&path))?;
+            half.filter(|path| path.extension().is_some_and(|ending| ending == "partial"))
+                .try_for_each(|path| remove(&path))?;
         }
         let mut known = progress.all_candidates();
         let had_any = !known.ranked.is_empty();
@@ -548,6 +645,9 @@ impl Store {
         if all.is_empty() {
             return Ok(None);
         }
-        Err(LearnError::content(&self.directory, "every checkpoint is damaged; start a new run, or copy a whole checkpoint here"))
+        Err(LearnError::content(
+            &self.directory,
+            "every checkpoint is damaged; start a new run, or copy a whole checkpoint here",
+        ))
     }
 }

@@ -1,4 +1,5 @@
-//! CRC-32C: guards checkpoints against bit rot, and records of TensorBoard's files as their format demands.
+//! CRC-32C: guards checkpoints against bit rot, and records of TensorBoard's files as their format
+//! demands.
 
 /// CRC-32C (Castagnoli) of some bytes.
 #[must_use]

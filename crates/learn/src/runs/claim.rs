@@ -1,7 +1,8 @@
 //! A claim: what an agent scores in an environment, on episodes that are the same for everybody.
 //!
-//! A claim is checked by playing its episodes again. The network is computed by the plain kernels, whose bits are those of every processor,
-//! and the engine's kernels all agree: so a claim holds to the last bit, or it does not hold.
+//! A claim is checked by playing its episodes again. The network is computed by the plain kernels,
+//! whose bits are those of every processor, and the engine's kernels all agree: so a claim holds to
+//! the last bit, or it does not hold.
 
 use std::path::Path;
 
@@ -16,7 +17,8 @@ use crate::runs::agent::{Choice, TrainedPolicy, Which, run_config};
 use crate::runs::agent_file::AgentFile;
 use crate::runs::evaluate::{Evaluation, play};
 
-/// Seed of the first episode of every claim. Trainings and evaluations draw theirs elsewhere, and nobody can choose lucky ones.
+/// Seed of the first episode of every claim. Trainings and evaluations draw theirs elsewhere, and
+/// nobody can choose lucky ones.
 pub const FIRST_SEED: u64 = 9_000_000;
 /// Fewest episodes of a claim that a scoreboard lists.
 pub const LISTED_EPISODES: u32 = 200;
@@ -94,7 +96,11 @@ pub fn sha256(bytes: &[u8]) -> String {
 fn digest(episodes: &[Episode]) -> String {
     let mut text = String::new();
     for one in episodes {
-        let costs: Vec<String> = one.costs.iter().map(|term| format!("{}:{:016x}", term.name, term.cost.to_bits())).collect();
+        let costs: Vec<String> = one
+            .costs
+            .iter()
+            .map(|term| format!("{}:{:016x}", term.name, term.cost.to_bits()))
+            .collect();
         text += &format!(
             "{} {} {} {} {:016x} {:016x} {}\n",
             one.seed,
@@ -109,10 +115,13 @@ fn digest(episodes: &[Episode]) -> String {
     sha256(text.as_bytes())
 }
 
-/// What makes an agent's task another than its id names; its file says so, and could be made to say what is easier.
+/// What makes an agent's task another than its id names; its file says so, and could be made to say
+/// what is easier.
 fn unusual(env: &EnvConfig) -> Option<&'static str> {
     if env.maps.is_some() || env.iwad.is_some() {
-        return Some("was trained in maps or pictures that are not part of the program; a claim is about those that are");
+        return Some(
+            "was trained in maps or pictures that are not part of the program; a claim is about those that are",
+        );
     }
     let other = env.frame_skip != 4 || env.early_creatures;
     other.then_some("plays another task than its id names: a claim's has a frame_skip of 4, and no early_creatures")
@@ -122,7 +131,12 @@ fn unusual(env: &EnvConfig) -> Option<&'static str> {
 ///
 /// # Errors
 /// When the agent cannot be read, or plays another task than its id names.
-pub fn measure(agent: &Path, rules: Option<RuleSet>, episodes: u32, threads: usize) -> Result<Measured, LearnError> {
+pub fn measure(
+    agent: &Path,
+    rules: Option<RuleSet>,
+    episodes: u32,
+    threads: usize,
+) -> Result<Measured, LearnError> {
     let mut config = run_config(agent)?;
     if let Some(problem) = unusual(&config.env) {
         return Err(LearnError::content(agent, problem));
@@ -135,7 +149,9 @@ pub fn measure(agent: &Path, rules: Option<RuleSet>, episodes: u32, threads: usi
     let id = config.env.env_id()?;
     let env = Env::new(&config.env.id, &options).map_err(worlds)?;
     let action = ActionShape::from(env.action_space());
-    let policy = TrainedPolicy::load(agent, Which::Selected, env.observation_shape(), action, &mut |_| {})?.on_plain_kernels();
+    let policy =
+        TrainedPolicy::load(agent, Which::Selected, env.observation_shape(), action, &mut |_| {})?
+            .on_plain_kernels();
     let make = |_: &_, lanes| VecEnv::new(&config.env.id, &options, lanes);
     let seeds: Vec<u64> = (0..u64::from(episodes)).map(|number| FIRST_SEED + number).collect();
     let played = play(&policy, Choice::Sampled, &make, &seeds, threads)?;
@@ -176,13 +192,21 @@ impl Claim {
     pub fn read(path: &Path) -> Result<Claim, LearnError> {
         let length = std::fs::metadata(path).map_err(LearnError::file(path, "read"))?.len();
         if length > LARGEST {
-            return Err(LearnError::content(path, format!("is no claim: it has {length} bytes, a claim at most {LARGEST}")));
+            return Err(LearnError::content(
+                path,
+                format!("is no claim: it has {length} bytes, a claim at most {LARGEST}"),
+            ));
         }
         let text = std::fs::read_to_string(path).map_err(LearnError::file(path, "read"))?;
-        let wrong = |error| LearnError::content(path, format!("is no claim: {error}; `hasard claim` writes one"));
+        let wrong = |error| {
+            LearnError::content(path, format!("is no claim: {error}; `hasard claim` writes one"))
+        };
         let claim: Claim = serde_json::from_str(&text).map_err(wrong)?;
         if claim.format != FORMAT {
-            return Err(LearnError::content(path, format!("has format {}; this program reads {FORMAT}", claim.format)));
+            return Err(LearnError::content(
+                path,
+                format!("has format {}; this program reads {FORMAT}", claim.format),
+            ));
         }
         Ok(claim)
     }
@@ -194,13 +218,22 @@ impl Claim {
     pub fn check(&self, folder: &Path, threads: usize) -> Result<Verdict, LearnError> {
         let mut wrong = Vec::new();
         if Path::new(&self.agent).file_name().is_none_or(|name| name != self.agent.as_str()) {
-            return Ok(Verdict::Refused(vec![format!("the agent '{}' is no plain name of a file beside the claim", self.agent)]));
+            return Ok(Verdict::Refused(vec![format!(
+                "the agent '{}' is no plain name of a file beside the claim",
+                self.agent
+            )]));
         }
         if self.first_seed != FIRST_SEED {
-            wrong.push(format!("its episodes begin with seed {}, those of all claims with {FIRST_SEED}", self.first_seed));
+            wrong.push(format!(
+                "its episodes begin with seed {}, those of all claims with {FIRST_SEED}",
+                self.first_seed
+            ));
         }
         if !(1..=MOST_EPISODES).contains(&self.episodes) {
-            wrong.push(format!("it has {} episodes; a claim has 1 to {MOST_EPISODES}", self.episodes));
+            wrong.push(format!(
+                "it has {} episodes; a claim has 1 to {MOST_EPISODES}",
+                self.episodes
+            ));
         }
         let path = folder.join(&self.agent);
         let (bytes, file) = AgentFile::read_whole(&path)?;
@@ -221,7 +254,10 @@ impl Claim {
             }
         }
         let Ok(rules) = self.rules.parse::<RuleSet>() else {
-            wrong.push(format!("there are no rules '{}'; use paper, released or tables", self.rules));
+            wrong.push(format!(
+                "there are no rules '{}'; use paper, released or tables",
+                self.rules
+            ));
             return Ok(Verdict::Refused(wrong));
         };
         if !wrong.is_empty() {
@@ -229,7 +265,9 @@ impl Claim {
         }
         let measured = measure(&path, Some(rules), self.episodes, threads)?;
         let means = (measured.evaluation.episode_return.mean, measured.evaluation.cost.mean);
-        for (what, claimed, found) in [("return", self.return_mean, means.0), ("cost", self.cost_mean, means.1)] {
+        for (what, claimed, found) in
+            [("return", self.return_mean, means.0), ("cost", self.cost_mean, means.1)]
+        {
             if claimed.to_bits() != found.to_bits() {
                 wrong.push(format!("it says {what} {claimed}, its episodes come to {found}"));
             }
@@ -237,6 +275,10 @@ impl Claim {
         if self.digest != measured.digest {
             wrong.push(format!("its episodes were others: their digest is {}", measured.digest));
         }
-        Ok(if wrong.is_empty() { Verdict::Holds(Box::new(measured)) } else { Verdict::Refused(wrong) })
+        Ok(if wrong.is_empty() {
+            Verdict::Holds(Box::new(measured))
+        } else {
+            Verdict::Refused(wrong)
+        })
     }
 }

@@ -18,8 +18,8 @@ pub use crate::runs::evaluation::{Evaluation, Judgement, Trace};
 /// Most worlds that one agent acts in side by side.
 const MOST_LANES: usize = 32;
 
-/// Plays an episode of each seed, on `threads` threads, and gives them in the order of the seeds. What happens in an episode
-/// follows from its seed alone.
+/// Plays an episode of each seed, on `threads` threads, and gives them in the order of the seeds.
+/// What happens in an episode follows from its seed alone.
 pub fn play(
     policy: &TrainedPolicy,
     choice: Choice,
@@ -31,8 +31,8 @@ pub fn play(
     Ok(played.unwrap_or_default().into_iter().map(|(episode, _)| episode).collect())
 }
 
-/// As [`play`], each episode with what the policy's critics expected; but it gives up when `stop` is raised meanwhile: then there are no
-/// episodes at all.
+/// As [`play`], each episode with what the policy's critics expected; but it gives up when `stop`
+/// is raised meanwhile: then there are no episodes at all.
 pub fn play_traced(
     stop: &AtomicBool,
     policy: &TrainedPolicy,
@@ -49,17 +49,22 @@ pub fn play_traced(
         // As many in each turn as divide the seeds evenly.
         let lanes = own.len().div_ceil(own.len().div_ceil(MOST_LANES));
         let options = VecOptions { lanes, autoreset: Autoreset::Disabled, ..VecOptions::default() };
-        let worlds = make_worlds(&policy.config().env, options).map_err(|error| LearnError::Worlds(error.to_string()))?;
+        let worlds = make_worlds(&policy.config().env, options)
+            .map_err(|error| LearnError::Worlds(error.to_string()))?;
         parts.push((worlds, policy.agent(choice, lanes), own));
     }
     let mut episodes = Vec::new();
     std::thread::scope(|scope| {
         let running: Vec<_> = parts
             .into_iter()
-            .map(|(worlds, agent, own)| scope.spawn(move || play_all(stop, policy, worlds, agent, own)))
+            .map(|(worlds, agent, own)| {
+                scope.spawn(move || play_all(stop, policy, worlds, agent, own))
+            })
             .collect();
         for thread in running {
-            let played = thread.join().map_err(|panic| LearnError::Panic(panic_text("an evaluation", &*panic)))?;
+            let played = thread
+                .join()
+                .map_err(|panic| LearnError::Panic(panic_text("an evaluation", &*panic)))?;
             episodes.push(played?);
         }
         Ok(episodes.into_iter().collect::<Option<Vec<_>>>().map(|parts| parts.concat()))
@@ -83,16 +88,22 @@ fn play_all(
         ReturnNormaliser::Running => moments.denormalise(value),
         ReturnNormaliser::PopArt => moments.scale_up(value),
     };
-    let constraints = &policy.config().constraints[..critics.len().min(policy.config().constraints.len())];
+    let constraints =
+        &policy.config().constraints[..critics.len().min(policy.config().constraints.len())];
     let places = find_terms(worlds.cost_terms(), constraints)?;
     for turn in seeds.chunks(lanes) {
         // A turn that is not full plays its last seed several times, and counts it once.
         let seed_of = |lane: usize| turn[lane.min(turn.len() - 1)];
-        let starts = (0..lanes).map(|lane| LaneState { seed: seed_of(lane), ..LaneState::default() }).collect();
+        let starts = (0..lanes)
+            .map(|lane| LaneState { seed: seed_of(lane), ..LaneState::default() })
+            .collect();
         worlds.restore(starts, &mut batch).map_err(world_error)?;
         (0..lanes).for_each(|lane| agent.reset(lane, seed_of(lane)));
         let mut ended: Vec<Option<Episode>> = vec![None; lanes];
-        let blank = Trace { expected: vec![Vec::new(); places.len()], costs: vec![Vec::new(); places.len()] };
+        let blank = Trace {
+            expected: vec![Vec::new(); places.len()],
+            costs: vec![Vec::new(); places.len()],
+        };
         let mut traces = vec![blank; lanes];
         while ended.iter().any(Option::is_none) {
             if stop.load(Ordering::Relaxed) {
@@ -107,14 +118,21 @@ fn play_all(
             worlds.step(&mut batch).map_err(world_error)?;
             for lane in (0..lanes).filter(|&lane| ended[lane].is_none()) {
                 for (index, (place, moments)) in places.iter().zip(critics).enumerate() {
-                    let cost = place.map_or(batch.costs[lane], |term| batch.cost_terms[lane * terms + term]);
-                    let value = agent.cost_values(lane).get(index).map_or(f32::NAN, |&value| worth(moments, value));
+                    let cost = place
+                        .map_or(batch.costs[lane], |term| batch.cost_terms[lane * terms + term]);
+                    let value = agent
+                        .cost_values(lane)
+                        .get(index)
+                        .map_or(f32::NAN, |&value| worth(moments, value));
                     traces[lane].expected[index].push(value.into());
                     traces[lane].costs[index].push(cost.into());
                 }
             }
             for lane in 0..lanes {
-                let own: Vec<f64> = batch.cost_terms[lane * terms..(lane + 1) * terms].iter().map(|&cost| cost.into()).collect();
+                let own: Vec<f64> = batch.cost_terms[lane * terms..(lane + 1) * terms]
+                    .iter()
+                    .map(|&cost| cost.into())
+                    .collect();
                 agent.observe_cost(lane, batch.costs[lane].into(), &own);
             }
             for episode in batch.episodes.drain(..) {

@@ -10,14 +10,15 @@ use crate::statistics::{Estimate, Tails, tails};
 /// What the critics of the costs expected in an episode, and what came.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Trace {
-    /// Discounted cost to come that each constraint's critic expected before each step; no critic where the policy has none, or where
-    /// the unit of its values is not known.
+    /// Discounted cost to come that each constraint's critic expected before each step; no critic
+    /// where the policy has none, or where the unit of its values is not known.
     pub expected: Vec<Vec<f64>>,
     /// Cost of each step under each of these constraints.
     pub costs: Vec<Vec<f64>>,
 }
 
-/// Closing episodes of a policy: its frames, whether it is the selected one, the episodes with what its critics expected.
+/// Closing episodes of a policy: its frames, whether it is the selected one, the episodes with what
+/// its critics expected.
 pub struct Closing {
     /// Frames after which it was taken.
     pub frames: u64,
@@ -71,9 +72,15 @@ impl Evaluation {
     /// Judges episodes; those that do not report a constraint's term are an error.
     pub fn of(episodes: &[Episode], constraints: &[Constraint]) -> Result<Evaluation, LearnError> {
         let judge = |one: &Constraint| {
-            let costs: Vec<f64> = episodes.iter().map(|episode| one.cost_of(episode)).collect::<Result<_, _>>()?;
+            let costs: Vec<f64> =
+                episodes.iter().map(|episode| one.cost_of(episode)).collect::<Result<_, _>>()?;
             let spread = tails(costs.iter().copied(), Some(one.budget));
-            Ok(Judgement { term: one.term.clone(), budget: one.budget, cost: Estimate::of(costs), tails: spread })
+            Ok(Judgement {
+                term: one.term.clone(),
+                budget: one.budget,
+                cost: Estimate::of(costs),
+                tails: spread,
+            })
         };
         Ok(Evaluation {
             episodes: episodes.len(),
@@ -97,11 +104,15 @@ impl Evaluation {
         self.constraints.iter().all(|one| one.cost.high() <= one.budget)
     }
 
-    /// How far mean costs are above their budgets, in parts of the budgets (of 1 where a budget is 0), added up.
+    /// How far mean costs are above their budgets, in parts of the budgets (of 1 where a budget
+    /// is 0), added up.
     #[must_use]
     pub fn excess(&self) -> f64 {
         let unit = |budget: f64| if budget > 0.0 { budget } else { 1.0 };
-        self.constraints.iter().map(|one| (one.cost.mean - one.budget).max(0.0) / unit(one.budget)).sum()
+        self.constraints
+            .iter()
+            .map(|one| (one.cost.mean - one.budget).max(0.0) / unit(one.budget))
+            .sum()
     }
 }
 
@@ -127,15 +138,28 @@ pub(super) mod tests {
 
     #[test]
     fn each_constraint_is_judged_by_its_own_term_and_budget() {
-        let constraints = [Constraint { term: None, budget: 50.0 }, Constraint { term: Some("jumps".into()), budget: 4.0 }];
-        let judged = Evaluation::of(&[episode(20.0, 6.0), episode(40.0, 4.0)], &constraints).unwrap();
-        assert_eq!((judged.cost.mean, judged.constraints[0].cost.mean, judged.constraints[1].cost.mean), (30.0, 30.0, 5.0));
-        assert!(judged.constraints[0].within() && !judged.constraints[1].within() && !judged.within());
+        let constraints = [
+            Constraint { term: None, budget: 50.0 },
+            Constraint { term: Some("jumps".into()), budget: 4.0 },
+        ];
+        let judged =
+            Evaluation::of(&[episode(20.0, 6.0), episode(40.0, 4.0)], &constraints).unwrap();
+        assert_eq!(
+            (judged.cost.mean, judged.constraints[0].cost.mean, judged.constraints[1].cost.mean),
+            (30.0, 30.0, 5.0)
+        );
+        assert!(
+            judged.constraints[0].within() && !judged.constraints[1].within() && !judged.within()
+        );
         assert!((judged.excess() - 0.25).abs() < 1e-12);
         // Half of the episodes have more than 4 jumps; one costs 40.
-        assert_eq!((judged.constraints[1].tails.over_budget, judged.tails.worst), (Some(0.5), 40.0));
+        assert_eq!(
+            (judged.constraints[1].tails.over_budget, judged.tails.worst),
+            (Some(0.5), 40.0)
+        );
         // Half the interval of 30 and 31: 12.706 * 0.5 = 6.35.
-        let judged = Evaluation::of(&[episode(30.0, 1.0), episode(31.0, 1.0)], &constraints).unwrap();
+        let judged =
+            Evaluation::of(&[episode(30.0, 1.0), episode(31.0, 1.0)], &constraints).unwrap();
         assert!(judged.within() && judged.surely_within());
         let wide = Evaluation::of(&[episode(44.0, 1.0), episode(46.0, 1.0)], &constraints).unwrap();
         assert!(wide.within() && !wide.surely_within());

@@ -30,8 +30,9 @@ impl<'a> Examiner<'a> {
         Examiner { make_worlds, candidates }
     }
 
-    /// Evaluates the session's policy as it is, and says whether it is a candidate; `counts` is false where none can be, as in the
-    /// lessons before the last. Nothing, and nothing remembered, if `stop` is raised meanwhile.
+    /// Evaluates the session's policy as it is, and says whether it is a candidate; `counts` is
+    /// false where none can be, as in the lessons before the last. Nothing, and nothing remembered,
+    /// if `stop` is raised meanwhile.
     pub fn examine(
         &mut self,
         session: &mut Session,
@@ -40,19 +41,26 @@ impl<'a> Examiner<'a> {
     ) -> Result<Option<(Evaluation, bool)>, LearnError> {
         let policy = policy_of(session)?;
         let config = &session.config;
-        let Some(played) = self.play(stop, &policy, EpisodeSet::Candidates, config.evaluation.episodes)? else {
+        let Some(played) =
+            self.play(stop, &policy, EpisodeSet::Candidates, config.evaluation.episodes)?
+        else {
             return Ok(None);
         };
         let episodes: Vec<Episode> = played.into_iter().map(|(episode, _)| episode).collect();
         self.candidates.frames += frames_of(&episodes, config);
         let evaluation = Evaluation::of(&episodes, &config.constraints)?;
         let candidate = Candidate::new(session.frames, evaluation.clone());
-        let kept = counts && self.candidates.add(candidate, config.algorithm, config.evaluation.candidates.max(1));
+        let kept = counts
+            && self.candidates.add(
+                candidate,
+                config.algorithm,
+                config.evaluation.candidates.max(1),
+            );
         Ok(Some((evaluation, kept)))
     }
 
-    /// Selects a checkpoint when the run is over, with the closing episodes of it and of the last policy. Nothing without candidates, or
-    /// if `stop` is raised meanwhile.
+    /// Selects a checkpoint when the run is over, with the closing episodes of it and of the last
+    /// policy. Nothing without candidates, or if `stop` is raised meanwhile.
     pub fn close(
         &self,
         session: &mut Session,
@@ -74,23 +82,37 @@ impl<'a> Examiner<'a> {
                 checkpoint.restore_weights(&mut learner)?;
                 let returns = learner.returns.clone();
                 let shape = session.learner.shape();
-                let policy = TrainedPolicy::new(&config, shape, learner.publish(), device.clone(), session.cost_terms)?;
+                let policy = TrainedPolicy::new(
+                    &config,
+                    shape,
+                    learner.publish(),
+                    device.clone(),
+                    session.cost_terms,
+                )?;
                 loaded = Some((frames, policy.in_units_of(&returns)));
             }
-            let acting = loaded.as_ref().filter(|_| policy.is_some()).map_or(&last, |(_, policy)| policy);
+            let acting =
+                loaded.as_ref().filter(|_| policy.is_some()).map_or(&last, |(_, policy)| policy);
             let Some(played) = self.play(stop, acting, set, episodes)? else { return Ok(None) };
             let only: Vec<Episode> = played.iter().map(|(episode, _)| episode.clone()).collect();
             if set == EpisodeSet::Closing(0) && policy.is_some() {
                 last_played = Some((frames, played.clone()));
             }
             if matches!(set, EpisodeSet::Closing(_)) {
-                closings.push(Closing { frames: policy.unwrap_or(frames), selected: policy.is_some(), played });
+                closings.push(Closing {
+                    frames: policy.unwrap_or(frames),
+                    selected: policy.is_some(),
+                    played,
+                });
             }
             Ok(Some(only))
         };
-        let Some(selection) = select(&self.candidates, &config, frames, &mut play)? else { return Ok(None) };
+        let Some(selection) = select(&self.candidates, &config, frames, &mut play)? else {
+            return Ok(None);
+        };
         closings.retain(|one| !one.selected || one.frames == selection.selected.frames);
-        // A closing of both is written down for both; one of a last policy that failed there is that policy's alone.
+        // A closing of both is written down for both; one of a last policy that failed there is
+        // that policy's alone.
         if closings.iter().all(|one| one.selected)
             && let Some((frames, played)) = last_played
         {
@@ -99,7 +121,8 @@ impl<'a> Examiner<'a> {
         Ok(Some((selection, closings)))
     }
 
-    /// A set of episodes is the same for every policy of the run that plays it: what differs is the policy alone.
+    /// A set of episodes is the same for every policy of the run that plays it: what differs is the
+    /// policy alone.
     fn play(
         &self,
         stop: &AtomicBool,
@@ -108,9 +131,18 @@ impl<'a> Examiner<'a> {
         episodes: usize,
     ) -> Result<Option<Vec<(Episode, Trace)>>, LearnError> {
         let config: &TrainConfig = policy.config();
-        let seed = |episode: usize| Stream::new(config.seed, Purpose::EvaluatedWorlds, set.number(), episode as u64).bits();
+        let seed = |episode: usize| {
+            Stream::new(config.seed, Purpose::EvaluatedWorlds, set.number(), episode as u64).bits()
+        };
         let seeds: Vec<u64> = (0..episodes).map(seed).collect();
-        play_traced(stop, policy, Choice::Sampled, self.make_worlds, &seeds, config.learning.threads)
+        play_traced(
+            stop,
+            policy,
+            Choice::Sampled,
+            self.make_worlds,
+            &seeds,
+            config.learning.threads,
+        )
     }
 }
 
@@ -118,6 +150,12 @@ impl<'a> Examiner<'a> {
 fn policy_of(session: &mut Session) -> Result<TrainedPolicy, LearnError> {
     let published = session.learner.publish();
     let device = ComputeDevice::of(&session.config)?;
-    let policy = TrainedPolicy::new(&session.config, session.learner.shape(), published, device, session.cost_terms)?;
+    let policy = TrainedPolicy::new(
+        &session.config,
+        session.learner.shape(),
+        published,
+        device,
+        session.cost_terms,
+    )?;
     Ok(policy.in_units_of(&session.learner.returns))
 }

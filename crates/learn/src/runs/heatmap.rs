@@ -1,4 +1,5 @@
-//! Where the agents have been lately: counts of steps on a grid over the map, written at moments of training.
+//! Where the agents have been lately: counts of steps on a grid over the map, written at moments of
+//! training.
 
 use std::collections::VecDeque;
 
@@ -15,7 +16,8 @@ const MOMENTS: u64 = 20;
 
 /// Steps spent in each cell during the last `EPISODES` episodes.
 ///
-/// It is no part of a checkpoint: a resumed run begins to count anew, and each line says how many episodes it counts.
+/// It is no part of a checkpoint: a resumed run begins to count anew, and each line says how many
+/// episodes it counts.
 pub struct Heatmap {
     /// Map units: x from, y from, x to, y to.
     extent: [i32; 4],
@@ -35,10 +37,12 @@ pub struct Heatmap {
 }
 
 impl Heatmap {
-    /// An empty grid over a map of some extent, for a run of `frames` frames that has made `done` of them.
+    /// An empty grid over a map of some extent, for a run of `frames` frames that has made `done`
+    /// of them.
     #[must_use]
     pub fn new(extent: [i32; 4], lanes: usize, frames: u64, done: u64, automap: String) -> Heatmap {
-        let sides = [extent[2] - extent[0], extent[3] - extent[1]].map(|side| u64::from(side.max(1).unsigned_abs()));
+        let sides = [extent[2] - extent[0], extent[3] - extent[1]]
+            .map(|side| u64::from(side.max(1).unsigned_abs()));
         let longer = sides[0].max(sides[1]);
         let [columns, rows] = sides.map(|side| (side * LONGER_SIDE).div_ceil(longer) as usize);
         let interval = (frames / MOMENTS).max(1);
@@ -90,7 +94,8 @@ impl Heatmap {
         }
     }
 
-    /// The line to write if a moment has come, or if the run is `over`; none before an episode has ended.
+    /// The line to write if a moment has come, or if the run is `over`; none before an episode has
+    /// ended.
     pub fn line(&mut self, frames: u64, over: bool) -> Option<Value> {
         if self.episodes.is_empty() || frames < self.next && !over {
             return None;
@@ -117,7 +122,8 @@ mod tests {
         let mut heatmap = Heatmap::new([-100, 0, 500, 300], 2, 1000, 0, "automap.png".into());
         assert_eq!((heatmap.columns, heatmap.rows), (60, 30));
         assert!(heatmap.line(100, true).is_none());
-        // Lane 0 stands in the north-west corner for three steps, then once beyond the south-east one.
+        // Lane 0 stands in the north-west corner for three steps, then once beyond the south-east
+        // one.
         for _ in 0..3 {
             heatmap.add_step(0, [-100, 300], false);
         }
@@ -132,7 +138,8 @@ mod tests {
             heatmap.add_step(1, [200, 150], true);
         }
         let line = heatmap.line(150, true).unwrap();
-        let total: u64 = line["steps"].as_array().unwrap().iter().map(|steps| steps.as_u64().unwrap()).sum();
+        let total: u64 =
+            line["steps"].as_array().unwrap().iter().map(|steps| steps.as_u64().unwrap()).sum();
         // The oldest episode is gone; lane 1's first one had two steps.
         assert_eq!((line["episodes"].as_u64(), total), (Some(1000), 1001));
     }

@@ -15,10 +15,12 @@ use hasard_engine::simd::Simd;
 pub struct Measurement {
     /// Policy steps a second of the whole loop: worlds, inference, learning.
     pub steps_per_second: f64,
-    /// Rate of large products by the same kernels on as many threads, in floating-point operations a second.
+    /// Rate of large products by the same kernels on as many threads, in floating-point operations
+    /// a second.
     pub product_rate: f64,
-    /// Floating-point operations of a policy step: forward once and backward once an epoch, counted from the shape. Acting
-    /// costs nothing here, since a learner that takes turns with the samplers need not repeat it.
+    /// Floating-point operations of a policy step: forward once and backward once an epoch, counted
+    /// from the shape. Acting costs nothing here, since a learner that takes turns with the
+    /// samplers need not repeat it.
     pub flop_per_step: f64,
     /// What computed both.
     pub kernels: Simd,
@@ -57,7 +59,12 @@ pub fn measure(
     seconds: f64,
     round_done: &mut dyn FnMut(usize),
 ) -> Result<Measurement, LearnError> {
-    let mut session = Session::on(&ComputeDevice::Processor(kernels), config.clone(), &Beginning::Nothing, make_worlds)?;
+    let mut session = Session::on(
+        &ComputeDevice::Processor(kernels),
+        config.clone(),
+        &Beginning::Nothing,
+        make_worlds,
+    )?;
     let mut warn = |_| {};
     // The first rollouts fill buffers.
     for _ in 0..2 {
@@ -80,9 +87,11 @@ pub fn measure(
         round_done(round + 1);
     }
     let shape = session.learner.shape();
-    let sum = |of: fn(&crate::networks::NetworkShape) -> f64| shape.networks.iter().map(of).sum::<f64>();
+    let sum =
+        |of: fn(&crate::networks::NetworkShape) -> f64| shape.networks.iter().map(of).sum::<f64>();
     let tables = shape.networks.iter().map(crate::networks::NetworkShape::parameters);
-    let parameters: usize = tables.map(|table| table.iter().map(|one| one.size()).sum::<usize>()).sum();
+    let parameters: usize =
+        tables.map(|table| table.iter().map(|one| one.size()).sum::<usize>()).sum();
     let epochs = config.learning.epochs as f64;
     Ok(Measurement {
         steps_per_second: median(loops),

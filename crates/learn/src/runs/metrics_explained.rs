@@ -13,7 +13,12 @@ pub struct Metric {
     pub meaning: &'static str,
 }
 
-const fn metric(name: &'static str, unit: &'static str, when: &'static str, meaning: &'static str) -> Metric {
+const fn metric(
+    name: &'static str,
+    unit: &'static str,
+    when: &'static str,
+    meaning: &'static str,
+) -> Metric {
     Metric { name, unit, when, meaning }
 }
 
@@ -67,9 +72,24 @@ pub const METRICS: &[Metric] = &[
     metric("budgets", "cost", SEVERAL, "Budget of each constraint."),
     metric("multipliers", "reward/cost", SEVERAL, "Multiplier of each constraint."),
     metric("violation_totals", "cost", SEVERAL, "violation_total of each constraint."),
-    metric("constraint_costs", "cost", NAMED, "Mean cost of the latest episodes under each constraint."),
-    metric("eval/return_mean", "reward", EVALUATED, "Mean return of the evaluation episodes of this moment's policy."),
-    metric("eval/return_ci95", "reward", EVALUATED, "Half-width of its 95 % interval (Student's t)."),
+    metric(
+        "constraint_costs",
+        "cost",
+        NAMED,
+        "Mean cost of the latest episodes under each constraint.",
+    ),
+    metric(
+        "eval/return_mean",
+        "reward",
+        EVALUATED,
+        "Mean return of the evaluation episodes of this moment's policy.",
+    ),
+    metric(
+        "eval/return_ci95",
+        "reward",
+        EVALUATED,
+        "Half-width of its 95 % interval (Student's t).",
+    ),
     metric("eval/cost_mean", "cost", EVALUATED, "Mean cost of the evaluation episodes."),
     metric("eval/cost_ci95", "cost", EVALUATED, "Half-width of its 95 % interval."),
     metric("eval/length_mean", "steps", EVALUATED, "Mean length of the evaluation episodes."),
@@ -80,7 +100,12 @@ pub const METRICS: &[Metric] = &[
         "rows with an evaluation, a constraint on TERM",
         "Mean cost of the evaluation episodes by that term.",
     ),
-    metric("eval/cost_cvar10", "cost", EVALUATED, "Mean cost of the worst tenth of the evaluation episodes."),
+    metric(
+        "eval/cost_cvar10",
+        "cost",
+        EVALUATED,
+        "Mean cost of the worst tenth of the evaluation episodes.",
+    ),
     metric("eval/cost_worst", "cost", EVALUATED, "Cost of the worst evaluation episode."),
     metric(
         "eval/over_budget",
@@ -88,11 +113,31 @@ pub const METRICS: &[Metric] = &[
         EVALUATED,
         "Share of the evaluation episodes that cost more than the first budget, 0 to 1.",
     ),
-    metric("eval/frames", "frames", EVALUATED, "Frames of all evaluations so far. They are not part of frames."),
+    metric(
+        "eval/frames",
+        "frames",
+        EVALUATED,
+        "Frames of all evaluations so far. They are not part of frames.",
+    ),
     metric("eval/episodes", "episodes", EVALUATED, "Episodes of this evaluation."),
-    metric("eval/within_budget", "", EVALUATED, "1 if every constraint's mean cost is within its budget, else 0."),
-    metric("seconds_waiting", "s", "", "Seconds that the learner waited for a rollout, mean since the row before."),
-    metric("policy_lag", "updates", "", "Updates between the policy that acted and the one that learns from it. 0 with --sync."),
+    metric(
+        "eval/within_budget",
+        "",
+        EVALUATED,
+        "1 if every constraint's mean cost is within its budget, else 0.",
+    ),
+    metric(
+        "seconds_waiting",
+        "s",
+        "",
+        "Seconds that the learner waited for a rollout, mean since the row before.",
+    ),
+    metric(
+        "policy_lag",
+        "updates",
+        "",
+        "Updates between the policy that acted and the one that learns from it. 0 with --sync.",
+    ),
     metric("learning_rate", "", "", "Learning rate of Adam at present."),
     metric(
         "explained_variance",
@@ -101,7 +146,12 @@ pub const METRICS: &[Metric] = &[
         "Share of the variance of returns that the critic explains: 1 is perfect, 0 no better than the mean.",
     ),
     metric("cost_explained_variance", "share", CRITIC, "The same of the cost critic."),
-    metric("cost_explained_variance/TERM", "share", NAMED, "The same of the critic of a named term."),
+    metric(
+        "cost_explained_variance/TERM",
+        "share",
+        NAMED,
+        "The same of the critic of a named term.",
+    ),
     metric("policy_loss", "", "", "Loss of the policy alone, as the algorithm defines it."),
     metric(
         "exploration_loss",
@@ -112,9 +162,19 @@ pub const METRICS: &[Metric] = &[
     metric("value_loss", "", "", "Loss of the critic, in units of normalised returns."),
     metric("cost_value_loss", "", CRITIC, "Loss of the cost critic."),
     metric("cost_value_loss/TERM", "", NAMED, "Loss of the critic of a named term."),
-    metric("value", "", "all but TRPO, TRPOLag, TRPOPID and CPO", "Mean value that the critic predicts, in normalised returns."),
+    metric(
+        "value",
+        "",
+        "all but TRPO, TRPOLag, TRPOPID and CPO",
+        "Mean value that the critic predicts, in normalised returns.",
+    ),
     metric("entropy", "nats", "", "Mean entropy of the policy: how random its actions are."),
-    metric("kl_divergence", "nats", "", "Mean divergence KL(old, new) of the policy over a minibatch."),
+    metric(
+        "kl_divergence",
+        "nats",
+        "",
+        "Mean divergence KL(old, new) of the policy over a minibatch.",
+    ),
     metric(
         "approx_kl",
         "nats",
@@ -127,18 +187,58 @@ pub const METRICS: &[Metric] = &[
         "",
         "Mean of |r - 1|: how far ratios are from 1. 0 where each rollout is learned from once, by --sync.",
     ),
-    metric("clip_fraction", "share", "", "Share of samples whose ratio is beyond the clip, 0 to 1."),
+    metric(
+        "clip_fraction",
+        "share",
+        "",
+        "Share of samples whose ratio is beyond the clip, 0 to 1.",
+    ),
     metric("loss", "", "all but TRPO, TRPOLag, TRPOPID and CPO", "The whole loss."),
-    metric("gradient_norm", "", "all but TRPO, TRPOLag, TRPOPID and CPO", "Norm of its gradient before it is cut."),
-    metric("epochs", "", "", "Passes made over a rollout. Fewer than asked for where target_kl ended them."),
+    metric(
+        "gradient_norm",
+        "",
+        "all but TRPO, TRPOLag, TRPOPID and CPO",
+        "Norm of its gradient before it is cut.",
+    ),
+    metric(
+        "epochs",
+        "",
+        "",
+        "Passes made over a rollout. Fewer than asked for where target_kl ended them.",
+    ),
     metric("policy_cost_loss", "", "P3O", "The penalty in the loss."),
     metric("projection_loss", "", "CUP", "Loss of the second step."),
     metric("projection_epochs", "", "CUP", "Passes of the second step."),
-    metric("step_share", "share", SECOND, "Share of the full step that the line search took; 0 where it found none."),
-    metric("recovery", "share", "CPO", "Share of steps that only lower the cost, since none could keep the budget."),
-    metric("seconds_learning", "s", "", "Seconds of learning from a rollout, mean since the row before."),
-    metric("cost/TERM", "cost", "", "Mean cost of the latest training episodes by each cost term, counted or not."),
-    metric("stats/NAME", "", "", "Mean of each of the scenario's statistics over the latest training episodes."),
+    metric(
+        "step_share",
+        "share",
+        SECOND,
+        "Share of the full step that the line search took; 0 where it found none.",
+    ),
+    metric(
+        "recovery",
+        "share",
+        "CPO",
+        "Share of steps that only lower the cost, since none could keep the budget.",
+    ),
+    metric(
+        "seconds_learning",
+        "s",
+        "",
+        "Seconds of learning from a rollout, mean since the row before.",
+    ),
+    metric(
+        "cost/TERM",
+        "cost",
+        "",
+        "Mean cost of the latest training episodes by each cost term, counted or not.",
+    ),
+    metric(
+        "stats/NAME",
+        "",
+        "",
+        "Mean of each of the scenario's statistics over the latest training episodes.",
+    ),
 ];
 
 /// What a key of a row means; `eval/cost/lava` is explained as `eval/cost/TERM`.
@@ -147,7 +247,9 @@ pub fn explain(key: &str) -> Option<&'static Metric> {
     METRICS.iter().find(|metric| {
         let pattern = metric.name;
         match pattern.strip_suffix("TERM").or(pattern.strip_suffix("NAME")) {
-            Some(head) => key.strip_prefix(head).is_some_and(|rest| !rest.is_empty() && !rest.contains('/')),
+            Some(head) => {
+                key.strip_prefix(head).is_some_and(|rest| !rest.is_empty() && !rest.contains('/'))
+            }
             None => key == pattern,
         }
     })

@@ -1,4 +1,5 @@
-//! A run from its first frame to its directory: the session in memory, the trainer around it, checkpoints, evaluation, reports.
+//! A run from its first frame to its directory: the session in memory, the trainer around it,
+//! checkpoints, evaluation, reports.
 
 pub mod agent;
 pub mod agent_file;

@@ -51,13 +51,18 @@ fn style(template: &str) -> ProgressStyle {
 pub fn line(report: &Report) -> String {
     let mut text = format!("{} frames at {:.0}/s", report.frames, report.frames_per_second);
     match report.means {
-        Some((episode_return, cost, _)) => text.push_str(&format!("  return {episode_return:.2}  cost {cost:.1}")),
+        Some((episode_return, cost, _)) => {
+            text.push_str(&format!("  return {episode_return:.2}  cost {cost:.1}"))
+        }
         None => text.push_str("  no episode has ended yet"),
     }
     if let Some(budget) = report.budgets.first() {
         if let Some(Some(term)) = report.terms.first() {
             let cost = report.constraint_costs.first();
-            text.push_str(&format!("  {term} {}", cost.map_or("-".into(), |cost| format!("{cost:.1}"))));
+            text.push_str(&format!(
+                "  {term} {}",
+                cost.map_or("-".into(), |cost| format!("{cost:.1}"))
+            ));
         }
         text.push_str(&format!("  budget {budget}"));
     }

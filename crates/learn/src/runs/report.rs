@@ -55,21 +55,33 @@ pub struct Report {
 impl Report {
     /// A report of what has come together; the means start anew.
     #[must_use]
-    pub fn take(config: &TrainConfig, watch: &Watch, learning: &mut Means, multipliers: Vec<f64>) -> Report {
+    pub fn take(
+        config: &TrainConfig,
+        watch: &Watch,
+        learning: &mut Means,
+        multipliers: Vec<f64>,
+    ) -> Report {
         let mean = |of: fn(&crate::runs::watch::Finished) -> f64| watch.mean(of);
         let means = match (mean(|e| e.episode_return), mean(|e| e.cost), mean(|e| e.length)) {
-            (Some(episode_return), Some(cost), Some(length)) => Some((episode_return, cost, length)),
+            (Some(episode_return), Some(cost), Some(length)) => {
+                Some((episode_return, cost, length))
+            }
             _ => None,
         };
         let bounds = |of: fn(&crate::runs::watch::Finished) -> f64| {
             let values = watch.recent.iter().map(of);
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            })
         };
         let (returns, costs) = (bounds(|e| e.episode_return), bounds(|e| e.cost));
         let constraint_costs = match means {
             None => Vec::new(),
             Some(_) => (0..config.constraints.len())
-                .map(|index| watch.recent.iter().map(|e| e.constrained[index]).sum::<f64>() / watch.recent.len() as f64)
+                .map(|index| {
+                    watch.recent.iter().map(|e| e.constrained[index]).sum::<f64>()
+                        / watch.recent.len() as f64
+                })
                 .collect(),
         };
         Report {
@@ -134,18 +146,25 @@ impl Report {
             put("constraint_costs", json!(self.constraint_costs));
         }
         if let Some(evaluation) = &self.evaluation {
-            for (name, estimate) in
-                [("return", evaluation.episode_return), ("cost", evaluation.cost), ("length", evaluation.length)]
-            {
+            for (name, estimate) in [
+                ("return", evaluation.episode_return),
+                ("cost", evaluation.cost),
+                ("length", evaluation.length),
+            ] {
                 put(&format!("eval/{name}_mean"), json!(estimate.mean));
                 put(&format!("eval/{name}_ci95"), json!(estimate.half_width));
             }
-            for (one, term) in evaluation.constraints.iter().filter_map(|one| Some((one, one.term.as_ref()?))) {
+            for (one, term) in
+                evaluation.constraints.iter().filter_map(|one| Some((one, one.term.as_ref()?)))
+            {
                 put(&format!("eval/cost/{term}"), json!(one.cost.mean));
             }
             put("eval/cost_cvar10", json!(evaluation.tails.cvar));
             put("eval/cost_worst", json!(evaluation.tails.worst));
-            put("eval/over_budget", json!(evaluation.constraints.first().map(|one| one.tails.over_budget)));
+            put(
+                "eval/over_budget",
+                json!(evaluation.constraints.first().map(|one| one.tails.over_budget)),
+            );
             put("eval/frames", json!(self.evaluated_frames));
             put("eval/episodes", json!(evaluation.episodes));
             put("eval/within_budget", json!(u8::from(evaluation.within())));

@@ -21,7 +21,8 @@ const METRICS: &str = "metrics.jsonl";
 const HEATMAPS: &str = "heatmaps.jsonl";
 /// Which checkpoint the run selects, and its name in runs of older versions.
 const SELECTION: [&str; 2] = ["selected.json", "hand_out.json"];
-/// Episodes of the closing evaluations, one a line: of the selected checkpoint, and of the last policy.
+/// Episodes of the closing evaluations, one a line: of the selected checkpoint, and of the last
+/// policy.
 const EPISODES: [&str; 2] = ["closing_episodes.jsonl", "last_policy_episodes.jsonl"];
 /// What the selected checkpoint's critics of the costs expected, and what came.
 const CALIBRATION: &str = "calibration.json";
@@ -34,7 +35,8 @@ pub struct RunDirectory {
 }
 
 impl RunDirectory {
-    /// Makes a new run's directory and writes its settings. A directory with a run in it is refused.
+    /// Makes a new run's directory and writes its settings. A directory with a run in it is
+    /// refused.
     pub fn create(path: &Path, config: &TrainConfig) -> Result<RunDirectory, LearnError> {
         fs::create_dir_all(path).map_err(LearnError::file(path, "create"))?;
         let directory = RunDirectory::lock(path)?;
@@ -43,7 +45,8 @@ impl RunDirectory {
             return Err(LearnError::content(path, problem));
         }
         let checkpoints = path.join("checkpoints");
-        let made = fs::create_dir_all(&checkpoints).map_err(LearnError::file(&checkpoints, "create"));
+        let made =
+            fs::create_dir_all(&checkpoints).map_err(LearnError::file(&checkpoints, "create"));
         match made.and_then(|()| write_json(&path.join("config.json"), config)) {
             Ok(()) => Ok(directory),
             Err(error) => {
@@ -59,8 +62,8 @@ impl RunDirectory {
         Ok((RunDirectory::lock(path)?, config))
     }
 
-    /// Takes a new run back that could not begin, so that the same command, mended, finds its directory free. What was there
-    /// before stays.
+    /// Takes a new run back that could not begin, so that the same command, mended, finds its
+    /// directory free. What was there before stays.
     pub fn withdraw(self) {
         // Nothing hangs on it: at worst the next attempt finds a run there already.
         for name in ["config.json", "config.partial", "lock"] {
@@ -82,20 +85,27 @@ impl RunDirectory {
     }
 
     fn holds_no_row(&self) -> bool {
-        fs::symlink_metadata(self.path.join(METRICS)).map_or(true, |data| data.is_file() && data.len() == 0)
+        fs::symlink_metadata(self.path.join(METRICS))
+            .map_or(true, |data| data.is_file() && data.len() == 0)
     }
 
     fn lock(path: &Path) -> Result<RunDirectory, LearnError> {
         let file = path.join("lock");
-        let lock =
-            File::options().create(true).truncate(false).write(true).open(&file).map_err(LearnError::file(&file, "open"))?;
+        let lock = File::options()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(&file)
+            .map_err(LearnError::file(&file, "open"))?;
         match lock.try_lock() {
             Ok(()) => Ok(RunDirectory { path: path.to_path_buf(), _lock: lock }),
             Err(TryLockError::WouldBlock) => Err(LearnError::content(
                 path,
                 "another trainer works in this directory; wait for it, stop it, or choose another one with --out",
             )),
-            Err(TryLockError::Error(source)) => Err(LearnError::File { path: file, doing: "lock", source }),
+            Err(TryLockError::Error(source)) => {
+                Err(LearnError::File { path: file, doing: "lock", source })
+            }
         }
     }
 
@@ -104,20 +114,31 @@ impl RunDirectory {
         write_json(&self.path.join("config.json"), config)
     }
 
-    /// Writes which checkpoint the run selects and what it is worth, with the episodes that say so. The selection comes last: where it is
-    /// written, the others are.
-    pub fn write_selection(&self, selection: &Selection, closings: &[Closing], config: &TrainConfig) -> Result<(), LearnError> {
+    /// Writes which checkpoint the run selects and what it is worth, with the episodes that say so.
+    /// The selection comes last: where it is written, the others are.
+    pub fn write_selection(
+        &self,
+        selection: &Selection,
+        closings: &[Closing],
+        config: &TrainConfig,
+    ) -> Result<(), LearnError> {
         for closing in closings {
             let mut lines = String::new();
             for (number, (episode, _)) in closing.played.iter().enumerate() {
                 lines += &format!("{}\n", episode_line(&config.env.id, number, episode));
             }
-            write_whole(&self.path.join(EPISODES[usize::from(!closing.selected)]), lines.as_bytes())?;
+            write_whole(
+                &self.path.join(EPISODES[usize::from(!closing.selected)]),
+                lines.as_bytes(),
+            )?;
         }
         for closing in closings.iter().filter(|closing| closing.selected) {
             let all = calibrate(&predictions(&closing.played, config), config);
             if !all.is_empty() {
-                write_json(&self.path.join(CALIBRATION), &json!({ "frames": closing.frames, "constraints": all }))?;
+                write_json(
+                    &self.path.join(CALIBRATION),
+                    &json!({ "frames": closing.frames, "constraints": all }),
+                )?;
             }
         }
         write_json(&self.path.join(SELECTION[0]), selection)
@@ -129,9 +150,15 @@ impl RunDirectory {
         &self.path
     }
 
-    /// Drops the rows after `rows` frames from metrics and TensorBoard's files, and those after `frames` from heatmaps: a run
-    /// that goes on from there writes them again. Rows that are no JSON are dropped too, and named to `warn`.
-    pub fn rewind(&self, rows: u64, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+    /// Drops the rows after `rows` frames from metrics and TensorBoard's files, and those after
+    /// `frames` from heatmaps: a run that goes on from there writes them again. Rows that are no
+    /// JSON are dropped too, and named to `warn`.
+    pub fn rewind(
+        &self,
+        rows: u64,
+        frames: u64,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<(), LearnError> {
         self.rewind_lines(METRICS, rows, warn)?;
         self.rewind_lines(HEATMAPS, frames, warn)?;
         for file in tensorboard::files(&self.path) {
@@ -144,7 +171,12 @@ impl RunDirectory {
         Ok(())
     }
 
-    fn rewind_lines(&self, name: &str, frames: u64, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+    fn rewind_lines(
+        &self,
+        name: &str,
+        frames: u64,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<(), LearnError> {
         let path = self.path.join(name);
         let text = match fs::read(&path) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
@@ -153,13 +185,20 @@ impl RunDirectory {
         };
         let mut kept = String::new();
         for (number, line) in text.lines().enumerate() {
-            match serde_json::from_str::<Value>(line).ok().and_then(|row| row.get("frames")?.as_u64()) {
+            match serde_json::from_str::<Value>(line)
+                .ok()
+                .and_then(|row| row.get("frames")?.as_u64())
+            {
                 Some(at) if at <= frames => {
                     kept.push_str(line);
                     kept.push('\n');
                 }
                 Some(_) => {}
-                None => warn(format!("{}: line {} is damaged and was dropped", path.display(), number + 1)),
+                None => warn(format!(
+                    "{}: line {} is damaged and was dropped",
+                    path.display(),
+                    number + 1
+                )),
             }
         }
         write_whole(&path, kept.as_bytes())
@@ -169,7 +208,10 @@ impl RunDirectory {
 /// A closing episode, in the words of `hasard eval --json`.
 fn episode_line(env: &str, number: usize, episode: &Episode) -> Value {
     let named = |values: &mut dyn Iterator<Item = (&'static str, f64)>| -> Value {
-        values.map(|(name, value)| (name.to_string(), json!(value))).collect::<serde_json::Map<_, _>>().into()
+        values
+            .map(|(name, value)| (name.to_string(), json!(value)))
+            .collect::<serde_json::Map<_, _>>()
+            .into()
     };
     json!({
         "env": env,
@@ -202,8 +244,9 @@ pub fn read_config(path: &Path) -> Result<TrainConfig, LearnError> {
         ));
     }
     let text = fs::read(&file).map_err(LearnError::file(&file, "read"))?;
-    let config: TrainConfig = serde_json::from_slice(&text)
-        .map_err(|error| LearnError::content(&file, format!("damaged or of another version: {error}")))?;
+    let config: TrainConfig = serde_json::from_slice(&text).map_err(|error| {
+        LearnError::content(&file, format!("damaged or of another version: {error}"))
+    })?;
     config.check()?;
     Ok(config)
 }
@@ -215,8 +258,8 @@ pub fn go_on(config: &TrainConfig, directory: &Path) -> String {
 }
 
 fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), LearnError> {
-    let text =
-        serde_json::to_vec_pretty(value).map_err(|error| LearnError::content(path, format!("cannot be written: {error}")))?;
+    let text = serde_json::to_vec_pretty(value)
+        .map_err(|error| LearnError::content(path, format!("cannot be written: {error}")))?;
     write_whole(path, &text)
 }
 
@@ -243,14 +286,22 @@ impl MetricsLog {
     /// Opens a run's log; rows after these frames are added at its end.
     pub fn open(run: &Path, frames: u64) -> Result<MetricsLog, LearnError> {
         let path = run.join(METRICS);
-        let lines = File::options().create(true).append(true).open(&path).map_err(LearnError::file(&path, "open"))?;
+        let lines = File::options()
+            .create(true)
+            .append(true)
+            .open(&path)
+            .map_err(LearnError::file(&path, "open"))?;
         Ok(MetricsLog { lines, events: EventFile::create(run, frames)?, path })
     }
 
     /// Adds a line to the run's `heatmaps.jsonl`.
     pub fn write_heatmap(&mut self, line: &Value) -> Result<(), LearnError> {
         let path = self.path.with_file_name(HEATMAPS);
-        let mut file = File::options().create(true).append(true).open(&path).map_err(LearnError::file(&path, "open"))?;
+        let mut file = File::options()
+            .create(true)
+            .append(true)
+            .open(&path)
+            .map_err(LearnError::file(&path, "open"))?;
         file.write_all(format!("{line}\n").as_bytes()).map_err(LearnError::file(&path, "write"))
     }
 
@@ -268,10 +319,13 @@ impl MetricsLog {
 /// Every number of a row, nested ones under joined names.
 fn collect_scalars(prefix: &str, value: &Value, out: &mut Vec<(String, f64)>) {
     match value {
-        Value::Number(number) => out.extend(number.as_f64().map(|number| (prefix.to_string(), number))),
+        Value::Number(number) => {
+            out.extend(number.as_f64().map(|number| (prefix.to_string(), number)))
+        }
         Value::Object(fields) => {
             for (name, value) in fields {
-                let name = if prefix.is_empty() { name.clone() } else { format!("{prefix}/{name}") };
+                let name =
+                    if prefix.is_empty() { name.clone() } else { format!("{prefix}/{name}") };
                 collect_scalars(&name, value, out);
             }
         }

@@ -1,14 +1,17 @@
 //! Which checkpoint a run selects: of those that keep the budgets, the one that returns most.
 //!
-//! While it learns, a policy wanders in and out of its budgets, and the episodes that it learned from say little about a single
-//! checkpoint. So it is evaluated now and then on episodes of their own, always the same ones, so that candidates are compared on equal
-//! terms. When the run is over, the candidates that kept their budgets are confirmed on further episodes, the one of the highest return
-//! first, and the first that keeps them there too is closed on a third set, which had no part in the choice. A candidate that fails
-//! there gives way to the next one, with new episodes. The last policy is closed as well: it is what a run is without any choice. Where it
-//! is the selected one, its closing is that of both.
+//! While it learns, a policy wanders in and out of its budgets, and the episodes that it learned
+//! from say little about a single checkpoint. So it is evaluated now and then on episodes of their
+//! own, always the same ones, so that candidates are compared on equal terms. When the run is over,
+//! the candidates that kept their budgets are confirmed on further episodes, the one of the highest
+//! return first, and the first that keeps them there too is closed on a third set, which had no
+//! part in the choice. A candidate that fails there gives way to the next one, with new episodes.
+//! The last policy is closed as well: it is what a run is without any choice. Where it is the
+//! selected one, its closing is that of both.
 //!
-//! A checkpoint is *surely* within its budgets if the upper end of its confirmed cost is, at a level shared out over all confirmations that
-//! a run may make (Bonferroni): so the word is wrong for one run in forty at most, however many candidates were tried.
+//! A checkpoint is *surely* within its budgets if the upper end of its confirmed cost is, at a
+//! level shared out over all confirmations that a run may make (Bonferroni): so the word is wrong
+//! for one run in forty at most, however many candidates were tried.
 
 use hasard_envs::Episode;
 use serde::{Deserialize, Serialize};
@@ -50,8 +53,8 @@ impl Candidate {
         self.closing.as_ref().unwrap_or(&self.chosen_by)
     }
 
-    /// Whether it is to be preferred. Of algorithms that keep budgets, one within all of them comes before the others; among those the
-    /// return decides, among those over a budget the excess.
+    /// Whether it is to be preferred. Of algorithms that keep budgets, one within all of them comes
+    /// before the others; among those the return decides, among those over a budget the excess.
     #[must_use]
     pub fn is_better_than(&self, other: &Candidate, algorithm: AlgorithmKind) -> bool {
         let (own, theirs) = (self.evaluation(), other.evaluation());
@@ -106,7 +109,8 @@ pub struct Selection {
     /// The policy at the end of the run, which nothing was chosen by.
     #[serde(default)]
     pub last: Option<LastPolicy>,
-    /// Share of the error that each confirmation has: it may not be surely within with a larger probability of being over.
+    /// Share of the error that each confirmation has: it may not be surely within with a larger
+    /// probability of being over.
     #[serde(default)]
     pub level: Option<f64>,
     /// Frames of all episodes that were played to choose, confirm and close.
@@ -137,14 +141,20 @@ impl EpisodeSet {
     }
 }
 
-/// Plays so many episodes of a set with a checkpoint (by its frames; `None` is the policy at the end of the run); nothing where it was
-/// stopped meanwhile.
-pub type PlaySet<'a> = dyn FnMut(Option<u64>, EpisodeSet, usize) -> Result<Option<Vec<Episode>>, LearnError> + 'a;
+/// Plays so many episodes of a set with a checkpoint (by its frames; `None` is the policy at the
+/// end of the run); nothing where it was stopped meanwhile.
+pub type PlaySet<'a> =
+    dyn FnMut(Option<u64>, EpisodeSet, usize) -> Result<Option<Vec<Episode>>, LearnError> + 'a;
 
 /// Whether episodes cost surely no more than every budget, at a level.
-fn surely_within(episodes: &[Episode], constraints: &[Constraint], level: f64) -> Result<bool, LearnError> {
+fn surely_within(
+    episodes: &[Episode],
+    constraints: &[Constraint],
+    level: f64,
+) -> Result<bool, LearnError> {
     for constraint in constraints {
-        let costs: Vec<f64> = episodes.iter().map(|episode| constraint.cost_of(episode)).collect::<Result<_, _>>()?;
+        let costs: Vec<f64> =
+            episodes.iter().map(|episode| constraint.cost_of(episode)).collect::<Result<_, _>>()?;
         if upper_bound(&costs, level) > constraint.budget {
             return Ok(false);
         }
@@ -158,7 +168,8 @@ pub fn shared_level(settings: &EvaluationConfig) -> f64 {
     ERROR / settings.candidates.max(1) as f64
 }
 
-/// Selects among the candidates of a run that is over; `None` if it has none, or playing was stopped.
+/// Selects among the candidates of a run that is over; `None` if it has none, or playing was
+/// stopped.
 pub fn select(
     candidates: &Candidates,
     config: &TrainConfig,
@@ -170,7 +181,9 @@ pub fn select(
     let level = shared_level(settings);
     let episodes = config.confirming_episodes();
     let mut spent = candidates.frames;
-    let mut go = |policy: Option<u64>, set: EpisodeSet| -> Result<Option<(Vec<Episode>, Evaluation)>, LearnError> {
+    let mut go = |policy: Option<u64>,
+                  set: EpisodeSet|
+     -> Result<Option<(Vec<Episode>, Evaluation)>, LearnError> {
         let Some(played) = play(policy, set, episodes)? else { return Ok(None) };
         spent += frames_of(&played, config);
         let evaluation = Evaluation::of(&played, &config.constraints)?;
@@ -187,11 +200,16 @@ pub fn select(
         if algorithm.keeps_budgets() && !candidate.chosen_by.within() {
             break;
         }
-        let Some((played, chosen_by)) = go(Some(candidate.frames), EpisodeSet::Confirmation)? else { return Ok(None) };
+        let Some((played, chosen_by)) = go(Some(candidate.frames), EpisodeSet::Confirmation)?
+        else {
+            return Ok(None);
+        };
         let surely_within = surely_within(&played, &config.constraints, level)?;
-        let mut confirmed = Candidate { chosen_by, confirmed: true, surely_within, ..candidate.clone() };
+        let mut confirmed =
+            Candidate { chosen_by, confirmed: true, surely_within, ..candidate.clone() };
         if kept(&confirmed.chosen_by, surely_within) {
-            // The policy at the end of the run is closed in any case, by episodes that nothing was chosen by: once is enough.
+            // The policy at the end of the run is closed in any case, by episodes that nothing was
+            // chosen by: once is enough.
             let is_last = candidate.frames == frames;
             attempts += u64::from(!is_last);
             let set = EpisodeSet::Closing(if is_last { 0 } else { attempts });
@@ -209,7 +227,8 @@ pub fn select(
     let selected = match selected {
         Some(selected) => selected,
         None => {
-            // None kept its budgets all the way: the best by what is known of each, closed if it is not yet.
+            // None kept its budgets all the way: the best by what is known of each, closed if it is
+            // not yet.
             let best = failed.iter().fold(None, |best: Option<&Candidate>, one| match best {
                 Some(best) if !one.is_better_than(best, algorithm) => Some(best),
                 _ => Some(one),
@@ -234,13 +253,22 @@ pub fn select(
         },
     };
     let last = LastPolicy { frames, closing };
-    Ok(Some(Selection { selected, failed, last: Some(last), level: Some(level), selection_frames: spent }))
+    Ok(Some(Selection {
+        selected,
+        failed,
+        last: Some(last),
+        level: Some(level),
+        selection_frames: spent,
+    }))
 }
 
 /// Frames of some episodes.
 #[must_use]
 pub fn frames_of(episodes: &[Episode], config: &TrainConfig) -> u64 {
-    episodes.iter().map(|episode| u64::from(episode.length) * u64::from(config.env.frame_skip)).sum()
+    episodes
+        .iter()
+        .map(|episode| u64::from(episode.length) * u64::from(config.env.frame_skip))
+        .sum()
 }
 
 #[cfg(test)]
@@ -250,7 +278,8 @@ mod tests {
     use crate::statistics::Estimate;
 
     fn config() -> TrainConfig {
-        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
         config.constraints = vec![Constraint { term: None, budget: 5.0 }];
         config.evaluation.confirming_episodes = Some(4);
         config.env.frame_skip = 4;
@@ -274,7 +303,10 @@ mod tests {
     }
 
     fn candidate(frames: u64, episode_return: f64, cost: f64) -> Candidate {
-        Candidate::new(frames, Evaluation::of(&episodes(episode_return, cost, 4), &config().constraints).unwrap())
+        Candidate::new(
+            frames,
+            Evaluation::of(&episodes(episode_return, cost, 4), &config().constraints).unwrap(),
+        )
     }
 
     fn ranked(all: &[(u64, f64, f64)], algorithm: AlgorithmKind) -> Candidates {
@@ -289,7 +321,8 @@ mod tests {
         candidates.ranked.iter().map(|one| one.frames).collect()
     }
 
-    /// Audit, "Choosing the checkpoint": 4.56 at cost 1.27 was once chosen over 15.2 at 4.9 of a budget of 5.
+    /// Audit, "Choosing the checkpoint": 4.56 at cost 1.27 was once chosen over 15.2 at 4.9 of a
+    /// budget of 5.
     #[test]
     fn among_those_within_the_budget_the_return_decides() {
         let all = [(1, 4.56, 1.27), (2, 15.2, 4.9), (3, 40.0, 9.0), (4, 30.0, 5.5), (5, 10.0, 4.0)];
@@ -297,16 +330,23 @@ mod tests {
         // An algorithm without budgets is after the return.
         assert_eq!(order(&ranked(&all, AlgorithmKind::Ppo)), [3, 4, 2, 5, 1]);
         let mut few = ranked(&all, AlgorithmKind::PpoLag);
-        assert!(!few.add(candidate(6, 50.0, 20.0), AlgorithmKind::PpoLag, 5), "worse than five others");
+        assert!(
+            !few.add(candidate(6, 50.0, 20.0), AlgorithmKind::PpoLag, 5),
+            "worse than five others"
+        );
         assert!(few.add(candidate(7, 12.0, 3.0), AlgorithmKind::PpoLag, 5));
         assert_eq!(order(&few), [2, 7, 5, 1, 4]);
     }
 
-    /// A failed closing leads to the next candidate with new episodes; the last policy's closing is always beside it.
+    /// A failed closing leads to the next candidate with new episodes; the last policy's closing is
+    /// always beside it.
     #[test]
     fn a_candidate_that_fails_its_closing_gives_way_to_the_next() {
         let config = config();
-        let candidates = ranked(&[(1, 20.0, 4.0), (2, 18.0, 4.0), (3, 16.0, 4.0), (4, 14.0, 4.0)], AlgorithmKind::PpoLag);
+        let candidates = ranked(
+            &[(1, 20.0, 4.0), (2, 18.0, 4.0), (3, 16.0, 4.0), (4, 14.0, 4.0)],
+            AlgorithmKind::PpoLag,
+        );
         let mut asked = Vec::new();
         let mut play = |policy: Option<u64>, set: EpisodeSet, count: usize| {
             asked.push((policy, set));
@@ -318,7 +358,9 @@ mod tests {
             };
             Ok(Some(episodes(11.0, cost, count)))
         };
-        let selection = select(&Candidates { frames: 1000, ..candidates }, &config, 99, &mut play).unwrap().unwrap();
+        let selection = select(&Candidates { frames: 1000, ..candidates }, &config, 99, &mut play)
+            .unwrap()
+            .unwrap();
         let (confirm, closing) = (EpisodeSet::Confirmation, EpisodeSet::Closing);
         let expected = [
             (Some(1), confirm),
@@ -331,7 +373,11 @@ mod tests {
         assert_eq!(asked, expected);
         assert_eq!((selection.selected.frames, selection.selected.confirmed), (3, true));
         assert_eq!(
-            selection.failed.iter().map(|one| (one.frames, one.closing.is_some())).collect::<Vec<_>>(),
+            selection
+                .failed
+                .iter()
+                .map(|one| (one.frames, one.closing.is_some()))
+                .collect::<Vec<_>>(),
             [(1, false), (2, true)]
         );
         let last = selection.last.unwrap();
@@ -341,14 +387,23 @@ mod tests {
         assert!(selection.selected.evaluation().within());
     }
 
-    /// The policy at the end of the run is closed once, by episodes of its own number, whether it is selected or fails there.
+    /// The policy at the end of the run is closed once, by episodes of its own number, whether it
+    /// is selected or fails there.
     #[test]
     fn the_last_policy_is_closed_once() {
         let candidates = ranked(&[(9, 20.0, 4.0), (2, 18.0, 4.0)], AlgorithmKind::PpoLag);
         let (confirm, closing) = (EpisodeSet::Confirmation, EpisodeSet::Closing);
         for (cost, expected) in [
             (4.5, vec![(Some(9), confirm), (Some(9), closing(0))]),
-            (5.5, vec![(Some(9), confirm), (Some(9), closing(0)), (Some(2), confirm), (Some(2), closing(1))]),
+            (
+                5.5,
+                vec![
+                    (Some(9), confirm),
+                    (Some(9), closing(0)),
+                    (Some(2), confirm),
+                    (Some(2), closing(1)),
+                ],
+            ),
         ] {
             let mut asked = Vec::new();
             let mut play = |policy: Option<u64>, set: EpisodeSet, count: usize| {
@@ -366,16 +421,21 @@ mod tests {
     #[test]
     fn where_none_keeps_its_budgets_the_least_evil_is_selected() {
         let candidates = ranked(&[(1, 20.0, 8.0), (2, 18.0, 6.0)], AlgorithmKind::PpoLag);
-        let mut play = |_: Option<u64>, _: EpisodeSet, count: usize| Ok(Some(episodes(11.0, 6.5, count)));
+        let mut play =
+            |_: Option<u64>, _: EpisodeSet, count: usize| Ok(Some(episodes(11.0, 6.5, count)));
         let selection = select(&candidates, &config(), 9, &mut play).unwrap().unwrap();
-        assert_eq!((selection.selected.frames, selection.selected.confirmed, selection.failed.len()), (2, false, 0));
+        assert_eq!(
+            (selection.selected.frames, selection.selected.confirmed, selection.failed.len()),
+            (2, false, 0)
+        );
         assert!(!selection.selected.closing.unwrap().within());
         let mut nothing = |_: Option<u64>, _: EpisodeSet, _: usize| panic!("nothing to play");
         assert!(select(&Candidates::default(), &config(), 9, &mut nothing).unwrap().is_none());
     }
 
-    /// Alpha is shared out: at 2.5 % over 5 confirmations, each has 0.5 %. Four costs of 4.5 +- 0.1 have a standard error of 0.0577
-    /// (0.11547 / 2), and scipy.stats.t.ppf(0.995, 3) = 5.8409: the upper end is 4.837. With 0.6 it would be 2.02 higher than 4.5.
+    /// Alpha is shared out: at 2.5 % over 5 confirmations, each has 0.5 %. Four costs of 4.5 +- 0.1
+    /// have a standard error of 0.0577 (0.11547 / 2), and scipy.stats.t.ppf(0.995, 3) = 5.8409: the
+    /// upper end is 4.837. With 0.6 it would be 2.02 higher than 4.5.
     #[test]
     fn surely_within_is_said_at_the_level_shared_out() {
         let mut config = config();
@@ -422,7 +482,8 @@ mod tests {
             (read.selected.frames, read.selected.evaluation().cost),
             (7, Estimate { mean: 4.0, half_width: 1.0, bootstrap: None })
         );
-        let again: Selection = serde_json::from_str(&serde_json::to_string(&read).unwrap()).unwrap();
+        let again: Selection =
+            serde_json::from_str(&serde_json::to_string(&read).unwrap()).unwrap();
         assert_eq!(again, read);
     }
 }

@@ -24,7 +24,8 @@ use crate::sampling::sampler::{Sampler, SamplerState, dealt_anew};
 use crate::sampling::shared_rollout::{all_states, complete};
 use crate::team::Team;
 
-/// Makes batches of the worlds of an environment: one for each sampler, continuing each other's lanes.
+/// Makes batches of the worlds of an environment: one for each sampler, continuing each other's
+/// lanes.
 pub type MakeWorlds<'a> = dyn Fn(&EnvConfig, VecOptions) -> Result<VecEnv, EnvError> + 'a;
 
 /// What a run begins with.
@@ -83,15 +84,26 @@ pub struct Session {
 pub fn model_shape(config: &TrainConfig, worlds: &VecEnv) -> Result<ModelShape, LearnError> {
     let [height, width, channels] = worlds.observation_shape();
     let action = ActionShape::from(worlds.action_space());
-    let cost_critics = if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
+    let cost_critics =
+        if config.algorithm.has_cost_critics() { config.constraints.len() } else { 0 };
     let extra = algorithms::shaping(config).extra_inputs();
-    let shape = ModelShape::new(ImageShape { height, width, channels }, action, cost_critics, extra, &config.network)?;
+    let shape = ModelShape::new(
+        ImageShape { height, width, channels },
+        action,
+        cost_critics,
+        extra,
+        &config.network,
+    )?;
     shape.with_critic_inputs(Privileged::new(config).count())
 }
 
 impl Session {
     /// Makes everything, and lets the samplers begin.
-    pub fn new(config: TrainConfig, beginning: &Beginning<'_>, make_worlds: &MakeWorlds<'_>) -> Result<Session, LearnError> {
+    pub fn new(
+        config: TrainConfig,
+        beginning: &Beginning<'_>,
+        make_worlds: &MakeWorlds<'_>,
+    ) -> Result<Session, LearnError> {
         Session::of(Team::default(), config, beginning, make_worlds)
     }
 
@@ -142,10 +154,17 @@ impl Session {
                 final_observations: FinalObservations::Truncated,
                 ..VecOptions::default()
             };
-            worlds.push(make_worlds(&config.env, options).map_err(|error| LearnError::Worlds(error.to_string()))?);
+            worlds.push(
+                make_worlds(&config.env, options)
+                    .map_err(|error| LearnError::Worlds(error.to_string()))?,
+            );
         }
         let (extent, cost_terms) = (worlds[0].extent(), worlds[0].cost_terms());
-        let names = cost_terms.iter().map(|term| term.name).chain(worlds[0].statistics().iter().copied()).collect();
+        let names = cost_terms
+            .iter()
+            .map(|term| term.name)
+            .chain(worlds[0].statistics().iter().copied())
+            .collect();
         let shape = model_shape(&config, &worlds[0])?;
         let mut learner = Learner::new(&config, &shape, device);
         learner.join(&team);
@@ -163,21 +182,37 @@ impl Session {
                 watch.totals.clone_from(&before.watch.totals);
             }
             Beginning::Everything(loaded) => {
-                let saved = dealt_anew(loaded.restore(&mut learner)?, &shares)
-                    .ok_or_else(|| LearnError::Config("the checkpoint has another number of worlds than the run".into()))?;
+                let saved =
+                    dealt_anew(loaded.restore(&mut learner)?, &shares).ok_or_else(|| {
+                        LearnError::Config(
+                            "the checkpoint has another number of worlds than the run".into(),
+                        )
+                    })?;
                 states = saved.into_iter().map(Some).collect();
                 let progress: &Progress = &loaded.progress;
-                let misfit = |error| LearnError::Config(format!("the checkpoint's multipliers do not fit: {error}"));
+                let misfit = |error| {
+                    LearnError::Config(format!("the checkpoint's multipliers do not fit: {error}"))
+                };
                 algorithm.load(&progress.algorithm).map_err(misfit)?;
                 watch = progress.watch.resumed(&config)?;
                 (frames, rollouts) = (progress.frames, progress.rollouts);
             }
         }
         let mut samplers = Vec::new();
-        for ((worlds, state), share) in worlds.into_iter().zip(states.drain(own_parts.clone())).zip(&shares[own_parts.clone()]) {
+        for ((worlds, state), share) in
+            worlds.into_iter().zip(states.drain(own_parts.clone())).zip(&shares[own_parts.clone()])
+        {
             let actor = Actor::new(&shape, device);
             let shaping = algorithms::shaping(&config);
-            let mut sampler = Sampler::new(&shape, worlds, actor, shaping, &config.constraints, share.start, config.seed)?;
+            let mut sampler = Sampler::new(
+                &shape,
+                worlds,
+                actor,
+                shaping,
+                &config.constraints,
+                share.start,
+                config.seed,
+            )?;
             sampler.cut(config.trajectory_steps());
             sampler.show_critics(Privileged::new(&config));
             // Of rollouts that are cut, what the networks computed would fill the memory.
@@ -192,7 +227,9 @@ impl Session {
                         sampler.reseed(Stream::new(config.seed, Purpose::Worlds, 0, 0).bits())?;
                     }
                 }
-                None if sampling.spread_out => sampler.spread_out(sampling.lanes, config.episode_steps)?,
+                None if sampling.spread_out => {
+                    sampler.spread_out(sampling.lanes, config.episode_steps)?
+                }
                 None => {}
             }
             samplers.push(sampler);
@@ -237,7 +274,8 @@ impl Session {
         Ok(rollout)
     }
 
-    /// Gives the samplers the present weights and lets them gather another rollout in the memory of one that is done with.
+    /// Gives the samplers the present weights and lets them gather another rollout in the memory of
+    /// one that is done with.
     pub fn go_on(&mut self, mut rollout: Rollout) {
         let published = self.learner.publish();
         let parts = rollout.parts.drain(self.own_parts.clone()).collect();
@@ -257,14 +295,17 @@ impl Session {
         let lag = self.learner.version.saturating_sub(rollout.oldest_version());
         self.means.add("policy_lag", lag as f64);
         if lag > self.config.sampling.max_policy_lag {
-            warn(format!("a rollout was {lag} updates old and was thrown away; raise the policy lag allowed, or use --sync"));
+            warn(format!(
+                "a rollout was {lag} updates old and was thrown away; raise the policy lag allowed, or use --sync"
+            ));
             return Ok(());
         }
         let learning = self.config.learning.clone();
         let done = self.config.progress(self.frames);
         self.learner.rate = learning.rate_after(done);
         self.means.add("learning_rate", self.learner.rate);
-        let last = learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
+        let last =
+            learning.final_exploration_coefficient.unwrap_or(learning.exploration_coefficient);
         self.learner.exploration_coefficient =
             learning.exploration_coefficient + (last - learning.exploration_coefficient) * done;
         if !learning.reuse_forward {

@@ -1,11 +1,12 @@
 //! Event files that TensorBoard reads: scalars by step.
 //!
-//! A file is a row of records: length, its masked checksum, payload, its masked checksum. The payload is a protocol
-//! buffer `Event` (1: wall time as double, 2: step, 3: file version, 5: summary of 1: values of 1: tag and 2: float,
-//! 7: session log of 1: status).
+//! A file is a row of records: length, its masked checksum, payload, its masked checksum. The
+//! payload is a protocol buffer `Event` (1: wall time as double, 2: step, 3: file version, 5:
+//! summary of 1: values of 1: tag and 2: float, 7: session log of 1: status).
 //!
-//! A run that goes on from a checkpoint takes back what was written after it: [`until`] cuts the files, and the new file
-//! begins with a session log that says from which step on, so that a TensorBoard that is open forgets it as well.
+//! A run that goes on from a checkpoint takes back what was written after it: [`until`] cuts the
+//! files, and the new file begins with a session log that says from which step on, so that a
+//! TensorBoard that is open forgets it as well.
 
 use std::fs::File;
 use std::io::Write;
@@ -27,12 +28,21 @@ pub struct EventFile {
 }
 
 impl EventFile {
-    /// A new file in a directory, of what comes after these frames; its name is the one TensorBoard looks for.
+    /// A new file in a directory, of what comes after these frames; its name is the one TensorBoard
+    /// looks for.
     pub fn create(directory: &Path, frames: u64) -> Result<EventFile, LearnError> {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let name = format!("events.out.tfevents.{:010}.{:06}.{ENDING}", since.as_secs(), std::process::id() % 1_000_000);
+        let name = format!(
+            "events.out.tfevents.{:010}.{:06}.{ENDING}",
+            since.as_secs(),
+            std::process::id() % 1_000_000
+        );
         let path = directory.join(name);
-        let file = File::options().create(true).append(true).open(&path).map_err(LearnError::file(&path, "create"))?;
+        let file = File::options()
+            .create(true)
+            .append(true)
+            .open(&path)
+            .map_err(LearnError::file(&path, "create"))?;
         let mut events = EventFile { path, file };
         let mut version = Vec::new();
         bytes_field(&mut version, 3, b"brain.Event:2");
@@ -74,7 +84,10 @@ impl EventFile {
 /// The event files of a run.
 #[must_use]
 pub fn files(directory: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(directory).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
+    let entries = std::fs::read_dir(directory)
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| Some(entry.ok()?.path()));
     let mut files: Vec<PathBuf> = entries
         .filter(|path| {
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
@@ -171,7 +184,8 @@ mod tests {
             let check = u32::from_le_bytes(bytes[at + 8..at + 12].try_into().unwrap());
             assert_eq!(check, masked(&bytes[at..at + 8]));
             let payload = &bytes[at + 12..at + 12 + length];
-            let check = u32::from_le_bytes(bytes[at + 12 + length..at + 16 + length].try_into().unwrap());
+            let check =
+                u32::from_le_bytes(bytes[at + 12 + length..at + 16 + length].try_into().unwrap());
             assert_eq!(check, masked(payload));
             payloads.push(payload.to_vec());
             at += 16 + length;

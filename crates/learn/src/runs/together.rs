@@ -45,24 +45,41 @@ enum Sent<L> {
 }
 
 fn spoiled() -> LearnError {
-    LearnError::Team("the first worker cannot be understood; start all workers from one version of hasard".into())
+    LearnError::Team(
+        "the first worker cannot be understood; start all workers from one version of hasard"
+            .into(),
+    )
 }
 
 /// What workers must have in common so that all of them hold the same bits.
 fn alike(team: &Team, config: &TrainConfig) -> Result<(), LearnError> {
-    let own = format!("hasard {}, {}", env!("CARGO_PKG_VERSION"), ComputeDevice::of(config)?.kernels().name());
-    let mut all: Vec<String> =
-        team.gather(own.into_bytes())?.into_iter().map(|one| String::from_utf8_lossy(&one).into_owned()).collect();
+    let own = format!(
+        "hasard {}, {}",
+        env!("CARGO_PKG_VERSION"),
+        ComputeDevice::of(config)?.kernels().name()
+    );
+    let mut all: Vec<String> = team
+        .gather(own.into_bytes())?
+        .into_iter()
+        .map(|one| String::from_utf8_lossy(&one).into_owned())
+        .collect();
     all.dedup();
     if all.len() > 1 {
-        let problem = format!("the workers compute differently ({}); give them one version, and --portable", all.join("; "));
+        let problem = format!(
+            "the workers compute differently ({}); give them one version, and --portable",
+            all.join("; ")
+        );
         return Err(LearnError::Config(problem));
     }
     Ok(())
 }
 
 /// Tells the others what the run is.
-pub fn invite(team: &Team, config: &TrainConfig, beginning: &Beginning<'_>) -> Result<(), LearnError> {
+pub fn invite(
+    team: &Team,
+    config: &TrainConfig,
+    beginning: &Beginning<'_>,
+) -> Result<(), LearnError> {
     if team.is_alone() {
         return Ok(());
     }
@@ -88,7 +105,8 @@ impl Invitation {
     /// Waits for the first worker.
     pub fn hear(team: Team) -> Result<Invitation, LearnError> {
         let bytes = team.hear_first(Vec::new())?;
-        let (text, sent): (String, Sent<Box<Loaded>>) = postcard::from_bytes(&bytes).map_err(|_| spoiled())?;
+        let (text, sent): (String, Sent<Box<Loaded>>) =
+            postcard::from_bytes(&bytes).map_err(|_| spoiled())?;
         let config: TrainConfig = serde_json::from_str(&text).map_err(|_| spoiled())?;
         let beginning = match sent {
             Sent::Nothing => Beginning::Nothing,
@@ -100,15 +118,25 @@ impl Invitation {
     }
 
     /// Samples and learns with the others until the first worker ends the run.
-    pub fn follow(self, make_worlds: &MakeWorlds<'_>, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+    pub fn follow(
+        self,
+        make_worlds: &MakeWorlds<'_>,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<(), LearnError> {
         let whole = || self.go_along(make_worlds, warn);
-        catch_unwind(AssertUnwindSafe(whole)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("a worker", &*panic))))
+        catch_unwind(AssertUnwindSafe(whole))
+            .unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("a worker", &*panic))))
     }
 
-    fn go_along(self, make_worlds: &MakeWorlds<'_>, warn: &mut dyn FnMut(String)) -> Result<(), LearnError> {
+    fn go_along(
+        self,
+        make_worlds: &MakeWorlds<'_>,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<(), LearnError> {
         let Invitation { team, config, beginning } = self;
         let mut lesson = beginning.progress().map_or(0, |progress| progress.lesson);
-        let mut session = Session::of(team.clone(), config.lesson(lesson), &beginning, make_worlds)?;
+        let mut session =
+            Session::of(team.clone(), config.lesson(lesson), &beginning, make_worlds)?;
         // As the first worker goes through it, without what only one has to do.
         if session.frames >= config.frames {
             return Ok(());
@@ -116,7 +144,12 @@ impl Invitation {
         loop {
             if config.lesson_at(session.frames) != lesson {
                 lesson = config.lesson_at(session.frames);
-                session = Session::of(team.clone(), config.lesson(lesson), &Beginning::Lesson(&session), make_worlds)?;
+                session = Session::of(
+                    team.clone(),
+                    config.lesson(lesson),
+                    &Beginning::Lesson(&session),
+                    make_worlds,
+                )?;
             }
             let before = session.frames;
             let rollout = session.turn(warn)?;

@@ -36,8 +36,8 @@ pub struct Hooks<'a> {
 pub enum Start<'a> {
     /// In a new directory.
     Fresh(TrainConfig),
-    /// From the last checkpoint in the directory; settings given here, each as `NAME=VALUE`, replace the run's from there on
-    /// and are written down in it.
+    /// From the last checkpoint in the directory; settings given here, each as `NAME=VALUE`,
+    /// replace the run's from there on and are written down in it.
     Resume {
         /// Settings that are to be others than before.
         settings: Vec<String>,
@@ -58,14 +58,15 @@ pub struct Summary {
     pub last: Report,
     /// The caller ended it.
     pub stopped: bool,
-    /// The checkpoint that it selects; none if it was never evaluated. Of a run that was stopped, the best candidate so far.
+    /// The checkpoint that it selects; none if it was never evaluated. Of a run that was stopped,
+    /// the best candidate so far.
     pub selection: Option<Selection>,
 }
 
 /// Trains in `directory` until the run's frames are used up or the caller ends it.
 ///
-/// In synchronous mode everything that is learned follows from the settings alone; a run that was stopped, or killed, and
-/// resumed equals one that never stopped, bit by bit.
+/// In synchronous mode everything that is learned follows from the settings alone; a run that was
+/// stopped, or killed, and resumed equals one that never stopped, bit by bit.
 pub fn train(
     start: Start<'_>,
     directory: &Path,
@@ -75,8 +76,8 @@ pub fn train(
     train_together(&Team::default(), start, directory, make_worlds, hooks)
 }
 
-/// As [`train`], with a team of workers of which this is the first: it alone has the directory, evaluates and reports. The others
-/// [`follow`](crate::runs::together::Invitation::follow).
+/// As [`train`], with a team of workers of which this is the first: it alone has the directory,
+/// evaluates and reports. The others [`follow`](crate::runs::together::Invitation::follow).
 pub fn train_together(
     team: &Team,
     start: Start<'_>,
@@ -89,13 +90,16 @@ pub fn train_together(
     let whole = || {
         invite(team, &begun.config, &begun.beginning)?;
         let lesson = begun.beginning.progress().map_or(0, |progress| progress.lesson);
-        let session = Session::of(team.clone(), begun.config.lesson(lesson), &begun.beginning, make_worlds)?;
-        // Only now is anything of a run that goes on touched: a resume that cannot begin leaves it as it was.
-        let candidates = if begun.fresh { Candidates::default() } else { begun.take_back(hooks)? };
+        let session =
+            Session::of(team.clone(), begun.config.lesson(lesson), &begun.beginning, make_worlds)?;
+        // Only now is anything of a run that goes on touched: a resume that cannot begin leaves it
+        // as it was.
+        let candidates =
+            if begun.fresh { Candidates::default() } else { begun.take_back(hooks)? };
         Trainer::new(&begun, candidates, lesson, session, make_worlds).run(hooks)
     };
-    let outcome =
-        catch_unwind(AssertUnwindSafe(whole)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))));
+    let outcome = catch_unwind(AssertUnwindSafe(whole))
+        .unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("the learner", &*panic))));
     if outcome.is_err() && begun.fresh && begun.run.is_blank() {
         begun.run.withdraw();
     }
@@ -114,7 +118,8 @@ struct Begun {
 }
 
 impl Begun {
-    /// Makes the directory agree with the checkpoint that the run goes on from, and gives its candidates so far.
+    /// Makes the directory agree with the checkpoint that the run goes on from, and gives its
+    /// candidates so far.
     fn take_back(&self, hooks: &mut Hooks<'_>) -> Result<Candidates, LearnError> {
         if self.changed {
             self.run.rewrite_config(&self.config)?;
@@ -128,12 +133,13 @@ impl Begun {
         progress.map_or_else(none, |progress| Store::new(self.run.path(), 1).go_back_to(progress))
     }
 
-    /// The checkpoint that the run goes on from, if an evaluation of it is still to be made: it was stopped in the midst of it,
-    /// or has come to its end without any and is now asked for one.
+    /// The checkpoint that the run goes on from, if an evaluation of it is still to be made: it was
+    /// stopped in the midst of it, or has come to its end without any and is now asked for one.
     fn owed(&self, candidates: &Candidates) -> Option<&Loaded> {
         let Beginning::Everything(loaded) = &self.beginning else { return None };
-        let unjudged =
-            candidates.ranked.is_empty() && loaded.progress.frames >= self.config.frames && self.config.evaluates_at_its_end();
+        let unjudged = candidates.ranked.is_empty()
+            && loaded.progress.frames >= self.config.frames
+            && self.config.evaluates_at_its_end();
         (loaded.progress.owes_evaluation || unjudged).then_some(loaded)
     }
 }
@@ -155,7 +161,9 @@ fn begin(start: Start<'_>, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Be
             config.check()?;
             ComputeDevice::of(&config)?;
             let loaded = Store::new(other, 1).newest(hooks.warn)?;
-            let loaded = loaded.ok_or_else(|| LearnError::content(other, "no checkpoint to take weights from is here"))?;
+            let loaded = loaded.ok_or_else(|| {
+                LearnError::content(other, "no checkpoint to take weights from is here")
+            })?;
             new(config, Beginning::Weights(Box::new(loaded)))
         }
         Start::Resume { settings } => {
@@ -163,12 +171,16 @@ fn begin(start: Start<'_>, directory: &Path, hooks: &mut Hooks<'_>) -> Result<Be
             let loaded = Store::new(directory, 1).newest(hooks.warn)?;
             let at = loaded.as_ref().map_or(0, |loaded| loaded.progress.frames);
             if loaded.is_none() {
-                (hooks.warn)(format!("{}: no checkpoint was written yet; the run starts again", directory.display()));
+                (hooks.warn)(format!(
+                    "{}: no checkpoint was written yet; the run starts again",
+                    directory.display()
+                ));
             }
             let config = before.resumed_with(&settings, at)?;
             ComputeDevice::of(&config)?;
             let changed = config != before;
-            let beginning = loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)));
+            let beginning =
+                loaded.map_or(Beginning::Nothing, |loaded| Beginning::Everything(Box::new(loaded)));
             Ok(Begun { run, config, beginning, fresh: false, changed })
         }
     }
@@ -202,17 +214,34 @@ impl<'a> Trainer<'a> {
         let (run, config) = (&begun.run, begun.config.clone());
         let heatmap = heatmap(&config, lesson, &session);
         let started = Instant::now();
-        let seconds_before = begun.beginning.progress().map_or(0.0, |progress| progress.wall_seconds);
+        let seconds_before =
+            begun.beginning.progress().map_or(0.0, |progress| progress.wall_seconds);
         let owed = begun.owed(&candidates);
         let examiner = Examiner::new(make_worlds, candidates);
-        Trainer { run, config, owed, make_worlds, lesson, session, heatmap, seconds_before, started, examiner }
+        Trainer {
+            run,
+            config,
+            owed,
+            make_worlds,
+            lesson,
+            session,
+            heatmap,
+            seconds_before,
+            started,
+            examiner,
+        }
     }
 
     /// Begins the lesson that the frames so far ask for.
     fn begin_lesson(&mut self) -> Result<(), LearnError> {
         self.lesson = self.config.lesson_at(self.session.frames);
         let config = self.config.lesson(self.lesson);
-        self.session = Session::of(self.session.team.clone(), config, &Beginning::Lesson(&self.session), self.make_worlds)?;
+        self.session = Session::of(
+            self.session.team.clone(),
+            config,
+            &Beginning::Lesson(&self.session),
+            self.make_worlds,
+        )?;
         self.heatmap = heatmap(&self.config, self.lesson, &self.session);
         Ok(())
     }
@@ -240,7 +269,8 @@ impl<'a> Trainer<'a> {
             }
         }
         while !over {
-            // Here and not after the checkpoint, so that a run resumed from one taken at a lesson's end begins the next as well.
+            // Here and not after the checkpoint, so that a run resumed from one taken at a lesson's
+            // end begins the next as well.
             if self.lesson_is_over() {
                 self.begin_lesson()?;
             }
@@ -248,14 +278,19 @@ impl<'a> Trainer<'a> {
             let rollout = self.session.turn(hooks.warn)?;
             let evaluates = self.config.evaluates(before, self.session.frames);
             let evaluation = if evaluates { self.examine(&writer, hooks.stop)? } else { None };
-            // What was stopped in the midst of its evaluation has no row yet: it is made when the run goes on.
+            // What was stopped in the midst of its evaluation has no row yet: it is made when the
+            // run goes on.
             cut_short = evaluates && evaluation.is_none();
             // Asked once a rollout: from here on it is decided whether samplers are told to go on.
-            over = self.session.frames >= self.session.config.frames || cut_short || hooks.stop.load(Ordering::Relaxed);
-            let due = last_report.elapsed().as_secs_f64() >= self.session.config.reporting.report_seconds;
+            over = self.session.frames >= self.session.config.frames
+                || cut_short
+                || hooks.stop.load(Ordering::Relaxed);
+            let due =
+                last_report.elapsed().as_secs_f64() >= self.session.config.reporting.report_seconds;
             if over || due || evaluation.is_some() {
                 let seconds = last_report.elapsed().as_secs_f64().max(1e-9);
-                let mut report = self.report((self.session.frames - reported_frames) as f64 / seconds);
+                let mut report =
+                    self.report((self.session.frames - reported_frames) as f64 / seconds);
                 report.evaluation = evaluation;
                 report.evaluated_frames = self.examiner.candidates.frames;
                 (last_report, reported_frames) = (Instant::now(), self.session.frames);
@@ -269,10 +304,14 @@ impl<'a> Trainer<'a> {
             if let Some(heatmap) = &mut self.heatmap {
                 heatmap.add(&rollout);
                 let lesson_is_over = self.config.lesson_at(self.session.frames) != self.lesson;
-                heatmap.line(self.session.frames, over || lesson_is_over).into_iter().for_each(|line| writer.heatmap(line));
+                heatmap
+                    .line(self.session.frames, over || lesson_is_over)
+                    .into_iter()
+                    .for_each(|line| writer.heatmap(line));
             }
             writer.check()?;
-            let due = last_checkpoint.elapsed().as_secs_f64() >= self.session.config.reporting.checkpoint_seconds;
+            let due = last_checkpoint.elapsed().as_secs_f64()
+                >= self.session.config.reporting.checkpoint_seconds;
             let save = over || (due && writer.keeps_up());
             Word { over, save }.tell(&self.session.team)?;
             if save {
@@ -306,8 +345,13 @@ impl<'a> Trainer<'a> {
         self.lesson + 1 == self.config.lessons()
     }
 
-    /// Evaluates the policy as it is; if it is a candidate, its checkpoint is kept. Nothing if the run is stopped meanwhile.
-    fn examine(&mut self, writer: &Writer, stop: &AtomicBool) -> Result<Option<Evaluation>, LearnError> {
+    /// Evaluates the policy as it is; if it is a candidate, its checkpoint is kept. Nothing if the
+    /// run is stopped meanwhile.
+    fn examine(
+        &mut self,
+        writer: &Writer,
+        stop: &AtomicBool,
+    ) -> Result<Option<Evaluation>, LearnError> {
         let counts = self.counts();
         let examined = self.examiner.examine(&mut self.session, counts, stop)?;
         let candidate = examined.as_ref().is_some_and(|(_, candidate)| *candidate);
@@ -318,15 +362,28 @@ impl<'a> Trainer<'a> {
         Ok(examined.map(|(evaluation, _)| evaluation))
     }
 
-    /// Makes the evaluation that the checkpoint which the run goes on from still lacks, as [`Trainer::examine`] would have then;
-    /// the other workers need not know. Nothing if the run is stopped meanwhile: then it goes on lacking it.
-    fn settle(&mut self, loaded: &Loaded, writer: &Writer, hooks: &mut Hooks<'_>) -> Result<Option<Report>, LearnError> {
+    /// Makes the evaluation that the checkpoint which the run goes on from still lacks, as
+    /// [`Trainer::examine`] would have then; the other workers need not know. Nothing if the run is
+    /// stopped meanwhile: then it goes on lacking it.
+    fn settle(
+        &mut self,
+        loaded: &Loaded,
+        writer: &Writer,
+        hooks: &mut Hooks<'_>,
+    ) -> Result<Option<Report>, LearnError> {
         let counts = self.counts();
-        let Some((evaluation, candidate)) = self.examiner.examine(&mut self.session, counts, hooks.stop)? else {
+        let Some((evaluation, candidate)) =
+            self.examiner.examine(&mut self.session, counts, hooks.stop)?
+        else {
             return Ok(None);
         };
         let candidates = self.examiner.candidates.clone();
-        let progress = Progress { candidates, hand_out: None, owes_evaluation: false, ..loaded.progress.clone() };
+        let progress = Progress {
+            candidates,
+            hand_out: None,
+            owes_evaluation: false,
+            ..loaded.progress.clone()
+        };
         let mut report = self.report(0.0);
         report.evaluation = Some(evaluation);
         report.evaluated_frames = self.examiner.candidates.frames;
@@ -341,11 +398,17 @@ impl<'a> Trainer<'a> {
         Ok(Some(report))
     }
 
-    /// Selects a checkpoint, by episodes of its own; the other candidates go. The selection, if there were candidates; nothing at all if
-    /// the run is stopped meanwhile.
-    fn close(&mut self, store: &Store, stop: &AtomicBool) -> Result<Option<Option<Selection>>, LearnError> {
+    /// Selects a checkpoint, by episodes of its own; the other candidates go. The selection, if
+    /// there were candidates; nothing at all if the run is stopped meanwhile.
+    fn close(
+        &mut self,
+        store: &Store,
+        stop: &AtomicBool,
+    ) -> Result<Option<Option<Selection>>, LearnError> {
         // A run that had ended before is not closed anew.
-        let closed = |known: &Selection| known.last.as_ref().is_some_and(|last| last.frames == self.session.frames);
+        let closed = |known: &Selection| {
+            known.last.as_ref().is_some_and(|last| last.frames == self.session.frames)
+        };
         if let Some(known) = read_selection(self.run.path()).filter(closed) {
             store.keep_only(&[store.best_of(known.selected.frames)])?;
             return Ok(Some(Some(known)));
@@ -353,7 +416,10 @@ impl<'a> Trainer<'a> {
         if self.examiner.candidates.ranked.is_empty() {
             return Ok(Some(None));
         }
-        let Some((selection, closings)) = self.examiner.close(&mut self.session, store, stop)? else { return Ok(None) };
+        let Some((selection, closings)) = self.examiner.close(&mut self.session, store, stop)?
+        else {
+            return Ok(None);
+        };
         self.run.write_selection(&selection, &closings, &self.session.config)?;
         store.keep_only(&[store.best_of(selection.selected.frames)])?;
         Ok(Some(Some(selection)))
@@ -369,7 +435,8 @@ impl<'a> Trainer<'a> {
         report.frames = self.session.frames;
         report.level = self.config.curriculum.get(self.lesson).map(|lesson| lesson.level);
         report.updates = self.session.learner.version;
-        report.made_with = (self.session.learner.kernels().name(), self.session.config.learning.threads);
+        report.made_with =
+            (self.session.learner.kernels().name(), self.session.config.learning.threads);
         report.wall_seconds = self.wall_seconds();
         report.frames_per_second = frames_per_second;
         report
@@ -388,11 +455,24 @@ impl<'a> Trainer<'a> {
             hand_out: None,
             owes_evaluation,
             returns: self.session.learner.returns.clone(),
-            optimiser_steps: self.session.learner.optimisers.iter().map(|adam| adam.steps).collect(),
+            optimiser_steps: self
+                .session
+                .learner
+                .optimisers
+                .iter()
+                .map(|adam| adam.steps)
+                .collect(),
             algorithm: self.session.algorithm.save(),
             watch: self.session.watch.clone(),
-            samplers: samplers.iter().map(|sampler| (sampler.steps, sampler.safety.clone())).collect(),
-            spent: samplers.iter().map(|sampler| sampler.spent.clone()).filter(|spent| !spent.is_empty()).collect(),
+            samplers: samplers
+                .iter()
+                .map(|sampler| (sampler.steps, sampler.safety.clone()))
+                .collect(),
+            spent: samplers
+                .iter()
+                .map(|sampler| sampler.spent.clone())
+                .filter(|spent| !spent.is_empty())
+                .collect(),
             pixel_count: self.session.learner.pixels.count,
         };
         Checkpoint::take(&self.session.learner, &samplers, progress)
@@ -402,5 +482,7 @@ impl<'a> Trainer<'a> {
 /// The grid of a lesson's map, if it has places.
 fn heatmap(config: &TrainConfig, lesson: usize, session: &Session) -> Option<Heatmap> {
     let automap = config.automap(lesson);
-    session.extent.map(|extent| Heatmap::new(extent, config.sampling.lanes, config.frames, session.frames, automap))
+    session.extent.map(|extent| {
+        Heatmap::new(extent, config.sampling.lanes, config.frames, session.frames, automap)
+    })
 }

@@ -41,7 +41,8 @@ pub struct Watch {
     pub recent: VecDeque<Finished>,
     /// Episodes so far.
     pub episodes: u64,
-    /// Of the latest, those that finished since a rollout was last learned from with any, and rollouts that passed without.
+    /// Of the latest, those that finished since a rollout was last learned from with any, and
+    /// rollouts that passed without.
     #[serde(default)]
     fresh: usize,
     #[serde(default)]
@@ -50,8 +51,8 @@ pub struct Watch {
     #[serde(default)]
     pub totals: Option<Totals>,
     window: usize,
-    /// Latest episodes that constraints look at: one a world, so that each counts about once and the mean follows the
-    /// policy as fast as episodes end.
+    /// Latest episodes that constraints look at: one a world, so that each counts about once and
+    /// the mean follows the policy as fast as episodes end.
     constraint_window: usize,
 }
 
@@ -78,15 +79,25 @@ impl Watch {
             return Err(LearnError::Config(problem.into()));
         }
         let (fresh, waited, totals) = (self.fresh, self.waited, self.totals.clone());
-        Ok(Watch { recent: self.recent.clone(), episodes: self.episodes, fresh, waited, totals, ..Watch::new(config) })
+        Ok(Watch {
+            recent: self.recent.clone(),
+            episodes: self.episodes,
+            fresh,
+            waited,
+            totals,
+            ..Watch::new(config)
+        })
     }
 
     /// Notes an episode; one that does not report a constraint's term is an error.
     pub fn add(&mut self, episode: &Episode, constraints: &[Constraint]) -> Result<(), LearnError> {
-        let constrained: Vec<f64> = constraints.iter().map(|one| one.cost_of(episode)).collect::<Result<_, _>>()?;
+        let constrained: Vec<f64> =
+            constraints.iter().map(|one| one.cost_of(episode)).collect::<Result<_, _>>()?;
         if let Some(totals) = &mut self.totals {
             totals.cost += episode.cost;
-            for ((sum, cost), constraint) in totals.violations.iter_mut().zip(&constrained).zip(constraints) {
+            for ((sum, cost), constraint) in
+                totals.violations.iter_mut().zip(&constrained).zip(constraints)
+            {
                 *sum += (cost - constraint.budget).max(0.0);
             }
         }
@@ -125,47 +136,67 @@ impl Watch {
     pub fn details(&self) -> Vec<(String, f64)> {
         let Some(last) = self.recent.back() else { return Vec::new() };
         let mean = |(name, _): &(String, f64)| {
-            let values = self.recent.iter().flat_map(|one| one.details.iter().filter(|(other, _)| other == name));
-            let (count, sum) = values.fold((0u32, 0.0), |(count, sum), (_, value)| (count + 1, sum + value));
+            let values = self
+                .recent
+                .iter()
+                .flat_map(|one| one.details.iter().filter(|(other, _)| other == name));
+            let (count, sum) =
+                values.fold((0u32, 0.0), |(count, sum), (_, value)| (count + 1, sum + value));
             (name.clone(), sum / f64::from(count.max(1)))
         };
         last.details.iter().map(mean).collect()
     }
 
-    /// What each constraint costs at present, when so much of the training is over; nothing while that is not known yet.
+    /// What each constraint costs at present, when so much of the training is over; nothing while
+    /// that is not known yet.
     #[must_use]
     pub fn signals(&self, config: &TrainConfig, done: f64, minibatch_costs: &[f64]) -> Vec<Signal> {
         let episode_steps = f64::from(config.episode_steps);
         let count = self.constraint_window.min(self.recent.len());
-        let signal =
-            |index: usize, episode_cost: f64| Signal { done, ..Signal::steady(episode_cost, config.aim(index), episode_steps) };
-        let latest = |index: usize, count: usize| self.recent.iter().rev().take(count).map(move |one| one.constrained[index]);
+        let signal = |index: usize, episode_cost: f64| Signal {
+            done,
+            ..Signal::steady(episode_cost, config.aim(index), episode_steps)
+        };
+        let latest = |index: usize, count: usize| {
+            self.recent.iter().rev().take(count).map(move |one| one.constrained[index])
+        };
         let mean = |index: usize, count: usize| latest(index, count).sum::<f64>() / count as f64;
         let all = 0..config.constraints.len();
         match config.constraint_statistic {
             ConstraintStatistic::StepMean => {
-                return minibatch_costs.iter().enumerate().map(|(index, cost)| signal(index, cost * episode_steps)).collect();
+                return minibatch_costs
+                    .iter()
+                    .enumerate()
+                    .map(|(index, cost)| signal(index, cost * episode_steps))
+                    .collect();
             }
             _ if count == 0 => return Vec::new(),
             _ => {}
         }
         let weight = if self.fresh == 0 { 0.0 } else { (self.waited + 1) as f64 };
-        let mean_steps = self.recent.iter().rev().take(count).map(|one| one.length).sum::<f64>() / count as f64;
+        let mean_steps =
+            self.recent.iter().rev().take(count).map(|one| one.length).sum::<f64>() / count as f64;
         let once = config.algorithm_settings.multiplier_update == MultiplierUpdate::Rollout;
         let one = |index: usize| {
             let signal = match config.constraint_statistic {
-                // The worst of a few new episodes would say nothing: all that are remembered count, whenever some are new.
+                // The worst of a few new episodes would say nothing: all that are remembered count,
+                // whenever some are new.
                 ConstraintStatistic::Cvar(share) => {
                     let costs: Vec<f64> = latest(index, self.recent.len()).collect();
                     signal(index, conditional_value_at_risk(&costs, share).unwrap_or(0.0))
                 }
                 _ => {
                     let fresh = self.fresh.min(self.recent.len());
-                    let fresh_cost = if once && fresh > 0 { mean(index, fresh) } else { mean(index, count) };
+                    let fresh_cost =
+                        if once && fresh > 0 { mean(index, fresh) } else { mean(index, count) };
                     Signal { fresh_cost, ..signal(index, mean(index, count)) }
                 }
             };
-            Signal { mean_steps: mean_steps.max(1.0), fresh_weight: if once { weight } else { 1.0 }, ..signal }
+            Signal {
+                mean_steps: mean_steps.max(1.0),
+                fresh_weight: if once { weight } else { 1.0 },
+                ..signal
+            }
         };
         all.map(one).collect()
     }
@@ -183,16 +214,20 @@ mod tests {
 
     #[test]
     fn signals_are_means_of_the_latest_episodes_or_of_the_steps() {
-        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
         config.sampling.lanes = 2;
-        config.constraints =
-            vec![Constraint { term: None, budget: 50.0 }, Constraint { term: Some("jumps".into()), budget: 3.0 }];
+        config.constraints = vec![
+            Constraint { term: None, budget: 50.0 },
+            Constraint { term: Some("jumps".into()), budget: 3.0 },
+        ];
         let mut watch = Watch::new(&config);
         assert!(watch.signals(&config, 0.0, &[0.1, 0.2]).is_empty());
         for (cost, jumps) in [(1000.0, 50.0), (60.0, 4.0), (80.0, 8.0)] {
             watch.add(&episode(cost, jumps), &config.constraints).unwrap();
         }
-        // All three count, in the window or not: 950 + 10 + 30 over the budget of 50, 47 + 1 + 5 jumps over that of 3.
+        // All three count, in the window or not: 950 + 10 + 30 over the budget of 50, 47 + 1 + 5
+        // jumps over that of 3.
         assert_eq!(watch.totals, Some(Totals { cost: 1140.0, violations: vec![990.0, 53.0] }));
         let signals = watch.signals(&config, 0.0, &[0.1, 0.2]);
         assert_eq!(signals[0].episode_excess(), 20.0);
@@ -204,8 +239,9 @@ mod tests {
         assert!((signals[0].step_excess() - (0.3 - 50.0 / 2100.0 * 4.0)).abs() < 1e-12);
     }
 
-    /// A10: one aim for every algorithm, so that budgets of 50 with a share of 0.9 are 45 to all of them, PPOSaute among them: its safety
-    /// state is used up, of 1, by the cost that the budget is (Sootla et al. 2022, equation 6, undiscounted).
+    /// A10: one aim for every algorithm, so that budgets of 50 with a share of 0.9 are 45 to all of
+    /// them, PPOSaute among them: its safety state is used up, of 1, by the cost that the budget is
+    /// (Sootla et al. 2022, equation 6, undiscounted).
     #[test]
     fn all_algorithms_aim_at_the_same_share_of_the_budget() {
         for &algorithm in AlgorithmKind::ALL {
@@ -215,7 +251,11 @@ mod tests {
                 config.algorithm_settings.saute_gamma = 1.0;
                 let mut watch = Watch::new(&config);
                 watch.add(&episode(60.0, 0.0), &config.constraints).unwrap();
-                assert_eq!(watch.signals(&config, 0.0, &[0.0])[0].episode_budget, 45.0, "{algorithm} {preset}");
+                assert_eq!(
+                    watch.signals(&config, 0.0, &[0.0])[0].episode_budget,
+                    45.0,
+                    "{algorithm} {preset}"
+                );
                 if algorithm == AlgorithmKind::PpoSaute {
                     let shaping = crate::algorithms::shaping(&config);
                     let within = shaping.step(1.0, 1.0, 44.9);
@@ -226,10 +266,12 @@ mod tests {
         }
     }
 
-    /// A15: each episode counts as new once, in the rollout that it finished in; rollouts without any are made up for by the next.
+    /// A15: each episode counts as new once, in the rollout that it finished in; rollouts without
+    /// any are made up for by the next.
     #[test]
     fn episodes_are_new_once() {
-        let mut config = TrainConfig::plain(AlgorithmKind::PpoPid, Preset::Paper, EnvConfig::new("test"));
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoPid, Preset::Paper, EnvConfig::new("test"));
         config.sampling.lanes = 4;
         config.constraints[0].budget = 10.0;
         let mut watch = Watch::new(&config);
@@ -266,7 +308,8 @@ mod tests {
     /// By hand: of 20 episodes the worst tenth are 90 and 70, whatever the others are.
     #[test]
     fn a_constraint_may_be_on_the_tail() {
-        let mut config = TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
+        let mut config =
+            TrainConfig::plain(AlgorithmKind::PpoLag, Preset::Paper, EnvConfig::new("test"));
         config.sampling.lanes = 2;
         config.constraints[0].budget = 50.0;
         config.constraint_statistic = ConstraintStatistic::Cvar(0.1);
@@ -276,13 +319,21 @@ mod tests {
             watch.add(&episode(cost, 0.0), &config.constraints).unwrap();
         }
         let signal = watch.signals(&config, 0.0, &[0.0])[0];
-        assert_eq!((signal.episode_excess(), signal.fresh_cost, signal.fresh_weight), (30.0, 80.0, 1.0));
-        for algorithm in [AlgorithmKind::P3o, AlgorithmKind::Cpo, AlgorithmKind::PpoSaute, AlgorithmKind::Ipo] {
+        assert_eq!(
+            (signal.episode_excess(), signal.fresh_cost, signal.fresh_weight),
+            (30.0, 80.0, 1.0)
+        );
+        for algorithm in
+            [AlgorithmKind::P3o, AlgorithmKind::Cpo, AlgorithmKind::PpoSaute, AlgorithmKind::Ipo]
+        {
             let mut other = TrainConfig::plain(algorithm, Preset::Paper, EnvConfig::new("test"));
             other.constraints[0].budget = 50.0;
             other.constraint_statistic = config.constraint_statistic;
             let message = other.check().unwrap_err().to_string();
-            assert!(message.contains("cvar:0.1") && message.contains(algorithm.name()), "{message}");
+            assert!(
+                message.contains("cvar:0.1") && message.contains(algorithm.name()),
+                "{message}"
+            );
         }
     }
 }

@@ -82,7 +82,8 @@ impl Writer {
         }
     }
 
-    /// Whether the disk is near enough to take another checkpoint. Otherwise one had better be left out than wait in memory.
+    /// Whether the disk is near enough to take another checkpoint. Otherwise one had better be left
+    /// out than wait in memory.
     #[must_use]
     pub fn keeps_up(&self) -> bool {
         self.waiting.load(Ordering::Relaxed) < MOST_WAITING

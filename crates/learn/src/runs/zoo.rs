@@ -1,6 +1,7 @@
 //! Trained agents that are part of the program: one for level 1 of each scenario.
 //!
-//! Their files are in the folder `zoo` of the repository. Here they are bytes, so that an installed program or wheel has them wherever it is.
+//! Their files are in the folder `zoo` of the repository. Here they are bytes, so that an installed
+//! program or wheel has them wherever it is.
 
 use std::path::Path;
 

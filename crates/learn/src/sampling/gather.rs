@@ -1,5 +1,5 @@
-//! The samplers of a run, and what passes between them and the learner: taking turns with it, or side by side with it, each
-//! on a thread of its own that works off a queue.
+//! The samplers of a run, and what passes between them and the learner: taking turns with it, or
+//! side by side with it, each on a thread of its own that works off a queue.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -63,8 +63,8 @@ pub struct Gatherer {
 }
 
 enum Crew {
-    /// They gather on threads of the learner, when it waits for a rollout. (Threads of their own would often be woken
-    /// on one and the same core, and stay there for milliseconds.)
+    /// They gather on threads of the learner, when it waits for a rollout. (Threads of their own
+    /// would often be woken on one and the same core, and stay there for milliseconds.)
     InTurn { samplers: Vec<Sampler>, parts: Vec<Part>, steps: usize },
     /// Each gathers on a thread of its own, while the learner learns.
     Ahead {
@@ -75,18 +75,27 @@ enum Crew {
 }
 
 impl Gatherer {
-    /// Samplers that take turns with the learner: a rollout of `steps` steps is gathered when it is waited for.
+    /// Samplers that take turns with the learner: a rollout of `steps` steps is gathered when it is
+    /// waited for.
     pub fn in_turn(samplers: Vec<Sampler>, steps: usize, published: Published) -> Gatherer {
         let parts = samplers.iter().map(|_| Part::default()).collect();
         Gatherer { crew: Crew::InTurn { samplers, parts, steps }, newest: newest(published) }
     }
 
     /// Samplers on threads of their own, of which `ahead` rollouts are asked at once.
-    pub fn ahead(samplers: Vec<Sampler>, steps: usize, ahead: usize, published: Published) -> Gatherer {
+    pub fn ahead(
+        samplers: Vec<Sampler>,
+        steps: usize,
+        ahead: usize,
+        published: Published,
+    ) -> Gatherer {
         let newest = newest(published);
         let over = Arc::new(AtomicBool::new(false));
         let hire = |sampler| hire(sampler, steps, ahead, Arc::clone(&newest), Arc::clone(&over));
-        Gatherer { crew: Crew::Ahead { workers: samplers.into_iter().map(hire).collect(), over }, newest }
+        Gatherer {
+            crew: Crew::Ahead { workers: samplers.into_iter().map(hire).collect(), over },
+            newest,
+        }
     }
 
     /// Waits for the next rollout.
@@ -95,10 +104,15 @@ impl Gatherer {
             Crew::InTurn { samplers, parts, steps } => {
                 let (steps, newest) = (*steps, &self.newest);
                 let mut threads = vec![(); samplers.len()];
-                let mut filled: Vec<Option<Result<Part, LearnError>>> = samplers.iter().map(|_| None).collect();
-                let work = samplers.iter_mut().zip(parts.drain(..)).zip(&mut filled).map(|((sampler, part), filled)| {
-                    move |_: &mut ()| *filled = Some(caught(|| fill(sampler, part, steps, newest)))
-                });
+                let mut filled: Vec<Option<Result<Part, LearnError>>> =
+                    samplers.iter().map(|_| None).collect();
+                let work = samplers.iter_mut().zip(parts.drain(..)).zip(&mut filled).map(
+                    |((sampler, part), filled)| {
+                        move |_: &mut ()| {
+                            *filled = Some(caught(|| fill(sampler, part, steps, newest)))
+                        }
+                    },
+                );
                 in_parallel(&mut threads, work);
                 filled.into_iter().flatten().collect()
             }
@@ -107,7 +121,8 @@ impl Gatherer {
         Ok(Rollout { parts: parts? })
     }
 
-    /// Publishes new weights, then asks for another rollout in the memory of one that has been learned from.
+    /// Publishes new weights, then asks for another rollout in the memory of one that has been
+    /// learned from.
     pub fn go_on(&mut self, rollout: Rollout, published: Published) {
         *self.newest.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = Arc::new(published);
         match &mut self.crew {
@@ -154,16 +169,28 @@ fn newest(published: Published) -> Arc<Newest> {
     Arc::new(RwLock::new(Arc::new(published)))
 }
 
-fn fill(sampler: &mut Sampler, mut part: Part, steps: usize, newest: &Newest) -> Result<Part, LearnError> {
+fn fill(
+    sampler: &mut Sampler,
+    mut part: Part,
+    steps: usize,
+    newest: &Newest,
+) -> Result<Part, LearnError> {
     sampler.fill(&mut part, steps, newest).map(|()| part)
 }
 
 /// What a sampler does, a panic being an error.
 fn caught<T>(work: impl FnOnce() -> Result<T, LearnError>) -> Result<T, LearnError> {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("a sampler", &*panic))))
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|panic| Err(LearnError::Panic(panic_text("a sampler", &*panic))))
 }
 
-fn hire(mut sampler: Sampler, steps: usize, ahead: usize, newest: Arc<Newest>, over: Arc<AtomicBool>) -> Worker {
+fn hire(
+    mut sampler: Sampler,
+    steps: usize,
+    ahead: usize,
+    newest: Arc<Newest>,
+    over: Arc<AtomicBool>,
+) -> Worker {
     let (asks, asked) = channel();
     let (answering, answers) = channel();
     for _ in 0..ahead {
@@ -175,7 +202,8 @@ fn hire(mut sampler: Sampler, steps: usize, ahead: usize, newest: Arc<Newest>, o
                 return;
             }
             let answer = caught(|| match ask {
-                Ask::Fill(part) => fill(&mut sampler, *part, steps, &newest).map(|part| Answer::Filled(Box::new(part))),
+                Ask::Fill(part) => fill(&mut sampler, *part, steps, &newest)
+                    .map(|part| Answer::Filled(Box::new(part))),
                 Ask::Save => sampler.save().map(Answer::Saved),
             });
             let failed = answer.is_err();
@@ -190,6 +218,12 @@ fn hire(mut sampler: Sampler, steps: usize, ahead: usize, newest: Arc<Newest>, o
 /// A panic as one line.
 #[must_use]
 pub fn panic_text(who: &str, panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-    format!("{who} panicked ({}); this is a fault of hasard, please report it", text.unwrap_or("no message"))
+    let text = panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    format!(
+        "{who} panicked ({}); this is a fault of hasard, please report it",
+        text.unwrap_or("no message")
+    )
 }

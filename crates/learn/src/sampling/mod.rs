@@ -1,4 +1,5 @@
-//! How experience is gathered: worlds, the policy that acts in them, and what is handed to the learner.
+//! How experience is gathered: worlds, the policy that acts in them, and what is handed to the
+//! learner.
 
 pub mod gather;
 pub mod privileged;

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::networks::{ModelShape, Recording};
 
-/// Steps of a sampler's lanes. Step `t` of lane `l` is row `t * lanes + l`; all buffers are reused. Another worker's part comes without
-/// what is skipped here.
+/// Steps of a sampler's lanes. Step `t` of lane `l` is row `t * lanes + l`; all buffers are reused.
+/// Another worker's part comes without what is skipped here.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Part {
     /// Steps.
@@ -24,7 +24,8 @@ pub struct Part {
     pub extra: Vec<f32>,
     /// Privileged inputs of each row, and after the last step.
     pub privileged: Vec<f32>,
-    /// State of each network before the first step of each trajectory, all lanes' first trajectories first.
+    /// State of each network before the first step of each trajectory, all lanes' first
+    /// trajectories first.
     #[serde(skip)]
     pub initial_state: Vec<Vec<f32>>,
     /// Categorical sub-actions.
@@ -57,7 +58,14 @@ pub struct Part {
 
 impl Part {
     /// Makes room; nothing is allocated where the size is as before.
-    pub fn prepare(&mut self, shape: &ModelShape, steps: usize, lanes: usize, groups: usize, constraints: usize) {
+    pub fn prepare(
+        &mut self,
+        shape: &ModelShape,
+        steps: usize,
+        lanes: usize,
+        groups: usize,
+        constraints: usize,
+    ) {
         let rows = steps * lanes;
         (self.steps, self.lanes, self.group_lanes) = (steps, lanes, lanes / groups);
         self.frames.resize_with((steps + 1) * groups, Vec::new);
@@ -86,7 +94,8 @@ impl Part {
         self.steps.checked_div(self.trajectory_steps).unwrap_or(1)
     }
 
-    /// The observation of a lane at a step; step `steps` is the one after the last. Empty where another worker has the pixels.
+    /// The observation of a lane at a step; step `steps` is the one after the last. Empty where
+    /// another worker has the pixels.
     #[must_use]
     pub fn frame(&self, step: usize, lane: usize) -> &[u8] {
         if self.frames.is_empty() {
@@ -179,10 +188,12 @@ impl Rollout {
             .collect()
     }
 
-    /// Episodes that ended, in the order in which they did: how lanes were dealt to samplers does not matter.
+    /// Episodes that ended, in the order in which they did: how lanes were dealt to samplers does
+    /// not matter.
     #[must_use]
     pub fn episodes(&self) -> Vec<&Episode> {
-        let mut all: Vec<&(usize, Episode)> = self.parts.iter().flat_map(|part| &part.episodes).collect();
+        let mut all: Vec<&(usize, Episode)> =
+            self.parts.iter().flat_map(|part| &part.episodes).collect();
         all.sort_by_key(|(step, episode)| (*step, episode.lane));
         all.into_iter().map(|(_, episode)| episode).collect()
     }

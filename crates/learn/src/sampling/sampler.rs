@@ -1,7 +1,8 @@
 //! A sampler: some worlds and the policy that acts in them.
 //!
-//! With two groups and a thread for the worlds, one half of them steps while the policy works on the other. With
-//! several samplers that step their own worlds the same happens between the samplers.
+//! With two groups and a thread for the worlds, one half of them steps while the policy works on
+//! the other. With several samplers that step their own worlds the same happens between the
+//! samplers.
 
 use std::ops::Range;
 use std::sync::{Arc, RwLock};
@@ -20,7 +21,8 @@ use crate::sampling::shaping::{Shaping, seen};
 /// Where samplers find the newest weights.
 pub type Newest = RwLock<Arc<Published>>;
 
-/// What a sampler's lanes carry from one rollout to the next, beside the worlds: all that a resumed run needs.
+/// What a sampler's lanes carry from one rollout to the next, beside the worlds: all that a resumed
+/// run needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SamplerState {
     /// Worlds.
@@ -35,8 +37,8 @@ pub struct SamplerState {
     pub spent: Vec<f64>,
 }
 
-/// The same lanes dealt to other samplers, in their order: what happens in a lane does not depend on its sampler. `None` if
-/// they do not belong together, or are not as many as the shares.
+/// The same lanes dealt to other samplers, in their order: what happens in a lane does not depend
+/// on its sampler. `None` if they do not belong together, or are not as many as the shares.
 #[must_use]
 pub fn dealt_anew(states: Vec<SamplerState>, shares: &[Range<usize>]) -> Option<Vec<SamplerState>> {
     let steps = states.first()?.steps;
@@ -45,7 +47,9 @@ pub fn dealt_anew(states: Vec<SamplerState>, shares: &[Range<usize>]) -> Option<
         return None;
     }
     let networks = states[0].state.len();
-    let whole = |network: usize| states.iter().flat_map(|one| &one.state[network]).copied().collect::<Vec<f32>>();
+    let whole = |network: usize| {
+        states.iter().flat_map(|one| &one.state[network]).copied().collect::<Vec<f32>>()
+    };
     let memories: Vec<Vec<f32>> = (0..networks).map(whole).collect();
     let safety: Vec<f64> = states.iter().flat_map(|one| &one.safety).copied().collect();
     let spent: Vec<f64> = states.iter().flat_map(|one| &one.spent).copied().collect();
@@ -88,7 +92,8 @@ pub struct Sampler {
     recording: bool,
     /// Steps of the trajectories that the learner takes.
     trajectory_steps: usize,
-    /// What the critics see and the policy does not, of each lane's steps and costs in its episode so far.
+    /// What the critics see and the policy does not, of each lane's steps and costs in its episode
+    /// so far.
     privileged: Privileged,
     ages: Vec<u32>,
     spent: Vec<f64>,
@@ -157,9 +162,10 @@ impl Sampler {
         self.trajectory_steps = trajectory_steps.max(1);
     }
 
-    /// Puts every lane somewhere else in its first episode: of all `total` lanes of the run, each starts after so many
-    /// random steps that their episodes end spread over the time of one. Otherwise all episodes of a scenario that always
-    /// runs into the clock would end at once, and constraints would hear of their cost once in an age.
+    /// Puts every lane somewhere else in its first episode: of all `total` lanes of the run, each
+    /// starts after so many random steps that their episodes end spread over the time of one.
+    /// Otherwise all episodes of a scenario that always runs into the clock would end at once, and
+    /// constraints would hear of their cost once in an age.
     pub fn spread_out(&mut self, total: usize, episode_steps: u32) -> Result<(), LearnError> {
         let mut saved = self.save()?;
         let action = &self.shape.action;
@@ -202,7 +208,8 @@ impl Sampler {
         let action = &self.shape.action;
         let age = |lane: &LaneState| {
             let made = |parts: usize, each: usize| parts.checked_div(each).unwrap_or(0);
-            made(lane.actions.len(), action.sizes.len()).max(made(lane.deltas.len(), action.deltas)) as u32
+            made(lane.actions.len(), action.sizes.len()).max(made(lane.deltas.len(), action.deltas))
+                as u32
         };
         self.ages = saved.worlds.iter().map(age).collect();
         if !saved.spent.is_empty() {
@@ -213,8 +220,11 @@ impl Sampler {
         let pixels = self.shape.pixels();
         for group in 0..self.worlds.groups() {
             let lanes = self.worlds.group_lanes(group);
-            let batch = self.batches[group].as_mut().expect("no group is under way between rollouts");
-            batch.observations.copy_from_slice(&whole.observations[lanes.start * pixels..lanes.end * pixels]);
+            let batch =
+                self.batches[group].as_mut().expect("no group is under way between rollouts");
+            batch
+                .observations
+                .copy_from_slice(&whole.observations[lanes.start * pixels..lanes.end * pixels]);
         }
         (self.state, self.safety, self.steps) = (saved.state, saved.safety, saved.steps);
         Ok(())
@@ -226,7 +236,12 @@ impl Sampler {
     }
 
     /// Gathers `steps` steps of all lanes.
-    pub fn fill(&mut self, part: &mut Part, steps: usize, newest: &Newest) -> Result<(), LearnError> {
+    pub fn fill(
+        &mut self,
+        part: &mut Part,
+        steps: usize,
+        newest: &Newest,
+    ) -> Result<(), LearnError> {
         let groups = self.worlds.groups();
         part.prepare(&self.shape, steps, self.lanes(), groups, self.constraints.len());
         part.trajectory_steps = self.trajectory_steps.min(steps);
@@ -235,9 +250,13 @@ impl Sampler {
         for (initial, state) in part.initial_state.iter_mut().zip(&self.state) {
             initial.resize(trajectories * state.len(), 0.0);
         }
-        part.recordings.resize_with(if self.recording { self.shape.networks.len() } else { 0 }, Default::default);
+        part.recordings.resize_with(
+            if self.recording { self.shape.networks.len() } else { 0 },
+            Default::default,
+        );
         for step in 0..steps {
-            let published = Arc::clone(&newest.read().unwrap_or_else(|poisoned| poisoned.into_inner()));
+            let published =
+                Arc::clone(&newest.read().unwrap_or_else(|poisoned| poisoned.into_inner()));
             self.actor.load(&published);
             part.versions[step] = published.version;
             for group in 0..groups {
@@ -255,14 +274,16 @@ impl Sampler {
             self.receive(group, steps - 1, part)?;
             let batch = self.batches[group].as_ref().expect("just received");
             part.frames[steps * groups + group].copy_from_slice(&batch.observations);
-            // The value of what follows is asked with a copy of the state: the next rollout asks again with new weights.
+            // The value of what follows is asked with a copy of the state: the next rollout asks
+            // again with new weights.
             let lanes = self.worlds.group_lanes(group);
             for (copy, state) in self.after_state.iter_mut().zip(&self.state) {
                 copy.copy_from_slice(state);
             }
             self.write_extra(part, steps, lanes.clone());
             self.write_privileged(part, steps, lanes.clone());
-            let (seen, extra, outputs) = (self.shape.critic_inputs, self.shape.extra_inputs(), self.shape.outputs());
+            let (seen, extra, outputs) =
+                (self.shape.critic_inputs, self.shape.extra_inputs(), self.shape.outputs());
             let rows = steps * self.lanes() + lanes.start..steps * self.lanes() + lanes.end;
             self.actor.act(
                 &batch.observations,
@@ -280,7 +301,9 @@ impl Sampler {
     /// Notes the state that a trajectory of each lane of a group begins in.
     fn note_state(&self, group: usize, trajectory: usize, part: &mut Part) {
         let lanes = self.worlds.group_lanes(group);
-        for ((initial, state), network) in part.initial_state.iter_mut().zip(&self.state).zip(&self.shape.networks) {
+        for ((initial, state), network) in
+            part.initial_state.iter_mut().zip(&self.state).zip(&self.shape.networks)
+        {
             let own = lanes.start * network.state_size()..lanes.end * network.state_size();
             initial[trajectory * state.len()..][own.clone()].copy_from_slice(&state[own]);
         }
@@ -301,7 +324,11 @@ impl Sampler {
             for lane in lanes {
                 let row = (step * self.ages.len() + lane) * count;
                 let spent = &self.spent[lane * constraints..(lane + 1) * constraints];
-                self.privileged.write(self.ages[lane], spent, &mut part.privileged[row..row + count]);
+                self.privileged.write(
+                    self.ages[lane],
+                    spent,
+                    &mut part.privileged[row..row + count],
+                );
             }
         }
     }
@@ -312,19 +339,34 @@ impl Sampler {
         let lanes = self.worlds.group_lanes(group);
         let first_row = step * self.lanes();
         let rows = first_row + lanes.start..first_row + lanes.end;
-        let (seen, extra, outputs) = (self.shape.critic_inputs, self.shape.extra_inputs(), self.shape.outputs());
+        let (seen, extra, outputs) =
+            (self.shape.critic_inputs, self.shape.extra_inputs(), self.shape.outputs());
         self.write_extra(part, step, lanes.clone());
         self.write_privileged(part, step, lanes.clone());
         let out = &mut part.outputs[rows.start * outputs..rows.end * outputs];
         let extra = &part.extra[rows.start * extra..rows.end * extra];
-        let notes = Notes { recordings: &mut part.recordings, steps: part.steps, all_lanes: part.lanes, step };
+        let notes = Notes {
+            recordings: &mut part.recordings,
+            steps: part.steps,
+            all_lanes: part.lanes,
+            step,
+        };
         let seen = &part.privileged[rows.start * seen..rows.end * seen];
-        self.actor.act(&batch.observations, extra, seen, &mut self.state, lanes.clone(), out, Some(notes));
+        self.actor.act(
+            &batch.observations,
+            extra,
+            seen,
+            &mut self.state,
+            lanes.clone(),
+            out,
+            Some(notes),
+        );
         let action = &self.shape.action;
         let (count, deltas) = (action.sizes.len(), action.deltas);
         for (index, lane) in lanes.clone().enumerate() {
             let number = (self.first_lane + lane) as u64;
-            let mut stream = Stream::new(self.seed, Purpose::Actions, number, self.steps + step as u64);
+            let mut stream =
+                Stream::new(self.seed, Purpose::Actions, number, self.steps + step as u64);
             part.log_probabilities[first_row + lane] = action.sample(
                 &out[index * outputs..(index + 1) * outputs],
                 &mut stream,
@@ -335,7 +377,10 @@ impl Sampler {
         part.actions[rows.start * count..rows.end * count].copy_from_slice(&batch.actions);
         part.deltas[rows.start * deltas..rows.end * deltas].copy_from_slice(&batch.deltas);
         // The worlds write over all observations, so the frames change hands without being copied.
-        std::mem::swap(&mut part.frames[step * self.worlds.groups() + group], batch.observations.to_mut());
+        std::mem::swap(
+            &mut part.frames[step * self.worlds.groups() + group],
+            batch.observations.to_mut(),
+        );
         self.worlds.send(group, batch).map_err(world_error)
     }
 
@@ -355,8 +400,12 @@ impl Sampler {
             }
             self.ages[lane] += 1;
             let costs = &part.costs[row * count..(row + 1) * count];
-            self.spent[lane * count..].iter_mut().zip(costs).for_each(|(spent, &cost)| *spent += f64::from(cost));
-            let (reward, safety) = self.shaping.step(self.safety[lane], batch.rewards[index], part.costs[row * count]);
+            self.spent[lane * count..]
+                .iter_mut()
+                .zip(costs)
+                .for_each(|(spent, &cost)| *spent += f64::from(cost));
+            let (reward, safety) =
+                self.shaping.step(self.safety[lane], batch.rewards[index], part.costs[row * count]);
             part.rewards[row] = reward.clamp(-1000.0, 1000.0);
             self.safety[lane] = safety;
             part.positions[row] = batch.positions[index];
@@ -365,7 +414,9 @@ impl Sampler {
         for (index, observation) in batch.finals() {
             let lane = lanes.start + index;
             let mut row = vec![0.0; self.shape.outputs()];
-            for ((copy, state), network) in self.after_state.iter_mut().zip(&self.state).zip(&self.shape.networks) {
+            for ((copy, state), network) in
+                self.after_state.iter_mut().zip(&self.state).zip(&self.shape.networks)
+            {
                 let units = network.state_size();
                 copy[..units].copy_from_slice(&state[lane * units..(lane + 1) * units]);
             }
@@ -373,7 +424,11 @@ impl Sampler {
             let extra = &seen[..self.shape.extra_inputs()];
             let mut shown = vec![0.0; self.shape.critic_inputs];
             let constraints = self.constraints.len();
-            self.privileged.write(self.ages[lane], &self.spent[lane * constraints..(lane + 1) * constraints], &mut shown);
+            self.privileged.write(
+                self.ages[lane],
+                &self.spent[lane * constraints..(lane + 1) * constraints],
+                &mut shown,
+            );
             self.actor.act(observation, extra, &shown, &mut self.after_state, 0..1, &mut row, None);
             part.cut_off.push((first_row + lane, row));
         }

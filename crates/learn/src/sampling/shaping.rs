@@ -1,4 +1,5 @@
-//! What the learner is rewarded with, where that is not the plain reward. Reported returns and costs are always the plain ones.
+//! What the learner is rewarded with, where that is not the plain reward. Reported returns and
+//! costs are always the plain ones.
 
 /// How rewards are shaped before learning; each algorithm that shapes them has its own.
 pub trait Shaping: Send + Sync {
@@ -7,7 +8,8 @@ pub trait Shaping: Send + Sync {
         0
     }
 
-    /// The shaped reward of a step, and the safety state after it from that before it (1 at an episode's start).
+    /// The shaped reward of a step, and the safety state after it from that before it (1 at an
+    /// episode's start).
     fn step(&self, safety: f64, reward: f32, _cost: f32) -> (f32, f64) {
         (reward, safety)
     }

@@ -1,4 +1,5 @@
-//! Rollouts of several workers: every worker gets what the others' samplers brought, but for the pixels.
+//! Rollouts of several workers: every worker gets what the others' samplers brought, but for the
+//! pixels.
 
 use hasard_envs::{Episode, EpisodeCost, LaneState};
 use serde::{Deserialize, Serialize};
@@ -28,14 +29,20 @@ type Named = Vec<(&'static str, f64)>;
 
 impl Sent {
     fn new((step, episode): &(usize, Episode)) -> Sent {
-        let named = |values: &Named| values.iter().map(|(name, value)| ((*name).to_string(), *value)).collect();
+        let named = |values: &Named| {
+            values.iter().map(|(name, value)| ((*name).to_string(), *value)).collect()
+        };
         Sent {
             step: *step,
             lane: episode.lane,
             seed: episode.seed,
             episode_return: episode.episode_return,
             cost: episode.cost,
-            costs: episode.costs.iter().map(|one| (one.name.to_string(), one.counted, one.cost)).collect(),
+            costs: episode
+                .costs
+                .iter()
+                .map(|one| (one.name.to_string(), one.counted, one.cost))
+                .collect(),
             length: episode.length,
             terminated: episode.terminated,
             truncated: episode.truncated,
@@ -68,15 +75,24 @@ impl Sent {
 type SentSampler = (Vec<u8>, Vec<Vec<f32>>, Vec<f64>, Vec<f64>, u64);
 
 fn misfit() -> LearnError {
-    LearnError::Team("a worker plays other worlds; start all workers from one version of hasard".into())
+    LearnError::Team(
+        "a worker plays other worlds; start all workers from one version of hasard".into(),
+    )
 }
 
-/// The rollout of all workers, of which one has its own samplers' parts. `names` are those of cost terms and statistics.
-pub fn complete(team: &Team, shape: &ModelShape, names: &[&'static str], own: Rollout) -> Result<Rollout, LearnError> {
+/// The rollout of all workers, of which one has its own samplers' parts. `names` are those of cost
+/// terms and statistics.
+pub fn complete(
+    team: &Team,
+    shape: &ModelShape,
+    names: &[&'static str],
+    own: Rollout,
+) -> Result<Rollout, LearnError> {
     if team.is_alone() {
         return Ok(own);
     }
-    let episodes: Vec<Vec<Sent>> = own.parts.iter().map(|part| part.episodes.iter().map(Sent::new).collect()).collect();
+    let episodes: Vec<Vec<Sent>> =
+        own.parts.iter().map(|part| part.episodes.iter().map(Sent::new).collect()).collect();
     let bytes = postcard::to_allocvec(&(&own.parts, episodes)).map_err(|_| misfit())?;
     let (all, mut mine) = (team.gather(bytes)?, Some(own));
     let mut whole = Rollout { parts: Vec::new() };
@@ -85,7 +101,8 @@ pub fn complete(team: &Team, shape: &ModelShape, names: &[&'static str], own: Ro
             whole.parts.extend(mine.take().into_iter().flat_map(|own| own.parts));
             continue;
         }
-        let (parts, episodes): (Vec<Part>, Vec<Vec<Sent>>) = postcard::from_bytes(&bytes).map_err(|_| misfit())?;
+        let (parts, episodes): (Vec<Part>, Vec<Vec<Sent>>) =
+            postcard::from_bytes(&bytes).map_err(|_| misfit())?;
         for (mut part, episodes) in parts.into_iter().zip(episodes) {
             let named = episodes.into_iter().map(|sent| sent.episode(names)).collect::<Option<_>>();
             part.episodes = named.ok_or_else(misfit)?;
@@ -106,8 +123,9 @@ pub fn all_states(team: &Team, own: Vec<SamplerState>) -> Result<Vec<SamplerStat
     if team.is_alone() {
         return Ok(own);
     }
-    let pack =
-        |one: SamplerState| -> SentSampler { (LaneState::to_bytes(&one.worlds), one.state, one.safety, one.spent, one.steps) };
+    let pack = |one: SamplerState| -> SentSampler {
+        (LaneState::to_bytes(&one.worlds), one.state, one.safety, one.spent, one.steps)
+    };
     let sent: Vec<SentSampler> = own.into_iter().map(pack).collect();
     let bytes = postcard::to_allocvec(&sent).map_err(|_| misfit())?;
     let mut states = Vec::new();

@@ -1,6 +1,7 @@
 //! The statistics of evaluations: means with intervals, bounds at any level, tails.
 //!
-//! Everything is computed with the functions of `libm`, so that an evaluation says the same on every machine.
+//! Everything is computed with the functions of `libm`, so that an evaluation says the same on
+//! every machine.
 
 mod bootstrap;
 mod estimate;

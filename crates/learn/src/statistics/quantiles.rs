@@ -1,6 +1,7 @@
 //! Points of the normal distribution and of Student's t.
 
-/// The argument at which an increasing function reaches a value, between two bounds. Halved until no number lies between.
+/// The argument at which an increasing function reaches a value, between two bounds. Halved until
+/// no number lies between.
 fn invert(rising: impl Fn(f64) -> f64, value: f64, mut low: f64, mut high: f64) -> f64 {
     loop {
         let middle = 0.5 * (low + high);
@@ -29,8 +30,9 @@ pub fn normal_quantile(probability: f64) -> f64 {
     }
 }
 
-/// The regularised incomplete beta function, by its continued fraction (Abramowitz and Stegun 26.5.8, evaluated by Lentz's
-/// method), for `x` below the mean of the distribution, where the fraction converges fast.
+/// The regularised incomplete beta function, by its continued fraction (Abramowitz and
+/// Stegun 26.5.8, evaluated by Lentz's method), for `x` below the mean of the distribution, where
+/// the fraction converges fast.
 fn beta_fraction(a: f64, b: f64, x: f64) -> f64 {
     const TINY: f64 = 1e-300;
     let kept = |value: f64| if value.abs() < TINY { TINY } else { value };
@@ -51,7 +53,9 @@ fn beta_fraction(a: f64, b: f64, x: f64) -> f64 {
             break;
         }
     }
-    let log = a * libm::log(x) + b * libm::log1p(-x) + libm::lgamma(a + b) - libm::lgamma(a) - libm::lgamma(b);
+    let log = a * libm::log(x) + b * libm::log1p(-x) + libm::lgamma(a + b)
+        - libm::lgamma(a)
+        - libm::lgamma(b);
     libm::exp(log) * fraction / a
 }
 
@@ -65,14 +69,16 @@ fn beta_probability(a: f64, b: f64, x: f64) -> f64 {
     }
 }
 
-/// The point that a value of Student's t distribution does not exceed with this probability (at least one half).
+/// The point that a value of Student's t distribution does not exceed with this probability (at
+/// least one half).
 #[must_use]
 pub fn t_quantile(probability: f64, degrees_of_freedom: usize) -> f64 {
     if degrees_of_freedom == 0 || probability >= 1.0 {
         return f64::INFINITY;
     }
     let n = degrees_of_freedom as f64;
-    // Both tails beyond t have the probability I_x(n/2, 1/2) at x = n / (n + t^2) (Abramowitz and Stegun 26.7.1).
+    // Both tails beyond t have the probability I_x(n/2, 1/2) at x = n / (n + t^2) (Abramowitz and
+    // Stegun 26.7.1).
     let inside = |t: f64| 1.0 - 0.5 * beta_probability(0.5 * n, 0.5, n / (n + t * t));
     let mut most = 1.0;
     while inside(most) < probability && most < 1e15 {

@@ -22,13 +22,16 @@ pub struct Tails {
     pub over_budget: Option<f64>,
 }
 
-/// How costs spread; all 0 for none. The conditional value at risk counts the episode at the tenth's edge in part where a tenth is no
-/// whole number (Rockafellar and Uryasev 2002, equation 30), so that it does not jump with the number of episodes.
+/// How costs spread; all 0 for none. The conditional value at risk counts the episode at the
+/// tenth's edge in part where a tenth is no whole number (Rockafellar and Uryasev 2002,
+/// equation 30), so that it does not jump with the number of episodes.
 #[must_use]
 pub fn tails(costs: impl IntoIterator<Item = f64>, budget: Option<f64>) -> Tails {
     let mut sorted: Vec<f64> = costs.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
-    let Some(&worst) = sorted.last() else { return Tails { over_budget: budget.map(|_| 0.0), ..Tails::default() } };
+    let Some(&worst) = sorted.last() else {
+        return Tails { over_budget: budget.map(|_| 0.0), ..Tails::default() };
+    };
     let count = sorted.len() as f64;
     let over = |budget: f64| sorted.iter().filter(|&&cost| cost > budget).count() as f64 / count;
     let mut left = WORST * count;
@@ -54,8 +57,8 @@ pub fn tails(costs: impl IntoIterator<Item = f64>, budget: Option<f64>) -> Tails
 mod tests {
     use super::*;
 
-    /// By hand: of the costs 1 to 25, a tenth is two episodes and a half: (25 + 24 + 23 / 2) / 2.5 = 24.2. `numpy.quantile` gives 13
-    /// and 22.6. Six of 25 exceed 19.
+    /// By hand: of the costs 1 to 25, a tenth is two episodes and a half: (25 + 24 + 23 / 2)
+    /// / 2.5 = 24.2. `numpy.quantile` gives 13 and 22.6. Six of 25 exceed 19.
     #[test]
     fn tails_are_those_worked_out_by_hand() {
         let costs = (1..=25).rev().map(f64::from);

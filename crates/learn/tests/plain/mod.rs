@@ -1,4 +1,5 @@
-//! A network by its definition: loops in 64 bits over the table of parameters, nothing shared with what it is held against.
+//! A network by its definition: loops in 64 bits over the table of parameters, nothing shared with
+//! what it is held against.
 
 use hasard_learn::config::RecurrentCell;
 use hasard_learn::networks::{ImageShape, NetworkShape, PixelScale, Sequences};
@@ -25,14 +26,21 @@ fn rectified(values: &[f64]) -> Vec<f64> {
 }
 
 /// A 3x3 convolution that keeps the size of the image, what is outside counting as zero.
-fn convolved(values: &[f64], image: ImageShape, (weights, biases): (&[f64], &[f64])) -> (Vec<f64>, ImageShape) {
+fn convolved(
+    values: &[f64],
+    image: ImageShape,
+    (weights, biases): (&[f64], &[f64]),
+) -> (Vec<f64>, ImageShape) {
     let mut next = Vec::new();
     for (y, x) in (0..image.height).flat_map(|y| (0..image.width).map(move |x| (y, x))) {
         let mut patch = Vec::new();
         for (row, column) in (0..3).flat_map(|dy| (0..3).map(move |dx| (y + dy, x + dx))) {
             let inside = (1..=image.height).contains(&row) && (1..=image.width).contains(&column);
             let pixel = |channel| ((row - 1) * image.width + column - 1) * image.channels + channel;
-            patch.extend((0..image.channels).map(|channel| if inside { values[pixel(channel)] } else { 0.0 }));
+            patch.extend(
+                (0..image.channels)
+                    .map(|channel| if inside { values[pixel(channel)] } else { 0.0 }),
+            );
         }
         next.extend(dense(&patch, weights, biases));
     }
@@ -42,12 +50,15 @@ fn convolved(values: &[f64], image: ImageShape, (weights, biases): (&[f64], &[f6
 /// The largest of the 3x3 pixels around every second one of every second row.
 fn pooled(values: &[f64], image: ImageShape) -> (Vec<f64>, ImageShape) {
     let mut next = Vec::new();
-    for (y, x) in (0..image.height).step_by(2).flat_map(|y| (0..image.width).step_by(2).map(move |x| (y, x))) {
+    for (y, x) in
+        (0..image.height).step_by(2).flat_map(|y| (0..image.width).step_by(2).map(move |x| (y, x)))
+    {
         for channel in 0..image.channels {
             let mut largest = f64::NEG_INFINITY;
             for row in y.saturating_sub(1)..(y + 2).min(image.height) {
                 for column in x.saturating_sub(1)..(x + 2).min(image.width) {
-                    largest = largest.max(values[(row * image.width + column) * image.channels + channel]);
+                    largest = largest
+                        .max(values[(row * image.width + column) * image.channels + channel]);
                 }
             }
             next.push(largest);
@@ -57,13 +68,19 @@ fn pooled(values: &[f64], image: ImageShape) -> (Vec<f64>, ImageShape) {
 }
 
 /// Outputs of all rows, one after the other.
-pub fn forward(shape: &NetworkShape, parameters: &[f64], pixels: &PixelScale, batch: &Sequences<'_>) -> Vec<f64> {
+pub fn forward(
+    shape: &NetworkShape,
+    parameters: &[f64],
+    pixels: &PixelScale,
+    batch: &Sequences<'_>,
+) -> Vec<f64> {
     let table = shape.parameters();
     let mut blocks = table.iter().map(|parameter| &parameters[parameter.range()]);
     let mut next = || blocks.next().expect("a block of each layer");
     let convolutions: Vec<_> = shape.convolutions.iter().map(|_| (next(), next())).collect();
     // Of each stage: the one before the pooling, then two for each of two blocks.
-    let stages: Vec<_> = shape.residual.iter().map(|_| [(); 5].map(|()| (next(), next()))).collect();
+    let stages: Vec<_> =
+        shape.residual.iter().map(|_| [(); 5].map(|()| (next(), next()))).collect();
     let layers: Vec<_> = shape.dense.iter().map(|_| (next(), next())).collect();
     let cell = shape.recurrent.map(|units| (units, [next(), next(), next(), next()]));
     let heads: Vec<_> = shape.heads.iter().map(|_| (next(), next())).collect();
@@ -81,7 +98,9 @@ pub fn forward(shape: &NetworkShape, parameters: &[f64], pixels: &PixelScale, ba
         let mut values: Vec<f64> = batch.observations[row]
             .iter()
             .zip(pixels.scale.iter().zip(&pixels.shift))
-            .map(|(&pixel, (&scale, &shift))| (f64::from(pixel) * f64::from(scale) + f64::from(shift)).clamp(-5.0, 5.0))
+            .map(|(&pixel, (&scale, &shift))| {
+                (f64::from(pixel) * f64::from(scale) + f64::from(shift)).clamp(-5.0, 5.0)
+            })
             .collect();
         let mut image = shape.image;
         for (layer, (weights, biases)) in shape.convolutions.iter().zip(&convolutions) {
@@ -91,8 +110,12 @@ pub fn forward(shape: &NetworkShape, parameters: &[f64], pixels: &PixelScale, ba
                 for x in 0..after.width {
                     let mut patch = Vec::new();
                     for kernel_row in 0..layer.kernel {
-                        let first = ((y * layer.stride + kernel_row) * image.width + x * layer.stride) * image.channels;
-                        patch.extend_from_slice(&values[first..first + layer.kernel * image.channels]);
+                        let first = ((y * layer.stride + kernel_row) * image.width
+                            + x * layer.stride)
+                            * image.channels;
+                        patch.extend_from_slice(
+                            &values[first..first + layer.kernel * image.channels],
+                        );
                     }
                     next.extend(dense(&patch, weights, biases));
                 }
@@ -116,25 +139,33 @@ pub fn forward(shape: &NetworkShape, parameters: &[f64], pixels: &PixelScale, ba
             values = dense(&values, weights, biases);
             elu(&mut values);
         }
-        values.extend(batch.extra[row * shape.extra_inputs..][..shape.extra_inputs].iter().map(|&value| f64::from(value)));
+        values.extend(
+            batch.extra[row * shape.extra_inputs..][..shape.extra_inputs]
+                .iter()
+                .map(|&value| f64::from(value)),
+        );
         if let Some((units, [input, input_bias, hidden, hidden_bias])) = cell {
             let state = &mut states[row % batch.lanes];
             if batch.reset[row] {
                 state.fill(0.0);
             }
-            let (x, s) = (dense(&values, input, input_bias), dense(&state[..units], hidden, hidden_bias));
+            let (x, s) =
+                (dense(&values, input, input_bias), dense(&state[..units], hidden, hidden_bias));
             for unit in 0..units {
                 let sum = |gate: usize| x[gate * units + unit] + s[gate * units + unit];
                 match shape.cell {
-                    // Cho et al. 2014, equations 5 to 8, the reset applied behind the product: reset, update, new.
+                    // Cho et al. 2014, equations 5 to 8, the reset applied behind the product:
+                    // reset, update, new.
                     RecurrentCell::Gru => {
                         let (reset, update) = (sigmoid(sum(0)), sigmoid(sum(1)));
                         let new = (x[2 * units + unit] + reset * s[2 * units + unit]).tanh();
                         state[unit] = (1.0 - update) * new + update * state[unit];
                     }
-                    // Gers et al. 2000, section 3, with tanh for both squashing functions: input, forget, candidate, output.
+                    // Gers et al. 2000, section 3, with tanh for both squashing functions: input,
+                    // forget, candidate, output.
                     RecurrentCell::Lstm => {
-                        let cell = sigmoid(sum(1)) * state[units + unit] + sigmoid(sum(0)) * sum(2).tanh();
+                        let cell =
+                            sigmoid(sum(1)) * state[units + unit] + sigmoid(sum(0)) * sum(2).tanh();
                         state[units + unit] = cell;
                         state[unit] = sigmoid(sum(3)) * cell.tanh();
                     }

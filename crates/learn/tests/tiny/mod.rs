@@ -3,7 +3,10 @@
 #![allow(dead_code)] // Each test file uses its own part of this.
 
 use hasard_engine::math::Rng;
-use hasard_envs::{ActionGroup, ActionSpace, BUTTONS, CostTerm, Environment, Episode, Step, VecEnv, VecOptions, episode_costs};
+use hasard_envs::{
+    ActionGroup, ActionSpace, BUTTONS, CostTerm, Environment, Episode, Step, VecEnv, VecOptions,
+    episode_costs,
+};
 use hasard_learn::config::Convolution;
 use hasard_learn::config::{AlgorithmKind, Constraint, EnvConfig, Preset, TrainConfig};
 use hasard_learn::runs::report::Report;
@@ -16,12 +19,13 @@ pub const STEPS: u32 = 10;
 /// Side of the picture.
 pub const SIDE: usize = 6;
 
-/// Every step shows a rich or a poor picture, either half of the time. Taking a risk brings 1 when rich and 0.4 when
-/// poor, and costs 1 either way; anything else brings and costs nothing.
+/// Every step shows a rich or a poor picture, either half of the time. Taking a risk brings 1 when
+/// rich and 0.4 when poor, and costs 1 either way; anything else brings and costs nothing.
 ///
-/// Without a budget it is best always to take the risk: return 7, cost 10. Under a budget of 4 it is best to take it in
-/// four fifths of the rich steps alone: return 4, cost 4. As a trap the risk loses 0.4 when poor: without a budget it is best
-/// to take it when rich alone, return 5, where a policy that is blind to the picture gets 3 at most.
+/// Without a budget it is best always to take the risk: return 7, cost 10. Under a budget of 4 it
+/// is best to take it in four fifths of the rich steps alone: return 4, cost 4. As a trap the risk
+/// loses 0.4 when poor: without a budget it is best to take it when rich alone, return 5, where a
+/// policy that is blind to the picture gets 3 at most.
 ///
 /// The second cost is 1 for another sub-action that does nothing else.
 pub struct Risk {
@@ -87,7 +91,11 @@ impl Environment for Risk {
 
     fn step(&mut self, actions: &[u8], _deltas: &[f32]) -> Step {
         if self.ended() {
-            return Step { terminated: !self.times_out, truncated: self.times_out, ..Step::default() };
+            return Step {
+                terminated: !self.times_out,
+                truncated: self.times_out,
+                ..Step::default()
+            };
         }
         let risk = actions[0] == 1;
         let reward = if risk { if self.rich { 1.0 } else { self.poor } } else { 0.0 };
@@ -98,7 +106,12 @@ impl Environment for Risk {
         self.sums.1[1] += self.last[1];
         self.steps += 1;
         self.rich = self.rng.below(2) == 1;
-        Step { reward, cost, terminated: self.ended() && !self.times_out, truncated: self.ended() && self.times_out }
+        Step {
+            reward,
+            cost,
+            terminated: self.ended() && !self.times_out,
+            truncated: self.ended() && self.times_out,
+        }
     }
 
     fn step_costs(&self) -> &[f64] {
@@ -108,7 +121,8 @@ impl Environment for Risk {
     fn observe(&mut self, out: &mut [u8]) {
         for (index, pixel) in out.iter_mut().enumerate() {
             let noise = (self.seed as usize).wrapping_mul(index + 1) % 40;
-            *pixel = if self.rich == (index % 2 == 0) { 200 - noise as u8 } else { 20 + noise as u8 };
+            *pixel =
+                if self.rich == (index % 2 == 0) { 200 - noise as u8 } else { 20 + noise as u8 };
         }
     }
 
@@ -182,7 +196,11 @@ pub fn worlds(env: &EnvConfig, options: VecOptions) -> Result<VecEnv, hasard_env
 
 /// Settings that solve the task in seconds.
 pub fn config(algorithm: AlgorithmKind) -> TrainConfig {
-    let mut config = TrainConfig::plain(algorithm, Preset::Paper, EnvConfig { frame_skip: 1, ..EnvConfig::new("Risk") });
+    let mut config = TrainConfig::plain(
+        algorithm,
+        Preset::Paper,
+        EnvConfig { frame_skip: 1, ..EnvConfig::new("Risk") },
+    );
     config.episode_steps = STEPS;
     config.constraints = vec![Constraint { term: None, budget: 4.0 }];
     config.network.convolutions = vec![Convolution { channels: 32, kernel: 4, stride: 2 }];
@@ -215,7 +233,10 @@ pub fn directory(name: &str) -> PathBuf {
 }
 
 /// Trains to the end, collecting reports and warnings.
-pub fn run(start: Start<'_>, directory: &Path) -> (Result<Summary, String>, Vec<Report>, Vec<String>) {
+pub fn run(
+    start: Start<'_>,
+    directory: &Path,
+) -> (Result<Summary, String>, Vec<Report>, Vec<String>) {
     let (mut reports, mut warnings) = (Vec::new(), Vec::new());
     let stop = AtomicBool::new(false);
     let result = train(

@@ -23,7 +23,10 @@ pub fn small_shapes() -> Vec<(&'static str, NetworkShape)> {
         ("overlapping kernels, extra input, two dense layers", small.clone()),
         ("feed-forward", NetworkShape { recurrent: None, ..small.clone() }),
         ("long short-term memory", NetworkShape { cell: RecurrentCell::Lstm, ..small.clone() }),
-        ("residual encoder", NetworkShape { convolutions: vec![], residual: vec![32, 64], ..small.clone() }),
+        (
+            "residual encoder",
+            NetworkShape { convolutions: vec![], residual: vec![32, 64], ..small.clone() },
+        ),
         ("no convolution", NetworkShape { convolutions: vec![], ..small.clone() }),
         (
             "block kernels in a row",
@@ -54,15 +57,26 @@ pub struct Case {
 impl Case {
     pub fn new(shape: &NetworkShape, steps: usize, lanes: usize) -> Case {
         let mut stream = Stream::new(11, Purpose::Evaluation, 0, 0);
-        let mut normals = |count: usize| -> Vec<f32> { (0..count).map(|_| 0.3 * stream.normal() as f32).collect() };
+        let mut normals = |count: usize| -> Vec<f32> {
+            (0..count).map(|_| 0.3 * stream.normal() as f32).collect()
+        };
         let (rows, pixels) = (steps * lanes, shape.image.size());
         let extra = normals(rows * shape.extra_inputs);
         let state = normals(lanes * shape.state_size());
         let shift = normals(pixels);
         let scale = (0..pixels).map(|_| (2.0 + stream.uniform() as f32) / 255.0).collect();
-        let observations = (0..rows).map(|_| (0..pixels).map(|_| (stream.bits() >> 56) as u8).collect()).collect();
+        let observations =
+            (0..rows).map(|_| (0..pixels).map(|_| (stream.bits() >> 56) as u8).collect()).collect();
         let reset = (0..rows).map(|_| stream.uniform() < 0.2).collect();
-        Case { pixels: PixelScale { scale, shift }, observations, extra, state, reset, steps, lanes }
+        Case {
+            pixels: PixelScale { scale, shift },
+            observations,
+            extra,
+            state,
+            reset,
+            steps,
+            lanes,
+        }
     }
 
     pub fn sequences(&self) -> Sequences<'_> {

@@ -3,7 +3,10 @@ use super::*;
 fn header() -> Header {
     Header {
         env: "VolcanicVentureLevel1-v0".into(),
-        options: BTreeMap::from([("rules".into(), "paper".into()), ("full-actions".into(), "true".into())]),
+        options: BTreeMap::from([
+            ("rules".into(), "paper".into()),
+            ("full-actions".into(), "true".into()),
+        ]),
         seed: u64::MAX,
         program: "0.1.0".into(),
         player: "human".into(),
@@ -21,7 +24,13 @@ fn human() -> EpisodeFile {
         let mouse = if step / 90 % 3 == 0 { (step % 17) as f32 * 0.01 - 0.05 } else { 0.0 };
         file.push(&[(step / 40 % 3) as u8, (step / 111 % 2) as u8, 0], &[0.0, mouse]).unwrap();
     }
-    file.set_outcome(Outcome { episode_return: 12.25, cost: 3.0, truncated: true, state_hash: Some(7), ..Outcome::default() });
+    file.set_outcome(Outcome {
+        episode_return: 12.25,
+        cost: 3.0,
+        truncated: true,
+        state_hash: Some(7),
+        ..Outcome::default()
+    });
     file
 }
 
@@ -84,7 +93,10 @@ fn hostile_files_with_a_fitting_checksum_do_no_harm() {
         }
         match EpisodeFile::from_bytes(&with_checksum(changed), Path::new("hostile.episode")) {
             // What is accepted can be written and read again.
-            Ok(file) => assert_eq!(EpisodeFile::from_bytes(&file.to_bytes(), Path::new("again")).unwrap(), file),
+            Ok(file) => assert_eq!(
+                EpisodeFile::from_bytes(&file.to_bytes(), Path::new("again")).unwrap(),
+                file
+            ),
             Err(error) => {
                 let line = error.to_string();
                 assert!(line.starts_with("hostile.episode: ") && !line.contains('\n'), "{line}");
@@ -108,14 +120,20 @@ fn a_body_that_inflates_without_end_is_cut_short() {
     bytes.extend((body.len() as u32).to_le_bytes());
     bytes.extend(&body);
     bytes.extend([0; 4]);
-    let error = EpisodeFile::from_bytes(&with_checksum(bytes), Path::new("bomb")).unwrap_err().to_string();
+    let error =
+        EpisodeFile::from_bytes(&with_checksum(bytes), Path::new("bomb")).unwrap_err().to_string();
     assert!(error.contains("does not hold the 5 steps"), "{error}");
 }
 
 #[test]
 fn the_message_tells_what_to_do() {
-    let message = |bytes: &[u8]| EpisodeFile::from_bytes(bytes, Path::new("a/b.episode")).unwrap_err().to_string();
-    assert_eq!(message(b"hello"), "a/b.episode: is no episode file; `hasard record` and `hasard play` write them");
+    let message = |bytes: &[u8]| {
+        EpisodeFile::from_bytes(bytes, Path::new("a/b.episode")).unwrap_err().to_string()
+    };
+    assert_eq!(
+        message(b"hello"),
+        "a/b.episode: is no episode file; `hasard record` and `hasard play` write them"
+    );
     let mut newer = human().to_bytes();
     newer[8] = 9;
     assert!(message(&newer).contains("version 9, and this program reads version 1"));

@@ -1,4 +1,5 @@
-//! Pictures coded in stretches that stand alone, several at a time on threads of their own. The bytes are those of one thread.
+//! Pictures coded in stretches that stand alone, several at a time on threads of their own. The
+//! bytes are those of one thread.
 
 use rusty_h264_common::YuvFrame;
 use rusty_h264_encoder::{Encoder, EncoderConfig};
@@ -7,13 +8,15 @@ use std::thread::JoinHandle;
 
 /// Pictures of a stretch at most: players jump to their beginnings.
 const LONGEST: usize = 140;
-/// Pictures of a stretch at least: two pictures that stand alone may not follow each other directly, and a flash fades within them.
+/// Pictures of a stretch at least: two pictures that stand alone may not follow each other
+/// directly, and a flash fades within them.
 const SHORTEST: usize = 8;
 /// Bytes of the pictures of a stretch at most, so that large films fit into memory.
 const MOST_BYTES: usize = 48 << 20;
 /// Stretches that are coded at a time at most.
 const MOST_THREADS: usize = 8;
-/// Mean change of brightness from one picture to the next (of 256) from which on it is a cut or a flash, not a movement.
+/// Mean change of brightness from one picture to the next (of 256) from which on it is a cut or a
+/// flash, not a movement.
 const CUT: u64 = 20;
 
 /// A coded picture, and whether it stands alone.
@@ -54,16 +57,21 @@ impl Segments {
         Ok(coded)
     }
 
-    /// Gives the waiting stretch to a thread; with as many at work as there are cores, waits for the oldest.
+    /// Gives the waiting stretch to a thread; with as many at work as there are cores, waits for
+    /// the oldest.
     fn begin(&mut self) -> Result<Vec<Unit>, String> {
         let frames = std::mem::take(&mut self.waiting);
         if frames.is_empty() {
             return Ok(Vec::new());
         }
-        let coded =
-            if self.at_work.len() >= self.threads { self.at_work.pop_front().map_or(Ok(Vec::new()), ended)? } else { Vec::new() };
+        let coded = if self.at_work.len() >= self.threads {
+            self.at_work.pop_front().map_or(Ok(Vec::new()), ended)?
+        } else {
+            Vec::new()
+        };
         let config = self.config.clone();
-        let begun = std::thread::Builder::new().name("film".into()).spawn(move || code(config, &frames));
+        let begun =
+            std::thread::Builder::new().name("film".into()).spawn(move || code(config, &frames));
         self.at_work.push_back(begun.map_err(|error| error.to_string())?);
         Ok(coded)
     }
@@ -76,7 +84,9 @@ fn ended(thread: JoinHandle<Result<Vec<Unit>, String>>) -> Result<Vec<Unit>, Str
 fn code(config: EncoderConfig, frames: &[YuvFrame]) -> Result<Vec<Unit>, String> {
     // One picture in is one picture out: nothing looks ahead, and the quantiser is constant.
     let mut encoder = Encoder::new(config).map_err(|error| error.to_string())?;
-    let unit = |(at, frame)| encoder.try_encode(frame).map(|bytes| (bytes, at == 0)).map_err(|error| error.to_string());
+    let unit = |(at, frame)| {
+        encoder.try_encode(frame).map(|bytes| (bytes, at == 0)).map_err(|error| error.to_string())
+    };
     frames.iter().enumerate().map(unit).collect()
 }
 

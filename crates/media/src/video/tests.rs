@@ -38,16 +38,35 @@ fn a_foreign_decoder_shows_every_frame_much_as_it_was() {
         let path = temporary(&format!("{width}x{height}.mp4"));
         write(&path, width, height, frames);
         let name = path.to_str().unwrap();
-        let decode = ["-v", "warning", "-i", name, "-f", "rawvideo", "-pix_fmt", "yuv420p", "-fps_mode", "passthrough", "-"];
+        let decode = [
+            "-v",
+            "warning",
+            "-i",
+            name,
+            "-f",
+            "rawvideo",
+            "-pix_fmt",
+            "yuv420p",
+            "-fps_mode",
+            "passthrough",
+            "-",
+        ];
         let output = Command::new("ffmpeg").args(decode).output().unwrap();
-        assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success() && output.stderr.is_empty(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
         let mut source = YuvFrame::black(width.next_multiple_of(2), height.next_multiple_of(2));
         let size = source.y.len() * 3 / 2;
         assert_eq!(output.stdout.len(), size * frames, "{width}x{height}");
         for (k, frame) in output.stdout.chunks_exact(size).enumerate() {
             fill(&mut source, &scene(width, height, k));
             let off: u64 = source.y.iter().zip(frame).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
-            assert!(off / (source.y.len() as u64) < 24, "{width}x{height}: frame {k} differs by {off}");
+            assert!(
+                off / (source.y.len() as u64) < 24,
+                "{width}x{height}: frame {k} differs by {off}"
+            );
         }
         std::fs::remove_file(path).unwrap();
     }
@@ -57,11 +76,33 @@ fn a_foreign_decoder_shows_every_frame_much_as_it_was() {
 fn decoded(path: &Path, frames: usize, (width, height): (usize, usize)) -> Option<Vec<Vec<u8>>> {
     Command::new("ffmpeg").arg("-version").output().ok()?;
     let name = path.to_str().unwrap();
-    let decode = ["-v", "warning", "-i", name, "-f", "rawvideo", "-pix_fmt", "yuv420p", "-fps_mode", "passthrough", "-"];
+    let decode = [
+        "-v",
+        "warning",
+        "-i",
+        name,
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "yuv420p",
+        "-fps_mode",
+        "passthrough",
+        "-",
+    ];
     let output = Command::new("ffmpeg").args(decode).output().unwrap();
-    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     assert_eq!(output.stdout.len(), width * height * 3 / 2 * frames);
-    Some(output.stdout.chunks_exact(width * height * 3 / 2).map(|frame| frame[..width * height].to_vec()).collect())
+    Some(
+        output
+            .stdout
+            .chunks_exact(width * height * 3 / 2)
+            .map(|frame| frame[..width * height].to_vec())
+            .collect(),
+    )
 }
 
 /// The size follows from the quality, and the bytes from the pictures alone.
@@ -69,9 +110,12 @@ fn decoded(path: &Path, frames: usize, (width, height): (usize, usize)) -> Optio
 fn same_frames_give_same_bytes_and_a_better_quality_costs_more() {
     let sizes: Vec<usize> = ["20", "55", "90"]
         .map(|quality| {
-            let (first, second) = (temporary(&format!("{quality}-1.mp4")), temporary(&format!("{quality}-2.mp4")));
+            let (first, second) =
+                (temporary(&format!("{quality}-1.mp4")), temporary(&format!("{quality}-2.mp4")));
             let bytes = [first, second].map(|path| {
-                let mut writer = VideoWriter::create(&path, 160, 120, (35, 4), quality.parse().unwrap()).unwrap();
+                let mut writer =
+                    VideoWriter::create(&path, 160, 120, (35, 4), quality.parse().unwrap())
+                        .unwrap();
                 (0..300).for_each(|k| writer.push(&scene(160, 120, k)).unwrap());
                 writer.finish().unwrap();
                 let bytes = std::fs::read(&path).unwrap();
@@ -86,7 +130,8 @@ fn same_frames_give_same_bytes_and_a_better_quality_costs_more() {
     assert!(["101", "-1", "", "good"].iter().all(|bad| bad.parse::<Quality>().is_err()));
 }
 
-/// Row 4 of a newcomer's list: after each flash of the screen the pictures were blocks for half a second.
+/// Row 4 of a newcomer's list: after each flash of the screen the pictures were blocks for half a
+/// second.
 #[test]
 fn a_flash_leaves_the_pictures_after_it_as_they_were() {
     let path = temporary("flash.mp4");
@@ -103,19 +148,24 @@ fn a_flash_leaves_the_pictures_after_it_as_they_were() {
         }
         picture
     };
-    let mut writer = VideoWriter::create(&path, width, height, (35, 1), Quality::default()).unwrap();
+    let mut writer =
+        VideoWriter::create(&path, width, height, (35, 1), Quality::default()).unwrap();
     (0..frames).for_each(|k| writer.push(&picture(k)).unwrap());
     writer.finish().unwrap();
     let Some(shown) = decoded(&path, frames, (width, height)) else { return };
     let mut source = YuvFrame::black(width, height);
     let error = |k: usize, source: &mut YuvFrame| {
         fill(source, &picture(k));
-        source.y.iter().zip(&shown[k]).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum::<f64>() / source.y.len() as f64
+        source.y.iter().zip(&shown[k]).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum::<f64>()
+            / source.y.len() as f64
     };
     let before = (20..30).map(|k| error(k, &mut source)).sum::<f64>() / 10.0;
     for k in 30..45 {
         let now = error(k, &mut source);
-        assert!(now < 2.0 * before + 4.0, "picture {k}: squared error {now}, {before} before the flash");
+        assert!(
+            now < 2.0 * before + 4.0,
+            "picture {k}: squared error {now}, {before} before the flash"
+        );
     }
     std::fs::remove_file(path).unwrap();
 }
@@ -128,7 +178,9 @@ fn a_cut_begins_a_stretch_that_stands_alone() {
         frame.y.fill(value);
         frame
     };
-    let mut segments = Segments::new(EncoderConfig { mbtree: false, scenecut: 0, ..EncoderConfig::new(32, 32) }).unwrap();
+    let mut segments =
+        Segments::new(EncoderConfig { mbtree: false, scenecut: 0, ..EncoderConfig::new(32, 32) })
+            .unwrap();
     let mut coded = Vec::new();
     for k in 0..400 {
         // A cut at 20, a flicker at 25 that is too near to it, then stretches of 140.
@@ -145,7 +197,9 @@ fn a_cut_begins_a_stretch_that_stands_alone() {
     let begins: Vec<usize> = (0..coded.len()).filter(|k| coded[*k].1).collect();
     assert_eq!((coded.len(), begins), (400, vec![0, 20, 160, 300]));
     // Each of them holds the sequence's parameters and an IDR picture (NAL units 7 and 5).
-    let holds = |unit: &[u8], kind: u8| unit.windows(4).any(|bytes| bytes[..3] == [0, 0, 1] && bytes[3] & 31 == kind);
+    let holds = |unit: &[u8], kind: u8| {
+        unit.windows(4).any(|bytes| bytes[..3] == [0, 0, 1] && bytes[3] & 31 == kind)
+    };
     assert!(coded.iter().all(|(unit, alone)| holds(unit, 5) == *alone && holds(unit, 7) == *alone));
 }
 

@@ -32,7 +32,8 @@ pub(super) fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
         .find(|step| *step >= rough * 0.999)
         .unwrap_or(rough);
     let first = (low / step + 1e-9).floor() as i64;
-    let last = (first..).find(|&k| k as f64 * step >= low + span - step * 1e-6).unwrap_or(first + 1);
+    let last =
+        (first..).find(|&k| k as f64 * step >= low + span - step * 1e-6).unwrap_or(first + 1);
     (first..=last).map(|k| k as f64 * step).collect()
 }
 
@@ -60,7 +61,13 @@ pub(super) fn axis_title(drawing: &mut Drawing, title: &str, (left, right): (f64
 }
 
 /// Draws horizontal grid lines with their values at the left.
-pub(super) fn draw_vertical_axis(drawing: &mut Drawing, axis: &Axis, values: &[f64], left: f64, right: f64) {
+pub(super) fn draw_vertical_axis(
+    drawing: &mut Drawing,
+    axis: &Axis,
+    values: &[f64],
+    left: f64,
+    right: f64,
+) {
     for &value in values {
         let y = axis.place(value);
         let zero = value == 0.0;

@@ -35,13 +35,22 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
     let (width, height) = size;
     let mut drawing = Drawing::new(width, height);
     let (left, top, right, bottom) = (46.0, 26.0, width - 4.0, height - 22.0);
-    let title =
-        Shape::Text { at: (left, 14.0), anchor: Anchor::Start, size: 12.0, ink: Ink::Text, bold: true, text: title.into() };
+    let title = Shape::Text {
+        at: (left, 14.0),
+        anchor: Anchor::Start,
+        size: 12.0,
+        ink: Ink::Text,
+        bold: true,
+        text: title.into(),
+    };
     drawing.shapes.push(title);
     let bars = || groups.iter().flat_map(|group| &group.bars);
     let budgets = groups.iter().filter_map(|group| group.budget);
-    // An interval of two or three seeds can be many times its mean; it is cut rather than squash all bars.
-    let reach = |bar: &Bar| bar.interval.map_or(bar.value, |(_, high)| high.min(bar.value.abs() * 2.0).max(bar.value));
+    // An interval of two or three seeds can be many times its mean; it is cut rather than squash
+    // all bars.
+    let reach = |bar: &Bar| {
+        bar.interval.map_or(bar.value, |(_, high)| high.min(bar.value.abs() * 2.0).max(bar.value))
+    };
     let high = bars().map(reach).chain(budgets).fold(0.0, f64::max);
     let low = bars().map(|bar| bar.value).fold(0.0, f64::min);
     let values = ticks(low, if high > low { high } else { low + 1.0 }, 4);
@@ -54,7 +63,9 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
         let from = x;
         for bar in &group.bars {
             let (zero, end) = (axis.place(0.0), axis.place(bar.value));
-            let interval = bar.interval.map_or_else(String::new, |(low, high)| format!(" (95 % interval {low:.2} to {high:.2})"));
+            let interval = bar.interval.map_or_else(String::new, |(low, high)| {
+                format!(" (95 % interval {low:.2} to {high:.2})")
+            });
             drawing.shapes.push(Shape::Box {
                 place: [x + 1.0, zero.min(end), slot - 2.0, (zero - end).abs().max(1.0)],
                 ink: bar.ink,
@@ -69,7 +80,13 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
                     vec![(middle - cap, low), (middle + cap, low)],
                     vec![(middle - cap, high), (middle + cap, high)],
                 ] {
-                    drawing.shapes.push(Shape::Line { points, ink: Ink::Text, width: 1.2, dashed: false, opacity: 0.9 });
+                    drawing.shapes.push(Shape::Line {
+                        points,
+                        ink: Ink::Text,
+                        width: 1.2,
+                        dashed: false,
+                        opacity: 0.9,
+                    });
                 }
             }
             x += slot;
@@ -77,7 +94,13 @@ pub fn bar_panel(title: &str, groups: &[BarGroup], size: (f64, f64)) -> Drawing 
         if let Some(budget) = group.budget {
             let y = axis.place(budget);
             let ends = vec![(from - 0.3 * slot, y), (x + 0.3 * slot, y)];
-            drawing.shapes.push(Shape::Line { points: ends, ink: Ink::Budget, width: 1.4, dashed: true, opacity: 1.0 });
+            drawing.shapes.push(Shape::Line {
+                points: ends,
+                ink: Ink::Budget,
+                width: 1.4,
+                dashed: true,
+                opacity: 1.0,
+            });
         }
         // A name that does not fit over its group is cut; the pointer box has it whole.
         let room = x - from + 0.8 * slot;

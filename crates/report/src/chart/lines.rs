@@ -13,7 +13,8 @@ pub struct Series {
     pub ink: Ink,
     /// Its points.
     pub curve: Curve,
-    /// Drawn behind the others, as far as they go: a thin dashed line in a faint band. Published curves are.
+    /// Drawn behind the others, as far as they go: a thin dashed line in a faint band. Published
+    /// curves are.
     pub behind: bool,
 }
 
@@ -45,8 +46,8 @@ pub struct LinePanel {
     pub size: (f64, f64),
 }
 
-/// Draws curves against frames: the mean as a line, its 95 % interval as a band, every seed as a thin line. Each curve
-/// ends where its runs ended.
+/// Draws curves against frames: the mean as a line, its 95 % interval as a band, every seed as a
+/// thin line. Each curve ends where its runs ended.
 #[must_use]
 pub fn line_panel(panel: &LinePanel) -> Drawing {
     let (width, height) = panel.size;
@@ -62,13 +63,24 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         text: panel.title.clone(),
     });
     let ours = || panel.series.iter().filter(|series| !series.behind).map(|series| &series.curve);
-    let most_frames = ours().flat_map(|c| &c.seeds).filter_map(|(_, points)| points.last()).map(|p| p.0).fold(0.0, f64::max);
+    let most_frames = ours()
+        .flat_map(|c| &c.seeds)
+        .filter_map(|(_, points)| points.last())
+        .map(|p| p.0)
+        .fold(0.0, f64::max);
     if most_frames <= 0.0 {
-        drawing.text(((left + right) / 2.0, (top + bottom) / 2.0), Anchor::Middle, Ink::Muted, "no report yet");
+        drawing.text(
+            ((left + right) / 2.0, (top + bottom) / 2.0),
+            Anchor::Middle,
+            Ink::Muted,
+            "no report yet",
+        );
         return drawing;
     }
     let cut: Vec<Series> = panel.series.iter().map(|series| series.up_to(most_frames)).collect();
-    let in_order = || cut.iter().filter(|series| series.behind).chain(cut.iter().filter(|series| !series.behind));
+    let in_order = || {
+        cut.iter().filter(|series| series.behind).chain(cut.iter().filter(|series| !series.behind))
+    };
     let curves = || cut.iter().map(|series| &series.curve);
     let high = curves().map(Curve::top).fold(panel.budget.unwrap_or(0.0) * 1.15, f64::max);
     let low = curves().map(Curve::bottom).fold(0.0, f64::min);
@@ -87,7 +99,10 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         if series.curve.seeds.len() > 1 || series.curve.mean.is_empty() {
             for (_, points) in &series.curve.seeds {
                 drawing.shapes.push(Shape::Line {
-                    points: points.iter().map(|p| (horizontal.place(p.0), vertical.place(p.1))).collect(),
+                    points: points
+                        .iter()
+                        .map(|p| (horizontal.place(p.0), vertical.place(p.1)))
+                        .collect(),
                     ink: series.ink,
                     width: 0.7,
                     dashed: false,
@@ -97,23 +112,46 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
         }
     }
     for series in in_order() {
-        let banded: Vec<(f64, (f64, f64))> =
-            series.curve.mean.iter().filter_map(|point| Some((horizontal.place(point.frames), point.ends()?))).collect();
+        let banded: Vec<(f64, (f64, f64))> = series
+            .curve
+            .mean
+            .iter()
+            .filter_map(|point| Some((horizontal.place(point.frames), point.ends()?)))
+            .collect();
         let upper = banded.iter().map(|(x, (_, high))| (*x, vertical.place(*high)));
         let lower = banded.iter().rev().map(|(x, (low, _))| (*x, vertical.place(*low)));
         let points: Vec<_> = upper.chain(lower).collect();
         if points.len() > 3 {
-            drawing.shapes.push(Shape::Area { points, ink: series.ink, opacity: if series.behind { 0.08 } else { 0.16 } });
+            drawing.shapes.push(Shape::Area {
+                points,
+                ink: series.ink,
+                opacity: if series.behind { 0.08 } else { 0.16 },
+            });
         }
     }
     for series in in_order() {
-        let points: Vec<_> =
-            series.curve.mean.iter().map(|p| (horizontal.place(p.frames), vertical.place(p.value.mean))).collect();
+        let points: Vec<_> = series
+            .curve
+            .mean
+            .iter()
+            .map(|p| (horizontal.place(p.frames), vertical.place(p.value.mean)))
+            .collect();
         if let [only] = points[..] {
-            drawing.shapes.push(Shape::Dot { at: only, radius: 2.5, ink: series.ink, title: series.name.clone() });
+            drawing.shapes.push(Shape::Dot {
+                at: only,
+                radius: 2.5,
+                ink: series.ink,
+                title: series.name.clone(),
+            });
         }
         let (width, opacity) = if series.behind { (1.1, 0.75) } else { (1.8, 1.0) };
-        drawing.shapes.push(Shape::Line { points, ink: series.ink, width, dashed: series.behind, opacity });
+        drawing.shapes.push(Shape::Line {
+            points,
+            ink: series.ink,
+            width,
+            dashed: series.behind,
+            opacity,
+        });
     }
     if let Some(budget) = panel.budget {
         let y = vertical.place(budget);
@@ -124,7 +162,12 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
             dashed: true,
             opacity: 1.0,
         });
-        drawing.text((right, y - 4.0), Anchor::End, Ink::Budget, format!("budget {}", short(budget)));
+        drawing.text(
+            (right, y - 4.0),
+            Anchor::End,
+            Ink::Budget,
+            format!("budget {}", short(budget)),
+        );
     }
     drawing.hovers.push(Hover {
         place: [left, top, right - left, bottom - top],
@@ -135,7 +178,12 @@ pub fn line_panel(panel: &LinePanel) -> Drawing {
             .map(|series| HoverCurve {
                 name: series.name.clone(),
                 ink: series.ink,
-                points: series.curve.mean.iter().map(|p| (p.frames, p.value.mean, p.value.half_width, p.value.n)).collect(),
+                points: series
+                    .curve
+                    .mean
+                    .iter()
+                    .map(|p| (p.frames, p.value.mean, p.value.half_width, p.value.n))
+                    .collect(),
             })
             .collect(),
     });

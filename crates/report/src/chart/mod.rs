@@ -156,15 +156,25 @@ impl Drawing {
     pub fn place(&mut self, other: Drawing, x: f64, y: f64) {
         let moved = |(px, py): (f64, f64)| (px + x, py + y);
         self.shapes.extend(other.shapes.into_iter().map(|shape| match shape {
-            Shape::Line { points, ink, width, dashed, opacity } => {
-                Shape::Line { points: points.into_iter().map(moved).collect(), ink, width, dashed, opacity }
+            Shape::Line { points, ink, width, dashed, opacity } => Shape::Line {
+                points: points.into_iter().map(moved).collect(),
+                ink,
+                width,
+                dashed,
+                opacity,
+            },
+            Shape::Area { points, ink, opacity } => {
+                Shape::Area { points: points.into_iter().map(moved).collect(), ink, opacity }
             }
-            Shape::Area { points, ink, opacity } => Shape::Area { points: points.into_iter().map(moved).collect(), ink, opacity },
             Shape::Box { place: [left, top, w, h], ink, opacity, title } => {
                 Shape::Box { place: [left + x, top + y, w, h], ink, opacity, title }
             }
-            Shape::Dot { at, radius, ink, title } => Shape::Dot { at: moved(at), radius, ink, title },
-            Shape::Text { at, anchor, size, ink, bold, text } => Shape::Text { at: moved(at), anchor, size, ink, bold, text },
+            Shape::Dot { at, radius, ink, title } => {
+                Shape::Dot { at: moved(at), radius, ink, title }
+            }
+            Shape::Text { at, anchor, size, ink, bold, text } => {
+                Shape::Text { at: moved(at), anchor, size, ink, bold, text }
+            }
         }));
         self.hovers.extend(other.hovers.into_iter().map(|mut hover| {
             hover.place[0] += x;
@@ -175,17 +185,31 @@ impl Drawing {
 
     /// Adds a text of the usual size.
     pub fn text(&mut self, at: (f64, f64), anchor: Anchor, ink: Ink, text: impl Into<String>) {
-        self.shapes.push(Shape::Text { at, anchor, size: 11.0, ink, bold: false, text: text.into() });
+        self.shapes.push(Shape::Text {
+            at,
+            anchor,
+            size: 11.0,
+            ink,
+            bold: false,
+            text: text.into(),
+        });
     }
 }
 
 /// Panels in rows, with a title above and a legend below.
 #[must_use]
-pub fn figure(title: &str, panels: Vec<Drawing>, columns: usize, legend: &[(String, Ink)]) -> Drawing {
+pub fn figure(
+    title: &str,
+    panels: Vec<Drawing>,
+    columns: usize,
+    legend: &[(String, Ink)],
+) -> Drawing {
     const GAP: f64 = 16.0;
     let columns = columns.clamp(1, panels.len().max(1));
-    let width =
-        panels.chunks(columns).map(|row| row.iter().map(|panel| panel.width + GAP).sum::<f64>() - GAP).fold(0.0, f64::max);
+    let width = panels
+        .chunks(columns)
+        .map(|row| row.iter().map(|panel| panel.width + GAP).sum::<f64>() - GAP)
+        .fold(0.0, f64::max);
     let mut drawing = Drawing::new(width, 0.0);
     let mut y = 0.0;
     if !title.is_empty() {

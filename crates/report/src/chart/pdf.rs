@@ -10,24 +10,30 @@ const POINTS: f32 = 0.75;
 const MARGIN: f32 = 4.0;
 /// Steps between seen through and opaque.
 const OPACITIES: u8 = 20;
-/// What the letters from the space to the tilde are wide in Helvetica, in thousandths of their size.
+/// What the letters from the space to the tilde are wide in Helvetica, in thousandths of their
+/// size.
 const WIDTHS: [u16; 95] = [
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556, 556, 556, 556, 556, 556, 556,
-    556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778, 667, 778,
-    722, 667, 611, 722, 667, 944, 667, 667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222,
-    500, 222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
+    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556,
+    556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
+    611, 778, 722, 278, 500, 667, 556, 833, 722, 778, 667, 778, 722, 667, 611, 722, 667, 944, 667,
+    667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500,
+    222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
 ];
 
-/// A figure in its light colours as a page of its own size. Its letters are Helvetica, one of the fonts that every reader of PDF has.
+/// A figure in its light colours as a page of its own size. Its letters are Helvetica, one of the
+/// fonts that every reader of PDF has.
 #[must_use]
 pub fn pdf(drawing: &Drawing) -> Vec<u8> {
-    let (width, height) = (drawing.width as f32 + 2.0 * MARGIN, drawing.height as f32 + 2.0 * MARGIN);
+    let (width, height) =
+        (drawing.width as f32 + 2.0 * MARGIN, drawing.height as f32 + 2.0 * MARGIN);
     let [catalog, pages, page, plain, bold, content] = [1, 2, 3, 4, 5, 6].map(Ref::new);
     let mut file = Pdf::new();
     file.catalog(catalog).pages(pages);
     file.pages(pages).kids([page]).count(1);
     let mut one = file.page(page);
-    one.media_box(Rect::new(0.0, 0.0, width * POINTS, height * POINTS)).parent(pages).contents(content);
+    one.media_box(Rect::new(0.0, 0.0, width * POINTS, height * POINTS))
+        .parent(pages)
+        .contents(content);
     let mut resources = one.resources();
     resources.fonts().pair(Name(b"F1"), plain).pair(Name(b"F2"), bold);
     let mut states = resources.ext_g_states();
@@ -59,16 +65,22 @@ fn state(step: u8) -> String {
 
 fn draw(shape: &Shape, drawn: &mut Content) {
     let (ink, opacity) = match shape {
-        Shape::Line { ink, opacity, .. } | Shape::Area { ink, opacity, .. } | Shape::Box { ink, opacity, .. } => (*ink, *opacity),
+        Shape::Line { ink, opacity, .. }
+        | Shape::Area { ink, opacity, .. }
+        | Shape::Box { ink, opacity, .. } => (*ink, *opacity),
         Shape::Dot { ink, .. } | Shape::Text { ink, .. } => (*ink, 1.0),
     };
     drawn.save_state();
-    drawn.set_parameters(Name(state((opacity.clamp(0.0, 1.0) * f64::from(OPACITIES)).round() as u8).as_bytes()));
+    drawn.set_parameters(Name(
+        state((opacity.clamp(0.0, 1.0) * f64::from(OPACITIES)).round() as u8).as_bytes(),
+    ));
     let [r, g, b] = light(ink);
     drawn.set_stroke_rgb(r, g, b).set_fill_rgb(r, g, b);
     match shape {
         Shape::Line { points, width, dashed, .. } => {
-            drawn.set_line_width(*width as f32).set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
+            drawn
+                .set_line_width(*width as f32)
+                .set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
             if *dashed {
                 drawn.set_dash_pattern([5.0, 4.0], 0.0);
             }
@@ -89,8 +101,18 @@ fn draw(shape: &Shape, drawn: &mut Content) {
             // Four cubic curves, off a circle by less than a thousandth of its radius.
             let k = 0.552_285 * r;
             drawn.move_to(x + r, y);
-            drawn.cubic_to(x + r, y + k, x + k, y + r, x, y + r).cubic_to(x - k, y + r, x - r, y + k, x - r, y);
-            drawn.cubic_to(x - r, y - k, x - k, y - r, x, y - r).cubic_to(x + k, y - r, x + r, y - k, x + r, y).fill_nonzero();
+            drawn.cubic_to(x + r, y + k, x + k, y + r, x, y + r).cubic_to(
+                x - k,
+                y + r,
+                x - r,
+                y + k,
+                x - r,
+                y,
+            );
+            drawn
+                .cubic_to(x - r, y - k, x - k, y - r, x, y - r)
+                .cubic_to(x + k, y - r, x + r, y - k, x + r, y)
+                .fill_nonzero();
         }
         Shape::Text { at, anchor, size, bold, text, .. } => {
             let letters = win_ansi(text);
@@ -103,7 +125,10 @@ fn draw(shape: &Shape, drawn: &mut Content) {
                     Anchor::End => wide,
                 };
             drawn.begin_text().set_font(Name(if *bold { b"F2" } else { b"F1" }), size);
-            drawn.set_text_matrix([1.0, 0.0, 0.0, -1.0, x, at.1 as f32]).show(Str(&letters)).end_text();
+            drawn
+                .set_text_matrix([1.0, 0.0, 0.0, -1.0, x, at.1 as f32])
+                .show(Str(&letters))
+                .end_text();
         }
     }
     drawn.restore_state();
@@ -139,7 +164,9 @@ fn win_ansi(text: &str) -> Vec<u8> {
 
 /// What a text is wide, in parts of its size.
 fn width(letters: &[u8]) -> f32 {
-    let of = |letter: &u8| letter.checked_sub(b' ').and_then(|at| WIDTHS.get(usize::from(at))).copied().unwrap_or(556);
+    let of = |letter: &u8| {
+        letter.checked_sub(b' ').and_then(|at| WIDTHS.get(usize::from(at))).copied().unwrap_or(556)
+    };
     letters.iter().map(|letter| f32::from(of(letter))).sum::<f32>() / 1000.0
 }
 
@@ -161,9 +188,15 @@ mod tests {
         let bytes = pdf(&drawing);
         let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
         // 400 and 200 pixels with their margins.
-        for part in
-            ["%PDF-1.7", "/MediaBox [0 0 300 150]", "(return 3) Tj", "0 0 m\n20 5 l\nS", "/G10 gs", "/Helvetica-Bold", "%%EOF"]
-        {
+        for part in [
+            "%PDF-1.7",
+            "/MediaBox [0 0 300 150]",
+            "(return 3) Tj",
+            "0 0 m\n20 5 l\nS",
+            "/G10 gs",
+            "/Helvetica-Bold",
+            "%%EOF",
+        ] {
             assert!(text.contains(part), "{part}\n{text}");
         }
         // Helvetica's r, e, t, u, r, n: 333 + 556 + 278 + 556 + 333 + 556 thousandths.

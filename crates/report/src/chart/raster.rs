@@ -2,7 +2,10 @@
 
 use super::{Anchor, Drawing, Ink, SERIES_COLOURS, Shape};
 use hasard_media::{Picture, text};
-use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform};
+use tiny_skia::{
+    Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke, StrokeDash,
+    Transform,
+};
 
 /// Pixels for a CSS pixel: letters of 11 CSS pixels are then as large as the 16-pixel font.
 const SCALE: f64 = 1.5;
@@ -46,13 +49,15 @@ pub(super) fn colour(ink: Ink) -> [u8; 3] {
 /// Draws a figure in its light colours; `None` if it is empty or far too large.
 #[must_use]
 pub fn rasterise(drawing: &Drawing) -> Option<Picture> {
-    let (width, height) = ((drawing.width + 2.0 * MARGIN) * SCALE, (drawing.height + 2.0 * MARGIN) * SCALE);
+    let (width, height) =
+        ((drawing.width + 2.0 * MARGIN) * SCALE, (drawing.height + 2.0 * MARGIN) * SCALE);
     if !(width <= MAX_SIDE && height <= MAX_SIDE) {
         return None;
     }
     let mut pixels = Pixmap::new(width.ceil() as u32, height.ceil() as u32)?;
     pixels.fill(Color::WHITE);
-    let place = Transform::from_translate(MARGIN as f32, MARGIN as f32).post_scale(SCALE as f32, SCALE as f32);
+    let place = Transform::from_translate(MARGIN as f32, MARGIN as f32)
+        .post_scale(SCALE as f32, SCALE as f32);
     let mut texts = Vec::new();
     for shape in &drawing.shapes {
         match shape {
@@ -79,7 +84,9 @@ pub fn rasterise(drawing: &Drawing) -> Option<Picture> {
                 }
             }
             Shape::Dot { at, radius, ink, .. } => {
-                if let Some(path) = PathBuilder::from_circle(at.0 as f32, at.1 as f32, *radius as f32) {
+                if let Some(path) =
+                    PathBuilder::from_circle(at.0 as f32, at.1 as f32, *radius as f32)
+                {
                     pixels.fill_path(&path, &paint(*ink, 1.0), FillRule::Winding, place, None);
                 }
             }
@@ -87,7 +94,8 @@ pub fn rasterise(drawing: &Drawing) -> Option<Picture> {
         }
     }
     let rgb = pixels.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-    let mut picture = Picture::from_rgb(pixels.width() as usize, pixels.height() as usize, rgb).ok()?;
+    let mut picture =
+        Picture::from_rgb(pixels.width() as usize, pixels.height() as usize, rgb).ok()?;
     for (at, anchor, ink, line) in texts {
         let width = text::width(line) as f64;
         let x = (at.0 + MARGIN) * SCALE

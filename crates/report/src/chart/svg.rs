@@ -4,10 +4,12 @@ use super::{Anchor, Drawing, Hover, Ink, SERIES_COLOURS, Shape};
 use crate::escape::escape;
 use std::fmt::Write;
 
-/// Colours of the inks in light and in dark surroundings; a page and a single SVG file both carry them.
+/// Colours of the inks in light and in dark surroundings; a page and a single SVG file both carry
+/// them.
 pub const INK_STYLE: &str = include_str!("ink.css");
 
-/// A figure for a page that has [`INK_STYLE`] itself; panels of curves carry their values for the page's script.
+/// A figure for a page that has [`INK_STYLE`] itself; panels of curves carry their values for the
+/// page's script.
 #[must_use]
 pub fn inline_svg(drawing: &Drawing, label: &str) -> String {
     let mut svg = format!(
@@ -128,7 +130,11 @@ fn hover_values(hover: &Hover) -> String {
                 })
                 .collect();
             let name = serde_json::to_string(&curve.name).unwrap_or_else(|_| "\"\"".into());
-            format!("{{\"name\":{name},\"ink\":\"{}\",\"points\":[{}]}}", class(curve.ink), points.join(","))
+            format!(
+                "{{\"name\":{name},\"ink\":\"{}\",\"points\":[{}]}}",
+                class(curve.ink),
+                points.join(",")
+            )
         })
         .collect();
     {
@@ -162,7 +168,11 @@ fn opaque(attribute: &str, opacity: f64) -> String {
 }
 
 fn join(points: &[(f64, f64)]) -> String {
-    points.iter().map(|point| format!("{},{}", n(point.0), n(point.1))).collect::<Vec<_>>().join(" ")
+    points
+        .iter()
+        .map(|point| format!("{},{}", n(point.0), n(point.1)))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// A coordinate: two decimals, no trailing zeros.

@@ -7,7 +7,11 @@ fn some_curve(slope: f64) -> Curve {
     let mean = (0..50)
         .map(|k| {
             let frames = f64::from(k) * 1e5;
-            Point { frames, value: Estimate { mean: slope * f64::from(k), half_width: Some(5.0), n: 3 }, band: None }
+            Point {
+                frames,
+                value: Estimate { mean: slope * f64::from(k), half_width: Some(5.0), n: 3 },
+                band: None,
+            }
         })
         .collect();
     let seed = |s: f64| (0..60).map(|k| (f64::from(k) * 1e5, slope * f64::from(k) + s)).collect();
@@ -15,8 +19,12 @@ fn some_curve(slope: f64) -> Curve {
 }
 
 fn panel() -> Drawing {
-    let series =
-        |name: &str, index, slope| Series { name: name.into(), ink: Ink::Series(index), curve: some_curve(slope), behind: false };
+    let series = |name: &str, index, slope| Series {
+        name: name.into(),
+        ink: Ink::Series(index),
+        curve: some_curve(slope),
+        behind: false,
+    };
     line_panel(&LinePanel {
         title: "cost & <more>".into(),
         axis: String::new(),
@@ -28,19 +36,30 @@ fn panel() -> Drawing {
 
 #[test]
 fn ticks_are_round_and_cover() {
-    for (low, high) in [(0.0, 1.0), (0.0, 123.4), (-7.0, 3.0), (0.0, 5e8), (0.2, 0.21), (0.0, 0.0)] {
+    for (low, high) in [(0.0, 1.0), (0.0, 123.4), (-7.0, 3.0), (0.0, 5e8), (0.2, 0.21), (0.0, 0.0)]
+    {
         let values = ticks(low, high, 4);
         assert!(values[0] <= low && values[values.len() - 1] >= high, "{low} {high}: {values:?}");
         assert!((2..=8).contains(&values.len()), "{values:?}");
     }
     assert_eq!(ticks(0.0, 100.0, 4), [0.0, 25.0, 50.0, 75.0, 100.0]);
-    assert_eq!([0.0, 2.5, 12_000.0, 1.5e6, 2e9, -40.0].map(short), ["0", "2.5", "12k", "1.5M", "2G", "-40"]);
+    assert_eq!(
+        [0.0, 2.5, 12_000.0, 1.5e6, 2e9, -40.0].map(short),
+        ["0", "2.5", "12k", "1.5M", "2G", "-40"]
+    );
 }
 
 #[test]
 fn names_of_users_cannot_break_the_svg() {
-    let svg = standalone_svg(&figure("a < b & \"c\"", vec![panel()], 2, &[("x<y".into(), Ink::Series(1))]), "l\"<");
-    assert!(svg.contains("cost &amp; &lt;more&gt;") && svg.contains("x&lt;y") && !svg.contains("<more>"));
+    let svg = standalone_svg(
+        &figure("a < b & \"c\"", vec![panel()], 2, &[("x<y".into(), Ink::Series(1))]),
+        "l\"<",
+    );
+    assert!(
+        svg.contains("cost &amp; &lt;more&gt;")
+            && svg.contains("x&lt;y")
+            && !svg.contains("<more>")
+    );
     let inline = inline_svg(&panel(), "label");
     assert!(inline.contains("data-values=\"{&quot;from&quot;:0"), "{inline}");
     assert!(inline.contains("PPO\\&quot;Lag"));
@@ -51,7 +70,9 @@ fn the_picture_has_the_colours_of_the_style() {
     for (index, [r, g, b]) in raster::LIGHT.iter().enumerate() {
         let name = match index.checked_sub(SERIES_COLOURS) {
             None => format!("--ink-{index}"),
-            Some(other) => ["--ink-text", "--ink-muted", "--ink-grid", "--ink-budget", "--ground"][other].to_owned(),
+            Some(other) => ["--ink-text", "--ink-muted", "--ink-grid", "--ink-budget", "--ground"]
+                [other]
+                .to_owned(),
         };
         assert!(svg::INK_STYLE.contains(&format!("{name}:#{r:02x}{g:02x}{b:02x};")), "{name}");
     }
@@ -66,10 +87,23 @@ fn empty_and_immense_figures_do_no_harm() {
     assert!(inline_svg(&empty, "").contains("no report yet"));
     assert!(rasterise(&Drawing::new(1e9, 10.0)).is_none());
     assert!(rasterise(&Drawing::new(f64::NAN, 10.0)).is_none());
-    let bars = bar_panel("t", &[BarGroup { name: "g".into(), bars: vec![], budget: None }], (200.0, 150.0));
+    let bars = bar_panel(
+        "t",
+        &[BarGroup { name: "g".into(), bars: vec![], budget: None }],
+        (200.0, 150.0),
+    );
     assert!(rasterise(&bars).is_some());
-    let bar = Bar { name: "b".into(), value: -3.0, interval: Some((-900.0, 800.0)), ink: Ink::Series(40), pale: false };
-    let bars =
-        bar_panel("t", &[BarGroup { name: "a rather long name".into(), bars: vec![bar], budget: Some(2.0) }], (200.0, 150.0));
+    let bar = Bar {
+        name: "b".into(),
+        value: -3.0,
+        interval: Some((-900.0, 800.0)),
+        ink: Ink::Series(40),
+        pale: false,
+    };
+    let bars = bar_panel(
+        "t",
+        &[BarGroup { name: "a rather long name".into(), bars: vec![bar], budget: Some(2.0) }],
+        (200.0, 150.0),
+    );
     assert!(rasterise(&bars).is_some());
 }

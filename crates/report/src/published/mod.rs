@@ -22,7 +22,8 @@ pub struct Published {
     pub option: String,
     /// Scenario.
     pub scenario: String,
-    /// Return of the environment: the printed one, corrected where the paper's scripts added back the wrong penalty.
+    /// Return of the environment: the printed one, corrected where the paper's scripts added back
+    /// the wrong penalty.
     pub episode_return: f64,
     /// Return as printed.
     pub printed_return: f64,
@@ -47,17 +48,21 @@ impl Published {
 }
 
 /// Every cell, from `data/published.csv` (see the README beside it).
-static PUBLISHED: LazyLock<Vec<Published>> =
-    LazyLock::new(|| include_str!("../../data/published.csv").lines().skip(1).map(parse_line).collect());
+static PUBLISHED: LazyLock<Vec<Published>> = LazyLock::new(|| {
+    include_str!("../../data/published.csv").lines().skip(1).map(parse_line).collect()
+});
 
-/// A line of the file is part of the program: one that cannot be read is a fault of the build, which the tests find.
+/// A line of the file is part of the program: one that cannot be read is a fault of the build,
+/// which the tests find.
 fn parse_line(line: &str) -> Published {
     let fields: Vec<&str> = line.split(',').collect();
     let number = |at: usize| fields[at].parse::<f64>().ok();
     let (printed_return, cost) = (number(5).unwrap_or(f64::NAN), number(6).unwrap_or(f64::NAN));
-    // The scripts added 1.0 x cost to a return from which scale x cost had been taken. Rounding must not make a return that
-    // cannot be negative so.
-    let corrected = number(7).filter(|scale| *scale != 1.0).map(|scale| (printed_return + (scale - 1.0) * cost).max(0.0));
+    // The scripts added 1.0 x cost to a return from which scale x cost had been taken. Rounding
+    // must not make a return that cannot be negative so.
+    let corrected = number(7)
+        .filter(|scale| *scale != 1.0)
+        .map(|scale| (printed_return + (scale - 1.0) * cost).max(0.0));
     let mut cell = Published {
         table: fields[0].to_owned(),
         level: fields[1].parse().unwrap_or(0),
@@ -79,14 +84,20 @@ pub fn comparable(config: &Config) -> bool {
     config.rules().is_some_and(|rules| rules.eq_ignore_ascii_case("tables"))
 }
 
-/// Table and option of the paper's experiment that a run repeats, whatever its rules, preset and frames.
+/// Table and option of the paper's experiment that a run repeats, whatever its rules, preset and
+/// frames.
 fn experiment(config: &Config) -> Option<(&'static [&'static str], String)> {
     let option = |key: &str| config.options.get(key).map(String::as_str);
     let varied = ["safety_budget", "observation", "frame_stack", "frame_skip", "constraints"];
     if varied.iter().any(|key| option(key).is_some()) {
         return None;
     }
-    match (config.hard(), option("full_actions").is_some(), option("curriculum"), option("cost_scale")) {
+    match (
+        config.hard(),
+        option("full_actions").is_some(),
+        option("curriculum"),
+        option("cost_scale"),
+    ) {
         (true, false, None, None) => Some((&["hard"], String::new())),
         (false, true, None, None) => Some((&["full-actions"], String::new())),
         (false, false, Some(levels), None) => Some((&["curriculum"], levels.to_owned())),
@@ -96,7 +107,13 @@ fn experiment(config: &Config) -> Option<(&'static [&'static str], String)> {
     }
 }
 
-fn find(tables: &[&str], level: u32, option: &str, scenario: &str, algorithm: &str) -> Option<&'static Published> {
+fn find(
+    tables: &[&str],
+    level: u32,
+    option: &str,
+    scenario: &str,
+    algorithm: &str,
+) -> Option<&'static Published> {
     PUBLISHED.iter().find(|cell| {
         tables.contains(&cell.table.as_str())
             && cell.level == level
@@ -111,15 +128,16 @@ fn whatever_the_rules(config: &Config) -> Option<&'static Published> {
     find(tables, config.level, &option, &config.scenario, &config.algo)
 }
 
-/// The published cell of an experiment, if the paper has it and the run's rules are the tables' own. Preset and frames do
-/// not matter here: the reader is shown both values and under what ours were made.
+/// The published cell of an experiment, if the paper has it and the run's rules are the tables'
+/// own. Preset and frames do not matter here: the reader is shown both values and under what ours
+/// were made.
 #[must_use]
 pub fn published(config: &Config) -> Option<&'static Published> {
     whatever_the_rules(config).filter(|_| comparable(config))
 }
 
-/// The published cell to hold an experiment against where experiments that differ in `key` are compared: the paper's table
-/// of that comparison if it has one.
+/// The published cell to hold an experiment against where experiments that differ in `key` are
+/// compared: the paper's table of that comparison if it has one.
 #[must_use]
 pub fn published_in(config: &Config, key: &str) -> Option<&'static Published> {
     if !comparable(config) {
@@ -129,7 +147,13 @@ pub fn published_in(config: &Config, key: &str) -> Option<&'static Published> {
     let special = if alone {
         find(&["curriculum"], config.level, "none", &config.scenario, &config.algo)
     } else if key == "cost_scale" {
-        find(&["cost-scale"], config.level, &config.cost_scale.to_string(), &config.scenario, &config.algo)
+        find(
+            &["cost-scale"],
+            config.level,
+            &config.cost_scale.to_string(),
+            &config.scenario,
+            &config.algo,
+        )
     } else {
         None
     };
@@ -149,12 +173,16 @@ pub fn published_figure(name: &str) -> Option<f64> {
     lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(',')?.parse().ok())
 }
 
-/// Why published values are missing beside some experiments that the paper has too; `None` if none is missing.
+/// Why published values are missing beside some experiments that the paper has too; `None` if none
+/// is missing.
 #[must_use]
 pub fn withheld(groups: &[Group]) -> Option<String> {
-    let without: Vec<&Group> =
-        groups.iter().filter(|g| whatever_the_rules(g.config()).is_some() && !comparable(g.config())).collect();
-    let mut rules: Vec<&str> = without.iter().map(|group| group.config().rules().unwrap_or("unnamed")).collect();
+    let without: Vec<&Group> = groups
+        .iter()
+        .filter(|g| whatever_the_rules(g.config()).is_some() && !comparable(g.config()))
+        .collect();
+    let mut rules: Vec<&str> =
+        without.iter().map(|group| group.config().rules().unwrap_or("unnamed")).collect();
     rules.sort_unstable();
     rules.dedup();
     let count = without.len();

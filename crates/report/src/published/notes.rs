@@ -6,7 +6,8 @@ const SMALL_BUDGETS: [&str; 3] = ["RemedyRush", "CollateralDamage", "DetonatorsD
 
 /// The notes on a cell; `data/README.md` has them in full.
 pub(super) fn of(cell: &Published) -> Vec<String> {
-    let (table, algorithm, scenario) = (cell.table.as_str(), cell.algorithm.as_str(), cell.scenario.as_str());
+    let (table, algorithm, scenario) =
+        (cell.table.as_str(), cell.algorithm.as_str(), cell.scenario.as_str());
     let mut notes = Vec::new();
     notes.push(
         match (table, algorithm, scenario, cell.level) {
@@ -20,7 +21,10 @@ pub(super) fn of(cell: &Published) -> Vec<String> {
         .to_owned(),
     );
     if cell.episode_return != cell.printed_return {
-        notes.push(format!("printed as {}: the penalty was added back at scale 1", cell.printed_return));
+        notes.push(format!(
+            "printed as {}: the penalty was added back at scale 1",
+            cell.printed_return
+        ));
     }
     if algorithm == "PPOLag" && ["main", "full-actions"].contains(&table) {
         let budget = if SMALL_BUDGETS.contains(&scenario) { "5.25, not 5" } else { "52.5, not 50" };
@@ -41,7 +45,8 @@ pub(super) fn of(cell: &Published) -> Vec<String> {
             _ => "met shotgunners, imps and revenants; PPO, PPOCost and PPOLag met other creatures".into(),
         });
     }
-    let random_start = scenario == "ArmamentBurden" || scenario == "VolcanicVenture" && cell.level < 3;
+    let random_start =
+        scenario == "ArmamentBurden" || scenario == "VolcanicVenture" && cell.level < 3;
     if table == "trpo" && random_start {
         notes.push("started at random places; the PPO family started at a fixed one".into());
     }

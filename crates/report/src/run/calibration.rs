@@ -44,7 +44,10 @@ pub fn read_calibration(run: &Path, warnings: &mut Vec<Warning>) -> Vec<Calibrat
     let problem = match super::read_text(&path) {
         Ok(text) => match serde_json::from_str::<File>(&text) {
             Ok(file) => return file.constraints,
-            Err(_) => "is no calibration (constraints with gamma, steps, bias, error, bins); passed over".to_owned(),
+            Err(_) => {
+                "is no calibration (constraints with gamma, steps, bias, error, bins); passed over"
+                    .to_owned()
+            }
         },
         Err(warning) => warning.problem,
     };

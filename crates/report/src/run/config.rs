@@ -7,9 +7,9 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Keys, whole or by their beginning, that say where, when and on what machine a run was made or what it writes, and so do
-/// not tell one experiment from another. (The seed does tell runs apart, but not experiments: runs that differ in it
-/// alone are averaged.)
+/// Keys, whole or by their beginning, that say where, when and on what machine a run was made or
+/// what it writes, and so do not tell one experiment from another. (The seed does tell runs apart,
+/// but not experiments: runs that differ in it alone are averaged.)
 const NOT_IDENTITY: &[&str] = &[
     "seed",
     "out",
@@ -31,8 +31,9 @@ const NOT_IDENTITY: &[&str] = &[
     "learning.threads",
 ];
 
-/// Keys that are always told beside a result if they are not at their usual value. Of the others, such as the learning
-/// rate, only those are told that tell apart what would otherwise look the same.
+/// Keys that are always told beside a result if they are not at their usual value. Of the others,
+/// such as the learning rate, only those are told that tell apart what would otherwise look the
+/// same.
 pub const TOLD: [&str; 12] = [
     "rules",
     "preset",
@@ -48,7 +49,8 @@ pub const TOLD: [&str; 12] = [
     "changed",
 ];
 
-/// Where the trainer keeps a value, and other spellings, with the name that this program has for it.
+/// Where the trainer keeps a value, and other spellings, with the name that this program has for
+/// it.
 const SPELLINGS: &[(&str, &[&str])] = &[
     ("env", &["env.id"]),
     ("algo", &["algorithm"]),
@@ -61,8 +63,8 @@ const SPELLINGS: &[(&str, &[&str])] = &[
     ("frame_stack", &["env.frame_stack"]),
 ];
 
-/// What was trained and how. Everything but the seed is the experiment's identity: runs are averaged only if all of it
-/// is equal, known key or not.
+/// What was trained and how. Everything but the seed is the experiment's identity: runs are
+/// averaged only if all of it is equal, known key or not.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Config {
     /// Id of the environment.
@@ -75,7 +77,8 @@ pub struct Config {
     pub algo: String,
     /// The seed.
     pub seed: u64,
-    /// Cost that an episode may have in all; the scenario's own if only named terms are constrained.
+    /// Cost that an episode may have in all; the scenario's own if only named terms are
+    /// constrained.
     pub safety_budget: f64,
     /// What costs are held against: each constraint, by its own term.
     pub constraints: Vec<Constraint>,
@@ -85,8 +88,8 @@ pub struct Config {
     pub frames: Option<f64>,
     /// Frames that were asked for at first, of a run that was resumed to go on beyond them.
     pub extended_from: Option<f64>,
-    /// Every other key that may change results, as text; nested keys are joined by dots. `safety_budget` is among them
-    /// only if it is not the scenario's own.
+    /// Every other key that may change results, as text; nested keys are joined by dots.
+    /// `safety_budget` is among them only if it is not the scenario's own.
     pub options: BTreeMap<String, String>,
 }
 
@@ -96,7 +99,11 @@ impl Config {
     /// # Errors
     /// When it cannot be read, is no JSON object, or lacks `env`, `algo` or `seed`.
     pub fn read(path: &Path) -> Result<Config, Warning> {
-        Config::parse(&super::read_text(path)?).map_err(|problem| Warning { path: path.to_owned(), line: 0, problem })
+        Config::parse(&super::read_text(path)?).map_err(|problem| Warning {
+            path: path.to_owned(),
+            line: 0,
+            problem,
+        })
     }
 
     /// Understands the text of the file.
@@ -108,9 +115,11 @@ impl Config {
     }
 
     fn understand(text: &str) -> Result<Config, String> {
-        let value: Value =
-            serde_json::from_str(text).map_err(|e| format!("is no JSON ({e}); restore it or leave the run out"))?;
-        let Value::Object(object) = &value else { return Err("is not a JSON object; restore it or leave the run out".into()) };
+        let value: Value = serde_json::from_str(text)
+            .map_err(|e| format!("is no JSON ({e}); restore it or leave the run out"))?;
+        let Value::Object(object) = &value else {
+            return Err("is not a JSON object; restore it or leave the run out".into());
+        };
         let mut flat = BTreeMap::new();
         let mut constraints = Vec::new();
         let mut extended_from = None;
@@ -119,7 +128,9 @@ impl Config {
                 extended_from = read_changes(value, &mut flat);
             } else if key == "constraints" {
                 constraints = read_constraints(value, &mut flat)?;
-            } else if key == "curriculum" && value.as_array().is_some_and(|lessons| lessons.iter().all(Value::is_object)) {
+            } else if key == "curriculum"
+                && value.as_array().is_some_and(|lessons| lessons.iter().all(Value::is_object))
+            {
                 read_curriculum(value, &mut flat)?;
             } else {
                 flatten(key, value, &mut flat);
@@ -127,18 +138,27 @@ impl Config {
         }
         let mut options = BTreeMap::new();
         for (key, value) in flat {
-            let name = SPELLINGS.iter().find(|(_, others)| others.contains(&key.as_str())).map_or(key.as_str(), |(name, _)| name);
+            let name = SPELLINGS
+                .iter()
+                .find(|(_, others)| others.contains(&key.as_str()))
+                .map_or(key.as_str(), |(name, _)| name);
             options.insert(name.to_owned(), value);
         }
         let mut take = |key: &str| {
-            options.remove(key).ok_or_else(|| format!("lacks the key \"{key}\"; is it the config.json of a hasard training run?"))
+            options.remove(key).ok_or_else(|| {
+                format!("lacks the key \"{key}\"; is it the config.json of a hasard training run?")
+            })
         };
         let env = take("env")?;
         let algo = take("algo")?;
         let seed = take("seed")?;
-        let seed = seed.parse().map_err(|_| format!("has the seed {seed}, which is no whole number from 0 on"))?;
+        let seed = seed
+            .parse()
+            .map_err(|_| format!("has the seed {seed}, which is no whole number from 0 on"))?;
         // A damped multiplier of older versions was a PID controller, whatever it was called.
-        let damping = options.remove("algorithm_settings.multiplier_damping").and_then(|damping| damping.parse::<f64>().ok());
+        let damping = options
+            .remove("algorithm_settings.multiplier_damping")
+            .and_then(|damping| damping.parse::<f64>().ok());
         let algo = match algo.as_str() {
             "PPOLag" if damping > Some(0.0) => "PPOPID".into(),
             "TRPOLag" if damping > Some(0.0) => "TRPOPID".into(),
@@ -146,29 +166,44 @@ impl Config {
         };
         let (scenario, mut level) = scenario_and_level(&env);
         // A curriculum ends in its last level, and that is what its results are results of.
-        if let Some(last) =
-            options.get("curriculum").and_then(|levels| levels.rsplit(',').next()?.split(':').next()?.trim().parse().ok())
+        if let Some(last) = options
+            .get("curriculum")
+            .and_then(|levels| levels.rsplit(',').next()?.split(':').next()?.trim().parse().ok())
         {
             level = last;
         }
         options.retain(|key, _| !NOT_IDENTITY.iter().any(|beginning| below(key, beginning)));
-        let released = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
+        let released =
+            options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("released"));
         let hard = options.get("hard").is_some_and(|hard| hard == "true");
         let own_budget = if hard { 0.0 } else { default_budget(&scenario, released) };
         let given = options.get("safety_budget").map(|text| text.parse::<f64>());
         let safety_budget = match given {
             None => own_budget,
             Some(Ok(budget)) if budget.is_finite() && budget >= 0.0 => budget,
-            Some(_) => return Err(format!("has the safety_budget {}, which is no cost", options["safety_budget"])),
+            Some(_) => {
+                return Err(format!(
+                    "has the safety_budget {}, which is no cost",
+                    options["safety_budget"]
+                ));
+            }
         };
-        // The budgets of the paper (50) and of the released code (5) for Armament Burden are both "the scenario's own".
-        if safety_budget == own_budget || (!hard && safety_budget == default_budget(&scenario, false)) {
+        // The budgets of the paper (50) and of the released code (5) for Armament Burden are both
+        // "the scenario's own".
+        if safety_budget == own_budget
+            || (!hard && safety_budget == default_budget(&scenario, false))
+        {
             options.remove("safety_budget");
         }
         let tables = options.get("rules").is_some_and(|rules| rules.eq_ignore_ascii_case("tables"));
-        let own_scale = if (released || tables) && scenario == "ArmamentBurden" { 0.1 } else { 1.0 };
+        let own_scale =
+            if (released || tables) && scenario == "ArmamentBurden" { 0.1 } else { 1.0 };
         let scale_applies = algo.eq_ignore_ascii_case("PPOCost");
-        let cost_scale = match options.get("cost_scale").filter(|_| scale_applies).map(|text| text.parse::<f64>()) {
+        let cost_scale = match options
+            .get("cost_scale")
+            .filter(|_| scale_applies)
+            .map(|text| text.parse::<f64>())
+        {
             None => {
                 if scale_applies {
                     own_scale
@@ -177,15 +212,24 @@ impl Config {
                 }
             }
             Some(Ok(scale)) if scale.is_finite() => scale,
-            Some(_) => return Err(format!("has the cost_scale {}, which is no number", options["cost_scale"])),
+            Some(_) => {
+                return Err(format!(
+                    "has the cost_scale {}, which is no number",
+                    options["cost_scale"]
+                ));
+            }
         };
         if cost_scale == own_scale || !scale_applies {
             options.remove("cost_scale");
         }
         // What is left at its usual value need not be told, and older runs may lack the key.
-        for (key, usual) in
-            [("hard", "false"), ("full_actions", "false"), ("observation", "rgb"), ("frame_skip", "4"), ("frame_stack", "1")]
-        {
+        for (key, usual) in [
+            ("hard", "false"),
+            ("full_actions", "false"),
+            ("observation", "rgb"),
+            ("frame_skip", "4"),
+            ("frame_stack", "1"),
+        ] {
             if options.get(key).is_some_and(|value| value.eq_ignore_ascii_case(usual)) {
                 options.remove(key);
             }
@@ -193,8 +237,23 @@ impl Config {
         if constraints.is_empty() {
             constraints.push(Constraint { term: None, budget: safety_budget });
         }
-        let frames = options.remove("frames").and_then(|text| text.parse::<f64>().ok()).filter(|frames| frames.is_finite());
-        Ok(Config { env, scenario, level, algo, seed, safety_budget, constraints, cost_scale, frames, extended_from, options })
+        let frames = options
+            .remove("frames")
+            .and_then(|text| text.parse::<f64>().ok())
+            .filter(|frames| frames.is_finite());
+        Ok(Config {
+            env,
+            scenario,
+            level,
+            algo,
+            seed,
+            safety_budget,
+            constraints,
+            cost_scale,
+            frames,
+            extended_from,
+            options,
+        })
     }
 
     /// The budget of the whole cost, if that is constrained.
@@ -216,8 +275,9 @@ impl Config {
     }
 }
 
-/// Settings that changed when the run was resumed, as the trainer lists them: those that tell experiments apart go among the options.
-/// Gives the first number of frames that was asked for, if the run went on beyond it.
+/// Settings that changed when the run was resumed, as the trainer lists them: those that tell
+/// experiments apart go among the options. Gives the first number of frames that was asked for, if
+/// the run went on beyond it.
 fn read_changes(value: &Value, flat: &mut BTreeMap<String, String>) -> Option<f64> {
     let mut first = None;
     let mut told = Vec::new();
@@ -245,14 +305,24 @@ fn below(key: &str, beginning: &str) -> bool {
 }
 
 /// Constraints as the trainer lists them, each a cost term (or the whole cost) with its budget.
-fn read_constraints(value: &Value, flat: &mut BTreeMap<String, String>) -> Result<Vec<Constraint>, String> {
+fn read_constraints(
+    value: &Value,
+    flat: &mut BTreeMap<String, String>,
+) -> Result<Vec<Constraint>, String> {
     let unusable = || "has constraints that are no list of {\"term\", \"budget\"}".to_owned();
     let mut told = Vec::new();
     let mut constraints = Vec::new();
     for constraint in value.as_array().ok_or_else(unusable)? {
-        let budget = constraint.get("budget").filter(|budget| budget.is_number()).map(plain).ok_or_else(unusable)?;
+        let budget = constraint
+            .get("budget")
+            .filter(|budget| budget.is_number())
+            .map(plain)
+            .ok_or_else(unusable)?;
         let term = constraint.get("term").and_then(Value::as_str).map(String::from);
-        constraints.push(Constraint { term: term.clone(), budget: budget.parse().map_err(|_| unusable())? });
+        constraints.push(Constraint {
+            term: term.clone(),
+            budget: budget.parse().map_err(|_| unusable())?,
+        });
         match term {
             None => drop(flat.insert("safety_budget".into(), budget)),
             Some(term) => told.push(format!("{term}:{budget}")),
@@ -264,25 +334,34 @@ fn read_constraints(value: &Value, flat: &mut BTreeMap<String, String>) -> Resul
     Ok(constraints)
 }
 
-/// Lessons as the trainer lists them: their levels, and their frames too where they differ (by more than what an equal
-/// share leaves over).
+/// Lessons as the trainer lists them: their levels, and their frames too where they differ (by more
+/// than what an equal share leaves over).
 fn read_curriculum(value: &Value, flat: &mut BTreeMap<String, String>) -> Result<(), String> {
     let unusable = || "has a curriculum that is no list of {\"level\", \"frames\"}".to_owned();
     let lessons = value.as_array().ok_or_else(unusable)?;
     let numbers = |key: &str| -> Result<Vec<u64>, String> {
-        lessons.iter().map(|lesson| lesson.get(key).and_then(Value::as_u64).ok_or_else(unusable)).collect()
+        lessons
+            .iter()
+            .map(|lesson| lesson.get(key).and_then(Value::as_u64).ok_or_else(unusable))
+            .collect()
     };
     let (levels, frames) = (numbers("level")?, numbers("frames")?);
     let least = frames.iter().min().copied().unwrap_or(0);
     let equal = frames.iter().all(|frames| frames - least < lessons.len() as u64);
-    let text = |(level, frames): (&u64, &u64)| if equal { level.to_string() } else { format!("{level}:{frames}") };
+    let text = |(level, frames): (&u64, &u64)| {
+        if equal { level.to_string() } else { format!("{level}:{frames}") }
+    };
     if !lessons.is_empty() {
-        flat.insert("curriculum".into(), levels.iter().zip(&frames).map(text).collect::<Vec<_>>().join(","));
+        flat.insert(
+            "curriculum".into(),
+            levels.iter().zip(&frames).map(text).collect::<Vec<_>>().join(","),
+        );
     }
     Ok(())
 }
 
-/// Writes a value as text under its key, and an object's values under their own; nulls and empty lists are left out.
+/// Writes a value as text under its key, and an object's values under their own; nulls and empty
+/// lists are left out.
 fn flatten(key: &str, value: &Value, options: &mut BTreeMap<String, String>) {
     match value {
         Value::Null => {}
@@ -296,7 +375,10 @@ fn flatten(key: &str, value: &Value, options: &mut BTreeMap<String, String>) {
             // A list of objects (the network's layers) stays as it is written.
             let plain_items = items.iter().all(|item| !item.is_object() && !item.is_array());
             let text: Vec<String> = items.iter().map(plain).collect();
-            options.insert(key.to_owned(), if plain_items { text.join(",") } else { value.to_string() });
+            options.insert(
+                key.to_owned(),
+                if plain_items { text.join(",") } else { value.to_string() },
+            );
         }
         _ => {
             options.insert(key.to_owned(), plain(value));
@@ -316,7 +398,8 @@ fn plain(value: &Value) -> String {
     }
 }
 
-/// Splits `RemedyRushLevel2-v0` into `RemedyRush` and 2; an id of another shape is its own scenario, level 1.
+/// Splits `RemedyRushLevel2-v0` into `RemedyRush` and 2; an id of another shape is its own
+/// scenario, level 1.
 #[must_use]
 pub fn scenario_and_level(env: &str) -> (String, u32) {
     let name = env.split("-v").next().unwrap_or(env);
@@ -328,7 +411,8 @@ pub fn scenario_and_level(env: &str) -> (String, u32) {
     (name.to_owned(), 1)
 }
 
-/// The scenario's own budget: the paper's, or the released code's where it differs; 50 for a scenario that nobody registered.
+/// The scenario's own budget: the paper's, or the released code's where it differs; 50 for a
+/// scenario that nobody registered.
 #[must_use]
 pub fn default_budget(scenario: &str, released: bool) -> f64 {
     let rules = if released { RuleSet::Released } else { RuleSet::Paper };

@@ -27,7 +27,9 @@ impl Constraint {
     /// Its budget, with the term's name if it is of one: `50`, `lava 30`.
     #[must_use]
     pub fn label(&self) -> String {
-        self.term.as_ref().map_or_else(|| self.budget.to_string(), |term| format!("{term} {}", self.budget))
+        self.term
+            .as_ref()
+            .map_or_else(|| self.budget.to_string(), |term| format!("{term} {}", self.budget))
     }
 
     /// How a measured cost stands to the budget.
@@ -50,7 +52,8 @@ pub enum Kept {
     Unknown,
     /// A mean is above its budget.
     Over,
-    /// The means are within their budgets, the upper end of an interval is not (or there is no interval).
+    /// The means are within their budgets, the upper end of an interval is not (or there is no
+    /// interval).
     ByMean,
     /// The upper ends of the 95 % intervals are within.
     Surely,

@@ -15,7 +15,8 @@ pub enum Origin {
     Rollout,
     /// Episode files, as people's play is.
     Recorded,
-    /// Episode files that are to be witnesses: their names, or their folder's, begin with `witness`.
+    /// Episode files that are to be witnesses: their names, or their folder's, begin with
+    /// `witness`.
     Witness,
 }
 
@@ -43,8 +44,9 @@ pub struct Found {
     pub warnings: Vec<Warning>,
 }
 
-/// Looks through folders for run directories (those with a `config.json`) and episode files of humans, and reads files
-/// of episodes (`hasard rollout --json > random.jsonl`), whose name becomes the player's.
+/// Looks through folders for run directories (those with a `config.json`) and episode files of
+/// humans, and reads files of episodes (`hasard rollout --json > random.jsonl`), whose name becomes
+/// the player's.
 ///
 /// # Errors
 /// When a named path does not exist, or nothing at all is found.
@@ -57,21 +59,32 @@ pub fn discover(paths: &[PathBuf]) -> Result<Found, String> {
             match path.extension().and_then(|extension| extension.to_str()) {
                 Some("episode") => read_episode_file(path, &mut found),
                 Some("jsonl") => read_rollout(path, &mut found),
-                _ => return Err(format!("{}: is neither a folder nor a .jsonl of episodes nor a .episode file", path.display())),
+                _ => {
+                    return Err(format!(
+                        "{}: is neither a folder nor a .jsonl of episodes nor a .episode file",
+                        path.display()
+                    ));
+                }
             }
         } else {
-            return Err(format!("{}: no such file or folder; name the run directories to report on", path.display()));
+            return Err(format!(
+                "{}: no such file or folder; name the run directories to report on",
+                path.display()
+            ));
         }
     }
     found.runs.sort_by(|a, b| a.path.cmp(&b.path));
     // A run named twice (`runs runs/a`) is one run.
     let mut seen = std::collections::BTreeSet::new();
-    found.runs.retain(|run| seen.insert(run.path.canonicalize().unwrap_or_else(|_| run.path.clone())));
+    found
+        .runs
+        .retain(|run| seen.insert(run.path.canonicalize().unwrap_or_else(|_| run.path.clone())));
     found.warnings.sort();
     found.warnings.dedup();
     if found.runs.is_empty() && found.players.is_empty() {
         let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-        let first = found.warnings.first().map_or_else(String::new, |warning| format!(" ({warning})"));
+        let first =
+            found.warnings.first().map_or_else(String::new, |warning| format!(" ({warning})"));
         return Err(format!(
             "no run directory (a folder with config.json) and no episode below {}{first}; name the folder that `hasard train --out` wrote",
             names.join(" ")
@@ -118,10 +131,15 @@ fn read_episode_file(path: &Path, found: &mut Found) {
                     hard: header.options.get("hard").map(|hard| hard == "true"),
                     length: Some(f64::from(header.steps)),
                 };
-                let usual =
-                    |key: &str, value: &str| matches!((key, value), ("hard" | "full-actions", "false") | ("frame-skip", "4"));
-                let told = header.options.iter().filter(|(key, value)| !usual(key, value) && !key.starts_with("scenario"));
-                let options: Vec<String> = told.map(|(key, value)| format!("{key} {value}")).collect();
+                let usual = |key: &str, value: &str| {
+                    matches!((key, value), ("hard" | "full-actions", "false") | ("frame-skip", "4"))
+                };
+                let told = header
+                    .options
+                    .iter()
+                    .filter(|(key, value)| !usual(key, value) && !key.starts_with("scenario"));
+                let options: Vec<String> =
+                    told.map(|(key, value)| format!("{key} {value}")).collect();
                 let key = PlayerKey {
                     player: header.player.clone(),
                     env: header.env.clone(),
@@ -141,9 +159,14 @@ fn read_episode_file(path: &Path, found: &mut Found) {
 /// An episode file's origin, by its name and its folder's.
 fn origin_of(path: &Path) -> Origin {
     let begins = |part: Option<&std::ffi::OsStr>| {
-        part.and_then(|name| name.to_str()).is_some_and(|name| name.to_ascii_lowercase().starts_with("witness"))
+        part.and_then(|name| name.to_str())
+            .is_some_and(|name| name.to_ascii_lowercase().starts_with("witness"))
     };
-    if begins(path.file_name()) || begins(path.parent().and_then(Path::file_name)) { Origin::Witness } else { Origin::Recorded }
+    if begins(path.file_name()) || begins(path.parent().and_then(Path::file_name)) {
+        Origin::Witness
+    } else {
+        Origin::Recorded
+    }
 }
 
 /// Whether a file beside the runs is one of rollouts: its first line is an episode.
@@ -166,7 +189,12 @@ fn read_rollout(path: &Path, found: &mut Found) {
         let hard = episode.hard.filter(|hard| *hard).map(|_| "hard true".to_owned());
         let rules = episode.rules.as_ref().map(|rules| format!("rules {rules}"));
         let options = hard.into_iter().chain(rules).collect::<Vec<_>>().join(", ");
-        let key = PlayerKey { player: player.clone(), env: episode.env.clone(), options, origin: Origin::Rollout };
+        let key = PlayerKey {
+            player: player.clone(),
+            env: episode.env.clone(),
+            options,
+            origin: Origin::Rollout,
+        };
         found.players.entry(key).or_default().push(episode);
     }
 }

@@ -1,4 +1,5 @@
-//! Finished episodes, as `hasard rollout --json` and `hasard eval --json` print them and episode files keep them.
+//! Finished episodes, as `hasard rollout --json` and `hasard eval --json` print them and episode
+//! files keep them.
 
 use super::{Constraint, Warning};
 use serde_json::Value;
@@ -41,9 +42,13 @@ fn named(line: &Value, key: &str) -> Vec<(String, f64)> {
     named.filter_map(|(name, cost)| Some((name.clone(), cost.as_f64()?))).collect()
 }
 
-/// Understands lines of JSON that have `return` and `cost`; summaries (lines with `summary`) are passed over in silence,
-/// since they are made of the others, and damaged lines with a warning.
-pub fn read_episode_lines(text: &str, path: &Path, warnings: &mut Vec<Warning>) -> Vec<EpisodeResult> {
+/// Understands lines of JSON that have `return` and `cost`; summaries (lines with `summary`) are
+/// passed over in silence, since they are made of the others, and damaged lines with a warning.
+pub fn read_episode_lines(
+    text: &str,
+    path: &Path,
+    warnings: &mut Vec<Warning>,
+) -> Vec<EpisodeResult> {
     let mut episodes = Vec::new();
     for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let value = serde_json::from_str::<Value>(line).unwrap_or(Value::Null);

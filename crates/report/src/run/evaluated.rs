@@ -4,8 +4,9 @@ use super::{Constraint, EpisodeResult, Run};
 use crate::statistics::Estimate;
 
 impl Run {
-    /// A metric (named as in reports) over the episodes of the selected checkpoint: of the closing evaluation, or of `hasard eval`
-    /// where its episodes lie in the directory. `None` for a run that was not evaluated.
+    /// A metric (named as in reports) over the episodes of the selected checkpoint: of the closing
+    /// evaluation, or of `hasard eval` where its episodes lie in the directory. `None` for a run
+    /// that was not evaluated.
     #[must_use]
     pub fn evaluated(&self, metric: &str) -> Option<Estimate> {
         let of = |episode: &EpisodeResult| match metric {
@@ -18,18 +19,23 @@ impl Run {
             }
         };
         // The run's own word comes first: its intervals are made for skewed costs.
-        let closing = self.selected.as_ref().and_then(|selected| selected.closing.as_ref()?.get(metric));
-        closing.or_else(|| Estimate::of(&self.evaluation.iter().map(of).collect::<Option<Vec<f64>>>()?))
+        let closing =
+            self.selected.as_ref().and_then(|selected| selected.closing.as_ref()?.get(metric));
+        closing.or_else(|| {
+            Estimate::of(&self.evaluation.iter().map(of).collect::<Option<Vec<f64>>>()?)
+        })
     }
 
     /// Number of episodes behind [`Run::evaluated`].
     #[must_use]
     pub fn evaluated_episodes(&self) -> usize {
-        let closing = self.selected.as_ref().and_then(|selected| Some(selected.closing.as_ref()?.episodes));
+        let closing =
+            self.selected.as_ref().and_then(|selected| Some(selected.closing.as_ref()?.episodes));
         closing.unwrap_or(self.evaluation.len())
     }
 
-    /// The costs of the evaluated episodes under a constraint; empty where single episodes were not kept.
+    /// The costs of the evaluated episodes under a constraint; empty where single episodes were not
+    /// kept.
     #[must_use]
     pub fn episode_costs(&self, constraint: &Constraint) -> Vec<f64> {
         self.evaluation.iter().filter_map(|episode| episode.cost_of(constraint)).collect()

@@ -7,7 +7,8 @@ use std::path::Path;
 /// Largest side of the grid of a heatmap; a bound on hostile files.
 const MAX_CELLS_A_SIDE: usize = 1024;
 
-/// Steps spent in each cell of a grid over the map during the last episodes before a moment of training.
+/// Steps spent in each cell of a grid over the map during the last episodes before a moment of
+/// training.
 #[derive(Clone, PartialEq, Debug, Deserialize)]
 pub struct HeatmapData {
     /// The moment.
@@ -20,7 +21,8 @@ pub struct HeatmapData {
     pub columns: usize,
     /// Cells along y.
     pub rows: usize,
-    /// Name of the picture in the run's directory that shows the same extent from above; `automap.png` if the line names none.
+    /// Name of the picture in the run's directory that shows the same extent from above;
+    /// `automap.png` if the line names none.
     #[serde(default)]
     pub automap: Option<String>,
     /// Steps in each cell, `[rows, columns]`, the row of the smallest y first.

@@ -9,7 +9,8 @@ use std::path::Path;
 pub struct Row {
     /// Frames (tics) seen so far: the horizontal axis of every curve.
     pub frames: f64,
-    /// The numbers of the row by name, nested names joined by dots (`multipliers.0`); sorted by name.
+    /// The numbers of the row by name, nested names joined by dots (`multipliers.0`); sorted by
+    /// name.
     values: Vec<(String, f64)>,
 }
 
@@ -21,11 +22,14 @@ impl Row {
         Row { frames, values }
     }
 
-    /// A number by its name: `return_mean`, `cost_mean`, `length_mean`, `fps`, ...; `None` where it is missing or null,
-    /// as returns are before the first episode ends.
+    /// A number by its name: `return_mean`, `cost_mean`, `length_mean`, `fps`, ...; `None` where it
+    /// is missing or null, as returns are before the first episode ends.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
-        self.values.binary_search_by(|(key, _)| key.as_str().cmp(name)).ok().map(|at| self.values[at].1)
+        self.values
+            .binary_search_by(|(key, _)| key.as_str().cmp(name))
+            .ok()
+            .map(|at| self.values[at].1)
     }
 
     /// All names and numbers.
@@ -35,12 +39,15 @@ impl Row {
     }
 }
 
-/// Understands the lines of a metrics file. A damaged line, above all the half-written last one of a killed run, is
-/// passed over with a warning. Where frames step back (a run resumed from a checkpoint older than its last report),
-/// the later rows stand and the rows that they repeat are dropped.
+/// Understands the lines of a metrics file. A damaged line, above all the half-written last one of
+/// a killed run, is passed over with a warning. Where frames step back (a run resumed from a
+/// checkpoint older than its last report), the later rows stand and the rows that they repeat are
+/// dropped.
 pub fn parse_metrics(text: &str, path: &Path, warnings: &mut Vec<Warning>) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
-    let mut warn = |line: usize, problem: String| warnings.push(Warning { path: path.to_owned(), line, problem });
+    let mut warn = |line: usize, problem: String| {
+        warnings.push(Warning { path: path.to_owned(), line, problem })
+    };
     for (index, line) in text.lines().enumerate() {
         let line = line.trim_matches(|c: char| c.is_whitespace() || c == '\0');
         if line.is_empty() {
@@ -53,11 +60,16 @@ pub fn parse_metrics(text: &str, path: &Path, warnings: &mut Vec<Warning>) -> Ve
                 continue;
             }
             Err(error) => {
-                warn(index + 1, format!("is damaged or half-written ({}); line passed over", short(&error)));
+                warn(
+                    index + 1,
+                    format!("is damaged or half-written ({}); line passed over", short(&error)),
+                );
                 continue;
             }
         };
-        let Some(frames) = object.get("frames").and_then(Value::as_f64).filter(|frames| *frames >= 0.0) else {
+        let Some(frames) =
+            object.get("frames").and_then(Value::as_f64).filter(|frames| *frames >= 0.0)
+        else {
             warn(index + 1, "has no number of frames; line passed over".into());
             continue;
         };
@@ -67,7 +79,13 @@ pub fn parse_metrics(text: &str, path: &Path, warnings: &mut Vec<Warning>) -> Ve
         }
         let keep = rows.partition_point(|row| row.frames < frames);
         if keep < rows.len() {
-            warn(index + 1, format!("goes back to frame {frames} (a resumed run); {} earlier rows replaced", rows.len() - keep));
+            warn(
+                index + 1,
+                format!(
+                    "goes back to frame {frames} (a resumed run); {} earlier rows replaced",
+                    rows.len() - keep
+                ),
+            );
             rows.truncate(keep);
         }
         rows.push(Row::new(frames, values));
@@ -81,14 +99,20 @@ fn short(error: &serde_json::Error) -> String {
     text.split(" at line ").next().unwrap_or(&text).to_owned()
 }
 
-/// Collects the numbers in a value under their joined names; texts, booleans and nulls are no numbers.
+/// Collects the numbers in a value under their joined names; texts, booleans and nulls are no
+/// numbers.
 fn numbers(key: &str, value: &Value, into: &mut Vec<(String, f64)>) {
     match value {
-        Value::Number(number) => {
-            into.extend(number.as_f64().filter(|float| float.is_finite()).map(|float| (key.to_owned(), float)))
+        Value::Number(number) => into.extend(
+            number.as_f64().filter(|float| float.is_finite()).map(|float| (key.to_owned(), float)),
+        ),
+        Value::Object(object) => {
+            object.iter().for_each(|(inner, value)| numbers(&format!("{key}.{inner}"), value, into))
         }
-        Value::Object(object) => object.iter().for_each(|(inner, value)| numbers(&format!("{key}.{inner}"), value, into)),
-        Value::Array(items) => items.iter().enumerate().for_each(|(at, value)| numbers(&format!("{key}.{at}"), value, into)),
+        Value::Array(items) => items
+            .iter()
+            .enumerate()
+            .for_each(|(at, value)| numbers(&format!("{key}.{at}"), value, into)),
         _ => {}
     }
 }

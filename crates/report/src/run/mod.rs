@@ -27,7 +27,8 @@ use std::path::{Path, PathBuf};
 /// Largest text file that is read, in bytes: far above the metrics of any run.
 pub(crate) const TEXT_LIMIT: u64 = 512 << 20;
 
-/// Points that a run's reports are thinned to in the published tables, and how many of the last are averaged.
+/// Points that a run's reports are thinned to in the published tables, and how many of the last are
+/// averaged.
 const POINTS: usize = 500;
 /// See `POINTS`.
 pub const LAST_POINTS: usize = 10;
@@ -62,7 +63,8 @@ pub struct Run {
     pub config: Config,
     /// Its reports, in the order of frames.
     pub rows: Vec<Row>,
-    /// Episodes of the selected checkpoint: those of the closing evaluation, or of `hasard eval` if that kept any here.
+    /// Episodes of the selected checkpoint: those of the closing evaluation, or of `hasard eval` if
+    /// that kept any here.
     pub evaluation: Vec<EpisodeResult>,
     /// The checkpoint that it selected, if it says.
     pub selected: Option<Selected>,
@@ -88,11 +90,13 @@ impl Run {
             }
         };
         let mut evaluation = Vec::new();
-        // Episodes of the closing evaluation are the run's own; those of a later `hasard eval` count where it kept none.
+        // Episodes of the closing evaluation are the run's own; those of a later `hasard eval`
+        // count where it kept none.
         for beginning in ["closing", "eval"] {
             for file in sorted_files(path) {
                 let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-                if evaluation.is_empty() && name.starts_with(beginning) && name.ends_with(".jsonl") {
+                if evaluation.is_empty() && name.starts_with(beginning) && name.ends_with(".jsonl")
+                {
                     match read_text(&file) {
                         Ok(text) => evaluation.extend(read_episode_lines(&text, &file, warnings)),
                         Err(warning) => warnings.push(warning),
@@ -124,7 +128,8 @@ impl Run {
         })
     }
 
-    /// The picture of the map that a heatmap lies on, if the directory has it. A name that leads elsewhere is no name.
+    /// The picture of the map that a heatmap lies on, if the directory has it. A name that leads
+    /// elsewhere is no name.
     #[must_use]
     pub fn automap(&self, heatmap: &HeatmapData) -> Option<PathBuf> {
         let name = heatmap.automap.as_deref().unwrap_or("automap.png");
@@ -140,12 +145,13 @@ impl Run {
 
     /// A metric at the end of training; `None` if no report has it.
     ///
-    /// The published tables take the mean over the last ten of a run's five hundred points. Reports are made by the clock, so
-    /// that a fast machine makes fewer of them: the points are taken here at equal distances in frames, each on the line
-    /// between the reports around it.
+    /// The published tables take the mean over the last ten of a run's five hundred points. Reports
+    /// are made by the clock, so that a fast machine makes fewer of them: the points are taken here
+    /// at equal distances in frames, each on the line between the reports around it.
     #[must_use]
     pub fn final_mean(&self, metric: &str) -> Option<f64> {
-        let reports: Vec<(f64, f64)> = self.rows.iter().filter_map(|row| Some((row.frames, row.get(metric)?))).collect();
+        let reports: Vec<(f64, f64)> =
+            self.rows.iter().filter_map(|row| Some((row.frames, row.get(metric)?))).collect();
         let (end, _) = *reports.last()?;
         let points = (0..LAST_POINTS).map(|point| end * (1.0 - point as f64 / POINTS as f64));
         let values: Vec<f64> = points.filter_map(|frames| interpolate(&reports, frames)).collect();
@@ -160,19 +166,26 @@ impl Run {
     }
 }
 
-/// The files of a folder in the order of their names, so that a report does not depend on the file system.
+/// The files of a folder in the order of their names, so that a report does not depend on the file
+/// system.
 pub(crate) fn sorted_files(folder: &Path) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path())
+        .collect();
     files.sort();
     files
 }
 
-/// Reads a text file; bytes that are no UTF-8 (a line cut or overwritten) become replacement characters and their line
-/// fails to parse like any other damaged one.
+/// Reads a text file; bytes that are no UTF-8 (a line cut or overwritten) become replacement
+/// characters and their line fails to parse like any other damaged one.
 pub(crate) fn read_text(path: &Path) -> Result<String, Warning> {
     let bytes = hasard_media::files::read_limited(path, TEXT_LIMIT).map_err(|error| {
         let text = error.to_string();
-        let problem = text.strip_prefix(&format!("{}: ", path.display())).unwrap_or(&text).to_owned();
+        let problem =
+            text.strip_prefix(&format!("{}: ", path.display())).unwrap_or(&text).to_owned();
         Warning { path: path.to_owned(), line: 0, problem }
     })?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())

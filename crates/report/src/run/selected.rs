@@ -24,7 +24,8 @@ pub struct Selected {
 pub struct Evaluation {
     /// Number of episodes.
     pub episodes: usize,
-    /// Return, cost and length by the names that reports have for them, and cost terms as `cost/TERM`.
+    /// Return, cost and length by the names that reports have for them, and cost terms as
+    /// `cost/TERM`.
     pub values: Vec<(String, Estimate)>,
 }
 
@@ -53,26 +54,35 @@ pub fn read_selected(run: &Path, warnings: &mut Vec<Warning>) -> Option<Selected
 fn understand(text: &str) -> Option<Selected> {
     let value: Value = serde_json::from_str(text).ok()?;
     let evaluation = |keys: &[&str]| keys.iter().find_map(|key| evaluation(value.get(key)?));
-    Some(Selected { frames: value.get("frames")?.as_f64()?, closing: evaluation(&["closing"]), last: evaluation(&["last"]) })
+    Some(Selected {
+        frames: value.get("frames")?.as_f64()?,
+        closing: evaluation(&["closing"]),
+        last: evaluation(&["last"]),
+    })
 }
 
 fn evaluation(value: &Value) -> Option<Evaluation> {
     let episodes = value.get("episodes")?.as_u64()? as usize;
     let estimate = |value: &Value| {
         let mean = value.get("mean")?.as_f64()?;
-        // Where costs are skewed the run gives a bootstrap's ends: the upper one is what budgets are held against.
+        // Where costs are skewed the run gives a bootstrap's ends: the upper one is what budgets
+        // are held against.
         let upper = value.get("bootstrap").and_then(|ends| ends.get(1)?.as_f64());
         let half_width = value.get("half_width").and_then(Value::as_f64);
         let half_width = upper.map(|high| high - mean).or(half_width).filter(|_| episodes > 1);
         Some(Estimate { mean, half_width, n: episodes })
     };
-    let named = [("return_mean", "episode_return"), ("cost_mean", "cost"), ("length_mean", "length")];
-    let mut values: Vec<(String, Estimate)> =
-        named.iter().filter_map(|(name, key)| Some(((*name).to_owned(), estimate(value.get(key)?)?))).collect();
+    let named =
+        [("return_mean", "episode_return"), ("cost_mean", "cost"), ("length_mean", "length")];
+    let mut values: Vec<(String, Estimate)> = named
+        .iter()
+        .filter_map(|(name, key)| Some(((*name).to_owned(), estimate(value.get(key)?)?)))
+        .collect();
     for constraint in value.get("constraints").and_then(Value::as_array).into_iter().flatten() {
-        if let (Some(term), Some(cost)) =
-            (constraint.get("term").and_then(Value::as_str), constraint.get("cost").and_then(estimate))
-        {
+        if let (Some(term), Some(cost)) = (
+            constraint.get("term").and_then(Value::as_str),
+            constraint.get("cost").and_then(estimate),
+        ) {
             values.push((format!("cost/{term}"), cost));
         }
     }
@@ -93,9 +103,15 @@ mod tests {
         let closing = selected.closing.unwrap();
         let last = selected.last.unwrap();
         assert_eq!((selected.frames, closing.episodes, last.episodes), (500.0, 100, 50));
-        assert_eq!((closing.get("cost_mean").unwrap().high(), last.get("cost_mean").unwrap().high()), (47.5, 50.0));
+        assert_eq!(
+            (closing.get("cost_mean").unwrap().high(), last.get("cost_mean").unwrap().high()),
+            (47.5, 50.0)
+        );
         let lava = closing.get("cost/lava").unwrap();
-        assert_eq!((lava.mean, lava.high(), closing.get("return_mean").unwrap().mean), (29.0, 31.0, 28.5));
+        assert_eq!(
+            (lava.mean, lava.high(), closing.get("return_mean").unwrap().mean),
+            (29.0, 31.0, 28.5)
+        );
         assert_eq!(understand("{\"frames\":3,\"closing\":null}").unwrap().closing, None);
         assert_eq!(understand("{\"closing\":null}"), None);
     }

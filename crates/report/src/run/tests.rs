@@ -26,11 +26,13 @@ fn a_damaged_last_line_is_passed_over_and_named() {
 
 #[test]
 fn a_resumed_run_replaces_what_it_repeats() {
-    let line = |frames: u32, value: u32| format!("{{\"frames\":{frames},\"return_mean\":{value}}}\n");
+    let line =
+        |frames: u32, value: u32| format!("{{\"frames\":{frames},\"return_mean\":{value}}}\n");
     let text = line(10, 1) + &line(20, 2) + &line(30, 3) + "null\n" + &line(20, 4) + &line(30, 5);
     let mut warnings = Vec::new();
     let rows = parse_metrics(&text, Path::new("m"), &mut warnings);
-    let seen: Vec<_> = rows.iter().map(|row| (row.frames, row.get("return_mean").unwrap())).collect();
+    let seen: Vec<_> =
+        rows.iter().map(|row| (row.frames, row.get("return_mean").unwrap())).collect();
     assert_eq!(seen, [(10.0, 1.0), (20.0, 4.0), (30.0, 5.0)]);
     assert_eq!(warnings.len(), 2);
     assert_eq!((warnings[0].line, warnings[1].line), (4, 5));
@@ -39,10 +41,15 @@ fn a_resumed_run_replaces_what_it_repeats() {
 #[test]
 fn what_makes_an_experiment_is_everything_but_machine_and_seed() {
     let parse = |extra: &str| {
-        Config::parse(&format!("{{\"env\":\"RemedyRushLevel2-v0\",\"algo\":\"PPOLag\",\"seed\":3,\"frames\":2000000{extra}}}"))
+        Config::parse(&format!(
+            "{{\"env\":\"RemedyRushLevel2-v0\",\"algo\":\"PPOLag\",\"seed\":3,\"frames\":2000000{extra}}}"
+        ))
     };
     let plain = parse("").unwrap();
-    assert_eq!((plain.scenario.as_str(), plain.level, plain.safety_budget, plain.frames), ("RemedyRush", 2, 5.0, Some(2e6)));
+    assert_eq!(
+        (plain.scenario.as_str(), plain.level, plain.safety_budget, plain.frames),
+        ("RemedyRush", 2, 5.0, Some(2e6))
+    );
     let usual =
         parse(",\"hard\":false,\"full_actions\":false,\"safety_budget\":5.0,\"threads\":2,\"device\":\"cpu\",\"curriculum\":[]")
             .unwrap();
@@ -51,19 +58,28 @@ fn what_makes_an_experiment_is_everything_but_machine_and_seed() {
         parse(",\"safety_budget\":2.5,\"learning\":{\"rate\":1e-4,\"threads\":2},\"curriculum\":[1,2,3],\"hard\":true").unwrap();
     assert_eq!(other.safety_budget, 2.5);
     assert!(other.hard());
-    let options: Vec<_> = other.options.iter().map(|(key, value)| format!("{key}={value}")).collect();
-    assert_eq!(options, ["curriculum=1,2,3", "hard=true", "learning.rate=0.0001", "safety_budget=2.5"]);
+    let options: Vec<_> =
+        other.options.iter().map(|(key, value)| format!("{key}={value}")).collect();
+    assert_eq!(
+        options,
+        ["curriculum=1,2,3", "hard=true", "learning.rate=0.0001", "safety_budget=2.5"]
+    );
 }
 
 #[test]
 fn the_lessons_of_a_curriculum_are_told_by_their_levels() {
     let parse = |lessons: &str| {
-        let text = format!("{{\"env\":\"RemedyRushLevel3-v0\",\"algo\":\"PPOPID\",\"seed\":1,\"curriculum\":{lessons}}}");
+        let text = format!(
+            "{{\"env\":\"RemedyRushLevel3-v0\",\"algo\":\"PPOPID\",\"seed\":1,\"curriculum\":{lessons}}}"
+        );
         Config::parse(&text).map(|config| (config.options["curriculum"].clone(), config.level))
     };
     let equal = r#"[{"level":1,"frames":33},{"level":2,"frames":33},{"level":3,"frames":34}]"#;
     assert_eq!(parse(equal), Ok(("1,2,3".into(), 3)));
-    assert_eq!(parse(r#"[{"level":1,"frames":50},{"level":2,"frames":20}]"#), Ok(("1:50,2:20".into(), 2)));
+    assert_eq!(
+        parse(r#"[{"level":1,"frames":50},{"level":2,"frames":20}]"#),
+        Ok(("1:50,2:20".into(), 2))
+    );
     assert!(parse(r#"[{"level":1}]"#).unwrap_err().contains("curriculum"));
 }
 
@@ -74,7 +90,10 @@ fn an_unusable_config_says_why() {
         ("[1]", "not a JSON object"),
         ("{\"algo\":\"PPO\",\"seed\":1}", "lacks the key \"env\""),
         ("{\"env\":\"X\",\"algo\":\"PPO\",\"seed\":-1}", "seed -1"),
-        ("{\"env\":\"X\",\"algo\":\"PPO\",\"seed\":1,\"safety_budget\":\"much\"}", "safety_budget much"),
+        (
+            "{\"env\":\"X\",\"algo\":\"PPO\",\"seed\":1,\"safety_budget\":\"much\"}",
+            "safety_budget much",
+        ),
     ] {
         let problem = Config::parse(text).unwrap_err();
         assert!(problem.contains(part), "{text}: {problem}");
@@ -84,7 +103,10 @@ fn an_unusable_config_says_why() {
 #[test]
 fn ids_are_taken_apart() {
     assert_eq!(scenario_and_level("ArmamentBurdenLevel3-v0"), ("ArmamentBurden".into(), 3));
-    assert_eq!(scenario_and_level("VolcanicVentureLevel1Hard-v0"), ("VolcanicVentureHard".into(), 1));
+    assert_eq!(
+        scenario_and_level("VolcanicVentureLevel1Hard-v0"),
+        ("VolcanicVentureHard".into(), 1)
+    );
     assert_eq!(scenario_and_level("Other-v1"), ("Other".into(), 1));
 }
 
@@ -98,7 +120,11 @@ fn hostile_heatmaps_are_passed_over() {
         "{\"frames\":2,\"episodes\":2,\"extent\":[0,0,2,1],\"columns\":2,\"rows\":1,\"steps\":[1,-4]}",
     ];
     let mut warnings = Vec::new();
-    let maps = heatmap::parse_heatmaps(&format!("{good}\n{}\n", bad.join("\n")), Path::new("h"), &mut warnings);
+    let maps = heatmap::parse_heatmaps(
+        &format!("{good}\n{}\n", bad.join("\n")),
+        Path::new("h"),
+        &mut warnings,
+    );
     assert_eq!((maps.len(), warnings.len()), (1, 4));
 }
 
@@ -111,7 +137,10 @@ fn the_trainers_own_layout_is_understood() {
         "sampling":{"lanes":32,"samplers":2,"world_threads":1},"learning":{"rate":1e-4,"threads":2},
         "algorithm_settings":{"penalty_scale":0.1},"reporting":{"window":100}}"#;
     let config = Config::parse(text).unwrap();
-    assert_eq!((config.env.as_str(), config.algo.as_str(), config.seed), ("ArmamentBurdenLevel2-v0", "PPOCost", 4));
+    assert_eq!(
+        (config.env.as_str(), config.algo.as_str(), config.seed),
+        ("ArmamentBurdenLevel2-v0", "PPOCost", 4)
+    );
     assert_eq!((config.safety_budget, config.cost_scale, config.frames), (5.0, 0.1, Some(2e6)));
     let told: Vec<String> = config
         .options
@@ -119,9 +148,29 @@ fn the_trainers_own_layout_is_understood() {
         .filter(|(key, _)| TOLD.contains(&key.as_str()))
         .map(|(key, value)| format!("{key}={value}"))
         .collect();
-    assert_eq!(told, ["constraints=zone:2.5", "full_actions=true", "observation=rgb+depth", "preset=released", "rules=released"]);
-    let rest: Vec<&str> = config.options.keys().map(String::as_str).filter(|key| !TOLD.contains(key)).collect();
-    assert_eq!(rest, ["env.size", "episode_steps", "learning.rate", "network.convolutions", "network.dense", "sampling.lanes"]);
+    assert_eq!(
+        told,
+        [
+            "constraints=zone:2.5",
+            "full_actions=true",
+            "observation=rgb+depth",
+            "preset=released",
+            "rules=released"
+        ]
+    );
+    let rest: Vec<&str> =
+        config.options.keys().map(String::as_str).filter(|key| !TOLD.contains(key)).collect();
+    assert_eq!(
+        rest,
+        [
+            "env.size",
+            "episode_steps",
+            "learning.rate",
+            "network.convolutions",
+            "network.dense",
+            "sampling.lanes"
+        ]
+    );
 }
 
 /// The end of a run is its last fiftieth of frames, however many reports the clock put there.
@@ -129,7 +178,8 @@ fn the_trainers_own_layout_is_understood() {
 fn the_last_ten_points_are_cut_by_frames() {
     let run = |frames: &[f64]| {
         let text = "{\"env\":\"RemedyRushLevel1-v0\",\"algo\":\"PPO\",\"seed\":1}";
-        let rows = frames.iter().map(|&at| Row::new(at, vec![("return_mean".into(), at / 1e4)])).collect();
+        let rows =
+            frames.iter().map(|&at| Row::new(at, vec![("return_mean".into(), at / 1e4)])).collect();
         Run {
             path: "x".into(),
             config: Config::parse(text).unwrap(),
@@ -140,11 +190,17 @@ fn the_last_ten_points_are_cut_by_frames() {
             heatmaps: vec![],
         }
     };
-    // A curve that rises by 1 with every 10,000 frames: points at 500,000, 499,000, ... 491,000 frames.
+    // A curve that rises by 1 with every 10,000 frames: points at 500,000, 499,000, ... 491,000
+    // frames.
     let seldom: Vec<f64> = (1..=10).map(|k| f64::from(k) * 5e4).collect();
     let often: Vec<f64> = (1..=500).map(|k| f64::from(k) * 1e3).collect();
-    // A machine that grew fast near the end and reported a hundred times within the last thousand frames.
-    let uneven: Vec<f64> = seldom[..9].iter().copied().chain((0..=100).map(|k| 499_000.0 + f64::from(k) * 10.0)).collect();
+    // A machine that grew fast near the end and reported a hundred times within the last thousand
+    // frames.
+    let uneven: Vec<f64> = seldom[..9]
+        .iter()
+        .copied()
+        .chain((0..=100).map(|k| 499_000.0 + f64::from(k) * 10.0))
+        .collect();
     for frames in [seldom, often, uneven] {
         let end = run(&frames).final_mean("return_mean").unwrap();
         assert!((end - 49.55).abs() < 1e-9, "{end} from {} reports", frames.len());
@@ -153,12 +209,16 @@ fn the_last_ten_points_are_cut_by_frames() {
     assert_eq!(run(&[7.0]).final_mean("cost_mean"), None);
 }
 
-/// A2: what older versions called PPOLag with damping is PPOPID's rule, and is compared with PPOPID.
+/// A2: what older versions called PPOLag with damping is PPOPID's rule, and is compared with
+/// PPOPID.
 #[test]
 fn damped_multipliers_are_called_what_they_are() {
-    for (algo, damping, expected) in
-        [("PPOLag", "1.5", "PPOPID"), ("TRPOLag", "1.5", "TRPOPID"), ("PPOLag", "0.0", "PPOLag"), ("CUP", "1.5", "CUP")]
-    {
+    for (algo, damping, expected) in [
+        ("PPOLag", "1.5", "PPOPID"),
+        ("TRPOLag", "1.5", "TRPOPID"),
+        ("PPOLag", "0.0", "PPOLag"),
+        ("CUP", "1.5", "CUP"),
+    ] {
         let text = format!(
             "{{\"algorithm\":\"{algo}\",\"env\":{{\"id\":\"RemedyRushLevel1-v0\"}},\"seed\":1,\
              \"algorithm_settings\":{{\"multiplier_damping\":{damping}}}}}"

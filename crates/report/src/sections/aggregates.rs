@@ -1,4 +1,5 @@
-//! Over environments: inter-quartile mean, optimality gap, performance profiles, probability of improvement.
+//! Over environments: inter-quartile mean, optimality gap, performance profiles, probability of
+//! improvement.
 
 use super::baselines::{Baselines, Score};
 use super::{distinct, main_groups};
@@ -7,8 +8,8 @@ use crate::curve::{Curve, Point};
 use crate::document::{Block, Cell, Figure, Section, Table, number, slug};
 use crate::group::{Group, algorithm_order};
 use crate::statistics::{
-    Aggregate, Estimate, RESAMPLES, aggregate, aggregate_pair, aggregates, interquartile_mean, mean, optimality_gap,
-    performance_profile, probability_of_improvement,
+    Aggregate, Estimate, RESAMPLES, aggregate, aggregate_pair, aggregates, interquartile_mean,
+    mean, optimality_gap, performance_profile, probability_of_improvement,
 };
 
 /// Thresholds of the profiles: 0, 0.05, ... 1.2.
@@ -24,20 +25,28 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
         let mut rows = Vec::new();
         let mut later = Vec::new();
         for level in distinct(members, |group| group.config().level) {
-            let here: Vec<&Group> = members.iter().copied().filter(|group| group.config().level == level).collect();
+            let here: Vec<&Group> =
+                members.iter().copied().filter(|group| group.config().level == level).collect();
             let environments = distinct(&here, |group| group.config().env.clone());
             let mut algorithms: Vec<(usize, String, Strata, Strata)> = Vec::new();
-            for (order, algo) in distinct(&here, |group| (algorithm_order(&group.config().algo), group.config().algo.clone())) {
+            for (order, algo) in distinct(&here, |group| {
+                (algorithm_order(&group.config().algo), group.config().algo.clone())
+            }) {
                 let strata = |of: fn(&Score) -> f64| -> Strata {
                     environments
                         .iter()
                         .map(|env| {
-                            let own = here.iter().find(|group| group.config().env == *env && group.config().algo == algo);
-                            own.map_or_else(Vec::new, |group| baselines.scores(group).iter().map(of).collect())
+                            let own = here.iter().find(|group| {
+                                group.config().env == *env && group.config().algo == algo
+                            });
+                            own.map_or_else(Vec::new, |group| {
+                                baselines.scores(group).iter().map(of).collect()
+                            })
                         })
                         .collect()
                 };
-                let (returns, feasible) = (strata(|score| score.normalised), strata(|score| score.feasible));
+                let (returns, feasible) =
+                    (strata(|score| score.normalised), strata(|score| score.feasible));
                 if returns.iter().any(|seeds| !seeds.is_empty()) {
                     rows.push(row(level, order, &algo, &returns, &feasible));
                     algorithms.push((order, algo, returns, feasible));
@@ -46,17 +55,32 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
             if algorithms.is_empty() {
                 continue;
             }
-            let name =
-                if settings.len() > 1 { format!("profiles level {level} {setting}") } else { format!("profiles level {level}") };
+            let name = if settings.len() > 1 {
+                format!("profiles level {level} {setting}")
+            } else {
+                format!("profiles level {level}")
+            };
             later.push(Block::Figure(profiles(&algorithms, &slug(&name), level)));
             if algorithms.len() > 1 {
                 later.push(Block::Table(improvement(&algorithms, level)));
             }
         }
         if !rows.is_empty() {
-            let heads = ["level", "algorithm", "feasible score", "IQM of return", "optimality gap", "environments"];
+            let heads = [
+                "level",
+                "algorithm",
+                "feasible score",
+                "IQM of return",
+                "optimality gap",
+                "environments",
+            ];
             let heads = heads.map(String::from).to_vec();
-            blocks.push(Block::Table(Table { caption: setting.clone(), heads, rows, ..Table::default() }));
+            blocks.push(Block::Table(Table {
+                caption: setting.clone(),
+                heads,
+                rows,
+                ..Table::default()
+            }));
             blocks.append(&mut later);
         }
     }
@@ -86,13 +110,18 @@ fn row(level: u32, order: usize, algo: &str, returns: &Strata, feasible: &Strata
         cell(aggregate(feasible, mean)),
         cell(iqm),
         cell(aggregate(returns, |samples| optimality_gap(samples, 1.0))),
-        Cell::number(iqm.map_or(0.0, |one| one.strata as f64)).with_text(iqm.map_or(0, |one| one.strata).to_string()),
+        Cell::number(iqm.map_or(0.0, |one| one.strata as f64))
+            .with_text(iqm.map_or(0, |one| one.strata).to_string()),
     ]
 }
 
 fn cell(estimate: Option<Aggregate>) -> Cell {
-    let Some(estimate) = estimate else { return Cell { text: "-".into(), pale: true, ..Cell::default() } };
-    let interval = estimate.interval.map_or_else(String::new, |(low, high)| format!(" [{}, {}]", number(low), number(high)));
+    let Some(estimate) = estimate else {
+        return Cell { text: "-".into(), pale: true, ..Cell::default() };
+    };
+    let interval = estimate
+        .interval
+        .map_or_else(String::new, |(low, high)| format!(" [{}, {}]", number(low), number(high)));
     Cell {
         text: format!("{}{interval}", number(estimate.value)),
         note: format!("n={}", estimate.n),
@@ -111,13 +140,20 @@ fn profiles(algorithms: &[(usize, String, Strata, Strata)], file: &str, level: u
             behind: false,
         });
         let size = (480.0, 260.0);
-        line_panel(&LinePanel { title: title.into(), axis: axis.into(), series: series.collect(), budget: None, size })
+        line_panel(&LinePanel {
+            title: title.into(),
+            axis: axis.into(),
+            series: series.collect(),
+            budget: None,
+            size,
+        })
     };
     let panels = vec![
         panel("share of seeds above a feasible score", "feasible score", |one| &one.3),
         panel("share of seeds above a normalised return", "normalised return", |one| &one.2),
     ];
-    let legend: Vec<(String, Ink)> = algorithms.iter().map(|one| (one.1.clone(), Ink::Series(one.0))).collect();
+    let legend: Vec<(String, Ink)> =
+        algorithms.iter().map(|one| (one.1.clone(), Ink::Series(one.0))).collect();
     Figure {
         slug: file.to_owned(),
         caption: format!("Performance profiles, level {level}; bands: 95 % of bootstrap samples"),
@@ -126,9 +162,13 @@ fn profiles(algorithms: &[(usize, String, Strata, Strata)], file: &str, level: u
 }
 
 fn profile(strata: &Strata) -> Curve {
-    let thresholds: Vec<f64> = (0..=THRESHOLDS).map(|step| 1.2 * step as f64 / THRESHOLDS as f64).collect();
+    let thresholds: Vec<f64> =
+        (0..=THRESHOLDS).map(|step| 1.2 * step as f64 / THRESHOLDS as f64).collect();
     let shares = aggregates(strata, |samples| {
-        thresholds.iter().map(|threshold| performance_profile(samples, *threshold)).collect::<Option<Vec<f64>>>()
+        thresholds
+            .iter()
+            .map(|threshold| performance_profile(samples, *threshold))
+            .collect::<Option<Vec<f64>>>()
     });
     let point = |(frames, share): (&f64, Aggregate)| {
         let value = Estimate { mean: share.value, half_width: None, n: share.n };
@@ -149,7 +189,10 @@ fn improvement(algorithms: &[(usize, String, Strata, Strata)], level: u32) -> Ta
             if one.1 == other.1 {
                 return Cell { text: "-".into(), pale: true, ..Cell::default() };
             }
-            Cell { note: String::new(), ..cell(aggregate_pair(&one.3, &other.3, probability_of_improvement)) }
+            Cell {
+                note: String::new(),
+                ..cell(aggregate_pair(&one.3, &other.3, probability_of_improvement))
+            }
         }));
         row
     });

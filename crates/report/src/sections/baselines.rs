@@ -25,16 +25,20 @@ impl<'a> Baselines<'a> {
         Baselines { found, groups }
     }
 
-    /// Mean return of the random policy on a run's environment, from episodes of a player named `random...`. Episodes that do
-    /// not say their rules are taken for soft ones of the default rules.
+    /// Mean return of the random policy on a run's environment, from episodes of a player named
+    /// `random...`. Episodes that do not say their rules are taken for soft ones of the default
+    /// rules.
     pub fn random(&self, config: &Config) -> Option<f64> {
         let rules = config.rules().unwrap_or("paper");
         let here = self.found.players.iter().filter(|(key, _)| {
-            key.player.starts_with("random") && scenario_and_level(&key.env) == (config.scenario.clone(), config.level)
+            key.player.starts_with("random")
+                && scenario_and_level(&key.env) == (config.scenario.clone(), config.level)
         });
         let episodes = here.flat_map(|(_, episodes)| episodes);
-        let same =
-            episodes.filter(|one| one.rules.as_deref().unwrap_or("paper") == rules && one.hard.unwrap_or(false) == config.hard());
+        let same = episodes.filter(|one| {
+            one.rules.as_deref().unwrap_or("paper") == rules
+                && one.hard.unwrap_or(false) == config.hard()
+        });
         mean(&same.map(|one| one.episode_return).collect::<Vec<_>>())
     }
 
@@ -42,17 +46,25 @@ impl<'a> Baselines<'a> {
     pub fn ppo(&self, group: &Group) -> Option<f64> {
         let task = |config: &Config| {
             let options = ["rules", "hard", "full_actions", "observation", "frame_skip"];
-            (config.scenario.clone(), config.level, options.map(|key| config.options.get(key).cloned()))
+            (
+                config.scenario.clone(),
+                config.level,
+                options.map(|key| config.options.get(key).cloned()),
+            )
         };
         let own = task(group.config());
-        let same = self.groups.iter().filter(|one| one.config().algo.eq_ignore_ascii_case("PPO") && task(one.config()) == own);
+        let same = self.groups.iter().filter(|one| {
+            one.config().algo.eq_ignore_ascii_case("PPO") && task(one.config()) == own
+        });
         let longest = same.max_by(|a, b| a.frames_span().1.total_cmp(&b.frames_span().1))?;
         longest.estimate(longest.headline(), "return_mean").map(|one| one.mean)
     }
 
     /// The scores of an experiment's seeds; empty where an end of the scale is missing.
     pub fn scores(&self, group: &Group) -> Vec<Score> {
-        let (Some(random), Some(ppo)) = (self.random(group.config()), self.ppo(group)) else { return Vec::new() };
+        let (Some(random), Some(ppo)) = (self.random(group.config()), self.ppo(group)) else {
+            return Vec::new();
+        };
         let score = |run: &Run| {
             let judged = judged(run)?;
             let normalised = normalised(judged.0, random, ppo)?;
@@ -71,13 +83,19 @@ impl<'a> Baselines<'a> {
             if self.random(config).is_none() {
                 let env = &config.env;
                 let hard = if config.hard() { " --hard" } else { "" };
-                let file = format!("random-{env}-{rules}{}.jsonl", if config.hard() { "-hard" } else { "" });
+                let file = format!(
+                    "random-{env}-{rules}{}.jsonl",
+                    if config.hard() { "-hard" } else { "" }
+                );
                 commands.push(format!(
                     "hasard rollout {env} --policy random --episodes 100 --rules {rules}{hard} --json > runs/{file}"
                 ));
             }
             if self.ppo(group).is_none() {
-                commands.push(format!("hasard train {} --algo PPO --rules {rules} --out ...", config.env));
+                commands.push(format!(
+                    "hasard train {} --algo PPO --rules {rules} --out ...",
+                    config.env
+                ));
             }
         }
         commands.sort();
@@ -86,14 +104,20 @@ impl<'a> Baselines<'a> {
     }
 }
 
-/// A seed's return, and the upper end of each cost beside its budget: of the last policy's closing evaluation, or of the
-/// selected checkpoint's, or of the end of training (then without an interval).
+/// A seed's return, and the upper end of each cost beside its budget: of the last policy's closing
+/// evaluation, or of the selected checkpoint's, or of the end of training (then without an
+/// interval).
 fn judged(run: &Run) -> Option<(f64, Vec<(f64, f64)>)> {
     let last = |metric: &str| run.selected.as_ref()?.last.as_ref()?.get(metric);
-    let trained = |metric: &str| run.final_mean(metric).map(|mean| Estimate { mean, half_width: None, n: 1 });
+    let trained =
+        |metric: &str| run.final_mean(metric).map(|mean| Estimate { mean, half_width: None, n: 1 });
     let judge = |value: &dyn Fn(&str) -> Option<Estimate>| {
-        let costs: Option<Vec<(f64, f64)>> =
-            run.config.constraints.iter().map(|one| Some((value(&one.metric())?.high(), one.budget))).collect();
+        let costs: Option<Vec<(f64, f64)>> = run
+            .config
+            .constraints
+            .iter()
+            .map(|one| Some((value(&one.metric())?.high(), one.budget)))
+            .collect();
         Some((value("return_mean")?.mean, costs?))
     };
     judge(&last).or_else(|| judge(&|metric| run.evaluated(metric))).or_else(|| judge(&trained))

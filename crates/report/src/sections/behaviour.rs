@@ -1,5 +1,5 @@
-//! What agents do: the paper says that none of its agents discards weapons, avoids decoys, seeks the goggles first or pushes
-//! barrels. Scenarios count it, episodes carry the counts.
+//! What agents do: the paper says that none of its agents discards weapons, avoids decoys, seeks
+//! the goggles first or pushes barrels. Scenarios count it, episodes carry the counts.
 
 use super::setting;
 use crate::document::{Block, Cell, Section, Table};
@@ -26,14 +26,27 @@ pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
         }
     };
     for group in groups {
-        let seeds: Vec<&[EpisodeResult]> =
-            group.runs.iter().filter(|run| !run.evaluation.is_empty()).map(|run| &run.evaluation[..]).collect();
+        let seeds: Vec<&[EpisodeResult]> = group
+            .runs
+            .iter()
+            .filter(|run| !run.evaluation.is_empty())
+            .map(|run| &run.evaluation[..])
+            .collect();
         add(who(&group.config().env, &group.config().algo, &setting(group)), &seeds);
     }
     for (key, episodes) in &found.players {
         add(who(&key.env, &key.player, &key.options), &[episodes]);
     }
-    let heads = ["scenario", "level", "player", "options", "count", "what it shows", "an episode", "in episodes"];
+    let heads = [
+        "scenario",
+        "level",
+        "player",
+        "options",
+        "count",
+        "what it shows",
+        "an episode",
+        "in episodes",
+    ];
     let table = |caption: &str, rows: Vec<Vec<Cell>>| {
         let (caption, heads) = (caption.to_owned(), heads.map(String::from).to_vec());
         (!rows.is_empty()).then(|| Block::Table(Table { caption, heads, rows, ..Table::default() }))
@@ -57,8 +70,12 @@ fn who(env: &str, player: &str, options: &str) -> [Cell; 4] {
 }
 
 fn names(seeds: &[&[EpisodeResult]]) -> Vec<String> {
-    let mut names: Vec<String> =
-        seeds.iter().flat_map(|episodes| *episodes).flat_map(|one| &one.stats).map(|(name, _)| name.clone()).collect();
+    let mut names: Vec<String> = seeds
+        .iter()
+        .flat_map(|episodes| *episodes)
+        .flat_map(|one| &one.stats)
+        .map(|(name, _)| name.clone())
+        .collect();
     names.sort();
     names.dedup();
     names
@@ -66,11 +83,17 @@ fn names(seeds: &[&[EpisodeResult]]) -> Vec<String> {
 
 fn cells(name: &str, what: &str, seeds: &[&[EpisodeResult]]) -> [Cell; 4] {
     let values = |episodes: &[EpisodeResult]| -> Vec<f64> {
-        let of = |one: &EpisodeResult| one.stats.iter().find(|(known, _)| known == name).map(|(_, value)| *value);
+        let of = |one: &EpisodeResult| {
+            one.stats.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
+        };
         episodes.iter().filter_map(of).collect()
     };
     let means: Vec<f64> = seeds.iter().filter_map(|episodes| mean(&values(episodes))).collect();
-    let any: Vec<f64> = seeds.iter().flat_map(|episodes| values(episodes)).map(|v| f64::from(u8::from(v > 0.0))).collect();
+    let any: Vec<f64> = seeds
+        .iter()
+        .flat_map(|episodes| values(episodes))
+        .map(|v| f64::from(u8::from(v > 0.0)))
+        .collect();
     let share = mean(&any).unwrap_or(0.0);
     [
         Cell::text(name.replace('_', " ")),

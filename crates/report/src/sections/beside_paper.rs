@@ -13,11 +13,13 @@ pub(super) fn section(groups: &[Group]) -> Section {
         let Some(paper) = published(group.config()) else { continue };
         let config = group.config();
         for note in &paper.notes {
-            let cell = format!("{} {} {}", scenario_name(&config.scenario), config.level, paper.algorithm);
+            let cell =
+                format!("{} {} {}", scenario_name(&config.scenario), config.level, paper.algorithm);
             notes.entry(note).or_default().push(cell);
         }
         let source = group.headline();
-        let (return_estimate, cost_estimate) = (group.estimate(source, "return_mean"), group.estimate(source, "cost_mean"));
+        let (return_estimate, cost_estimate) =
+            (group.estimate(source, "return_mean"), group.estimate(source, "cost_mean"));
         let ratio = |ours: Option<f64>, theirs: Option<f64>| match (ours, theirs) {
             (Some(ours), Some(theirs)) if theirs != 0.0 => {
                 Cell { text: format!("{:.2}", ours / theirs), ..Cell::number(ours / theirs) }
@@ -41,9 +43,26 @@ pub(super) fn section(groups: &[Group]) -> Section {
             ratio(cost_estimate.map(|e| e.mean), Some(paper.cost)),
         ]);
     }
-    let heads =
-        ["scenario", "level", "algorithm", "options", "frames", "by", "return", "paper", "ratio", "cost", "paper", "ratio"];
-    let table = Table { caption: String::new(), spans: Vec::new(), heads: heads.map(String::from).to_vec(), rows };
+    let heads = [
+        "scenario",
+        "level",
+        "algorithm",
+        "options",
+        "frames",
+        "by",
+        "return",
+        "paper",
+        "ratio",
+        "cost",
+        "paper",
+        "ratio",
+    ];
+    let table = Table {
+        caption: String::new(),
+        spans: Vec::new(),
+        heads: heads.map(String::from).to_vec(),
+        rows,
+    };
     let mut text = Vec::new();
     if !table.rows.is_empty() {
         text.push(
@@ -60,15 +79,23 @@ pub(super) fn section(groups: &[Group]) -> Section {
         blocks: if table.rows.is_empty() {
             Vec::new()
         } else {
-            vec![Block::Table(table.folded(&["level", "options", "by"])), Block::Table(notes_table(notes))]
+            vec![
+                Block::Table(table.folded(&["level", "options", "by"])),
+                Block::Table(notes_table(notes)),
+            ]
         },
     }
 }
 
 /// What to know about the published values, with the cells that it is about.
 fn notes_table(notes: BTreeMap<&str, Vec<String>>) -> Table {
-    let which = |cells: Vec<String>| if cells.len() > 6 { format!("{} rows", cells.len()) } else { cells.join(", ") };
-    let rows = notes.into_iter().map(|(note, cells)| vec![Cell::text(note), Cell::text(which(cells))]).collect();
+    let which = |cells: Vec<String>| {
+        if cells.len() > 6 { format!("{} rows", cells.len()) } else { cells.join(", ") }
+    };
+    let rows = notes
+        .into_iter()
+        .map(|(note, cells)| vec![Cell::text(note), Cell::text(which(cells))])
+        .collect();
     let heads = ["note", "on"].map(String::from).to_vec();
     Table { caption: "Notes on the published values".into(), heads, rows, ..Table::default() }
 }

@@ -8,7 +8,8 @@ use crate::group::{Group, algorithm_order, scenario_name};
 use crate::run::Calibration;
 use crate::statistics::Estimate;
 
-/// A panel for each environment: observed against predicted cost to come; and a row for each critic.
+/// A panel for each environment: observed against predicted cost to come; and a row for each
+/// critic.
 pub(super) fn section(groups: &[Group]) -> Section {
     let mut rows = Vec::new();
     let mut panels = Vec::new();
@@ -22,7 +23,12 @@ pub(super) fn section(groups: &[Group]) -> Section {
                 for critic in &run.calibration {
                     rows.push(row(group, run.config.seed, critic));
                     let name = format!("{}, seed {}", config.algo, run.config.seed);
-                    series.extend(curve(critic).map(|curve| Series { name, ink, curve, behind: false }));
+                    series.extend(curve(critic).map(|curve| Series {
+                        name,
+                        ink,
+                        curve,
+                        behind: false,
+                    }));
                     if !legend.iter().any(|(known, _)| *known == config.algo) {
                         legend.push((config.algo.clone(), ink));
                     }
@@ -32,7 +38,11 @@ pub(super) fn section(groups: &[Group]) -> Section {
         if series.is_empty() {
             continue;
         }
-        let most = series.iter().flat_map(|one| &one.curve.mean).map(|point| point.frames).fold(0.0, f64::max);
+        let most = series
+            .iter()
+            .flat_map(|one| &one.curve.mean)
+            .map(|point| point.frames)
+            .fold(0.0, f64::max);
         let exact = [0.0, most].map(|value| point(value, value)).to_vec();
         let curve = Curve { mean: exact, seeds: Vec::new() };
         series.push(Series { name: "exact".into(), ink: Ink::Muted, curve, behind: true });
@@ -45,12 +55,28 @@ pub(super) fn section(groups: &[Group]) -> Section {
             size: (400.0, 260.0),
         }));
     }
-    let heads = ["scenario", "level", "algorithm", "options", "seed", "constraint", "discount", "steps", "bias", "error"];
-    let table = Table { heads: heads.map(String::from).to_vec(), rows, ..Table::default() }.folded(&["level", "options"]);
+    let heads = [
+        "scenario",
+        "level",
+        "algorithm",
+        "options",
+        "seed",
+        "constraint",
+        "discount",
+        "steps",
+        "bias",
+        "error",
+    ];
+    let table = Table { heads: heads.map(String::from).to_vec(), rows, ..Table::default() }
+        .folded(&["level", "options"]);
     let mut blocks = Vec::new();
     if !panels.is_empty() {
         let caption = "A line a seed; dashed: predictions that come true".to_owned();
-        blocks.push(Block::Figure(Figure { slug: "calibration".into(), caption, drawing: figure("", panels, 3, &legend) }));
+        blocks.push(Block::Figure(Figure {
+            slug: "calibration".into(),
+            caption,
+            drawing: figure("", panels, 3, &legend),
+        }));
     }
     if !table.rows.is_empty() {
         blocks.push(Block::Table(table));
@@ -69,13 +95,19 @@ pub(super) fn section(groups: &[Group]) -> Section {
 }
 
 fn point(predicted: f64, observed: f64) -> Point {
-    Point { frames: predicted, value: Estimate { mean: observed, half_width: None, n: 1 }, band: None }
+    Point {
+        frames: predicted,
+        value: Estimate { mean: observed, half_width: None, n: 1 },
+        band: None,
+    }
 }
 
 /// The bins as a curve; `None` without any.
 fn curve(critic: &Calibration) -> Option<Curve> {
-    let mean: Vec<Point> = critic.bins.iter().map(|bin| point(bin.predicted, bin.observed)).collect();
-    let points: Vec<(f64, f64)> = mean.iter().map(|point| (point.frames, point.value.mean)).collect();
+    let mean: Vec<Point> =
+        critic.bins.iter().map(|bin| point(bin.predicted, bin.observed)).collect();
+    let points: Vec<(f64, f64)> =
+        mean.iter().map(|point| (point.frames, point.value.mean)).collect();
     (!mean.is_empty()).then(|| Curve { mean, seeds: vec![(0, points)] })
 }
 

@@ -1,4 +1,5 @@
-//! Experiments that differ in one option: budgets, cost scales, action spaces, observations, curricula, hard constraint.
+//! Experiments that differ in one option: budgets, cost scales, action spaces, observations,
+//! curricula, hard constraint.
 
 use super::curves::curve_figure;
 use super::main_results::{budget_label, marked_cells, source_of};
@@ -54,8 +55,13 @@ pub(super) fn sections(groups: &[Group]) -> Vec<Section> {
             [kind, "rgb"].contains(&observation)
         };
         let percent = published_figure(gain).map_or(0.0, |ratio| (ratio - 1.0) * 100.0);
-        let text = format!("Colour against {kind}. The paper reports {percent:.0} % more return, and no values.");
-        sections.push(section(groups, &Comparison { slug, key: "observation", title, text: &text, counts: &counts }));
+        let text = format!(
+            "Colour against {kind}. The paper reports {percent:.0} % more return, and no values."
+        );
+        sections.push(section(
+            groups,
+            &Comparison { slug, key: "observation", title, text: &text, counts: &counts },
+        ));
     }
     sections.push(section(
         groups,
@@ -78,12 +84,14 @@ pub(super) fn sections(groups: &[Group]) -> Vec<Section> {
         },
     ));
     // Any other option in which some experiments differ and nothing else.
-    let mut keys: Vec<String> = groups.iter().flat_map(|group| group.told.keys().cloned()).collect();
+    let mut keys: Vec<String> =
+        groups.iter().flat_map(|group| group.told.keys().cloned()).collect();
     keys.sort();
     keys.dedup();
     keys.retain(|key| !VARIED.contains(&key.as_str()));
     sections.extend(keys.iter().map(|key| {
-        let (title, text) = (format!("Option {key}"), "Experiments that differ in this option alone.");
+        let (title, text) =
+            (format!("Option {key}"), "Experiments that differ in this option alone.");
         section(groups, &Comparison { slug: &slug(key), key, title: &title, text, counts: &all })
     }));
     sections
@@ -97,7 +105,10 @@ fn value_of(config: &Config, key: &str) -> String {
         "cost_scale" => format!("scale {}", config.cost_scale),
         "full_actions" => if option.is_some() { "full" } else { "simplified" }.into(),
         "observation" => option.unwrap_or_else(|| "rgb".into()),
-        "curriculum" => option.map_or_else(|| format!("level {} alone", config.level), |levels| format!("levels {levels}")),
+        "curriculum" => option.map_or_else(
+            || format!("level {} alone", config.level),
+            |levels| format!("levels {levels}"),
+        ),
         "hard" => if config.hard() { "hard" } else { "soft" }.into(),
         _ => option.unwrap_or_else(|| "not given".into()),
     }
@@ -139,35 +150,52 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
             continue;
         }
         // A hard run has no budget of its own to compare, and only PPOCost has a scale.
-        if key == "cost_scale" && !config.algo.eq_ignore_ascii_case("PPOCost") || key == "safety_budget" && config.hard() {
+        if key == "cost_scale" && !config.algo.eq_ignore_ascii_case("PPOCost")
+            || key == "safety_budget" && config.hard()
+        {
             continue;
         }
         let place = crate::group::scenario_order(&config.scenario);
         let rest = group.options_line(Some(key));
-        sets.entry(format!("{place:02} {} {} {} {rest}", config.scenario, config.level, config.algo)).or_default().push(group);
+        sets.entry(format!(
+            "{place:02} {} {} {} {rest}",
+            config.scenario, config.level, config.algo
+        ))
+        .or_default()
+        .push(group);
     }
     let mut rows = Vec::new();
     let mut panels = Vec::new();
     let mut figures = Vec::new();
     for members in sets.values_mut() {
-        members.sort_by_key(|group| (order_of(group.config(), key), group.config().frames.unwrap_or(0.0).to_bits()));
+        members.sort_by_key(|group| {
+            (order_of(group.config(), key), group.config().frames.unwrap_or(0.0).to_bits())
+        });
         if distinct(members, |group| value_of(group.config(), key)).len() < 2 {
             continue;
         }
         let config = members[0].config();
         let rest = members[0].options_line(Some(key));
         let repeated = |group: &Group| {
-            members.iter().filter(|other| value_of(other.config(), key) == value_of(group.config(), key)).count() > 1
+            members
+                .iter()
+                .filter(|other| value_of(other.config(), key) == value_of(group.config(), key))
+                .count()
+                > 1
         };
         let label = |group: &Group| match group.config().frames {
-            Some(asked) if repeated(group) => format!("{}, {} frames", value_of(group.config(), key), frames(asked)),
+            Some(asked) if repeated(group) => {
+                format!("{}, {} frames", value_of(group.config(), key), frames(asked))
+            }
             _ => value_of(group.config(), key),
         };
         let source = source_of(members);
         let cells = marked_cells(members, source);
         for (group, (return_cell, cost_cell)) in members.iter().zip(cells) {
             let paper = published_in(group.config(), key);
-            let theirs = |value: Option<f64>| value.map_or_else(|| Cell::text("-"), |v| Cell { pale: true, ..Cell::number(v) });
+            let theirs = |value: Option<f64>| {
+                value.map_or_else(|| Cell::text("-"), |v| Cell { pale: true, ..Cell::number(v) })
+            };
             let (_, reached) = group.frames_span();
             rows.push(vec![
                 Cell::text(scenario_name(&config.scenario)),
@@ -183,15 +211,23 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
                 theirs(paper.map(|p| p.cost)),
             ]);
         }
-        let name = format!("{} level {} {}", scenario_name(&config.scenario), config.level, config.algo);
+        let name =
+            format!("{} level {} {}", scenario_name(&config.scenario), config.level, config.algo);
         for metric in ["return", "cost"] {
             let bars = |(index, group): (usize, &&Group)| {
                 let mut bars = Vec::new();
                 if let Some(estimate) = group.estimate(source, &format!("{metric}_mean")) {
                     let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
-                    bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink: Ink::Series(index), pale: false });
+                    bars.push(Bar {
+                        name: "here".into(),
+                        value: estimate.mean,
+                        interval,
+                        ink: Ink::Series(index),
+                        pale: false,
+                    });
                 }
-                let paper = comparable_end_in(group, key).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                let paper = comparable_end_in(group, key)
+                    .map(|p| if metric == "cost" { p.cost } else { p.episode_return });
                 bars.extend(paper.map(|value| Bar {
                     name: "paper".into(),
                     value,
@@ -205,20 +241,44 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
             let groups: Vec<BarGroup> = members.iter().enumerate().map(bars).collect();
             panels.push(bar_panel(&format!("{name}: {metric}"), &groups, (390.0, 190.0)));
         }
-        let lines: Vec<(String, Ink, &Group)> =
-            members.iter().enumerate().map(|(i, group)| (label(group), Ink::Series(i), *group)).collect();
-        figures.push(Block::Figure(curve_figure(&name, &slug(&format!("{} {name} {rest}", comparison.slug)), &rest, &lines)));
+        let lines: Vec<(String, Ink, &Group)> = members
+            .iter()
+            .enumerate()
+            .map(|(i, group)| (label(group), Ink::Series(i), *group))
+            .collect();
+        figures.push(Block::Figure(curve_figure(
+            &name,
+            &slug(&format!("{} {name} {rest}", comparison.slug)),
+            &rest,
+            &lines,
+        )));
     }
     let mut blocks = Vec::new();
     if !rows.is_empty() {
-        let heads =
-            ["scenario", "level", "algorithm", "varied", "other options", "frames", "budget", "return", "paper", "cost", "paper"];
+        let heads = [
+            "scenario",
+            "level",
+            "algorithm",
+            "varied",
+            "other options",
+            "frames",
+            "budget",
+            "return",
+            "paper",
+            "cost",
+            "paper",
+        ];
         let table = Table { heads: heads.map(String::from).to_vec(), rows, ..Table::default() };
         blocks.push(Block::Table(table.folded(&["level", "algorithm", "other options", "budget"])));
-        let paper = groups.iter().any(|group| counts(group.config()) && comparable_end_in(group, key).is_some());
-        let budgets = groups.iter().any(|group| counts(group.config()) && group.config().budget().is_some());
-        let (paper, budgets) =
-            (if paper { "Full colour: here; pale: the paper. " } else { "" }, if budgets { "Dashed: the budget." } else { "" });
+        let paper = groups
+            .iter()
+            .any(|group| counts(group.config()) && comparable_end_in(group, key).is_some());
+        let budgets =
+            groups.iter().any(|group| counts(group.config()) && group.config().budget().is_some());
+        let (paper, budgets) = (
+            if paper { "Full colour: here; pale: the paper. " } else { "" },
+            if budgets { "Dashed: the budget." } else { "" },
+        );
         let caption = format!("{paper}{budgets}");
         blocks.push(Block::Figure(Figure {
             slug: format!("{} bars", comparison.slug).replace(' ', "-"),
@@ -227,6 +287,7 @@ fn section(groups: &[Group], comparison: &Comparison) -> Section {
         }));
         blocks.extend(figures);
     }
-    let (slug, title, text) = (comparison.slug.to_owned(), comparison.title.to_owned(), vec![comparison.text.to_owned()]);
+    let (slug, title, text) =
+        (comparison.slug.to_owned(), comparison.title.to_owned(), vec![comparison.text.to_owned()]);
     Section { slug, title, text, blocks }
 }

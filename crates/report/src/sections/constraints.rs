@@ -5,14 +5,22 @@ use crate::group::{Group, Source, scenario_name};
 
 /// A row for each constraint of the experiments that constrain named cost terms.
 pub(super) fn section(groups: &[Group]) -> Section {
-    let named = groups.iter().filter(|group| group.config().constraints.iter().any(|one| one.term.is_some()));
+    let named = groups
+        .iter()
+        .filter(|group| group.config().constraints.iter().any(|one| one.term.is_some()));
     let rows: Vec<Vec<Cell>> = named
         .flat_map(|group| {
             let config = group.config();
             config.constraints.iter().map(move |one| {
                 let cell = |source: Source| {
-                    let (estimate, samples) = (group.estimate(source, &one.metric()), group.samples(source, &one.metric()));
-                    Cell { mark: Mark::of(one.kept_by(estimate)), ..Cell::estimate(estimate, &samples) }
+                    let (estimate, samples) = (
+                        group.estimate(source, &one.metric()),
+                        group.samples(source, &one.metric()),
+                    );
+                    Cell {
+                        mark: Mark::of(one.kept_by(estimate)),
+                        ..Cell::estimate(estimate, &samples)
+                    }
                 };
                 vec![
                     Cell::text(scenario_name(&config.scenario)),
@@ -27,9 +35,18 @@ pub(super) fn section(groups: &[Group]) -> Section {
             })
         })
         .collect();
-    let heads = ["scenario", "level", "algorithm", "options", "constraint", "budget", "evaluation", "end of training"]
-        .map(String::from)
-        .to_vec();
+    let heads = [
+        "scenario",
+        "level",
+        "algorithm",
+        "options",
+        "constraint",
+        "budget",
+        "evaluation",
+        "end of training",
+    ]
+    .map(String::from)
+    .to_vec();
     let table = Table { caption: String::new(), spans: Vec::new(), heads, rows };
     Section {
         slug: "constraints".into(),

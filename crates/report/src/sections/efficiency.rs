@@ -12,15 +12,26 @@ pub(super) fn section(groups: &[Group]) -> Section {
         let seconds = run.total("wall_s").filter(|seconds| *seconds > 0.0)?;
         what(run).map(|number| number / seconds)
     };
-    let cell = |samples: Vec<f64>| Cell { note: String::new(), ..Cell::estimate(Estimate::of(&samples), &samples) };
+    let cell = |samples: Vec<f64>| Cell {
+        note: String::new(),
+        ..Cell::estimate(Estimate::of(&samples), &samples)
+    };
     let mut rows: Vec<Vec<Cell>> = groups
         .iter()
         .filter(|group| group.runs.iter().any(|run| run.frames_per_second().is_some()))
         .map(|group| {
             let config = group.config();
-            let rates = |what: fn(&Run) -> Option<f64>| group.runs.iter().filter_map(|run| per_second(run, what)).collect();
-            let threads: Vec<f64> = group.runs.iter().filter_map(|run| run.total("threads")).collect();
-            let hours: Vec<f64> = group.runs.iter().filter_map(|run| run.total("wall_s")).map(|s| s / 3600.0).collect();
+            let rates = |what: fn(&Run) -> Option<f64>| {
+                group.runs.iter().filter_map(|run| per_second(run, what)).collect()
+            };
+            let threads: Vec<f64> =
+                group.runs.iter().filter_map(|run| run.total("threads")).collect();
+            let hours: Vec<f64> = group
+                .runs
+                .iter()
+                .filter_map(|run| run.total("wall_s"))
+                .map(|s| s / 3600.0)
+                .collect();
             let machine = threads.first().map_or_else(|| "-".into(), |n| format!("{n:.0} threads"));
             vec![
                 Cell::text(scenario_name(&config.scenario)),
@@ -38,7 +49,9 @@ pub(super) fn section(groups: &[Group]) -> Section {
     if !rows.is_empty() {
         let paper = |who: &str, scenario: &str, algorithm: &str, prefix: &str| {
             let figure = |name: &str| published_figure(&format!("{prefix}{name}_per_second"));
-            let value = |value: Option<f64>| value.map_or_else(|| Cell::text("-"), |v| Cell { pale: true, ..Cell::number(v) });
+            let value = |value: Option<f64>| {
+                value.map_or_else(|| Cell::text("-"), |v| Cell { pale: true, ..Cell::number(v) })
+            };
             let pale = |text: &str| Cell { pale: true, ..Cell::text(text) };
             vec![
                 pale(scenario),
@@ -53,9 +66,24 @@ pub(super) fn section(groups: &[Group]) -> Section {
             ]
         };
         rows.push(paper("the paper", "Volcanic Venture", "PPOLag", ""));
-        rows.push(paper("Safety-Gymnasium in the paper", "SafetyPointGoal1", "PPOLag", "safety_gymnasium_"));
+        rows.push(paper(
+            "Safety-Gymnasium in the paper",
+            "SafetyPointGoal1",
+            "PPOLag",
+            "safety_gymnasium_",
+        ));
     }
-    let heads = ["scenario", "level", "algorithm", "options", "machine", "frames", "hours", "frames/s", "updates/s"];
+    let heads = [
+        "scenario",
+        "level",
+        "algorithm",
+        "options",
+        "machine",
+        "frames",
+        "hours",
+        "frames/s",
+        "updates/s",
+    ];
     let table = Table { heads: heads.map(String::from).to_vec(), rows, ..Table::default() };
     Section {
         slug: "efficiency".into(),

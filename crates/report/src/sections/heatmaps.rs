@@ -17,16 +17,19 @@ const MOMENTS: usize = 4;
 const MOST_PICTURES: usize = 60;
 const ANIMATION_SECONDS: f64 = 7.0;
 
-/// Moments at which several experiments are shown side by side, in frames; the paper's are at 100 million.
+/// Moments at which several experiments are shown side by side, in frames; the paper's are at 100
+/// million.
 const FIXED: [f64; 8] = [1e6, 2e6, 5e6, 1e7, 3e7, 1e8, 3e8, 5e8];
 
-/// For the first seed of each experiment that kept heatmaps: chosen moments side by side, and all of them as animation.
+/// For the first seed of each experiment that kept heatmaps: chosen moments side by side, and all
+/// of them as animation.
 pub(super) fn section(groups: &[Group], warnings: &mut Vec<Warning>) -> Section {
     let mut blocks = side_by_side(groups, warnings);
     for group in groups {
         let Some(run) = group.runs.iter().find(|run| !run.heatmaps.is_empty()) else { continue };
         let config = group.config();
-        let name = format!("{} level {} {}", scenario_name(&config.scenario), config.level, config.algo);
+        let name =
+            format!("{} level {} {}", scenario_name(&config.scenario), config.level, config.algo);
         let file = slug(&format!("heatmap {name} {}", setting(group)));
         let caption = format!("{name}, seed {}; {}", run.config.seed, setting(group));
         let automaps = Automaps::read(run, warnings);
@@ -63,7 +66,8 @@ pub(super) fn section(groups: &[Group], warnings: &mut Vec<Warning>) -> Section 
     }
 }
 
-/// Experiments on one environment at equal moments of training: a row a moment, a column an experiment.
+/// Experiments on one environment at equal moments of training: a row a moment, a column an
+/// experiment.
 fn side_by_side(groups: &[Group], warnings: &mut Vec<Warning>) -> Vec<Block> {
     let mut environments: BTreeMap<&str, Vec<(&Group, &Run)>> = BTreeMap::new();
     for group in groups {
@@ -73,24 +77,36 @@ fn side_by_side(groups: &[Group], warnings: &mut Vec<Warning>) -> Vec<Block> {
     }
     let mut blocks = Vec::new();
     for (env, members) in environments.iter().filter(|(_, members)| members.len() > 1) {
-        let chosen = common_moments(&members.iter().map(|(_, run)| frames_of(run)).collect::<Vec<_>>());
+        let chosen =
+            common_moments(&members.iter().map(|(_, run)| frames_of(run)).collect::<Vec<_>>());
         if chosen.is_empty() {
             continue;
         }
         let shown = &members[..members.len().min(6)];
-        let automaps: Vec<Automaps> = shown.iter().map(|(_, run)| Automaps::read(run, warnings)).collect();
+        let automaps: Vec<Automaps> =
+            shown.iter().map(|(_, run)| Automaps::read(run, warnings)).collect();
         let shown_at = |run: &Run, at: f64| nearest(&frames_of(run), at);
-        let most = |at: f64| shown.iter().map(|(_, run)| densest(&run.heatmaps[shown_at(run, at)])).fold(0.0, f64::max);
+        let most = |at: f64| {
+            shown
+                .iter()
+                .map(|(_, run)| densest(&run.heatmaps[shown_at(run, at)]))
+                .fold(0.0, f64::max)
+        };
         let most = chosen.iter().map(|at| most(*at)).fold(0.0, f64::max);
         let mut views: Vec<(Picture, String)> = Vec::new();
         for at in &chosen {
             for ((group, run), automaps) in shown.iter().zip(&automaps) {
                 let nearest = shown_at(run, *at);
-                let label = format!("{}, {} frames", group.config().algo, frames(run.heatmaps[nearest].frames));
+                let label = format!(
+                    "{}, {} frames",
+                    group.config().algo,
+                    frames(run.heatmaps[nearest].frames)
+                );
                 views.push((automaps.overlay(run, nearest, 300, most), label));
             }
         }
-        let panels: Vec<Panel> = views.iter().map(|(view, label)| Panel::new(view, label)).collect();
+        let panels: Vec<Panel> =
+            views.iter().map(|(view, label)| Panel::new(view, label)).collect();
         let sheet = with_colour_bar(&grid(&panels, shown.len(), 1), most);
         blocks.push(Block::Image(Image {
             file: format!("{}.png", slug(&format!("heatmaps side by side {env}"))),
@@ -106,10 +122,12 @@ fn frames_of(run: &Run) -> Vec<f64> {
     run.heatmaps.iter().map(|map| map.frames).collect()
 }
 
-/// At most three of the fixed moments that every run has a heatmap within a tenth of; without any, the last that all
-/// reached, if all have one near it.
+/// At most three of the fixed moments that every run has a heatmap within a tenth of; without any,
+/// the last that all reached, if all have one near it.
 fn common_moments(runs: &[Vec<f64>]) -> Vec<f64> {
-    let near = |moment: f64| runs.iter().all(|own| (own[nearest(own, moment)] - moment).abs() <= moment * 0.1);
+    let near = |moment: f64| {
+        runs.iter().all(|own| (own[nearest(own, moment)] - moment).abs() <= moment * 0.1)
+    };
     let mut moments: Vec<f64> = FIXED.into_iter().filter(|moment| near(*moment)).collect();
     if moments.is_empty() {
         let last = runs.iter().filter_map(|own| own.last().copied()).fold(f64::INFINITY, f64::min);
@@ -130,13 +148,15 @@ struct Automaps(BTreeMap<PathBuf, Picture>);
 
 impl Automaps {
     fn read(run: &Run, warnings: &mut Vec<Warning>) -> Automaps {
-        let paths: BTreeSet<PathBuf> = run.heatmaps.iter().filter_map(|map| run.automap(map)).collect();
+        let paths: BTreeSet<PathBuf> =
+            run.heatmaps.iter().filter_map(|map| run.automap(map)).collect();
         let mut pictures = BTreeMap::new();
         for path in paths {
             match png::read(&path) {
                 Ok(picture) => drop(pictures.insert(path, picture)),
                 Err(error) => {
-                    let problem = error.to_string().replacen(&format!("{}: ", path.display()), "", 1);
+                    let problem =
+                        error.to_string().replacen(&format!("{}: ", path.display()), "", 1);
                     warnings.push(Warning { path, line: 0, problem });
                 }
             }
@@ -152,16 +172,25 @@ impl Automaps {
 }
 
 fn last_counted(run: &Run) -> String {
-    run.heatmaps.last().map_or_else(String::new, |map| format!("The last picture counts {} episodes.", map.episodes))
+    run.heatmaps.last().map_or_else(String::new, |map| {
+        format!("The last picture counts {} episodes.", map.episodes)
+    })
 }
 
 /// About equally spaced moments from the first to the last, side by side.
 fn moments(run: &Run, automaps: &Automaps) -> Picture {
-    let most = spread(run.heatmaps.len(), MOMENTS).map(|at| densest(&run.heatmaps[at])).fold(0.0, f64::max);
-    let views: Vec<(Picture, &HeatmapData)> =
-        spread(run.heatmaps.len(), MOMENTS).map(|at| (automaps.overlay(run, at, 360, most), &run.heatmaps[at])).collect();
-    let panels: Vec<Panel> = views.iter().map(|(view, map)| Panel::new(view, format!("{} frames", frames(map.frames)))).collect();
-    let columns = if views[0].0.width() > 2 * views[0].0.height() { 1 } else { panels.len().min(2) };
+    let most = spread(run.heatmaps.len(), MOMENTS)
+        .map(|at| densest(&run.heatmaps[at]))
+        .fold(0.0, f64::max);
+    let views: Vec<(Picture, &HeatmapData)> = spread(run.heatmaps.len(), MOMENTS)
+        .map(|at| (automaps.overlay(run, at, 360, most), &run.heatmaps[at]))
+        .collect();
+    let panels: Vec<Panel> = views
+        .iter()
+        .map(|(view, map)| Panel::new(view, format!("{} frames", frames(map.frames))))
+        .collect();
+    let columns =
+        if views[0].0.width() > 2 * views[0].0.height() { 1 } else { panels.len().min(2) };
     with_colour_bar(&grid(&panels, columns, 1), most)
 }
 
@@ -173,8 +202,11 @@ fn spread(length: usize, count: usize) -> impl Iterator<Item = usize> {
 
 fn animation(run: &Run, automaps: &Automaps) -> Result<(Vec<u8>, (usize, usize)), String> {
     // The writer makes files; a folder of our own keeps two reports at once apart.
-    let folder =
-        std::env::temp_dir().join(format!("hasard-report-{}-{:x}", std::process::id(), std::ptr::from_ref(run) as usize));
+    let folder = std::env::temp_dir().join(format!(
+        "hasard-report-{}-{:x}",
+        std::process::id(),
+        std::ptr::from_ref(run) as usize
+    ));
     let path = folder.join("animation.gif");
     let result = (|| {
         let chosen: Vec<usize> = spread(run.heatmaps.len(), MOST_PICTURES).collect();
@@ -183,9 +215,18 @@ fn animation(run: &Run, automaps: &Automaps) -> Result<(Vec<u8>, (usize, usize))
         let mut writer = GifWriter::create(&path, width, height)?;
         for (k, &at) in chosen.iter().enumerate() {
             let mut view = automaps.overlay(run, at, 480, most).resized(width, height);
-            hasard_media::text::draw_shadowed(&mut view, 6, 4, &format!("{} frames", frames(run.heatmaps[at].frames)), [255; 3]);
+            hasard_media::text::draw_shadowed(
+                &mut view,
+                6,
+                4,
+                &format!("{} frames", frames(run.heatmaps[at].frames)),
+                [255; 3],
+            );
             let last = k + 1 == chosen.len();
-            writer.push(&view, ANIMATION_SECONDS / chosen.len() as f64 + if last { 1.0 } else { 0.0 })?;
+            writer.push(
+                &view,
+                ANIMATION_SECONDS / chosen.len() as f64 + if last { 1.0 } else { 0.0 },
+            )?;
         }
         writer.finish()?;
         let bytes = hasard_media::files::read_limited(&path, 256 << 20)?;
@@ -201,7 +242,8 @@ mod tests {
 
     #[test]
     fn experiments_are_compared_at_moments_that_all_have() {
-        let every = |step: f64, to: u32| (1..=to).map(|k| f64::from(k) * step).collect::<Vec<f64>>();
+        let every =
+            |step: f64, to: u32| (1..=to).map(|k| f64::from(k) * step).collect::<Vec<f64>>();
         // One reaches 12 million, the other 6: of the fixed moments 1, 2 and 5 million lie in both.
         assert_eq!(common_moments(&[every(1e6, 12), every(1e6, 6)]), [1e6, 2e6, 5e6]);
         assert_eq!(common_moments(&[every(1e6, 100), every(5e6, 20)]), [1e7, 3e7, 1e8]);

@@ -8,17 +8,22 @@ use crate::published::{Published, published};
 use crate::run::{Constraint, Kept};
 use crate::statistics::{Estimate, differ, mean};
 
-/// Tables of return and cost, a level each, with the paper's values below ours; and the same as bars.
+/// Tables of return and cost, a level each, with the paper's values below ours; and the same as
+/// bars.
 pub(super) fn section(groups: &[Group]) -> Section {
     let settings = main_groups(groups);
     let mut blocks = Vec::new();
     for (setting, members) in &settings {
         for level in distinct(members, |group| group.config().level) {
-            let members: Vec<&Group> = members.iter().copied().filter(|group| group.config().level == level).collect();
+            let members: Vec<&Group> =
+                members.iter().copied().filter(|group| group.config().level == level).collect();
             let source = source_of(&members);
             // A table of evaluations has no rows for what was not evaluated.
             let has = |source| -> Vec<&Group> {
-                let own = members.iter().copied().filter(|group| !group.samples(source, "return_mean").is_empty());
+                let own = members
+                    .iter()
+                    .copied()
+                    .filter(|group| !group.samples(source, "return_mean").is_empty());
                 own.collect()
             };
             blocks.push(Block::Table(table(&has(source), level, setting, source)));
@@ -74,12 +79,17 @@ pub(super) fn marked_cells(members: &[&Group], source: Source) -> Vec<(Cell, Cel
             if !group.finished() && !last.returns.is_empty() {
                 return_cell.text += " *";
                 let asked = group.config().frames.map(crate::document::frames).unwrap_or_default();
-                return_cell.title +=
-                    &format!("; unfinished: {} of {asked} frames", crate::document::frames(group.frames_span().0));
+                return_cell.title += &format!(
+                    "; unfinished: {} of {asked} frames",
+                    crate::document::frames(group.frames_span().0)
+                );
             }
             if let Some(first) = group.extended_from().filter(|_| !last.returns.is_empty()) {
                 return_cell.text += " †";
-                return_cell.title += &format!("; went on beyond its first target of {} frames", crate::document::frames(first));
+                return_cell.title += &format!(
+                    "; went on beyond its first target of {} frames",
+                    crate::document::frames(first)
+                );
             }
             (return_cell, cost_cell)
         })
@@ -98,27 +108,40 @@ fn marks(values: &[Final]) -> Vec<(Mark, Mark)> {
     let order = |samples: &[f64]| mean(samples).unwrap_or(f64::NEG_INFINITY);
     // Those surely within come first; only if there are none, those within by their mean.
     let surely = values.iter().any(|value| value.kept == Kept::Surely && !value.returns.is_empty());
-    let eligible = |value: &Final| value.kept >= if surely { Kept::Surely } else { Kept::ByMean } && !value.returns.is_empty();
-    let best = values.iter().filter(|value| eligible(value)).max_by(|a, b| order(&a.returns).total_cmp(&order(&b.returns)));
+    let eligible = |value: &Final| {
+        value.kept >= if surely { Kept::Surely } else { Kept::ByMean } && !value.returns.is_empty()
+    };
+    let best = values
+        .iter()
+        .filter(|value| eligible(value))
+        .max_by(|a, b| order(&a.returns).total_cmp(&order(&b.returns)));
     let measured = || values.iter().filter(|value| !value.costs.is_empty());
     let least = measured().min_by(|a, b| order(&a.costs).total_cmp(&order(&b.costs)));
     let same = |one: &[f64], best: &[f64]| one == best || differ(one, best) == Some(false);
     values
         .iter()
         .map(|value| {
-            let bold_return = best.is_some_and(|best| eligible(value) && same(&value.returns, &best.returns));
+            let bold_return =
+                best.is_some_and(|best| eligible(value) && same(&value.returns, &best.returns));
             let bold_cost = best.is_none()
                 && values.len() > 1
                 && !value.costs.is_empty()
                 && least.is_some_and(|least| same(&value.costs, &least.costs));
-            (Mark { bold: bold_return, ..Mark::default() }, Mark { kept: value.kept, bold: bold_cost })
+            (
+                Mark { bold: bold_return, ..Mark::default() },
+                Mark { kept: value.kept, bold: bold_cost },
+            )
         })
         .collect()
 }
 
 fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table {
-    let scenarios = distinct(members, |group| (scenario_order(&group.config().scenario), group.config().scenario.clone()));
-    let algorithms = distinct(members, |group| (algorithm_order(&group.config().algo), group.config().algo.clone()));
+    let scenarios = distinct(members, |group| {
+        (scenario_order(&group.config().scenario), group.config().scenario.clone())
+    });
+    let algorithms = distinct(members, |group| {
+        (algorithm_order(&group.config().algo), group.config().algo.clone())
+    });
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     for (_, algo) in &algorithms {
         rows.push(vec![Cell { sort: Some(algorithm_order(algo) as f64), ..Cell::text(algo) }]);
@@ -130,22 +153,23 @@ fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table
         }]);
     }
     for (_, scenario) in &scenarios {
-        let here: Vec<&Group> = members.iter().copied().filter(|group| group.config().scenario == *scenario).collect();
+        let here: Vec<&Group> =
+            members.iter().copied().filter(|group| group.config().scenario == *scenario).collect();
         let of = |algo: &str| here.iter().position(|group| group.config().algo == algo);
         let cells = marked_cells(&here, source);
         let papers: Vec<_> = here.iter().map(|group| published(group.config())).collect();
         // The paper prints means alone: within is what its own tables call so.
-        let paper_values: Vec<Final> =
-            here.iter()
-                .zip(&papers)
-                .map(|(group, paper)| Final {
-                    returns: paper.map(|p| p.episode_return).into_iter().collect(),
-                    costs: paper.map(|p| p.cost).into_iter().collect(),
-                    kept: paper.map_or(Kept::Unknown, |p| {
-                        if p.cost <= group.config().safety_budget { Kept::ByMean } else { Kept::Over }
-                    }),
-                })
-                .collect();
+        let paper_values: Vec<Final> = here
+            .iter()
+            .zip(&papers)
+            .map(|(group, paper)| Final {
+                returns: paper.map(|p| p.episode_return).into_iter().collect(),
+                costs: paper.map(|p| p.cost).into_iter().collect(),
+                kept: paper.map_or(Kept::Unknown, |p| {
+                    if p.cost <= group.config().safety_budget { Kept::ByMean } else { Kept::Over }
+                }),
+            })
+            .collect();
         let paper_marks = marks(&paper_values);
         for (row, (_, algo)) in algorithms.iter().enumerate() {
             let missing = || Cell { text: "-".into(), pale: true, ..Cell::default() };
@@ -154,10 +178,18 @@ fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table
                 ours = cells[at].clone();
                 let note = papers[at].map(|paper| paper.note()).unwrap_or_default();
                 let cell = |value: &[f64], mark| {
-                    value.first().map_or_else(missing, |v| Cell { pale: true, mark, title: note.clone(), ..Cell::number(*v) })
+                    value.first().map_or_else(missing, |v| Cell {
+                        pale: true,
+                        mark,
+                        title: note.clone(),
+                        ..Cell::number(*v)
+                    })
                 };
                 let value = &paper_values[at];
-                theirs = (cell(&value.returns, paper_marks[at].0), cell(&value.costs, paper_marks[at].1));
+                theirs = (
+                    cell(&value.returns, paper_marks[at].0),
+                    cell(&value.costs, paper_marks[at].1),
+                );
             }
             rows[2 * row].extend([ours.0, ours.1]);
             rows[2 * row + 1].extend([theirs.0, theirs.1]);
@@ -173,8 +205,10 @@ fn table(members: &[&Group], level: u32, setting: &str, source: Source) -> Table
         heads.extend(["return".into(), "cost".into()]);
     }
     // If every value rests on as many seeds, saying so once is enough.
-    let notes =
-        distinct(&rows.iter().flatten().filter(|cell| !cell.note.is_empty()).collect::<Vec<_>>(), |cell| cell.note.clone());
+    let notes = distinct(
+        &rows.iter().flatten().filter(|cell| !cell.note.is_empty()).collect::<Vec<_>>(),
+        |cell| cell.note.clone(),
+    );
     let mut caption = format!("Level {level}, {}; {setting}", source_name(source));
     if let [note] = &notes[..] {
         caption += &format!("; {note} {}", if note == "n=1" { "seed" } else { "seeds" });
@@ -205,17 +239,26 @@ pub(super) fn budget_label(group: &Group) -> String {
     group.config().constraints.iter().map(Constraint::label).collect::<Vec<_>>().join(", ")
 }
 
-/// The published cell of an experiment that went at least half as far: beside a bar of a short run the paper's bar of 500
-/// million frames would mislead.
+/// The published cell of an experiment that went at least half as far: beside a bar of a short run
+/// the paper's bar of 500 million frames would mislead.
 pub(super) fn comparable_end(group: &Group) -> Option<&'static Published> {
     published(group.config()).filter(|paper| group.frames_span().1 >= 0.5 * paper.frames())
 }
 
-fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool, source: Source) -> Figure {
-    let scenarios = distinct(members, |group| (scenario_order(&group.config().scenario), group.config().scenario.clone()));
+fn bars(
+    members: &[&Group],
+    level: u32,
+    setting: &str,
+    several_settings: bool,
+    source: Source,
+) -> Figure {
+    let scenarios = distinct(members, |group| {
+        (scenario_order(&group.config().scenario), group.config().scenario.clone())
+    });
     let mut panels = Vec::new();
     for (_, scenario) in &scenarios {
-        let here: Vec<&Group> = members.iter().copied().filter(|group| group.config().scenario == *scenario).collect();
+        let here: Vec<&Group> =
+            members.iter().copied().filter(|group| group.config().scenario == *scenario).collect();
         for metric in ["return", "cost"] {
             let groups: Vec<BarGroup> = here
                 .iter()
@@ -223,25 +266,52 @@ fn bars(members: &[&Group], level: u32, setting: &str, several_settings: bool, s
                     let ink = Ink::Series(algorithm_order(&group.config().algo));
                     let mut bars = Vec::new();
                     if let Some(estimate) = group.estimate(source, &format!("{metric}_mean")) {
-                        let interval = estimate.half_width.map(|_| (estimate.low(), estimate.high()));
-                        bars.push(Bar { name: "here".into(), value: estimate.mean, interval, ink, pale: false });
+                        let interval =
+                            estimate.half_width.map(|_| (estimate.low(), estimate.high()));
+                        bars.push(Bar {
+                            name: "here".into(),
+                            value: estimate.mean,
+                            interval,
+                            ink,
+                            pale: false,
+                        });
                     }
-                    let paper = comparable_end(group).map(|p| if metric == "cost" { p.cost } else { p.episode_return });
-                    bars.extend(paper.map(|value| Bar { name: "paper".into(), value, interval: None, ink, pale: true }));
+                    let paper = comparable_end(group)
+                        .map(|p| if metric == "cost" { p.cost } else { p.episode_return });
+                    bars.extend(paper.map(|value| Bar {
+                        name: "paper".into(),
+                        value,
+                        interval: None,
+                        ink,
+                        pale: true,
+                    }));
                     let budget = group.config().budget().filter(|_| metric == "cost");
                     BarGroup { name: group.config().algo.clone(), bars, budget }
                 })
                 .collect();
-            panels.push(bar_panel(&format!("{} {metric}", scenario_name(scenario)), &groups, (306.0, 180.0)));
+            panels.push(bar_panel(
+                &format!("{} {metric}", scenario_name(scenario)),
+                &groups,
+                (306.0, 180.0),
+            ));
         }
     }
-    let name = if several_settings { format!("results level {level} {setting}") } else { format!("results level {level}") };
+    let name = if several_settings {
+        format!("results level {level} {setting}")
+    } else {
+        format!("results level {level}")
+    };
     Figure {
         slug: slug(&name),
         caption: {
             let paper = members.iter().any(|group| comparable_end(group).is_some());
-            let paper = if paper { " Full colour: here; pale: the paper after 500M frames." } else { "" };
-            let budget = if members.iter().any(|group| group.config().budget().is_some()) { " Dashed: the budget." } else { "" };
+            let paper =
+                if paper { " Full colour: here; pale: the paper after 500M frames." } else { "" };
+            let budget = if members.iter().any(|group| group.config().budget().is_some()) {
+                " Dashed: the budget."
+            } else {
+                ""
+            };
             format!("Level {level}, {}; {setting}.{paper}{budget}", source_name(source))
         },
         drawing: figure("", panels, 4, &[]),
@@ -257,24 +327,41 @@ mod tests {
     }
 
     fn bold(values: &[Final]) -> Vec<(bool, bool)> {
-        marks(values).iter().map(|(episode_return, cost)| (episode_return.bold, cost.bold)).collect()
+        marks(values)
+            .iter()
+            .map(|(episode_return, cost)| (episode_return.bold, cost.bold))
+            .collect()
     }
 
     #[test]
     fn bold_is_the_best_within_the_budget_and_what_cannot_be_distinguished() {
         // Within the budget the best return is bold, however much more an unsafe one earns.
         let unsafe_one = || value(&[90.0, 91.0], &[40.0, 41.0], Kept::Over);
-        let values = [unsafe_one(), value(&[30.0, 30.1], &[4.0], Kept::Surely), value(&[35.0, 35.1], &[4.5], Kept::Surely)];
+        let values = [
+            unsafe_one(),
+            value(&[30.0, 30.1], &[4.0], Kept::Surely),
+            value(&[35.0, 35.1], &[4.5], Kept::Surely),
+        ];
         assert_eq!(bold(&values), [(false, false), (false, false), (true, false)]);
         // Three seeds that scatter: 30 and 35 cannot be told apart.
-        let values =
-            [unsafe_one(), value(&[25.0, 30.0, 35.0], &[4.0], Kept::Surely), value(&[30.0, 35.0, 40.0], &[4.5], Kept::Surely)];
+        let values = [
+            unsafe_one(),
+            value(&[25.0, 30.0, 35.0], &[4.0], Kept::Surely),
+            value(&[30.0, 35.0, 40.0], &[4.5], Kept::Surely),
+        ];
         assert_eq!(bold(&values), [(false, false), (true, false), (true, false)]);
         // Within by the mean alone does not count where another is surely within.
-        let values = [value(&[40.0, 40.1], &[4.9], Kept::ByMean), value(&[30.0, 30.1], &[4.0], Kept::Surely)];
+        let values = [
+            value(&[40.0, 40.1], &[4.9], Kept::ByMean),
+            value(&[30.0, 30.1], &[4.0], Kept::Surely),
+        ];
         assert_eq!(bold(&values), [(false, false), (true, false)]);
         // None within: the least cost stands out.
-        let values = [value(&[90.0], &[40.0], Kept::Over), value(&[30.0], &[14.0], Kept::Over), value(&[], &[], Kept::Unknown)];
+        let values = [
+            value(&[90.0], &[40.0], Kept::Over),
+            value(&[30.0], &[14.0], Kept::Over),
+            value(&[], &[], Kept::Unknown),
+        ];
         assert_eq!(bold(&values), [(false, false), (false, true), (false, false)]);
         assert_eq!(bold(&[value(&[1.0], &[9.0], Kept::Over)]), [(false, false)]);
     }

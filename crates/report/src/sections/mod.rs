@@ -28,8 +28,14 @@ use std::collections::BTreeMap;
 
 /// Makes the report of what was found. `warnings` grows by what is noticed on the way.
 #[must_use]
-pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec<Warning>) -> Document {
-    let frames: f64 = groups.iter().flat_map(|group| &group.runs).map(crate::run::Run::frames).sum();
+pub fn document(
+    title: &str,
+    found: &Found,
+    groups: &[Group],
+    warnings: &mut Vec<Warning>,
+) -> Document {
+    let frames: f64 =
+        groups.iter().flat_map(|group| &group.runs).map(crate::run::Run::frames).sum();
     let run_count: usize = groups.iter().map(|group| group.runs.len()).sum();
     let baselines = Baselines::new(found, groups);
     let mut sections = vec![
@@ -54,7 +60,9 @@ pub fn document(title: &str, found: &Found, groups: &[Group], warnings: &mut Vec
     sections.push(runs::runs(groups));
     sections.push(missing::section(&sections));
     sections.push(runs::warnings(warnings));
-    sections.retain(|section: &Section| !section.blocks.is_empty() || section.slug == "paper" && !section.text.is_empty());
+    sections.retain(|section: &Section| {
+        !section.blocks.is_empty() || section.slug == "paper" && !section.text.is_empty()
+    });
     sections.push(method());
     Document {
         title: title.to_owned(),
@@ -92,11 +100,13 @@ fn method() -> Section {
     }
 }
 
-/// Options that an experiment of the paper varies: they have sections of their own and stay out of the main tables.
-pub(crate) const VARIED: [&str; 6] = ["safety_budget", "cost_scale", "full_actions", "observation", "curriculum", "hard"];
+/// Options that an experiment of the paper varies: they have sections of their own and stay out of
+/// the main tables.
+pub(crate) const VARIED: [&str; 6] =
+    ["safety_budget", "cost_scale", "full_actions", "observation", "curriculum", "hard"];
 
-/// The experiments without any varied option, by what else they were run under, those with the longest runs first: what was
-/// only tried for a moment comes last.
+/// The experiments without any varied option, by what else they were run under, those with the
+/// longest runs first: what was only tried for a moment comes last.
 fn main_groups(groups: &[Group]) -> Vec<(String, Vec<&Group>)> {
     let mut settings: BTreeMap<String, Vec<&Group>> = BTreeMap::new();
     for group in groups {
@@ -105,7 +115,8 @@ fn main_groups(groups: &[Group]) -> Vec<(String, Vec<&Group>)> {
         }
     }
     let mut settings: Vec<_> = settings.into_iter().collect();
-    let longest = |members: &[&Group]| members.iter().map(|group| group.frames_span().1).fold(0.0, f64::max);
+    let longest =
+        |members: &[&Group]| members.iter().map(|group| group.frames_span().1).fold(0.0, f64::max);
     settings.sort_by(|a, b| longest(&b.1).total_cmp(&longest(&a.1)));
     settings
 }
@@ -113,7 +124,9 @@ fn main_groups(groups: &[Group]) -> Vec<(String, Vec<&Group>)> {
 /// Everything that an experiment was run under, for people.
 fn setting(group: &Group) -> String {
     let mut parts = vec![group.options_line(None)];
-    parts.extend(group.config().frames.map(|frames| format!("{} frames", crate::document::frames(frames))));
+    parts.extend(
+        group.config().frames.map(|frames| format!("{} frames", crate::document::frames(frames))),
+    );
     parts.retain(|part| !part.is_empty());
     if parts.is_empty() { "default options".into() } else { parts.join(", ") }
 }

@@ -1,9 +1,12 @@
-//! Humans and other players, and evaluations of trained agents: results of episodes rather than of training.
+//! Humans and other players, and evaluations of trained agents: results of episodes rather than of
+//! training.
 
 use crate::document::{Block, Cell, Mark, Section, Table};
 use crate::group::{Group, scenario_name, scenario_order};
 use crate::published::published_human;
-use crate::run::{Constraint, EpisodeResult, Found, Origin, PlayerKey, default_budget, scenario_and_level};
+use crate::run::{
+    Constraint, EpisodeResult, Found, Origin, PlayerKey, default_budget, scenario_and_level,
+};
 use crate::statistics::Estimate;
 
 /// Rollouts of policies and evaluations of trained agents.
@@ -13,7 +16,13 @@ pub(super) fn section(found: &Found, groups: &[Group]) -> Section {
         for run in &group.runs {
             if !run.evaluation.is_empty() {
                 let who = format!("{}, seed {}", run.config.algo, run.config.seed);
-                rows.push(row(&who, &run.config.env, &group.options_line(None), &run.config.constraints, &run.evaluation));
+                rows.push(row(
+                    &who,
+                    &run.config.env,
+                    &group.options_line(None),
+                    &run.config.constraints,
+                    &run.evaluation,
+                ));
             }
         }
     }
@@ -36,7 +45,9 @@ pub(super) fn human(found: &Found) -> Section {
     let mut papers: Vec<(String, u32)> = found
         .players
         .keys()
-        .filter(|key| by_people(key) && key.options.split(", ").any(|option| option == "rules tables"))
+        .filter(|key| {
+            by_people(key) && key.options.split(", ").any(|option| option == "rules tables")
+        })
         .map(|key| scenario_and_level(&key.env))
         .collect();
     papers.sort();
@@ -70,10 +81,13 @@ pub(super) fn human(found: &Found) -> Section {
 
 fn played(found: &Found, counts: impl Fn(&PlayerKey) -> bool) -> Vec<(String, Vec<Cell>)> {
     let mut rows = Vec::new();
-    for (PlayerKey { player, env, options, .. }, episodes) in found.players.iter().filter(|(key, _)| counts(key)) {
+    for (PlayerKey { player, env, options, .. }, episodes) in
+        found.players.iter().filter(|(key, _)| counts(key))
+    {
         let (scenario, _) = scenario_and_level(env);
         let has = |wanted: &str| options.split(", ").any(|option| option == wanted);
-        let budget = if has("hard true") { 0.0 } else { default_budget(&scenario, has("rules released")) };
+        let budget =
+            if has("hard true") { 0.0 } else { default_budget(&scenario, has("rules released")) };
         rows.push(row(player, env, options, &[Constraint { term: None, budget }], episodes));
     }
     rows
@@ -81,25 +95,44 @@ fn played(found: &Found, counts: impl Fn(&PlayerKey) -> bool) -> Vec<(String, Ve
 
 fn table(mut rows: Vec<(String, Vec<Cell>)>) -> Vec<Block> {
     rows.sort_by(|a, b| a.0.cmp(&b.0));
-    let heads = ["player", "scenario", "level", "options", "return", "cost", "steps", "episodes within budget"];
+    let heads = [
+        "player",
+        "scenario",
+        "level",
+        "options",
+        "return",
+        "cost",
+        "steps",
+        "episodes within budget",
+    ];
     let rows: Vec<Vec<Cell>> = rows.into_iter().map(|(_, cells)| cells).collect();
     let table = Table { heads: heads.map(String::from).to_vec(), rows, ..Table::default() };
     if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] }
 }
 
-fn row(player: &str, env: &str, options: &str, constraints: &[Constraint], episodes: &[EpisodeResult]) -> (String, Vec<Cell>) {
+fn row(
+    player: &str,
+    env: &str,
+    options: &str,
+    constraints: &[Constraint],
+    episodes: &[EpisodeResult],
+) -> (String, Vec<Cell>) {
     let (scenario, level) = scenario_and_level(env);
     let returns: Vec<f64> = episodes.iter().map(|episode| episode.episode_return).collect();
     let costs: Vec<f64> = episodes.iter().map(|episode| episode.cost).collect();
     let lengths: Vec<f64> = episodes.iter().filter_map(|episode| episode.length).collect();
-    let keeps =
-        |episode: &&EpisodeResult| constraints.iter().all(|one| episode.cost_of(one).is_some_and(|cost| cost <= one.budget));
+    let keeps = |episode: &&EpisodeResult| {
+        constraints.iter().all(|one| episode.cost_of(one).is_some_and(|cost| cost <= one.budget))
+    };
     let within = episodes.iter().filter(keeps).count() as f64 / episodes.len().max(1) as f64;
     let kept = |one: &Constraint| {
         let costs: Option<Vec<f64>> = episodes.iter().map(|episode| episode.cost_of(one)).collect();
         one.kept_by(costs.and_then(|costs| Estimate::of(&costs)))
     };
-    let plain = |samples: &[f64]| Cell { title: String::new(), ..Cell::estimate(Estimate::of(samples), samples) };
+    let plain = |samples: &[f64]| Cell {
+        title: String::new(),
+        ..Cell::estimate(Estimate::of(samples), samples)
+    };
     let mut cost = plain(&costs);
     cost.mark = Mark::of(constraints.iter().map(kept).min().unwrap_or_default());
     let cells = vec![

@@ -15,9 +15,13 @@ pub(super) fn experiments(groups: &[Group]) -> Section {
             let (return_cell, cost_cell) = marked_cells(&[group], source).remove(0);
             let seeds_values = by_seed(group, source);
             let (shortest, longest) = group.frames_span();
-            let reached =
-                if shortest == longest { frames(longest) } else { format!("{} to {}", frames(shortest), frames(longest)) };
-            let seeds: Vec<String> = group.runs.iter().map(|run| run.config.seed.to_string()).collect();
+            let reached = if shortest == longest {
+                frames(longest)
+            } else {
+                format!("{} to {}", frames(shortest), frames(longest))
+            };
+            let seeds: Vec<String> =
+                group.runs.iter().map(|run| run.config.seed.to_string()).collect();
             vec![
                 Cell::text(scenario_name(&config.scenario)),
                 Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
@@ -30,7 +34,10 @@ pub(super) fn experiments(groups: &[Group]) -> Section {
                 cost_cell,
                 Cell::text(seeds_values),
                 Cell::text(if source == Source::Evaluation { "evaluation" } else { "training" }),
-                Cell::estimate(group.estimate(source, "length_mean"), &group.samples(source, "length_mean")),
+                Cell::estimate(
+                    group.estimate(source, "length_mean"),
+                    &group.samples(source, "length_mean"),
+                ),
             ]
         })
         .collect();
@@ -53,11 +60,16 @@ pub(super) fn experiments(groups: &[Group]) -> Section {
 
 /// Return @ cost of every seed, in the order of the seeds.
 fn by_seed(group: &Group, source: Source) -> String {
-    let pairs = group.samples(source, "return_mean").into_iter().zip(group.samples(source, "cost_mean"));
-    pairs.map(|(episode_return, cost)| format!("{} @ {}", number(episode_return), number(cost))).collect::<Vec<_>>().join(", ")
+    let pairs =
+        group.samples(source, "return_mean").into_iter().zip(group.samples(source, "cost_mean"));
+    pairs
+        .map(|(episode_return, cost)| format!("{} @ {}", number(episode_return), number(cost)))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
-/// The budget of the whole cost, or of the only constraint; those of several have a table of their own.
+/// The budget of the whole cost, or of the only constraint; those of several have a table of their
+/// own.
 fn budget_cell(group: &Group) -> Cell {
     match &group.config().constraints[..] {
         [one] => Cell::number(one.budget).with_text(one.label()),
@@ -71,16 +83,24 @@ pub(super) fn runs(groups: &[Group]) -> Section {
         .iter()
         .flat_map(|group| &group.runs)
         .map(|run| {
-            let value = |metric: &str| run.final_mean(metric).map_or_else(|| Cell::text("-"), Cell::number);
+            let value =
+                |metric: &str| run.final_mean(metric).map_or_else(|| Cell::text("-"), Cell::number);
             let last = |metric: &str| run.rows.iter().rev().find_map(|row| row.get(metric));
-            let hours = last("wall_s").map_or_else(|| Cell::text("-"), |s| Cell::number(s / 3600.0));
-            let fps = run.frames_per_second().map_or_else(|| Cell::text("-"), |fps| Cell::number(fps).with_text(number(fps)));
+            let hours =
+                last("wall_s").map_or_else(|| Cell::text("-"), |s| Cell::number(s / 3600.0));
+            let fps = run
+                .frames_per_second()
+                .map_or_else(|| Cell::text("-"), |fps| Cell::number(fps).with_text(number(fps)));
             let state = match run.config.frames {
-                Some(asked) if run.frames() < asked * 0.999 => format!("{:.0} %", 100.0 * run.frames() / asked),
+                Some(asked) if run.frames() < asked * 0.999 => {
+                    format!("{:.0} %", 100.0 * run.frames() / asked)
+                }
                 _ => "finished".into(),
             };
-            let state =
-                run.config.extended_from.map_or(state.clone(), |first| format!("{state}, extended from {}", frames(first)));
+            let state = run
+                .config
+                .extended_from
+                .map_or(state.clone(), |first| format!("{state}, extended from {}", frames(first)));
             vec![
                 Cell::text(run.path.display().to_string()),
                 Cell::text(&run.config.env),
@@ -96,8 +116,19 @@ pub(super) fn runs(groups: &[Group]) -> Section {
             ]
         })
         .collect();
-    let heads =
-        ["directory", "environment", "algorithm", "seed", "frames", "state", "hours", "frames/s", "return", "cost", "reports"];
+    let heads = [
+        "directory",
+        "environment",
+        "algorithm",
+        "seed",
+        "frames",
+        "state",
+        "hours",
+        "frames/s",
+        "return",
+        "cost",
+        "reports",
+    ];
     section("runs", "All runs", heads.as_slice(), rows)
 }
 
@@ -118,8 +149,12 @@ pub(super) fn warnings(warnings: &[Warning]) -> Section {
 }
 
 fn section(slug: &str, title: &str, heads: &[&str], rows: Vec<Vec<Cell>>) -> Section {
-    let table =
-        Table { caption: String::new(), spans: Vec::new(), heads: heads.iter().map(|head| (*head).to_owned()).collect(), rows };
+    let table = Table {
+        caption: String::new(),
+        spans: Vec::new(),
+        heads: heads.iter().map(|head| (*head).to_owned()).collect(),
+        rows,
+    };
     let table = table.folded(&["level", "options", "by", "state"]);
     let blocks = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
     Section { slug: slug.into(), title: title.into(), text: Vec::new(), blocks }

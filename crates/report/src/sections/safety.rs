@@ -45,15 +45,25 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
          of the frames that followed. All are means over seeds."
             .to_owned(),
     ];
-    let missing = baselines.missing(&groups.iter().filter(|group| baselines.scores(group).is_empty()).collect::<Vec<_>>());
+    let missing = baselines.missing(
+        &groups.iter().filter(|group| baselines.scores(group).is_empty()).collect::<Vec<_>>(),
+    );
     if let [first, rest @ ..] = &missing[..] {
-        let more = if rest.is_empty() { String::new() } else { format!(" (and {} more like it)", rest.len()) };
+        let more = if rest.is_empty() {
+            String::new()
+        } else {
+            format!(" (and {} more like it)", rest.len())
+        };
         text.push(format!("Scores need both ends of their scale. Missing here: {first}{more}."));
     }
     let blocks = if rows.is_empty() {
         Vec::new()
     } else {
-        vec![Block::Table(Table { heads, rows, ..Table::default() }.folded(&["level", "options", "judged by"]))]
+        vec![Block::Table(Table { heads, rows, ..Table::default() }.folded(&[
+            "level",
+            "options",
+            "judged by",
+        ]))]
     };
     Section { slug: "safety".into(), title: "Safety".into(), text, blocks }
 }
@@ -61,7 +71,10 @@ pub(super) fn section(groups: &[Group], baselines: &Baselines) -> Section {
 fn row(group: &Group, baselines: &Baselines) -> Vec<Cell> {
     let config = group.config();
     let scores = baselines.scores(group);
-    let over_seeds = |samples: Vec<f64>| Cell { note: String::new(), ..Cell::estimate(Estimate::of(&samples), &samples) };
+    let over_seeds = |samples: Vec<f64>| Cell {
+        note: String::new(),
+        ..Cell::estimate(Estimate::of(&samples), &samples)
+    };
     let mut row = vec![
         Cell::text(scenario_name(&config.scenario)),
         Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
@@ -75,7 +88,10 @@ fn row(group: &Group, baselines: &Baselines) -> Vec<Cell> {
     let over: Vec<f64> = group.runs.iter().filter_map(share_over).collect();
     row.push(Estimate::of(&over).map_or_else(|| over_seeds(Vec::new()), |one| percent(one.mean)));
     let tails = |one: &Constraint| {
-        let tails = group.runs.iter().filter_map(|run| conditional_value_at_risk(&run.episode_costs(one), 0.1));
+        let tails = group
+            .runs
+            .iter()
+            .filter_map(|run| conditional_value_at_risk(&run.episode_costs(one), 0.1));
         Estimate::of(&tails.collect::<Vec<_>>()).map(|one| one.mean)
     };
     let tails: Option<Vec<f64>> = config.constraints.iter().map(tails).collect();

@@ -9,7 +9,8 @@ use crate::statistics::{Estimate, conditional_value_at_risk, mean};
 pub(super) fn section(groups: &[Group]) -> Section {
     let mut rows = Vec::new();
     for group in groups {
-        let evaluated: Vec<&Run> = group.runs.iter().filter(|run| run.evaluated("return_mean").is_some()).collect();
+        let evaluated: Vec<&Run> =
+            group.runs.iter().filter(|run| run.evaluated("return_mean").is_some()).collect();
         rows.extend(evaluated.iter().map(|run| row(run)));
         if evaluated.len() > 1 {
             rows.push(mean_row(group, evaluated.len()));
@@ -48,10 +49,16 @@ pub(super) fn section(groups: &[Group]) -> Section {
 
 fn row(run: &Run) -> Vec<Cell> {
     let config = &run.config;
-    let minutes =
-        run.rows.iter().rev().find_map(|row| row.get("wall_s")).map_or_else(|| Cell::text("-"), |s| Cell::number(s / 60.0));
-    let taken =
-        run.selected.as_ref().map_or_else(|| Cell::text("-"), |one| Cell::number(one.frames).with_text(frames(one.frames)));
+    let minutes = run
+        .rows
+        .iter()
+        .rev()
+        .find_map(|row| row.get("wall_s"))
+        .map_or_else(|| Cell::text("-"), |s| Cell::number(s / 60.0));
+    let taken = run.selected.as_ref().map_or_else(
+        || Cell::text("-"),
+        |one| Cell::number(one.frames).with_text(frames(one.frames)),
+    );
     let mut cells = vec![
         Cell::text(scenario_name(&config.scenario)),
         Cell::number(f64::from(config.level)).with_text(config.level.to_string()),
@@ -60,21 +67,25 @@ fn row(run: &Run) -> Vec<Cell> {
         Cell::number(run.frames()).with_text(frames(run.frames())),
         minutes,
         taken,
-        Cell::number(run.evaluated_episodes() as f64).with_text(run.evaluated_episodes().to_string()),
+        Cell::number(run.evaluated_episodes() as f64)
+            .with_text(run.evaluated_episodes().to_string()),
         plain(run.evaluated("return_mean")),
     ];
     cells.extend(cost_cells(run));
     let over = share_over(run).map_or_else(|| Cell::text("-"), percent);
     let tail = |one: &Constraint| conditional_value_at_risk(&run.episode_costs(one), 0.1);
-    let tails: Option<Vec<String>> = config.constraints.iter().map(|one| Some(number(tail(one)?))).collect();
+    let tails: Option<Vec<String>> =
+        config.constraints.iter().map(|one| Some(number(tail(one)?))).collect();
     cells.extend([over, Cell::text(tails.map_or_else(|| "-".into(), |tails| tails.join(", ")))]);
     cells
 }
 
-/// Share of the evaluated episodes that were over a budget; `None` where single episodes were not kept.
+/// Share of the evaluated episodes that were over a budget; `None` where single episodes were not
+/// kept.
 pub(super) fn share_over(run: &Run) -> Option<f64> {
     let over = |episode: &crate::run::EpisodeResult| {
-        let costs = run.config.constraints.iter().map(|one| Some(episode.cost_of(one)? > one.budget));
+        let costs =
+            run.config.constraints.iter().map(|one| Some(episode.cost_of(one)? > one.budget));
         costs.collect::<Option<Vec<bool>>>().map(|over| f64::from(u8::from(over.contains(&true))))
     };
     mean(&run.evaluation.iter().map(over).collect::<Option<Vec<f64>>>()?)
@@ -93,9 +104,13 @@ fn cost_cells(run: &Run) -> [Cell; 3] {
     let joined = |text: &dyn Fn(&Constraint, Option<Estimate>) -> String| {
         Cell::text(all.iter().map(|(one, cost)| text(one, *cost)).collect::<Vec<_>>().join(", "))
     };
-    let named = |one: &Constraint, text: String| one.term.as_ref().map_or_else(|| text.clone(), |term| format!("{term} {text}"));
+    let named = |one: &Constraint, text: String| {
+        one.term.as_ref().map_or_else(|| text.clone(), |term| format!("{term} {text}"))
+    };
     let cost = joined(&|one, cost| named(one, plain(cost).text));
-    let up_to = joined(&|one, cost| named(one, cost.map_or_else(|| "-".into(), |cost| number(cost.high()))));
+    let up_to = joined(&|one, cost| {
+        named(one, cost.map_or_else(|| "-".into(), |cost| number(cost.high())))
+    });
     let budget = joined(&|one, _| one.label());
     [Cell { mark: Mark::of(kept), ..cost }, up_to, budget]
 }

@@ -16,17 +16,23 @@ pub struct Aggregate {
 /// Resamples that a bootstrap draws.
 pub const RESAMPLES: usize = 2000;
 
-/// A statistic over strata of samples (environments of seeds). The interval is the percentile interval of [`RESAMPLES`]
-/// bootstrap samples, each drawing seeds with replacement within every stratum. The stream is fixed, so that the same
-/// runs give the same report.
+/// A statistic over strata of samples (environments of seeds). The interval is the percentile
+/// interval of [`RESAMPLES`] bootstrap samples, each drawing seeds with replacement within every
+/// stratum. The stream is fixed, so that the same runs give the same report.
 #[must_use]
-pub fn aggregate(strata: &[Vec<f64>], statistic: impl Fn(&[f64]) -> Option<f64>) -> Option<Aggregate> {
+pub fn aggregate(
+    strata: &[Vec<f64>],
+    statistic: impl Fn(&[f64]) -> Option<f64>,
+) -> Option<Aggregate> {
     aggregate_pair(strata, &[], |one, _| statistic(&one.concat()))
 }
 
 /// Several statistics of the same strata, from the same bootstrap samples.
 #[must_use]
-pub fn aggregates(strata: &[Vec<f64>], statistics: impl Fn(&[f64]) -> Option<Vec<f64>>) -> Option<Vec<Aggregate>> {
+pub fn aggregates(
+    strata: &[Vec<f64>],
+    statistics: impl Fn(&[f64]) -> Option<Vec<f64>>,
+) -> Option<Vec<Aggregate>> {
     resampled(strata, &[], |one, _| statistics(&one.concat()))
 }
 
@@ -53,7 +59,10 @@ fn resampled(
         let mut stream = 0x5EED_u64;
         let mut draw = |strata: &[Vec<f64>]| -> Vec<Vec<f64>> {
             let resample = |stratum: &Vec<f64>| {
-                stratum.iter().map(|_| stratum[(next(&mut stream) % stratum.len() as u64) as usize]).collect()
+                stratum
+                    .iter()
+                    .map(|_| stratum[(next(&mut stream) % stratum.len() as u64) as usize])
+                    .collect()
             };
             strata.iter().map(resample).collect()
         };
@@ -65,7 +74,8 @@ fn resampled(
     }
     let estimate = |(value, mut draws): (f64, Vec<f64>)| {
         draws.sort_by(f64::total_cmp);
-        let interval = (!draws.is_empty()).then(|| (quantile(&draws, 0.025), quantile(&draws, 0.975)));
+        let interval =
+            (!draws.is_empty()).then(|| (quantile(&draws, 0.025), quantile(&draws, 0.975)));
         Aggregate { value, interval, n, strata: filled }
     };
     Some(values.into_iter().zip(draws).map(estimate).collect())
@@ -94,12 +104,14 @@ mod tests {
 
     #[test]
     fn the_bootstrap_is_repeatable_stratified_and_about_right() {
-        let strata: Vec<Vec<f64>> = (0..6).map(|task| (0..5).map(|seed| f64::from(task * 10 + seed)).collect()).collect();
+        let strata: Vec<Vec<f64>> =
+            (0..6).map(|task| (0..5).map(|seed| f64::from(task * 10 + seed)).collect()).collect();
         let first = aggregate(&strata, interquartile_mean).unwrap();
         assert_eq!(Some(first), aggregate(&strata, interquartile_mean));
         let (low, high) = first.interval.unwrap();
         assert!(low < first.value && first.value < high);
-        // Strata differ by tens; were they pooled, the interval would be many units wide instead of about two.
+        // Strata differ by tens; were they pooled, the interval would be many units wide instead of
+        // about two.
         assert!(high - low < 3.0, "{low}..{high}");
         assert_eq!((first.n, first.strata), (30, 6));
         assert_eq!(aggregate(&[vec![1.0], vec![2.0]], interquartile_mean).unwrap().interval, None);

@@ -1,22 +1,26 @@
 //! The feasible score: what a seed's return is worth if it keeps its budgets.
 
-/// A return on the scale where a random policy scores 0 and PPO, which ignores costs, scores 1; `None` where the two are
-/// equal, so that there is no scale.
+/// A return on the scale where a random policy scores 0 and PPO, which ignores costs, scores 1;
+/// `None` where the two are equal, so that there is no scale.
 #[must_use]
 pub fn normalised(episode_return: f64, random: f64, ppo: f64) -> Option<f64> {
     (ppo != random).then(|| (episode_return - random) / (ppo - random))
 }
 
-/// How far the worst of several costs is above its budget, as a factor: 1 at the budget. Each pair is an upper end of a
-/// cost's interval and its budget; with a budget of 0 any cost at all is infinitely far above.
+/// How far the worst of several costs is above its budget, as a factor: 1 at the budget. Each pair
+/// is an upper end of a cost's interval and its budget; with a budget of 0 any cost at all is
+/// infinitely far above.
 #[must_use]
 pub fn excess(costs: &[(f64, f64)]) -> f64 {
-    let factor = |&(cost, budget): &(f64, f64)| if cost <= budget { (cost / budget).min(1.0) } else { cost / budget };
+    let factor = |&(cost, budget): &(f64, f64)| {
+        if cost <= budget { (cost / budget).min(1.0) } else { cost / budget }
+    };
     costs.iter().map(factor).filter(|factor| !factor.is_nan()).fold(0.0, f64::max)
 }
 
-/// Feasible score of a normalised return, hard and soft: hard, 0 if a cost's upper end is above its budget; soft, divided by
-/// the excess. A return below random counts as 0, lest a breach improve it.
+/// Feasible score of a normalised return, hard and soft: hard, 0 if a cost's upper end is above its
+/// budget; soft, divided by the excess. A return below random counts as 0, lest a breach improve
+/// it.
 #[must_use]
 pub fn feasible_scores(normalised: f64, costs: &[(f64, f64)]) -> (f64, f64) {
     let (score, excess) = (normalised.max(0.0), excess(costs));

@@ -3,14 +3,18 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// A folder that is gone after the test, unless `HASARD_KEEP_REPORT` names a place to keep it at, for a look at the page.
+/// A folder that is gone after the test, unless `HASARD_KEEP_REPORT` names a place to keep it at,
+/// for a look at the page.
 pub struct Folder(pub PathBuf, bool);
 
 impl Folder {
     pub fn new(name: &str) -> Folder {
-        let kept = std::env::var_os("HASARD_KEEP_REPORT").map(|place| PathBuf::from(place).join(name));
+        let kept =
+            std::env::var_os("HASARD_KEEP_REPORT").map(|place| PathBuf::from(place).join(name));
         let keep = kept.is_some();
-        let path = kept.unwrap_or_else(|| std::env::temp_dir().join(format!("hasard-report-test-{}-{name}", std::process::id())));
+        let path = kept.unwrap_or_else(|| {
+            std::env::temp_dir().join(format!("hasard-report-test-{}-{name}", std::process::id()))
+        });
         let _ = std::fs::remove_dir_all(&path);
         std::fs::create_dir_all(&path).unwrap();
         Folder(path, keep)
@@ -61,11 +65,16 @@ impl Synthetic<'_> {
             let share = k as f64 / self.reports as f64;
             let wave = ((k as u64 * 7919 + self.seed * 104_729) % 1000) as f64 / 1000.0 - 0.5;
             let rise = 1.0 - (-5.0 * share).exp();
-            let episode_return = end_return * rise * (1.0 + 0.06 * wave + 0.03 * (self.seed as f64 - 2.0));
-            let cost = (end_cost * rise + overshoot * share * 8.0 * (-8.0 * share).exp()) * (1.0 + 0.15 * wave);
+            let episode_return =
+                end_return * rise * (1.0 + 0.06 * wave + 0.03 * (self.seed as f64 - 2.0));
+            let cost = (end_cost * rise + overshoot * share * 8.0 * (-8.0 * share).exp())
+                * (1.0 + 0.15 * wave);
             let frames = self.frames * share;
-            let multiplier =
-                if self.algo.ends_with("Lag") { format!(",\"multipliers\":[{}]", 0.4 * rise) } else { String::new() };
+            let multiplier = if self.algo.ends_with("Lag") {
+                format!(",\"multipliers\":[{}]", 0.4 * rise)
+            } else {
+                String::new()
+            };
             let _ = writeln!(
                 text,
                 "{{\"frames\":{frames},\"updates\":{k},\"wall_s\":{},\"fps\":4000,\"return_mean\":{episode_return},\"cost_mean\":{cost},\"length_mean\":{},\"cost_total\":{},\"violation_total\":{}{multiplier}}}",

@@ -25,8 +25,18 @@ const TAIL: u64 = 32 << 10;
 /// Runs whose columns are kept in memory.
 const KEPT: usize = 200;
 /// What the list tells of a run's last row.
-const TOLD: [&str; 10] =
-    ["frames", "fps", "wall_s", "episodes", "return_mean", "cost_mean", "length_mean", "budget", "multiplier", "multipliers"];
+const TOLD: [&str; 10] = [
+    "frames",
+    "fps",
+    "wall_s",
+    "episodes",
+    "return_mean",
+    "cost_mean",
+    "length_mean",
+    "budget",
+    "multiplier",
+    "multipliers",
+];
 
 struct Run {
     path: PathBuf,
@@ -58,7 +68,10 @@ impl Stamp {
     /// Of a file that is no link.
     pub(super) fn of(path: &Path) -> Option<Stamp> {
         let data = std::fs::symlink_metadata(path).ok().filter(std::fs::Metadata::is_file)?;
-        Some(Stamp { bytes: data.len(), modified: data.modified().unwrap_or(SystemTime::UNIX_EPOCH) })
+        Some(Stamp {
+            bytes: data.len(),
+            modified: data.modified().unwrap_or(SystemTime::UNIX_EPOCH),
+        })
     }
 }
 
@@ -68,10 +81,11 @@ pub(crate) struct Catalogue {
     runs: BTreeMap<String, Run>,
     kept: HashMap<String, (Columns, u64)>,
     uses: u64,
-    /// Number of the last change. It begins with the time in milliseconds, so that numbers of a server that ran before are
-    /// all smaller than any of this one.
+    /// Number of the last change. It begins with the time in milliseconds, so that numbers of a
+    /// server that ran before are all smaller than any of this one.
     changes: u64,
-    /// Number of the last change since which a page that adds up changes is right: one that runs went with starts anew.
+    /// Number of the last change since which a page that adds up changes is right: one that runs
+    /// went with starts anew.
     whole_since: u64,
     looked: Option<Instant>,
     searched: Option<Instant>,
@@ -80,7 +94,8 @@ pub(crate) struct Catalogue {
 impl Catalogue {
     pub fn new(folders: Vec<PathBuf>) -> Catalogue {
         // Links in the given names are the user's; links below them are not followed.
-        let folders = folders.into_iter().map(|folder| folder.canonicalize().unwrap_or(folder)).collect();
+        let folders =
+            folders.into_iter().map(|folder| folder.canonicalize().unwrap_or(folder)).collect();
         let time = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let begun = time.as_millis() as u64;
         Catalogue {
@@ -133,8 +148,13 @@ impl Catalogue {
             } else if (self.runs.contains_key(&id) || self.runs.len() < MAX_RUNS)
                 && let Ok(config) = Config::read(&config)
             {
-                let name = folder.strip_prefix(top).ok().filter(|name| !name.as_os_str().is_empty());
-                let name = name.or_else(|| folder.file_name().map(Path::new)).unwrap_or(folder).display().to_string();
+                let name =
+                    folder.strip_prefix(top).ok().filter(|name| !name.as_os_str().is_empty());
+                let name = name
+                    .or_else(|| folder.file_name().map(Path::new))
+                    .unwrap_or(folder)
+                    .display()
+                    .to_string();
                 self.changes += 1;
                 let run = Run {
                     path: folder.to_owned(),
@@ -181,7 +201,8 @@ impl Catalogue {
             experiments.entry(experiment).or_insert_with(|| json!(run.config.options));
             runs.push(told);
         }
-        let folders: Vec<String> = self.folders.iter().map(|folder| folder.display().to_string()).collect();
+        let folders: Vec<String> =
+            self.folders.iter().map(|folder| folder.display().to_string()).collect();
         json!({ "change": self.changes, "whole": whole, "runs": runs, "experiments": experiments, "count": self.runs.len(), "folders": folders })
     }
 
@@ -206,7 +227,8 @@ impl Catalogue {
         let path = self.runs.get(id)?.path.join("metrics.jsonl");
         if !self.kept.contains_key(id)
             && self.kept.len() >= KEPT
-            && let Some(oldest) = self.kept.iter().min_by_key(|(_, (_, used))| *used).map(|(id, _)| id.clone())
+            && let Some(oldest) =
+                self.kept.iter().min_by_key(|(_, (_, used))| *used).map(|(id, _)| id.clone())
         {
             self.kept.remove(&oldest);
         }
@@ -225,11 +247,14 @@ impl Run {
         let path = self.path.join("metrics.jsonl");
         let metrics = Stamp::of(&path).unwrap_or(Stamp::NONE);
         if metrics != self.metrics {
-            // Without rows it is a run that has none: those of one that was here before are not its own.
+            // Without rows it is a run that has none: those of one that was here before are not its
+            // own.
             self.last = last_row(&path, metrics.bytes).unwrap_or_default();
         }
         let done = self.config.frames.is_some_and(|frames| self.frames() >= frames);
-        let alive = !done && metrics.bytes > 0 && now.duration_since(metrics.modified).unwrap_or_default() < ALIVE;
+        let alive = !done
+            && metrics.bytes > 0
+            && now.duration_since(metrics.modified).unwrap_or_default() < ALIVE;
         let evaluated = self.evaluation.look(&self.path);
         let changed = evaluated || (metrics, alive) != (self.metrics, self.alive);
         (self.metrics, self.alive) = (metrics, alive);
@@ -242,8 +267,10 @@ impl Run {
 
     fn told(&self, id: &str) -> Value {
         let config = &self.config;
-        let last: Map<String, Value> =
-            TOLD.iter().filter_map(|name| Some(((*name).to_owned(), self.last.get(*name)?.clone()))).collect();
+        let last: Map<String, Value> = TOLD
+            .iter()
+            .filter_map(|name| Some(((*name).to_owned(), self.last.get(*name)?.clone())))
+            .collect();
         let total = config.frames;
         let state = if total.is_some_and(|total| self.frames() >= total) {
             "done"
@@ -263,8 +290,18 @@ impl Run {
     fn experiment(&self) -> String {
         let config = &self.config;
         let mut hasher = DefaultHasher::new();
-        format!("{:?}", (&config.env, &config.algo, config.frames, &config.constraints, config.cost_scale, &config.options))
-            .hash(&mut hasher);
+        format!(
+            "{:?}",
+            (
+                &config.env,
+                &config.algo,
+                config.frames,
+                &config.constraints,
+                config.cost_scale,
+                &config.options
+            )
+        )
+        .hash(&mut hasher);
         format!("{:016x}", hasher.finish())
     }
 }
@@ -276,7 +313,10 @@ fn last_row(path: &Path, bytes: u64) -> Option<Map<String, Value>> {
     let mut tail = Vec::new();
     file.take(TAIL).read_to_end(&mut tail).ok()?;
     let end = tail.iter().rposition(|byte| *byte == b'\n')?;
-    tail[..end].split(|byte| *byte == b'\n').rev().find_map(|line| serde_json::from_slice(line).ok())
+    tail[..end]
+        .split(|byte| *byte == b'\n')
+        .rev()
+        .find_map(|line| serde_json::from_slice(line).ok())
 }
 
 /// A name of a path that says nothing of it and stays the same.

@@ -8,7 +8,8 @@ use std::path::Path;
 
 /// Points of a curve that are sent: more than a chart has pixels.
 const POINTS: usize = 800;
-/// A column that not one row in so many has is sent with rows of its own, so that thinning leaves none of it out.
+/// A column that not one row in so many has is sent with rows of its own, so that thinning leaves
+/// none of it out.
 const SPARSE: usize = 2;
 /// Bytes that are read at a time: what is beyond is read when it is asked for next.
 const LARGEST_READ: u64 = 64 << 20;
@@ -26,8 +27,9 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// Reads what was added to the file. A file that is no longer the one that was read (a resumed run takes rows back, another
-    /// run takes its place) is read anew; of one that is gone nothing is left.
+    /// Reads what was added to the file. A file that is no longer the one that was read (a resumed
+    /// run takes rows back, another run takes its place) is read anew; of one that is gone nothing
+    /// is left.
     pub fn catch_up(&mut self, path: &Path) -> std::io::Result<()> {
         let opened = File::open(path);
         if !opened.as_ref().is_ok_and(|file| self.continues(file).unwrap_or(false)) {
@@ -68,7 +70,9 @@ impl Columns {
         };
         for (name, value) in row.iter().filter(|(name, _)| *name != "frames") {
             match value {
-                Value::Number(number) => number.as_f64().into_iter().for_each(|value| put(name.clone(), value)),
+                Value::Number(number) => {
+                    number.as_f64().into_iter().for_each(|value| put(name.clone(), value))
+                }
                 // One number a constraint.
                 Value::Array(all) => all
                     .iter()
@@ -85,9 +89,10 @@ impl Columns {
         self.values.keys().cloned().collect()
     }
 
-    /// Some columns with no more points than a chart can show: `frames` and `wall_s` of the rows that are shown, and a list of
-    /// values for each name. A column that only few rows have, such as those of evaluations, has rows of its own: then its entry
-    /// is an object of `frames`, `wall_s` and `values`.
+    /// Some columns with no more points than a chart can show: `frames` and `wall_s` of the rows
+    /// that are shown, and a list of values for each name. A column that only few rows have, such
+    /// as those of evaluations, has rows of its own: then its entry is an object of `frames`,
+    /// `wall_s` and `values`.
     pub fn thinned(&self, names: &[String]) -> Value {
         let every = self.frames.len().div_ceil(POINTS).max(1);
         // The last row is always there: it is where a running curve moves.
@@ -116,7 +121,9 @@ impl Columns {
     /// A column's values in some rows; `null` where a row has none.
     fn picked(&self, name: &str, rows: &[usize]) -> Value {
         let column = self.values.get(name);
-        let value = |row: &usize| json!(column.and_then(|column| column.get(*row)).filter(|value| value.is_finite()));
+        let value = |row: &usize| {
+            json!(column.and_then(|column| column.get(*row)).filter(|value| value.is_finite()))
+        };
         rows.iter().map(value).collect()
     }
 }
@@ -128,7 +135,8 @@ mod tests {
 
     #[test]
     fn rows_are_read_from_where_they_were_left_off() {
-        let path = std::env::temp_dir().join(format!("hasard-serve-columns-{}", std::process::id()));
+        let path =
+            std::env::temp_dir().join(format!("hasard-serve-columns-{}", std::process::id()));
         std::fs::write(&path, "{\"frames\":1,\"cost_mean\":null,\"fps\":5}\n{\"frames\":2,\"cost_mean\":3.5,\"fps\":6}\n{\"fra")
             .unwrap();
         let mut columns = Columns::default();
@@ -137,9 +145,17 @@ mod tests {
             columns.thinned(&["cost_mean".into(), "none".into()]),
             json!({"frames": [1.0, 2.0], "cost_mean": [null, 3.5]})
         );
-        std::fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(b"mes\":9,\"cost_mean\":1}\nrubbish\n").unwrap();
+        std::fs::OpenOptions::new()
+            .append(true)
+            .open(&path)
+            .unwrap()
+            .write_all(b"mes\":9,\"cost_mean\":1}\nrubbish\n")
+            .unwrap();
         columns.catch_up(&path).unwrap();
-        assert_eq!(columns.thinned(&["cost_mean".into(), "fps".into()])["fps"], json!([5.0, 6.0, null]));
+        assert_eq!(
+            columns.thinned(&["cost_mean".into(), "fps".into()])["fps"],
+            json!([5.0, 6.0, null])
+        );
         assert_eq!(columns.frames, [1.0, 2.0, 9.0]);
         // The run was resumed from before: its later rows are gone.
         std::fs::write(&path, "{\"frames\":1,\"fps\":7}\n").unwrap();
@@ -182,6 +198,9 @@ mod tests {
             "values": [124.0, 1124.0, 2124.0, 3124.0, 4124.0]});
         assert_eq!(sent["eval/cost_mean"], evaluations);
         assert_eq!(sent["multipliers.1"].as_array().unwrap().last(), Some(&json!(9998.0)));
-        assert_eq!(sent["wall_s"].as_array().unwrap().len(), sent["frames"].as_array().unwrap().len());
+        assert_eq!(
+            sent["wall_s"].as_array().unwrap().len(),
+            sent["frames"].as_array().unwrap().len()
+        );
     }
 }

@@ -10,9 +10,13 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Return and cost of each experiment among some runs: of the selected checkpoints where every run of an environment has a closing
-/// evaluation, else of recent training episodes. Numbers from two sources do not compare.
-pub(crate) async fn compare(State(shared): State<Arc<Shared>>, Query(query): Query<Chosen>) -> Result<Response, Response> {
+/// Return and cost of each experiment among some runs: of the selected checkpoints where every run
+/// of an environment has a closing evaluation, else of recent training episodes. Numbers from two
+/// sources do not compare.
+pub(crate) async fn compare(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<Chosen>,
+) -> Result<Response, Response> {
     let ids = query.ids()?;
     let runs = on_catalogue(shared, move |catalogue| catalogue.results_of(&ids)).await?;
     Ok(json_of(&aside(move || beside(&runs)).await?))
@@ -38,16 +42,28 @@ fn beside(runs: &[Value]) -> Value {
 fn row(experiment: &str, runs: &[&Value], evaluated: bool) -> Value {
     let of = |training: &str, evaluation: &str| -> Vec<f64> {
         let value = |run: &&Value| {
-            if evaluated { run.pointer(evaluation).and_then(Value::as_f64) } else { run["last"][training].as_f64() }
+            if evaluated {
+                run.pointer(evaluation).and_then(Value::as_f64)
+            } else {
+                run["last"][training].as_f64()
+            }
         };
         runs.iter().filter_map(value).collect()
     };
     let iqm = |samples: &[f64]| {
         let found = aggregate(&[samples.to_vec()], interquartile_mean)?;
-        Some(json!({ "value": found.value, "low": found.interval.map(|ends| ends.0), "high": found.interval.map(|ends| ends.1) }))
+        Some(
+            json!({ "value": found.value, "low": found.interval.map(|ends| ends.0), "high": found.interval.map(|ends| ends.1) }),
+        )
     };
-    let (returns, costs) = (of("return_mean", "/evaluation/return/mean"), of("cost_mean", "/evaluation/costs/0/cost/mean"));
-    let budget = runs[0].pointer("/evaluation/costs/0/budget").filter(|_| evaluated).unwrap_or(&runs[0]["budget"]);
+    let (returns, costs) = (
+        of("return_mean", "/evaluation/return/mean"),
+        of("cost_mean", "/evaluation/costs/0/cost/mean"),
+    );
+    let budget = runs[0]
+        .pointer("/evaluation/costs/0/budget")
+        .filter(|_| evaluated)
+        .unwrap_or(&runs[0]["budget"]);
     json!({
         "experiment": experiment, "algo": runs[0]["algo"], "budget": budget, "n": returns.len(), "return": iqm(&returns),
         "cost": iqm(&costs), "returns": returns, "costs": costs,
@@ -68,11 +84,22 @@ mod tests {
             })
         };
         let runs = [0.0, 10.0, 20.0, 90.0].map(|value| run("a", "x", value, true));
-        let facets = beside(&[runs.as_slice(), &[run("b", "y", 3.0, true), run("b", "y", 3.0, false)]].concat());
+        let facets = beside(
+            &[runs.as_slice(), &[run("b", "y", 3.0, true), run("b", "y", 3.0, false)]].concat(),
+        );
         // The middle half of 0, 10, 20, 90 is 10 and 20.
         let x = &facets[0]["rows"][0];
-        assert_eq!((&x["return"]["value"], &x["n"], &x["budget"]), (&json!(15.0), &json!(4), &json!(5.0)));
-        assert!(x["return"]["low"].as_f64().unwrap() < 15.0 && x["return"]["high"].as_f64().unwrap() > 15.0);
-        assert_eq!((&facets[1]["source"], &facets[1]["rows"][0]["return"]["value"]), (&json!("training"), &json!(1.0)));
+        assert_eq!(
+            (&x["return"]["value"], &x["n"], &x["budget"]),
+            (&json!(15.0), &json!(4), &json!(5.0))
+        );
+        assert!(
+            x["return"]["low"].as_f64().unwrap() < 15.0
+                && x["return"]["high"].as_f64().unwrap() > 15.0
+        );
+        assert_eq!(
+            (&facets[1]["source"], &facets[1]["rows"][0]["return"]["value"]),
+            (&json!("training"), &json!(1.0))
+        );
     }
 }

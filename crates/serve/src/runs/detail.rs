@@ -14,7 +14,8 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Settings that belong to a single run or to its machine: they differ from any preset and say nothing about it.
+/// Settings that belong to a single run or to its machine: they differ from any preset and say
+/// nothing about it.
 const OF_ONE_RUN: [&str; 9] = [
     "version",
     "seed",
@@ -27,8 +28,12 @@ const OF_ONE_RUN: [&str; 9] = [
     "sampling.groups",
 ];
 
-/// Settings of a run, its selected checkpoint, its metrics with their meanings, moments of its heatmaps.
-pub(crate) async fn detail(State(shared): State<Arc<Shared>>, Query(query): Query<One>) -> Result<Response, Response> {
+/// Settings of a run, its selected checkpoint, its metrics with their meanings, moments of its
+/// heatmaps.
+pub(crate) async fn detail(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<One>,
+) -> Result<Response, Response> {
     let path = directory(&shared, query.id.clone()).await?;
     let id = query.id;
     let found = on_catalogue(Arc::clone(&shared), move |catalogue| {
@@ -39,8 +44,9 @@ pub(crate) async fn detail(State(shared): State<Arc<Shared>>, Query(query): Quer
     let body = aside(move || {
         let config = text_of(&path);
         let heatmaps = read(&path.join("heatmaps.jsonl")).unwrap_or_default();
-        let moments =
-            heatmaps.lines().map(|line| serde_json::from_str::<Value>(line).map_or(Value::Null, |line| line["frames"].clone()));
+        let moments = heatmaps.lines().map(|line| {
+            serde_json::from_str::<Value>(line).map_or(Value::Null, |line| line["frames"].clone())
+        });
         names.sort_by_cached_key(|name| (place(name), name.clone()));
         let metrics = names.iter().map(|name| listed(name));
         json!({
@@ -53,13 +59,17 @@ pub(crate) async fn detail(State(shared): State<Arc<Shared>>, Query(query): Quer
 }
 
 fn text_of(run: &Path) -> Value {
-    read(&run.join("config.json")).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or(Value::Null)
+    read(&run.join("config.json"))
+        .and_then(|text| serde_json::from_str(&text).ok())
+        .unwrap_or(Value::Null)
 }
 
-/// Every setting by name: its value, its preset's, its meaning. What an older version wrote is read as what it is called now. A
-/// file of other programs is listed as it is.
+/// Every setting by name: its value, its preset's, its meaning. What an older version wrote is read
+/// as what it is called now. A file of other programs is listed as it is.
 fn beside_preset(config: &Value) -> Value {
-    let Ok(own) = serde_json::from_value::<TrainConfig>(config.clone()) else { return as_it_is(config) };
+    let Ok(own) = serde_json::from_value::<TrainConfig>(config.clone()) else {
+        return as_it_is(config);
+    };
     let usual = TrainConfig::new(own.algorithm, own.preset, EnvConfig::new(&own.env.id)).ok();
     let value = |config: &TrainConfig| serde_json::to_value(config).unwrap_or(Value::Null);
     let (own, usual) = (value(&own), usual.as_ref().map(value));
@@ -84,13 +94,20 @@ fn share_over(run: &Path) -> Option<f64> {
     let episodes = read_episode_lines(&read(&path)?, &path, &mut Vec::new());
     let config = Config::read(&run.join("config.json")).ok()?;
     let over = |episode: &&hasard_report::run::EpisodeResult| {
-        config.constraints.iter().any(|one| episode.cost_of(one).is_some_and(|cost| cost > one.budget))
+        config
+            .constraints
+            .iter()
+            .any(|one| episode.cost_of(one).is_some_and(|cost| cost > one.budget))
     };
-    (!episodes.is_empty()).then(|| episodes.iter().filter(over).count() as f64 / episodes.len() as f64)
+    (!episodes.is_empty())
+        .then(|| episodes.iter().filter(over).count() as f64 / episodes.len() as f64)
 }
 
 /// The settings of some runs, so that their differences show.
-pub(crate) async fn settings(State(shared): State<Arc<Shared>>, Query(query): Query<Chosen>) -> Result<Response, Response> {
+pub(crate) async fn settings(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<Chosen>,
+) -> Result<Response, Response> {
     let ids = query.ids()?;
     let paths = on_catalogue(shared, move |catalogue| {
         ids.into_iter().filter_map(|id| Some((catalogue.path(&id)?, id))).collect::<Vec<_>>()

@@ -35,7 +35,8 @@ impl Stamped {
 
 /// The selected checkpoint by its closing evaluation; without one, only its frames.
 pub(super) fn told(selected: &Selected, config: &Config) -> Value {
-    let mut told = selected.closing.as_ref().map_or_else(|| json!({}), |closing| evaluation(closing, config));
+    let mut told =
+        selected.closing.as_ref().map_or_else(|| json!({}), |closing| evaluation(closing, config));
     told["frames"] = json!(selected.frames);
     told["last"] = selected.last.as_ref().map_or(Value::Null, |last| evaluation(last, config));
     told
@@ -43,7 +44,9 @@ pub(super) fn told(selected: &Selected, config: &Config) -> Value {
 
 /// Return, the cost of each constraint, and how they stand to the budgets.
 fn evaluation(found: &Evaluation, config: &Config) -> Value {
-    let of = |metric: &str| found.get(metric).map(|one| json!({ "mean": one.mean, "half": one.half_width }));
+    let of = |metric: &str| {
+        found.get(metric).map(|one| json!({ "mean": one.mean, "half": one.half_width }))
+    };
     let costs: Vec<Value> = config
         .constraints
         .iter()
@@ -52,7 +55,12 @@ fn evaluation(found: &Evaluation, config: &Config) -> Value {
             json!({ "name": one.name(), "budget": one.budget, "cost": of(&one.metric()), "kept": kept })
         })
         .collect();
-    let all = config.constraints.iter().map(|one| one.kept_by(found.get(&one.metric()))).min().unwrap_or_default();
+    let all = config
+        .constraints
+        .iter()
+        .map(|one| one.kept_by(found.get(&one.metric())))
+        .min()
+        .unwrap_or_default();
     json!({ "episodes": found.episodes, "return": of("return_mean"), "costs": costs, "kept": kept(all) })
 }
 

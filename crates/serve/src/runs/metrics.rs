@@ -3,14 +3,38 @@
 use hasard_learn::runs::metrics_explained::explain;
 use serde_json::{Value, json};
 
-/// Groups in the order in which they are listed, with their numbers in order; one that ends in `*` stands for all that begin so.
+/// Groups in the order in which they are listed, with their numbers in order; one that ends in `*`
+/// stands for all that begin so.
 const GROUPS: [(&str, &[&str]); 9] = [
     (
         "training episodes",
-        &["return_mean", "cost_mean", "length_mean", "return_min", "return_max", "cost_min", "cost_max", "episodes", "level"],
+        &[
+            "return_mean",
+            "cost_mean",
+            "length_mean",
+            "return_min",
+            "return_max",
+            "cost_min",
+            "cost_max",
+            "episodes",
+            "level",
+        ],
     ),
-    ("evaluation", &["eval/return_mean", "eval/cost_mean", "eval/over_budget", "eval/cost_cvar10", "eval/*"]),
-    ("constraints", &["multiplier*", "budget*", "violation_total*", "cost_total", "constraint_costs*", "recovery"]),
+    (
+        "evaluation",
+        &["eval/return_mean", "eval/cost_mean", "eval/over_budget", "eval/cost_cvar10", "eval/*"],
+    ),
+    (
+        "constraints",
+        &[
+            "multiplier*",
+            "budget*",
+            "violation_total*",
+            "cost_total",
+            "constraint_costs*",
+            "recovery",
+        ],
+    ),
     ("cost terms", &["cost/*"]),
     ("task", &["stats/*"]),
     (
@@ -28,8 +52,28 @@ const GROUPS: [(&str, &[&str]); 9] = [
             "exploration_loss",
         ],
     ),
-    ("critics", &["explained_variance", "cost_explained_variance*", "value_loss", "cost_value_loss*", "value"]),
-    ("optimiser", &["loss", "gradient_norm", "learning_rate", "epochs", "projection_epochs", "updates", "policy_lag"]),
+    (
+        "critics",
+        &[
+            "explained_variance",
+            "cost_explained_variance*",
+            "value_loss",
+            "cost_value_loss*",
+            "value",
+        ],
+    ),
+    (
+        "optimiser",
+        &[
+            "loss",
+            "gradient_norm",
+            "learning_rate",
+            "epochs",
+            "projection_epochs",
+            "updates",
+            "policy_lag",
+        ],
+    ),
     ("speed", &["fps", "wall_s", "seconds_waiting", "seconds_learning", "threads"]),
 ];
 
@@ -39,10 +83,9 @@ fn fits(pattern: &str, name: &str) -> bool {
 
 /// Its group and its place within; those of no group come last.
 pub(crate) fn place(name: &str) -> (usize, usize) {
-    let found = GROUPS
-        .iter()
-        .enumerate()
-        .find_map(|(group, (_, patterns))| Some((group, patterns.iter().position(|pattern| fits(pattern, name))?)));
+    let found = GROUPS.iter().enumerate().find_map(|(group, (_, patterns))| {
+        Some((group, patterns.iter().position(|pattern| fits(pattern, name))?))
+    });
     found.unwrap_or((GROUPS.len(), 0))
 }
 
@@ -64,7 +107,8 @@ mod tests {
 
     #[test]
     fn every_number_of_a_row_has_its_group() {
-        for metric in METRICS.iter().filter(|metric| !["frames", "kernels"].contains(&metric.name)) {
+        for metric in METRICS.iter().filter(|metric| !["frames", "kernels"].contains(&metric.name))
+        {
             assert_ne!(listed(metric.name)["group"], "other", "{}", metric.name);
         }
         assert_eq!(listed("multipliers.1")["meaning"], "Multiplier of each constraint.");

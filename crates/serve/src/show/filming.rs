@@ -20,28 +20,48 @@ const LARGEST_FILM: u64 = 256 << 20;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The whole episode that a link of the watch page shows, as MP4.
-pub(crate) async fn film(State(shared): State<Arc<Shared>>, Query(query): Query<WatchQuery>) -> Result<Response, Response> {
+pub(crate) async fn film(
+    State(shared): State<Arc<Shared>>,
+    Query(query): Query<WatchQuery>,
+) -> Result<Response, Response> {
     query.check().map_err(|why| refusal(StatusCode::BAD_REQUEST, &why))?;
-    let performer = performer(&shared, &query).await.map_err(|why| refusal(StatusCode::NOT_FOUND, &why))?;
+    let performer =
+        performer(&shared, &query).await.map_err(|why| refusal(StatusCode::NOT_FOUND, &why))?;
     let Ok(place) = Arc::clone(&shared.long_jobs).try_acquire_owned() else {
-        return Err(refusal(StatusCode::SERVICE_UNAVAILABLE, "films or reports are in the making; ask again in a moment"));
+        return Err(refusal(
+            StatusCode::SERVICE_UNAVAILABLE,
+            "films or reports are in the making; ask again in a moment",
+        ));
     };
     let made = aside(move || {
         let made = filmed(&shared, &query, &performer);
         drop(place);
         made
     });
-    let (name, bytes) = made.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
+    let (name, bytes) =
+        made.await?.map_err(|why| refusal(StatusCode::UNPROCESSABLE_ENTITY, &why))?;
     let disposition = format!("attachment; filename=\"{name}\"");
-    Ok(([(header::CONTENT_TYPE, "video/mp4".to_owned()), (header::CONTENT_DISPOSITION, disposition)], bytes).into_response())
+    Ok((
+        [
+            (header::CONTENT_TYPE, "video/mp4".to_owned()),
+            (header::CONTENT_DISPOSITION, disposition),
+        ],
+        bytes,
+    )
+        .into_response())
 }
 
-fn filmed(shared: &Shared, query: &WatchQuery, performer: &Performer) -> Result<(String, Vec<u8>), String> {
+fn filmed(
+    shared: &Shared,
+    query: &WatchQuery,
+    performer: &Performer,
+) -> Result<(String, Vec<u8>), String> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);
     let mut rehearsal = Rehearsal::new(shared, query, performer)?;
     rehearsal.go_on(PATIENCE, usize::MAX);
     let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-    let out = std::env::temp_dir().join(format!("hasard-serve-watched-{}-{number}.mp4", std::process::id()));
+    let out = std::env::temp_dir()
+        .join(format!("hasard-serve-watched-{}-{number}.mp4", std::process::id()));
     let out = Scratch::new(out);
     let mut stage = rehearsal.stage(shared)?;
     let views = query.views()?;

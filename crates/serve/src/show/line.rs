@@ -1,5 +1,6 @@
-//! The WebSocket of a show. A show draws a frame only while fewer than two are on their way unseen, so that a slow viewer
-//! gets fewer frames and never a queue; what a viewer sends is bounded in size and rate.
+//! The WebSocket of a show. A show draws a frame only while fewer than two are on their way unseen,
+//! so that a slow viewer gets fewer frames and never a queue; what a viewer sends is bounded in
+//! size and rate.
 
 use crate::answer::refusal;
 use crate::server::Shared;
@@ -66,7 +67,8 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The next thing that the viewer asks for, if it comes within a time; `Err` when the viewer is gone.
+    /// The next thing that the viewer asks for, if it comes within a time; `Err` when the viewer is
+    /// gone.
     pub fn ask_within(&mut self, time: Duration) -> Result<Option<Ask>, ()> {
         let ask = if time.is_zero() {
             match self.asks.try_recv() {
@@ -111,7 +113,10 @@ pub(super) fn open(
     show: impl FnOnce(Line) + Send + 'static,
 ) -> Result<Response, Response> {
     let Ok(place) = Arc::clone(&shared.shows).try_acquire_owned() else {
-        return Err(refusal(StatusCode::SERVICE_UNAVAILABLE, "all places are taken; close another page of this server"));
+        return Err(refusal(
+            StatusCode::SERVICE_UNAVAILABLE,
+            "all places are taken; close another page of this server",
+        ));
     };
     let upgrade = upgrade.max_message_size(LARGEST_COMMAND).max_frame_size(LARGEST_COMMAND);
     Ok(upgrade.on_upgrade(async move |socket| {
@@ -177,7 +182,11 @@ enum Next {
 }
 
 /// Whatever comes first.
-async fn next(socket: &mut WebSocket, frames: &mut mpsc::Receiver<Message>, pings: &mut tokio::time::Interval) -> Next {
+async fn next(
+    socket: &mut WebSocket,
+    frames: &mut mpsc::Receiver<Message>,
+    pings: &mut tokio::time::Interval,
+) -> Next {
     let mut receive = std::pin::pin!(socket.recv());
     std::future::poll_fn(|context| {
         use std::task::Poll;

@@ -1,4 +1,5 @@
-//! A world for a viewer. It lives in a thread of its own while the viewer is there, and costs nothing otherwise.
+//! A world for a viewer. It lives in a thread of its own while the viewer is there, and costs
+//! nothing otherwise.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -75,7 +76,11 @@ async fn performer(shared: &Arc<Shared>, query: &WatchQuery) -> Result<Performer
             Ok(Performer::Agent { run, best: false, greedy: query.greedy })
         }
         Some(("episode", name)) => crate::episodes::path(shared, name).map(Performer::Recorded),
-        _ => query.agent.parse().map(Performer::Fixed).map_err(|error: hasard_envs::EnvError| error.to_string()),
+        _ => query
+            .agent
+            .parse()
+            .map(Performer::Fixed)
+            .map_err(|error: hasard_envs::EnvError| error.to_string()),
     }
 }
 

@@ -39,16 +39,29 @@ impl Game {
     fn begin(shared: &Shared, query: &PlayQuery) -> Result<Game, String> {
         let stage = shared.stages.stage(&query.env, &query.options())?;
         let folder = shared.episodes.clone();
-        let views = Views::new(&stage, query.size(), &[ViewKind::Colour]).map_err(|error| error.to_string())?;
+        let views = Views::new(&stage, query.size(), &[ViewKind::Colour])
+            .map_err(|error| error.to_string())?;
         let controls = Controls::default();
-        let mut game = Game { folder, seed: query.seed, stage, views, controls, recorder: None, paused: true, fresh: true };
+        let mut game = Game {
+            folder,
+            seed: query.seed,
+            stage,
+            views,
+            controls,
+            recorder: None,
+            paused: true,
+            fresh: true,
+        };
         game.restart()?;
         Ok(game)
     }
 
     fn restart(&mut self) -> Result<(), String> {
         self.stage.reset(self.seed);
-        self.recorder = Some(Recorder::of(self.stage.env(), self.seed, "human").map_err(|error| error.to_string())?);
+        self.recorder = Some(
+            Recorder::of(self.stage.env(), self.seed, "human")
+                .map_err(|error| error.to_string())?,
+        );
         self.controls.release_all();
         self.fresh = true;
         Ok(())
@@ -58,8 +71,13 @@ impl Game {
     fn run(&mut self, line: &mut Line) -> Result<(), Option<String>> {
         let gone = |()| None;
         let space = self.stage.env().action_space();
-        let buttons: Vec<&str> = space.groups.iter().flat_map(|group| group.buttons.iter().map(|(name, _)| *name)).collect();
-        line.say(&json!({ "kind": "scene", "buttons": buttons, "deltas": space.deltas.len() })).map_err(gone)?;
+        let buttons: Vec<&str> = space
+            .groups
+            .iter()
+            .flat_map(|group| group.buttons.iter().map(|(name, _)| *name))
+            .collect();
+        line.say(&json!({ "kind": "scene", "buttons": buttons, "deltas": space.deltas.len() }))
+            .map_err(gone)?;
         let mut next_tic = Instant::now();
         loop {
             let time = match (self.fresh && line.free(), self.paused || self.stage.ended()) {
@@ -92,8 +110,12 @@ impl Game {
         match ask {
             Ask::Pause => self.paused = true,
             Ask::Go => self.paused = false,
-            Ask::Press { key } => Key::of_button(key).into_iter().for_each(|key| self.controls.press(key)),
-            Ask::Release { key } => Key::of_button(key).into_iter().for_each(|key| self.controls.release(key)),
+            Ask::Press { key } => {
+                Key::of_button(key).into_iter().for_each(|key| self.controls.press(key))
+            }
+            Ask::Release { key } => {
+                Key::of_button(key).into_iter().for_each(|key| self.controls.release(key))
+            }
             Ask::Mouse { right, down } if right.is_finite() && down.is_finite() => {
                 self.controls.move_mouse(right.clamp(-2000.0, 2000.0), down.clamp(-2000.0, 2000.0));
             }
@@ -113,7 +135,8 @@ impl Game {
         let failed = |error: hasard_play::PlayError| Some(error.to_string());
         if self.stage.wants_action() {
             let env = self.stage.env();
-            let (actions, deltas) = self.controls.action(env.action_space(), env.options().frame_skip);
+            let (actions, deltas) =
+                self.controls.action(env.action_space(), env.options().frame_skip);
             self.stage.act(&actions, &deltas).map_err(failed)?;
             if let Some(recorder) = &mut self.recorder {
                 recorder.push(&actions, &deltas).map_err(failed)?;
@@ -123,7 +146,8 @@ impl Game {
         if self.stage.tic().is_some_and(|step| step.ended())
             && let Some(recorder) = self.recorder.take()
         {
-            let path = keep_episode(&self.folder, self.stage.env(), self.seed, recorder).map_err(failed)?;
+            let path = keep_episode(&self.folder, self.stage.env(), self.seed, recorder)
+                .map_err(failed)?;
             let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
             line.say(&json!({ "kind": "kept", "name": name })).map_err(|()| None)?;
         }

@@ -1,4 +1,5 @@
-//! What an address asks for. It holds the whole state of a show, so that a copied link shows the same moment.
+//! What an address asks for. It holds the whole state of a show, so that a copied link shows the
+//! same moment.
 
 use hasard_engine::render::FrameSize;
 use hasard_envs::{EnvError, EnvId, EnvOptions, RuleSet};
@@ -83,11 +84,20 @@ impl WatchQuery {
     }
 
     fn rules(&self) -> Result<RuleSet, String> {
-        if self.rules.is_empty() { Ok(RuleSet::Paper) } else { self.rules.parse().map_err(|error: EnvError| error.to_string()) }
+        if self.rules.is_empty() {
+            Ok(RuleSet::Paper)
+        } else {
+            self.rules.parse().map_err(|error: EnvError| error.to_string())
+        }
     }
 
     pub fn options(&self) -> EnvOptions {
-        EnvOptions { rules: self.rules().unwrap_or_default(), hard: self.hard, full_actions: self.full, ..EnvOptions::default() }
+        EnvOptions {
+            rules: self.rules().unwrap_or_default(),
+            hard: self.hard,
+            full_actions: self.full,
+            ..EnvOptions::default()
+        }
     }
 
     /// The player's view, then those beside it.
@@ -125,9 +135,13 @@ impl PlayQuery {
 }
 
 fn size(text: &str) -> Result<FrameSize, String> {
-    let sides = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    let sides = text
+        .split_once('x')
+        .and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     match sides {
-        Some((width, height)) if (64..=LARGEST.0).contains(&width) && (48..=LARGEST.1).contains(&height) => {
+        Some((width, height))
+            if (64..=LARGEST.0).contains(&width) && (48..=LARGEST.1).contains(&height) =>
+        {
             Ok(FrameSize { width, height })
         }
         _ => Err(format!("size is WIDTHxHEIGHT from 64x48 to {}x{}", LARGEST.0, LARGEST.1)),

@@ -1,5 +1,6 @@
-//! An episode acted out once, without pictures for people: what every step brought is known before it is shown, so that
-//! the time line tells of harm to come, and every step can be jumped to by acting the same again.
+//! An episode acted out once, without pictures for people: what every step brought is known before
+//! it is shown, so that the time line tells of harm to come, and every step can be jumped to by
+//! acting the same again.
 
 use super::Performer;
 use super::query::WatchQuery;
@@ -47,29 +48,34 @@ pub(super) struct Rehearsal {
 
 impl Rehearsal {
     /// Sets the scene.
-    pub fn new(shared: &Shared, query: &WatchQuery, performer: &Performer) -> Result<Rehearsal, String> {
+    pub fn new(
+        shared: &Shared,
+        query: &WatchQuery,
+        performer: &Performer,
+    ) -> Result<Rehearsal, String> {
         let (id, options, seed) = match performer {
             Performer::Fixed(_) => (query.env.clone(), query.options(), query.seed),
             Performer::Agent { run, .. } => {
                 let (trained, options) = shared.agents.options(run)?;
                 let id = if query.env.is_empty() { trained } else { query.env.clone() };
-                let (hard, trained_with) = (query.hard || options.hard, (options.rules, options.hard));
+                let (hard, trained_with) =
+                    (query.hard || options.hard, (options.rules, options.hard));
                 (id, EnvOptions { hard, actions_of: Some(trained_with), ..options }, query.seed)
             }
             Performer::Recorded(path) => {
                 let file = EpisodeFile::read(path).map_err(|error| error.to_string())?;
                 let header = file.header();
-                let options =
-                    options_from_names(&header.options, &EnvOptions::default(), path).map_err(|error| error.to_string())?;
+                let options = options_from_names(&header.options, &EnvOptions::default(), path)
+                    .map_err(|error| error.to_string())?;
                 (header.env.clone(), options, header.seed)
             }
         };
         let mut env = shared.stages.stage(&id, &options)?.env().sibling();
         env.reset(seed);
         let actor = match performer {
-            Performer::Fixed(policy) => {
-                Actor::Fixed(Box::new(PolicyRun::new(*policy, &env, seed).map_err(|error| error.to_string())?))
-            }
+            Performer::Fixed(policy) => Actor::Fixed(Box::new(
+                PolicyRun::new(*policy, &env, seed).map_err(|error| error.to_string())?,
+            )),
             Performer::Agent { run, best, greedy } => {
                 let choice = if *greedy { Choice::Greedy } else { Choice::Sampled };
                 let mut agent = shared.agents.load(run, *best, choice, &env)?;
@@ -77,7 +83,9 @@ impl Rehearsal {
                 let observation = vec![0; env.observation_shape().iter().product()];
                 Actor::Agent(Box::new(agent), observation)
             }
-            Performer::Recorded(path) => Actor::Recorded(Box::new(recorded(path, env.action_space())?)),
+            Performer::Recorded(path) => {
+                Actor::Recorded(Box::new(recorded(path, env.action_space())?))
+            }
         };
         Ok(Rehearsal { env, actor, facts: Vec::new(), over: false, options, id, seed })
     }
@@ -161,7 +169,9 @@ impl Rehearsal {
             if fact.reward > 0.0 {
                 events.push(json!({ "step": step, "kind": "reward", "what": "reward", "size": fact.reward }));
             }
-            for (term, size) in self.env.cost_terms().iter().zip(&fact.terms).filter(|(_, size)| **size > 0.0) {
+            for (term, size) in
+                self.env.cost_terms().iter().zip(&fact.terms).filter(|(_, size)| **size > 0.0)
+            {
                 events.push(json!({ "step": step, "kind": kind(term.counted), "what": term.name, "size": size }));
             }
         }
@@ -179,8 +189,11 @@ impl Rehearsal {
     /// What does not change in the course of the episode.
     pub fn scene(&self) -> Value {
         let space = self.env.action_space();
-        let groups: Vec<Vec<&str>> =
-            space.groups.iter().map(|group| group.buttons.iter().map(|(name, _)| *name).collect()).collect();
+        let groups: Vec<Vec<&str>> = space
+            .groups
+            .iter()
+            .map(|group| group.buttons.iter().map(|(name, _)| *name).collect())
+            .collect();
         let budget = self.env.id().safety_budget(self.options.rules, self.options.hard);
         json!({
             "kind": "scene", "env": self.id, "seed": self.seed, "budget": budget, "groups": groups,
@@ -189,7 +202,8 @@ impl Rehearsal {
         })
     }
 
-    /// A step's numbers; `step` counts from 1, 0 is the beginning. What the agent thinks is of the step to come.
+    /// A step's numbers; `step` counts from 1, 0 is the beginning. What the agent thinks is of the
+    /// step to come.
     pub fn moment(&self, step: usize) -> Value {
         let fact = step.checked_sub(1).and_then(|at| self.facts.get(at));
         let mut terms = vec![0.0; self.env.cost_terms().len()];
@@ -216,14 +230,19 @@ impl Rehearsal {
 
 fn recorded(path: &Path, space: &ActionSpace) -> Result<EpisodeFile, String> {
     let file = EpisodeFile::read(path).map_err(|error| error.to_string())?;
-    file.check_actions(&space.sizes(), space.deltas.len(), path).map_err(|error| error.to_string())?;
+    file.check_actions(&space.sizes(), space.deltas.len(), path)
+        .map_err(|error| error.to_string())?;
     Ok(file)
 }
 
 /// The choice in each group that comes nearest to buttons.
 fn pressed(space: &ActionSpace, command: Command) -> Vec<u8> {
     let choice = |group: &hasard_envs::ActionGroup| {
-        group.buttons.iter().position(|&(_, button)| command.buttons.any(button)).map_or(0, |at| at as u8 + 1)
+        group
+            .buttons
+            .iter()
+            .position(|&(_, button)| command.buttons.any(button))
+            .map_or(0, |at| at as u8 + 1)
     };
     space.groups.iter().map(choice).collect()
 }

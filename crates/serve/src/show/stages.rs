@@ -1,5 +1,6 @@
-//! Stages that were built lately. Building one takes a third of a second and 10 MB: its map, its pictures, its tables. All
-//! viewers of an environment share those and own nothing but their worlds, so that many viewers are no heavier than few.
+//! Stages that were built lately. Building one takes a third of a second and 10 MB: its map, its
+//! pictures, its tables. All viewers of an environment share those and own nothing but their
+//! worlds, so that many viewers are no heavier than few.
 
 use hasard_envs::EnvOptions;
 use hasard_play::Stage;
@@ -23,7 +24,8 @@ impl Stages {
             return built();
         }
         let kind = format!("{id} {options:?}");
-        // Held while a stage is built: many who come at once for the same wait for one of them to build it.
+        // Held while a stage is built: many who come at once for the same wait for one of them to
+        // build it.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let used = match kept.iter().position(|(known, _)| *known == kind) {
             Some(at) => kept.remove(at),
@@ -46,7 +48,14 @@ mod tests {
     fn kinds_are_kept_apart_and_their_number_is_bounded() {
         let stages = Stages::default();
         let hard = EnvOptions { hard: true, ..EnvOptions::default() };
-        assert!(!stages.stage("RemedyRushLevel1-v0", &EnvOptions::default()).unwrap().env().options().hard);
+        assert!(
+            !stages
+                .stage("RemedyRushLevel1-v0", &EnvOptions::default())
+                .unwrap()
+                .env()
+                .options()
+                .hard
+        );
         assert!(stages.stage("RemedyRushLevel1-v0", &hard).unwrap().env().options().hard);
         assert!(stages.stage("RemedyRushLevel1-v0", &hard).unwrap().env().options().hard);
         assert_eq!(stages.kept.lock().unwrap().len(), 2);

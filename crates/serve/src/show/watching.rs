@@ -16,7 +16,8 @@ const TICS: f64 = 35.0;
 const AHEAD: Duration = Duration::from_millis(10);
 /// Steps between two tellings of what is known ahead.
 const TELL_EVERY: usize = 25;
-/// Steps between two moments that are kept to come back to: an episode of 525 has 21, and a jump acts out 25 steps at most.
+/// Steps between two moments that are kept to come back to: an episode of 525 has 21, and a jump
+/// acts out 25 steps at most.
 const KEEP_EVERY: usize = 25;
 /// Moments that are kept at most, whatever an episode's length.
 const MOST_KEPT: usize = 64;
@@ -52,7 +53,11 @@ struct Show<'a> {
 }
 
 impl<'a> Show<'a> {
-    fn begin(shared: &'a Shared, query: &WatchQuery, performer: Performer) -> Result<Show<'a>, String> {
+    fn begin(
+        shared: &'a Shared,
+        query: &WatchQuery,
+        performer: Performer,
+    ) -> Result<Show<'a>, String> {
         let query = query.clone();
         let rehearsal = Rehearsal::new(shared, &query, &performer)?;
         let stage = rehearsal.stage(shared)?;
@@ -77,7 +82,8 @@ impl<'a> Show<'a> {
         Ok(show)
     }
 
-    /// The episode of the next seed. The agent of a run is loaded anew: its newest checkpoint may be a newer one.
+    /// The episode of the next seed. The agent of a run is loaded anew: its newest checkpoint may
+    /// be a newer one.
     fn next_episode(&mut self, line: &mut Line) -> Result<(), ()> {
         if let Performer::Recorded(_) = self.performer {
             self.jump(0);
@@ -104,7 +110,8 @@ impl<'a> Show<'a> {
         let mut next_tic = Instant::now();
         loop {
             let time = if self.paused || self.ended() {
-                // Nothing moves: the thread sleeps until somebody asks, or acts ahead if there is something left.
+                // Nothing moves: the thread sleeps until somebody asks, or acts ahead if there is
+                // something left.
                 if self.told_over { Duration::from_secs(60) } else { Duration::from_millis(1) }
             } else {
                 next_tic.saturating_duration_since(Instant::now())
@@ -151,7 +158,9 @@ impl<'a> Show<'a> {
                 self.paused = true;
                 self.tic();
             }
-            Ask::Speed { value } => self.speed = if value.is_finite() { value.clamp(0.1, 16.0) } else { 1.0 },
+            Ask::Speed { value } => {
+                self.speed = if value.is_finite() { value.clamp(0.1, 16.0) } else { 1.0 }
+            }
             Ask::Jump { step } => self.jump(*step as usize),
             _ => {}
         }
@@ -163,7 +172,10 @@ impl<'a> Show<'a> {
     }
 
     fn ended(&self) -> bool {
-        self.stage.ended() || self.rehearsal.over() && self.stage.wants_action() && self.step() >= self.rehearsal.steps()
+        self.stage.ended()
+            || self.rehearsal.over()
+                && self.stage.wants_action()
+                && self.step() >= self.rehearsal.steps()
     }
 
     fn tic(&mut self) {
@@ -188,11 +200,14 @@ impl<'a> Show<'a> {
         self.fresh = true;
     }
 
-    /// Goes to a step: back to the last moment kept before it, and from there by acting the same again.
+    /// Goes to a step: back to the last moment kept before it, and from there by acting the same
+    /// again.
     fn jump(&mut self, to: usize) {
         let from = self.kept.iter().rev().find(|(step, _)| *step <= to);
         // From here on, if this is nearer.
-        let near = self.stage.wants_action() && self.step() <= to && from.is_none_or(|(step, _)| *step <= self.step());
+        let near = self.stage.wants_action()
+            && self.step() <= to
+            && from.is_none_or(|(step, _)| *step <= self.step());
         if !near && from.is_none_or(|(_, moment)| self.stage.come_back(moment).is_err()) {
             self.stage.reset(self.rehearsal.seed);
         }

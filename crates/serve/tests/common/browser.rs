@@ -18,31 +18,46 @@ impl Browser {
     /// Opens a window, or says why there is none.
     pub fn open(width: u32, height: u32, dark: bool) -> Option<Browser> {
         if Command::new("chromedriver").arg("--version").stdout(Stdio::null()).status().is_err() {
-            eprintln!("skipped: no chromedriver on this machine (apt-get install chromium chromium-driver)");
+            eprintln!(
+                "skipped: no chromedriver on this machine (apt-get install chromium chromium-driver)"
+            );
             return None;
         }
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let mut driver = Command::new("chromedriver");
-        let driver = driver.arg(format!("--port={port}")).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let driver = driver
+            .arg(format!("--port={port}"))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
         let mut browser = Browser { driver, port, session: String::new() };
         let begun = Instant::now();
         while TcpStream::connect(("127.0.0.1", port)).is_err() {
             assert!(begun.elapsed() < Duration::from_secs(30), "chromedriver does not answer");
             std::thread::sleep(Duration::from_millis(50));
         }
-        let mut args =
-            vec!["--headless=new".to_owned(), "--no-sandbox".into(), "--disable-gpu".into(), "--disable-dev-shm-usage".into()];
+        let mut args = vec![
+            "--headless=new".to_owned(),
+            "--no-sandbox".into(),
+            "--disable-gpu".into(),
+            "--disable-dev-shm-usage".into(),
+        ];
         args.push(format!("--window-size={width},{height}"));
         if dark {
             args.push("--force-prefers-color-scheme=dark".into());
             args.push("--blink-settings=preferredColorScheme=0".into());
         }
         let options = json!({ "args": args });
-        let wanted = json!({ "goog:chromeOptions": options, "goog:loggingPrefs": { "browser": "ALL" } });
-        let made = browser.ask("POST", "/session", &json!({ "capabilities": { "alwaysMatch": wanted } }));
-        browser.session = made["sessionId"].as_str().unwrap_or_else(|| panic!("no session: {made}")).to_owned();
+        let wanted =
+            json!({ "goog:chromeOptions": options, "goog:loggingPrefs": { "browser": "ALL" } });
+        let made =
+            browser.ask("POST", "/session", &json!({ "capabilities": { "alwaysMatch": wanted } }));
+        browser.session =
+            made["sessionId"].as_str().unwrap_or_else(|| panic!("no session: {made}")).to_owned();
         // Headless windows have a least width; the emulation does not.
-        let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        let metrics =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         browser.chrome("Emulation.setDeviceMetricsOverride", &metrics);
         let scheme = json!([{ "name": "prefers-color-scheme", "value": if dark { "dark" } else { "light" } }]);
         browser.chrome("Emulation.setEmulatedMedia", &json!({ "features": scheme }));
@@ -59,9 +74,11 @@ impl Browser {
             body.len()
         );
         stream.write_all((head + &body).as_bytes()).unwrap();
-        // The driver keeps connections open whatever it is asked: the length in its head ends the answer.
+        // The driver keeps connections open whatever it is asked: the length in its head ends the
+        // answer.
         let (mut bytes, mut part) = (Vec::new(), [0; 1 << 16]);
-        let head_end = |bytes: &[u8]| bytes.windows(4).position(|four| four == b"\r\n\r\n").map(|at| at + 4);
+        let head_end =
+            |bytes: &[u8]| bytes.windows(4).position(|four| four == b"\r\n\r\n").map(|at| at + 4);
         let length = |head: &[u8]| -> Option<usize> {
             let head = String::from_utf8_lossy(head).to_ascii_lowercase();
             head.split("content-length:").nth(1)?.split("\r\n").next()?.trim().parse().ok()
@@ -70,7 +87,13 @@ impl Browser {
             let read = stream.read(&mut part).unwrap_or(0);
             bytes.extend(&part[..read]);
             match head_end(&bytes) {
-                Some(at) if read == 0 || length(&bytes[..at]).is_some_and(|length| bytes.len() >= at + length) => break at,
+                Some(at)
+                    if read == 0
+                        || length(&bytes[..at])
+                            .is_some_and(|length| bytes.len() >= at + length) =>
+                {
+                    break at;
+                }
                 None if read == 0 => break 0,
                 _ => {}
             }
@@ -113,7 +136,11 @@ impl Browser {
         let begun = Instant::now();
         while self.script(&format!("return Boolean({text})")) != json!(true) {
             let told = "return document.body.innerText";
-            assert!(begun.elapsed() < time, "not in {time:?}: {text}; the page says {}", self.script(told));
+            assert!(
+                begun.elapsed() < time,
+                "not in {time:?}: {text}; the page says {}",
+                self.script(told)
+            );
             std::thread::sleep(Duration::from_millis(100));
         }
     }
@@ -138,8 +165,13 @@ impl Browser {
     #[allow(dead_code, reason = "each test file uses some of it")]
     pub fn keys(&self, keys: &[&str], down: bool) {
         let kind = if down { "keyDown" } else { "keyUp" };
-        let actions: Vec<Value> = keys.iter().map(|key| json!({ "type": kind, "value": key })).collect();
-        self.here("POST", "/actions", &json!({ "actions": [{ "type": "key", "id": "keys", "actions": actions }] }));
+        let actions: Vec<Value> =
+            keys.iter().map(|key| json!({ "type": kind, "value": key })).collect();
+        self.here(
+            "POST",
+            "/actions",
+            &json!({ "actions": [{ "type": "key", "id": "keys", "actions": actions }] }),
+        );
     }
 
     /// As on a tablet: fingers, and nothing that hovers.
@@ -149,18 +181,26 @@ impl Browser {
         self.here("POST", "/goog/cdp/execute", &fingers);
     }
 
-    /// Moves a pointer (`mouse` or `touch`) to the middle of the element that `selector` finds, or by some pixels from where it is, and
-    /// presses or releases it there.
+    /// Moves a pointer (`mouse` or `touch`) to the middle of the element that `selector` finds, or
+    /// by some pixels from where it is, and presses or releases it there.
     #[allow(dead_code, reason = "each test file uses some of it")]
     pub fn pointer(&self, kind: &str, to: Result<&str, [i32; 2]>, press: Option<bool>) {
         let mut actions = vec![match to {
             Ok(selector) => {
-                let found = self.here("POST", "/element", &json!({ "using": "css selector", "value": selector }));
+                let found = self.here(
+                    "POST",
+                    "/element",
+                    &json!({ "using": "css selector", "value": selector }),
+                );
                 json!({ "type": "pointerMove", "duration": 0, "origin": found, "x": 0, "y": 0 })
             }
-            Err([x, y]) => json!({ "type": "pointerMove", "duration": 100, "origin": "pointer", "x": x, "y": y }),
+            Err([x, y]) => {
+                json!({ "type": "pointerMove", "duration": 100, "origin": "pointer", "x": x, "y": y })
+            }
         }];
-        actions.extend(press.map(|down| json!({ "type": if down { "pointerDown" } else { "pointerUp" }, "button": 0 })));
+        actions.extend(press.map(
+            |down| json!({ "type": if down { "pointerDown" } else { "pointerUp" }, "button": 0 }),
+        ));
         let pointer = json!({ "type": "pointer", "id": kind, "parameters": { "pointerType": kind }, "actions": actions });
         self.here("POST", "/actions", &json!({ "actions": [pointer] }));
     }
@@ -169,14 +209,21 @@ impl Browser {
     pub fn errors(&self) -> Vec<String> {
         let log = self.here("POST", "/se/log", &json!({ "type": "browser" }));
         let lines = log.as_array().cloned().unwrap_or_default();
-        lines.iter().filter(|line| line["level"] == "SEVERE").map(|line| line["message"].to_string()).collect()
+        lines
+            .iter()
+            .filter(|line| line["level"] == "SEVERE")
+            .map(|line| line["message"].to_string())
+            .collect()
     }
 
     /// Keeps a picture of the window where `HASARD_KEEP_PICTURES` says.
     pub fn photograph(&self, name: &str) {
-        let Some(place) = std::env::var_os("HASARD_KEEP_PICTURES").map(PathBuf::from) else { return };
+        let Some(place) = std::env::var_os("HASARD_KEEP_PICTURES").map(PathBuf::from) else {
+            return;
+        };
         let picture = self.here("GET", "/screenshot", &Value::Null);
-        std::fs::write(place.join(format!("{name}.png")), base64(picture.as_str().unwrap())).unwrap();
+        std::fs::write(place.join(format!("{name}.png")), base64(picture.as_str().unwrap()))
+            .unwrap();
     }
 }
 

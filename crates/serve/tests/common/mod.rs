@@ -69,8 +69,9 @@ pub fn write_run(folder: &Path, name: &str, rows: u32) {
 pub fn write_seed(folder: &Path, name: &str, seed: u32, rows: u32) {
     let run = folder.join("runs").join(name);
     std::fs::create_dir_all(&run).unwrap();
-    let config =
-        format!(r#"{{"algorithm":"PPOLag","env":{{"id":"RemedyRushLevel1-v0","rules":"paper"}},"seed":{seed},"frames":100000}}"#);
+    let config = format!(
+        r#"{{"algorithm":"PPOLag","env":{{"id":"RemedyRushLevel1-v0","rules":"paper"}},"seed":{seed},"frames":100000}}"#
+    );
     std::fs::write(run.join("config.json"), config).unwrap();
     let row = |k: u32| {
         let (frames, cost) = (k * 100, 9.0 - f64::from(k) * 0.01);
@@ -89,7 +90,11 @@ pub fn write_heatmaps(folder: &Path, name: &str, moments: &[u32]) {
             "{{\"frames\":{frames},\"columns\":12,\"rows\":12,\"extent\":[0,0,768,768],\"episodes\":60,\"steps\":{steps:?}}}\n"
         )
     };
-    std::fs::write(folder.join("runs").join(name).join("heatmaps.jsonl"), moments.iter().map(row).collect::<String>()).unwrap();
+    std::fs::write(
+        folder.join("runs").join(name).join("heatmaps.jsonl"),
+        moments.iter().map(row).collect::<String>(),
+    )
+    .unwrap();
 }
 
 /// The answer to a request as it is, status line and all.
@@ -104,7 +109,10 @@ pub fn raw(address: SocketAddr, request: &str) -> String {
 
 /// The answer to a plain request.
 pub fn get(address: SocketAddr, path: &str, headers: &str) -> String {
-    raw(address, &format!("GET {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n{headers}\r\n"))
+    raw(
+        address,
+        &format!("GET {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n{headers}\r\n"),
+    )
 }
 
 /// The status of an answer.

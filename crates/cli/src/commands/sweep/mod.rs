@@ -65,10 +65,12 @@ fn execute(args: &SweepArgs, sweep: &Sweep, jobs: &[Job], rate: Option<f64>) -> 
     // The Python package names its script: there this process is the interpreter.
     let program = match std::env::var_os("HASARD_PROGRAM") {
         Some(program) => program.into(),
-        None => std::env::current_exe().map_err(|error| Failure::bad(format!("this program's own path: {error}")))?,
+        None => std::env::current_exe()
+            .map_err(|error| Failure::bad(format!("this program's own path: {error}")))?,
     };
     interrupt::behave(Manner::Parent);
-    // A reader who goes away does not stop the runs; lines that are lost otherwise make the sweep fail once the runs are done.
+    // A reader who goes away does not stop the runs; lines that are lost otherwise make the sweep
+    // fail once the runs are done.
     let lost = Mutex::new(None);
     let progress = Mutex::new(Progress::new(jobs, sweep.parallel, rate));
     let stop = Stop { soon: &interrupt::STOP, now: &interrupt::GIVE_UP };
@@ -88,7 +90,10 @@ fn execute(args: &SweepArgs, sweep: &Sweep, jobs: &[Job], rate: Option<f64>) -> 
     interrupt::check()?;
     match summary.failed.len() {
         0 => Ok(()),
-        n => Err(Failure::Negative(format!("{n} of {} runs failed; run the same command again to resume them", jobs.len()))),
+        n => Err(Failure::Negative(format!(
+            "{n} of {} runs failed; run the same command again to resume them",
+            jobs.len()
+        ))),
     }
 }
 
@@ -111,7 +116,9 @@ fn change(sweep: &mut Sweep, args: &SweepArgs) -> Result<(), Failure> {
         *algorithm = own_name(algorithm)?;
     }
     if !args.algos.is_empty() {
-        sweep.restrict_algorithms(&args.algos.iter().map(own_name).collect::<Result<Vec<_>, Failure>>()?);
+        sweep.restrict_algorithms(
+            &args.algos.iter().map(own_name).collect::<Result<Vec<_>, Failure>>()?,
+        );
     }
     if !args.scenarios.is_empty() {
         sweep.restrict_scenarios(&args.scenarios);
@@ -146,11 +153,17 @@ fn change(sweep: &mut Sweep, args: &SweepArgs) -> Result<(), Failure> {
 
 /// Seeds from words such as `3` and `11-15`.
 fn seeds(words: &[String]) -> Result<Vec<u64>, Failure> {
-    let wrong = |word: &str| Failure::bad(format!("--seeds {word}: give whole numbers from 0 or ranges, such as 1,2,3 or 11-15"));
+    let wrong = |word: &str| {
+        Failure::bad(format!(
+            "--seeds {word}: give whole numbers from 0 or ranges, such as 1,2,3 or 11-15"
+        ))
+    };
     let mut seeds = Vec::new();
     for word in words {
         let (first, last) = word.split_once('-').unwrap_or((word, word));
-        let (Ok(first), Ok(last)) = (first.parse::<u64>(), last.parse::<u64>()) else { return Err(wrong(word)) };
+        let (Ok(first), Ok(last)) = (first.parse::<u64>(), last.parse::<u64>()) else {
+            return Err(wrong(word));
+        };
         if last < first || last - first >= 100_000 {
             return Err(wrong(word));
         }
@@ -168,7 +181,10 @@ fn settings(jobs: &[Job]) -> Result<Vec<TrainConfig>, Failure> {
 fn list(args: &SweepArgs, pairs: &[(Job, TrainConfig)], parallel: usize) -> Outcome {
     for (job, _) in pairs {
         if args.json {
-            say!("{}", json!({ "directory": job.directory.display().to_string(), "command": job.command_line("hasard") }));
+            say!(
+                "{}",
+                json!({ "directory": job.directory.display().to_string(), "command": job.command_line("hasard") })
+            );
         } else {
             say!("{}", job.command_line("hasard"));
         }
@@ -182,14 +198,21 @@ fn list(args: &SweepArgs, pairs: &[(Job, TrainConfig)], parallel: usize) -> Outc
 
 /// Says how the sweep went.
 fn end(as_json: bool, summary: &Summary, elapsed: &str) -> Outcome {
-    let (finished, skipped, stopped, failed) = (summary.finished, summary.skipped, summary.stopped, summary.failed.len());
+    let (finished, skipped, stopped, failed) =
+        (summary.finished, summary.skipped, summary.stopped, summary.failed.len());
     if as_json {
         let counts = json!({ "skipped": skipped, "finished": finished, "stopped": stopped, "failed": failed });
         say!("{}", json!({ "summary": counts }));
         return Ok(());
     }
-    let stopped = if stopped > 0 { format!(", {stopped} stopped: the same command goes on") } else { String::new() };
-    say!("{finished} finished, {skipped} had been finished before, {failed} failed{stopped}, in {elapsed}");
+    let stopped = if stopped > 0 {
+        format!(", {stopped} stopped: the same command goes on")
+    } else {
+        String::new()
+    };
+    say!(
+        "{finished} finished, {skipped} had been finished before, {failed} failed{stopped}, in {elapsed}"
+    );
     Ok(())
 }
 
@@ -204,16 +227,24 @@ fn description(what: &OsStr) -> Result<Described, Failure> {
     let path = Path::new(what);
     let what = what.to_string_lossy();
     if path.extension().is_none_or(|ending| ending != "toml") && !path.is_file() {
-        return Ok(Described { sweep: paper::experiment(&what).map_err(Failure::bad)?, chooses_frames: false });
+        return Ok(Described {
+            sweep: paper::experiment(&what).map_err(Failure::bad)?,
+            chooses_frames: false,
+        });
     }
     let bytes = hasard_media::files::read_limited(path, 1 << 20).map_err(Failure::bad)?;
-    let text = String::from_utf8(bytes).map_err(|_| Failure::bad(format!("{what}: not text; write a TOML file")))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Failure::bad(format!("{what}: not text; write a TOML file")))?;
     let wrong = |error: String| Failure::bad(format!("{what}: {error}"));
-    Ok(Described { sweep: Sweep::parse(&text).map_err(wrong)?, chooses_frames: Sweep::chooses_frames(&text) })
+    Ok(Described {
+        sweep: Sweep::parse(&text).map_err(wrong)?,
+        chooses_frames: Sweep::chooses_frames(&text),
+    })
 }
 
 fn write(as_json: bool, index: usize, job: &Job, event: &Event, progress: &Progress) -> Outcome {
-    let outcome = matches!(event, Event::Finished(_)).then(|| progress::RunResult::of(job)).flatten();
+    let outcome =
+        matches!(event, Event::Finished(_)).then(|| progress::RunResult::of(job)).flatten();
     let line = progress.line(job, event, outcome.as_ref());
     if !as_json {
         if let Some(line) = line {

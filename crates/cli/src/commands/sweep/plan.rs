@@ -10,7 +10,8 @@ use hasard_sweep::{Job, State};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Seconds of measuring, shared by the kinds of runs; and most kinds that are measured, evenly chosen.
+/// Seconds of measuring, shared by the kinds of runs; and most kinds that are measured, evenly
+/// chosen.
 const SECONDS: f64 = 6.0;
 const MOST_KINDS: usize = 6;
 
@@ -41,13 +42,23 @@ fn kind(config: &TrainConfig) -> String {
     let (env, network) = (&config.env, &config.network);
     format!(
         "{} {} {} {:?} {} {:?} {:?}",
-        config.algorithm, config.preset, env.observation, env.size, env.full_actions, network.convolutions, network.dense
+        config.algorithm,
+        config.preset,
+        env.observation,
+        env.size,
+        env.full_actions,
+        network.convolutions,
+        network.dense
     )
 }
 
 impl Plan {
     /// Counts what is to do, and measures for some seconds how fast it goes when `measures`.
-    pub fn of(jobs: &[(Job, TrainConfig)], parallel: usize, measures: bool) -> Result<Plan, Failure> {
+    pub fn of(
+        jobs: &[(Job, TrainConfig)],
+        parallel: usize,
+        measures: bool,
+    ) -> Result<Plan, Failure> {
         let cores = crate::settings::cores();
         let at_once = parallel.clamp(1, jobs.len().max(1));
         let threads = (cores / at_once).max(1);
@@ -80,16 +91,21 @@ impl Plan {
             let make = |env: &EnvConfig, worlds| VecEnv::new(&env.id, &options, worlds);
             let kernels = Simd::chosen().map_err(Failure::bad)?;
             let seconds = SECONDS / measured as f64;
-            let loops = measure(kernels, &config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
+            let loops =
+                measure(kernels, &config, &make, 1, seconds, &mut |_| {}).map_err(Failure::bad)?;
             rates.insert(name.clone(), loops.steps_per_second * f64::from(config.env.frame_skip));
             sizes.insert(name.clone(), loops.checkpoint_bytes * (config.reporting.keep as u64 + 1));
         }
         let mean = rates.values().sum::<f64>() / rates.len() as f64;
         let size = sizes.values().sum::<u64>() / sizes.len() as u64;
-        let seconds: f64 = kinds.iter().map(|(name, (_, frames))| *frames as f64 / rates.get(name).unwrap_or(&mean)).sum();
+        let seconds: f64 = kinds
+            .iter()
+            .map(|(name, (_, frames))| *frames as f64 / rates.get(name).unwrap_or(&mean))
+            .sum();
         plan.rate = Some(mean);
         plan.hours = Some(seconds / at_once.min(cores) as f64 / 3600.0);
-        plan.bytes = Some(jobs.iter().map(|(_, config)| sizes.get(&kind(config)).unwrap_or(&size)).sum());
+        plan.bytes =
+            Some(jobs.iter().map(|(_, config)| sizes.get(&kind(config)).unwrap_or(&size)).sum());
         Ok(plan)
     }
 
@@ -100,7 +116,10 @@ impl Plan {
             text += &format!("; {} finished, {} frames to go", self.finished, short(self.left));
         }
         if let (Some(hours), Some(rate)) = (self.hours, self.rate) {
-            text += &format!("; about {} here, at {rate:.0} frames/s and with evaluations", span(hours));
+            text += &format!(
+                "; about {} here, at {rate:.0} frames/s and with evaluations",
+                span(hours)
+            );
         }
         if let Some(bytes) = self.bytes {
             text += &format!("; {} on disk", size(bytes));
@@ -165,7 +184,11 @@ pub fn two_digits(value: f64) -> f64 {
 
 fn size(bytes: u64) -> String {
     let value = bytes as f64;
-    if value >= 1e9 { format!("{:.1} GB", value / 1e9) } else { format!("{:.0} MB", (value / 1e6).max(1.0)) }
+    if value >= 1e9 {
+        format!("{:.1} GB", value / 1e9)
+    } else {
+        format!("{:.0} MB", (value / 1e6).max(1.0))
+    }
 }
 
 #[cfg(test)]
@@ -174,8 +197,14 @@ mod tests {
 
     #[test]
     fn numbers_are_said_in_the_unit_that_fits() {
-        assert_eq!([270_000_000_000, 8_000_000, 67_200, 300].map(short), ["270 G", "8.0 M", "67 k", "300"]);
-        assert_eq!([6_400.0, 47.0, 1.5, 0.01].map(span), ["267 days", "47.0 hours", "90 min", "36 s"]);
+        assert_eq!(
+            [270_000_000_000, 8_000_000, 67_200, 300].map(short),
+            ["270 G", "8.0 M", "67 k", "300"]
+        );
+        assert_eq!(
+            [6_400.0, 47.0, 1.5, 0.01].map(span),
+            ["267 days", "47.0 hours", "90 min", "36 s"]
+        );
         assert_eq!([0.00374, 0.015, 1.26].map(two_digits), [0.0037, 0.015, 1.3]);
         assert_eq!([60_300_000_000, 114_000_000, 3].map(size), ["60.3 GB", "114 MB", "1 MB"]);
     }
@@ -191,7 +220,10 @@ mod tests {
             ..Plan::default()
         };
         let line = Plan { bytes: Some(60_000_000_000), ..plan.clone() }.line();
-        assert_eq!(line, "540 runs, 270 G frames; about 267 days here, at 11700 frames/s and with evaluations; 60.0 GB on disk");
+        assert_eq!(
+            line,
+            "540 runs, 270 G frames; about 267 days here, at 11700 frames/s and with evaluations; 60.0 GB on disk"
+        );
         let line = Plan { finished: 500, left: 20_000_000_000, hours: None, ..plan }.line();
         assert_eq!(line, "540 runs, 270 G frames; 500 finished, 20 G frames to go");
     }

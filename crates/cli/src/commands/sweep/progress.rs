@@ -22,18 +22,23 @@ pub struct RunResult {
 }
 
 impl RunResult {
-    /// Reads it from the run's directory: its evaluation if it has one, else the latest training episodes.
+    /// Reads it from the run's directory: its evaluation if it has one, else the latest training
+    /// episodes.
     pub fn of(job: &Job) -> Option<RunResult> {
         let run = Run::read(&job.directory, &mut Vec::new()).ok()?;
         let last = |metric: &str| run.rows.iter().rev().find_map(|row| row.get(metric));
-        let mean = |metric: &str| run.evaluated(metric).map(|found| found.mean).or_else(|| last(metric));
+        let mean =
+            |metric: &str| run.evaluated(metric).map(|found| found.mean).or_else(|| last(metric));
         let constraints = &run.config.constraints;
         let costs: Option<Vec<f64>> = constraints.iter().map(|one| mean(&one.metric())).collect();
         let costs = costs?;
         let estimate = |&mean: &f64| Some(Estimate { mean, half_width: None, n: 1 });
         Some(RunResult {
             episode_return: mean("return_mean")?,
-            within: constraints.iter().zip(&costs).all(|(one, cost)| one.kept_by(estimate(cost)) >= Kept::ByMean),
+            within: constraints
+                .iter()
+                .zip(&costs)
+                .all(|(one, cost)| one.kept_by(estimate(cost)) >= Kept::ByMean),
             budgets: constraints.iter().map(hasard_report::run::Constraint::label).collect(),
             costs,
         })
@@ -41,7 +46,12 @@ impl RunResult {
 
     /// `5.6 @ 84.2 of 50, over`
     pub fn text(&self) -> String {
-        let pairs: Vec<String> = self.costs.iter().zip(&self.budgets).map(|(cost, of)| format!("{cost:.1} of {of}")).collect();
+        let pairs: Vec<String> = self
+            .costs
+            .iter()
+            .zip(&self.budgets)
+            .map(|(cost, of)| format!("{cost:.1} of {of}"))
+            .collect();
         let judged = if self.within { "within" } else { "over" };
         format!("{:.1} @ {}, {judged}", self.episode_return, pairs.join(" / "))
     }
@@ -87,10 +97,13 @@ impl Progress {
     pub fn hear(&mut self, index: usize, event: &Event) {
         let waited = self.waiting.remove(&index);
         match event {
-            Event::Started(_) => _ = self.running.insert(index, (Instant::now(), waited.unwrap_or(0))),
+            Event::Started(_) => {
+                _ = self.running.insert(index, (Instant::now(), waited.unwrap_or(0)))
+            }
             Event::Finished(time) => {
                 if let Some((_, frames)) = self.running.remove(&index) {
-                    self.measured = (self.measured.0 + frames, self.measured.1 + time.as_secs_f64());
+                    self.measured =
+                        (self.measured.0 + frames, self.measured.1 + time.as_secs_f64());
                 }
                 self.done += 1;
             }
@@ -123,11 +136,17 @@ impl Progress {
         };
         Some(match event {
             Event::AlreadyFinished => return None,
-            Event::Started(State::Unfinished(frames)) => format!("{name}: goes on from {frames} frames"),
+            Event::Started(State::Unfinished(frames)) => {
+                format!("{name}: goes on from {frames} frames")
+            }
             Event::Started(_) => return None,
             Event::Finished(time) => {
-                let result = outcome.map_or_else(String::new, |outcome| format!("{}, ", outcome.text()));
-                format!("[{done}/{total}] {name}: {result}{}{left}", span(time.as_secs_f64() / 3600.0))
+                let result =
+                    outcome.map_or_else(String::new, |outcome| format!("{}, ", outcome.text()));
+                format!(
+                    "[{done}/{total}] {name}: {result}{}{left}",
+                    span(time.as_secs_f64() / 3600.0)
+                )
             }
             Event::Failed(why) => format!("[{done}/{total}] {name}: failed: {why}{left}"),
             Event::Stopped => format!("[{done}/{total}] {name}: stopped; the same command goes on"),

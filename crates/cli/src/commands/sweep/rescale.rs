@@ -11,7 +11,10 @@ use hasard_sweep::Job;
 pub fn settings(job: &Job) -> Result<TrainConfig, Failure> {
     let line = std::iter::once("hasard".into()).chain(job.arguments.iter().cloned());
     let named = |why: &str| Failure::bad(format!("{}: {why}", job.command_line("hasard")));
-    match Cli::try_parse_from(line).map_err(|error| named(&crate::failure::usage_line(&error)))?.command {
+    match Cli::try_parse_from(line)
+        .map_err(|error| named(&crate::failure::usage_line(&error)))?
+        .command
+    {
         Command::Train(args) => configuration(&args),
         _ => Err(named("not a training")),
     }
@@ -19,16 +22,20 @@ pub fn settings(job: &Job) -> Result<TrainConfig, Failure> {
 
 /// Adds to a job whose frames were multiplied by `scale` what keeps its run in proportion.
 ///
-/// A multiplier moves by a fixed rate an update. In a hundredth of the frames it would come to a hundredth of where it
-/// has to be, so that no budget could bind: rates, and integral gains of controllers, grow as the run shrinks. Schedules of rates
-/// of learning need nothing, since they last as long as the run. Rates are never lowered for longer runs.
+/// A multiplier moves by a fixed rate an update. In a hundredth of the frames it would come to a
+/// hundredth of where it has to be, so that no budget could bind: rates, and integral gains of
+/// controllers, grow as the run shrinks. Schedules of rates of learning need nothing, since they
+/// last as long as the run. Rates are never lowered for longer runs.
 ///
-/// A preset's rates are made for its own number of frames; where that is below the experiment's, it is what the run is measured by.
+/// A preset's rates are made for its own number of frames; where that is below the experiment's, it
+/// is what the run is measured by.
 pub fn rescale(job: &mut Job, config: &TrainConfig, scale: f64) -> Result<(), Failure> {
     let own = TrainConfig::plain(config.algorithm, config.preset, config.env.clone()).frames;
     let reference = (job.frames as f64 / scale).min(own as f64);
     let factor = job.frames as f64 / reference;
-    let first_episodes = config.sampling.lanes as u64 * u64::from(config.episode_steps) * u64::from(config.env.frame_skip);
+    let first_episodes = config.sampling.lanes as u64
+        * u64::from(config.episode_steps)
+        * u64::from(config.env.frame_skip);
     if job.frames < first_episodes {
         let least = scale * first_episodes as f64 / job.frames as f64;
         return Err(Failure::bad(format!(
@@ -47,12 +54,21 @@ pub fn rescale(job: &mut Job, config: &TrainConfig, scale: f64) -> Result<(), Fa
     let (name, value) = match config.algorithm {
         AlgorithmKind::PpoPid | AlgorithmKind::TrpoPid => {
             let (proportional, integral, derivative) = settings.pid_gains;
-            ("algorithm_settings.pid_gains", format!("[{proportional},{},{derivative}]", rounded(integral / factor)))
+            (
+                "algorithm_settings.pid_gains",
+                format!("[{proportional},{},{derivative}]", rounded(integral / factor)),
+            )
         }
-        _ => ("algorithm_settings.multiplier_rate", rounded(settings.multiplier_rate / factor).to_string()),
+        _ => (
+            "algorithm_settings.multiplier_rate",
+            rounded(settings.multiplier_rate / factor).to_string(),
+        ),
     };
     // What the sweep itself sets stays as it is.
-    let is_set = |word: &str| word.starts_with(&format!("{name}=")) || word.starts_with(&format!("{}=", name.replace('.', "/")));
+    let is_set = |word: &str| {
+        word.starts_with(&format!("{name}="))
+            || word.starts_with(&format!("{}=", name.replace('.', "/")))
+    };
     if !job.words().any(|word| is_set(&word)) {
         job.add_option("set", &format!("{name}={value}"));
     }

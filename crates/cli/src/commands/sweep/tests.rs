@@ -6,7 +6,9 @@ use std::time::Duration;
 
 fn args(words: &str) -> SweepArgs {
     let line = ["hasard", "sweep"].into_iter().chain(words.split(' '));
-    let Command::Sweep(args) = Cli::try_parse_from(line).unwrap_or_else(|error| panic!("{error}")).command else {
+    let Command::Sweep(args) =
+        Cli::try_parse_from(line).unwrap_or_else(|error| panic!("{error}")).command
+    else {
         panic!("{words} is no sweep");
     };
     args
@@ -23,7 +25,9 @@ fn jobs(words: &str) -> Vec<Job> {
 fn scaled(words: &str) -> Result<Vec<Job>, Failure> {
     let (mut jobs, scale) = (jobs(words), args(words).scale.unwrap());
     let configs = settings(&jobs)?;
-    jobs.iter_mut().zip(&configs).try_for_each(|(job, config)| rescale::rescale(job, config, scale))?;
+    jobs.iter_mut()
+        .zip(&configs)
+        .try_for_each(|(job, config)| rescale::rescale(job, config, scale))?;
     Ok(jobs)
 }
 
@@ -51,7 +55,12 @@ fn words_of_the_command_change_the_experiment() {
     let seeds: Vec<u64> = chosen.iter().map(|job| job.seed).collect();
     assert_eq!(seeds, [3, 3, 11, 11, 12, 12], "seeds are the outermost loop");
     let line = chosen[0].command_line("hasard");
-    assert!(line.starts_with("hasard train RemedyRushLevel2-v0 --algo PPOPID --frames 8000000 --seed 3"), "{line}");
+    assert!(
+        line.starts_with(
+            "hasard train RemedyRushLevel2-v0 --algo PPOPID --frames 8000000 --seed 3"
+        ),
+        "{line}"
+    );
     for option in ["--preset quick", "--rules tables", "--hard"] {
         assert_eq!(line.matches(option).count(), 1, "{line}");
     }
@@ -60,12 +69,14 @@ fn words_of_the_command_change_the_experiment() {
     }
 }
 
-/// Over a run, a multiplier moves by its rate times the number of updates: in a hundredth of the updates it comes as far by a hundred
-/// times the rate.
+/// Over a run, a multiplier moves by its rate times the number of updates: in a hundredth of the
+/// updates it comes as far by a hundred times the rate.
 #[test]
 fn shorter_runs_move_their_multipliers_as_far() {
     let before = settings(&jobs("main --seeds 1 --levels 1 --scenarios RemedyRush")).unwrap();
-    let after = settings(&scaled("main --seeds 1 --levels 1 --scenarios RemedyRush --scale 0.01").unwrap()).unwrap();
+    let after =
+        settings(&scaled("main --seeds 1 --levels 1 --scenarios RemedyRush --scale 0.01").unwrap())
+            .unwrap();
     for (before, after) in before.iter().zip(&after) {
         assert_eq!(after.frames, before.frames / 100);
         let travel = |config: &TrainConfig| {
@@ -84,21 +95,35 @@ fn shorter_runs_move_their_multipliers_as_far() {
         }
     }
     let sets = |words: &str| -> usize {
-        scaled(words).unwrap().iter().map(|job| job.words().filter(|word| word == "--set").count()).sum()
+        scaled(words)
+            .unwrap()
+            .iter()
+            .map(|job| job.words().filter(|word| word == "--set").count())
+            .sum()
     };
     // The quick preset's rates are made for its own ten million frames.
     assert_eq!(sets("main --seeds 1 --levels 1 --preset quick --scale 0.02"), 0);
     assert_eq!(sets("main --seeds 1 --levels 1 --preset quick --scale 0.01"), 12);
     // What is set already stays.
-    assert_eq!(sets("hard --seeds 1 --algos PPOLag --scale 0.01 --option set=algorithm_settings.multiplier_rate=0.5"), 6);
+    assert_eq!(
+        sets(
+            "hard --seeds 1 --algos PPOLag --scale 0.01 --option set=algorithm_settings.multiplier_rate=0.5"
+        ),
+        6
+    );
     assert_eq!(sets("main --seeds 1 --levels 1 --scale 2"), 0, "longer runs keep their rates");
 }
 
 #[test]
 fn runs_that_end_before_their_first_episodes_are_refused() {
-    let Err(Failure::BadInput(line)) = scaled("main --seeds 1 --scale 0.00001") else { panic!("taken") };
+    let Err(Failure::BadInput(line)) = scaled("main --seeds 1 --scale 0.00001") else {
+        panic!("taken")
+    };
     // 500 million frames by a hundred thousandth; 32 worlds of 2100 tics.
-    assert!(line.contains("after 5000 frames") && line.contains("67200") && !line.contains('\n'), "{line}");
+    assert!(
+        line.contains("after 5000 frames") && line.contains("67200") && !line.contains('\n'),
+        "{line}"
+    );
 }
 
 #[test]
@@ -113,7 +138,12 @@ fn progress_says_what_is_done_what_came_of_it_and_what_is_left() {
     progress.hear(0, &finished);
     // It took half as long as expected: four more such.
     assert_eq!(progress.seconds_left(), Some(200.0));
-    let result = RunResult { episode_return: 5.61, costs: vec![84.24], budgets: vec!["50".into()], within: false };
+    let result = RunResult {
+        episode_return: 5.61,
+        costs: vec![84.24],
+        budgets: vec!["50".into()],
+        within: false,
+    };
     let line = progress.line(&jobs[0], &finished, Some(&result)).unwrap();
     let expected = "[1/5] PPOPID VolcanicVentureLevel1 seed 1, preset=quick: 5.6 @ 84.2 of 50, over, 50 s; ~3 min left";
     assert_eq!(line, expected);
@@ -122,5 +152,10 @@ fn progress_says_what_is_done_what_came_of_it_and_what_is_left() {
     let failed = Event::Failed("no luck".into());
     progress.hear(2, &failed);
     let line = progress.line(&jobs[2], &failed, None).unwrap();
-    assert!(line.starts_with("[3/5]") && line.contains("failed: no luck") && line.ends_with("~100 s left"), "{line}");
+    assert!(
+        line.starts_with("[3/5]")
+            && line.contains("failed: no luck")
+            && line.ends_with("~100 s left"),
+        "{line}"
+    );
 }

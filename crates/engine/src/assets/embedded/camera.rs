@@ -1,5 +1,5 @@
-//! Takes sprites of solid models: parallel projection, a depth buffer at twice the resolution, and one lamp that stays at the
-//! viewer's upper left, so that all things in the world look lit alike.
+//! Takes sprites of solid models: parallel projection, a depth buffer at twice the resolution, and
+//! one lamp that stays at the viewer's upper left, so that all things in the world look lit alike.
 
 use super::canvas::Canvas;
 use super::colour::{Colour, gradient};
@@ -20,11 +20,16 @@ pub(super) struct View {
 }
 
 impl View {
-    /// The viewer stands `degrees` counter-clockwise from the model's front, looking down at it by `above` degrees.
+    /// The viewer stands `degrees` counter-clockwise from the model's front, looking down at it by
+    /// `above` degrees.
     pub(super) fn new(degrees: f32, above: f32) -> View {
         let ((cos, sin), (level, rise)) = (turn(degrees), turn(above));
         let flat = Vector(cos, sin, 0.0);
-        View { right: Vector(-sin, cos, 0.0), up: Vector::UP * level - flat * rise, toward: flat * level + Vector::UP * rise }
+        View {
+            right: Vector(-sin, cos, 0.0),
+            up: Vector::UP * level - flat * rise,
+            toward: flat * level + Vector::UP * rise,
+        }
     }
 
     /// One of the eight sides that sprites are drawn from, 0 the front, counter-clockwise.
@@ -50,7 +55,8 @@ pub(super) struct Portrait {
     pub(super) offset_y: i32,
 }
 
-/// Takes the sprite of a model: cropped to what is seen, shaded, with the rim and the edges between near and far darkened.
+/// Takes the sprite of a model: cropped to what is seen, shaded, with the rim and the edges between
+/// near and far darkened.
 pub(super) fn portrait(model: &Model, view: View) -> Portrait {
     portrait_above(model, view, f32::MIN)
 }
@@ -61,10 +67,14 @@ pub(super) fn portrait_above(model: &Model, view: View, lowest: f32) -> Portrait
     let mut bounds = [f32::MAX, f32::MIN, f32::MAX, f32::MIN];
     for solid in &solids {
         let b = solid.bounds();
-        bounds = [bounds[0].min(b[0]), bounds[1].max(b[1]), bounds[2].min(b[2]), bounds[3].max(b[3])];
+        bounds =
+            [bounds[0].min(b[0]), bounds[1].max(b[1]), bounds[2].min(b[2]), bounds[3].max(b[3])];
     }
     let (left, top) = (bounds[0].floor() as i32, bounds[3].ceil() as i32);
-    let (width, height) = ((bounds[1].ceil() as i32 - left).max(1), (top - bounds[2].max(lowest).floor() as i32).max(1));
+    let (width, height) = (
+        (bounds[1].ceil() as i32 - left).max(1),
+        (top - bounds[2].max(lowest).floor() as i32).max(1),
+    );
     let (columns, rows) = (width as usize * SAMPLES, height as usize * SAMPLES);
     let step = 1.0 / SAMPLES as f32;
     let right_of = |column: usize| left as f32 + (column as f32 + 0.5) * step;
@@ -76,7 +86,8 @@ pub(super) fn portrait_above(model: &Model, view: View, lowest: f32) -> Portrait
         let first_row = ((top as f32 - to_y) * SAMPLES as f32).max(0.0) as usize;
         let last_row = (((top as f32 - from_y) * SAMPLES as f32).max(0.0) as usize + 1).min(rows);
         for row in first_row..last_row {
-            let line = Line { up: up_of(row), first_right: right_of(0), step, per_step: SAMPLES as f32 };
+            let line =
+                Line { up: up_of(row), first_right: right_of(0), step, per_step: SAMPLES as f32 };
             solid.scan(&line, part as u16, &mut samples[row * columns..][..columns]);
         }
     }
@@ -89,7 +100,8 @@ pub(super) fn portrait_above(model: &Model, view: View, lowest: f32) -> Portrait
             let (part, solid) = (&model.parts[texel.part as usize], &solids[texel.part as usize]);
             let point = Vector(right_of(texel.column), up_of(texel.row), texel.depth);
             let shaded = shade(part, solid.normal(point), view.back(point));
-            let kept = if part.material.glowing { 1.0 } else { texels.kept_light(x, y, texel.depth) };
+            let kept =
+                if part.material.glowing { 1.0 } else { texels.kept_light(x, y, texel.depth) };
             canvas.set(x, y, shaded * kept);
         }
     }
@@ -113,8 +125,15 @@ struct Texels {
 }
 
 impl Texels {
-    /// Chooses the sample of each texel: it needs half of its samples covered, unless something fine is among them.
-    fn new(samples: &[Sample], columns: usize, width: usize, height: usize, model: &Model) -> Texels {
+    /// Chooses the sample of each texel: it needs half of its samples covered, unless something
+    /// fine is among them.
+    fn new(
+        samples: &[Sample],
+        columns: usize,
+        width: usize,
+        height: usize,
+        model: &Model,
+    ) -> Texels {
         let mut texels = Vec::with_capacity(width * height);
         for y in 0..height {
             for x in 0..width {
@@ -129,7 +148,8 @@ impl Texels {
                     let fine = model.parts[sample.part as usize].material.fine;
                     let nearer = chosen.is_none_or(|texel| sample.depth > texel.depth);
                     if (fine && !chosen_fine) || (fine == chosen_fine && nearer) {
-                        chosen = Some(Texel { depth: sample.depth, part: sample.part, column, row });
+                        chosen =
+                            Some(Texel { depth: sample.depth, part: sample.part, column, row });
                         chosen_fine = fine;
                     }
                 }
@@ -146,14 +166,23 @@ impl Texels {
         self.texels[(y * self.width + x) as usize]
     }
 
-    /// The part of its light that a texel keeps: less beside nearer ones, which shade it, and on the outline.
+    /// The part of its light that a texel keeps: less beside nearer ones, which shade it, and on
+    /// the outline.
     fn kept_light(&self, x: i32, y: i32, depth: f32) -> f32 {
         let (mut shade, mut rim) = (0.0, false);
-        for (dx, dy, weight) in
-            [(-1, 0, 0.3), (1, 0, 0.2), (0, -1, 0.35), (0, 1, 0.15), (-2, -1, 0.15), (1, -2, 0.15), (-1, -3, 0.15)]
-        {
+        for (dx, dy, weight) in [
+            (-1, 0, 0.3),
+            (1, 0, 0.2),
+            (0, -1, 0.35),
+            (0, 1, 0.15),
+            (-2, -1, 0.15),
+            (1, -2, 0.15),
+            (-1, -3, 0.15),
+        ] {
             match self.at(x + dx, y + dy) {
-                Some(other) => shade += weight * ((other.depth - depth - 0.8) * 0.33).clamp(0.0, 1.0),
+                Some(other) => {
+                    shade += weight * ((other.depth - depth - 0.8) * 0.33).clamp(0.0, 1.0)
+                }
                 None => rim |= dx * dx + dy * dy == 1,
             }
         }
@@ -193,8 +222,16 @@ fn blotch(place: Vector, size: f32) -> f32 {
     let p = place * (1.0 / size) + Vector(64.0, 64.0, 64.0);
     let (x, y, z) = (p.0 as usize, p.1 as usize, p.2 as usize);
     let (u, v, w) = (p.0 - x as f32, p.1 - y as f32, p.2 - z as f32);
-    let corner = |dx, dy, dz| f32::from(LATTICE[((x + dx) & 15) << 8 | ((y + dy) & 15) << 4 | ((z + dz) & 15)]);
+    let corner = |dx, dy, dz| {
+        f32::from(LATTICE[((x + dx) & 15) << 8 | ((y + dy) & 15) << 4 | ((z + dz) & 15)])
+    };
     let mix = |a: f32, b: f32, part: f32| a + (b - a) * part;
-    let layer = |dz| mix(mix(corner(0, 0, dz), corner(1, 0, dz), u), mix(corner(0, 1, dz), corner(1, 1, dz), u), v);
+    let layer = |dz| {
+        mix(
+            mix(corner(0, 0, dz), corner(1, 0, dz), u),
+            mix(corner(0, 1, dz), corner(1, 1, dz), u),
+            v,
+        )
+    };
     mix(layer(0), layer(1), w) / 255.0
 }

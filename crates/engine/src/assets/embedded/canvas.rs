@@ -1,4 +1,5 @@
-//! A picture being painted: true colours with a mask, and the primitives that sprites and panels are drawn from.
+//! A picture being painted: true colours with a mask, and the primitives that sprites and panels
+//! are drawn from.
 
 use super::colour::Colour;
 use super::palette::Quantiser;
@@ -21,7 +22,8 @@ impl Canvas {
     }
 
     fn index(&self, x: i32, y: i32) -> Option<usize> {
-        (x >= 0 && y >= 0 && x < self.width && y < self.height).then(|| (x * self.height + y) as usize)
+        (x >= 0 && y >= 0 && x < self.width && y < self.height)
+            .then(|| (x * self.height + y) as usize)
     }
 
     /// The colour at a point, where there is one.
@@ -65,8 +67,17 @@ impl Canvas {
         }
     }
 
-    /// A rectangle with a light upper left and a dark lower right edge, sunk when `raise` is negative.
-    pub(super) fn bevel(&mut self, x: i32, y: i32, width: i32, height: i32, colour: Colour, raise: f32) {
+    /// A rectangle with a light upper left and a dark lower right edge, sunk when `raise` is
+    /// negative.
+    pub(super) fn bevel(
+        &mut self,
+        x: i32,
+        y: i32,
+        width: i32,
+        height: i32,
+        colour: Colour,
+        raise: f32,
+    ) {
         self.rect(x, y, width, height, colour);
         let (light, dark) = (colour * (1.0 + raise), colour * (1.0 - raise));
         self.rect(x, y, width, 1, light);
@@ -75,11 +86,18 @@ impl Canvas {
         self.rect(x + width - 1, y, 1, height, dark);
     }
 
-    /// Fills an ellipse given its centre and radii; `paint` gets the position inside it, each from -1 to 1.
-    pub(super) fn ellipse(&mut self, centre: (f32, f32), radii: (f32, f32), mut paint: impl FnMut(f32, f32) -> Colour) {
+    /// Fills an ellipse given its centre and radii; `paint` gets the position inside it, each
+    /// from -1 to 1.
+    pub(super) fn ellipse(
+        &mut self,
+        centre: (f32, f32),
+        radii: (f32, f32),
+        mut paint: impl FnMut(f32, f32) -> Colour,
+    ) {
         for x in (centre.0 - radii.0) as i32 - 1..=(centre.0 + radii.0) as i32 + 1 {
             for y in (centre.1 - radii.1) as i32 - 1..=(centre.1 + radii.1) as i32 + 1 {
-                let (u, v) = ((x as f32 + 0.5 - centre.0) / radii.0, (y as f32 + 0.5 - centre.1) / radii.1);
+                let (u, v) =
+                    ((x as f32 + 0.5 - centre.0) / radii.0, (y as f32 + 0.5 - centre.1) / radii.1);
                 if u * u + v * v <= 1.0 {
                     self.set(x, y, paint(u, v));
                 }
@@ -103,7 +121,11 @@ impl Canvas {
     }
 
     /// Fills a polygon (even-odd); `paint` gets the texel.
-    pub(super) fn polygon(&mut self, points: &[(f32, f32)], mut paint: impl FnMut(i32, i32) -> Colour) {
+    pub(super) fn polygon(
+        &mut self,
+        points: &[(f32, f32)],
+        mut paint: impl FnMut(i32, i32) -> Colour,
+    ) {
         for y in 0..self.height {
             let row = y as f32 + 0.5;
             for x in 0..self.width {
@@ -111,7 +133,9 @@ impl Canvas {
                 let mut inside = false;
                 for (i, a) in points.iter().enumerate() {
                     let b = points[(i + 1) % points.len()];
-                    if (a.1 > row) != (b.1 > row) && column < a.0 + (row - a.1) / (b.1 - a.1) * (b.0 - a.0) {
+                    if (a.1 > row) != (b.1 > row)
+                        && column < a.0 + (row - a.1) / (b.1 - a.1) * (b.0 - a.0)
+                    {
                         inside = !inside;
                     }
                 }
@@ -122,7 +146,8 @@ impl Canvas {
         }
     }
 
-    /// Darkens the rim: an opaque point beside a transparent one (or the canvas edge) keeps `keep` of its brightness.
+    /// Darkens the rim: an opaque point beside a transparent one (or the canvas edge) keeps `keep`
+    /// of its brightness.
     pub(super) fn outline(&mut self, keep: f32) {
         let before = self.clone();
         let empty = |x, y| before.get(x, y).is_none();
@@ -135,7 +160,11 @@ impl Canvas {
     /// The finished picture; it keeps a mask only where some point is transparent.
     pub(super) fn image(&self, quantiser: &Quantiser, offset_x: i32, offset_y: i32) -> Image {
         let pixels = self.colours.iter().map(|&colour| quantiser.index(colour)).collect();
-        let mask = self.opaque.iter().any(|opaque| !opaque).then(|| self.opaque.iter().map(|&o| u8::from(o)).collect());
+        let mask = self
+            .opaque
+            .iter()
+            .any(|opaque| !opaque)
+            .then(|| self.opaque.iter().map(|&o| u8::from(o)).collect());
         Image {
             width: self.width as u16,
             height: self.height as u16,

@@ -2,10 +2,12 @@
 
 use std::ops::{Add, Mul};
 
-/// Red, green and blue, each nominally 0..=255; values outside are clamped only when the colour is stored.
+/// Red, green and blue, each nominally 0..=255; values outside are clamped only when the colour is
+/// stored.
 ///
-/// Floating point is safe here although the engine is integer otherwise: only additions, multiplications, divisions and
-/// square roots are used, which every platform rounds alike, and the result is a palette index.
+/// Floating point is safe here although the engine is integer otherwise: only additions,
+/// multiplications, divisions and square roots are used, which every platform rounds alike, and the
+/// result is a palette index.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct Colour(pub(super) f32, pub(super) f32, pub(super) f32);
 

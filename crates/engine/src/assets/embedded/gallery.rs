@@ -1,4 +1,5 @@
-//! Where finished pictures are collected: the set of pictures under construction, with its quantiser.
+//! Where finished pictures are collected: the set of pictures under construction, with its
+//! quantiser.
 
 use super::canvas::Canvas;
 use super::palette::Quantiser;
@@ -36,18 +37,23 @@ impl Gallery {
         self.texture(name, &surface.canvas());
     }
 
-    /// Adds an animation whose frame `i` is called `names[i]`; a map may name any of them and gets the cycle from there.
+    /// Adds an animation whose frame `i` is called `names[i]`; a map may name any of them and gets
+    /// the cycle from there.
     pub(super) fn animation(&mut self, names: &[&str], frames: &[Canvas], tics: u8) {
         let first = self.assets.images.len() as u32;
         for canvas in frames {
             self.picture(canvas, 0, 0);
         }
-        // The cycle's frames must follow one another, so the later names need the beginning again behind the end.
+        // The cycle's frames must follow one another, so the later names need the beginning again
+        // behind the end.
         for canvas in &frames[..frames.len() - 1] {
             self.picture(canvas, 0, 0);
         }
         for (i, name) in names.iter().enumerate() {
-            self.alias(name, TextureEntry { first: first + i as u32, frames: frames.len() as u8, tics });
+            self.alias(
+                name,
+                TextureEntry { first: first + i as u32, frames: frames.len() as u8, tics },
+            );
         }
     }
 
@@ -78,14 +84,20 @@ impl Gallery {
 
     /// Appends a frame to a sprite: one picture for each of the 8 rotations.
     pub(super) fn frame(&mut self, name: &str, frame: SpriteFrame) {
-        let index = SPRITE_NAMES.iter().position(|&known| known == name).expect("sprites are painted under listed names");
+        let index = SPRITE_NAMES
+            .iter()
+            .position(|&known| known == name)
+            .expect("sprites are painted under listed names");
         self.assets.sprites.resize_with(SPRITE_NAMES.len(), Sprite::default);
         self.assets.sprites[index].frames.push(frame);
     }
 
     /// Appends a sprite's last frame once more.
     pub(super) fn repeat_last(&mut self, name: &str) {
-        let index = SPRITE_NAMES.iter().position(|&known| known == name).expect("sprites are painted under listed names");
+        let index = SPRITE_NAMES
+            .iter()
+            .position(|&known| known == name)
+            .expect("sprites are painted under listed names");
         let frames = &mut self.assets.sprites[index].frames;
         frames.extend(frames.last().copied());
     }

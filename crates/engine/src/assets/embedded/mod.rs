@@ -9,8 +9,8 @@
 //! | `sprites`, `hud` | things of the world; status bar, digits, faces, letters |
 //! | `gallery` | where the finished pictures are collected |
 //!
-//! Nothing is random from run to run and nothing depends on the platform's mathematical library, so the pictures, and
-//! every observation made of them, are the same bits everywhere.
+//! Nothing is random from run to run and nothing depends on the platform's mathematical library, so
+//! the pictures, and every observation made of them, are the same bits everywhere.
 
 mod camera;
 mod canvas;
@@ -76,7 +76,10 @@ mod tests {
         }
         for (name, entry) in &assets.textures {
             assert!(entry.frames > 0 && entry.tics > 0, "{name:?}");
-            assert!(entry.first as usize + entry.frames as usize <= assets.images.len(), "{name:?}");
+            assert!(
+                entry.first as usize + entry.frames as usize <= assets.images.len(),
+                "{name:?}"
+            );
         }
         assert!(assets.graphics.values().all(|&index| (index as usize) < assets.images.len()));
     }
@@ -105,11 +108,19 @@ mod tests {
             ("STARGR2", [84, 84, 83]),
         ];
         for (name, expected) in cases {
-            let image: &Image = &assets.images[assets.texture(crate::map::TextureName::new(name)).first as usize];
+            let image: &Image =
+                &assets.images[assets.texture(crate::map::TextureName::new(name)).first as usize];
             for (channel, expected) in expected.into_iter().enumerate() {
-                let sum: i32 = image.pixels.iter().map(|&p| i32::from(assets.palette[p as usize][channel])).sum();
+                let sum: i32 = image
+                    .pixels
+                    .iter()
+                    .map(|&p| i32::from(assets.palette[p as usize][channel]))
+                    .sum();
                 let mean = sum / image.pixels.len() as i32;
-                assert!((mean - expected).abs() <= 7, "{name}: channel {channel} is {mean}, not {expected}");
+                assert!(
+                    (mean - expected).abs() <= 7,
+                    "{name}: channel {channel} is {mean}, not {expected}"
+                );
             }
         }
     }
@@ -117,7 +128,15 @@ mod tests {
     #[test]
     fn every_sprite_has_the_frames_that_things_show_and_all_eight_sides() {
         let assets = Assets::embedded();
-        let counts = [("POSS", 12), ("SPOS", 12), ("CPOS", 14), ("TROO", 13), ("SARG", 14), ("SKEL", 17), ("SKUL", 11)];
+        let counts = [
+            ("POSS", 12),
+            ("SPOS", 12),
+            ("CPOS", 14),
+            ("TROO", 13),
+            ("SARG", 14),
+            ("SKEL", 17),
+            ("SKUL", 11),
+        ];
         let more = [
             ("HEAD", 12),
             ("PLAY", 23),
@@ -132,9 +151,16 @@ mod tests {
         for (name, sprite) in SPRITE_NAMES.iter().zip(&assets.sprites) {
             let listed = counts.iter().chain(&more).find(|(known, _)| known == name);
             let expected = listed.map_or(1, |&(_, count)| count);
-            assert!(sprite.frames.len() >= expected, "{name} has {} of {expected} frames", sprite.frames.len());
+            assert!(
+                sprite.frames.len() >= expected,
+                "{name} has {} of {expected} frames",
+                sprite.frames.len()
+            );
             for frame in &sprite.frames {
-                assert!(frame.images.iter().all(|&image| (image as usize) < assets.images.len()), "{name}");
+                assert!(
+                    frame.images.iter().all(|&image| (image as usize) < assets.images.len()),
+                    "{name}"
+                );
             }
         }
         assert_eq!(assets.sprites.len(), SPRITE_NAMES.len());
@@ -148,7 +174,11 @@ mod tests {
             for side in 0..5 {
                 for other in side + 1..5 {
                     let picture = |side: usize| &assets.images[frame.images[side] as usize];
-                    assert_ne!(picture(side).pixels, picture(other).pixels, "{name}: sides {side} and {other}");
+                    assert_ne!(
+                        picture(side).pixels,
+                        picture(other).pixels,
+                        "{name}: sides {side} and {other}"
+                    );
                 }
             }
             for side in 1..4 {
@@ -171,7 +201,11 @@ mod tests {
     fn light_tables_darken_step_by_step_and_the_first_changes_nothing() {
         let assets = Assets::embedded();
         let brightness = |table: usize| -> i32 {
-            assets.light_tables[table].iter().flat_map(|&p| assets.palette[p as usize]).map(i32::from).sum()
+            assets.light_tables[table]
+                .iter()
+                .flat_map(|&p| assets.palette[p as usize])
+                .map(i32::from)
+                .sum()
         };
         assert!((0..256).all(|i| assets.light_tables[0][i] == i as u8));
         let full = brightness(0);

@@ -1,4 +1,5 @@
-//! Small solid models: eggs, limbs, tubes and blocks of painted material, from which sprites of any side are taken.
+//! Small solid models: eggs, limbs, tubes and blocks of painted material, from which sprites of any
+//! side are taken.
 
 use super::colour::Colour;
 use super::vector::{Frame, Vector};
@@ -99,7 +100,13 @@ impl Model {
     }
 
     /// Adds an ellipsoid along a frame.
-    pub(super) fn egg_in(&mut self, frame: Frame, centre: Vector, half: Vector, material: Material) {
+    pub(super) fn egg_in(
+        &mut self,
+        frame: Frame,
+        centre: Vector,
+        half: Vector,
+        material: Material,
+    ) {
         self.add(Shape::Egg { centre, half, frame }, material);
     }
 
@@ -125,7 +132,13 @@ impl Model {
     }
 
     /// Adds a box along a frame.
-    pub(super) fn block_in(&mut self, frame: Frame, centre: Vector, half: Vector, material: Material) {
+    pub(super) fn block_in(
+        &mut self,
+        frame: Frame,
+        centre: Vector,
+        half: Vector,
+        material: Material,
+    ) {
         self.add(Shape::Block { centre, half, frame }, material);
     }
 
@@ -137,11 +150,19 @@ impl Model {
     /// The figure with its axes along `frame` and its origin at `origin`.
     pub(super) fn moved(&self, frame: Frame, origin: Vector) -> Model {
         let point = |p: Vector| origin + frame.out(p);
-        let turn = |f: Frame| Frame { forward: frame.out(f.forward), left: frame.out(f.left), up: frame.out(f.up) };
+        let turn = |f: Frame| Frame {
+            forward: frame.out(f.forward),
+            left: frame.out(f.left),
+            up: frame.out(f.up),
+        };
         let parts = self.parts.iter().map(|part| {
             let shape = match part.shape {
-                Shape::Egg { centre, half, frame } => Shape::Egg { centre: point(centre), half, frame: turn(frame) },
-                Shape::Block { centre, half, frame } => Shape::Block { centre: point(centre), half, frame: turn(frame) },
+                Shape::Egg { centre, half, frame } => {
+                    Shape::Egg { centre: point(centre), half, frame: turn(frame) }
+                }
+                Shape::Block { centre, half, frame } => {
+                    Shape::Block { centre: point(centre), half, frame: turn(frame) }
+                }
                 Shape::Limb { from, to, from_radius, to_radius } => {
                     Shape::Limb { from: point(from), to: point(to), from_radius, to_radius }
                 }
@@ -158,8 +179,12 @@ impl Model {
     pub(super) fn scaled(&self, factor: f32) -> Model {
         let parts = self.parts.iter().map(|part| {
             let shape = match part.shape {
-                Shape::Egg { centre, half, frame } => Shape::Egg { centre: centre * factor, half: half * factor, frame },
-                Shape::Block { centre, half, frame } => Shape::Block { centre: centre * factor, half: half * factor, frame },
+                Shape::Egg { centre, half, frame } => {
+                    Shape::Egg { centre: centre * factor, half: half * factor, frame }
+                }
+                Shape::Block { centre, half, frame } => {
+                    Shape::Block { centre: centre * factor, half: half * factor, frame }
+                }
                 Shape::Limb { from, to, from_radius, to_radius } => Shape::Limb {
                     from: from * factor,
                     to: to * factor,
@@ -178,29 +203,50 @@ impl Model {
         Model { parts: parts.collect() }
     }
 
-    /// The figure as an eye sees it that is `distance` behind the origin and `height` above it: what is farther ahead shrinks
-    /// towards the point that the eye looks at. Long boxes are cut up so that they taper.
+    /// The figure as an eye sees it that is `distance` behind the origin and `height` above it:
+    /// what is farther ahead shrinks towards the point that the eye looks at. Long boxes are cut up
+    /// so that they taper.
     pub(super) fn foreshortened(&self, distance: f32, height: f32) -> Model {
         let scale = |p: Vector| distance / (distance + p.0).max(distance * 0.2);
         let point = |p: Vector| Vector(p.0, p.1 * scale(p), (p.2 - height) * scale(p) + height);
         let mut out = Model::new();
         for &Part { shape, material } in &self.parts {
             match shape {
-                Shape::Egg { centre, half, frame } => out.egg_in(frame, point(centre), half * scale(centre), material),
+                Shape::Egg { centre, half, frame } => {
+                    out.egg_in(frame, point(centre), half * scale(centre), material)
+                }
                 Shape::Limb { from, to, from_radius, to_radius } => {
-                    out.limb(point(from), point(to), (from_radius * scale(from), to_radius * scale(to)), material);
+                    out.limb(
+                        point(from),
+                        point(to),
+                        (from_radius * scale(from), to_radius * scale(to)),
+                        material,
+                    );
                 }
                 Shape::Tube { from, to, from_radius, to_radius } => {
-                    out.tube(point(from), point(to), (from_radius * scale(from), to_radius * scale(to)), material);
+                    out.tube(
+                        point(from),
+                        point(to),
+                        (from_radius * scale(from), to_radius * scale(to)),
+                        material,
+                    );
                 }
                 Shape::Block { centre, half, frame } => {
                     let pieces = (half.0 / 4.0) as i32 + 1;
-                    let at = |cut: i32| centre + frame.forward * (half.0 * (2.0 * cut as f32 / pieces as f32 - 1.0));
+                    let at = |cut: i32| {
+                        centre + frame.forward * (half.0 * (2.0 * cut as f32 / pieces as f32 - 1.0))
+                    };
                     for piece in 0..pieces {
                         let (from, to) = (point(at(piece)), point(at(piece + 1)));
                         let shrink = scale(at(piece).towards(at(piece + 1), 0.5));
-                        let size = Vector((to - from).length() * 0.52, half.1 * shrink, half.2 * shrink);
-                        out.block_in(Frame::facing(to - from, frame.up), from.towards(to, 0.5), size, material);
+                        let size =
+                            Vector((to - from).length() * 0.52, half.1 * shrink, half.2 * shrink);
+                        out.block_in(
+                            Frame::facing(to - from, frame.up),
+                            from.towards(to, 0.5),
+                            size,
+                            material,
+                        );
                     }
                 }
             }

@@ -2,7 +2,9 @@
 
 /// A well mixed 32-bit hash of a lattice point.
 pub(super) const fn hash(x: i32, y: i32, seed: u32) -> u32 {
-    let mut h = (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
+    let mut h = (x as u32).wrapping_mul(0x9E37_79B1)
+        ^ (y as u32).wrapping_mul(0x85EB_CA77)
+        ^ seed.wrapping_mul(0xC2B2_AE3D);
     h ^= h >> 15;
     h = h.wrapping_mul(0x2C1B_3C6D);
     h ^= h >> 12;
@@ -35,9 +37,16 @@ impl Field {
         self.values[y as usize * self.width + x as usize]
     }
 
-    /// Cloud-like noise in 0..=1: `octaves` layers, the first with `cells_x` by `cells_y` lattice cells over the whole
-    /// field, each further one twice as fine and half as strong. Unequal cells give grain and streaks.
-    pub(super) fn clouds(width: usize, height: usize, cells: (usize, usize), octaves: u32, seed: u32) -> Field {
+    /// Cloud-like noise in 0..=1: `octaves` layers, the first with `cells_x` by `cells_y` lattice
+    /// cells over the whole field, each further one twice as fine and half as strong. Unequal cells
+    /// give grain and streaks.
+    pub(super) fn clouds(
+        width: usize,
+        height: usize,
+        cells: (usize, usize),
+        octaves: u32,
+        seed: u32,
+    ) -> Field {
         let mut field = Field::constant(width, height, 0.0);
         let (mut amplitude, mut sum) = (1.0, 0.0);
         for octave in 0..octaves {
@@ -46,7 +55,8 @@ impl Field {
             sum += amplitude;
             amplitude *= 0.5;
         }
-        // Sums of octaves crowd around the middle; stretch them so that callers can rely on the whole range.
+        // Sums of octaves crowd around the middle; stretch them so that callers can rely on the
+        // whole range.
         for value in &mut field.values {
             *value = ((*value / sum - 0.5) * 1.6 + 0.5).clamp(0.0, 1.0);
         }
@@ -54,7 +64,8 @@ impl Field {
     }
 
     fn add_octave(&mut self, (cells_x, cells_y): (usize, usize), amplitude: f32, seed: u32) {
-        let columns: Vec<(usize, usize, f32)> = (0..self.width).map(|x| lattice(x, self.width, cells_x)).collect();
+        let columns: Vec<(usize, usize, f32)> =
+            (0..self.width).map(|x| lattice(x, self.width, cells_x)).collect();
         let mut upper = vec![0.0; cells_x];
         let mut lower = vec![0.0; cells_x];
         let mut rows_at = usize::MAX;
@@ -95,7 +106,8 @@ pub(super) struct CellPoint {
     pub(super) centre: f32,
 }
 
-/// Irregular cells (cobbles, cracked rock, scales): one jittered point in each square of a grid, wrapped at the edges.
+/// Irregular cells (cobbles, cracked rock, scales): one jittered point in each square of a grid,
+/// wrapped at the edges.
 pub(super) struct Cells {
     size: (f32, f32),
     count: (i32, i32),
@@ -103,8 +115,15 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// `count` cells across and down a `width` by `height` field; `jitter` 0 gives a grid, 1 the wildest scatter.
-    pub(super) fn new(width: usize, height: usize, count: (usize, usize), jitter: f32, seed: u32) -> Cells {
+    /// `count` cells across and down a `width` by `height` field; `jitter` 0 gives a grid, 1 the
+    /// wildest scatter.
+    pub(super) fn new(
+        width: usize,
+        height: usize,
+        count: (usize, usize),
+        jitter: f32,
+        seed: u32,
+    ) -> Cells {
         let size = (width as f32 / count.0 as f32, height as f32 / count.1 as f32);
         let mut points = Vec::with_capacity(count.0 * count.1);
         for row in 0..count.1 as i32 {
@@ -121,8 +140,14 @@ impl Cells {
         Cells { size, count: (count.0 as i32, count.1 as i32), points }
     }
 
-    /// Six-sided cells: points on a grid whose odd rows are shifted by half a cell; the number of rows must be even.
-    pub(super) fn honeycomb(width: usize, height: usize, count: (usize, usize), seed: u32) -> Cells {
+    /// Six-sided cells: points on a grid whose odd rows are shifted by half a cell; the number of
+    /// rows must be even.
+    pub(super) fn honeycomb(
+        width: usize,
+        height: usize,
+        count: (usize, usize),
+        seed: u32,
+    ) -> Cells {
         let mut cells = Cells::new(width, height, count, 0.0, seed);
         for (i, point) in cells.points.iter_mut().enumerate() {
             let shift = if (i / count.0).is_multiple_of(2) { -0.25 } else { 0.25 };
@@ -134,7 +159,8 @@ impl Cells {
     /// The cell that holds a point.
     pub(super) fn at(&self, x: f32, y: f32) -> CellPoint {
         let (column, row) = ((x / self.size.0) as i32, (y / self.size.1) as i32);
-        let (wrap_x, wrap_y) = (self.size.0 * self.count.0 as f32, self.size.1 * self.count.1 as f32);
+        let (wrap_x, wrap_y) =
+            (self.size.0 * self.count.0 as f32, self.size.1 * self.count.1 as f32);
         let mut nearest = [(f32::MAX, (0.0, 0.0), 0), (f32::MAX, (0.0, 0.0), 0)];
         for r in row - 1..=row + 1 {
             for c in column - 1..=column + 1 {

@@ -1,15 +1,20 @@
-//! The project's own 256 colours: ramps from dark to light, one for each family of material, and the maps derived from them.
+//! The project's own 256 colours: ramps from dark to light, one for each family of material, and
+//! the maps derived from them.
 
 use super::colour::Colour;
 
 /// A ramp: how many palette entries it takes and the colours that it passes through, evenly spaced.
 type Ramp = (usize, &'static [[u8; 3]]);
 
-/// The ramps in palette order. The world is mostly earth, stone and metal under dim light, so those families are the
-/// long ones and every ramp starts near black: a light table can then darken a colour without changing its hue.
+/// The ramps in palette order. The world is mostly earth, stone and metal under dim light, so those
+/// families are the long ones and every ramp starts near black: a light table can then darken a
+/// colour without changing its hue.
 const RAMPS: [Ramp; 19] = [
     // Neutral grey, dense in the dark half.
-    (30, &[[0, 0, 0], [37, 37, 37], [80, 80, 80], [130, 130, 130], [190, 190, 190], [255, 255, 255]]),
+    (
+        30,
+        &[[0, 0, 0], [37, 37, 37], [80, 80, 80], [130, 130, 130], [190, 190, 190], [255, 255, 255]],
+    ),
     // Warm stone.
     (14, &[[16, 14, 12], [70, 62, 54], [132, 120, 106], [200, 188, 170]]),
     // Weathered stone, slightly green.
@@ -25,7 +30,10 @@ const RAMPS: [Ramp; 19] = [
     // Red, from dried blood to a highlight.
     (18, &[[14, 0, 0], [84, 4, 4], [160, 10, 8], [232, 26, 20], [255, 120, 100]]),
     // Fire.
-    (20, &[[34, 6, 0], [110, 26, 2], [186, 62, 4], [246, 128, 16], [255, 200, 60], [255, 250, 190]]),
+    (
+        20,
+        &[[34, 6, 0], [110, 26, 2], [186, 62, 4], [246, 128, 16], [255, 200, 60], [255, 250, 190]],
+    ),
     // Gold and hazard yellow.
     (10, &[[40, 30, 4], [122, 96, 14], [206, 170, 36], [255, 240, 110]]),
     // Olive drab.
@@ -68,7 +76,8 @@ pub(super) fn colours() -> [[u8; 3]; 256] {
             let (segment, part) = ((position / 256).min(stops.len() - 2), position);
             let part = (part - segment * 256) as i32;
             for channel in 0..3 {
-                let (a, b) = (i32::from(stops[segment][channel]), i32::from(stops[segment + 1][channel]));
+                let (a, b) =
+                    (i32::from(stops[segment][channel]), i32::from(stops[segment + 1][channel]));
                 out[at][channel] = (a + (b - a) * part / 256) as u8;
             }
             at += 1;
@@ -82,10 +91,13 @@ struct Channels([[i32; 256]; 3]);
 
 impl Channels {
     fn new(palette: &[[u8; 3]; 256]) -> Channels {
-        Channels(std::array::from_fn(|channel| std::array::from_fn(|index| i32::from(palette[index][channel]))))
+        Channels(std::array::from_fn(|channel| {
+            std::array::from_fn(|index| i32::from(palette[index][channel]))
+        }))
     }
 
-    /// The entry nearest to a colour, the first of equals; the eye's sensitivity weighs the channels.
+    /// The entry nearest to a colour, the first of equals; the eye's sensitivity weighs the
+    /// channels.
     fn nearest(&self, colour: [i32; 3]) -> u8 {
         let mut least = i32::MAX;
         for index in 0..256 {
@@ -97,7 +109,8 @@ impl Channels {
     }
 }
 
-/// The 32 light tables: table `i` maps every colour to the nearest one of `(32 - i) / 32` of its brightness.
+/// The 32 light tables: table `i` maps every colour to the nearest one of `(32 - i) / 32` of its
+/// brightness.
 pub(super) fn light_tables(palette: &[[u8; 3]; 256]) -> Box<[[u8; 256]; 32]> {
     let channels = Channels::new(palette);
     let mut tables = Box::new([[0; 256]; 32]);
@@ -108,7 +121,8 @@ pub(super) fn light_tables(palette: &[[u8; 3]; 256]) -> Box<[[u8; 256]; 32]> {
             *entry = if level == 0 {
                 index as u8
             } else {
-                channels.nearest(palette[index].map(|channel| (i32::from(channel) * factor + 16) / 32))
+                channels
+                    .nearest(palette[index].map(|channel| (i32::from(channel) * factor + 16) / 32))
             };
         }
     }
@@ -118,7 +132,8 @@ pub(super) fn light_tables(palette: &[[u8; 3]; 256]) -> Box<[[u8; 256]; 32]> {
 /// Steps of each channel in the look-up cube of [`Quantiser`].
 const STEPS: usize = 32;
 
-/// Turns true colours into palette entries by look-up, finer in the dark where the eye and the light tables need it.
+/// Turns true colours into palette entries by look-up, finer in the dark where the eye and the
+/// light tables need it.
 pub(super) struct Quantiser {
     step_of_level: [u8; 256],
     cube: Vec<u8>,

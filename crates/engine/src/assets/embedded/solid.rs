@@ -1,4 +1,5 @@
-//! The parts of a model as one viewer sees them: where lines of sight first touch them and which way their surface faces.
+//! The parts of a model as one viewer sees them: where lines of sight first touch them and which
+//! way their surface faces.
 //!
 //! All coordinates here are right, up, toward the viewer; a line of sight runs along the third.
 
@@ -77,9 +78,12 @@ impl Solid {
             Shape::Limb { from, to, from_radius, to_radius } => {
                 Solid::Cone(Cone::new(view.see(from), view.see(to), (from_radius, to_radius), true))
             }
-            Shape::Tube { from, to, from_radius, to_radius } => {
-                Solid::Cone(Cone::new(view.see(from), view.see(to), (from_radius, to_radius), false))
-            }
+            Shape::Tube { from, to, from_radius, to_radius } => Solid::Cone(Cone::new(
+                view.see(from),
+                view.see(to),
+                (from_radius, to_radius),
+                false,
+            )),
         }
     }
 
@@ -93,7 +97,12 @@ impl Solid {
             Solid::Block(block) => around(block.centre, block.extent()),
             Solid::Cone(cone) => {
                 let (a, b, (ra, rb)) = (cone.from, cone.to, cone.radii);
-                [(a.0 - ra).min(b.0 - rb), (a.0 + ra).max(b.0 + rb), (a.1 - ra).min(b.1 - rb), (a.1 + ra).max(b.1 + rb)]
+                [
+                    (a.0 - ra).min(b.0 - rb),
+                    (a.0 + ra).max(b.0 + rb),
+                    (a.1 - ra).min(b.1 - rb),
+                    (a.1 + ra).max(b.1 + rb),
+                ]
             }
         }
     }
@@ -112,7 +121,10 @@ impl Solid {
         match self {
             Solid::Egg(egg) => {
                 let q = point - egg.centre;
-                egg.axes.iter().fold(Vector::default(), |sum, &axis| sum + axis * q.dot(axis)).unit()
+                egg.axes
+                    .iter()
+                    .fold(Vector::default(), |sum, &axis| sum + axis * q.dot(axis))
+                    .unit()
             }
             Solid::Cone(cone) => cone.normal(point),
             Solid::Block(block) => block.normal(point),
@@ -127,8 +139,8 @@ pub(super) struct Egg {
     axes: [Vector; 3],
     /// Half width and half height as seen.
     extent: (f32, f32),
-    /// The quadratic equation for the depth t at (x, y): `a t² + 2 (b·(x, y)) t + ... = 0`, and its discriminant
-    /// `a - (d0 x² + 2 d1 x y + d2 y²)`.
+    /// The quadratic equation for the depth t at (x, y): `a t² + 2 (b·(x, y)) t + ... = 0`, and its
+    /// discriminant `a - (d0 x² + 2 d1 x y + d2 y²)`.
     a: f32,
     b: (f32, f32),
     d: [f32; 3],
@@ -170,8 +182,8 @@ impl Egg {
     }
 }
 
-/// A cone. A round one is the hull of two balls: its flank touches them where the axial distance is the radius times the sine
-/// of the taper, which is how far the flank reaches.
+/// A cone. A round one is the hull of two balls: its flank touches them where the axial distance is
+/// the radius times the sine of the taper, which is how far the flank reaches.
 pub(super) struct Cone {
     from: Vector,
     to: Vector,
@@ -179,7 +191,8 @@ pub(super) struct Cone {
     length: f32,
     radii: (f32, f32),
     round: bool,
-    /// The flank's radius at axial distance s is `offset - slope s`, for s between `start` and `end`.
+    /// The flank's radius at axial distance s is `offset - slope s`, for s between `start` and
+    /// `end`.
     slope: f32,
     offset: f32,
     start: f32,
@@ -209,7 +222,8 @@ impl Cone {
         let (low, high) = if rise.abs() < 0.01 {
             (0.0, 1.0)
         } else {
-            let (one, two) = ((line.up - wide - self.from.1) / rise, (line.up + wide - self.from.1) / rise);
+            let (one, two) =
+                ((line.up - wide - self.from.1) / rise, (line.up + wide - self.from.1) / rise);
             (one.min(two).clamp(0.0, 1.0), one.max(two).clamp(0.0, 1.0))
         };
         let run = self.to.0 - self.from.0;
@@ -226,7 +240,8 @@ impl Cone {
             let c = x * x + y * y - level * level - radius * radius;
             let under = b * b - a * c;
             if a > 1e-4 {
-                // The whole body lies inside its endless flank: a line of sight that misses the flank misses all.
+                // The whole body lies inside its endless flank: a line of sight that misses the
+                // flank misses all.
                 if under < 0.0 {
                     continue;
                 }
@@ -259,7 +274,9 @@ impl Cone {
                 }
             }
         } else if self.along.2.abs() > 1e-4 {
-            for (s, centre, radius) in [(0.0, Vector::default(), self.radii.0), (self.length, far, self.radii.1)] {
+            for (s, centre, radius) in
+                [(0.0, Vector::default(), self.radii.0), (self.length, far, self.radii.1)]
+            {
                 let t = (s - level) / self.along.2;
                 let p = Vector(x, y, t) - centre;
                 if p.dot(p) <= radius * radius {
@@ -301,7 +318,9 @@ pub(super) struct Block {
 impl Block {
     /// Half width and half height as seen.
     fn extent(&self) -> (f32, f32) {
-        let reach = |pick: fn(Vector) -> f32| (0..3).map(|i| pick(self.axes[i]).abs() * self.half[i]).sum::<f32>();
+        let reach = |pick: fn(Vector) -> f32| {
+            (0..3).map(|i| pick(self.axes[i]).abs() * self.half[i]).sum::<f32>()
+        };
         (reach(|v| v.0), reach(|v| v.1))
     }
 

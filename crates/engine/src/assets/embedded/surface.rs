@@ -1,10 +1,12 @@
-//! A tileable surface with relief: colours plus heights, lit from the upper left when it is finished.
+//! A tileable surface with relief: colours plus heights, lit from the upper left when it is
+//! finished.
 
 use super::canvas::Canvas;
 use super::colour::Colour;
 use super::noise::{Field, unit};
 
-/// A wall or floor being made: a colour and a height (in texels) at every point, wrapped around at its edges.
+/// A wall or floor being made: a colour and a height (in texels) at every point, wrapped around at
+/// its edges.
 pub(super) struct Surface {
     pub(super) width: usize,
     pub(super) height: usize,
@@ -14,7 +16,11 @@ pub(super) struct Surface {
 
 impl Surface {
     /// A surface whose points `make` colours and raises.
-    pub(super) fn new(width: usize, height: usize, mut make: impl FnMut(i32, i32) -> (Colour, f32)) -> Surface {
+    pub(super) fn new(
+        width: usize,
+        height: usize,
+        mut make: impl FnMut(i32, i32) -> (Colour, f32),
+    ) -> Surface {
         let mut colours = Vec::with_capacity(width * height);
         let mut relief = Field::constant(width, height, 0.0);
         for y in 0..height {
@@ -28,7 +34,8 @@ impl Surface {
     }
 
     fn index(&self, x: i32, y: i32) -> usize {
-        y.rem_euclid(self.height as i32) as usize * self.width + x.rem_euclid(self.width as i32) as usize
+        y.rem_euclid(self.height as i32) as usize * self.width
+            + x.rem_euclid(self.width as i32) as usize
     }
 
     /// The colour at a point, wrapped.
@@ -48,7 +55,8 @@ impl Surface {
         self.relief.values[index] = raise;
     }
 
-    /// Changes every point of a rectangle (wrapped) to what `make` turns its colour and height into.
+    /// Changes every point of a rectangle (wrapped) to what `make` turns its colour and height
+    /// into.
     pub(super) fn area(
         &mut self,
         x: i32,
@@ -59,7 +67,8 @@ impl Surface {
     ) {
         for at_y in y..y + height {
             for at_x in x..x + width {
-                let (colour, raise) = make(at_x - x, at_y - y, self.colour(at_x, at_y), self.relief(at_x, at_y));
+                let (colour, raise) =
+                    make(at_x - x, at_y - y, self.colour(at_x, at_y), self.relief(at_x, at_y));
                 self.set(at_x, at_y, colour, raise);
             }
         }
@@ -73,14 +82,20 @@ impl Surface {
                 let distance = ((dx * dx + dy * dy) as f32).sqrt() / (radius + 0.3);
                 if distance <= 1.0 {
                     let base = self.relief(x + dx, y + dy);
-                    self.set(x + dx, y + dy, colour, base + (1.0 - distance * distance).sqrt() * radius);
+                    self.set(
+                        x + dx,
+                        y + dy,
+                        colour,
+                        base + (1.0 - distance * distance).sqrt() * radius,
+                    );
                 }
             }
         }
     }
 
-    /// Lights the relief and returns the colours: slopes that face the upper left brighten, hollows darken. `strength` is
-    /// the change of brightness for a slope of one texel in one; `grain` is the spread of a random speckle.
+    /// Lights the relief and returns the colours: slopes that face the upper left brighten, hollows
+    /// darken. `strength` is the change of brightness for a slope of one texel in one; `grain` is
+    /// the spread of a random speckle.
     pub(super) fn lit(mut self, strength: f32, grain: f32, seed: u32) -> Surface {
         let (width, height) = (self.width as i32, self.height as i32);
         let mut lit = Vec::with_capacity(self.colours.len());
@@ -99,7 +114,8 @@ impl Surface {
         self
     }
 
-    /// Scales the channels so that the mean colour becomes `mean`; what the benchmark's tables ask of a texture.
+    /// Scales the channels so that the mean colour becomes `mean`; what the benchmark's tables ask
+    /// of a texture.
     pub(super) fn with_mean(mut self, mean: Colour) -> Surface {
         // Bright points are cut off at 255, so a few rounds are needed.
         for _ in 0..3 {
@@ -110,7 +126,9 @@ impl Surface {
                 }
             }
             let count = self.colours.len() as f64;
-            let scale = |target: f32, total: f64| (f64::from(target) / (total / count).max(0.5)).clamp(0.1, 10.0) as f32;
+            let scale = |target: f32, total: f64| {
+                (f64::from(target) / (total / count).max(0.5)).clamp(0.1, 10.0) as f32
+            };
             let factors = (scale(mean.0, sum[0]), scale(mean.1, sum[1]), scale(mean.2, sum[2]));
             for colour in &mut self.colours {
                 *colour = Colour(colour.0 * factors.0, colour.1 * factors.1, colour.2 * factors.2);

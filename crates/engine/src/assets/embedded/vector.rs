@@ -16,7 +16,11 @@ impl Vector {
     }
 
     pub(super) fn cross(self, other: Vector) -> Vector {
-        Vector(self.1 * other.2 - self.2 * other.1, self.2 * other.0 - self.0 * other.2, self.0 * other.1 - self.1 * other.0)
+        Vector(
+            self.1 * other.2 - self.2 * other.1,
+            self.2 * other.0 - self.0 * other.2,
+            self.0 * other.1 - self.1 * other.0,
+        )
     }
 
     pub(super) fn length(self) -> f32 {
@@ -63,7 +67,8 @@ impl Neg for Vector {
     }
 }
 
-/// Cosine and sine of an angle in degrees, from a polynomial: the platform's own functions differ in the last bits.
+/// Cosine and sine of an angle in degrees, from a polynomial: the platform's own functions differ
+/// in the last bits.
 pub(super) fn turn(degrees: f32) -> (f32, f32) {
     (sine(degrees + 90.0), sine(degrees))
 }
@@ -89,7 +94,8 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The frame of the model itself.
-    pub(super) const WORLD: Frame = Frame { forward: Vector::FORWARD, left: Vector::LEFT, up: Vector::UP };
+    pub(super) const WORLD: Frame =
+        Frame { forward: Vector::FORWARD, left: Vector::LEFT, up: Vector::UP };
 
     /// A frame whose forward is given and whose up leans as little as possible from `up`.
     pub(super) fn facing(forward: Vector, up: Vector) -> Frame {
@@ -98,7 +104,8 @@ impl Frame {
         Frame { forward, left, up: forward.cross(left) }
     }
 
-    /// The frame that results from leaning forward by `pitch`, to the left side by `roll`, then turning left by `yaw` degrees.
+    /// The frame that results from leaning forward by `pitch`, to the left side by `roll`, then
+    /// turning left by `yaw` degrees.
     pub(super) fn turned(pitch: f32, roll: f32, yaw: f32) -> Frame {
         let ((cp, sp), (cr, sr), (cy, sy)) = (turn(pitch), turn(roll), turn(yaw));
         let rotate = |v: Vector| {
@@ -106,7 +113,11 @@ impl Frame {
             let v = Vector(v.0 * cp + v.2 * sp, v.1, v.2 * cp - v.0 * sp);
             Vector(v.0 * cy - v.1 * sy, v.0 * sy + v.1 * cy, v.2)
         };
-        Frame { forward: rotate(Vector::FORWARD), left: rotate(Vector::LEFT), up: rotate(Vector::UP) }
+        Frame {
+            forward: rotate(Vector::FORWARD),
+            left: rotate(Vector::LEFT),
+            up: rotate(Vector::UP),
+        }
     }
 
     /// A vector given along this frame's directions, in the model's.
@@ -115,12 +126,13 @@ impl Frame {
     }
 }
 
-/// The middle joint of a limb of two bones of lengths `first` and `second` from `root` to `end`, bent towards `bend`. An end
-/// out of reach gives the straight limb.
+/// The middle joint of a limb of two bones of lengths `first` and `second` from `root` to `end`,
+/// bent towards `bend`. An end out of reach gives the straight limb.
 pub(super) fn joint(root: Vector, end: Vector, first: f32, second: f32, bend: Vector) -> Vector {
     let reach = (end - root).length().max(0.01);
     let along = (end - root) * (1.0 / reach);
-    let foot = ((first * first - second * second + reach * reach) / (2.0 * reach)).clamp(-first, first);
+    let foot =
+        ((first * first - second * second + reach * reach) / (2.0 * reach)).clamp(-first, first);
     let aside = bend - along * bend.dot(along);
     root + along * foot + aside.unit() * (first * first - foot * foot).max(0.0).sqrt()
 }

@@ -72,15 +72,22 @@ pub(super) struct Animations {
 
 impl Animations {
     pub fn read(wad: &Wad<'_>) -> Animations {
-        let mut animations = Animations { runs: Vec::new(), sequences: Vec::new(), warped: BTreeSet::new() };
+        let mut animations =
+            Animations { runs: Vec::new(), sequences: Vec::new(), warped: BTreeSet::new() };
         if let Some(list) = wad.find("ANIMATED") {
             for entry in list.chunks_exact(ENTRY).take_while(|entry| entry[0] != 255) {
                 let name = |at: usize| {
-                    let end = entry[at..at + 9].iter().position(|&byte| byte == 0).unwrap_or(8).min(8);
+                    let end =
+                        entry[at..at + 9].iter().position(|&byte| byte == 0).unwrap_or(8).min(8);
                     TextureName::new(std::str::from_utf8(&entry[at..at + end]).unwrap_or(""))
                 };
                 let tics = super::long(entry, 19).clamp(1, 255) as u8;
-                animations.runs.push(Run { walls: entry[0] & 1 == 1, first: name(10), last: name(1), tics });
+                animations.runs.push(Run {
+                    walls: entry[0] & 1 == 1,
+                    first: name(10),
+                    last: name(1),
+                    tics,
+                });
             }
         } else {
             for (walls, list) in [(false, &FLATS[..]), (true, &WALLS[..])] {
@@ -99,12 +106,19 @@ impl Animations {
         animations
     }
 
-    /// Adds the definitions of an `ANIMDEFS` lump. Frames are shown for the tics of the first one, whole tics at least.
+    /// Adds the definitions of an `ANIMDEFS` lump. Frames are shown for the tics of the first one,
+    /// whole tics at least.
     fn define(&mut self, words: &[&str]) {
-        let is = |at: usize, word: &str| words.get(at).is_some_and(|found| found.eq_ignore_ascii_case(word));
+        let is = |at: usize, word: &str| {
+            words.get(at).is_some_and(|found| found.eq_ignore_ascii_case(word))
+        };
         let name = |at: usize| TextureName::new(words.get(at).copied().unwrap_or(""));
-        let tics =
-            |at: usize| words.get(at).and_then(|word| word.parse::<f32>().ok()).map_or(TICS, |tics| tics.clamp(1.0, 255.0) as u8);
+        let tics = |at: usize| {
+            words
+                .get(at)
+                .and_then(|word| word.parse::<f32>().ok())
+                .map_or(TICS, |tics| tics.clamp(1.0, 255.0) as u8)
+        };
         let mut at = 0;
         while at < words.len() {
             if is(at, "warp") || is(at, "warp2") {
@@ -122,9 +136,15 @@ impl Animations {
                         sequence.pictures.push(name(at + 1));
                         at += if is(at + 2, "rand") { 5 } else { 4 };
                     } else if is(at, "range") {
-                        self.runs.push(Run { walls, first, last: name(at + 1), tics: tics(at + 3) });
+                        self.runs.push(Run {
+                            walls,
+                            first,
+                            last: name(at + 1),
+                            tics: tics(at + 3),
+                        });
                         at += 4;
-                    } else if ["allowdecals", "oscillate", "random"].iter().any(|word| is(at, word)) {
+                    } else if ["allowdecals", "oscillate", "random"].iter().any(|word| is(at, word))
+                    {
                         at += 1;
                     } else {
                         break;
@@ -140,7 +160,11 @@ impl Animations {
     }
 
     /// The pictures that the animations of what is wanted need beside.
-    pub fn needed(&self, sections: &Sections<'_>, wanted: super::Wanted<'_>) -> BTreeSet<TextureName> {
+    pub fn needed(
+        &self,
+        sections: &Sections<'_>,
+        wanted: super::Wanted<'_>,
+    ) -> BTreeSet<TextureName> {
         let mut needed = BTreeSet::new();
         for sequence in self.sequences.iter().filter(|sequence| wanted(sequence.name)) {
             needed.extend(&sequence.pictures);
@@ -148,7 +172,8 @@ impl Animations {
         for run in &self.runs {
             let lumps = if run.walls { &sections.textures } else { &sections.flats };
             let find = |name| lumps.iter().rposition(|lump| lump.name == name);
-            if let Some((first, last)) = find(run.first).zip(find(run.last)).filter(|(first, last)| first < last)
+            if let Some((first, last)) =
+                find(run.first).zip(find(run.last)).filter(|(first, last)| first < last)
                 && lumps[first..=last].iter().any(|lump| wanted(lump.name))
             {
                 needed.extend(lumps[first..=last].iter().map(|lump| lump.name));
@@ -157,14 +182,24 @@ impl Animations {
         needed
     }
 
-    /// Animates what was loaded, given the names of flats and walls in file order. All frames of a run show the same picture at the
-    /// same time.
-    pub fn apply(&self, set: &mut Assets, flats: &[TextureName], walls: &[TextureName], wanted: super::Wanted<'_>) {
+    /// Animates what was loaded, given the names of flats and walls in file order. All frames of a
+    /// run show the same picture at the same time.
+    pub fn apply(
+        &self,
+        set: &mut Assets,
+        flats: &[TextureName],
+        walls: &[TextureName],
+        wanted: super::Wanted<'_>,
+    ) {
         for run in &self.runs {
             let names = if run.walls { walls } else { flats };
             let find = |name| names.iter().rposition(|&other| other == name);
             // Runs that the files lack, or have backwards, are left still.
-            let Some((first, last)) = find(run.first).zip(find(run.last)).filter(|(first, last)| first < last) else { continue };
+            let Some((first, last)) =
+                find(run.first).zip(find(run.last)).filter(|(first, last)| first < last)
+            else {
+                continue;
+            };
             if last - first < FRAME_LIMIT {
                 let run_names = &names[first..=last];
                 if let Some(entry) = in_row(set, run_names, run.tics) {
@@ -177,20 +212,26 @@ impl Animations {
                 set.textures.insert(sequence.name, entry);
             }
         }
-        for name in self.warped.iter().filter(|&&name| set.textures.contains_key(&name) && wanted(name)) {
+        for name in
+            self.warped.iter().filter(|&&name| set.textures.contains_key(&name) && wanted(name))
+        {
             set.left_out.insert(format!("the ripples of {name:?}"));
         }
     }
 }
 
-/// The animation of some names: their own pictures if those lie in a row, copies otherwise (as where another file replaces
-/// some); none if one is missing.
+/// The animation of some names: their own pictures if those lie in a row, copies otherwise (as
+/// where another file replaces some); none if one is missing.
 fn in_row(set: &mut Assets, names: &[TextureName], tics: u8) -> Option<TextureEntry> {
-    let firsts = names.iter().map(|name| set.textures.get(name).map(|entry| entry.first)).collect::<Option<Vec<u32>>>()?;
+    let firsts = names
+        .iter()
+        .map(|name| set.textures.get(name).map(|entry| entry.first))
+        .collect::<Option<Vec<u32>>>()?;
     let frames = u8::try_from(firsts.len()).ok()?;
     let mut first = *firsts.first()?;
     if !firsts.iter().zip(first..).all(|(&found, expected)| found == expected) {
-        let copies: Vec<_> = firsts.iter().map(|&index| set.images[index as usize].clone()).collect();
+        let copies: Vec<_> =
+            firsts.iter().map(|&index| set.images[index as usize].clone()).collect();
         first = copies.into_iter().map(|image| push(set, image)).min()?;
     }
     Some(TextureEntry { first, frames, tics })

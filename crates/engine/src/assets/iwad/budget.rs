@@ -5,7 +5,8 @@ use super::IwadError;
 /// Largest width and height of a picture.
 pub(super) const SIDE_LIMIT: usize = 4096;
 
-/// What is left of the memory and work that a file may take. Freedoom's larger set needs a tenth of either.
+/// What is left of the memory and work that a file may take. Freedoom's larger set needs a tenth of
+/// either.
 pub(super) struct Budget {
     pixels: u64,
     work: u64,

@@ -29,8 +29,8 @@ struct Definition<'a> {
     strange: Option<&'a str>,
 }
 
-/// Composes the textures that are wanted, in their order. One that asks for more than pictures laid over each other is left out
-/// and told of.
+/// Composes the textures that are wanted, in their order. One that asks for more than pictures laid
+/// over each other is left out and told of.
 pub(super) fn load(
     set: &mut Assets,
     wad: &Wad<'_>,
@@ -56,7 +56,12 @@ pub(super) fn load(
     Ok(())
 }
 
-fn compose(definition: &Definition<'_>, set: &Assets, sections: &Sections<'_>, reader: &mut Reader) -> Result<Image, IwadError> {
+fn compose(
+    definition: &Definition<'_>,
+    set: &Assets,
+    sections: &Sections<'_>,
+    reader: &mut Reader,
+) -> Result<Image, IwadError> {
     let [width, height] = definition.size;
     if !(1..=SIDE_LIMIT as i32).contains(&width) || !(1..=SIDE_LIMIT as i32).contains(&height) {
         return Err(IwadError::Picture { lump: definition.name, what: "its size is absurd" });
@@ -70,7 +75,10 @@ fn compose(definition: &Definition<'_>, set: &Assets, sections: &Sections<'_>, r
         let patch = sections.patches.iter().chain(&sections.rest).rfind(|lump| lump.name == name);
         let decoded;
         let picture = match (patch, set.textures.get(&name)) {
-            (Some(lump), _) if sections.patches.iter().any(|other| other.name == name) || !set.textures.contains_key(&name) => {
+            (Some(lump), _)
+                if sections.patches.iter().any(|other| other.name == name)
+                    || !set.textures.contains_key(&name) =>
+            {
                 decoded = reader.picture(lump)?;
                 &decoded
             }
@@ -92,7 +100,14 @@ fn compose(definition: &Definition<'_>, set: &Assets, sections: &Sections<'_>, r
         }
     }
     let opaque = mask.iter().all(|&opaque| opaque == 1);
-    Ok(Image { width: width as u16, height: height as u16, offset_x: 0, offset_y: 0, pixels, mask: (!opaque).then_some(mask) })
+    Ok(Image {
+        width: width as u16,
+        height: height as u16,
+        offset_x: 0,
+        offset_y: 0,
+        pixels,
+        mask: (!opaque).then_some(mask),
+    })
 }
 
 /// A reader of the text's words.
@@ -142,7 +157,12 @@ impl<'a> Text<'a, '_> {
                 self.at += 1;
                 let (name, x, y) = (self.next()?, self.number(), self.number());
                 let limit = SIDE_LIMIT as i32;
-                let mut part = Part { name, x: x.clamp(-limit, limit), y: y.clamp(-limit, limit), flip: [false; 2] };
+                let mut part = Part {
+                    name,
+                    x: x.clamp(-limit, limit),
+                    y: y.clamp(-limit, limit),
+                    flip: [false; 2],
+                };
                 if self.is("{") {
                     self.at += 1;
                     self.part_options(&mut part, &mut definition.strange)?;

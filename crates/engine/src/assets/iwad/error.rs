@@ -40,15 +40,23 @@ impl fmt::Display for IwadError {
         match self {
             IwadError::Wad(error) => fmt::Display::fmt(error, f),
             IwadError::Missing { lump } => {
-                write!(f, "the WAD has no {lump}: it is not a complete game file; give an IWAD such as freedoom2.wad")
+                write!(
+                    f,
+                    "the WAD has no {lump}: it is not a complete game file; give an IWAD such as freedoom2.wad"
+                )
             }
             IwadError::TooShort { lump, least, length } => {
-                write!(f, "broken WAD: {lump:?} has {length} bytes and needs {least}; fetch the file again")
+                write!(
+                    f,
+                    "broken WAD: {lump:?} has {length} bytes and needs {least}; fetch the file again"
+                )
             }
             IwadError::Picture { lump, what } => {
                 write!(f, "broken WAD: picture {lump:?}: {what}; fetch the file again")
             }
-            IwadError::TooLarge => f.write_str("the WAD's pictures are too large to load; give an IWAD such as freedoom2.wad"),
+            IwadError::TooLarge => f.write_str(
+                "the WAD's pictures are too large to load; give an IWAD such as freedoom2.wad",
+            ),
         }
     }
 }

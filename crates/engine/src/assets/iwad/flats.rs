@@ -27,13 +27,20 @@ pub(super) fn load(
             continue;
         }
         if lump.bytes.len() < SIDE * SIDE {
-            return Err(IwadError::TooShort { lump: lump.name, least: SIDE * SIDE, length: lump.bytes.len() });
+            return Err(IwadError::TooShort {
+                lump: lump.name,
+                least: SIDE * SIDE,
+                length: lump.bytes.len(),
+            });
         }
         reader.budget.keep(SIDE * SIDE)?;
         // Stored row by row.
         let pixels = (0..SIDE * SIDE).map(|i| lump.bytes[i % SIDE * SIDE + i / SIDE]).collect();
         let side = SIDE as u16;
-        let index = push(set, Image { width: side, height: side, offset_x: 0, offset_y: 0, pixels, mask: None });
+        let index = push(
+            set,
+            Image { width: side, height: side, offset_x: 0, offset_y: 0, pixels, mask: None },
+        );
         set.textures.insert(lump.name, still(index));
         names.push(lump.name);
     }

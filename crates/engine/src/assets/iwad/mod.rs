@@ -1,7 +1,8 @@
-//! A picture set read from an IWAD such as Freedoom's: palette, light tables, wall textures, flats, sprites, status bar.
+//! A picture set read from an IWAD such as Freedoom's: palette, light tables, wall textures, flats,
+//! sprites, status bar.
 //!
-//! Everything is checked: whatever a file claims, loading ends in pictures or in an error, within the bounds of
-//! [`Budget`](budget::Budget).
+//! Everything is checked: whatever a file claims, loading ends in pictures or in an error, within
+//! the bounds of [`Budget`](budget::Budget).
 
 mod animation;
 mod budget;
@@ -33,7 +34,8 @@ use sections::Sections;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Beginnings of the names of status-bar lumps.
-const STATUS_BAR: [&str; 9] = ["STBAR", "STARMS", "STTNUM", "STTMINUS", "STTPRCNT", "STYSNUM", "STGNUM", "STF", "STKEYS"];
+const STATUS_BAR: [&str; 9] =
+    ["STBAR", "STARMS", "STTNUM", "STTMINUS", "STTPRCNT", "STYSNUM", "STGNUM", "STF", "STKEYS"];
 
 /// Which textures are needed: those of additions can be many more than a map shows.
 type Wanted<'a> = &'a dyn Fn(TextureName) -> bool;
@@ -47,8 +49,8 @@ const MAP: &str = "MAP01";
 impl Assets {
     /// Reads the picture set of an IWAD.
     ///
-    /// Of equal names the last lump counts. Where a wall texture and a flat share a name, the wall texture is taken.
-    /// Sprites that the file lacks are taken from the embedded set.
+    /// Of equal names the last lump counts. Where a wall texture and a flat share a name, the wall
+    /// texture is taken. Sprites that the file lacks are taken from the embedded set.
     ///
     /// # Errors
     /// The first broken or missing part, by its lump's name.
@@ -56,14 +58,25 @@ impl Assets {
         Assets::from_wads(bytes, &[], &|_| true)
     }
 
-    /// The same, with other files laid over the IWAD: what they bring counts before the IWAD's. Of their single pictures only those
-    /// that are `wanted`, and the frames of their animations, are decoded: a published map names 140 of the 1,400 in its file.
+    /// The same, with other files laid over the IWAD: what they bring counts before the IWAD's. Of
+    /// their single pictures only those that are `wanted`, and the frames of their animations, are
+    /// decoded: a published map names 140 of the 1,400 in its file.
     ///
     /// # Errors
     /// The first broken or missing part, by its lump's name.
-    pub fn from_wads(iwad: &[u8], additions: &[&[u8]], wanted: &dyn Fn(TextureName) -> bool) -> Result<Assets, IwadError> {
-        let files = std::iter::once(&iwad).chain(additions).map(|bytes| Wad::read(bytes)).collect::<Result<Vec<_>, _>>()?;
-        let wad = Wad { kind: WadKind::Iwad, lumps: files.iter().flat_map(|file| &file.lumps).copied().collect() };
+    pub fn from_wads(
+        iwad: &[u8],
+        additions: &[&[u8]],
+        wanted: &dyn Fn(TextureName) -> bool,
+    ) -> Result<Assets, IwadError> {
+        let files = std::iter::once(&iwad)
+            .chain(additions)
+            .map(|bytes| Wad::read(bytes))
+            .collect::<Result<Vec<_>, _>>()?;
+        let wad = Wad {
+            kind: WadKind::Iwad,
+            lumps: files.iter().flat_map(|file| &file.lumps).copied().collect(),
+        };
         let mut set = Assets {
             palette: palette(&wad)?,
             light_tables: light_tables(&wad)?,
@@ -119,7 +132,11 @@ fn still(first: u32) -> TextureEntry {
 fn lump<'a>(wad: &Wad<'a>, name: &'static str, least: usize) -> Result<&'a [u8], IwadError> {
     let bytes = wad.find(name).ok_or(IwadError::Missing { lump: name })?;
     if bytes.len() < least {
-        return Err(IwadError::TooShort { lump: TextureName::new(name), least, length: bytes.len() });
+        return Err(IwadError::TooShort {
+            lump: TextureName::new(name),
+            least,
+            length: bytes.len(),
+        });
     }
     Ok(bytes)
 }
@@ -131,7 +148,9 @@ fn palette(wad: &Wad<'_>) -> Result<[[u8; 3]; 256], IwadError> {
 
 fn light_tables(wad: &Wad<'_>) -> Result<Box<[[u8; 256]; 32]>, IwadError> {
     let bytes = lump(wad, "COLORMAP", 32 * 256)?;
-    Ok(Box::new(std::array::from_fn(|table| std::array::from_fn(|colour| bytes[256 * table + colour]))))
+    Ok(Box::new(std::array::from_fn(|table| {
+        std::array::from_fn(|colour| bytes[256 * table + colour])
+    })))
 }
 
 /// A little-endian 16-bit number at a place that the caller has checked.

@@ -21,16 +21,18 @@ pub(super) fn decode(lump: &Lump<'_>, budget: &mut Budget) -> Result<Image, Iwad
         return Err(wrong("its size is absurd"));
     }
     let (width, height) = (width as usize, height as usize);
-    let offsets = bytes.get(HEADER..HEADER + 4 * width).ok_or_else(|| wrong("its columns lie outside"))?;
+    let offsets =
+        bytes.get(HEADER..HEADER + 4 * width).ok_or_else(|| wrong("its columns lie outside"))?;
     budget.keep(width * height)?;
     let mut pixels = vec![0; width * height].into_boxed_slice();
     let mut mask = vec![0; width * height].into_boxed_slice();
     for column in 0..width {
-        let start = usize::try_from(long(offsets, 4 * column)).map_err(|_| wrong("its columns lie outside"))?;
+        let start = usize::try_from(long(offsets, 4 * column))
+            .map_err(|_| wrong("its columns lie outside"))?;
         let part = column * height..(column + 1) * height;
         let posts = bytes.get(start..).ok_or_else(|| wrong("its columns lie outside"))?;
-        let visited =
-            draw_posts(posts, &mut pixels[part.clone()], &mut mask[part]).ok_or_else(|| wrong("a column never ends"))?;
+        let visited = draw_posts(posts, &mut pixels[part.clone()], &mut mask[part])
+            .ok_or_else(|| wrong("a column never ends"))?;
         budget.visit(visited)?;
     }
     let opaque = mask.iter().all(|&opaque| opaque == 1);
@@ -54,7 +56,8 @@ fn draw_posts(posts: &[u8], pixels: &mut [u8], mask: &mut [u8]) -> Option<usize>
             return Some(at + 1);
         }
         let length = usize::from(*posts.get(at + 1)?);
-        // Rows beyond 254 are told by a step that does not go down: it then counts from the run before.
+        // Rows beyond 254 are told by a step that does not go down: it then counts from the run
+        // before.
         let top = match last_top {
             Some(last) if delta <= last => last + delta,
             _ => delta,

@@ -44,16 +44,26 @@ impl Rows {
         }
         reader.budget.keep(width * height)?;
         reader.budget.visit(WORK * width * height)?;
-        let mut bytes = vec![0; file.output_buffer_size().ok_or_else(|| wrong("its size is absurd"))?];
+        let mut bytes =
+            vec![0; file.output_buffer_size().ok_or_else(|| wrong("its size is absurd"))?];
         let frame = file.next_frame(&mut bytes).map_err(broken)?;
-        Ok(Rows { width, height, channels: frame.color_type.samples(), line: frame.line_size, bytes })
+        Ok(Rows {
+            width,
+            height,
+            channels: frame.color_type.samples(),
+            line: frame.line_size,
+            bytes,
+        })
     }
 
     /// Column, row and channels of every pixel.
     fn pixels(&self) -> impl Iterator<Item = (usize, usize, &[u8])> {
         let rows = self.bytes.chunks_exact(self.line).take(self.height).enumerate();
         rows.flat_map(|(y, row)| {
-            row.chunks_exact(self.channels).take(self.width).enumerate().map(move |(x, pixel)| (x, y, pixel))
+            row.chunks_exact(self.channels)
+                .take(self.width)
+                .enumerate()
+                .map(move |(x, pixel)| (x, y, pixel))
         })
     }
 }
@@ -79,7 +89,14 @@ pub(super) fn decode(lump: &Lump<'_>, reader: &mut Reader) -> Result<Image, Iwad
     }
     let opaque = mask.iter().all(|&opaque| opaque == 1);
     let [offset_x, offset_y] = anchor(lump.bytes).unwrap_or_default();
-    Ok(Image { width: width as u16, height: height as u16, offset_x, offset_y, pixels, mask: (!opaque).then_some(mask) })
+    Ok(Image {
+        width: width as u16,
+        height: height as u16,
+        offset_x,
+        offset_y,
+        pixels,
+        mask: (!opaque).then_some(mask),
+    })
 }
 
 /// Decodes a PNG whose first channel tells how opaque a stain is.
@@ -101,7 +118,10 @@ fn anchor(bytes: &[u8]) -> Option<[i16; 2]> {
         let number = |at: usize| -> Option<[u8; 4]> { rest.get(at..at + 4)?.try_into().ok() };
         let length = u32::from_be_bytes(number(0)?) as usize;
         if rest.get(4..8)? == b"grAb" && length == 8 {
-            let side = |at| Some(i32::from_be_bytes(number(at)?).clamp(-(SIDE_LIMIT as i32), SIDE_LIMIT as i32) as i16);
+            let side = |at| {
+                Some(i32::from_be_bytes(number(at)?).clamp(-(SIDE_LIMIT as i32), SIDE_LIMIT as i32)
+                    as i16)
+            };
             return Some([side(8)?, side(12)?]);
         }
         // Length, name and checksum around the contents.

@@ -22,10 +22,15 @@ impl Reader {
 
     /// Decodes a picture: a PNG, or the column format of patches.
     pub fn picture(&mut self, lump: &Lump<'_>) -> Result<Image, IwadError> {
-        if png::is_png(lump.bytes) { png::decode(lump, self) } else { picture::decode(lump, &mut self.budget) }
+        if png::is_png(lump.bytes) {
+            png::decode(lump, self)
+        } else {
+            picture::decode(lump, &mut self.budget)
+        }
     }
 
-    /// The palette entry nearest to a colour. Entry 0 is left out, as in the published engine, which keeps it for holes.
+    /// The palette entry nearest to a colour. Entry 0 is left out, as in the published engine,
+    /// which keeps it for holes.
     pub fn nearest(&mut self, colour: [u8; 3]) -> u8 {
         let palette = &self.palette;
         *self.found.entry(colour).or_insert_with(|| {

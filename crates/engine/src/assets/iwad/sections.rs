@@ -2,7 +2,8 @@
 
 use crate::wad::{Lump, Wad};
 
-/// The lumps by what their place in their file says that they are; markers left out. Of equal names the last counts.
+/// The lumps by what their place in their file says that they are; markers left out. Of equal names
+/// the last counts.
 #[derive(Default)]
 pub(super) struct Sections<'a> {
     /// Floors and ceilings.
@@ -31,7 +32,8 @@ impl<'a> Sections<'a> {
                     "P_START" | "PP_START" => current = "P",
                     "TX_START" => current = "TX",
                     "HI_START" => current = "HI",
-                    "F_END" | "FF_END" | "S_END" | "SS_END" | "P_END" | "PP_END" | "TX_END" | "HI_END" => current = "",
+                    "F_END" | "FF_END" | "S_END" | "SS_END" | "P_END" | "PP_END" | "TX_END"
+                    | "HI_END" => current = "",
                     _ if lump.bytes.is_empty() => {}
                     _ => sections.list(current).push(*lump),
                 }

@@ -7,7 +7,9 @@ use crate::wad::Wad;
 /// The sky of `map` by the last `MAPINFO` that names one.
 pub(super) fn of_map(wad: &Wad<'_>, map: &str) -> Option<TextureName> {
     let mut sky = None;
-    for lump in wad.lumps.iter().filter(|lump| ["MAPINFO", "ZMAPINFO"].contains(&lump.name.as_str())) {
+    for lump in
+        wad.lumps.iter().filter(|lump| ["MAPINFO", "ZMAPINFO"].contains(&lump.name.as_str()))
+    {
         let words = words(lump.bytes);
         let mut of_this_map = false;
         for (at, word) in words.iter().enumerate() {

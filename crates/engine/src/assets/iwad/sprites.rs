@@ -11,13 +11,19 @@ const FRAME_LIMIT: usize = 29;
 const EMPTY: SpriteFrame = SpriteFrame { images: [u32::MAX; 8], mirrored: [false; 8] };
 
 /// Adds the sprites of [`SPRITE_NAMES`].
-pub(super) fn load(set: &mut Assets, sections: &Sections<'_>, reader: &mut Reader) -> Result<(), IwadError> {
+pub(super) fn load(
+    set: &mut Assets,
+    sections: &Sections<'_>,
+    reader: &mut Reader,
+) -> Result<(), IwadError> {
     let mut sprites = vec![Sprite::default(); SPRITE_NAMES.len()];
     for lump in &sections.sprites {
         let name = lump.name.as_str();
-        let wanted = name.get(..4).and_then(|name| SPRITE_NAMES.iter().position(|&other| other == name));
+        let wanted =
+            name.get(..4).and_then(|name| SPRITE_NAMES.iter().position(|&other| other == name));
         let Some(sprite) = wanted else { continue };
-        let views: Vec<(usize, u8)> = name.as_bytes()[4..].chunks_exact(2).filter_map(view).collect();
+        let views: Vec<(usize, u8)> =
+            name.as_bytes()[4..].chunks_exact(2).filter_map(view).collect();
         if views.is_empty() {
             continue;
         }
@@ -29,7 +35,8 @@ pub(super) fn load(set: &mut Assets, sections: &Sections<'_>, reader: &mut Reade
                 frames.resize(frame + 1, EMPTY);
             }
             let frame = &mut frames[frame];
-            let sides = if rotation == 0 { 0..8 } else { usize::from(rotation) - 1..usize::from(rotation) };
+            let sides =
+                if rotation == 0 { 0..8 } else { usize::from(rotation) - 1..usize::from(rotation) };
             for side in sides {
                 frame.images[side] = index;
                 frame.mirrored[side] = i > 0;

@@ -15,14 +15,17 @@ pub(super) fn textures(set: &mut Assets) {
             set.textures.entry(TextureName::new(name)).or_insert(entry);
         }
     }
-    set.fallbacks = FALLBACKS.iter().filter_map(|name| set.textures.get(&TextureName::new(name)).copied()).collect();
+    set.fallbacks = FALLBACKS
+        .iter()
+        .filter_map(|name| set.textures.get(&TextureName::new(name)).copied())
+        .collect();
     if set.fallbacks.is_empty() {
         set.fallbacks = set.textures.values().take(FALLBACKS.len()).copied().collect();
     }
 }
 
-/// Takes sprites that the file lacks from the embedded set, in the nearest of the file's colours: the engine of the
-/// published worlds brought some along itself, the pistol to pick up among them.
+/// Takes sprites that the file lacks from the embedded set, in the nearest of the file's colours:
+/// the engine of the published worlds brought some along itself, the pistol to pick up among them.
 pub(super) fn sprites(set: &mut Assets, embedded: &Assets) {
     let mut colours: BTreeMap<u8, u8> = BTreeMap::new();
     let mut taken: BTreeMap<u32, u32> = BTreeMap::new();
@@ -36,7 +39,9 @@ pub(super) fn sprites(set: &mut Assets, embedded: &Assets) {
             *image = *taken.entry(*image).or_insert_with(|| {
                 let palette = set.palette;
                 let mut recolour = |&pixel: &u8| {
-                    *colours.entry(pixel).or_insert_with(|| nearest(&palette, embedded.palette[usize::from(pixel)]))
+                    *colours
+                        .entry(pixel)
+                        .or_insert_with(|| nearest(&palette, embedded.palette[usize::from(pixel)]))
                 };
                 let pixels = original.pixels.iter().map(&mut recolour).collect();
                 push(set, Image { pixels, ..original.clone() })
@@ -48,7 +53,8 @@ pub(super) fn sprites(set: &mut Assets, embedded: &Assets) {
 
 /// The palette entry with the least sum of squared differences.
 fn nearest(palette: &[[u8; 3]; 256], colour: [u8; 3]) -> u8 {
-    let distance =
-        |other: &[u8; 3]| -> i32 { other.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum() };
+    let distance = |other: &[u8; 3]| -> i32 {
+        other.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum()
+    };
     (0..=255u8).min_by_key(|&index| distance(&palette[usize::from(index)])).unwrap_or(0)
 }

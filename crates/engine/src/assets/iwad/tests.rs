@@ -62,7 +62,8 @@ pub(super) fn lumps() -> Vec<(&'static str, Vec<u8>)> {
         ("FENCE", 4, 4, &[(1, 1, 2)]),
         ("HOLES", 2, 2, &[(0, 0, 1), (0, 0, -1)]),
     ];
-    let flat = |colour: u8| (0..4096).map(|i| if i == 64 { 9 } else { colour }).collect::<Vec<u8>>();
+    let flat =
+        |colour: u8| (0..4096).map(|i| if i == 64 { 9 } else { colour }).collect::<Vec<u8>>();
     vec![
         ("PLAYPAL", palette),
         ("COLORMAP", light),
@@ -91,7 +92,8 @@ pub(super) fn lumps() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 pub(super) fn iwad(lumps: &[(&str, Vec<u8>)]) -> Vec<u8> {
-    let lumps: Vec<Lump> = lumps.iter().map(|(name, bytes)| Lump { name: TextureName::new(name), bytes }).collect();
+    let lumps: Vec<Lump> =
+        lumps.iter().map(|(name, bytes)| Lump { name: TextureName::new(name), bytes }).collect();
     wad::write(WadKind::Iwad, &lumps)
 }
 
@@ -112,14 +114,19 @@ fn a_small_iwad_is_read_in_all_its_parts() {
     assert!(image("HOLES").mask.as_ref().unwrap().iter().all(|&opaque| opaque == 0));
 
     // Flats are stored by rows: the odd pixel is the first of row 1.
-    assert_eq!((image("LAVA1").pixels[0], image("LAVA1").pixels[1], image("LAVA1").pixels[64]), (1, 9, 1));
+    assert_eq!(
+        (image("LAVA1").pixels[0], image("LAVA1").pixels[1], image("LAVA1").pixels[64]),
+        (1, 9, 1)
+    );
     let lava = texture("LAVA3");
     assert_eq!((lava, lava.frames), (texture("LAVA1"), 4));
     assert_eq!(set.images[lava.first as usize + 3].pixels[0], 4);
 
     let sprite = |name: &str| &set.sprites[usize::from(sprite_index(name).unwrap())];
     let bonus = sprite("BON1").frames[0];
-    assert!(bonus.images.iter().all(|&image| image == bonus.images[0]) && bonus.mirrored == [false; 8]);
+    assert!(
+        bonus.images.iter().all(|&image| image == bonus.images[0]) && bonus.mirrored == [false; 8]
+    );
     let anchor = &set.images[bonus.images[0] as usize];
     assert_eq!((anchor.offset_x, anchor.offset_y, anchor.mask.is_none()), (3, 7, true));
     let zombie = sprite("POSS");
@@ -130,9 +137,13 @@ fn a_small_iwad_is_read_in_all_its_parts() {
     // What is missing comes from the embedded set, in this palette's colours.
     let embedded = Assets::embedded();
     let index = usize::from(sprite_index("PIST").unwrap());
-    let (own, original) = (set.sprites[index].frames[0].images[0], embedded.sprites[index].frames[0].images[0]);
+    let (own, original) =
+        (set.sprites[index].frames[0].images[0], embedded.sprites[index].frames[0].images[0]);
     let (own, original) = (&set.images[own as usize], &embedded.images[original as usize]);
-    assert_eq!((own.width, own.height, &own.mask), (original.width, original.height, &original.mask));
+    assert_eq!(
+        (own.width, own.height, &own.mask),
+        (original.width, original.height, &original.mask)
+    );
     let middle = own.pixels.len() / 2;
     let distance = |colour: [u8; 3]| -> i32 {
         let wanted = embedded.palette[usize::from(original.pixels[middle])];
@@ -173,9 +184,13 @@ fn what_is_missing_or_broken_is_named() {
         let mut all = lumps();
         all.retain(|(other, _)| *other != lump);
         assert_eq!(Assets::from_iwad(&iwad(&all)).map(|_| ()), Err(IwadError::Missing { lump }));
-        assert!(matches!(spoiled(lump, &|bytes| bytes.truncate(3)), IwadError::TooShort { length: 3, .. }));
+        assert!(matches!(
+            spoiled(lump, &|bytes| bytes.truncate(3)),
+            IwadError::TooShort { length: 3, .. }
+        ));
     }
-    let large = |at: usize| move |bytes: &mut Vec<u8>| bytes[at..at + 2].copy_from_slice(&[0xff, 0x7f]);
+    let large =
+        |at: usize| move |bytes: &mut Vec<u8>| bytes[at..at + 2].copy_from_slice(&[0xff, 0x7f]);
     let broken = |lump: &str, change: &dyn Fn(&mut Vec<u8>)| match spoiled(lump, change) {
         IwadError::Picture { lump, .. } => lump,
         other => panic!("{lump}: {other}"),
@@ -188,8 +203,15 @@ fn what_is_missing_or_broken_is_named() {
     assert_eq!(broken("BRICK", &large(0)), name("BRICK"));
     assert_eq!(broken("BRICK", &large(8)), name("BRICK"));
     assert_eq!(broken("BRICK", &|bytes| bytes.truncate(30)), name("BRICK"));
-    assert_eq!(broken("BON1A0", &|bytes| bytes.splice(..4, *b"\x89PNG").for_each(drop)), name("BON1A0"), "a broken PNG");
-    assert!(matches!(spoiled("LAVA2", &|bytes| bytes.truncate(4095)), IwadError::TooShort { length: 4095, .. }));
+    assert_eq!(
+        broken("BON1A0", &|bytes| bytes.splice(..4, *b"\x89PNG").for_each(drop)),
+        name("BON1A0"),
+        "a broken PNG"
+    );
+    assert!(matches!(
+        spoiled("LAVA2", &|bytes| bytes.truncate(4095)),
+        IwadError::TooShort { length: 4095, .. }
+    ));
     assert!(matches!(Assets::from_iwad(b"nothing"), Err(IwadError::Wad(_))));
 }
 
@@ -204,7 +226,8 @@ fn hostile_sizes_are_refused_before_memory_is_gone() {
 
     let patches = vec![(0, 0, 0); 60_000];
     let mut all = lumps();
-    all.iter_mut().find(|(name, _)| *name == "TEXTURE1").unwrap().1 = texture_list(&[("SLOW", 4096, 256, &patches)]);
+    all.iter_mut().find(|(name, _)| *name == "TEXTURE1").unwrap().1 =
+        texture_list(&[("SLOW", 4096, 256, &patches)]);
     all.iter_mut().find(|(name, _)| *name == "BRICK").unwrap().1 = picture(2048, 250, 0, 250, 0);
     assert_eq!(Assets::from_iwad(&iwad(&all)).map(|_| ()), Err(IwadError::TooLarge));
 }
@@ -224,12 +247,14 @@ fn mutated_iwads_never_panic() {
     assert!(read > 5, "the mutations must not all be caught: {read} read");
 }
 
-/// Run with `cargo test --release -p hasard-engine freedoom -- --ignored` where Debian's package is installed.
+/// Run with `cargo test --release -p hasard-engine freedoom -- --ignored` where Debian's package is
+/// installed.
 #[test]
 #[ignore = "needs Debian's package `freedoom`"]
 fn freedoom_is_read() {
     for file in ["freedoom1.wad", "freedoom2.wad"] {
-        let bytes = std::fs::read(format!("/usr/share/games/doom/{file}")).expect("the package is installed");
+        let bytes = std::fs::read(format!("/usr/share/games/doom/{file}"))
+            .expect("the package is installed");
         let started = std::time::Instant::now();
         let set = Assets::from_iwad(&bytes).unwrap_or_else(|error| panic!("{file}: {error}"));
         let pixels: usize = set.images.iter().map(|image| image.pixels.len()).sum();
@@ -241,7 +266,10 @@ fn freedoom_is_read() {
         for (name, sprite) in crate::assets::SPRITE_NAMES.iter().zip(&set.sprites) {
             assert!(!sprite.frames.is_empty(), "{file}: {name}");
         }
-        for name in ["STBAR", "STARMS", "STTNUM0", "STTPRCNT", "STGNUM2", "STYSNUM9", "STFST00", "STFDEAD0", "STKEYS0"] {
+        for name in [
+            "STBAR", "STARMS", "STTNUM0", "STTPRCNT", "STGNUM2", "STYSNUM9", "STFST00", "STFDEAD0",
+            "STKEYS0",
+        ] {
             assert!(set.graphics.contains_key(&TextureName::new(name)), "{file}: {name}");
         }
     }

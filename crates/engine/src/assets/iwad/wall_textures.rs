@@ -29,15 +29,21 @@ pub(super) fn load(
             continue;
         }
         let bytes = lump(wad, list, 4)?;
-        let outside = || IwadError::Picture { lump: TextureName::new(list), what: "a texture lies outside" };
+        let outside =
+            || IwadError::Picture { lump: TextureName::new(list), what: "a texture lies outside" };
         let count = usize::try_from(long(bytes, 0)).map_err(|_| outside())?;
-        let offsets = count.checked_mul(4).and_then(|length| bytes.get(4..4usize.checked_add(length)?)).ok_or_else(outside)?;
+        let offsets = count
+            .checked_mul(4)
+            .and_then(|length| bytes.get(4..4usize.checked_add(length)?))
+            .ok_or_else(outside)?;
         for offset in offsets.chunks_exact(4) {
             let start = usize::try_from(long(offset, 0)).map_err(|_| outside())?;
-            let texture = bytes.get(start..).filter(|texture| texture.len() >= HEAD).ok_or_else(outside)?;
+            let texture =
+                bytes.get(start..).filter(|texture| texture.len() >= HEAD).ok_or_else(outside)?;
             let name = name_of(texture);
             let image = compose(name, texture, &mut patches, reader)?;
-            // Of equal names the first counts here, as in the engines that these lists were made for.
+            // Of equal names the first counts here, as in the engines that these lists were made
+            // for.
             if seen.insert(name) {
                 let index = push(set, image);
                 set.textures.insert(name, still(index));
@@ -63,21 +69,28 @@ struct Patches<'a> {
 impl<'a> Patches<'a> {
     fn new(wad: &Wad<'a>, sections: &Sections<'a>) -> Result<Patches<'a>, IwadError> {
         let bytes = lump(wad, "PNAMES", 4)?;
-        let outside = || IwadError::Picture { lump: TextureName::new("PNAMES"), what: "a name lies outside" };
+        let outside =
+            || IwadError::Picture { lump: TextureName::new("PNAMES"), what: "a name lies outside" };
         let count = usize::try_from(long(bytes, 0)).map_err(|_| outside())?;
-        let names = count.checked_mul(8).and_then(|length| bytes.get(4..4usize.checked_add(length)?)).ok_or_else(outside)?;
+        let names = count
+            .checked_mul(8)
+            .and_then(|length| bytes.get(4..4usize.checked_add(length)?))
+            .ok_or_else(outside)?;
         // Where names repeat, lumps among the patches go before others.
         let mut by_name: BTreeMap<TextureName, Lump<'a>> = BTreeMap::new();
         for lump in sections.rest.iter().chain(&sections.patches) {
             by_name.insert(lump.name, *lump);
         }
-        let lumps = names.chunks_exact(8).map(|name| by_name.get(&name_of(name)).copied()).collect();
+        let lumps =
+            names.chunks_exact(8).map(|name| by_name.get(&name_of(name)).copied()).collect();
         Ok(Patches { lumps, decoded: BTreeMap::new() })
     }
 
     /// The patch of a number; none if the file does not have it, as some published files do not.
     fn get(&mut self, number: i16, reader: &mut Reader) -> Result<Option<&Image>, IwadError> {
-        let Some((number, lump)) = usize::try_from(number).ok().and_then(|n| Some((n, (*self.lumps.get(n)?)?))) else {
+        let Some((number, lump)) =
+            usize::try_from(number).ok().and_then(|n| Some((n, (*self.lumps.get(n)?)?)))
+        else {
             return Ok(None);
         };
         if let Entry::Vacant(place) = self.decoded.entry(number) {
@@ -87,7 +100,12 @@ impl<'a> Patches<'a> {
     }
 }
 
-fn compose(name: TextureName, texture: &[u8], patches: &mut Patches<'_>, reader: &mut Reader) -> Result<Image, IwadError> {
+fn compose(
+    name: TextureName,
+    texture: &[u8],
+    patches: &mut Patches<'_>,
+    reader: &mut Reader,
+) -> Result<Image, IwadError> {
     let wrong = |what| IwadError::Picture { lump: name, what };
     let (width, height) = (i32::from(short(texture, 12)), i32::from(short(texture, 14)));
     let allowed = 1..=SIDE_LIMIT as i32;
@@ -95,7 +113,8 @@ fn compose(name: TextureName, texture: &[u8], patches: &mut Patches<'_>, reader:
         return Err(wrong("its size is absurd"));
     }
     let count = usize::from(short(texture, 20) as u16);
-    let list = texture.get(HEAD..HEAD + PATCH * count).ok_or_else(|| wrong("its patches lie outside"))?;
+    let list =
+        texture.get(HEAD..HEAD + PATCH * count).ok_or_else(|| wrong("its patches lie outside"))?;
     let size = (width * height) as usize;
     reader.budget.keep(size)?;
     let mut pixels = vec![0; size].into_boxed_slice();
@@ -122,7 +141,14 @@ fn compose(name: TextureName, texture: &[u8], patches: &mut Patches<'_>, reader:
         }
     }
     let opaque = mask.iter().all(|&opaque| opaque == 1);
-    Ok(Image { width: width as u16, height: height as u16, offset_x: 0, offset_y: 0, pixels, mask: (!opaque).then_some(mask) })
+    Ok(Image {
+        width: width as u16,
+        height: height as u16,
+        offset_x: 0,
+        offset_y: 0,
+        pixels,
+        mask: (!opaque).then_some(mask),
+    })
 }
 
 /// A name of up to 8 bytes at the start of `bytes`.

@@ -3,7 +3,8 @@
 /// Most words of a lump; the largest published ones have some thousand.
 const LIMIT: usize = 1 << 18;
 
-/// Splits a text into words: quoted strings without their quotes, `{`, `}`, `,`, `=` and `;` by themselves; comments are left out.
+/// Splits a text into words: quoted strings without their quotes, `{`, `}`, `,`, `=` and `;` by
+/// themselves; comments are left out.
 pub(super) fn words(bytes: &[u8]) -> Vec<&str> {
     let mut words = Vec::new();
     let mut rest = bytes;
@@ -30,7 +31,10 @@ pub(super) fn words(bytes: &[u8]) -> Vec<&str> {
                 continue;
             }
             b'{' | b'}' | b',' | b'=' | b';' => 1,
-            _ => rest.iter().position(|byte| !byte.is_ascii_graphic() || b"{},=;\"".contains(byte)).unwrap_or(rest.len()),
+            _ => rest
+                .iter()
+                .position(|byte| !byte.is_ascii_graphic() || b"{},=;\"".contains(byte))
+                .unwrap_or(rest.len()),
         };
         words.push(std::str::from_utf8(&rest[..length]).unwrap_or(""));
         rest = &rest[length..];
@@ -50,7 +54,10 @@ mod tests {
     #[test]
     fn texts_fall_into_words() {
         let text = b"Texture \"A B\",64, 128 // comment {\n{ Patch x,-1 /* more\n */ } =;\"open";
-        let expected = ["Texture", "A B", ",", "64", ",", "128", "{", "Patch", "x", ",", "-1", "}", "=", ";", "open"];
+        let expected = [
+            "Texture", "A B", ",", "64", ",", "128", "{", "Patch", "x", ",", "-1", "}", "=", ";",
+            "open",
+        ];
         assert_eq!(words(text), expected);
         for text in [&b"/*"[..], b"/", b"\"", b"\xff\x00", b"//", b"a\xffb"] {
             words(text);

@@ -70,8 +70,12 @@ impl fmt::Display for UdmfError {
             UdmfFault::Unterminated { what } => write!(f, "this {what} never ends; close it"),
             UdmfFault::Number { text } => write!(f, "`{text}` is not a number that a map can hold"),
             UdmfFault::Value { field, wants } => write!(f, "`{field}` takes {wants}"),
-            UdmfFault::MissingField { block, field } => write!(f, "this {block} has no `{field}`; add it"),
-            UdmfFault::NoNamespace => f.write_str("the map must begin with `namespace = \"zdoom\";`"),
+            UdmfFault::MissingField { block, field } => {
+                write!(f, "this {block} has no `{field}`; add it")
+            }
+            UdmfFault::NoNamespace => {
+                f.write_str("the map must begin with `namespace = \"zdoom\";`")
+            }
         }
     }
 }

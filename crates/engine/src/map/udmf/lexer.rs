@@ -36,7 +36,11 @@ impl TokenKind<'_> {
 }
 
 fn shortened(text: &str) -> String {
-    if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(40).collect::<String>() + "..." }
+    if text.chars().count() <= 40 {
+        text.to_owned()
+    } else {
+        text.chars().take(40).collect::<String>() + "..."
+    }
 }
 
 pub(super) struct Lexer<'a> {
@@ -57,7 +61,9 @@ impl<'a> Lexer<'a> {
     pub fn next(&mut self) -> Result<Token<'a>, UdmfError> {
         self.skip_blank()?;
         let offset = self.at;
-        let Some(&first) = self.text.get(offset) else { return Ok(Token { offset, kind: TokenKind::End }) };
+        let Some(&first) = self.text.get(offset) else {
+            return Ok(Token { offset, kind: TokenKind::End });
+        };
         let kind = match first {
             b'{' | b'}' | b'=' | b';' => {
                 self.at += 1;
@@ -67,8 +73,14 @@ impl<'a> Lexer<'a> {
             b'+' | b'-' | b'0'..=b'9' | b'.' => self.number()?,
             b'a'..=b'z' | b'A'..=b'Z' | b'_' => TokenKind::Word(self.run()),
             _ => {
-                let found = format!("`{}`", String::from_utf8_lossy(&self.text[offset..=offset]).escape_debug());
-                return Err(self.fault(offset, UdmfFault::Expected { what: "a name, a value or a mark", found }));
+                let found = format!(
+                    "`{}`",
+                    String::from_utf8_lossy(&self.text[offset..=offset]).escape_debug()
+                );
+                return Err(self.fault(
+                    offset,
+                    UdmfFault::Expected { what: "a name, a value or a mark", found },
+                ));
             }
         };
         Ok(Token { offset, kind })
@@ -84,7 +96,11 @@ impl<'a> Lexer<'a> {
                 }
                 [b'/', b'*', ..] => match rest[2..].windows(2).position(|pair| pair == b"*/") {
                     Some(length) => self.at += length + 4,
-                    None => return Err(self.fault(self.at, UdmfFault::Unterminated { what: "comment" })),
+                    None => {
+                        return Err(
+                            self.fault(self.at, UdmfFault::Unterminated { what: "comment" })
+                        );
+                    }
                 },
                 // Some editors end the lump with a zero byte.
                 [0, rest @ ..] if rest.iter().all(|&byte| byte == 0) => self.at = self.text.len(),
@@ -96,7 +112,8 @@ impl<'a> Lexer<'a> {
     /// The longest run of characters that names and numbers are made of.
     fn run(&mut self) -> &'a str {
         let start = self.at;
-        let word = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'.' | b'+' | b'-');
+        let word =
+            |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'.' | b'+' | b'-');
         self.at += self.text[start..].iter().take_while(|byte| word(byte)).count();
         // All bytes taken are ASCII.
         std::str::from_utf8(&self.text[start..self.at]).unwrap_or_default()
@@ -128,11 +145,13 @@ impl<'a> Lexer<'a> {
     fn number(&mut self) -> Result<TokenKind<'a>, UdmfError> {
         let start = self.at;
         let run = self.run();
-        parse_number(run).ok_or_else(|| self.fault(start, UdmfFault::Number { text: shortened(run) }))
+        parse_number(run)
+            .ok_or_else(|| self.fault(start, UdmfFault::Number { text: shortened(run) }))
     }
 }
 
-/// Integers in decimal, hexadecimal (`0x`) and octal (leading `0`); floats with a point or an exponent.
+/// Integers in decimal, hexadecimal (`0x`) and octal (leading `0`); floats with a point or an
+/// exponent.
 fn parse_number<'a>(run: &str) -> Option<TokenKind<'a>> {
     let (negative, digits) = match run.as_bytes() {
         [b'-', ..] => (true, &run[1..]),
@@ -141,8 +160,12 @@ fn parse_number<'a>(run: &str) -> Option<TokenKind<'a>> {
     };
     let sign = if negative { -1 } else { 1 };
     let integer = |digits: &str, radix| {
-        let all_digits = !digits.is_empty() && digits.bytes().all(|byte| char::from(byte).is_digit(radix));
-        all_digits.then(|| i64::from_str_radix(digits, radix).ok()).flatten().map(|v| TokenKind::Integer(sign * v))
+        let all_digits =
+            !digits.is_empty() && digits.bytes().all(|byte| char::from(byte).is_digit(radix));
+        all_digits
+            .then(|| i64::from_str_radix(digits, radix).ok())
+            .flatten()
+            .map(|v| TokenKind::Integer(sign * v))
     };
     if let Some(hexadecimal) = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
         return integer(hexadecimal, 16);

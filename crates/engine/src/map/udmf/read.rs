@@ -3,7 +3,9 @@
 use super::error::{UdmfError, UdmfFault};
 use super::lexer::{Lexer, TokenKind};
 use super::unplayed::unplayed;
-use crate::map::{Blocks, MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+use crate::map::{
+    Blocks, MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName,
+};
 use std::collections::BTreeMap;
 
 /// Fields of a line by which somebody can set off its special.
@@ -130,7 +132,10 @@ impl<'a> Reader<'a> {
             "linedef" => {
                 let line = self.line(offset)?;
                 if line.back.is_some() && !self.flag("twosided")? {
-                    *source.unplayed.entry("linedef sideback without twosided".to_owned()).or_default() += 1;
+                    *source
+                        .unplayed
+                        .entry("linedef sideback without twosided".to_owned())
+                        .or_default() += 1;
                 }
                 source.lines.push(line);
             }
@@ -150,11 +155,14 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Counts the fields of the block that are played elsewhere and not here; of a field that comes twice, the last counts.
+    /// Counts the fields of the block that are played elsewhere and not here; of a field that comes
+    /// twice, the last counts.
     fn count_unplayed(&self, kind: &str, source: &mut MapSource) {
         let mut last: BTreeMap<&str, &Field<'_>> = BTreeMap::new();
         self.fields.iter().for_each(|field| _ = last.insert(&field.name, field));
-        for field in last.into_values().filter_map(|field| unplayed(kind, &field.name, &field.value)) {
+        for field in
+            last.into_values().filter_map(|field| unplayed(kind, &field.name, &field.value))
+        {
             *source.unplayed.entry(format!("{kind} field {field}")).or_default() += 1;
         }
     }
@@ -166,7 +174,10 @@ impl<'a> Reader<'a> {
 
     /// A flag of the block, false if it is absent.
     fn flag(&self, name: &str) -> Result<bool, UdmfError> {
-        self.fields.iter().rfind(|field| field.name == name).map_or(Ok(false), |field| self.truth(field))
+        self.fields
+            .iter()
+            .rfind(|field| field.name == name)
+            .map_or(Ok(false), |field| self.truth(field))
     }
 
     fn vertex(&self, offset: usize) -> Result<SourceVertex, UdmfError> {
@@ -178,7 +189,8 @@ impl<'a> Reader<'a> {
                 _ => {}
             }
         }
-        let need = |value: Option<f64>, field| value.ok_or_else(|| self.missing(offset, "vertex", field));
+        let need =
+            |value: Option<f64>, field| value.ok_or_else(|| self.missing(offset, "vertex", field));
         Ok(SourceVertex { x: need(x, "x")?, y: need(y, "y")? })
     }
 
@@ -203,8 +215,15 @@ impl<'a> Reader<'a> {
                 },
             }
         }
-        let need = |value: Option<usize>, field| value.ok_or_else(|| self.missing(offset, "linedef", field));
-        Ok(SourceLine { v1: need(v1, "v1")?, v2: need(v2, "v2")?, front: need(front, "sidefront")?, ..line })
+        let need = |value: Option<usize>, field| {
+            value.ok_or_else(|| self.missing(offset, "linedef", field))
+        };
+        Ok(SourceLine {
+            v1: need(v1, "v1")?,
+            v2: need(v2, "v2")?,
+            front: need(front, "sidefront")?,
+            ..line
+        })
     }
 
     fn side(&self, offset: usize) -> Result<SourceSide, UdmfError> {
@@ -241,8 +260,10 @@ impl<'a> Reader<'a> {
                 _ => {}
             }
         }
-        sector.floor_texture = floor.ok_or_else(|| self.missing(offset, "sector", "texturefloor"))?;
-        sector.ceiling_texture = ceiling.ok_or_else(|| self.missing(offset, "sector", "textureceiling"))?;
+        sector.floor_texture =
+            floor.ok_or_else(|| self.missing(offset, "sector", "texturefloor"))?;
+        sector.ceiling_texture =
+            ceiling.ok_or_else(|| self.missing(offset, "sector", "textureceiling"))?;
         Ok(sector)
     }
 
@@ -266,7 +287,12 @@ impl<'a> Reader<'a> {
         Ok(thing)
     }
 
-    fn argument(&self, name: &str, field: &Field<'_>, args: &mut [i32; 5]) -> Result<(), UdmfError> {
+    fn argument(
+        &self,
+        name: &str,
+        field: &Field<'_>,
+        args: &mut [i32; 5],
+    ) -> Result<(), UdmfError> {
         let number = name.strip_prefix("arg").and_then(|digit| digit.parse::<usize>().ok());
         if let Some(arg) = number.and_then(|number| args.get_mut(number)) {
             *arg = self.whole(field)?;

@@ -1,5 +1,7 @@
 use super::{UdmfFault, read, write};
-use crate::map::{Blocks, MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName};
+use crate::map::{
+    Blocks, MapSource, SourceLine, SourceSector, SourceSide, SourceThing, SourceVertex, TextureName,
+};
 use crate::math::Rng;
 
 /// Every field filled at random with anything that the format can hold.
@@ -16,7 +18,8 @@ fn random_source(rng: &mut Rng) -> MapSource {
         _ => f64::from(rng.between(-1000, 1000)) * 1.0e17,
     };
     let texture = |rng: &mut Rng| {
-        let letters: Vec<u8> = (0..rng.below(9)).map(|_| b"AZ09_-\"\\}{;=/#"[rng.below(14) as usize]).collect();
+        let letters: Vec<u8> =
+            (0..rng.below(9)).map(|_| b"AZ09_-\"\\}{;=/#"[rng.below(14) as usize]).collect();
         TextureName::new(std::str::from_utf8(&letters).unwrap())
     };
     let index = |rng: &mut Rng| rng.between(0, i32::MAX) as usize;
@@ -30,7 +33,10 @@ fn random_source(rng: &mut Rng) -> MapSource {
             front: index(rng),
             back: (rng.below(2) == 0).then(|| index(rng)),
             blocking: rng.below(2) == 0,
-            blocks: Blocks::FIELDS.iter().filter(|_| rng.below(2) == 0).fold(Blocks::default(), |all, (_, flag)| all.with(*flag)),
+            blocks: Blocks::FIELDS
+                .iter()
+                .filter(|_| rng.below(2) == 0)
+                .fold(Blocks::default(), |all, (_, flag)| all.with(*flag)),
             upper_unpegged: rng.below(2) == 0,
             lower_unpegged: rng.below(2) == 0,
             id: any(rng),
@@ -102,7 +108,12 @@ fn the_grammar_is_read_in_all_its_forms() {
     assert_eq!(map.sectors[0].floor_texture, TextureName::new("FLAT5"));
     assert_eq!(map.sectors[0].ceiling_texture, TextureName::NONE);
     assert_eq!(map.sides[0].offset_x, 5.0, "the last of equal fields counts");
-    assert!(map.lines[0].triggered && map.lines[0].blocking && !map.lines[0].upper_unpegged && map.lines[0].back.is_none());
+    assert!(
+        map.lines[0].triggered
+            && map.lines[0].blocking
+            && !map.lines[0].upper_unpegged
+            && map.lines[0].back.is_none()
+    );
     assert_eq!(map.lines[0].args, [0, 0, 0, 0, 3]);
     assert_eq!((map.things[0].kind, map.things[0].angle), (1, -90));
 }
@@ -114,25 +125,61 @@ fn faults_name_their_place() {
         let error = read(text.as_bytes()).expect_err(&text);
         (error.line, error.column, error.fault)
     };
-    assert!(matches!(fault("vertex { x = 1; }"), (2, 1, UdmfFault::MissingField { block: "vertex", field: "y" })));
+    assert!(matches!(
+        fault("vertex { x = 1; }"),
+        (2, 1, UdmfFault::MissingField { block: "vertex", field: "y" })
+    ));
     assert!(matches!(fault("\n  vertex { x = \"1\"; y = 0; }"), (3, 16, UdmfFault::Value { .. })));
-    assert!(matches!(fault("vertex { x = 1 y = 0; }"), (2, 16, UdmfFault::Expected { what: "`;`", .. })));
-    assert!(matches!(fault("vertex { x = ; }"), (2, 14, UdmfFault::Expected { what: "a value", .. })));
-    assert!(matches!(fault("vertex { vertex { x = 1; } }"), (2, 17, UdmfFault::Expected { what: "`=`", .. })));
+    assert!(matches!(
+        fault("vertex { x = 1 y = 0; }"),
+        (2, 16, UdmfFault::Expected { what: "`;`", .. })
+    ));
+    assert!(matches!(
+        fault("vertex { x = ; }"),
+        (2, 14, UdmfFault::Expected { what: "a value", .. })
+    ));
+    assert!(matches!(
+        fault("vertex { vertex { x = 1; } }"),
+        (2, 17, UdmfFault::Expected { what: "`=`", .. })
+    ));
     assert!(matches!(fault("vertex {"), (2, 9, UdmfFault::Expected { .. })));
     assert!(matches!(fault("vertex"), (2, 7, UdmfFault::Expected { what: "`=` or `{`", .. })));
     assert!(matches!(fault("/* open"), (2, 1, UdmfFault::Unterminated { what: "comment" })));
     assert!(matches!(fault("a = \"open;\n\n"), (2, 5, UdmfFault::Unterminated { what: "string" })));
-    for number in ["1e999", "99999999999999999999", "0x", "089", "1.2.3", "+-1", "-", "0x1g", "1e", "-.e5", "+inf"] {
-        assert!(matches!(fault(&format!("a = {number};")), (2, 5, UdmfFault::Number { .. })), "{number}");
+    for number in [
+        "1e999",
+        "99999999999999999999",
+        "0x",
+        "089",
+        "1.2.3",
+        "+-1",
+        "-",
+        "0x1g",
+        "1e",
+        "-.e5",
+        "+inf",
+    ] {
+        assert!(
+            matches!(fault(&format!("a = {number};")), (2, 5, UdmfFault::Number { .. })),
+            "{number}"
+        );
     }
     for number in ["nan", "inf", "true"] {
-        assert!(matches!(fault(&format!("vertex {{ x = {number}; }}")), (2, 14, UdmfFault::Value { .. })), "{number}");
+        assert!(
+            matches!(
+                fault(&format!("vertex {{ x = {number}; }}")),
+                (2, 14, UdmfFault::Value { .. })
+            ),
+            "{number}"
+        );
     }
     let index = |field: &str| fault(&format!("linedef {{ {field}; }}"));
     assert!(matches!(index("v1 = -1"), (2, 16, UdmfFault::Value { .. })));
     assert!(matches!(index("special = 3000000000"), (2, 21, UdmfFault::Value { .. })));
-    assert!(matches!(fault("sidedef { texturetop = \"NINECHARS\"; }"), (2, 24, UdmfFault::Value { .. })));
+    assert!(matches!(
+        fault("sidedef { texturetop = \"NINECHARS\"; }"),
+        (2, 24, UdmfFault::Value { .. })
+    ));
     assert!(matches!(fault("\u{1}"), (2, 1, UdmfFault::Expected { .. })));
     assert!(matches!(read(b"vertex { }").unwrap_err().fault, UdmfFault::NoNamespace));
     assert!(matches!(read(b"").unwrap_err().fault, UdmfFault::NoNamespace));

@@ -1,6 +1,7 @@
 //! Fields that ViZDoom plays or draws and this one does not: a map that uses one is reported.
 //!
-//! `docs/guide/maps.md` has every field of the format and what comes of it; a test holds the two together.
+//! `docs/guide/maps.md` has every field of the format and what comes of it; a test holds the two
+//! together.
 
 use super::lexer::TokenKind;
 
@@ -115,7 +116,8 @@ const FIELDS: [(&str, &[(&str, &str)]); 5] = [
     ),
 ];
 
-/// The name of a field that would be played or drawn elsewhere with this value; none where it changes nothing.
+/// The name of a field that would be played or drawn elsewhere with this value; none where it
+/// changes nothing.
 pub(super) fn unplayed(block: &str, field: &str, value: &TokenKind<'_>) -> Option<&'static str> {
     let (_, fields) = FIELDS.iter().find(|(kind, _)| *kind == block)?;
     let &(name, without) = fields.iter().find(|(name, _)| *name == field)?;

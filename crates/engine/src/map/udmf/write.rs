@@ -3,10 +3,12 @@
 use crate::map::{Blocks, MapSource, TextureName};
 use std::fmt::{Display, Write};
 
-/// Writes a map as UDMF text that [`read`](super::read) gives back equal and that engines of the ZDoom family load.
+/// Writes a map as UDMF text that [`read`](super::read) gives back equal and that engines of the
+/// ZDoom family load.
 ///
-/// Fields at the specification's default are left out. Things get the flags that make them appear at every skill and
-/// in every kind of game, and two-sided lines their `twosided`: the source has no such switches.
+/// Fields at the specification's default are left out. Things get the flags that make them appear
+/// at every skill and in every kind of game, and two-sided lines their `twosided`: the source has
+/// no such switches.
 #[must_use]
 pub fn write(source: &MapSource) -> String {
     let mut text = String::new();

@@ -102,7 +102,8 @@ impl ColumnClip {
         });
     }
 
-    /// The first open rows of the columns from `first` on, one past the last ones, and which of them are open.
+    /// The first open rows of the columns from `first` on, one past the last ones, and which of
+    /// them are open.
     #[inline(always)]
     pub fn from(&mut self, first: usize) -> (&mut [i16], &mut [i16], OpenColumns<'_>) {
         let open = OpenColumns { bits: &mut self.open, closed: &mut self.closed, first };
@@ -175,7 +176,8 @@ mod tests {
                     (0..count).filter(|i| bits >> i & 1 != 0).for_each(|i| open[first + i] = false);
                 }
                 assert!((0..width).all(|x| clip.any_open(x, x + 1) == open[x]));
-                let range = open.iter().position(|&open| open).zip(open.iter().rposition(|&open| open));
+                let range =
+                    open.iter().position(|&open| open).zip(open.iter().rposition(|&open| open));
                 let (first, end) = clip.range();
                 assert_eq!(range.is_none(), first >= end);
                 assert!(range.is_none_or(|(one, last)| (one, last + 1) == (first, end)));

@@ -121,8 +121,14 @@ impl Frame {
         }
     }
 
-    /// Takes over the walls, which were drawn by columns, into the first `rows` rows; whatever comes next is drawn by rows.
-    pub fn take_walls<const DEPTH: bool, const CLASS: bool>(&mut self, simd: Simd, columns: &Columns, rows: usize) {
+    /// Takes over the walls, which were drawn by columns, into the first `rows` rows; whatever
+    /// comes next is drawn by rows.
+    pub fn take_walls<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        simd: Simd,
+        columns: &Columns,
+        rows: usize,
+    ) {
         let Columns { stride, colour, depth } = columns;
         if CLASS {
             self.class[..rows * self.width].fill(class::WALL);

@@ -3,7 +3,8 @@
 use crate::render::buffers::frame::class;
 use crate::world::{ActorId, ActorKind};
 
-/// An actor of which at least one pixel was drawn, though what came later may have covered it again.
+/// An actor of which at least one pixel was drawn, though what came later may have covered it
+/// again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Label {
     /// What it is.
@@ -53,10 +54,19 @@ pub(crate) fn in_view(labels: &[Label], classes: &[u16], width: usize) -> Vec<In
         }
     }
     type Range = [usize; 2];
-    let shows = |(index, (&label, &(pixels, [left, right], [top, bottom]))): (usize, (&Label, &(usize, Range, Range)))| {
+    let shows = |(index, (&label, &(pixels, [left, right], [top, bottom]))): (
+        usize,
+        (&Label, &(usize, Range, Range)),
+    )| {
         let side = |from: usize, to: usize| (to - from + 1) as u16;
         (pixels > 0).then(|| InView {
-            label: Label { x: left as u16, y: top as u16, width: side(left, right), height: side(top, bottom), ..label },
+            label: Label {
+                x: left as u16,
+                y: top as u16,
+                width: side(left, right),
+                height: side(top, bottom),
+                ..label
+            },
             value: value(index, labels.len()),
             pixels,
         })

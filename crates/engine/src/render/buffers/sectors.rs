@@ -1,4 +1,5 @@
-//! What is drawn of a sector, looked at when a frame first needs it: floors and lights may have to be computed.
+//! What is drawn of a sector, looked at when a frame first needs it: floors and lights may have to
+//! be computed.
 
 use crate::map::{SectorId, TextureId};
 use crate::math::Fixed;
@@ -33,7 +34,8 @@ impl SectorSurfaces {
     pub fn difference(&self, other: &SectorSurfaces) -> u64 {
         let words = |look: &SectorSurfaces| {
             let heights = u64::from(look.floor.0 as u32) | u64::from(look.ceiling.0 as u32) << 32;
-            let textures = u64::from(look.floor_texture.0) | u64::from(look.ceiling_texture.0) << 16;
+            let textures =
+                u64::from(look.floor_texture.0) | u64::from(look.ceiling_texture.0) << 16;
             [heights, textures | u64::from(look.light as u16) << 32 | u64::from(look.frame) << 48]
         };
         let (one, other) = (words(self), words(other));

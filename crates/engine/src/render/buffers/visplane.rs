@@ -19,20 +19,24 @@ pub(crate) struct VisPlaneKey {
 impl VisPlaneKey {
     /// All of it in a word: what shows the sky's texture is the sky.
     fn packed(self) -> u64 {
-        u64::from(self.height.0 as u32) | u64::from(self.texture.0) << 32 | u64::from(self.light as u16) << 48
+        u64::from(self.height.0 as u32)
+            | u64::from(self.texture.0) << 32
+            | u64::from(self.light as u16) << 48
     }
 }
 
 /// Buckets of the table of planes: two to the power of these.
 const BUCKET_BITS: u32 = 6;
 
-/// Columns that are looked at at once at most; a plane's lists are that much longer than a frame is wide.
+/// Columns that are looked at at once at most; a plane's lists are that much longer than a frame is
+/// wide.
 pub(crate) const SPAN_BLOCK: usize = 64;
 
 /// No plane.
 const NONE: u16 = u16::MAX;
 
-/// One past the last row of a column without rows: of equal bytes, so that filling a list with it is quick.
+/// One past the last row of a column without rows: of equal bytes, so that filling a list with it
+/// is quick.
 pub(crate) const NO_ROW: i16 = -1;
 
 /// An area of one plane: at most one run of rows in each column.
@@ -62,7 +66,13 @@ pub(crate) struct VisPlanes {
 
 impl Default for VisPlanes {
     fn default() -> VisPlanes {
-        VisPlanes { list: Vec::new(), used: 0, keys: Vec::new(), buckets: [NONE; 1 << BUCKET_BITS], width: 0 }
+        VisPlanes {
+            list: Vec::new(),
+            used: 0,
+            keys: Vec::new(),
+            buckets: [NONE; 1 << BUCKET_BITS],
+            width: 0,
+        }
     }
 }
 
@@ -102,7 +112,8 @@ impl VisPlanes {
         let index = self.used;
         self.used += 1;
         let packed = key.packed();
-        self.keys.push((packed, std::mem::replace(&mut self.buckets[bucket(packed)], index as u16)));
+        self.keys
+            .push((packed, std::mem::replace(&mut self.buckets[bucket(packed)], index as u16)));
         let plane = &mut self.list[index];
         plane.key = key;
         (plane.first, plane.end) = (self.width, 0);
@@ -113,7 +124,8 @@ impl VisPlanes {
         index as u16
     }
 
-    /// The rows of the columns `first..end` of a plane, and of all beyond: first and one past the last.
+    /// The rows of the columns `first..end` of a plane, and of all beyond: first and one past the
+    /// last.
     #[inline]
     pub fn columns(&mut self, index: u16, first: usize, end: usize) -> [&mut [i16]; 2] {
         let plane = &mut self.list[usize::from(index)];
@@ -122,7 +134,8 @@ impl VisPlanes {
         [&mut plane.top[first..], &mut plane.bottom[first..]]
     }
 
-    /// Another plane with the key of plane `index`, which has a run of rows already where another one is needed.
+    /// Another plane with the key of plane `index`, which has a run of rows already where another
+    /// one is needed.
     #[cold]
     pub fn split(&mut self, index: u16) -> u16 {
         self.start(self.list[usize::from(index)].key)

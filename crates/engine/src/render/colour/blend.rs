@@ -40,10 +40,11 @@ impl Mixture {
 /// The palette, ready for mixing.
 #[derive(Debug)]
 pub(crate) struct Blend {
-    /// So many parts of [`WHOLE`] of every colour, cut to a quarter of a level: red, green and blue of [`PART_BITS`] each in a
-    /// number, so that the parts of two colours are added at once.
+    /// So many parts of [`WHOLE`] of every colour, cut to a quarter of a level: red, green and blue
+    /// of [`PART_BITS`] each in a number, so that the parts of two colours are added at once.
     parts: Box<[[u32; 256]]>,
-    /// The nearest index of every colour reduced to [`BITS`] a channel: a mixture of any two needs no search.
+    /// The nearest index of every colour reduced to [`BITS`] a channel: a mixture of any two needs
+    /// no search.
     nearest: Box<[u8]>,
     /// By opacity, once it was asked for.
     mixtures: Box<[OnceLock<Mixture>; OPAQUE as usize + 1]>,
@@ -58,9 +59,9 @@ impl Blend {
         let colour = |i: usize| [2 * BITS, BITS, 0].map(|shift| widened(i >> shift & MOST));
         let nearest = (0..1 << (3 * BITS)).map(|i| nearest_colour(palette, colour(i))).collect();
         let part = |share: u8, [red, green, blue]: [u8; 3]| {
-            [red, green, blue]
-                .iter()
-                .fold(0, |packed, &channel| packed << PART_BITS | (u32::from(channel) * u32::from(share)) >> 4)
+            [red, green, blue].iter().fold(0, |packed, &channel| {
+                packed << PART_BITS | (u32::from(channel) * u32::from(share)) >> 4
+            })
         };
         let parts = (0..=WHOLE).map(|share| palette.map(|colour| part(share, colour))).collect();
         let as_it_is = Box::new(std::array::from_fn(|_| std::array::from_fn(|index| index as u8)));
@@ -68,28 +69,33 @@ impl Blend {
         let mut blend = Blend { parts, nearest, mixtures, darkened: as_it_is };
         let black = nearest_colour(palette, [0; 3]);
         for share in 1..=WHOLE {
-            blend.darkened[usize::from(share)] = std::array::from_fn(|lower| blend.over(black, lower as u8, 2 * share));
+            blend.darkened[usize::from(share)] =
+                std::array::from_fn(|lower| blend.over(black, lower as u8, 2 * share));
         }
         blend
     }
 
-    /// The parts of the upper and the lower colour where the upper one is so opaque, each cut to a whole one.
+    /// The parts of the upper and the lower colour where the upper one is so opaque, each cut to a
+    /// whole one.
     #[inline]
     pub fn shares(opacity: u8) -> [usize; 2] {
         [opacity, OPAQUE - opacity].map(|part| usize::from(part / 2))
     }
 
-    /// The palette index of `upper`, which hides so many parts of [`OPAQUE`], over `lower`; each of the two is cut to a quarter
-    /// of a level. By this, nearly every pixel of the original's puffs, souls, smoke and explosions comes out.
+    /// The palette index of `upper`, which hides so many parts of [`OPAQUE`], over `lower`; each of
+    /// the two is cut to a quarter of a level. By this, nearly every pixel of the original's puffs,
+    /// souls, smoke and explosions comes out.
     #[inline]
     pub fn over(&self, upper: u8, lower: u8, opacity: u8) -> u8 {
         let [above, below] = Blend::shares(opacity);
         let sum = self.parts[above][usize::from(upper)] + self.parts[below][usize::from(lower)];
-        let [red, green, blue] = [2, 1, 0].map(|channel| (sum >> (channel * PART_BITS + PART_BITS - BITS)) as usize & MOST);
+        let [red, green, blue] = [2, 1, 0]
+            .map(|channel| (sum >> (channel * PART_BITS + PART_BITS - BITS)) as usize & MOST);
         self.nearest[red << (2 * BITS) | green << BITS | blue]
     }
 
-    /// What becomes of every two colours where the upper one is so opaque: pictures have few opacities.
+    /// What becomes of every two colours where the upper one is so opaque: pictures have few
+    /// opacities.
     pub fn mixture(&self, opacity: u8) -> &Mixture {
         let both = |i: usize| self.over((i >> 8) as u8, i as u8, opacity);
         self.mixtures[usize::from(opacity.min(OPAQUE))]
@@ -115,7 +121,11 @@ mod tests {
         let (black, white) = (nearest_colour(palette, [0; 3]), nearest_colour(palette, [255; 3]));
         let grey = |opacity| i32::from(palette[usize::from(blend.over(white, black, opacity))][1]);
         for opacity in 0..=OPAQUE {
-            assert!((grey(opacity) - 255 * i32::from(opacity) / i32::from(OPAQUE)).abs() <= 16, "{opacity}: {}", grey(opacity));
+            assert!(
+                (grey(opacity) - 255 * i32::from(opacity) / i32::from(OPAQUE)).abs() <= 16,
+                "{opacity}: {}",
+                grey(opacity)
+            );
         }
     }
 
@@ -125,22 +135,33 @@ mod tests {
         let blend = Blend::new(palette);
         for opacity in 0..=OPAQUE {
             let [above, below] = Blend::shares(opacity);
-            for (upper, lower) in (0..=255).zip((0..=255u8).map(|i| i.wrapping_mul(37).wrapping_add(opacity))) {
+            for (upper, lower) in
+                (0..=255).zip((0..=255u8).map(|i| i.wrapping_mul(37).wrapping_add(opacity)))
+            {
                 let colour: [u8; 3] = std::array::from_fn(|channel| {
-                    let part = |index: u8, share: usize| (usize::from(palette[usize::from(index)][channel]) * share) >> 4;
+                    let part = |index: u8, share: usize| {
+                        (usize::from(palette[usize::from(index)][channel]) * share) >> 4
+                    };
                     let five = (part(upper, above) + part(lower, below)) >> 5;
                     (five << 3 | five >> 2) as u8
                 });
                 assert_eq!(blend.over(upper, lower, opacity), nearest_colour(palette, colour));
-                assert_eq!(blend.mixture(opacity).over(upper, lower), blend.over(upper, lower, opacity));
+                assert_eq!(
+                    blend.mixture(opacity).over(upper, lower),
+                    blend.over(upper, lower, opacity)
+                );
             }
         }
     }
 
     #[test]
     fn what_both_parts_are_cut_by_is_lost() {
-        // Two fifths and two thirds: measured on the original's smoke and explosions, where 26 and 38 would differ in one pixel of ten.
-        assert_eq!([51, 85, OPAQUE / 2, OPAQUE].map(Blend::shares), [[25, 38], [42, 21], [32, 32], [64, 0]]);
+        // Two fifths and two thirds: measured on the original's smoke and explosions, where 26 and
+        // 38 would differ in one pixel of ten.
+        assert_eq!(
+            [51, 85, OPAQUE / 2, OPAQUE].map(Blend::shares),
+            [[25, 38], [42, 21], [32, 32], [64, 0]]
+        );
     }
 
     #[test]
@@ -150,7 +171,11 @@ mod tests {
         for lower in 0..=255 {
             for (upper, share) in [(lower, OPAQUE), (lower, OPAQUE / 2), (7, 0)] {
                 let shown = palette[usize::from(blend.over(upper, lower, share))];
-                let apart = shown.iter().zip(palette[usize::from(lower)]).map(|(&a, b)| a.abs_diff(b)).max();
+                let apart = shown
+                    .iter()
+                    .zip(palette[usize::from(lower)])
+                    .map(|(&a, b)| a.abs_diff(b))
+                    .max();
                 assert!(apart <= Some(24), "{lower} {share}: {shown:?}");
             }
         }

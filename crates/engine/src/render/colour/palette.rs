@@ -5,7 +5,8 @@ const LUMINANCE: [u32; 3] = [77, 150, 29];
 
 /// The luminance of a colour.
 pub(crate) fn luminance(colour: [u8; 3]) -> u8 {
-    let sum: u32 = colour.iter().zip(LUMINANCE).map(|(&channel, weight)| u32::from(channel) * weight).sum();
+    let sum: u32 =
+        colour.iter().zip(LUMINANCE).map(|(&channel, weight)| u32::from(channel) * weight).sum();
     (sum >> 8) as u8
 }
 
@@ -29,8 +30,9 @@ impl Colours {
 
 /// The palette index nearest to a colour.
 pub(crate) fn nearest_colour(palette: &[[u8; 3]; 256], colour: [u8; 3]) -> u8 {
-    let distance =
-        |candidate: &[u8; 3]| -> i32 { candidate.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum() };
+    let distance = |candidate: &[u8; 3]| -> i32 {
+        candidate.iter().zip(colour).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum()
+    };
     (0..256).min_by_key(|&i| distance(&palette[i])).unwrap_or(0) as u8
 }
 
@@ -45,5 +47,6 @@ pub(crate) fn mean(palette: &[[u8; 3]; 256], indices: impl Iterator<Item = u8>) 
     if count == 0 { [128; 3] } else { sums.map(|sum| (sum / count) as u8) }
 }
 
-/// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's palette that ViZDoom shows.
+/// Colours of the squares by their [`Shade`](crate::world::Shade): the entries of Freedoom's
+/// palette that ViZDoom shows.
 pub(crate) const SHADES: [[u8; 3]; 3] = [[171; 3], [87; 3], [255, 255, 0]];

@@ -3,7 +3,8 @@
 use crate::render::buffers::frame::class;
 use crate::world::ActorKind;
 
-/// Number of classes that are no actors: wall, floor, ceiling, sky, status bar, weapon, other floors, other ceilings.
+/// Number of classes that are no actors: wall, floor, ceiling, sky, status bar, weapon, other
+/// floors, other ceilings.
 const SURFACES: usize = 8;
 
 /// Colours that differ by no more than this in every channel are easily taken for each other.
@@ -32,20 +33,33 @@ impl SegmentationColours {
     #[must_use]
     pub fn distinct() -> SegmentationColours {
         let (floor, ceiling) = ([60, 60, 60], [128, 128, 128]);
-        let surfaces = [[0, 0, 0], floor, ceiling, [150, 200, 255], [20, 30, 100], [255, 255, 255], floor, ceiling];
-        // A walk through a 5 x 5 x 5 cube of colours that comes by each once; its stride and start are those of all that
-        // leave the classes of a scenario farthest apart. What is dark, as walls and floors are, or nearly the colour of
-        // a surface is passed over.
+        let surfaces = [
+            [0, 0, 0],
+            floor,
+            ceiling,
+            [150, 200, 255],
+            [20, 30, 100],
+            [255, 255, 255],
+            floor,
+            ceiling,
+        ];
+        // A walk through a 5 x 5 x 5 cube of colours that comes by each once; its stride and start
+        // are those of all that leave the classes of a scenario farthest apart. What is dark, as
+        // walls and floors are, or nearly the colour of a surface is passed over.
         let walk = (0..125).map(|i| (i * 123 + 124) % 125);
         let cube = walk.map(|at| [at / 25, at / 5 % 5, at % 5].map(|level| 20 + 55 * level as u8));
         let bright = cube.filter(|colour| colour.iter().any(|&channel| channel > 128));
-        let mut free = bright.filter(|&colour| surfaces.iter().all(|&surface| difference(surface, colour) > NEARLY_ALIKE));
-        let actors = std::array::from_fn(|_| free.next().expect("the cube has more colours than there are kinds"));
+        let mut free = bright.filter(|&colour| {
+            surfaces.iter().all(|&surface| difference(surface, colour) > NEARLY_ALIKE)
+        });
+        let actors = std::array::from_fn(|_| {
+            free.next().expect("the cube has more colours than there are kinds")
+        });
         SegmentationColours { surfaces, actors }
     }
 
-    /// The published colours, several of which are alike: floors and ceilings with a picture of 64 by 64 texels are grey
-    /// together, all other surfaces black.
+    /// The published colours, several of which are alike: floors and ceilings with a picture of 64
+    /// by 64 texels are grey together, all other surfaces black.
     #[must_use]
     pub fn published() -> SegmentationColours {
         let mut actors = [[200; 3]; ActorKind::COUNT];
@@ -58,7 +72,10 @@ impl SegmentationColours {
 
     /// The colour of a surface class, see [`class`].
     pub(crate) fn surface(&self, class: u16) -> [u8; 3] {
-        self.surfaces.get(usize::from(class)).copied().unwrap_or(self.surfaces[usize::from(class::WALL)])
+        self.surfaces
+            .get(usize::from(class))
+            .copied()
+            .unwrap_or(self.surfaces[usize::from(class::WALL)])
     }
 
     /// The colour of a kind of actor.
@@ -119,10 +136,14 @@ mod tests {
     fn distinct_colours_are_distinct() {
         let colours = SegmentationColours::distinct();
         // The last two surfaces share the colours of the floor and the ceiling.
-        let all: Vec<[u8; 3]> = colours.surfaces[..SURFACES - 2].iter().chain(&colours.actors).copied().collect();
+        let all: Vec<[u8; 3]> =
+            colours.surfaces[..SURFACES - 2].iter().chain(&colours.actors).copied().collect();
         assert_eq!(all.len(), SURFACES - 2 + ActorKind::COUNT);
         for (i, &colour) in all.iter().enumerate() {
-            assert!(all[..i].iter().all(|&other| difference(colour, other) > NEARLY_ALIKE), "{colour:?}");
+            assert!(
+                all[..i].iter().all(|&other| difference(colour, other) > NEARLY_ALIKE),
+                "{colour:?}"
+            );
         }
     }
 }

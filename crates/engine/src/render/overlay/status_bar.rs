@@ -1,5 +1,5 @@
-//! The status bar. Its pixels stay in the frame from one picture to the next; a part is drawn again when what it
-//! shows has changed.
+//! The status bar. Its pixels stay in the frame from one picture to the next; a part is drawn again
+//! when what it shows has changed.
 
 use crate::render::buffers::frame::Frame;
 use crate::render::textures::hud::BarArt;
@@ -48,14 +48,17 @@ impl BarState {
             face_band: usize::from(world.face_band(index)),
             armour: player.armor.clamp(0, LARGEST),
             keys: player.keys,
-            stock: std::array::from_fn(|i| [ammo[i], player.max_ammo[i]].map(|n| n.clamp(0, LARGEST))),
+            stock: std::array::from_fn(|i| {
+                [ammo[i], player.max_ammo[i]].map(|n| n.clamp(0, LARGEST))
+            }),
         }
     }
 }
 
-/// Columns of the art that each part takes: ammunition, health, arms, face, armour, keys, stock. They end where nothing is
-/// drawn, as a percent sign may be one column wider than its field.
-const PARTS: [[usize; 2]; 7] = [[0, 48], [48, 108], [108, 143], [143, 179], [179, 238], [238, 249], [249, 320]];
+/// Columns of the art that each part takes: ammunition, health, arms, face, armour, keys, stock.
+/// They end where nothing is drawn, as a percent sign may be one column wider than its field.
+const PARTS: [[usize; 2]; 7] =
+    [[0, 48], [48, 108], [108, 143], [143, 179], [179, 238], [238, 249], [249, 320]];
 /// Column of the panel of arms.
 const ARMS: i32 = 104;
 /// Right ends of the big numbers, in art columns, and their row.
@@ -78,7 +81,11 @@ pub(crate) struct StatusBar {
 impl StatusBar {
     pub fn new(art: &BarArt, view: &View) -> StatusBar {
         let (width, rows) = (view.width(), view.bar_rows.len());
-        let mut bar = StatusBar { background: vec![0; width * rows], pixels: vec![0; width * rows], shown: None };
+        let mut bar = StatusBar {
+            background: vec![0; width * rows],
+            pixels: vec![0; width * rows],
+            shown: None,
+        };
         let mut background = std::mem::take(&mut bar.background);
         for (picture, x) in [(&art.bar, 0), (&art.arms, ARMS)] {
             draw(&mut background, view, picture.as_ref(), x, 0);
@@ -91,12 +98,15 @@ impl StatusBar {
     pub fn update(&mut self, frame: &mut Frame, art: &BarArt, view: &View, state: BarState) {
         let pixels = &mut self.pixels[..];
         let old = self.shown.replace(state);
-        let changed = |part: fn(&BarState, &BarState) -> bool| old.is_none_or(|old| !part(&old, &state));
+        let changed =
+            |part: fn(&BarState, &BarState) -> bool| old.is_none_or(|old| !part(&old, &state));
         let mut canvas = |part: usize| {
-            let [first, end] = PARTS[part].map(|art| frame_column(view, base_column(view, art as i32)));
+            let [first, end] =
+                PARTS[part].map(|art| frame_column(view, base_column(view, art as i32)));
             for row in 0..view.bar_rows.len() {
                 let row = row * frame.width;
-                pixels[row + first..row + end].copy_from_slice(&self.background[row + first..row + end]);
+                pixels[row + first..row + end]
+                    .copy_from_slice(&self.background[row + first..row + end]);
             }
         };
         let redraw = [
@@ -154,7 +164,14 @@ impl StatusBar {
 }
 
 /// Draws a number whose last digit ends left of art column `end`.
-fn number(pixels: &mut [u8], view: &View, digits: &[Option<MaskedTexture>; 10], value: i32, end: i32, y: i32) {
+fn number(
+    pixels: &mut [u8],
+    view: &View,
+    digits: &[Option<MaskedTexture>; 10],
+    value: i32,
+    end: i32,
+    y: i32,
+) {
     let width = digits[0].as_ref().map_or(0, |digit| digit.width as i32);
     let (mut rest, mut x) = (value, end);
     loop {
@@ -177,15 +194,16 @@ fn frame_column(view: &View, base: i64) -> usize {
     usize::from(view.first_column[base.clamp(0, i64::from(view.base_width)) as usize])
 }
 
-/// Draws a picture with its anchor at an art position. Each picture is placed at whole pixels by itself, and takes the texels
-/// at the left and upper edges of pixels.
+/// Draws a picture with its anchor at an art position. Each picture is placed at whole pixels by
+/// itself, and takes the texels at the left and upper edges of pixels.
 fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedTexture>, x: i32, y: i32) {
     let Some(picture) = picture else { return };
     let (left, top) = (x - picture.offset_x, y - picture.offset_y);
     let [first, end] = [left, left + picture.width as i32].map(|art| base_column(view, art));
     let u_step = (i64::from(BAR_ART_WIDTH) << 16) / i64::from(view.base_width);
     let [rows, art] = bar_scale(view.base_width, view.base_rows()).map(i64::from);
-    let top = i64::from(view.base_rows()) - ((i64::from(BAR_ART_HEIGHT as i32 - top) * rows + art - 1) / art);
+    let top = i64::from(view.base_rows())
+        - ((i64::from(BAR_ART_HEIGHT as i32 - top) * rows + art - 1) / art);
     let scale = ((rows << 16) + art / 2) / art;
     let v_step = (1i64 << 32) / scale;
     for column in frame_column(view, first)..frame_column(view, end) {
@@ -195,7 +213,9 @@ fn draw(pixels: &mut [u8], view: &View, picture: Option<&MaskedTexture>, x: i32,
         for (row, &base) in view.bar_rows.iter().enumerate().skip(first_row) {
             let v = ((i64::from(base) - top) * v_step) >> 16;
             match texels.get(v as usize) {
-                Some(&texel) if texel & MaskedTexture::OPAQUE != 0 => pixels[row * view.width() + column] = texel as u8,
+                Some(&texel) if texel & MaskedTexture::OPAQUE != 0 => {
+                    pixels[row * view.width() + column] = texel as u8
+                }
                 Some(_) => {}
                 None => break,
             }
@@ -212,7 +232,18 @@ mod tests {
     fn the_embedded_bar_is_complete() {
         let art = BarArt::new(&Assets::embedded());
         let single = [&art.bar, &art.arms, &art.percent, &art.dead_face];
-        let many = art.big_digits.iter().chain(&art.grey_digits).chain(&art.yellow_digits).chain(&art.keys);
-        assert!(single.into_iter().chain(many).chain(art.sidedefs.iter().flatten()).all(Option::is_some));
+        let many = art
+            .big_digits
+            .iter()
+            .chain(&art.grey_digits)
+            .chain(&art.yellow_digits)
+            .chain(&art.keys);
+        assert!(
+            single
+                .into_iter()
+                .chain(many)
+                .chain(art.sidedefs.iter().flatten())
+                .all(Option::is_some)
+        );
     }
 }

@@ -12,7 +12,8 @@ use crate::render::view::tables::View;
 use crate::simd::Simd;
 use crate::world::{OPAQUE, Player, PlayerSprite};
 
-/// The screen that weapon positions are given on is 320 by 200 pixels; its middle row is that of the view.
+/// The screen that weapon positions are given on is 320 by 200 pixels; its middle row is that of
+/// the view.
 const SCREEN_WIDTH: i64 = 320;
 const MIDDLE_ROW: i64 = 100;
 /// Where a weapon is drawn.
@@ -28,7 +29,12 @@ pub(crate) struct Canvas<'a> {
 
 impl Canvas<'_> {
     /// Draws both layers of a player's weapon; `level` is the light of its sector.
-    pub fn weapon<const DEPTH: bool, const CLASS: bool>(&mut self, camera: &Camera, player: &Player, level: i32) {
+    pub fn weapon<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        camera: &Camera,
+        player: &Player,
+        level: i32,
+    ) {
         let opacity = if power_shows(player.blur_tics) { OPAQUE / 2 } else { OPAQUE };
         for sprite in player.sprites.iter().flatten() {
             let table = match (sprite.bright, camera.fixed_table) {
@@ -39,10 +45,17 @@ impl Canvas<'_> {
         }
     }
 
-    fn layer<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &PlayerSprite, table: usize, opacity: u8) {
+    fn layer<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        sprite: &PlayerSprite,
+        table: usize,
+        opacity: u8,
+    ) {
         let (scene, view) = (self.scene, self.view);
         let shown = scene.assets.sprites.get(usize::from(sprite.sprite));
-        let image = shown.and_then(|shown| shown.frames.get(usize::from(sprite.frame))).map(|frame| frame.images[0]);
+        let image = shown
+            .and_then(|shown| shown.frames.get(usize::from(sprite.frame)))
+            .map(|frame| frame.images[0]);
         let picture = image.and_then(|image| scene.sprite_pictures.get(image as usize)?.as_ref());
         let (Some(image), Some(picture)) = (image, picture) else { return };
         let is_opaque = opacity == OPAQUE;
@@ -51,24 +64,32 @@ impl Canvas<'_> {
         if is_opaque && self.cache.copy::<DEPTH, CLASS>(&key, self.frame) {
             return;
         }
-        let left = (i64::from(sprite.x.0) - (i64::from(picture.offset_x) << 16)) << (TEXEL_BITS - 16);
-        let top = (i64::from(sprite.y.0) - (i64::from(picture.offset_y) << 16)) << (TEXEL_BITS - 16);
+        let left =
+            (i64::from(sprite.x.0) - (i64::from(picture.offset_x) << 16)) << (TEXEL_BITS - 16);
+        let top =
+            (i64::from(sprite.y.0) - (i64::from(picture.offset_y) << 16)) << (TEXEL_BITS - 16);
         let u_step = (SCREEN_WIDTH << TEXEL_BITS) / i64::from(view.base_width);
         // Rows are 1.2 times as high as columns are wide.
         let v_step = u_step * 10 / 12;
-        // Columns from the left edge of the one in which the picture begins, rows by their lower edge.
+        // Columns from the left edge of the one in which the picture begins, rows by their lower
+        // edge.
         let column = |texel: u32| {
             let position = (left + (i64::from(texel) << TEXEL_BITS)) >> 16;
             (position * i64::from(view.base_width) / SCREEN_WIDTH) >> (TEXEL_BITS - 16)
         };
         let u = -u_step * column(0);
-        let v = v_step * (1 - i64::from(view.base_view_rows / 2)) + (MIDDLE_ROW << TEXEL_BITS) - top;
+        let v =
+            v_step * (1 - i64::from(view.base_view_rows / 2)) + (MIDDLE_ROW << TEXEL_BITS) - top;
         // Frame columns and rows that show the picture at all.
         let row = |texel: u32| first_row(view, texel, v, v_step) as usize;
-        let [first, end] = [column(0), column(picture.width)].map(|column| column.clamp(0, i64::from(view.base_width)) as usize);
+        let [first, end] = [column(0), column(picture.width)]
+            .map(|column| column.clamp(0, i64::from(view.base_width)) as usize);
         let [first, end] = [first, end].map(|column| usize::from(view.first_column[column]));
-        let texel = |&column: &u32| (((u + u_step * i64::from(column)) >> TEXEL_BITS) as u32).min(picture.width - 1) as u16;
-        self.columns.open(0..view.view_rows as i16, view.columns[first..end.max(first)].iter().map(texel));
+        let texel = |&column: &u32| {
+            (((u + u_step * i64::from(column)) >> TEXEL_BITS) as u32).min(picture.width - 1) as u16
+        };
+        self.columns
+            .open(0..view.view_rows as i16, view.columns[first..end.max(first)].iter().map(texel));
         let stamp = Patch {
             picture,
             table: &scene.assets.light_tables[table],

@@ -1,5 +1,6 @@
-//! Layers of weapons as they were drawn before. At rest and in each frame of a shot a weapon is the same picture in the same place
-//! and light, from frame to frame and in every world of a thread: it is drawn once, and from then on its pixels are copied.
+//! Layers of weapons as they were drawn before. At rest and in each frame of a shot a weapon is the
+//! same picture in the same place and light, from frame to frame and in every world of a thread: it
+//! is drawn once, and from then on its pixels are copied.
 
 use crate::math::Fixed;
 use crate::render::buffers::frame::{Frame, class};
@@ -36,7 +37,8 @@ pub(crate) struct WeaponCache {
 #[derive(Debug)]
 struct Slot {
     key: LayerKey,
-    /// What it covers, once it was drawn a second time: a weapon that sways is hardly ever where it was.
+    /// What it covers, once it was drawn a second time: a weapon that sways is hardly ever where it
+    /// was.
     layer: Option<DrawnLayer>,
 }
 
@@ -51,8 +53,13 @@ struct DrawnLayer {
 
 impl WeaponCache {
     /// Draws a layer, if its pixels are known; returns whether they are.
-    pub fn copy<const DEPTH: bool, const CLASS: bool>(&self, key: &LayerKey, frame: &mut Frame) -> bool {
-        let known = self.slots.get(key.slot()).and_then(Option::as_ref).filter(|slot| slot.key == *key);
+    pub fn copy<const DEPTH: bool, const CLASS: bool>(
+        &self,
+        key: &LayerKey,
+        frame: &mut Frame,
+    ) -> bool {
+        let known =
+            self.slots.get(key.slot()).and_then(Option::as_ref).filter(|slot| slot.key == *key);
         let Some(layer) = known.and_then(|slot| slot.layer.as_ref()) else { return false };
         layer.copy::<DEPTH, CLASS>(frame);
         true
@@ -63,7 +70,8 @@ impl WeaponCache {
         self.slots.iter().flatten().filter(|slot| slot.layer.is_some()).count()
     }
 
-    /// Takes note of an opaque layer that is drawn: the second time running that it is drawn of its slot's, of its pixels.
+    /// Takes note of an opaque layer that is drawn: the second time running that it is drawn of its
+    /// slot's, of its pixels.
     pub fn note(&mut self, key: LayerKey, stamp: &Patch, simd: Simd, view: &View) {
         if view.size().pixels() > MOST_PIXELS {
             return;
@@ -78,8 +86,11 @@ impl WeaponCache {
 impl LayerKey {
     fn slot(&self) -> usize {
         let place = self.place.map(|part| part.0 as u64);
-        let words = [self.scene, u64::from(self.image), self.light_table as u64, place[0], place[1]];
-        let mixed = words.iter().fold(0, |mixed: u64, word| (mixed ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23));
+        let words =
+            [self.scene, u64::from(self.image), self.light_table as u64, place[0], place[1]];
+        let mixed = words.iter().fold(0, |mixed: u64, word| {
+            (mixed ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23)
+        });
         (mixed % SLOTS as u64) as usize
     }
 }
@@ -93,7 +104,9 @@ impl DrawnLayer {
         let (mut runs, mut colours) = (Vec::new(), Vec::new());
         for (row, classes) in frame.class.chunks_exact(frame.width).enumerate() {
             let mut x = 0;
-            for run in classes.chunk_by(|one, other| (*one == class::WEAPON) == (*other == class::WEAPON)) {
+            for run in
+                classes.chunk_by(|one, other| (*one == class::WEAPON) == (*other == class::WEAPON))
+            {
                 if run[0] == class::WEAPON {
                     let at = row * frame.width + x;
                     runs.push([at as u32, run.len() as u32]);
@@ -122,7 +135,8 @@ impl DrawnLayer {
     }
 }
 
-/// Copies a run of pixels, by pieces that overlap where its length is no whole number of them: for so few a call costs more.
+/// Copies a run of pixels, by pieces that overlap where its length is no whole number of them: for
+/// so few a call costs more.
 #[inline(always)]
 fn copy_run(to: &mut [u8], from: &[u8]) {
     const PIECE: usize = 16;
@@ -150,7 +164,13 @@ mod tests {
 
     type Shot = (Vec<u8>, Vec<u8>, Vec<u16>);
 
-    fn shoot(scratch: &mut FrameScratch, world: &World, scene: &Arc<Scene>, size: FrameSize, simd: Simd) -> Shot {
+    fn shoot(
+        scratch: &mut FrameScratch,
+        world: &World,
+        scene: &Arc<Scene>,
+        size: FrameSize,
+        simd: Simd,
+    ) -> Shot {
         let mut renderer = Renderer::new(Arc::clone(scene), Arc::new(View::new(size).unwrap()));
         renderer.set_simd(simd);
         renderer.render(scratch, world, 0, Buffers { depth: true, labels: true });
@@ -162,7 +182,13 @@ mod tests {
         let mut world = World::new(stone_room(40, [-64, -256, 256, 256], &[[0.0, 0.0]]), 1);
         let scenes = [(); 2].map(|()| Arc::new(Scene::new(&world.map, Assets::embedded())));
         let launcher = SPRITE_NAMES.iter().position(|&name| name == "MISG").unwrap();
-        let held = PlayerSprite { sprite: launcher as u8, frame: 0, bright: false, x: Fixed::ZERO, y: Fixed::from_int(32) };
+        let held = PlayerSprite {
+            sprite: launcher as u8,
+            frame: 0,
+            bright: false,
+            x: Fixed::ZERO,
+            y: Fixed::from_int(32),
+        };
         let (mut rng, mut shown) = (Rng::new(21), 0);
         let mut scratch = FrameScratch::default();
         for round in 0..200 {
@@ -170,10 +196,17 @@ mod tests {
             let mut any = |count: u32| rng.below(count) as i32;
             let player = &mut world.players[0];
             let (x, y) = (Fixed::from_int(7 * any(2)), held.y + Fixed::from_int(20 * any(2)));
-            player.sprites[0] = Some(PlayerSprite { frame: any(2) as u8, bright: any(4) == 0, x, y, ..held });
-            (player.extra_light, player.blur_tics) = (any(2) as u8, if any(9) == 0 { 200 } else { 0 });
-            let (scene, simd) = (&scenes[any(2) as usize], Simd::available()[any(Simd::available().len() as u32) as usize]);
-            let size = [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 320, height: 240 }][any(9) as usize / 4];
+            player.sprites[0] =
+                Some(PlayerSprite { frame: any(2) as u8, bright: any(4) == 0, x, y, ..held });
+            (player.extra_light, player.blur_tics) =
+                (any(2) as u8, if any(9) == 0 { 200 } else { 0 });
+            let (scene, simd) = (
+                &scenes[any(2) as usize],
+                Simd::available()[any(Simd::available().len() as u32) as usize],
+            );
+            let size =
+                [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 320, height: 240 }]
+                    [any(9) as usize / 4];
             // Drawn, drawn and noted, copied.
             for time in 0..3 {
                 let id = world.players[0].actor;

@@ -5,12 +5,14 @@ use crate::render::textures::sprite::SpriteTexture;
 use crate::render::view::tables::View;
 use std::ops::Range;
 
-/// Columns that are stamped at once at most: lists by column are that much longer than there are columns.
+/// Columns that are stamped at once at most: lists by column are that much longer than there are
+/// columns.
 pub(crate) const PATCH_BLOCK: usize = 64;
 /// Fractional bits of texture rows.
 pub(crate) const TEXEL_BITS: u32 = 32;
 
-/// The first frame row whose lower edge is at a texture row or below it; `v` and `v_step` as in [`Patch`].
+/// The first frame row whose lower edge is at a texture row or below it; `v` and `v_step` as in
+/// [`Patch`].
 #[inline]
 pub(crate) fn first_row(view: &View, texel: u32, v: i64, v_step: i64) -> i16 {
     let base = ((i64::from(texel) << TEXEL_BITS) - v + v_step - 1).div_euclid(v_step);
@@ -25,7 +27,8 @@ pub(crate) struct DrawnBounds {
 }
 
 impl DrawnBounds {
-    pub const NOTHING: DrawnBounds = DrawnBounds { columns: [usize::MAX, 0], rows: [usize::MAX, 0] };
+    pub const NOTHING: DrawnBounds =
+        DrawnBounds { columns: [usize::MAX, 0], rows: [usize::MAX, 0] };
 
     /// Adds a part with pixels in its outermost columns and rows.
     #[inline(always)]
@@ -35,7 +38,8 @@ impl DrawnBounds {
     }
 }
 
-/// What may be covered of each column of the picture at hand, and what it shows; memory that is reused.
+/// What may be covered of each column of the picture at hand, and what it shows; memory that is
+/// reused.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PatchColumns {
     /// First row; padded, as the others are.

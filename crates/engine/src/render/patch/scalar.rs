@@ -5,7 +5,8 @@ use crate::render::patch::data::{DrawnBounds, Patch};
 use crate::render::textures::masked::MaskedTexture;
 use std::ops::Range;
 
-/// More rows than these are searched for those of a column that show no air: in a learner's frame few sprites have so many.
+/// More rows than these are searched for those of a column that show no air: in a learner's frame
+/// few sprites have so many.
 const SEARCHED_ROWS: usize = 32;
 
 /// Draws some rows of a patch; `base_rows` are the base rows of the frame's.
@@ -17,7 +18,8 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
 ) -> DrawnBounds {
     let mut covered = DrawnBounds::NOTHING;
     for i in 0..stamp.columns.count() {
-        let (top, bottom) = (stamp.columns.tops[i].max(0) as usize, stamp.columns.bottoms[i].max(0) as usize);
+        let (top, bottom) =
+            (stamp.columns.tops[i].max(0) as usize, stamp.columns.bottoms[i].max(0) as usize);
         let open = rows.start.max(top)..rows.end.min(bottom);
         if !open.is_empty() {
             column::<DEPTH, CLASS>(stamp, frame, base_rows, i, open, &mut covered);
@@ -40,10 +42,13 @@ fn column<const DEPTH: bool, const CLASS: bool>(
     if open.len() > SEARCHED_ROWS {
         // Half of a weapon's picture is air above it.
         let extent = stamp.picture.extent(stamp.columns.texels[i]);
-        let before = |texel: usize| base_rows[open.clone()].partition_point(|&base_row| stamp.texel_row(base_row) < texel);
+        let before = |texel: usize| {
+            base_rows[open.clone()].partition_point(|&base_row| stamp.texel_row(base_row) < texel)
+        };
         open = open.start + before(extent.start)..open.start + before(extent.end);
     }
-    let lines = frame.colour[open.start * width..].chunks_exact_mut(width).zip(&base_rows[open.clone()]);
+    let lines =
+        frame.colour[open.start * width..].chunks_exact_mut(width).zip(&base_rows[open.clone()]);
     // Which texels are holes is unpredictable.
     match stamp.mixture {
         None => lines.for_each(|(line, &base_row)| {
@@ -62,7 +67,8 @@ fn column<const DEPTH: bool, const CLASS: bool>(
     }
     let (mut first, mut end) = (usize::MAX, 0);
     for row in open {
-        let (opaque, at) = (texels[stamp.texel_row(base_rows[row])] & MaskedTexture::OPAQUE != 0, row * width + x);
+        let (opaque, at) =
+            (texels[stamp.texel_row(base_rows[row])] & MaskedTexture::OPAQUE != 0, row * width + x);
         if DEPTH {
             let pixel = &mut frame.depth[at];
             *pixel = if opaque { stamp.depth } else { *pixel };

@@ -16,8 +16,12 @@ pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
     spans: &[Span],
 ) {
     match flat {
-        FlatTexture::Small(texels) => draw_from::<DEPTH, CLASS, 6, { 64 * 64 }>(shader, simd, frame, texels, spans),
-        FlatTexture::Large(texels) => draw_from::<DEPTH, CLASS, 7, { 128 * 128 }>(shader, simd, frame, texels, spans),
+        FlatTexture::Small(texels) => {
+            draw_from::<DEPTH, CLASS, 6, { 64 * 64 }>(shader, simd, frame, texels, spans)
+        }
+        FlatTexture::Large(texels) => {
+            draw_from::<DEPTH, CLASS, 7, { 128 * 128 }>(shader, simd, frame, texels, spans)
+        }
     }
 }
 
@@ -72,7 +76,14 @@ fn draw_avx2<const DEPTH: bool, const CLASS: bool, const BITS: u32, const TEXELS
         let pixels = &mut frame.colour[start + first..start + end + row::avx2::ROW_GROUP];
         let columns = shader.view.columns[first..].first_chunk().expect("the list is padded");
         let walk = shader.walk::<BITS>(distance);
-        row::avx2::draw::<BITS, TEXELS>(&walk, pixels, end - first, columns, shader.view.chunk_stride, (texels, table));
+        row::avx2::draw::<BITS, TEXELS>(
+            &walk,
+            pixels,
+            end - first,
+            columns,
+            shader.view.chunk_stride,
+            (texels, table),
+        );
         shader.write::<DEPTH, CLASS>(frame, distance, start + first..start + end);
     }
 }

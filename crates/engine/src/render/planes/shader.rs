@@ -18,7 +18,8 @@ pub(crate) struct PlaneShader<'a> {
     pub height: i64,
     pub slopes: &'a PlaneRows,
     pub light: Light,
-    /// [`ONE_TABLE_DISTANCE`] over the distance in the first row from the horizon, 32 fractional bits.
+    /// [`ONE_TABLE_DISTANCE`] over the distance in the first row from the horizon, 32 fractional
+    /// bits.
     pub nearness: i64,
     pub class: u16,
 }
@@ -35,7 +36,8 @@ impl<'a> PlaneShader<'a> {
     ) -> PlaneShader<'a> {
         let above = i64::from(key.height.0) > camera.z;
         let height = (i64::from(key.height.0) - camera.z).abs().max(256);
-        let nearness = ((i128::from(ONE_TABLE_DISTANCE) << 64) / i128::from(height * view.focal_y)) as i64;
+        let nearness =
+            ((i128::from(ONE_TABLE_DISTANCE) << 64) / i128::from(height * view.focal_y)) as i64;
         PlaneShader {
             camera,
             view,
@@ -63,7 +65,12 @@ impl<'a> PlaneShader<'a> {
     }
 
     #[inline(always)]
-    pub fn write<const DEPTH: bool, const CLASS: bool>(&self, frame: &mut Frame, distance: i64, pixels: Range<usize>) {
+    pub fn write<const DEPTH: bool, const CLASS: bool>(
+        &self,
+        frame: &mut Frame,
+        distance: i64,
+        pixels: Range<usize>,
+    ) {
         if DEPTH {
             let depth = frame.depths.plane(distance);
             frame.depth[pixels.clone()].fill(depth);
@@ -77,7 +84,8 @@ impl<'a> PlaneShader<'a> {
     #[inline(always)]
     pub fn walk<const BITS: u32>(&self, distance: i64) -> RowWalk {
         let camera = self.camera;
-        // 48 fractional bits, of which the fraction of the side's 32 are kept; whole sides wrap away.
+        // 48 fractional bits, of which the fraction of the side's 32 are kept; whole sides wrap
+        // away.
         let part = |position: i64| (position >> (16 + BITS)) as u32;
         let u = (camera.x << 32).wrapping_add(distance.wrapping_mul(camera.plane_ray[0]));
         let v = (camera.y << 32).wrapping_add(distance.wrapping_mul(camera.plane_ray[1]));

@@ -1,8 +1,9 @@
 //! The depth of soot as ViZDoom writes it (`docs/results/pixels.md`).
 //!
-//! It draws four columns at once, and none of what draws soot writes a depth of its own: all is written what was written last, at first the depth
-//! of the wall's last column. Only a column of a four that is drawn by itself leaves another one, for the quads to come: that of
-//! the column as far into the last four of the wall.
+//! It draws four columns at once, and none of what draws soot writes a depth of its own: all is
+//! written what was written last, at first the depth of the wall's last column. Only a column of a
+//! four that is drawn by itself leaves another one, for the quads to come: that of the column as
+//! far into the last four of the wall.
 
 use crate::render::published_depth::quads::QuadPieces;
 use std::ops::Range;
@@ -80,10 +81,12 @@ mod tests {
 
     #[test]
     fn the_last_column_by_itself_decides_about_what_comes_after_its_four() {
-        // Column 6 begins a row early, column 5 ends a row late: that is drawn after what all share.
+        // Column 6 begins a row early, column 5 ends a row late: that is drawn after what all
+        // share.
         let rows = [2..8, 2..9, 1..8, 2..8, 2..8, 2..8, 2..8, 2..8, 3..7];
         assert_eq!(written(4, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 2, 2, 2, 2, 2]);
-        // Before the first four and after the last one columns are drawn one by one, and leave nothing: now column 4 begins early.
+        // Before the first four and after the last one columns are drawn one by one, and leave
+        // nothing: now column 4 begins early.
         assert_eq!(written(2, &rows, Some([1, 2, 3, 4])), [9, 9, 9, 9, 9, 9, 1, 1, 1]);
         assert_eq!(written(4, &rows, None), [9; 9]);
     }

@@ -1,8 +1,9 @@
-//! The depth of midtextures as ViZDoom writes it, by what it was seen to tell (`docs/results/pixels.md`).
+//! The depth of midtextures as ViZDoom writes it, by what it was seen to tell
+//! (`docs/results/pixels.md`).
 //!
-//! It draws four columns at once, one whose number divides by four and the three after it: the rows that the four have in common
-//! together, the others column by column. Of those others a piece that is a single row is written not its own depth but the last one written before
-//! the four.
+//! It draws four columns at once, one whose number divides by four and the three after it: the rows
+//! that the four have in common together, the others column by column. Of those others a piece that
+//! is a single row is written not its own depth but the last one written before the four.
 
 use crate::render::published_depth::quads::QuadPieces;
 
@@ -12,7 +13,8 @@ pub(crate) struct MidtextureDepth {
     /// None at first: then single rows are written their own.
     last_written: Option<u8>,
     pieces: QuadPieces,
-    /// Start of the run of texels that the last piece of each column shows: pieces of two runs may touch.
+    /// Start of the run of texels that the last piece of each column shows: pieces of two runs may
+    /// touch.
     runs: [u16; 4],
     depths: [u8; 4],
 }
@@ -43,7 +45,8 @@ impl MidtextureDepth {
         (self.runs[column], self.depths[column]) = (run, depth);
     }
 
-    /// Ends the four: gives column, row and depth of the rows that are written another one than their own to `put`.
+    /// Ends the four: gives column, row and depth of the rows that are written another one than
+    /// their own to `put`.
     pub fn end(&mut self, mut put: impl FnMut(usize, u16, u8)) {
         let written = self.last_written;
         let last_column = self.pieces.draw(|column, [first, last]| {
@@ -62,14 +65,16 @@ mod tests {
     use super::*;
     use crate::render::published_depth::quads::Piece;
 
-    /// What is written of four columns of pieces, each in a run of its own, of depth 10 to 13, after a depth of 7.
+    /// What is written of four columns of pieces, each in a run of its own, of depth 10 to 13,
+    /// after a depth of 7.
     fn written(columns: [&[Piece]; 4]) -> (Vec<(usize, u16)>, Option<u8>) {
         let mut midtextures = MidtextureDepth::default();
         midtextures.note(7);
         midtextures.begin();
         for (column, pieces) in columns.iter().enumerate() {
             for (run, &[first, last]) in pieces.iter().enumerate() {
-                (first..=last).for_each(|row| midtextures.add(column, row, run as u16, 10 + column as u8));
+                (first..=last)
+                    .for_each(|row| midtextures.add(column, row, run as u16, 10 + column as u8));
             }
         }
         let mut list = Vec::new();
@@ -82,18 +87,27 @@ mod tests {
 
     #[test]
     fn single_rows_that_not_all_columns_have_are_told_an_older_depth() {
-        // Rows 3 to 5 are common: of what is above, column 1 has one row and column 2 two; below, column 0 has one.
-        assert_eq!(written([&[[3, 6]], &[[2, 5]], &[[1, 5]], &[[3, 5]]]), (vec![(1, 2), (0, 6)], Some(10)));
+        // Rows 3 to 5 are common: of what is above, column 1 has one row and column 2 two; below,
+        // column 0 has one.
+        assert_eq!(
+            written([&[[3, 6]], &[[2, 5]], &[[1, 5]], &[[3, 5]]]),
+            (vec![(1, 2), (0, 6)], Some(10))
+        );
         // A common row is no single one, and is written last of the fourth column.
         assert_eq!(written([&[[4, 4]], &[[4, 4]], &[[4, 4]], &[[4, 4]]]), (vec![], Some(13)));
-        // Without a common row: pieces of two rows keep their depth, though they touch pieces of other runs.
-        assert_eq!(written([&[[1, 1], [2, 2]], &[[5, 6]], &[], &[]]), (vec![(0, 1), (0, 2)], Some(11)));
+        // Without a common row: pieces of two rows keep their depth, though they touch pieces of
+        // other runs.
+        assert_eq!(
+            written([&[[1, 1], [2, 2]], &[[5, 6]], &[], &[]]),
+            (vec![(0, 1), (0, 2)], Some(11))
+        );
         assert_eq!(written([&[], &[], &[], &[]]), (vec![], Some(7)));
     }
 
     #[test]
     fn pieces_without_a_common_row_end_where_the_next_ones_begin() {
-        // Column 1's first piece goes down into the rows of column 0's second, which all have in common.
+        // Column 1's first piece goes down into the rows of column 0's second, which all have in
+        // common.
         let (list, _) = written([&[[1, 1], [4, 6]], &[[3, 6]], &[[4, 6]], &[[4, 6]]]);
         assert_eq!(list, [(0, 1), (1, 3)]);
     }

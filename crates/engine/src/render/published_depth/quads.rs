@@ -1,13 +1,22 @@
-//! Columns that ViZDoom draws four at once, one whose number divides by four and the three after it, as far as they share
-//! rows. What its depth has of that shows with `published_depth` (`docs/results/pixels.md`).
+//! Columns that ViZDoom draws four at once, one whose number divides by four and the three after
+//! it, as far as they share rows. What its depth has of that shows with `published_depth`
+//! (`docs/results/pixels.md`).
 
 use crate::render::buffers::frame::Columns;
 
-/// Draws the depth that a wall or the sky has besides its own rows: a row more below those that four columns share. What is drawn
-/// later hides it. The columns from `first` on show it between `tops` and `bottoms`.
-pub(crate) fn draw_below(columns: &mut Columns, first: usize, tops: &[i16], bottoms: &[i16], depth: impl Fn(usize) -> u8) {
+/// Draws the depth that a wall or the sky has besides its own rows: a row more below those that
+/// four columns share. What is drawn later hides it. The columns from `first` on show it between
+/// `tops` and `bottoms`.
+pub(crate) fn draw_below(
+    columns: &mut Columns,
+    first: usize,
+    tops: &[i16],
+    bottoms: &[i16],
+    depth: impl Fn(usize) -> u8,
+) {
     for from in (first.next_multiple_of(4)..first + tops.len()).step_by(4) {
-        let (Some(tops), Some(bottoms)) = (tops[from - first..].first_chunk::<4>(), bottoms[from - first..].first_chunk::<4>())
+        let (Some(tops), Some(bottoms)) =
+            (tops[from - first..].first_chunk::<4>(), bottoms[from - first..].first_chunk::<4>())
         else {
             break;
         };
@@ -41,20 +50,27 @@ impl QuadPieces {
         &mut self.0[column]
     }
 
-    /// Draws them: gives column and rows of what is drawn by itself to `alone`, in the order in which it is, and writes the column that is
-    /// drawn last. Rows that all four have in common are drawn together. What is left is not to be drawn again.
+    /// Draws them: gives column and rows of what is drawn by itself to `alone`, in the order in
+    /// which it is, and writes the column that is drawn last. Rows that all four have in common are
+    /// drawn together. What is left is not to be drawn again.
     pub fn draw(&mut self, mut alone: impl FnMut(usize, Piece)) -> Option<usize> {
         let (mut done, mut last_column) = ([0; 4], None);
         loop {
-            let piece = |column: usize, after: usize| self.0[column].get(done[column] + after).copied();
+            let piece =
+                |column: usize, after: usize| self.0[column].get(done[column] + after).copied();
             let present: [Option<Piece>; 4] = std::array::from_fn(|column| piece(column, 0));
             // Where the pieces after those at hand begin.
-            let next = (0..4).filter_map(|column| piece(column, 1)).map(|[first, _]| first).min().unwrap_or(u16::MAX);
+            let next = (0..4)
+                .filter_map(|column| piece(column, 1))
+                .map(|[first, _]| first)
+                .min()
+                .unwrap_or(u16::MAX);
             let top = present.iter().flatten().map(|[first, _]| *first).max();
             let bottom = present.iter().flatten().map(|[_, last]| *last).min();
             let (Some(top), Some(bottom)) = (top, bottom) else { return last_column };
             let shared = top <= bottom && present.iter().all(Option::is_some);
-            // Above the rows that all have in common; where there are none, to where the next pieces begin, which may have some.
+            // Above the rows that all have in common; where there are none, to where the next
+            // pieces begin, which may have some.
             let end = if shared { top } else { next };
             for (column, piece) in present.iter().enumerate() {
                 let Some([first, last]) = *piece else { continue };
@@ -86,7 +102,14 @@ mod tests {
         let mut columns = Columns::default();
         columns.fit(24, 40);
         draw_below(&mut columns, first, tops, bottoms, |x| x as u8 + 1);
-        let written = |x: usize| columns.clone().depth_of(x).iter().position(|&depth| depth == x as u8 + 1).map(|row| (x, row));
+        let written = |x: usize| {
+            columns
+                .clone()
+                .depth_of(x)
+                .iter()
+                .position(|&depth| depth == x as u8 + 1)
+                .map(|row| (x, row))
+        };
         (0..24).filter_map(written).collect()
     }
 

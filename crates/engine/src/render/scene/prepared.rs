@@ -14,12 +14,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The name of the ceiling texture that is the sky.
 const SKY_FLAT: TextureName = TextureName::new("F_SKY1");
-/// Names of sky pictures, where the pictures do not name one themselves: the first that they have is taken.
+/// Names of sky pictures, where the pictures do not name one themselves: the first that they have
+/// is taken.
 const SKY_NAMES: [TextureName; 2] = [TextureName::new("SKY1"), TextureName::new("RSKY1")];
 /// The sector of the other side of a one-sided line.
 pub(crate) const NO_SECTOR: u32 = u32::MAX;
 
-/// Light that walls running north-south have more and walls running east-west less than their sector.
+/// Light that walls running north-south have more and walls running east-west less than their
+/// sector.
 const CONTRAST: i32 = 16;
 
 /// A seg as the renderer wants it.
@@ -152,7 +154,8 @@ impl Scene {
         }
         let sky = textures.walls.len();
         let sky_entry = assets.sky.iter().chain(&SKY_NAMES).find_map(|name| {
-            let graphic = assets.graphics.get(name).map(|&first| TextureEntry { first, frames: 1, tics: 1 });
+            let graphic =
+                assets.graphics.get(name).map(|&first| TextureEntry { first, frames: 1, tics: 1 });
             assets.textures.get(name).copied().or(graphic)
         });
         let no_entry = TextureEntry { first: u32::MAX, frames: 1, tics: 1 };
@@ -173,7 +176,8 @@ impl Scene {
             };
             let (texels, _) = texels_along(dx, dy);
             let ends = [line.v1, line.v2].map(|vertex| [vertex.x.0, vertex.y.0]);
-            let sides = [Some((line.front, ends)), line.back.map(|back| (back, [ends[1], ends[0]]))];
+            let sides =
+                [Some((line.front, ends)), line.back.map(|back| (back, [ends[1], ends[0]]))];
             for (id, ends) in sides.into_iter().flatten() {
                 let side: &Side = &map.sides[id.0 as usize];
                 sidedefs[id.0 as usize] = Some(Sidedef {
@@ -197,12 +201,30 @@ impl Scene {
             // A side that no line uses is never drawn.
             sidedefs: sidedefs.into_iter().map(|face| face.unwrap_or_else(Sidedef::bare)).collect(),
             nodes: map.nodes.clone(),
-            subsectors: map.subsectors.iter().map(|s| [s.first_seg, s.first_seg + s.seg_count, s.sector.0]).collect(),
-            most_segs: map.subsectors.iter().map(|subsector| subsector.seg_count as usize).max().unwrap_or(0),
+            subsectors: map
+                .subsectors
+                .iter()
+                .map(|s| [s.first_seg, s.first_seg + s.seg_count, s.sector.0])
+                .collect(),
+            most_segs: map
+                .subsectors
+                .iter()
+                .map(|subsector| subsector.seg_count as usize)
+                .max()
+                .unwrap_or(0),
             sector_count: map.sectors.len(),
-            sky_flat: map.textures.iter().position(|&name| name == SKY_FLAT).map(|i| TextureId(i as u16)),
+            sky_flat: map
+                .textures
+                .iter()
+                .position(|&name| name == SKY_FLAT)
+                .map(|i| TextureId(i as u16)),
             sky,
-            sprite_reach: sprite_pictures.iter().flatten().map(SpriteTexture::reach).max().unwrap_or(0),
+            sprite_reach: sprite_pictures
+                .iter()
+                .flatten()
+                .map(SpriteTexture::reach)
+                .max()
+                .unwrap_or(0),
             sprite_pictures,
             textures,
             missing_picture,
@@ -224,9 +246,11 @@ impl Scene {
     /// The mean colour of a sprite from the front, brightened so that it shows on a map.
     pub(crate) fn sprite_colour(&self, sprite: u8, frame: u8) -> [u8; 3] {
         let frames = self.assets.sprites.get(usize::from(sprite)).map(|sprite| &sprite.frames);
-        let image = frames.and_then(|frames| frames.get(usize::from(frame))).map(|frame| frame.images[0]);
+        let image =
+            frames.and_then(|frames| frames.get(usize::from(frame))).map(|frame| frame.images[0]);
         let picture = image.and_then(|image| self.sprite_pictures.get(image as usize)?.as_ref());
-        let colour = mean(&self.assets.palette, picture.iter().flat_map(|picture| picture.opaque_texels()));
+        let colour =
+            mean(&self.assets.palette, picture.iter().flat_map(|picture| picture.opaque_texels()));
         let brightest = u32::from(colour.into_iter().max().unwrap_or(0)).max(1);
         colour.map(|channel| (u32::from(channel) * 255 / brightest) as u8)
     }
@@ -247,7 +271,8 @@ fn scene_seg(map: &Map, seg: &Seg) -> SceneSeg {
         front: seg.front_sector.0,
         back: seg.back_sector.map_or(NO_SECTOR, |sector| sector.0),
         face: seg.side.0,
-        piece: [seg.v1, seg.v2] != if line.back == Some(seg.side) { [line.v2, line.v1] } else { [line.v1, line.v2] },
+        piece: [seg.v1, seg.v2]
+            != if line.back == Some(seg.side) { [line.v2, line.v1] } else { [line.v1, line.v2] },
         masked: seg.back_sector.is_some() && map.sides[seg.side.0 as usize].middle.is_some(),
     }
 }
@@ -267,8 +292,8 @@ fn square(dx: i64, dy: i64) -> u128 {
     u128::from(dx.unsigned_abs()).pow(2) + u128::from(dy.unsigned_abs()).pow(2)
 }
 
-/// How many texels a line is long, and what a texture position on it gains with each map unit of the world, 28
-/// fractional bits.
+/// How many texels a line is long, and what a texture position on it gains with each map unit of
+/// the world, 28 fractional bits.
 fn texels_along(dx: i64, dy: i64) -> (i64, [i64; 2]) {
     let square = square(dx, dy).max(1);
     let length = square.isqrt() as i64;
@@ -280,7 +305,9 @@ fn texels_along(dx: i64, dy: i64) -> (i64, [i64; 2]) {
 
 fn sprite_pictures(assets: &Assets) -> Vec<Option<SpriteTexture>> {
     let mut pictures = vec![None; assets.images.len()];
-    for index in assets.sprites.iter().flat_map(|sprite| &sprite.frames).flat_map(|frame| frame.images) {
+    for index in
+        assets.sprites.iter().flat_map(|sprite| &sprite.frames).flat_map(|frame| frame.images)
+    {
         if let Some(image) = assets.images.get(index as usize) {
             pictures[index as usize] = Some(SpriteTexture::new(image));
         }

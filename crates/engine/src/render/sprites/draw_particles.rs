@@ -12,7 +12,8 @@ impl SpritePass<'_> {
         }
     }
 
-    /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet. Depth and labels say nothing of them.
+    /// Draws the squares that are farther away than a distance, 16.16, and were not drawn yet.
+    /// Depth and labels say nothing of them.
     pub fn squares_beyond<const DEPTH: bool, const CLASS: bool>(&mut self, distance: i64) {
         while let Some(spot) = self.trails.spots.pop_if(|spot| spot.distance > distance) {
             self.square::<DEPTH, CLASS>(&spot);
@@ -21,7 +22,8 @@ impl SpritePass<'_> {
 
     /// Mixes the colour of a spot into what is seen of each of its columns.
     fn square<const DEPTH: bool, const CLASS: bool>(&mut self, spot: &Particle) {
-        let (width, hidden) = (self.frame.width, self.trails.trails[usize::from(spot.trail)].hidden);
+        let (width, hidden) =
+            (self.frame.width, self.trails.trails[usize::from(spot.trail)].hidden);
         let first = usize::from(spot.columns[0]);
         if hidden {
             let extent = spot.extent();
@@ -31,7 +33,10 @@ impl SpritePass<'_> {
         for column in first..usize::from(spot.columns[1]) {
             let [mut top, mut bottom] = spot.rows;
             if hidden {
-                (top, bottom) = (top.max(self.columns.tops[column - first]), bottom.min(self.columns.bottoms[column - first]));
+                (top, bottom) = (
+                    top.max(self.columns.tops[column - first]),
+                    bottom.min(self.columns.bottoms[column - first]),
+                );
             }
             for row in top..bottom {
                 let pixel = &mut self.frame.colour[row as usize * width + column];

@@ -26,7 +26,8 @@ struct SeenTexture<'a> {
     along: TextureLine,
     light: Light,
     scales: PostScale,
-    /// The base columns that ViZDoom draws four at once; the depth of the others it writes as a sprite's.
+    /// The base columns that ViZDoom draws four at once; the depth of the others it writes as a
+    /// sprite's.
     fours: Range<u32>,
 }
 
@@ -40,8 +41,14 @@ struct Place {
 }
 
 impl SpritePass<'_> {
-    /// Draws the frame columns `first..end` of the masked texture of an opening, and marks them as drawn.
-    pub fn texture<const DEPTH: bool, const CLASS: bool>(&mut self, drawseg: &DrawSeg, first: usize, end: usize) {
+    /// Draws the frame columns `first..end` of the masked texture of an opening, and marks them as
+    /// drawn.
+    pub fn texture<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        drawseg: &DrawSeg,
+        first: usize,
+        end: usize,
+    ) {
         let Some(seen) = self.seen_texture(drawseg, first, end) else { return };
         let by_quads = DEPTH && self.frame.depths.by_quads();
         for x in first..end {
@@ -51,8 +58,10 @@ impl SpritePass<'_> {
             if by_quads && in_four == Some(0) {
                 self.midtexture_depth.begin();
             }
-            let open = [self.drawsegs.tops[row_index], self.drawsegs.bottoms[row_index]].map(i32::from);
-            let [top, bottom] = seen.edges.map(|edge| edge.row(&self.view.first_row, self.view.columns[x]));
+            let open =
+                [self.drawsegs.tops[row_index], self.drawsegs.bottoms[row_index]].map(i32::from);
+            let [top, bottom] =
+                seen.edges.map(|edge| edge.row(&self.view.first_row, self.view.columns[x]));
             let rows = top.max(open[0])..bottom.min(open[1]);
             if !drawn && !rows.is_empty() {
                 let rows = rows.start as usize..rows.end as usize;
@@ -60,13 +69,20 @@ impl SpritePass<'_> {
             }
             if by_quads && in_four == Some(3) {
                 let Frame { width, depth, .. } = &mut *self.frame;
-                self.midtexture_depth.end(|column, row, written| depth[usize::from(row) * *width + x - 3 + column] = written);
+                self.midtexture_depth.end(|column, row, written| {
+                    depth[usize::from(row) * *width + x - 3 + column] = written
+                });
             }
         }
     }
 
     /// What the columns `first..end` have in common, if there is a texture.
-    fn seen_texture<'s>(&self, drawseg: &'s DrawSeg, first: usize, end: usize) -> Option<SeenTexture<'s>>
+    fn seen_texture<'s>(
+        &self,
+        drawseg: &'s DrawSeg,
+        first: usize,
+        end: usize,
+    ) -> Option<SeenTexture<'s>>
     where
         Self: 's,
     {
@@ -75,10 +91,12 @@ impl SpritePass<'_> {
         let face = &scene.sidedefs[seg.face as usize];
         let picture = self.pictures[usize::from(face.middle?.0)] as usize;
         let fence = &scene.textures.midtextures[picture];
-        let (front, back) = (self.world.sector(SectorId(seg.front)), self.world.sector(SectorId(seg.back)));
+        let (front, back) =
+            (self.world.sector(SectorId(seg.front)), self.world.sector(SectorId(seg.back)));
         let (floor, ceiling) = (front.floor.max(back.floor), front.ceiling.min(back.ceiling));
         let height = Fixed::from_int(fence.picture.height as i32);
-        let hung_from = i64::from(if face.lower_unpegged { floor + height } else { ceiling }.0) + face.v_offset;
+        let hung_from =
+            i64::from(if face.lower_unpegged { floor + height } else { ceiling }.0) + face.v_offset;
         let top = hung_from.min(i64::from(ceiling.0));
         let bottom = (hung_from - i64::from(height.0)).max(i64::from(floor.0));
         Some(SeenTexture {
@@ -103,15 +121,22 @@ impl SpritePass<'_> {
             let four = seen.drawseg.rows + x - seen.drawseg.first - place;
             self.drawsegs.bottoms[four..four + 4].iter().all(|&bottom| bottom > 0)
         };
-        (seen.fours.contains(&column) && (!self.frame.depths.by_quads() || is_whole())).then_some(place)
+        (seen.fours.contains(&column) && (!self.frame.depths.by_quads() || is_whole()))
+            .then_some(place)
     }
 
     #[inline]
-    fn texture_column<const DEPTH: bool, const CLASS: bool>(&mut self, seen: &SeenTexture, place: Place) {
+    fn texture_column<const DEPTH: bool, const CLASS: bool>(
+        &mut self,
+        seen: &SeenTexture,
+        place: Place,
+    ) {
         let Place { x, rows, in_four } = place;
-        let (drawseg, fence, base_column) = (seen.drawseg, seen.fence, i64::from(self.view.columns[x]));
+        let (drawseg, fence, base_column) =
+            (seen.drawseg, seen.fence, i64::from(self.view.columns[x]));
         let distance = drawseg.line.distance_at(base_column);
-        let nearness = (drawseg.ends.inverse_at(base_column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+        let nearness =
+            (drawseg.ends.inverse_at(base_column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
         let u = seen.along.at(base_column, distance) >> 16;
         let u = u.rem_euclid(i64::from(fence.picture.width)) as u32;
         let (texels, runs) = fence.column(u);
@@ -125,7 +150,11 @@ impl SpritePass<'_> {
             at: (seen.hung_from << 16) - self.camera.to_horizon(step),
             step,
             runs,
-            hung: PostProjection { horizon: self.camera.horizon, eye: seen.hung_from, scale: seen.scales.at(base_column) },
+            hung: PostProjection {
+                horizon: self.camera.horizon,
+                eye: seen.hung_from,
+                scale: seen.scales.at(base_column),
+            },
         };
         let Frame { width, colour, depth, class: classes, depths, .. } = &mut *self.frame;
         let written = match in_four {
@@ -145,7 +174,12 @@ impl SpritePass<'_> {
                 && depths.by_quads()
                 && let Some(column) = in_four
             {
-                self.midtexture_depth.add(column, row as u16, shown.run_at(self.view.rows[row]), written);
+                self.midtexture_depth.add(
+                    column,
+                    row as u16,
+                    shown.run_at(self.view.rows[row]),
+                    written,
+                );
             }
             if CLASS {
                 classes[pixel] = class::WALL;

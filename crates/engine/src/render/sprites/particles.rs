@@ -9,7 +9,8 @@ use crate::render::view::line::INVERSE_BITS;
 use crate::render::view::tables::View;
 use crate::world::{Shed, Square, World};
 
-/// Squares nearer than this, in 16.16 map units, are not drawn: the largest that were seen are as near.
+/// Squares nearer than this, in 16.16 map units, are not drawn: the largest that were seen are as
+/// near.
 const NEAREST: i64 = 2 << 16;
 
 /// What 16.16 has more than 4096ths, and 1 over a 4096th in 16.16.
@@ -67,7 +68,8 @@ impl Particles {
             self.spots.resize(first + self.left.len(), Particle::default());
             for shed in &self.left {
                 // Which are in view is unpredictable: all are written, and those counted.
-                let (spot, is_seen) = spot(scene, view, camera, light, number, &trail.square(shed, world.tic));
+                let (spot, is_seen) =
+                    spot(scene, view, camera, light, number, &trail.square(shed, world.tic));
                 self.spots[end] = spot;
                 end += usize::from(is_seen);
             }
@@ -98,35 +100,63 @@ impl Particle {
     /// What decides what hides it.
     pub fn extent(&self) -> Extent {
         let ([x, y, height], [first, end]) = (self.place, self.columns.map(usize::from));
-        Extent { inverse: inverse(self.distance), x: i64::from(x.0), y: i64::from(y.0), top: height, bottom: height, first, end }
+        Extent {
+            inverse: inverse(self.distance),
+            x: i64::from(x.0),
+            y: i64::from(y.0),
+            top: height,
+            bottom: height,
+            first,
+            end,
+        }
     }
 }
 
-/// What a square covers if nothing hides it, and whether that is anything: whole columns from that of its left edge to that before
-/// its right one, and whole rows, that of its lower edge too.
+/// What a square covers if nothing hides it, and whether that is anything: whole columns from that
+/// of its left edge to that before its right one, and whole rows, that of its lower edge too.
 #[inline(always)]
-fn spot(scene: &Scene, view: &View, camera: &Camera, light: Light, trail: u16, square: &Square) -> (Particle, bool) {
+fn spot(
+    scene: &Scene,
+    view: &View,
+    camera: &Camera,
+    light: Light,
+    trail: u16,
+    square: &Square,
+) -> (Particle, bool) {
     let [left, right] = camera.edges(i64::from(square.place[0].0), i64::from(square.place[1].0));
     let (away, across) = ((left + right) >> 1, (left - right) >> 1);
     let distance = away.max(NEAREST);
     let beside = across.abs() > distance + i64::from(square.half.0);
-    // ViZDoom takes distances to 4096ths of a unit, and cuts their inverse to 65536ths: columns and rows of a unit follow
-    // from that, so that what is far away is drawn nearer to the middle.
+    // ViZDoom takes distances to 4096ths of a unit, and cuts their inverse to 65536ths: columns and
+    // rows of a unit follow from that, so that what is far away is drawn nearer to the middle.
     let inverse = INVERSE_UNIT / (distance >> FINE);
     let width = i64::from(view.base_width);
     let half = i64::from(square.half.0);
-    let column = |edge: i64| (((width << 16) + (((edge >> FINE) * width * inverse) >> (16 - FINE))) >> 17).clamp(0, width);
-    let columns = [across - half, across + half].map(|edge| view.first_column[column(edge) as usize]);
+    let column = |edge: i64| {
+        (((width << 16) + (((edge >> FINE) * width * inverse) >> (16 - FINE))) >> 17)
+            .clamp(0, width)
+    };
+    let columns =
+        [across - half, across + half].map(|edge| view.first_column[column(edge) as usize]);
     let rows_a_unit = (view.focal_y * inverse) >> 16;
     let above = i64::from(square.place[2].0) - camera.z;
     let row = |edge: i64| (camera.horizon - ((edge * rows_a_unit) >> 16)) >> 16;
-    let frame_row = |row: i64| view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize];
+    let frame_row =
+        |row: i64| view.first_row[row.clamp(0, i64::from(view.base_view_rows)) as usize];
     let rows = [frame_row(row(above + half)), frame_row(row(above - half) + 1)];
     // Learners' frames leave out every fifth column and two rows of five.
     let is_seen = (away >= NEAREST) & !beside & (columns[0] < columns[1]) & (rows[0] < rows[1]);
     let table = light.table(ONE_TABLE * inverse);
     let colour = scene.assets.light_tables[table][usize::from(scene.shades[square.shade as usize])];
-    let spot = Particle { distance, columns, rows, place: square.place, trail, colour, opacity: square.opacity };
+    let spot = Particle {
+        distance,
+        columns,
+        rows,
+        place: square.place,
+        trail,
+        colour,
+        opacity: square.opacity,
+    };
     (spot, is_seen)
 }
 
@@ -146,9 +176,11 @@ mod tests {
     use crate::world::{ActorKind, Chance, Trail};
     use std::sync::Arc;
 
-    const SIZES: [FrameSize; 3] = [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 640, height: 480 }];
+    const SIZES: [FrameSize; 3] =
+        [FrameSize::LEARNER, FrameSize::CLASSIC, FrameSize { width: 640, height: 480 }];
 
-    /// A room whose eastern wall the player sidedefs, and a trail northwards at a distance; its squares are of all ages.
+    /// A room whose eastern wall the player sidedefs, and a trail northwards at a distance; its
+    /// squares are of all ages.
     fn world(east: i32) -> World {
         let mut world = World::new(stone_room(255, [-64, -512, 256, 512], &[[0.0, 0.0]]), 1);
         let id = world.players[0].actor;
@@ -192,9 +224,13 @@ mod tests {
     fn squares_show_in_colours_alone_and_the_same_by_all_instructions() {
         let world = world(128);
         for size in SIZES {
-            let (plain, bare) = (shoot(&world, size, Simd::PLAIN), shoot(&without_trails(&world), size, Simd::PLAIN));
+            let (plain, bare) = (
+                shoot(&world, size, Simd::PLAIN),
+                shoot(&without_trails(&world), size, Simd::PLAIN),
+            );
             let pixels = changed(&plain, &bare);
-            // About 60 are in view, 0.75 units wide and high, and a row more; of a learner's frame's 160 columns and 120 rows fewer are kept.
+            // About 60 are in view, 0.75 units wide and high, and a row more; of a learner's
+            // frame's 160 columns and 120 rows fewer are kept.
             let is_reduced = size == FrameSize::LEARNER;
             let side = 0.75 * if is_reduced { 160.0 } else { f64::from(size.width) } / 2.0 / 128.0;
             let mean = 60.0 * side * (1.2 * side + 1.0) * if is_reduced { 0.8 * 0.6 } else { 1.0 };
@@ -212,7 +248,8 @@ mod tests {
     fn walls_hide_squares() {
         let world = world(300);
         for size in SIZES {
-            let [with, without] = [&world, &without_trails(&world)].map(|world| shoot(world, size, Simd::PLAIN));
+            let [with, without] =
+                [&world, &without_trails(&world)].map(|world| shoot(world, size, Simd::PLAIN));
             assert_eq!(changed(&with, &without), 0, "behind the eastern wall");
         }
     }
@@ -221,13 +258,22 @@ mod tests {
     fn sprites_before_squares_hide_them_and_those_behind_do_not() {
         let mut world = world(128);
         let size = SIZES[2];
-        let seen = |world: &World| changed(&shoot(world, size, Simd::PLAIN), &shoot(&without_trails(world), size, Simd::PLAIN));
+        let seen = |world: &World| {
+            changed(
+                &shoot(world, size, Simd::PLAIN),
+                &shoot(&without_trails(world), size, Simd::PLAIN),
+            )
+        };
         let alone = seen(&world);
         let id = world.spawn(ActorKind::BigTree, Fixed::from_int(200), Fixed::ZERO, Fixed::ZERO);
         // Where a square has the colour of what is behind it, it changes nothing.
         assert!(seen(&world).abs_diff(alone) <= alone / 10, "a tree behind them");
         world.get_mut(id).unwrap().x = Fixed::from_int(40);
-        assert!(seen(&world) < alone * 9 / 10, "{} of {alone} past a tree before them", seen(&world));
+        assert!(
+            seen(&world) < alone * 9 / 10,
+            "{} of {alone} past a tree before them",
+            seen(&world)
+        );
     }
 
     #[test]
@@ -237,17 +283,31 @@ mod tests {
         for (start, speed) in [(40, 20), (240, -20)] {
             let place = [start, 30, 36].map(Fixed::from_int);
             let velocity = [speed, 0, 0].map(Fixed::from_int);
-            world.trails.push(Trail::new(world.players[0].actor, place, velocity, 40, sector, Chance::Own(5)));
+            world.trails.push(Trail::new(
+                world.players[0].actor,
+                place,
+                velocity,
+                40,
+                sector,
+                Chance::Own(5),
+            ));
         }
         let scene = Scene::new(&world.map, Assets::embedded());
         let (view, mut seen) = (View::new(SIZES[2]).unwrap(), Particles::default());
         let horizon = i64::from(view.base_view_rows) << 15;
         let camera = Camera { forward: [1 << 16, 0], z: 41 << 16, horizon, ..Camera::default() };
         seen.collect(&scene, &view, &camera, &world);
-        assert!(seen.spots.is_sorted_by_key(|spot| spot.distance) && seen.spots.len() > 100, "{}", seen.spots.len());
+        assert!(
+            seen.spots.is_sorted_by_key(|spot| spot.distance) && seen.spots.len() > 100,
+            "{}",
+            seen.spots.len()
+        );
         for number in 0..3 {
             let own = || seen.spots.iter().filter(|spot| spot.trail == number);
-            assert_eq!(own().map(|spot| spot.distance).max(), Some(seen.trails[usize::from(number)].distance));
+            assert_eq!(
+                own().map(|spot| spot.distance).max(),
+                Some(seen.trails[usize::from(number)].distance)
+            );
             assert!(own().all(|spot| spot.distance == i64::from(spot.place[0].0)));
         }
     }

@@ -59,10 +59,11 @@ impl SpritePass<'_> {
         far >= extent.inverse || !in_front()
     }
 
-    /// Clips the columns at hand to what is seen of something past the drawsegs before it, and draws the masked textures that are
-    /// behind it.
+    /// Clips the columns at hand to what is seen of something past the drawsegs before it, and
+    /// draws the masked textures that are behind it.
     pub fn occlude<const DEPTH: bool, const CLASS: bool>(&mut self, extent: &Extent) {
-        for at in (0..self.drawsegs.meet(self.simd, extent.first, extent.end, extent.inverse)).rev() {
+        for at in (0..self.drawsegs.meet(self.simd, extent.first, extent.end, extent.inverse)).rev()
+        {
             let drawseg = &self.drawsegs.list[self.drawsegs.met(at)];
             let (first, end) = (drawseg.first.max(extent.first), drawseg.end.min(extent.end));
             if !self.is_behind(extent, drawseg) {
@@ -79,12 +80,17 @@ impl SpritePass<'_> {
             }
             let open = drawseg.rows + first - drawseg.first..drawseg.rows + end - drawseg.first;
             if drawseg.floor.is_some_and(|height| extent.bottom < height) {
-                for (row, &limit) in self.columns.bottoms[own.clone()].iter_mut().zip(&self.drawsegs.bottoms[open.clone()]) {
+                for (row, &limit) in self.columns.bottoms[own.clone()]
+                    .iter_mut()
+                    .zip(&self.drawsegs.bottoms[open.clone()])
+                {
                     *row = (*row).min(limit);
                 }
             }
             if drawseg.ceiling.is_some_and(|height| extent.top > height) {
-                for (row, &limit) in self.columns.tops[own].iter_mut().zip(&self.drawsegs.tops[open]) {
+                for (row, &limit) in
+                    self.columns.tops[own].iter_mut().zip(&self.drawsegs.tops[open])
+                {
                     *row = (*row).max(limit);
                 }
             }
@@ -92,7 +98,9 @@ impl SpritePass<'_> {
     }
 
     fn sprite<const DEPTH: bool, const CLASS: bool>(&mut self, sprite: &VisSprite) {
-        let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else { return };
+        let Some(picture) = self.scene.sprite_pictures[sprite.picture as usize].as_ref() else {
+            return;
+        };
         sprite.open(self.columns, self.view);
         self.occlude::<DEPTH, CLASS>(&sprite.extent);
         let label = self.labels.next_class();

@@ -49,7 +49,8 @@ pub(crate) struct VisSprite {
     /// Frame rows before clipping.
     pub first_row: i16,
     pub end_row: i16,
-    /// Texture column at base column 0 and its change a column, 16.16; mirrored pictures are walked from their right end.
+    /// Texture column at base column 0 and its change a column, 16.16; mirrored pictures are walked
+    /// from their right end.
     u: i64,
     u_step: i64,
     /// Texture row at the lower edge of base row 0 and its change a row.
@@ -64,8 +65,8 @@ const FARTHEST: i64 = 1 << 40;
 #[derive(Debug, Default)]
 pub(crate) struct Sprites {
     list: Vec<VisSprite>,
-    /// Far to near: distance from the farthest possible one with the actor's slot below, and place in the list. Keys are sorted
-    /// in place of sprites, which are large.
+    /// Far to near: distance from the farthest possible one with the actor's slot below, and place
+    /// in the list. Keys are sorted in place of sprites, which are large.
     order: Vec<(u64, u32)>,
 }
 
@@ -97,7 +98,8 @@ pub(crate) fn collect(
         }
     }
     order.clear();
-    let key = |sprite: &VisSprite| ((FARTHEST - sprite.distance) as u64) << 16 | u64::from(sprite.slot);
+    let key =
+        |sprite: &VisSprite| ((FARTHEST - sprite.distance) as u64) << 16 | u64::from(sprite.slot);
     order.extend(seen.iter().map(key).zip(0..));
     order.sort_unstable();
 }
@@ -123,8 +125,17 @@ fn see(
         return None;
     }
     let shown = actor.picture(tic);
-    let frame = scene.assets.sprites.get(usize::from(shown.sprite))?.frames.get(usize::from(shown.frame))?;
-    let rotation = if frame.images.iter().all(|&image| image == frame.images[0]) { 0 } else { rotation(camera, actor, x, y) };
+    let frame = scene
+        .assets
+        .sprites
+        .get(usize::from(shown.sprite))?
+        .frames
+        .get(usize::from(shown.frame))?;
+    let rotation = if frame.images.iter().all(|&image| image == frame.images[0]) {
+        0
+    } else {
+        rotation(camera, actor, x, y)
+    };
     let index = frame.images[rotation];
     let picture = scene.sprite_pictures.get(index as usize)?.as_ref()?;
 
@@ -141,17 +152,23 @@ fn see(
         return None;
     }
     let ends = across.map(|across| (width + (across * width).div_euclid(distance)) >> 1);
-    let [first, end] = ends.map(|column| usize::from(view.first_column[column.clamp(0, width) as usize]));
+    let [first, end] =
+        ends.map(|column| usize::from(view.first_column[column.clamp(0, width) as usize]));
     if first >= end {
         return None;
     }
     let u_step = (texels << 16) / (ends[1] - ends[0]);
-    let (u, u_step) = if mirrored { ((texels << 16) - 1 + u_step * ends[0], -u_step) } else { (-u_step * ends[0], u_step) };
+    let (u, u_step) = if mirrored {
+        ((texels << 16) - 1 + u_step * ends[0], -u_step)
+    } else {
+        (-u_step * ends[0], u_step)
+    };
     let top = actor.z + Fixed::from_int(picture.offset_y);
     let v_step = (distance * view.inverse_focal_y) >> (48 - TEXEL_BITS);
     let above = i64::from(top.0) - camera.z;
     let v = (above << (TEXEL_BITS - 16)) - camera.to_horizon(v_step);
-    let (first_row, end_row) = (first_row(view, 0, v, v_step), first_row(view, picture.height, v, v_step));
+    let (first_row, end_row) =
+        (first_row(view, 0, v, v_step), first_row(view, picture.height, v, v_step));
     if first_row >= end_row {
         return None;
     }
@@ -185,12 +202,14 @@ fn see(
     })
 }
 
-/// Which of the 8 views of an actor the camera has: 0 from the front, then counter-clockwise around it.
+/// Which of the 8 views of an actor the camera has: 0 from the front, then counter-clockwise around
+/// it.
 fn rotation(camera: &Camera, actor: &Actor, x: i64, y: i64) -> usize {
     // Halved, so that differences fit.
     let half = |difference: i64| Fixed((difference >> 1) as i32);
     let towards = Angle::of_vector(half(x - camera.x), half(y - camera.y));
-    // Half a turn because 0 is the front, half an eighth so that each view is centred on its direction.
+    // Half a turn because 0 is the front, half an eighth so that each view is centred on its
+    // direction.
     ((towards - actor.angle + Angle(0x9000_0000)).0 >> 29) as usize
 }
 
@@ -198,7 +217,10 @@ impl VisSprite {
     /// Opens its columns in rows down to `view_rows`; what stands before it clips them.
     pub fn open(&self, columns: &mut PatchColumns, view: &View) {
         let texel = |&column: &u32| ((self.u + self.u_step * i64::from(column)) >> 16) as u16;
-        columns.open(0..view.view_rows as i16, view.columns[self.extent.first..self.extent.end].iter().map(texel));
+        columns.open(
+            0..view.view_rows as i16,
+            view.columns[self.extent.first..self.extent.end].iter().map(texel),
+        );
     }
 
     /// The picture on its way to the frame; `depth` and `class` are what its pixels get.

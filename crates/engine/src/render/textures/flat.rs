@@ -17,7 +17,9 @@ impl FlatTexture {
         let (width, height) = (usize::from(image.width).max(1), usize::from(image.height).max(1));
         // Sides become powers of two, cut rather than scaled, as one texel is one map unit.
         let (across, down) = (1 << width.ilog2().min(7), 1 << height.ilog2().min(7));
-        let texel = |u: usize, v: usize| image.pixels.get((u % across) * height + v % down).copied().unwrap_or(0);
+        let texel = |u: usize, v: usize| {
+            image.pixels.get((u % across) * height + v % down).copied().unwrap_or(0)
+        };
         if across <= 64 && down <= 64 {
             FlatTexture::Small(Arc::new(std::array::from_fn(|i| texel(i / 64, i % 64))))
         } else {

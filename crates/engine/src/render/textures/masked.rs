@@ -23,7 +23,8 @@ impl MaskedTexture {
     pub const OPAQUE: u16 = 0x100;
 
     pub fn new(image: &Image) -> MaskedTexture {
-        let opaque = |i: usize| image.mask.as_ref().is_none_or(|mask| mask.get(i).is_some_and(|&m| m != 0));
+        let opaque =
+            |i: usize| image.mask.as_ref().is_none_or(|mask| mask.get(i).is_some_and(|&m| m != 0));
         let texels = image
             .pixels
             .iter()

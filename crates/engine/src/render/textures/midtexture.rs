@@ -10,7 +10,8 @@ pub(crate) type Post = [u16; 2];
 #[derive(Clone, Debug)]
 pub(crate) struct Midtexture {
     pub picture: MaskedTexture,
-    /// Last of the columns whose runs are kept: the first where there is no hole, as in most pictures of walls.
+    /// Last of the columns whose runs are kept: the first where there is no hole, as in most
+    /// pictures of walls.
     last_runs: u32,
     /// Where the runs of each of them begin in the list, and where the last one's end.
     begins: Vec<u32>,
@@ -35,7 +36,10 @@ impl Midtexture {
     #[inline]
     pub fn column(&self, column: u32) -> (&[u16], &[Post]) {
         let kept = column.min(self.last_runs) as usize;
-        (self.picture.column(column), &self.runs[self.begins[kept] as usize..self.begins[kept + 1] as usize])
+        (
+            self.picture.column(column),
+            &self.runs[self.begins[kept] as usize..self.begins[kept + 1] as usize],
+        )
     }
 }
 
@@ -62,14 +66,24 @@ mod tests {
     fn runs_end_at_holes() {
         let runs = |texels: &[u16]| posts_of(texels.iter().map(is_opaque)).collect::<Vec<Post>>();
         assert_eq!(runs(&[1, 0x101, 0x102, 2, 0x103]), [[1, 3], [4, 5]]);
-        assert_eq!((runs(&[0x100, 0x1FF]), runs(&[7, 8]), runs(&[])), (vec![[0, 2]], vec![], vec![]));
+        assert_eq!(
+            (runs(&[0x100, 0x1FF]), runs(&[7, 8]), runs(&[])),
+            (vec![[0, 2]], vec![], vec![])
+        );
     }
 
     #[test]
     fn a_picture_without_holes_keeps_the_runs_of_one_column() {
         let image = |mask: Option<[u8; 6]>| {
             let mask = mask.map(|mask| mask.into());
-            Midtexture::new(&Image { width: 3, height: 2, offset_x: 0, offset_y: 0, pixels: [1, 2, 3, 4, 5, 6].into(), mask })
+            Midtexture::new(&Image {
+                width: 3,
+                height: 2,
+                offset_x: 0,
+                offset_y: 0,
+                pixels: [1, 2, 3, 4, 5, 6].into(),
+                mask,
+            })
         };
         let shown = |fence: &Midtexture| {
             [0, 1, 2].map(|column| {

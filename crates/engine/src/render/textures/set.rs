@@ -32,18 +32,27 @@ pub(crate) struct Textures {
     pub midtextures: Vec<Midtexture>,
     /// By frame: whether it is a square of 64 texels.
     pub squares: Vec<bool>,
-    /// The texels of all walls that can be drawn as a list of columns, and as many more as a column has.
+    /// The texels of all walls that can be drawn as a list of columns, and as many more as a column
+    /// has.
     pub listed: Vec<u8>,
     /// By frame: where its texels begin in `listed`.
     pub listed_from: Vec<Option<u32>>,
 }
 
 impl Textures {
-    /// Adds the texture with the next id; a picture that the set lacks is a solid fill of `missing`.
+    /// Adds the texture with the next id; a picture that the set lacks is a solid fill of
+    /// `missing`.
     pub fn add(&mut self, assets: &Assets, entry: TextureEntry, missing: u8) {
         let first = self.walls.len() as u32;
         let frames = u32::from(entry.frames).max(1);
-        let solid = Image { width: 1, height: 1, offset_x: 0, offset_y: 0, pixels: Box::new([missing]), mask: None };
+        let solid = Image {
+            width: 1,
+            height: 1,
+            offset_x: 0,
+            offset_y: 0,
+            pixels: Box::new([missing]),
+            mask: None,
+        };
         for frame in 0..frames {
             let image = assets.images.get(entry.first.saturating_add(frame) as usize);
             let image = image.filter(|image| image.width > 0 && image.height > 0).unwrap_or(&solid);

@@ -1,5 +1,5 @@
-//! Pictures of sprites and weapons, column by column and row by row: with long vectors they are drawn by rows, in each of
-//! which the same row of texels shows.
+//! Pictures of sprites and weapons, column by column and row by row: with long vectors they are
+//! drawn by rows, in each of which the same row of texels shows.
 
 use crate::assets::Image;
 use crate::render::textures::masked::MaskedTexture;
@@ -42,7 +42,8 @@ impl SpriteTexture {
     pub fn new(image: &Image) -> SpriteTexture {
         let (width, height) = (usize::from(image.width), usize::from(image.height));
         let (stride, columns) = (width.next_multiple_of(TEXEL_BLOCK), MaskedTexture::new(image));
-        let (mut texels, mut opaque) = (vec![0; stride * height], vec![0; stride * height / TEXEL_BLOCK]);
+        let (mut texels, mut opaque) =
+            (vec![0; stride * height], vec![0; stride * height / TEXEL_BLOCK]);
         let is_opaque = |texel: &u16| texel & MaskedTexture::OPAQUE != 0;
         let extents = (0..width).map(|column| {
             let texels = columns.column(column as u32);
@@ -92,7 +93,8 @@ impl SpriteTexture {
 
     /// The palette indices of all texels without a hole.
     pub fn opaque_texels(&self) -> impl Iterator<Item = u8> + '_ {
-        let opaque = self.columns.texels.iter().filter(|&&texel| texel & MaskedTexture::OPAQUE != 0);
+        let opaque =
+            self.columns.texels.iter().filter(|&&texel| texel & MaskedTexture::OPAQUE != 0);
         opaque.map(|&texel| texel as u8)
     }
 }

@@ -22,7 +22,8 @@ pub(crate) struct WallTexture {
 }
 
 impl WallTexture {
-    /// Whether the columns of a picture can be listed: they fill one or two vectors, and wrap as numbers do.
+    /// Whether the columns of a picture can be listed: they fill one or two vectors, and wrap as
+    /// numbers do.
     pub fn fits_batch(&self) -> bool {
         matches!(self.height, 64 | 128) && self.width.is_power_of_two()
     }
@@ -50,7 +51,11 @@ impl WallTexture {
     /// Index of the first texel of the column that holds a whole texel of a tiled wall.
     #[inline]
     pub fn column_start(&self, u: i32) -> usize {
-        let column = if self.column_mask != 0 { u as u32 & self.column_mask } else { u.rem_euclid(self.width as i32) as u32 };
+        let column = if self.column_mask != 0 {
+            u as u32 & self.column_mask
+        } else {
+            u.rem_euclid(self.width as i32) as u32
+        };
         (column * self.height) as usize
     }
 }

@@ -13,8 +13,8 @@ pub(crate) struct DepthEncoding {
 const PUBLISHED_ROWS: i64 = 480;
 
 impl DepthEncoding {
-    /// As ViZDoom writes it in frames of `rows` rows, or in what is left of them in a reduced frame, which lacks columns and
-    /// rows that decide what is written of quads.
+    /// As ViZDoom writes it in frames of `rows` rows, or in what is left of them in a reduced
+    /// frame, which lacks columns and rows that decide what is written of quads.
     pub fn published(rows: u32, reduced: bool) -> DepthEncoding {
         DepthEncoding { published: Some(i64::from(rows)), by_quads: !reduced }
     }
@@ -24,8 +24,9 @@ impl DepthEncoding {
         self.by_quads
     }
 
-    /// Depth of a wall at a distance in 16.16 map units that shows a texture of `height` texels. ViZDoom takes it from
-    /// the step between the texels of neighbouring rows; where that is half the texture or more, from what is left to the whole of it.
+    /// Depth of a wall at a distance in 16.16 map units that shows a texture of `height` texels.
+    /// ViZDoom takes it from the step between the texels of neighbouring rows; where that is half
+    /// the texture or more, from what is left to the whole of it.
     #[inline]
     pub fn wall(self, distance: i64, height: u32) -> u8 {
         let Some(rows) = self.published else { return even(distance) };
@@ -51,7 +52,8 @@ impl DepthEncoding {
         if self.published.is_some() { 0 } else { even(distance) }
     }
 
-    /// Depth of soot where ViZDoom takes it from a column of the wall, of whose step it keeps the last bit alone.
+    /// Depth of soot where ViZDoom takes it from a column of the wall, of whose step it keeps the
+    /// last bit alone.
     pub fn stain_of_quad(self, distance: i64) -> u8 {
         self.published.map_or(0, |rows| scaled((quarters(distance, rows) & 1) << 7, rows))
     }
@@ -62,7 +64,11 @@ impl DepthEncoding {
         if self.published.is_none() {
             return even(distance);
         }
-        if distance > 120_000_000 { 255 } else { ((distance - 716_000) / 469_184).clamp(0, 255) as u8 }
+        if distance > 120_000_000 {
+            255
+        } else {
+            ((distance - 716_000) / 469_184).clamp(0, 255) as u8
+        }
     }
 
     /// Depth of the sky and of nothing.
@@ -71,7 +77,8 @@ impl DepthEncoding {
     }
 }
 
-/// The step between the texels of neighbouring rows of a wall, in quarters of a 65536th of a texel, halves cut.
+/// The step between the texels of neighbouring rows of a wall, in quarters of a 65536th of a texel,
+/// halves cut.
 #[inline]
 fn quarters(distance: i64, rows: i64) -> i64 {
     (distance * 5 + rows / 2 - 1) / rows
@@ -100,8 +107,12 @@ mod tests {
         let depths = DepthEncoding::default();
         for distance in [0, 72, 73, 730, 1860, 30_000].map(units) {
             let level = ((distance >> 16) * 10 / 73).min(255) as u8;
-            let written =
-                [depths.wall(distance, 128), depths.plane(distance), depths.sprite(distance, 96 << 16), depths.stain(distance)];
+            let written = [
+                depths.wall(distance, 128),
+                depths.plane(distance),
+                depths.sprite(distance, 96 << 16),
+                depths.stain(distance),
+            ];
             assert_eq!(written, [level; 4]);
         }
         assert_eq!(depths.farthest(), 255);
@@ -117,8 +128,8 @@ mod tests {
 
     #[test]
     fn published_depth_of_low_textures_falls_again_from_half_a_texture_a_row_on() {
-        // As measured at shutters of 16 texels in Remedy Rush, 1,131.7 and 1,302.1 units away in frames of 120 rows: 11.8 and 13.6
-        // texels a row.
+        // As measured at shutters of 16 texels in Remedy Rush, 1,131.7 and 1,302.1 units away in
+        // frames of 120 rows: 11.8 and 13.6 texels a row.
         let depths = DepthEncoding::published(120, false);
         let written = |tenths: i64, height: u32| depths.wall((tenths << 16) / 10, height);
         assert_eq!([written(11317, 16), written(13021, 16)], [56, 32]);
@@ -127,7 +138,8 @@ mod tests {
 
     #[test]
     fn published_depth_of_soot_is_the_last_bit_of_a_walls_step() {
-        // Measured before a wall seen face on: its distance in 4096ths of a unit, and what was written of soot on it in frames of 480 rows.
+        // Measured before a wall seen face on: its distance in 4096ths of a unit, and what was
+        // written of soot on it in frames of 480 rows.
         let seen = [
             (1_074_260, 128),
             (1_248_605, 128),
@@ -145,7 +157,14 @@ mod tests {
             (97_532, 128),
         ];
         // And of 120 rows.
-        let seen_low = [(1_074_260, 32), (1_165_132, 32), (491_970, 0), (432_126, 0), (500_456, 32), (544_002, 0)];
+        let seen_low = [
+            (1_074_260, 32),
+            (1_165_132, 32),
+            (491_970, 0),
+            (432_126, 0),
+            (500_456, 32),
+            (544_002, 0),
+        ];
         for (rows, seen) in [(480, &seen[..]), (120, &seen_low)] {
             for &(distance, written) in seen {
                 assert_eq!(
@@ -160,7 +179,17 @@ mod tests {
     #[test]
     fn published_depth_ends_early_in_low_frames_except_on_floors() {
         let depths = DepthEncoding::published(120, false);
-        assert_eq!([depths.wall(units(2000), 128), depths.sprite(units(2000), 96 << 16), depths.farthest()], [63; 3]);
-        assert_eq!([depths.plane(units(1000)), depths.plane(units(1900)), depths.plane(units(5))], [138, 255, 0]);
+        assert_eq!(
+            [
+                depths.wall(units(2000), 128),
+                depths.sprite(units(2000), 96 << 16),
+                depths.farthest()
+            ],
+            [63; 3]
+        );
+        assert_eq!(
+            [depths.plane(units(1000)), depths.plane(units(1900)), depths.plane(units(5))],
+            [138, 255, 0]
+        );
     }
 }

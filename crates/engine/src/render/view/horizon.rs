@@ -3,7 +3,8 @@
 use crate::math::{STEEPEST, fine_tangent};
 use crate::render::view::tables::View;
 
-/// The horizon in base rows, 16.16, at a pitch (negative surfaces up): a shear, so that verticals stay vertical.
+/// The horizon in base rows, 16.16, at a pitch (negative surfaces up): a shear, so that verticals
+/// stay vertical.
 pub(crate) fn at_pitch(view: &View, pitch: i32) -> i64 {
     // A quarter turn less the pitch, cut to fine angles.
     let fine = ((0x4000_0000 - i64::from(pitch)) >> 19) as i32 - 2048;
@@ -15,8 +16,8 @@ pub(crate) fn at_pitch(view: &View, pitch: i32) -> i64 {
 /// The part of a row, 16.16, that floors in the row of the horizon count as below it at least.
 const NEAREST: i64 = 64;
 
-/// How much longer the vertical focal length is for floors than the horizontal one, 16.16: 1.2, but cut as in ViZDoom, which
-/// moves distant floors by a thousandth of a texel.
+/// How much longer the vertical focal length is for floors than the horizontal one, 16.16: 1.2, but
+/// cut as in ViZDoom, which moves distant floors by a thousandth of a texel.
 const FLOOR_ASPECT: i64 = 78_643;
 
 /// What the rows of a frame have in common for every floor and ceiling.
@@ -33,8 +34,12 @@ pub(crate) struct PlaneRows {
 }
 
 impl PlaneRows {
-    /// The texel row of the sky in each frame row, which `compute` gives for a horizon when they are first asked for.
-    pub fn sky_rows<Rows: Iterator<Item = u16>>(&mut self, compute: impl FnOnce(i64) -> Rows) -> &[u16] {
+    /// The texel row of the sky in each frame row, which `compute` gives for a horizon when they
+    /// are first asked for.
+    pub fn sky_rows<Rows: Iterator<Item = u16>>(
+        &mut self,
+        compute: impl FnOnce(i64) -> Rows,
+    ) -> &[u16] {
         if self.sky.is_empty() {
             self.sky.extend(compute(self.horizon.unwrap_or_default()));
         }
@@ -46,7 +51,8 @@ impl PlaneRows {
         if self.horizon.replace(horizon) == Some(horizon) {
             return;
         }
-        let (rows, below) = (&view.rows[..view.view_rows], |row: u32| (i64::from(row) << 16) - horizon);
+        let (rows, below) =
+            (&view.rows[..view.view_rows], |row: u32| (i64::from(row) << 16) - horizon);
         self.rows.clear();
         self.rows.extend(rows.iter().map(|&row| below(row).abs()));
         self.distances.clear();
@@ -70,16 +76,25 @@ mod tests {
 
     #[test]
     fn pitch_shears_by_the_measured_rows() {
-        for (width, height, level) in [(160, 120, 50.0), (320, 240, 104.0), (640, 480, 201.5), (1280, 1024, 435.0)] {
-            let rows = |degrees: f64| at_pitch(&view(width, height), Angle::from_degrees(degrees).0 as i32) as f64 / 65536.0;
+        for (width, height, level) in
+            [(160, 120, 50.0), (320, 240, 104.0), (640, 480, 201.5), (1280, 1024, 435.0)]
+        {
+            let rows = |degrees: f64| {
+                at_pitch(&view(width, height), Angle::from_degrees(degrees).0 as i32) as f64
+                    / 65536.0
+            };
             let focal = f64::from(width) * 0.6;
             assert_eq!(rows(0.0), level);
             for degrees in [-32.0, 16.479_492_187_5, 56.0] {
                 let exact = level - focal * f64::to_radians(degrees).tan();
                 // A pitch is cut to 0.044 degrees.
-                assert!((rows(degrees) - exact).abs() < focal * 0.0025, "{degrees} degrees at {width}x{height}");
+                assert!(
+                    (rows(degrees) - exact).abs() < focal * 0.0025,
+                    "{degrees} degrees at {width}x{height}"
+                );
             }
-            // 375 fine angles down: the tangent 0.29583 is 19387.1 of 65536 parts, of which 19386 are left.
+            // 375 fine angles down: the tangent 0.29583 is 19387.1 of 65536 parts, of which 19386
+            // are left.
             let shear = level - rows(16.479_492_187_5);
             assert!((shear - focal * 19386.0 / 65536.0).abs() < 1e-3, "{shear}");
         }
@@ -92,7 +107,10 @@ mod tests {
             let view = view(width, height);
             for pitch in [i32::MIN, -(1 << 29), 0, 1 << 29, i32::MAX] {
                 slopes.update(&view, at_pitch(&view, pitch));
-                assert_eq!((slopes.distances.len(), slopes.rows.len()), (view.view_rows, view.view_rows));
+                assert_eq!(
+                    (slopes.distances.len(), slopes.rows.len()),
+                    (view.view_rows, view.view_rows)
+                );
                 assert!(slopes.distances.iter().all(|&distance| distance > 0));
             }
         }

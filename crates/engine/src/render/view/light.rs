@@ -12,7 +12,8 @@ pub(crate) const ONE_TABLE_DISTANCE: i64 = 1280;
 pub(crate) struct Light {
     /// Table at infinite distance, 16.16; negative is brighter than full.
     pub base: i64,
-    /// Tables by which nearness brightens at most, 16.16: 0 where the table is the same at every distance.
+    /// Tables by which nearness brightens at most, 16.16: 0 where the table is the same at every
+    /// distance.
     pub most: i64,
 }
 
@@ -59,6 +60,9 @@ mod tests {
     #[test]
     fn muzzle_light_is_four_tables() {
         let flash = Camera { extra_light: 1, ..Camera::default() };
-        assert_eq!(Light::new(&flash, 160).table(0) + 4, Light::new(&Camera::default(), 160).table(0));
+        assert_eq!(
+            Light::new(&flash, 160).table(0) + 4,
+            Light::new(&Camera::default(), 160).table(0)
+        );
     }
 }

@@ -25,8 +25,8 @@ pub(crate) fn fits_doubles(at: i64, step: i64) -> bool {
     (at.unsigned_abs() | step.unsigned_abs() << COLUMN_BITS) >> (f64::MANTISSA_DIGITS - 1) == 0
 }
 
-/// The plane of a line as the camera sees it: all that depends on the line is linear in the base column, so that the
-/// pieces into which the BSP cut a line fit together exactly.
+/// The plane of a line as the camera sees it: all that depends on the line is linear in the base
+/// column, so that the pieces into which the BSP cut a line fit together exactly.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ProjectedLine {
     /// Inverse of the distance at base column 0, [`INVERSE_BITS`] fractional bits.
@@ -88,8 +88,9 @@ impl ProjectedLine {
         ((1u64 << (INVERSE_BITS + 16)) / self.inverse_at(column) as u64) as i64
     }
 
-    /// The line of a seg whose ends lie on `self` at `positions`, base columns with [`END_BITS`] fractional bits, put at
-    /// the whole columns `columns`: where light and the rows of edges are taken from.
+    /// The line of a seg whose ends lie on `self` at `positions`, base columns with [`END_BITS`]
+    /// fractional bits, put at the whole columns `columns`: where light and the rows of edges are
+    /// taken from.
     #[inline]
     pub fn between(&self, positions: [i64; 2], columns: [i64; 2]) -> ProjectedLine {
         let [first, end] = positions.map(|position| {
@@ -105,8 +106,12 @@ impl ProjectedLine {
     #[inline]
     pub fn edge(&self, camera: &Camera, view: &View, height: i64) -> Edge {
         let scale = i128::from(height * view.focal_y);
-        let rows = |inverse: i64| ((scale * i128::from(inverse)) >> (32 + INVERSE_BITS - ROW_BITS)) as i64;
-        Edge { at: (camera.horizon << (ROW_BITS - 16)) - rows(self.inverse), step: -rows(self.inverse_step) }
+        let rows =
+            |inverse: i64| ((scale * i128::from(inverse)) >> (32 + INVERSE_BITS - ROW_BITS)) as i64;
+        Edge {
+            at: (camera.horizon << (ROW_BITS - 16)) - rows(self.inverse),
+            step: -rows(self.inverse_step),
+        }
     }
 }
 
@@ -124,7 +129,8 @@ impl Edge {
         (self.at + self.step * column) >> ROW_BITS
     }
 
-    /// The first frame row that the edge cuts, or one below, at a base column; `first_rows` is [`View::first_row`].
+    /// The first frame row that the edge cuts, or one below, at a base column; `first_rows` is
+    /// [`View::first_row`].
     #[inline]
     pub fn row(&self, first_rows: &[i16], column: u32) -> i32 {
         let base = ((self.at + self.step * i64::from(column)) >> ROW_BITS).max(0) as usize;

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// Size of a frame in pixels. 128x72 is special: the learner's nearest-neighbour reduction of 160x120.
+/// Size of a frame in pixels. 128x72 is special: the learner's nearest-neighbour reduction of
+/// 160x120.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct FrameSize {
     /// Columns, 64..=1920.
@@ -28,7 +29,8 @@ impl FrameSize {
     /// # Errors
     /// A width outside 64..=1920 or a height outside 48..=1080.
     pub const fn check(self) -> Result<(), SizeError> {
-        let fits = self.width >= 64 && self.width <= 1920 && self.height >= 48 && self.height <= 1080;
+        let fits =
+            self.width >= 64 && self.width <= 1920 && self.height >= 48 && self.height <= 1080;
         if fits { Ok(()) } else { Err(SizeError { size: self }) }
     }
 }
@@ -48,7 +50,11 @@ pub struct SizeError {
 
 impl fmt::Display for SizeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "frame size {} is outside 64x48 to 1920x1080: choose one within, such as 160x120", self.size)
+        write!(
+            f,
+            "frame size {} is outside 64x48 to 1920x1080: choose one within, such as 160x120",
+            self.size
+        )
     }
 }
 

@@ -1,8 +1,9 @@
 //! Tables that depend only on the frame's size.
 //!
-//! All per-pixel arithmetic is in the columns and rows of a *base* grid; the pixels that are drawn are samples of that
-//! grid. Usually the two are the same. At 128x72 the base is 160x120, of which every 1.25th column and 5/3rd row is
-//! drawn, so that the small frame equals the nearest-neighbour reduction of the large one by construction.
+//! All per-pixel arithmetic is in the columns and rows of a *base* grid; the pixels that are drawn
+//! are samples of that grid. Usually the two are the same. At 128x72 the base is 160x120, of which
+//! every 1.25th column and 5/3rd row is drawn, so that the small frame equals the nearest-neighbour
+//! reduction of the large one by construction.
 
 use crate::math::{Angle, fine_tangent};
 use crate::render::blocks::CHUNK;
@@ -30,7 +31,8 @@ pub struct View {
     pub(crate) size: FrameSize,
     /// Width of the base grid.
     pub(crate) base_width: u32,
-    /// By how much more to the right the ray of a base column goes than that of the one before, each a unit ahead; [`COLUMN_RAY_BITS`].
+    /// By how much more to the right the ray of a base column goes than that of the one before,
+    /// each a unit ahead; [`COLUMN_RAY_BITS`].
     pub(crate) column_ray: i64,
     /// Rows of the base grid that show the world; the status bar is below.
     pub(crate) base_view_rows: u32,
@@ -40,7 +42,8 @@ pub struct View {
     pub(crate) columns: Box<[u32]>,
     /// What the base column rises by over [`CHUNK`] frame columns.
     pub(crate) chunk_stride: u32,
-    /// Base row of each frame row above the status bar, then zeros as far as columns are drawn, and more.
+    /// Base row of each frame row above the status bar, then zeros as far as columns are drawn, and
+    /// more.
     pub(crate) rows: Box<[u32]>,
     /// For each base column 0..=width, the first frame column at or right of it.
     pub(crate) first_column: Box<[u16]>,
@@ -48,7 +51,8 @@ pub struct View {
     pub(crate) first_row: Box<[i16]>,
     /// The same as a formula.
     pub(crate) row_scale: RowScale,
-    /// Vertical focal length in base rows, 16.16: 1.2 times the horizontal one, which is half the width.
+    /// Vertical focal length in base rows, 16.16: 1.2 times the horizontal one, which is half the
+    /// width.
     pub(crate) focal_y: i64,
     /// `2^32 / vertical focal length`.
     pub(crate) inverse_focal_y: i64,
@@ -69,23 +73,29 @@ impl View {
         Ok(View::sampled(size, base))
     }
 
-    /// Frames of `size`, each pixel of which is the one of a frame of size `base` that lies at the same fraction.
+    /// Frames of `size`, each pixel of which is the one of a frame of size `base` that lies at the
+    /// same fraction.
     fn sampled(size: FrameSize, base: FrameSize) -> View {
         let (width, height) = (u32::from(base.width), u32::from(base.height));
         let base_view_rows = height - bar_rows(width, height);
-        let columns: Box<[u32]> =
-            (0..padded(usize::from(size.width)) as u32).map(|x| x * width / u32::from(size.width)).collect();
-        let all_rows: Vec<u32> = (0..u32::from(size.height)).map(|y| y * height / u32::from(size.height)).collect();
+        let columns: Box<[u32]> = (0..padded(usize::from(size.width)) as u32)
+            .map(|x| x * width / u32::from(size.width))
+            .collect();
+        let all_rows: Vec<u32> =
+            (0..u32::from(size.height)).map(|y| y * height / u32::from(size.height)).collect();
         let view_rows = all_rows.partition_point(|&row| row < base_view_rows);
         let mut rows = all_rows[..view_rows].to_vec();
-        let first_column = (0..=width).map(|c| columns.partition_point(|&column| column < c) as u16).collect();
-        let first_row = (0..=base_view_rows).map(|r| rows.partition_point(|&row| row < r) as i16).collect();
+        let first_column =
+            (0..=width).map(|c| columns.partition_point(|&column| column < c) as u16).collect();
+        let first_row =
+            (0..=base_view_rows).map(|r| rows.partition_point(|&row| row < r) as i16).collect();
 
         rows.resize(column_stride(view_rows) + ROW_PADDING, 0);
 
         let focal_y = i64::from(width) * 6 * 65536 / 10;
         let tangents: Vec<i64> = (-FINE_45_DEGREES..=FINE_45_DEGREES).map(fine_tangent).collect();
-        let column_angles = columns.iter().map(|&column| column_angle(&tangents, width, column)).collect();
+        let column_angles =
+            columns.iter().map(|&column| column_angle(&tangents, width, column)).collect();
         View {
             size,
             bar_rows: all_rows[view_rows..].into(),
@@ -119,7 +129,11 @@ impl View {
 
     /// Rows of the whole base grid, the status bar among them.
     pub(crate) fn base_rows(&self) -> u32 {
-        if self.size == FrameSize::LEARNER { u32::from(FrameSize::CLASSIC.height) } else { u32::from(self.size.height) }
+        if self.size == FrameSize::LEARNER {
+            u32::from(FrameSize::CLASSIC.height)
+        } else {
+            u32::from(self.size.height)
+        }
     }
 
     /// Whether the frame lacks columns and rows of the base grid.
@@ -133,8 +147,9 @@ impl View {
     }
 }
 
-/// Direction of the left edge of a base column relative to the view direction: the first fine angle, from the right, whose
-/// tangent lies at the edge or to the left of it. `tangents` are those of half the view to the right and half to the left.
+/// Direction of the left edge of a base column relative to the view direction: the first fine
+/// angle, from the right, whose tangent lies at the edge or to the left of it. `tangents` are those
+/// of half the view to the right and half to the left.
 fn column_angle(tangents: &[i64], width: u32, column: u32) -> Angle {
     // To the left is positive. Half a base column is the unit.
     let (width, left) = (i64::from(width), i64::from(width) - 2 * i64::from(column));
@@ -142,8 +157,9 @@ fn column_angle(tangents: &[i64], width: u32, column: u32) -> Angle {
     Angle::from_fine(first as i32 - FINE_45_DEGREES)
 }
 
-/// From base rows to the first frame row at or below them, without a table: the frame row `y` shows base row
-/// `y * base height / height`, rounded down, so that the first at or below `row` is `row * height / base height`, rounded up.
+/// From base rows to the first frame row at or below them, without a table: the frame row `y` shows
+/// base row `y * base height / height`, rounded down, so that the first at or below `row` is `row *
+/// height / base height`, rounded up.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowScale {
     pub factor: i32,
@@ -170,8 +186,9 @@ impl RowScale {
     }
 }
 
-/// Rows of a frame for each row of the status bar's art, as a fraction: the art is stretched with the screen, by 1.2 more
-/// vertically, but never over more than 32 of 200 parts of the height; 320 columns show it as it is.
+/// Rows of a frame for each row of the status bar's art, as a fraction: the art is stretched with
+/// the screen, by 1.2 more vertically, but never over more than 32 of 200 parts of the height; 320
+/// columns show it as it is.
 pub(crate) fn bar_scale(width: u32, height: u32) -> [u32; 2] {
     if width == BAR_ART_WIDTH {
         [1, 1]
@@ -198,7 +215,9 @@ mod tests {
 
     #[test]
     fn the_bar_takes_the_measured_rows() {
-        for (width, height, view_rows) in [(160, 120, 100), (320, 240, 208), (640, 480, 403), (1280, 1024, 870)] {
+        for (width, height, view_rows) in
+            [(160, 120, 100), (320, 240, 208), (640, 480, 403), (1280, 1024, 870)]
+        {
             assert_eq!(view(width, height).view_rows, view_rows, "{width}x{height}");
         }
     }
@@ -207,12 +226,19 @@ mod tests {
     fn the_sky_turns_in_fine_angles() {
         let view = view(160, 120);
         let angles: Vec<i32> = view.column_angles.iter().map(|angle| angle.0 as i32).collect();
-        assert_eq!((angles[0], angles[80]), (1 << 29, 0), "45 degrees to the left, and straight ahead");
-        // Column 79's left edge is atan(1/80) = 16.296 fine angles to the left, column 81's as many to the right.
+        assert_eq!(
+            (angles[0], angles[80]),
+            (1 << 29, 0),
+            "45 degrees to the left, and straight ahead"
+        );
+        // Column 79's left edge is atan(1/80) = 16.296 fine angles to the left, column 81's as many
+        // to the right.
         assert_eq!((angles[79], angles[81]), (17 << 19, -(16 << 19)));
-        // Measured at 640 columns where the edge lies next to a fine angle: at 380.0006, 213.9988, 57.0048, -133.9805 and -364.9978.
+        // Measured at 640 columns where the edge lies next to a fine angle:
+        // at 380.0006, 213.9988, 57.0048, -133.9805 and -364.9978.
         let wide = View::new(FrameSize { width: 640, height: 480 }).unwrap();
-        let fine = [224, 267, 306, 353, 412].map(|column: usize| wide.column_angles[column].0 as i32 >> 19);
+        let fine = [224, 267, 306, 353, 412]
+            .map(|column: usize| wide.column_angles[column].0 as i32 >> 19);
         assert_eq!(fine, [380, 215, 58, -134, -365]);
     }
 
@@ -227,10 +253,16 @@ mod tests {
 
     #[test]
     fn the_scale_of_rows_is_their_table() {
-        for (width, height) in [(128, 72), (160, 120), (64, 48), (640, 480), (1001, 700), (1920, 1080)] {
+        for (width, height) in
+            [(128, 72), (160, 120), (64, 48), (640, 480), (1001, 700), (1920, 1080)]
+        {
             let view = view(width, height);
             for (base, &row) in view.first_row.iter().enumerate() {
-                assert_eq!(view.row_scale.frame_row(base as i64), row, "base row {base} of {width}x{height}");
+                assert_eq!(
+                    view.row_scale.frame_row(base as i64),
+                    row,
+                    "base row {base} of {width}x{height}"
+                );
             }
             assert_eq!(view.row_scale.frame_row(i64::MIN), 0);
             assert_eq!(view.row_scale.frame_row(i64::MAX), view.view_rows as i16);

@@ -38,8 +38,8 @@ impl WedgeSide {
     }
 }
 
-/// Asks for the memory that a visit to a child reads first, its node or the segs of its subsector: a map is larger than the
-/// nearest cache, and the way to it depends on what is found there.
+/// Asks for the memory that a visit to a child reads first, its node or the segs of its subsector:
+/// a map is larger than the nearest cache, and the way to it depends on what is found there.
 #[inline(always)]
 fn ask_for(scene: &Scene, child: u32) {
     let (is_subsector, index) = (child & Node::SUBSECTOR != 0, (child & !Node::SUBSECTOR) as usize);
@@ -59,8 +59,9 @@ impl WallPass<'_> {
 
     /// Walks until everything is covered.
     ///
-    /// Which child is near and which one is in view is unpredictable, so that all of it is arithmetic without
-    /// branches: children that are out of view are written to the stack too, but not counted.
+    /// Which child is near and which one is in view is unpredictable, so that all of it is
+    /// arithmetic without branches: children that are out of view are written to the stack too, but
+    /// not counted.
     fn visit<const DEPTH: bool>(&mut self) {
         let scene = self.scene;
         let (x, y) = (Fixed(self.camera.x as i32), Fixed(self.camera.y as i32));
@@ -107,7 +108,9 @@ impl WallPass<'_> {
                 let (child, bounds) = (node.children[side], &node.bounds[side]);
                 // For a single subsector the second question costs more than it saves.
                 let hidden = wedge[0].inside(bounds) | wedge[1].inside(bounds) < 0
-                    || (child & Node::SUBSECTOR == 0 && self.clip.has_holes() && !self.box_is_open(bounds));
+                    || (child & Node::SUBSECTOR == 0
+                        && self.clip.has_holes()
+                        && !self.box_is_open(bounds));
                 if !hidden {
                     break child;
                 }
@@ -115,11 +118,13 @@ impl WallPass<'_> {
         }
     }
 
-    /// The wedge between the outermost rays of a range of frame columns, and a little more: sprites stand out of their
-    /// sectors, so that those just out of view are entered too.
+    /// The wedge between the outermost rays of a range of frame columns, and a little more: sprites
+    /// stand out of their sectors, so that those just out of view are entered too.
     fn wedge(&self, (first, end): (usize, usize)) -> [WedgeSide; 2] {
         let camera = self.camera;
-        let ray = |column: i64| [0, 1].map(|axis| (camera.ray[axis] + camera.ray_step[axis] * column) >> 16);
+        let ray = |column: i64| {
+            [0, 1].map(|axis| (camera.ray[axis] + camera.ray_step[axis] * column) >> 16)
+        };
         let left = ray(i64::from(self.view.columns[first]) - WEDGE_MARGIN);
         let right = ray(i64::from(self.view.columns[end - 1]) + WEDGE_MARGIN + 1);
         [WedgeSide::new(camera, [left[1], -left[0]]), WedgeSide::new(camera, [-right[1], right[0]])]
@@ -130,7 +135,9 @@ impl WallPass<'_> {
         let width = self.view.base_width;
         let (mut first, mut end) = (width, 0);
         for corner in 0..4 {
-            let [left, right] = self.camera.edges(i64::from(bounds[corner & 1].0), i64::from(bounds[2 + corner / 2].0));
+            let [left, right] = self
+                .camera
+                .edges(i64::from(bounds[corner & 1].0), i64::from(bounds[2 + corner / 2].0));
             if left < 0 {
                 first = 0;
             }
@@ -143,7 +150,8 @@ impl WallPass<'_> {
                 end = end.max((column + 2).min(width));
             }
         }
-        let (first, end) = (self.view.first_column[first as usize], self.view.first_column[end as usize]);
+        let (first, end) =
+            (self.view.first_column[first as usize], self.view.first_column[end as usize]);
         first < end && self.clip.any_open(usize::from(first), usize::from(end))
     }
 
@@ -154,7 +162,8 @@ impl WallPass<'_> {
         let own = surfaces.of(world, sector);
         let (segs, sidedefs) = (&scene.segs[..], &scene.sidedefs[..]);
         let (x, y, facing) = (self.camera.x, self.camera.y, &mut self.scratch.facing[..]);
-        // First those that face the eye, then those of them that matter, again without branches, then their drawing.
+        // First those that face the eye, then those of them that matter, again without branches,
+        // then their drawing.
         let mut found = 0;
         for (index, seg) in (first..end).zip(&segs[first as usize..end as usize]) {
             facing[found] = index;

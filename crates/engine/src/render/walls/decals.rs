@@ -20,7 +20,8 @@ const TEXELS: i64 = 2;
 const LIGHT_TABLES: usize = 32;
 
 impl WallPass<'_> {
-    /// Darkens the part of a wall between the upper and the lower scratch where its side bears soot.
+    /// Darkens the part of a wall between the upper and the lower scratch where its side bears
+    /// soot.
     pub fn soot<const DEPTH: bool>(&mut self, seen: &SeenSeg<'_>, light: Light) {
         let Some(stain) = &self.scene.assets.soot else { return };
         let world = self.world;
@@ -51,7 +52,8 @@ impl WallPass<'_> {
         self.scratch.decal_depth.begin(written, last_quad);
     }
 
-    /// What all marks of a wall need of its columns: a wall may bear dozens, most of which touch few of them.
+    /// What all marks of a wall need of its columns: a wall may bear dozens, most of which touch
+    /// few of them.
     fn list_decal_columns(&mut self, seen: &SeenSeg<'_>, light: Light) {
         let (camera, view) = (self.camera, self.view);
         let texture = seen.turned.texture(view, seen.face, seen.base_ends);
@@ -61,7 +63,8 @@ impl WallPass<'_> {
         self.scratch.decal_columns.extend(shown.map(|(x, (&top, &bottom))| {
             let column = i64::from(view.columns[x]);
             let distance = seen.line.distance_at(column);
-            let nearness = (seen.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
+            let nearness =
+                (seen.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
             let step = ((distance * view.inverse_focal_y) >> 16) * TEXELS;
             DecalColumn {
                 x,
@@ -75,17 +78,26 @@ impl WallPass<'_> {
         }));
     }
 
-    fn stain<const DEPTH: bool>(&mut self, columns: &[DecalColumn], face: &Sidedef, stain: &Stain, mark: &Soot) {
+    fn stain<const DEPTH: bool>(
+        &mut self,
+        columns: &[DecalColumn],
+        face: &Sidedef,
+        stain: &Stain,
+        mark: &Soot,
+    ) {
         // Where its left and upper end lie: along the line, and above the eye.
         let left = face.position([mark.x, mark.y]) - (i64::from(stain.offset_x) << 16) / TEXELS;
-        let above = i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - self.camera.z;
+        let above =
+            i64::from(mark.z.0) + (i64::from(stain.offset_y) << 16) / TEXELS - self.camera.z;
         // From column to column positions along the wall rise.
         let texel_column = |column: &DecalColumn| ((column.along - left) * TEXELS) >> 16;
         let first = columns.partition_point(|column| texel_column(column) < 0);
-        let count = columns[first..].partition_point(|column| texel_column(column) < i64::from(stain.width));
+        let count = columns[first..]
+            .partition_point(|column| texel_column(column) < i64::from(stain.width));
         let columns = &columns[first..first + count];
         let by_quads = DEPTH && self.depths.by_quads();
-        let covered = columns.first().map_or(0, |column| column.x)..columns.last().map_or(0, |column| column.x + 1);
+        let covered = columns.first().map_or(0, |column| column.x)
+            ..columns.last().map_or(0, |column| column.x + 1);
         for column in columns {
             let Some(texels) = stain.column(texel_column(column), mark.mirrored) else { continue };
             // By the lower edges of rows as all things are, but upside down by the upper ones.
@@ -93,11 +105,14 @@ impl WallPass<'_> {
             let at = ((above * TEXELS) << 16) - column.to_horizon - from_edge;
             // Downwards texel rows grow: those of the picture are one run.
             let [top, bottom] = column.rows;
-            let frame_row = |texel: usize| first_row(self.view, texel as u32, at, column.step.max(1)) as usize;
+            let frame_row =
+                |texel: usize| first_row(self.view, texel as u32, at, column.step.max(1)) as usize;
             let (first, end) = (frame_row(0).max(top), frame_row(texels.len()).min(bottom));
             if by_quads {
                 let written = self.scratch.decal_depth.column(column.x, &covered);
-                let shown = |row: usize| texels[if mark.upturned { texels.len() - 1 - row } else { row }] > 0;
+                let shown = |row: usize| {
+                    texels[if mark.upturned { texels.len() - 1 - row } else { row }] > 0
+                };
                 for run in posts_of((0..texels.len()).map(shown)) {
                     let [start, end] = run.map(|texel| frame_row(texel.into()));
                     let rows = start.max(top)..end.min(bottom);
@@ -112,22 +127,29 @@ impl WallPass<'_> {
             }
             // Upside down from the last row upwards: what is left of a row counts as a whole one.
             let last = (texels.len() as i64) << 32;
-            let (at, step) = if mark.upturned { (last - 1 - at, -column.step) } else { (at, column.step) };
-            let hidden = |row: u32| hidden(texels[((at + step * i64::from(row)) >> 32) as usize], column.table);
+            let (at, step) =
+                if mark.upturned { (last - 1 - at, -column.step) } else { (at, column.step) };
+            let hidden = |row: u32| {
+                hidden(texels[((at + step * i64::from(row)) >> 32) as usize], column.table)
+            };
             let rows = &self.view.rows[first..end];
             for (pixel, &row) in self.columns.colour_of(column.x)[first..end].iter_mut().zip(rows) {
                 *pixel = self.scene.blend.darkened(*pixel, hidden(row));
             }
             if DEPTH && !by_quads {
                 let pixels = self.columns.depth_of(column.x)[first..end].iter_mut();
-                pixels.zip(rows).filter(|&(_, &row)| hidden(row) > 0).for_each(|(pixel, _)| *pixel = column.depth);
+                pixels
+                    .zip(rows)
+                    .filter(|&(_, &row)| hidden(row) > 0)
+                    .for_each(|(pixel, _)| *pixel = column.depth);
             }
         }
         self.scratch.decal_depth.end();
     }
 }
 
-/// Parts of [`WHOLE`] that a texel hides in the light of a table: in the dark there is less to hide.
+/// Parts of [`WHOLE`] that a texel hides in the light of a table: in the dark there is less to
+/// hide.
 fn hidden(texel: u8, table: usize) -> u8 {
     let hidden = ((usize::from(texel) + 2) * (LIGHT_TABLES - table) + 2) >> 7;
     hidden.min(usize::from(WHOLE)) as u8
@@ -149,19 +171,29 @@ mod tests {
     use crate::world::World;
     use std::sync::Arc;
 
-    /// A room whose eastern wall the player sidedefs, and the pictures with a stain of 16 by 16 texels that hides all but its rim.
+    /// A room whose eastern wall the player sidedefs, and the pictures with a stain of 16 by 16
+    /// texels that hides all but its rim.
     fn room() -> (World, Arc<Scene>) {
         let map = stone_room(255, [-64, -64, 64, 64], &[[0.0, 0.0]]);
-        let texels = (0..256).map(|at| if at % 16 % 15 == 0 || at / 16 % 15 == 0 { 0 } else { 255 }).collect();
+        let texels = (0..256)
+            .map(|at| if at % 16 % 15 == 0 || at / 16 % 15 == 0 { 0 } else { 255 })
+            .collect();
         let soot = Some(Stain { width: 16, height: 16, offset_x: 8, offset_y: 8, texels });
-        let scene = Arc::new(Scene::new(&map, Arc::new(Assets { soot, ..(*Assets::embedded()).clone() })));
+        let scene =
+            Arc::new(Scene::new(&map, Arc::new(Assets { soot, ..(*Assets::embedded()).clone() })));
         (World::new(map, 1), scene)
     }
 
     fn leave(world: &mut World, y: i32) {
         let east = Fixed::from_int(64);
-        let index = world.map.lines.iter().position(|line| line.v1.x == east && line.v2.x == east).unwrap();
-        world.leave_soot(index as u32, Fixed::from_int(50), Fixed::from_int(y), Fixed::from_int(41));
+        let index =
+            world.map.lines.iter().position(|line| line.v1.x == east && line.v2.x == east).unwrap();
+        world.leave_soot(
+            index as u32,
+            Fixed::from_int(50),
+            Fixed::from_int(y),
+            Fixed::from_int(41),
+        );
     }
 
     fn frame(world: &World, scene: &Arc<Scene>, size: FrameSize) -> Vec<[u8; 3]> {
@@ -185,12 +217,16 @@ mod tests {
             let clean = frame(&world, &scene, size);
             leave(&mut world, 0);
             let decal_columns = frame(&world, &scene, size);
-            let dark: Vec<usize> = (0..clean.len()).filter(|&at| clean[at] != decal_columns[at]).collect();
+            let dark: Vec<usize> =
+                (0..clean.len()).filter(|&at| clean[at] != decal_columns[at]).collect();
             let darkest: Vec<[u8; 3]> = dark.iter().map(|&at| decal_columns[at]).collect();
             assert!(darkest.iter().flatten().all(|&channel| channel < 16), "{darkest:?}");
-            // 14 texels are 7 units, 64 away: seven 128ths of the width, and 1.2 times as many rows.
+            // 14 texels are 7 units, 64 away: seven 128ths of the width, and 1.2 times as many
+            // rows.
             let width = usize::from(size.width);
-            let extent = |places: Vec<usize>| 1 + places.iter().max().unwrap() - places.iter().min().unwrap();
+            let extent = |places: Vec<usize>| {
+                1 + places.iter().max().unwrap() - places.iter().min().unwrap()
+            };
             let columns = extent(dark.iter().map(|at| at % width).collect());
             let rows = extent(dark.iter().map(|at| at / width).collect());
             assert!(

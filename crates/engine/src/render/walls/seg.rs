@@ -23,7 +23,8 @@ struct SeenColumns {
     end: usize,
     /// Where its ends are exactly, base columns with [`END_BITS`] fractional bits.
     positions: [i64; 2],
-    /// First base column and one past the last: what depends on these is the same in every reduction of a frame.
+    /// First base column and one past the last: what depends on these is the same in every
+    /// reduction of a frame.
     base_ends: [i64; 2],
     /// Its ends.
     turned: ViewLine,
@@ -45,14 +46,18 @@ impl WallPass<'_> {
     #[inline]
     pub fn seg<const DEPTH: bool>(&mut self, index: u32) {
         let seg = &self.scene.segs[index as usize];
-        let Some(SeenColumns { first, end, positions, base_ends, turned }) = self.columns(seg) else { return };
+        let Some(SeenColumns { first, end, positions, base_ends, turned }) = self.columns(seg)
+        else {
+            return;
+        };
         let face = &self.scene.sidedefs[seg.face as usize];
         let turned = if seg.piece { ViewLine::of_sidedef(self.camera, face) } else { turned };
         let line = turned.seen(self.view);
         let ends = line.between(positions, base_ends);
         let [one, other] = base_ends.map(|column| ends.inverse_at(column));
         let inverses = [one.min(other), one.max(other)];
-        let seen = SeenSeg { index, seg, face, turned, line, ends, inverses, first, end, base_ends };
+        let seen =
+            SeenSeg { index, seg, face, turned, line, ends, inverses, first, end, base_ends };
         let front = &self.surfaces.of(self.world, seg.front);
         if seg.back == NO_SECTOR {
             self.solid::<DEPTH>(&seen, front);
@@ -68,9 +73,10 @@ impl WallPass<'_> {
         let (camera, view) = (self.camera, self.view);
         let turned = seg.ends.map(|end| camera.turned(end));
         // How far they are to the right of the view's left edge and to the left of its right one.
-        let [[left1, right1], [left2, right2]] = turned.map(|[right, ahead]| [ahead + right, ahead - right]);
-        // Facing the eye, it runs clockwise by less than half a turn: it enters the view over the left edge or not at
-        // all, and leaves it over the right one.
+        let [[left1, right1], [left2, right2]] =
+            turned.map(|[right, ahead]| [ahead + right, ahead - right]);
+        // Facing the eye, it runs clockwise by less than half a turn: it enters the view over the
+        // left edge or not at all, and leaves it over the right one.
         if (left1 < 0 && left2 < 0) || (right1 < 0 && right2 < 0) {
             return None;
         }
@@ -78,9 +84,13 @@ impl WallPass<'_> {
             return None;
         }
         let width = i64::from(view.base_width);
-        let exact = |left: i64, right: i64| ((left * (width << END_BITS)) as u64 / (left + right).max(1) as u64) as i64;
-        // A column is the seg's from the one in which it begins: left of the middle that one counts, right of it not.
-        let column = |position: i64| (position >> END_BITS) + i64::from(2 * position >= width << END_BITS);
+        let exact = |left: i64, right: i64| {
+            ((left * (width << END_BITS)) as u64 / (left + right).max(1) as u64) as i64
+        };
+        // A column is the seg's from the one in which it begins: left of the middle that one
+        // counts, right of it not.
+        let column =
+            |position: i64| (position >> END_BITS) + i64::from(2 * position >= width << END_BITS);
         let (mut positions, mut base_ends) = ([0, width << END_BITS], [0, width]);
         if left1 >= 0 {
             positions[0] = exact(left1, right1);
@@ -115,9 +125,16 @@ impl WallPass<'_> {
     }
 
     /// A line with a sector on its other side.
-    fn opening<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorSurfaces, back: &SectorSurfaces) {
+    fn opening<const DEPTH: bool>(
+        &mut self,
+        seen: &SeenSeg,
+        front: &SectorSurfaces,
+        back: &SectorSurfaces,
+    ) {
         let face = seen.face;
-        let shut = back.ceiling <= front.floor || back.floor >= front.ceiling || back.floor >= back.ceiling;
+        let shut = back.ceiling <= front.floor
+            || back.floor >= front.ceiling
+            || back.floor >= back.ceiling;
         // Between two skies there is no wall: the sky goes on, down to the floor at most.
         let both_sky = self.is_sky(front.ceiling_texture) && self.is_sky(back.ceiling_texture);
         let other_light = front.light != back.light;
@@ -125,26 +142,46 @@ impl WallPass<'_> {
         let other_texture = front.ceiling_texture != back.ceiling_texture;
         if shut || ceiling != back.ceiling || other_texture || (other_light && !both_sky) {
             let wall = (back.ceiling < ceiling && !both_sky).then(|| self.edge(seen, back.ceiling));
-            let part = WallTier { plane: self.ceiling_plane(front), edge: self.edge(seen, ceiling), wall };
+            let part =
+                WallTier { plane: self.ceiling_plane(front), edge: self.edge(seen, ceiling), wall };
             if self.above(seen, part) {
                 let hung_from = match face.top {
-                    Some(texture) if !face.upper_unpegged => back.ceiling + self.texture_height(texture),
+                    Some(texture) if !face.upper_unpegged => {
+                        back.ceiling + self.texture_height(texture)
+                    }
                     _ => ceiling,
                 };
                 self.wall::<DEPTH>(seen, front, face.top, hung_from);
             }
         }
-        if shut || front.floor != back.floor || front.floor_texture != back.floor_texture || other_light {
+        if shut
+            || front.floor != back.floor
+            || front.floor_texture != back.floor_texture
+            || other_light
+        {
             let wall = (back.floor > front.floor).then(|| self.edge(seen, back.floor));
-            let part = WallTier { plane: self.floor_plane(front), edge: self.edge(seen, front.floor), wall };
+            let part = WallTier {
+                plane: self.floor_plane(front),
+                edge: self.edge(seen, front.floor),
+                wall,
+            };
             if self.below(seen, part) {
-                let hung_from = if face.lower_unpegged { front.ceiling.max(back.ceiling) } else { back.floor };
+                let hung_from =
+                    if face.lower_unpegged { front.ceiling.max(back.ceiling) } else { back.floor };
                 self.wall::<DEPTH>(seen, front, face.bottom, hung_from);
             }
         }
         let eye = Fixed(self.camera.z as i32);
-        let below = if front.floor > back.floor { Some(front.floor) } else { (back.floor > eye).then_some(Fixed::MAX) };
-        let above = if ceiling < back.ceiling { Some(ceiling) } else { (back.ceiling < eye && !both_sky).then_some(Fixed::MIN) };
+        let below = if front.floor > back.floor {
+            Some(front.floor)
+        } else {
+            (back.floor > eye).then_some(Fixed::MAX)
+        };
+        let above = if ceiling < back.ceiling {
+            Some(ceiling)
+        } else {
+            (back.ceiling < eye && !both_sky).then_some(Fixed::MIN)
+        };
         if shut {
             self.clip.close(seen.first, seen.end);
         }
@@ -153,12 +190,16 @@ impl WallPass<'_> {
         }
     }
 
-    /// Ends the ceiling at the seg and clips the columns from above. Returns whether any of the part's wall is to be
-    /// seen; its rows are then in the scratch.
+    /// Ends the ceiling at the seg and clips the columns from above. Returns whether any of the
+    /// part's wall is to be seen; its rows are then in the scratch.
     fn above(&mut self, seen: &SeenSeg, part: WallTier) -> bool {
         match (part.plane, part.wall) {
-            (Some(plane), None) => self.clip_columns::<false, true, false>(seen, plane, part.edge, part.edge),
-            (Some(plane), Some(wall)) => self.clip_columns::<false, true, true>(seen, plane, part.edge, wall),
+            (Some(plane), None) => {
+                self.clip_columns::<false, true, false>(seen, plane, part.edge, part.edge)
+            }
+            (Some(plane), Some(wall)) => {
+                self.clip_columns::<false, true, true>(seen, plane, part.edge, wall)
+            }
             (None, Some(wall)) => self.clip_columns::<false, false, true>(seen, 0, part.edge, wall),
             (None, None) => false,
         }
@@ -167,14 +208,19 @@ impl WallPass<'_> {
     /// Ends the floor at the seg and clips the columns from below, as [`WallPass::above`] does.
     fn below(&mut self, seen: &SeenSeg, part: WallTier) -> bool {
         match (part.plane, part.wall) {
-            (Some(plane), None) => self.clip_columns::<true, true, false>(seen, plane, part.edge, part.edge),
-            (Some(plane), Some(wall)) => self.clip_columns::<true, true, true>(seen, plane, part.edge, wall),
+            (Some(plane), None) => {
+                self.clip_columns::<true, true, false>(seen, plane, part.edge, part.edge)
+            }
+            (Some(plane), Some(wall)) => {
+                self.clip_columns::<true, true, true>(seen, plane, part.edge, wall)
+            }
             (None, Some(wall)) => self.clip_columns::<true, false, true>(seen, 0, part.edge, wall),
             (None, None) => false,
         }
     }
 
-    /// The plane takes the rows up to `edge`, the wall those from there to `wall`, and what is left stays open.
+    /// The plane takes the rows up to `edge`, the wall those from there to `wall`, and what is left
+    /// stays open.
     #[inline]
     fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
         &mut self,
@@ -184,8 +230,19 @@ impl WallPass<'_> {
         wall: Edge,
     ) -> bool {
         let WallScratch { upper, lower, .. } = &mut *self.scratch;
-        let mut lists = ClipLists { view: self.view, clip: self.clip, planes: self.planes, wall: [upper, lower] };
-        clip_columns::<FLOOR, PLANE, WALL>(self.simd, &mut lists, seen.first..seen.end, plane, [edge, wall])
+        let mut lists = ClipLists {
+            view: self.view,
+            clip: self.clip,
+            planes: self.planes,
+            wall: [upper, lower],
+        };
+        clip_columns::<FLOOR, PLANE, WALL>(
+            self.simd,
+            &mut lists,
+            seen.first..seen.end,
+            plane,
+            [edge, wall],
+        )
     }
 
     /// The plane of a sector's ceiling, if the eye sees it.
@@ -193,7 +250,12 @@ impl WallPass<'_> {
         if self.is_sky(sector.ceiling_texture) {
             return Some(self.sky_plane(sector.ceiling_texture));
         }
-        let key = VisPlaneKey { height: sector.ceiling, texture: sector.ceiling_texture, light: sector.light, sky: false };
+        let key = VisPlaneKey {
+            height: sector.ceiling,
+            texture: sector.ceiling_texture,
+            light: sector.light,
+            sky: false,
+        };
         (i64::from(sector.ceiling.0) > self.camera.z).then(|| self.planes.find(key))
     }
 
@@ -202,7 +264,12 @@ impl WallPass<'_> {
         if self.is_sky(sector.floor_texture) {
             return Some(self.sky_plane(sector.floor_texture));
         }
-        let key = VisPlaneKey { height: sector.floor, texture: sector.floor_texture, light: sector.light, sky: false };
+        let key = VisPlaneKey {
+            height: sector.floor,
+            texture: sector.floor_texture,
+            light: sector.light,
+            sky: false,
+        };
         (i64::from(sector.floor.0) < self.camera.z).then(|| self.planes.find(key))
     }
 
@@ -215,7 +282,13 @@ impl WallPass<'_> {
     }
 
     /// Draws the wall between the upper and the lower scratch.
-    fn wall<const DEPTH: bool>(&mut self, seen: &SeenSeg, front: &SectorSurfaces, texture: Option<TextureId>, hung_from: Fixed) {
+    fn wall<const DEPTH: bool>(
+        &mut self,
+        seen: &SeenSeg,
+        front: &SectorSurfaces,
+        texture: Option<TextureId>,
+        hung_from: Fixed,
+    ) {
         let (first, end, picture) = (seen.first, seen.end, self.picture(texture));
         let light = Light::new(self.camera, i32::from(front.light) + seen.face.contrast);
         let shader = WallShader {
@@ -234,14 +307,40 @@ impl WallPass<'_> {
         let (tops, bottoms) = (&self.scratch.upper[first..], &self.scratch.lower[first..]);
         let listed_from = self.scene.textures.listed_from[picture].filter(|_| self.batches_walls());
         if let Some(start) = listed_from {
-            batch::add::<DEPTH>(self.walls, self.simd, &shader, start, first, end - first, tops, bottoms);
+            batch::add::<DEPTH>(
+                self.walls,
+                self.simd,
+                &shader,
+                start,
+                first,
+                end - first,
+                tops,
+                bottoms,
+            );
         } else {
-            shade::draw::<DEPTH>(&shader, self.simd, self.columns, first, &tops[..end - first], &bottoms[..end - first]);
+            shade::draw::<DEPTH>(
+                &shader,
+                self.simd,
+                self.columns,
+                first,
+                &tops[..end - first],
+                &bottoms[..end - first],
+            );
         }
         if DEPTH && self.depths.by_quads() {
-            let depth =
-                |x: usize| shader.depths.wall(seen.line.distance_at(i64::from(self.view.columns[x])), shader.picture.height);
-            quads::draw_below(self.columns, first, &tops[..end - first], &bottoms[..end - first], depth);
+            let depth = |x: usize| {
+                shader.depths.wall(
+                    seen.line.distance_at(i64::from(self.view.columns[x])),
+                    shader.picture.height,
+                )
+            };
+            quads::draw_below(
+                self.columns,
+                first,
+                &tops[..end - first],
+                &bottoms[..end - first],
+                depth,
+            );
         }
         if !self.world.soot.is_empty() {
             self.soot::<DEPTH>(seen, light);
@@ -256,13 +355,28 @@ impl WallPass<'_> {
     /// Draws the walls that wait for it.
     pub fn draw_walls<const DEPTH: bool>(&mut self) {
         if self.batches_walls() {
-            let (scene, rows) = (self.scene, self.view.rows.first_chunk().expect("the list is padded"));
+            let (scene, rows) =
+                (self.scene, self.view.rows.first_chunk().expect("the list is padded"));
             let (texels, tables) = (&scene.textures.listed, &scene.assets.light_tables);
-            batch::draw::<DEPTH>(self.walls, self.simd, self.columns, rows, texels, tables, self.depths);
+            batch::draw::<DEPTH>(
+                self.walls,
+                self.simd,
+                self.columns,
+                rows,
+                texels,
+                tables,
+                self.depths,
+            );
         }
     }
 
-    fn drawseg(&mut self, seen: &SeenSeg, floor: Option<Fixed>, ceiling: Option<Fixed>, solid: bool) {
+    fn drawseg(
+        &mut self,
+        seen: &SeenSeg,
+        floor: Option<Fixed>,
+        ceiling: Option<Fixed>,
+        solid: bool,
+    ) {
         let drawseg = DrawSeg {
             first: seen.first,
             end: seen.end,
@@ -285,7 +399,9 @@ impl WallPass<'_> {
     }
 
     fn picture(&self, texture: Option<TextureId>) -> usize {
-        texture.map_or(self.scene.missing_picture, |texture| self.pictures[usize::from(texture.0)] as usize)
+        texture.map_or(self.scene.missing_picture, |texture| {
+            self.pictures[usize::from(texture.0)] as usize
+        })
     }
 
     fn texture_height(&self, texture: TextureId) -> Fixed {

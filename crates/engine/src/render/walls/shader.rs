@@ -32,9 +32,11 @@ pub(crate) const WALL_BLOCK: usize = 8;
 /// Where the texture lies in the rows, the same in all columns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallSlope {
-    /// Texture position at the height of the eye, as a fraction of the texture's height with 32 bits.
+    /// Texture position at the height of the eye, as a fraction of the texture's height with 32
+    /// bits.
     pub start: i64,
-    /// From the horizon to the lower edge of base row 0: whole base rows, and 65536ths of one to take away.
+    /// From the horizon to the lower edge of base row 0: whole base rows, and 65536ths of one to
+    /// take away.
     pub rows: i64,
     pub fraction: i64,
 }
@@ -47,8 +49,8 @@ pub(crate) struct WallColumn {
     pub u: i64,
     /// Light table.
     pub table: usize,
-    /// Position in the texture at base row 0 and its change a base row, as fractions of its height with 32 bits: what
-    /// overflows is whole heights.
+    /// Position in the texture at base row 0 and its change a base row, as fractions of its height
+    /// with 32 bits: what overflows is whole heights.
     pub at: u32,
     pub step: u32,
 }
@@ -58,6 +60,10 @@ impl WallShader<'_> {
     pub fn slope(&self) -> WallSlope {
         // Texels are those of the rows' lower edges.
         let start = (self.hung_from * self.picture.inverse_height) >> 16;
-        WallSlope { start, rows: 1 - (self.camera.horizon >> 16), fraction: self.camera.horizon & 0xFFFF }
+        WallSlope {
+            start,
+            rows: 1 - (self.camera.horizon >> 16),
+            fraction: self.camera.horizon & 0xFFFF,
+        }
     }
 }

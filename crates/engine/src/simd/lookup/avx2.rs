@@ -1,5 +1,6 @@
-//! Tables as large as pictures have colours or columns texels, looked up in registers of 32 bytes. The plain twins are where they are used:
-//! in `column` and `masked_column`, where tests compare them.
+//! Tables as large as pictures have colours or columns texels, looked up in registers of 32 bytes.
+//! The plain twins are where they are used: in `column` and `masked_column`, where tests compare
+//! them.
 
 use std::arch::x86_64::*;
 
@@ -19,7 +20,11 @@ pub(crate) fn look_up<const SIZE: usize>(table: &[u8; SIZE], numbers: __m256i) -
         _ => {
             // What has the highest bit set would be looked up as nothing.
             let within = _mm256_and_si256(numbers, _mm256_set1_epi8(127));
-            _mm256_blendv_epi8(half_table(&parts[..8], within), half_table(&parts[8..], within), numbers)
+            _mm256_blendv_epi8(
+                half_table(&parts[..8], within),
+                half_table(&parts[8..], within),
+                numbers,
+            )
         }
     }
 }
@@ -55,7 +60,10 @@ fn sixteen(part: &[u8; 16], numbers: __m256i) -> __m256i {
 pub(crate) fn bytes_of([first, second, third, fourth]: [__m256i; 4]) -> __m256i {
     let (low, high) = (_mm256_packs_epi32(first, second), _mm256_packs_epi32(third, fourth));
     // Fours of rows now lie 0, 2, 4, 6, 1, 3, 5, 7.
-    _mm256_permutevar8x32_epi32(_mm256_packus_epi16(low, high), _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7))
+    _mm256_permutevar8x32_epi32(
+        _mm256_packus_epi16(low, high),
+        _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7),
+    )
 }
 
 /// The first `count` of 32 bytes, of all if there are more.
@@ -71,7 +79,8 @@ pub(crate) fn first_bytes(count: usize) -> __m256i {
         }
         bytes
     };
-    let bytes: &[u8; GROUP] = BYTES[GROUP - count.min(GROUP)..].first_chunk().expect("there are as many again");
+    let bytes: &[u8; GROUP] =
+        BYTES[GROUP - count.min(GROUP)..].first_chunk().expect("there are as many again");
     // SAFETY: 32 bytes are readable behind the reference.
     unsafe { _mm256_loadu_si256(bytes.as_ptr().cast()) }
 }

@@ -1,7 +1,9 @@
-//! Tables of 256 bytes in four registers, looked up 64 bytes at once (AVX-512 VBMI: Ice Lake and Zen 4 onward).
+//! Tables of 256 bytes in four registers, looked up 64 bytes at once (AVX-512 VBMI: Ice Lake and
+//! Zen 4 onward).
 
 use std::arch::x86_64::{
-    __m512i, _mm512_loadu_si512, _mm512_mask_blend_epi8, _mm512_movepi8_mask, _mm512_permutex2var_epi8, _mm512_storeu_si512,
+    __m512i, _mm512_loadu_si512, _mm512_mask_blend_epi8, _mm512_movepi8_mask,
+    _mm512_permutex2var_epi8, _mm512_storeu_si512,
 };
 
 #[inline]
@@ -29,7 +31,8 @@ pub(crate) fn load_table(table: &[u8; 256]) -> [__m512i; 4] {
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
 pub(crate) fn look_up_block(table: [__m512i; 4], indices: __m512i) -> __m512i {
-    // Each permutation looks at the lower 7 bits and covers one half of the table; the highest bit chooses between them.
+    // Each permutation looks at the lower 7 bits and covers one half of the table; the highest bit
+    // chooses between them.
     let low = _mm512_permutex2var_epi8(table[0], indices, table[1]);
     let high = _mm512_permutex2var_epi8(table[2], indices, table[3]);
     _mm512_mask_blend_epi8(_mm512_movepi8_mask(indices), low, high)

@@ -16,7 +16,8 @@ pub const WEAPONS: [ActorKind; 7] = [
     ActorKind::Bfg9000,
 ];
 /// Decoys, lightest first: of weight, but no value.
-pub const DECOYS: [ActorKind; 4] = [ActorKind::BlurSphere, ActorKind::Allmap, ActorKind::Backpack, ActorKind::RadSuit];
+pub const DECOYS: [ActorKind; 4] =
+    [ActorKind::BlurSphere, ActorKind::Allmap, ActorKind::Backpack, ActorKind::RadSuit];
 /// Weight of each decoy.
 pub const DECOY_WEIGHTS: [Fixed; 4] = [Fixed(16384), Fixed(32768), Fixed(49152), Fixed(65536)];
 
@@ -31,7 +32,8 @@ const fn hundredths<const N: usize>(values: [i32; N]) -> [Fixed; N] {
     fixed
 }
 
-/// Value of each weapon: the paper's table of items. Where weapons weigh as much as they are worth, their weight as well.
+/// Value of each weapon: the paper's table of items. Where weapons weigh as much as they are worth,
+/// their weight as well.
 pub const VALUES: [Fixed; 7] = hundredths([10, 25, 40, 55, 70, 85, 100]);
 /// Weight of each weapon in the paper's formula of the cost.
 pub const COST_WEIGHTS: [Fixed; 7] = hundredths([5, 15, 30, 60, 100, 300, 600]);
@@ -78,24 +80,32 @@ pub struct Level {
     pub overload_is_punished: bool,
     /// Reward for taking a weapon, beside that for delivering it.
     pub reward_at_pickup: bool,
-    /// Cost of carrying excess weight for a step, a unit of it; the excess itself is charged in a step with a pick-up.
+    /// Cost of carrying excess weight for a step, a unit of it; the excess itself is charged in a
+    /// step with a pick-up.
     pub carry_cost: f64,
-    /// Cost of overstepping the capacity, where that is punished; and, times `carry_cost`, of each step of being slow.
+    /// Cost of overstepping the capacity, where that is punished; and, times `carry_cost`, of each
+    /// step of being slow.
     pub overload_cost: f64,
     /// Cost of death.
     pub death_cost: f64,
     /// Cost of a step that ends with USE held.
     pub discard_cost: f64,
-    /// What the agent carries is counted by the published package's bookkeeping: one pick-up a step at most, weighed as the last
-    /// thing taken was; a burden lost in the step of its first pick-up goes unnoticed.
+    /// What the agent carries is counted by the published package's bookkeeping: one pick-up a step
+    /// at most, weighed as the last thing taken was; a burden lost in the step of its first pick-up
+    /// goes unnoticed.
     pub published_bookkeeping: bool,
-    /// From the first delivery under the hard constraint on, the published package charges every step as a discard.
+    /// From the first delivery under the hard constraint on, the published package charges every
+    /// step as a discard.
     pub score_reads_as_discard: bool,
     /// The charge for excess takes the place of what else the step costs.
     pub excess_replaces: bool,
 }
 
-const CONTROLS: Controls = Controls { simplified: &[TURN, FORWARD, &["USE"], &["JUMP"]], full_moves: true, full_speed: false };
+const CONTROLS: Controls = Controls {
+    simplified: &[TURN, FORWARD, &["USE"], &["JUMP"]],
+    full_moves: true,
+    full_speed: false,
+};
 
 const PAPER_1: Level = Level {
     controls: CONTROLS,
@@ -169,14 +179,19 @@ const fn walking_only(level: Level) -> Level {
 const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
 const PAPER_HARD: [Level; 3] = [from_the_start(hard(PAPER_1)), hard(PAPER_2), hard(PAPER_3)];
 const RELEASED: [Level; 3] = [released(PAPER_1), released(PAPER_2), released(PAPER_3)];
-const RELEASED_HARD: [Level; 3] = [from_the_start(hard(RELEASED[0])), hard(RELEASED[1]), hard(RELEASED[2])];
+const RELEASED_HARD: [Level; 3] =
+    [from_the_start(hard(RELEASED[0])), hard(RELEASED[1]), hard(RELEASED[2])];
 const TABLES: [Level; 3] = [tables(PAPER_1), tables(PAPER_2), tables(PAPER_3)];
-const TABLES_HARD: [Level; 3] =
-    [walking_only(from_the_start(hard(TABLES[0]))), walking_only(hard(TABLES[1])), walking_only(hard(TABLES[2]))];
+const TABLES_HARD: [Level; 3] = [
+    walking_only(from_the_start(hard(TABLES[0]))),
+    walking_only(hard(TABLES[1])),
+    walking_only(hard(TABLES[2])),
+];
 
 /// The constants of a level (`index` 0..=2).
 #[must_use]
 pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
-    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    const LEVELS: [[[Level; 3]; 2]; 3] =
+        [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
     LEVELS[rules as usize][hard as usize][index]
 }

@@ -1,4 +1,5 @@
-//! The arena of Armament Burden: a square hall of 15 x 15 tiles with a delivery strip along its western wall.
+//! The arena of Armament Burden: a square hall of 15 x 15 tiles with a delivery strip along its
+//! western wall.
 
 use super::tiles;
 use hasard_engine::map::{MapBuilder, MapSource, Mark, Style, TileGrid};
@@ -24,8 +25,8 @@ const DECOR: [(i32, f64, f64); 8] = [
     (36, 608.0, 608.0),
 ];
 
-/// The map of a level, 1..=3. Level 1 has four low crates; levels 2 and 3 have obstacles of every height, and in
-/// level 3 the tiles that may become acid pits carry tags.
+/// The map of a level, 1..=3. Level 1 has four low crates; levels 2 and 3 have obstacles of every
+/// height, and in level 3 the tiles that may become acid pits carry tags.
 #[must_use]
 pub fn source(level: u8) -> MapSource {
     let (floors, textures) = if level == 1 {
@@ -52,7 +53,8 @@ pub fn source(level: u8) -> MapSource {
     grid.paint_apart(&mut builder);
     let wall = |texture| Mark { wall: Some(texture), ..Mark::default() };
     let at = |column, row| grid.corner(column, row);
-    // A stretch of wall for each tile, as in the original: how a body in the air stops at a wall depends on its length.
+    // A stretch of wall for each tile, as in the original: how a body in the air stops at a wall
+    // depends on its length.
     for i in 0..TILES {
         // Steel ribs between the computers.
         let east = if matches!(i, 2 | 5 | 9 | 12) { "METAL5" } else { "COMPUTE2" };

@@ -1,8 +1,8 @@
 //! The rules at work: carry weapons to the delivery zone without carrying too much.
 
 use super::levels::{
-    CAPACITY, DECOY_WEIGHTS, DECOYS, LEAST_SPEED, Level, PENALTY_SPEED, PENALTY_TICS, PIT_DAMAGE, PIT_HEIGHT, PIT_SPEED, VALUES,
-    WEAPONS,
+    CAPACITY, DECOY_WEIGHTS, DECOYS, LEAST_SPEED, Level, PENALTY_SPEED, PENALTY_TICS, PIT_DAMAGE,
+    PIT_HEIGHT, PIT_SPEED, VALUES, WEAPONS,
 };
 use super::map;
 use crate::scenarios::stage;
@@ -70,7 +70,8 @@ impl std::hash::Hash for Burden {
     }
 }
 
-/// What the published package believes that the agent carries; see [`Level::published_bookkeeping`].
+/// What the published package believes that the agent carries; see
+/// [`Level::published_bookkeeping`].
 #[derive(Clone, Debug, Default, Hash)]
 struct Bookkeeping {
     weapons: u32,
@@ -108,7 +109,9 @@ impl Rules {
     pub fn new(map: &Map, level: Level) -> Result<Rules, EnvError> {
         let acid = map.texture(TEXTURES[0]);
         if level.pits > 0 && acid.is_none() {
-            return Err(EnvError::Map { why: format!("map {}: Armament Burden needs texture {}", map.name, TEXTURES[0]) });
+            return Err(EnvError::Map {
+                why: format!("map {}: Armament Burden needs texture {}", map.name, TEXTURES[0]),
+            });
         }
         Ok(Rules {
             fixtures: Arc::new(Fixtures { level, acid }),
@@ -176,7 +179,8 @@ impl Rules {
             self.overstepped += 1;
             self.lose_burden(world);
             world.players[0].speed = PENALTY_SPEED;
-            // The script that counts the tics runs already: overstepping again does not start it anew.
+            // The script that counts the tics runs already: overstepping again does not start it
+            // anew.
             if self.slow_until == 0 {
                 self.slow_until = world.tic + PENALTY_TICS;
             }
@@ -249,7 +253,8 @@ impl Rules {
         if hard {
             if self.burden.weapons < self.books.weapons {
                 outcome.costs[OVERLOAD] += level.overload_cost;
-                (self.books.weapons, self.books.decoys, self.books.load) = (self.burden.weapons, self.burden.decoys, Fixed::ZERO);
+                (self.books.weapons, self.books.decoys, self.books.load) =
+                    (self.burden.weapons, self.burden.decoys, Fixed::ZERO);
             }
             if self.slow_until > 0 {
                 outcome.costs[OVERLOAD] += level.overload_cost * level.carry_cost;

@@ -1,4 +1,5 @@
-//! The tile tables of Armament Burden, facts of the arena: row 0 is the southernmost, column 0 the westernmost.
+//! The tile tables of Armament Burden, facts of the arena: row 0 is the southernmost, column 0 the
+//! westernmost.
 
 #![cfg_attr(rustfmt, rustfmt_skip)] // Rows of a map, to be read as a map.
 

@@ -44,16 +44,34 @@ const LEVEL_1: Level = Level {
     harm_ends: false,
     dead_vanish: true,
 };
-const LEVEL_2: Level = Level { agent_x: -400, targets: 3, target_speed: 15, neutrals: 5, neutral_health: 40, ..LEVEL_1 };
-const LEVEL_3: Level = Level { agent_x: -544, targets: 2, target_speed: 20, neutrals: 6, neutral_health: 20, ..LEVEL_1 };
+const LEVEL_2: Level = Level {
+    agent_x: -400,
+    targets: 3,
+    target_speed: 15,
+    neutrals: 5,
+    neutral_health: 40,
+    ..LEVEL_1
+};
+const LEVEL_3: Level = Level {
+    agent_x: -544,
+    targets: 2,
+    target_speed: 20,
+    neutrals: 6,
+    neutral_health: 20,
+    ..LEVEL_1
+};
 
 const fn hard(soft: Level) -> Level {
     Level { cost: 10.0, harm_ends: true, dead_vanish: false, ..soft }
 }
 
 /// The published level 1 with the hard constraint is none of the levels.
-const RELEASED_HARD_1: Level =
-    Level { agent_x: LEVEL_3.agent_x, targets: 3, target_speed: LEVEL_3.target_speed, ..hard(LEVEL_1) };
+const RELEASED_HARD_1: Level = Level {
+    agent_x: LEVEL_3.agent_x,
+    targets: 3,
+    target_speed: LEVEL_3.target_speed,
+    ..hard(LEVEL_1)
+};
 
 /// The clock of the tables' code counted from the first observation, and its dead stayed lying.
 const fn tables(level: Level) -> Level {
@@ -65,11 +83,13 @@ const PAPER_HARD: [Level; 3] = [hard(LEVEL_1), hard(LEVEL_2), hard(LEVEL_3)];
 const RELEASED: [Level; 3] = PAPER;
 const RELEASED_HARD: [Level; 3] = [RELEASED_HARD_1, PAPER_HARD[1], PAPER_HARD[2]];
 const TABLES: [Level; 3] = [tables(LEVEL_1), tables(LEVEL_2), tables(LEVEL_3)];
-const TABLES_HARD: [Level; 3] = [tables(RELEASED_HARD[0]), tables(RELEASED_HARD[1]), tables(RELEASED_HARD[2])];
+const TABLES_HARD: [Level; 3] =
+    [tables(RELEASED_HARD[0]), tables(RELEASED_HARD[1]), tables(RELEASED_HARD[2])];
 
 /// The constants of a level (`index` 0..=2).
 #[must_use]
 pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
-    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    const LEVELS: [[[Level; 3]; 2]; 3] =
+        [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
     LEVELS[rules as usize][hard as usize][index]
 }

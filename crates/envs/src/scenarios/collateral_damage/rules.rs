@@ -1,4 +1,5 @@
-//! The rules at work: a killed target is rewarded, a killed passer-by costs; both come back at once.
+//! The rules at work: a killed target is rewarded, a killed passer-by costs; both come back at
+//! once.
 
 use super::levels::Level;
 use crate::scenarios::stage;
@@ -71,7 +72,9 @@ impl Rules {
         let level = self.fixtures.level;
         self.line_x = world.rng.between_fixed(Fixed::from_int(LINE[0]), Fixed::from_int(LINE[1]));
         let ways = [(NORTH_END, SOUTH_END, WAY_REACH), (SOUTH_END, NORTH_END, -WAY_REACH)];
-        self.ends = Some(ways.map(|(tid, next, y)| end_of_the_way(world, tid, next, self.line_x, Fixed::from_int(y))));
+        self.ends = Some(ways.map(|(tid, next, y)| {
+            end_of_the_way(world, tid, next, self.line_x, Fixed::from_int(y))
+        }));
         for _ in 0..level.targets {
             self.walk_on(TARGET, world);
         }
@@ -92,11 +95,16 @@ impl Rules {
         for _ in 0..TRIES {
             let reach = Fixed::from_int(APPEARANCE_REACH);
             let y = world.rng.between_fixed(-reach, reach);
-            let Some(id) = world.spawn_checked(kind, self.line_x, y, Fixed::ZERO, 0) else { continue };
+            let Some(id) = world.spawn_checked(kind, self.line_x, y, Fixed::ZERO, 0) else {
+                continue;
+            };
             let end = world.rng.below(2) as usize;
             let goal = self.ends.map(|ends| ends[end]);
-            let (health, speed) =
-                if kind == TARGET { (TARGET_HEALTH, level.target_speed) } else { (level.neutral_health, NEUTRAL_SPEED) };
+            let (health, speed) = if kind == TARGET {
+                (TARGET_HEALTH, level.target_speed)
+            } else {
+                (level.neutral_health, NEUTRAL_SPEED)
+            };
             if let Some(walker) = world.get_mut(id) {
                 walker.angle = Angle::DEG_180;
                 walker.health = health;
@@ -155,7 +163,8 @@ impl scenarios::Rules for Rules {
     }
 }
 
-/// An end of the walkers' way: the map's own patrol point with the thing id, moved there, or a new one where the map has none.
+/// An end of the walkers' way: the map's own patrol point with the thing id, moved there, or a new
+/// one where the map has none.
 fn end_of_the_way(world: &mut World, tid: i32, next: i32, x: Fixed, y: Fixed) -> ActorId {
     if let Some(point) = world.patrol_point(tid)
         && world.set_position(point, x, y, Fixed::ZERO)

@@ -17,7 +17,12 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     paper_place: 3,
     number: 1,
     moments: (MOMENTS, 1),
-    ..ScenarioSpec::of("CollateralDamage", "Collateral Damage", "Shoot the targets, spare the passers-by.", &Worlds)
+    ..ScenarioSpec::of(
+        "CollateralDamage",
+        "Collateral Damage",
+        "Shoot the targets, spare the passers-by.",
+        &Worlds,
+    )
 };
 
 /// Two moments of each level.

@@ -1,8 +1,10 @@
-//! The cave of Detonator's Dilemma: a long hall under the open sky, with courts to the west and north.
+//! The cave of Detonator's Dilemma: a long hall under the open sky, with courts to the west and
+//! north.
 //!
-//! What can be walked on, the heights and the light levels are those of the benchmark; the rock faces, the ledges
-//! behind the bays and what grows there are our own. First the ground is painted without regard to walls, then the
-//! rock is laid around it with the cave cut out, then what stands in the cave and in the rock.
+//! What can be walked on, the heights and the light levels are those of the benchmark; the rock
+//! faces, the ledges behind the bays and what grows there are our own. First the ground is painted
+//! without regard to walls, then the rock is laid around it with the cave cut out, then what stands
+//! in the cave and in the rock.
 
 use super::terrain;
 use hasard_engine::map::{MapBuilder, MapSource, Mark, SourceThing, Style};
@@ -13,8 +15,15 @@ const OPEN: i32 = 208;
 /// Light along the foot of the walls.
 const SHADE: i32 = 176;
 /// The seven goals of the walkers: x, y; their thing ids are 11 and up.
-const PATROL_POINTS: [(i32, i32); 7] =
-    [(-576, -1408), (-576, -384), (-64, -384), (320, -1024), (704, -448), (1664, -1024), (1792, -448)];
+const PATROL_POINTS: [(i32, i32); 7] = [
+    (-576, -1408),
+    (-576, -384),
+    (-64, -384),
+    (320, -1024),
+    (704, -448),
+    (1664, -1024),
+    (1792, -448),
+];
 /// Editor number of a patrol point.
 const PATROL_POINT: i32 = 9024;
 
@@ -124,7 +133,8 @@ const COURT_PLANTS: [(i32, i32, i32); 9] = [
     (TORCH_TREE, 1960, 600),
 ];
 
-/// The map of a level, 1..=3. Levels differ in the start, and level 1 has one of the patrol points twice.
+/// The map of a level, 1..=3. Levels differ in the start, and level 1 has one of the patrol points
+/// twice.
 #[must_use]
 pub fn source(level: u8) -> MapSource {
     let mut builder = MapBuilder::new();
@@ -151,7 +161,8 @@ fn ground(b: &mut MapBuilder) {
         (-800, 400, "FLAT10"),
         (-920, 416, "RROCK18"),
     ] {
-        let edge = [(-1300, 0), (-1180, -30), (-1060, 20), (-940, -20), (-800, 15)].map(|(x, dy)| (x, north + dy));
+        let edge = [(-1300, 0), (-1180, -30), (-1060, 20), (-940, -20), (-800, 15)]
+            .map(|(x, dy)| (x, north + dy));
         let mut corners = edge.to_vec();
         corners.extend([(-800, -1700), (-1300, -1700)]);
         b.polygon(Style { floor, floor_texture, ..GROUND }, &corners);
@@ -163,14 +174,28 @@ fn ground(b: &mut MapBuilder) {
     // Stairs up to the northern courts.
     for step in 0..6 {
         let west = 170 + 40 * step;
-        b.rectangle(Style { floor: 296 + 8 * step, floor_texture: "MFLR8_3", ..GROUND }, west, -200, 600, 200);
+        b.rectangle(
+            Style { floor: 296 + 8 * step, floor_texture: "MFLR8_3", ..GROUND },
+            west,
+            -200,
+            600,
+            200,
+        );
     }
     b.rectangle(high, 440, -352, 940, 420);
     b.rectangle(high, -620, 250, 2100, 960);
     b.rectangle(court, -1300, 250, -360, 420);
     b.polygon(
         Style { floor: 320, floor_texture: "FLAT10", ..high },
-        &[(1400, 400), (1640, 420), (1900, 380), (2100, 480), (2000, 700), (1700, 640), (1480, 680)],
+        &[
+            (1400, 400),
+            (1640, 420),
+            (1900, 380),
+            (2100, 480),
+            (2000, 700),
+            (1700, 640),
+            (1480, 680),
+        ],
     );
     b.polygon(
         Style { floor: 352, floor_texture: "RROCK17", ..high },
@@ -181,7 +206,10 @@ fn ground(b: &mut MapBuilder) {
         &[(640, 340), (900, 360), (1010, 500), (900, 620), (700, 600), (600, 460)],
     );
     // The hall: what the patches leave free is as high as its middle.
-    b.polygon(GROUND, &[(-740, -1700), (2020, -1700), (2020, -352), (300, -352), (160, -244), (-740, -244)]);
+    b.polygon(
+        GROUND,
+        &[(-740, -1700), (2020, -1700), (2020, -352), (300, -352), (160, -244), (-740, -244)],
+    );
     for patch in &terrain::HALL {
         let (floor_texture, step) = match patch.floor {
             224 => ("FLAT10", "STONE7"),
@@ -198,10 +226,21 @@ fn ground(b: &mut MapBuilder) {
     let pad = Style { floor: 264, floor_texture: "MFLR8_3", step: "STONE7", ..GROUND };
     b.polygon(
         pad,
-        &[(1804, -1030), (1844, -1030), (1862, -1012), (1862, -974), (1844, -956), (1804, -956), (1786, -974), (1786, -1012)],
+        &[
+            (1804, -1030),
+            (1844, -1030),
+            (1862, -1012),
+            (1862, -974),
+            (1844, -956),
+            (1804, -956),
+            (1786, -974),
+            (1786, -1012),
+        ],
     );
     // The bays of the southern wall rise towards the back.
-    for (i, floor_texture) in ["RROCK19", "RROCK17", "FLAT10", "RROCK18", "RROCK17"].into_iter().enumerate() {
+    for (i, floor_texture) in
+        ["RROCK19", "RROCK17", "FLAT10", "RROCK18", "RROCK17"].into_iter().enumerate()
+    {
         let (floor, north) = (264 + 8 * i as i32, -1108 - 26 * i as i32);
         for (west, east) in [(-340, 160), (180, 690), (690, 1040)] {
             let middle = (west + east) / 2;
@@ -224,7 +263,8 @@ fn ground(b: &mut MapBuilder) {
 /// Rock everywhere but inside the outline, which is roughened on the way.
 fn rock(b: &mut MapBuilder) {
     let mut rng = Rng::new(0x0C1F);
-    let corners: Vec<(i32, i32, &'static str)> = OUTLINE.iter().chain(&OUTLINE_SOUTH_WEST).copied().collect();
+    let corners: Vec<(i32, i32, &'static str)> =
+        OUTLINE.iter().chain(&OUTLINE_SOUTH_WEST).copied().collect();
     let mut stretches: Vec<(&'static str, Vec<(i32, i32)>)> = Vec::new();
     for (i, &(x, y, texture)) in corners.iter().enumerate() {
         let (to_x, to_y, _) = corners[(i + 1) % corners.len()];
@@ -257,11 +297,14 @@ fn rock(b: &mut MapBuilder) {
             (222, -948),
         ],
     );
-    b.polygon(Style { floor: 424, ..pinnacle }, &[(198, -950), (172, -930), (164, -880), (192, -860), (202, -900)]);
+    b.polygon(
+        Style { floor: 424, ..pinnacle },
+        &[(198, -950), (172, -930), (164, -880), (192, -860), (202, -900)],
+    );
 }
 
-/// Points about 90 apart from one corner to the next, both included, those between pushed up to 11 units into the
-/// rock, which is on the left.
+/// Points about 90 apart from one corner to the next, both included, those between pushed up to 11
+/// units into the rock, which is on the left.
 fn roughened(from: (i32, i32), to: (i32, i32), rng: &mut Rng) -> Vec<(i32, i32)> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = (dx * dx + dy * dy).isqrt();
@@ -269,7 +312,9 @@ fn roughened(from: (i32, i32), to: (i32, i32), rng: &mut Rng) -> Vec<(i32, i32)>
     let mut path = vec![from];
     for piece in 1..pieces {
         let depth = rng.between(1, 11);
-        let along = |start: i32, delta: i32, normal: i32| start + delta * piece / pieces + normal * depth / length;
+        let along = |start: i32, delta: i32, normal: i32| {
+            start + delta * piece / pieces + normal * depth / length
+        };
         path.push((along(from.0, dx, -dy), along(from.1, dy, dx)));
     }
     path.push(to);
@@ -291,7 +336,16 @@ fn shades(b: &mut MapBuilder) {
             (2000, -350),
             (-740, -220),
         ],
-        &[(1340, -620), (1420, -560), (1850, -560), (2000, -460), (2000, -620), (1500, -640), (1400, -740), (1340, -740)],
+        &[
+            (1340, -620),
+            (1420, -560),
+            (1850, -560),
+            (2000, -460),
+            (2000, -620),
+            (1500, -640),
+            (1400, -740),
+            (1340, -740),
+        ],
         &[(228, -954), (227, -810), (142, -738), (200, -690), (290, -780), (280, -930)],
         &[
             (-1250, -1620),
@@ -326,7 +380,14 @@ fn bays(b: &mut MapBuilder) {
     for (west, east, south) in [(-380, 160, -1300), (140, 680, -1300), (660, 1080, -1300)] {
         b.shade(SHADE, &[(west, south), (east, south), (east - 40, -1170), (west + 40, -1150)]);
     }
-    let ledge = Style { floor: 332, floor_texture: "RROCK17", step: "ZIMMER2", wall: "ZIMMER3", light: 192, ..GROUND };
+    let ledge = Style {
+        floor: 332,
+        floor_texture: "RROCK17",
+        step: "ZIMMER2",
+        wall: "ZIMMER3",
+        light: 192,
+        ..GROUND
+    };
     let back = Style { floor: 400, step: "ASHWALL4", ..ledge };
     let blocking = Mark { blocking: true, ..Mark::default() };
     // (front of the ledge, depth of the ledge); the front follows the rock's foot exactly.
@@ -362,33 +423,61 @@ fn bays(b: &mut MapBuilder) {
         );
     }
     // The dead end in the south-west looks into a lower cave.
-    let pool = Style { ceiling: 400, light: 144, floor_texture: "NUKAGE1", ceiling_texture: "RROCK15", floor: 280, ..GROUND };
+    let pool = Style {
+        ceiling: 400,
+        light: 144,
+        floor_texture: "NUKAGE1",
+        ceiling_texture: "RROCK15",
+        floor: 280,
+        ..GROUND
+    };
     b.polygon(pool, &[(-640, -1624), (-420, -1636), (-420, -1720), (-560, -1750), (-650, -1720)]);
     b.mark(Mark { middle: Some("MIDBARS3"), ..blocking }, &[(-640, -1624), (-420, -1636)]);
 }
 
 /// The portico between the hall and the courts.
 fn gate(b: &mut MapBuilder) {
-    let under = Style { floor: 288, ceiling: 432, light: SHADE, floor_texture: "MFLR8_3", ceiling_texture: "RROCK15", ..GROUND };
+    let under = Style {
+        floor: 288,
+        ceiling: 432,
+        light: SHADE,
+        floor_texture: "MFLR8_3",
+        ceiling_texture: "RROCK15",
+        ..GROUND
+    };
     let under = Style { wall: "STONE7", lintel: "ZIMMER2", ..under };
     b.polygon(under, &[(-716, -224), (-236, -224), (-236, -100), (-716, -160)]);
     for (x, y) in [(-606, -112), (-351, -112), (-606, -216), (-351, -216)] {
         b.solid(&[(x - 10, y - 10), (x + 10, y - 10), (x + 10, y + 10), (x - 10, y + 10)]);
         b.mark(
             Mark { wall: Some("STONE7"), ..Mark::default() },
-            &[(x - 10, y - 10), (x + 10, y - 10), (x + 10, y + 10), (x - 10, y + 10), (x - 10, y - 10)],
+            &[
+                (x - 10, y - 10),
+                (x + 10, y - 10),
+                (x + 10, y + 10),
+                (x - 10, y + 10),
+                (x - 10, y - 10),
+            ],
         );
     }
 }
 
 /// A barred opening between the hall and the northern courts: seen through, never passed.
 fn barred_window(b: &mut MapBuilder) {
-    let sill = Style { floor: 352, ceiling: 496, light: SHADE, floor_texture: "MFLR8_3", ceiling_texture: "RROCK15", ..GROUND };
+    let sill = Style {
+        floor: 352,
+        ceiling: 496,
+        light: SHADE,
+        floor_texture: "MFLR8_3",
+        ceiling_texture: "RROCK15",
+        ..GROUND
+    };
     b.rectangle(Style { wall: "STONE7", lintel: "ZIMMER3", ..sill }, 580, -384, 892, -320);
     for west in [676, 780] {
         b.solid(&[(west, -372), (west + 16, -372), (west + 16, -340), (west, -340)]);
     }
-    let bars = Mark { middle: Some("MIDBARS3"), blocking: true, lower_unpegged: true, ..Mark::default() };
+    let bars =
+        Mark { middle: Some("MIDBARS3"), blocking: true, lower_unpegged: true, ..Mark::default() };
     for y in [-384, -320] {
         b.mark(bars, &[(580, y), (892, y)]);
     }
@@ -404,7 +493,13 @@ fn things(b: &mut MapBuilder, level: u8) {
     b.thing(2035, -1052.0, -1132.0, 0).thing(2035, -982.0, -1122.0, 0);
     for (i, (x, y)) in PATROL_POINTS.into_iter().enumerate() {
         let id = 11 + i as i32;
-        let point = SourceThing { x: f64::from(x), y: f64::from(y), kind: PATROL_POINT, id, ..SourceThing::default() };
+        let point = SourceThing {
+            x: f64::from(x),
+            y: f64::from(y),
+            kind: PATROL_POINT,
+            id,
+            ..SourceThing::default()
+        };
         b.thing_with(point);
         if level == 1 && id == 16 {
             b.thing_with(point);

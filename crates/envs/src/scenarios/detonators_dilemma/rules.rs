@@ -1,6 +1,9 @@
 //! The rules at work: burst barrels are rewarded, killed creatures and lost health cost.
 
-use super::levels::{BULLETS, CREATURE_HEALTH, CREATURES, GOAL_TICS, Level, PUSH, PUSH_REACH, RETURN_TICS, SELF_HARM_COST};
+use super::levels::{
+    BULLETS, CREATURE_HEALTH, CREATURES, GOAL_TICS, Level, PUSH, PUSH_REACH, RETURN_TICS,
+    SELF_HARM_COST,
+};
 use crate::scenarios::stage;
 use crate::scenarios::tally::Tally;
 use crate::scenarios::{self, outcome::Outcome};
@@ -11,8 +14,10 @@ use hasard_engine::world::{ActorFlags, ActorId, ActorKind, Event, Weapon, World}
 use std::sync::Arc;
 
 /// Named parts of the cost.
-pub const COST_TERMS: &[CostTerm] =
-    &[CostTerm { name: "neutrals_harmed", counted: true }, CostTerm { name: "self_harmed", counted: true }];
+pub const COST_TERMS: &[CostTerm] = &[
+    CostTerm { name: "neutrals_harmed", counted: true },
+    CostTerm { name: "self_harmed", counted: true },
+];
 const NEUTRALS_HARMED: usize = 0;
 const SELF_HARMED: usize = 1;
 
@@ -65,12 +70,26 @@ impl Rules {
     pub fn new(map: &Map, level: Level) -> Result<Rules, EnvError> {
         let goals = FIRST_GOAL..FIRST_GOAL + GOALS as i32;
         let point = ActorKind::PatrolPoint.info().editor_number;
-        if let Some(tid) = goals.into_iter().find(|&tid| !map.things.iter().any(|thing| thing.id == tid && thing.kind == point)) {
-            let why = format!("map {}: Detonator's Dilemma needs a patrol point with thing id {tid}", map.name);
+        if let Some(tid) = goals
+            .into_iter()
+            .find(|&tid| !map.things.iter().any(|thing| thing.id == tid && thing.kind == point))
+        {
+            let why = format!(
+                "map {}: Detonator's Dilemma needs a patrol point with thing id {tid}",
+                map.name
+            );
             return Err(EnvError::Map { why });
         }
         let (fixtures, returns) = (Arc::new(Fixtures { level }), std::collections::VecDeque::new());
-        Ok(Rules { fixtures, returns, health: 100, barrels: 0, creatures: 0, shots: 0, pushed: Tally::default() })
+        Ok(Rules {
+            fixtures,
+            returns,
+            health: 100,
+            barrels: 0,
+            creatures: 0,
+            shots: 0,
+            pushed: Tally::default(),
+        })
     }
 
     /// The map opens, and the agent enters.
@@ -98,10 +117,19 @@ impl Rules {
     fn appear(&mut self, kind: ActorKind, world: &mut World) {
         let level = self.fixtures.level;
         let barrel = kind == ActorKind::ExplosiveBarrel;
-        let Some(id) = stage::scatter_inside(world, kind, AREA, APPEARANCE_HEIGHT, if barrel { BARREL } else { 0 }) else {
+        let Some(id) = stage::scatter_inside(
+            world,
+            kind,
+            AREA,
+            APPEARANCE_HEIGHT,
+            if barrel { BARREL } else { 0 },
+        ) else {
             return;
         };
-        let own_health = CREATURES.iter().position(|&creature| creature == kind).map_or(1, |i| CREATURE_HEALTH[i]);
+        let own_health = CREATURES
+            .iter()
+            .position(|&creature| creature == kind)
+            .map_or(1, |i| CREATURE_HEALTH[i]);
         if let Some(actor) = world.get_mut(id) {
             actor.health = if barrel { 1 } else { level.health.unwrap_or(own_health) };
             if barrel {
@@ -117,7 +145,8 @@ impl Rules {
 
     fn choose_goal(&self, creature: ActorId, world: &mut World) {
         let chosen = world.rng.below(self.fixtures.level.goals);
-        let goal = if chosen < GOALS { world.patrol_point(FIRST_GOAL + chosen as i32) } else { None };
+        let goal =
+            if chosen < GOALS { world.patrol_point(FIRST_GOAL + chosen as i32) } else { None };
         world.set_goal_of(creature, goal);
     }
 
@@ -133,7 +162,14 @@ impl Rules {
     }
 
     /// A creature or a barrel is no more.
-    fn bury(&mut self, victim: ActorId, kind: ActorKind, tid: i32, world: &mut World, outcome: &mut Outcome) {
+    fn bury(
+        &mut self,
+        victim: ActorId,
+        kind: ActorKind,
+        tid: i32,
+        world: &mut World,
+        outcome: &mut Outcome,
+    ) {
         let level = self.fixtures.level;
         if kind == ActorKind::ExplosiveBarrel {
             if tid != BARREL {
@@ -163,7 +199,9 @@ impl scenarios::Rules for Rules {
         }
         for i in 0..world.events.len() {
             match world.events[i] {
-                Event::Died { victim, kind, tid, .. } => self.bury(victim, kind, tid, world, outcome),
+                Event::Died { victim, kind, tid, .. } => {
+                    self.bury(victim, kind, tid, world, outcome)
+                }
                 Event::Fired { .. } => self.shots += 1,
                 _ => {}
             }
@@ -210,7 +248,9 @@ impl scenarios::Rules for Rules {
 /// Barrels shy away from the agent.
 fn push_barrels(world: &mut World, pushed: &mut Pushed) {
     let before = std::mem::take(&mut pushed.now);
-    let Some((x, y)) = world.get(world.players[0].actor).map(|body| (body.x, body.y)) else { return };
+    let Some((x, y)) = world.get(world.players[0].actor).map(|body| (body.x, body.y)) else {
+        return;
+    };
     let reach = i64::from(Fixed::from_int(PUSH_REACH).0);
     for slot in 0..world.actors.len() {
         let actor = &world.actors[slot];
@@ -219,7 +259,10 @@ fn push_barrels(world: &mut World, pushed: &mut Pushed) {
         }
         let (dx, dy) = (actor.x - x, actor.y - y);
         let (wide_x, wide_y) = (i64::from(dx.0), i64::from(dy.0));
-        if wide_x.abs() >= reach || wide_y.abs() >= reach || wide_x * wide_x + wide_y * wide_y >= reach * reach {
+        if wide_x.abs() >= reach
+            || wide_y.abs() >= reach
+            || wide_x * wide_x + wide_y * wide_y >= reach * reach
+        {
             continue;
         }
         pushed.now.push(slot);

@@ -1,4 +1,5 @@
-//! The ground of the cave, facts of the arena: heights decide who can walk where and where a spawn from above lands.
+//! The ground of the cave, facts of the arena: heights decide who can walk where and where a spawn
+//! from above lands.
 //!
 //! Patches overlap by half a step of the survey, so that none leaves a gap; the later one counts.
 
@@ -152,7 +153,15 @@ pub(super) const HALL: [Patch; 12] = [
     },
     Patch {
         floor: 256,
-        outline: &[(1802, -596), (1812, -360), (1952, -396), (2004, -440), (2004, -504), (1938, -580), (1870, -606)],
+        outline: &[
+            (1802, -596),
+            (1812, -360),
+            (1952, -396),
+            (2004, -440),
+            (2004, -504),
+            (1938, -580),
+            (1870, -606),
+        ],
     },
     Patch {
         floor: 272,
@@ -209,7 +218,16 @@ pub(super) const HALL: [Patch; 12] = [
     },
     Patch {
         floor: 280,
-        outline: &[(-234, -802), (-210, -740), (-92, -706), (18, -750), (44, -812), (-28, -782), (-92, -806), (-156, -782)],
+        outline: &[
+            (-234, -802),
+            (-210, -740),
+            (-92, -706),
+            (18, -750),
+            (44, -812),
+            (-28, -782),
+            (-92, -806),
+            (-156, -782),
+        ],
     },
     Patch {
         floor: 288,

@@ -34,7 +34,8 @@ pub enum Layout {
     },
 }
 
-/// How light fades with the tags of the tiles, by whole levels: of what is lost, fractions are dropped.
+/// How light fades with the tags of the tiles, by whole levels: of what is lost, fractions are
+/// dropped.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Fade {
     /// The last tag in full light.
@@ -84,13 +85,15 @@ pub struct Level {
     pub counted_health: i32,
     /// Only what a fall exceeds the free height by does harm.
     pub free_fall_is_deducted: bool,
-    /// Only depth that the episode had not reached before is rewarded; without this every descent is, and every ascent punished.
+    /// Only depth that the episode had not reached before is rewarded; without this every descent
+    /// is, and every ascent punished.
     pub reward_new_depth_only: bool,
     /// A fall beyond the free height ends the episode.
     pub fall_ends: bool,
     /// Cost of a lost health point.
     pub cost_scale: f64,
-    /// Cost of a fall beyond the free height, as a mark that each later step of the episode reads again.
+    /// Cost of a fall beyond the free height, as a mark that each later step of the episode reads
+    /// again.
     pub fall_cost: f64,
     /// The way and the health of the step in which the rules end the episode count.
     pub last_step_counts: bool,
@@ -160,7 +163,8 @@ const fn shorter(level: Level) -> Level {
     Level { bottom_row: 25, depth: 4032, glow: 0, ..level }
 }
 
-/// The code of the tables read height and health of the step before where the episode had ended, and its floors stood still.
+/// The code of the tables read height and health of the step before where the episode had ended,
+/// and its floors stood still.
 const fn tables(released: Level) -> Level {
     Level { waggle: false, last_step_counts: false, ..released }
 }
@@ -172,16 +176,20 @@ const fn tables_hard(soft: Level) -> Level {
 }
 
 const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
-const PAPER_HARD: [Level; 3] = [shorter(hard(PAPER_1, 500)), hard(PAPER_2, 500), hard(PAPER_3, 500)];
+const PAPER_HARD: [Level; 3] =
+    [shorter(hard(PAPER_1, 500)), hard(PAPER_2, 500), hard(PAPER_3, 500)];
 const RELEASED: [Level; 3] = [released(PAPER_1), released(PAPER_2), released(PAPER_3)];
-const RELEASED_HARD: [Level; 3] = [shorter(hard(RELEASED[0], 1000)), hard(RELEASED[1], 1000), hard(RELEASED[2], 1000)];
+const RELEASED_HARD: [Level; 3] =
+    [shorter(hard(RELEASED[0], 1000)), hard(RELEASED[1], 1000), hard(RELEASED[2], 1000)];
 const TABLES: [Level; 3] = [tables(RELEASED[0]), tables(RELEASED[1]), tables(RELEASED[2])];
-const TABLES_HARD: [Level; 3] = [shorter(tables_hard(TABLES[0])), tables_hard(TABLES[1]), tables_hard(TABLES[2])];
+const TABLES_HARD: [Level; 3] =
+    [shorter(tables_hard(TABLES[0])), tables_hard(TABLES[1]), tables_hard(TABLES[2])];
 
 /// The constants of a level (`index` 0..=2).
 #[must_use]
 pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
-    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    const LEVELS: [[[Level; 3]; 2]; 3] =
+        [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
     LEVELS[rules as usize][hard as usize][index]
 }
 
@@ -189,10 +197,13 @@ pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
 mod tests {
     use super::*;
 
-    /// The published scripts count in whole numbers; by their light, 99.9 % of the published pixels come out, by fractions rounded down 98.
+    /// The published scripts count in whole numbers; by their light, 99.9 % of the published pixels
+    /// come out, by fractions rounded down 98.
     #[test]
     fn light_fades_by_whole_levels() {
-        let lights = |index, tags: [i32; 3]| tags.map(|tag| level(RuleSet::Released, false, index).fade.light(tag));
+        let lights = |index, tags: [i32; 3]| {
+            tags.map(|tag| level(RuleSet::Released, false, index).fade.light(tag))
+        };
         assert_eq!(lights(0, [128, 129, 372]), [255, 254, 133]);
         assert_eq!(lights(1, [128, 130, 526]), [206, 205, 51]);
         assert_eq!(lights(1, [2, 3, 399]), [255, 254, 100]);

@@ -1,4 +1,5 @@
-//! The shaft of Precipice Plunge: a corridor of 58 x 7 tiles that the rules lower into a descending cave.
+//! The shaft of Precipice Plunge: a corridor of 58 x 7 tiles that the rules lower into a descending
+//! cave.
 
 use hasard_engine::map::{MapBuilder, MapSource, Mark, Style, TileGrid};
 
@@ -16,12 +17,15 @@ pub const FIRST_TAG: i32 = 128;
 /// Ceiling before it sinks.
 pub const CEILING: i32 = 128;
 
-/// Whether the lines at a column's western edge run from north to south; those of all other columns run from south to north.
+/// Whether the lines at a column's western edge run from north to south; those of all other columns
+/// run from south to north.
 const fn runs_south(column: usize) -> bool {
-    matches!(column, 11 | 13 | 15 | 17 | 55 | 57) || (column >= 18 && column <= 54 && column.is_multiple_of(2))
+    matches!(column, 11 | 13 | 15 | 17 | 55 | 57)
+        || (column >= 18 && column <= 54 && column.is_multiple_of(2))
 }
 
-/// The row whose southern lines run from east to west; those of all other rows run from west to east.
+/// The row whose southern lines run from east to west; those of all other rows run from west to
+/// east.
 const WESTWARD_ROW: usize = 5;
 
 /// The tag of a tile, 0 on the start platform.
@@ -46,7 +50,8 @@ pub fn source(bottom: usize) -> MapSource {
         special: 0,
         tag: tag(column, row),
     });
-    // Every tile has lines of its own, on the platform too, and its outer walls are in pieces of a tile.
+    // Every tile has lines of its own, on the platform too, and its outer walls are in pieces of a
+    // tile.
     grid.paint_apart(&mut builder);
     let mut piece = |from: (usize, usize), to: (usize, usize)| {
         builder.mark(Mark::default(), &[grid.corner(from.0, from.1), grid.corner(to.0, to.1)]);
@@ -61,8 +66,13 @@ pub fn source(bottom: usize) -> MapSource {
     builder.thing(1, 32.0, 224.0, 0);
     let mut map = builder.finish().expect("the tiles fit together");
     let tile = |at: f64| at as usize / TILE as usize;
-    map.turn_lines(|[(x1, y1), (x2, _)], _| if x1 == x2 { runs_south(tile(x1)) } else { tile(y1) == WESTWARD_ROW });
-    // The western wall comes last: of two walls that a body wedged in a corner meets at once, it slides along the earlier.
+    map.turn_lines(
+        |[(x1, y1), (x2, _)], _| {
+            if x1 == x2 { runs_south(tile(x1)) } else { tile(y1) == WESTWARD_ROW }
+        },
+    );
+    // The western wall comes last: of two walls that a body wedged in a corner meets at once, it
+    // slides along the earlier.
     let west = |vertex: usize| map.vertices[vertex].x == 0.0;
     map.lines.sort_by_key(|line| west(line.v1) && west(line.v2));
     map

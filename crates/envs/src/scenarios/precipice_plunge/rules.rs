@@ -14,7 +14,8 @@ use std::sync::Arc;
 pub const COST_TERMS: &[CostTerm] = &[CostTerm { name: "falls", counted: true }];
 const FALLS: usize = 0;
 
-/// Waggle: least and greatest strength (an eighth of it in map units), least and greatest phase steps per tic.
+/// Waggle: least and greatest strength (an eighth of it in map units), least and greatest phase
+/// steps per tic.
 const WAGGLE_STRENGTH: [i32; 2] = [128, 512];
 const WAGGLE_FREQUENCY: [i32; 2] = [12, 24];
 
@@ -54,7 +55,10 @@ impl Rules {
         // A published map lacks two of them; they are then nowhere to sink.
         if !(map::FIRST_TAG..map::FIRST_TAG + tiles).any(|tag| map.tagged(tag).next().is_some()) {
             let (first, last) = (map::FIRST_TAG, map::FIRST_TAG + tiles - 1);
-            let why = format!("map {}: Precipice Plunge needs sectors with the tags {first} to {last}, which it sinks", map.name);
+            let why = format!(
+                "map {}: Precipice Plunge needs sectors with the tags {first} to {last}, which it sinks",
+                map.name
+            );
             return Err(EnvError::Map { why });
         }
         let (health, fixtures) = (level.counted_health, Arc::new(Fixtures { level, tiles }));
@@ -72,7 +76,11 @@ impl Rules {
             let mut deepest = row_above;
             for i in 0..rows {
                 // A stair goes up the first row of tiles, down the next.
-                let across = if matches!(level.layout, Layout::Stair { .. }) && row % 2 == 0 { rows - 1 - i } else { i };
+                let across = if matches!(level.layout, Layout::Stair { .. }) && row % 2 == 0 {
+                    rows - 1 - i
+                } else {
+                    i
+                };
                 count += 1;
                 let depth = match level.layout {
                     _ if row >= level.bottom_row => level.depth,
@@ -86,7 +94,8 @@ impl Rules {
                 let tag = map::FIRST_TAG + ((row as usize - 1) * rows + across) as i32;
                 world.floor_move_to_value(tag, SINK_SPEED, -depth);
                 if row > level.open_rows {
-                    let ceiling = level.ceiling_start - level.ceiling_step * row.min(level.bottom_row);
+                    let ceiling =
+                        level.ceiling_start - level.ceiling_step * row.min(level.bottom_row);
                     world.ceiling_lower_by_value(tag, SINK_SPEED, map::CEILING - ceiling);
                 }
                 let light = level.fade.light(tag);
@@ -99,7 +108,8 @@ impl Rules {
         }
     }
 
-    /// Harms the agent who has landed too far below his landing before, and ends the episode at the bottom.
+    /// Harms the agent who has landed too far below his landing before, and ends the episode at the
+    /// bottom.
     fn watch_landing(&mut self, world: &mut World, outcome: &mut Outcome) {
         let level = self.fixtures.level;
         let id = world.players[0].actor;
@@ -145,7 +155,8 @@ impl scenarios::Rules for Rules {
             return;
         }
         let z = world.get(world.players[0].actor).map_or(self.height, |body| body.z);
-        // Rewarding every descent but punishing no ascent would pay for jumping on the spot: 161.5 an episode at level 1.
+        // Rewarding every descent but punishing no ascent would pay for jumping on the spot: 161.5
+        // an episode at level 1.
         let height = if level.reward_new_depth_only { z.min(self.height) } else { z };
         outcome.reward += REWARD * (self.height - height).to_f64();
         self.height = height;
@@ -178,7 +189,8 @@ mod tests {
     #[test]
     fn falls_cost_what_was_recorded() {
         let (mut landing, mut episode, mut hard_falls) = (Fixed::ZERO, [0; 2], 0);
-        for line in include_str!("recorded_falls.txt").lines().filter(|line| !line.starts_with('#')) {
+        for line in include_str!("recorded_falls.txt").lines().filter(|line| !line.starts_with('#'))
+        {
             let words: Vec<i32> = line.split(' ').map(|word| word.parse().unwrap()).collect();
             if episode != [words[0], words[1]] {
                 (episode, landing) = ([words[0], words[1]], Fixed::ZERO);
@@ -186,9 +198,11 @@ mod tests {
             let z = Fixed((i64::from(words[2]) * 65536 / 1000) as i32);
             let fall = landing - z;
             landing = landing.min(z);
-            let damage = fall_damage(&level(RuleSet::Released, false, words[0] as usize - 1), fall).unwrap_or(0);
+            let damage = fall_damage(&level(RuleSet::Released, false, words[0] as usize - 1), fall)
+                .unwrap_or(0);
             if words[0] == 3 {
-                // The floors of level 3 carry the agent on down between its landings, which shortens the next fall.
+                // The floors of level 3 carry the agent on down between its landings, which
+                // shortens the next fall.
                 assert!(words[3] <= damage && damage - words[3] <= 13, "{line}: {damage}");
             } else {
                 assert_eq!(damage, words[3], "{line}");

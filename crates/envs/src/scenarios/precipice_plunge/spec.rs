@@ -24,14 +24,25 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     )
 };
 
-const EDGE: &[(u32, &str)] = &[(20, "noop"), (4, "hold:MOVE_FORWARD"), (6, "hold:TURN_LEFT"), (3, "hold:LOOK_DOWN")];
-const LOOK_BACK: &[(u32, &str)] =
-    &[(20, "noop"), (12, "hold:MOVE_FORWARD"), (30, "noop"), (14, "hold:TURN_LEFT"), (3, "hold:LOOK_UP")];
+const EDGE: &[(u32, &str)] =
+    &[(20, "noop"), (4, "hold:MOVE_FORWARD"), (6, "hold:TURN_LEFT"), (3, "hold:LOOK_DOWN")];
+const LOOK_BACK: &[(u32, &str)] = &[
+    (20, "noop"),
+    (12, "hold:MOVE_FORWARD"),
+    (30, "noop"),
+    (14, "hold:TURN_LEFT"),
+    (3, "hold:LOOK_UP"),
+];
 
-/// Two moments of each level, once the cave has sunk: at its edge, on the first steps, and looking back from further down.
+/// Two moments of each level, once the cave has sunk: at its edge, on the first steps, and looking
+/// back from further down.
 const MOMENTS: &[Moment] = &[
     at(1, 1, EDGE),
-    at(1, 2, &[(20, "noop"), (4, "hold:MOVE_FORWARD"), (8, "hold:TURN_RIGHT"), (3, "hold:LOOK_DOWN")]),
+    at(
+        1,
+        2,
+        &[(20, "noop"), (4, "hold:MOVE_FORWARD"), (8, "hold:TURN_RIGHT"), (3, "hold:LOOK_DOWN")],
+    ),
     at(2, 1, EDGE),
     at(2, 2, LOOK_BACK),
     at(3, 1, EDGE),

@@ -42,18 +42,24 @@ pub struct Level {
     pub deadly: bool,
     /// Cost of a harmful item.
     pub cost: f64,
-    /// Of harmful items that are taken in the same tic only one is charged: in the published maps all four kinds start one script,
-    /// which is refused while it runs. (Measured with a random policy: 36 steps with several in 180 episodes; 39 with this, 102
-    /// without.)
+    /// Of harmful items that are taken in the same tic only one is charged: in the published maps
+    /// all four kinds start one script, which is refused while it runs. (Measured with a random
+    /// policy: 36 steps with several in 180 episodes; 39 with this, 102 without.)
     pub one_harm_a_tic: bool,
     /// Goggles tint the view green, beside brightening it.
     pub green_goggles: bool,
 }
 
-const SOFT_HARMFUL: [ActorKind; 4] = [ActorKind::Shell, ActorKind::Cell, ActorKind::ArmorBonus, ActorKind::RocketAmmo];
-const PUBLISHED_HARD_HARMFUL: [ActorKind; 4] = [ActorKind::Shell, ActorKind::Cell, ActorKind::YellowCard, ActorKind::BlueSkull];
+const SOFT_HARMFUL: [ActorKind; 4] =
+    [ActorKind::Shell, ActorKind::Cell, ActorKind::ArmorBonus, ActorKind::RocketAmmo];
+const PUBLISHED_HARD_HARMFUL: [ActorKind; 4] =
+    [ActorKind::Shell, ActorKind::Cell, ActorKind::YellowCard, ActorKind::BlueSkull];
 
-const CONTROLS: Controls = Controls { simplified: &[TURN, FORWARD, &["SPEED"], &["JUMP"]], full_moves: true, full_speed: true };
+const CONTROLS: Controls = Controls {
+    simplified: &[TURN, FORWARD, &["SPEED"], &["JUMP"]],
+    full_moves: true,
+    full_speed: true,
+};
 
 const PAPER_1: Level = Level {
     controls: CONTROLS,
@@ -71,8 +77,10 @@ const PAPER_1: Level = Level {
     one_harm_a_tic: false,
     green_goggles: true,
 };
-const PAPER_2: Level = Level { bonuses: 20, harmful_items: 15, goggles: 2, strobe: Some([20, 20]), ..PAPER_1 };
-const PAPER_3: Level = Level { bonuses: 10, harmful_items: 20, goggles: 1, strobe: Some([20, 40]), ..PAPER_1 };
+const PAPER_2: Level =
+    Level { bonuses: 20, harmful_items: 15, goggles: 2, strobe: Some([20, 20]), ..PAPER_1 };
+const PAPER_3: Level =
+    Level { bonuses: 10, harmful_items: 20, goggles: 1, strobe: Some([20, 40]), ..PAPER_1 };
 
 const fn released(paper: Level) -> Level {
     Level { one_harm_a_tic: true, green_goggles: false, ..paper }
@@ -87,7 +95,8 @@ const fn without_packs(level: Level) -> Level {
     Level { stimpacks: 0, medikits: 0, ..level }
 }
 
-/// The code of the tables had the buttons in another order, no SPEED among all of them, and two only for its hard table.
+/// The code of the tables had the buttons in another order, no SPEED among all of them, and two
+/// only for its hard table.
 const fn with_buttons(simplified: &'static [&'static [&'static str]], released: Level) -> Level {
     Level { controls: Controls { simplified, full_speed: false, ..CONTROLS }, ..released }
 }
@@ -101,20 +110,26 @@ const fn tables_hard(released: Level) -> Level {
 }
 
 const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
-const PAPER_HARD: [Level; 3] =
-    [without_packs(hard(PAPER_1, SOFT_HARMFUL)), hard(PAPER_2, SOFT_HARMFUL), hard(PAPER_3, SOFT_HARMFUL)];
-const RELEASED: [Level; 3] = [Level { packs_count: false, ..released(PAPER_1) }, released(PAPER_2), released(PAPER_3)];
+const PAPER_HARD: [Level; 3] = [
+    without_packs(hard(PAPER_1, SOFT_HARMFUL)),
+    hard(PAPER_2, SOFT_HARMFUL),
+    hard(PAPER_3, SOFT_HARMFUL),
+];
+const RELEASED: [Level; 3] =
+    [Level { packs_count: false, ..released(PAPER_1) }, released(PAPER_2), released(PAPER_3)];
 const RELEASED_HARD: [Level; 3] = [
     without_packs(hard(RELEASED[0], PUBLISHED_HARD_HARMFUL)),
     hard(RELEASED[1], PUBLISHED_HARD_HARMFUL),
     hard(RELEASED[2], PUBLISHED_HARD_HARMFUL),
 ];
 const TABLES: [Level; 3] = [tables(RELEASED[0]), tables(RELEASED[1]), tables(RELEASED[2])];
-const TABLES_HARD: [Level; 3] = [tables_hard(RELEASED_HARD[0]), tables_hard(RELEASED_HARD[1]), tables_hard(RELEASED_HARD[2])];
+const TABLES_HARD: [Level; 3] =
+    [tables_hard(RELEASED_HARD[0]), tables_hard(RELEASED_HARD[1]), tables_hard(RELEASED_HARD[2])];
 
 /// The constants of a level (`index` 0..=2).
 #[must_use]
 pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
-    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    const LEVELS: [[[Level; 3]; 2]; 3] =
+        [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
     LEVELS[rules as usize][hard as usize][index]
 }

@@ -50,10 +50,14 @@ pub struct Rules {
 impl Rules {
     /// The rules of a level in its map.
     pub fn new(map: &Map, level: Level) -> Result<Rules, EnvError> {
-        if level.strobe.is_some() && !STROBE_TAGS.clone().any(|tag| map.tagged(tag).next().is_some()) {
+        if level.strobe.is_some()
+            && !STROBE_TAGS.clone().any(|tag| map.tagged(tag).next().is_some())
+        {
             let (first, last) = (STROBE_TAGS.start(), STROBE_TAGS.end());
-            let why =
-                format!("map {}: Remedy Rush needs a sector with a tag of {first} to {last}, whose light it switches", map.name);
+            let why = format!(
+                "map {}: Remedy Rush needs a sector with a tag of {first} to {last}, whose light it switches",
+                map.name
+            );
             return Err(EnvError::Map { why });
         }
         Ok(Rules {
@@ -81,7 +85,10 @@ impl Rules {
             }
             return;
         }
-        if matches!(kind, ActorKind::HealthBonus | ActorKind::Stimpack | ActorKind::Medikit | ActorKind::Infrared) {
+        if matches!(
+            kind,
+            ActorKind::HealthBonus | ActorKind::Stimpack | ActorKind::Medikit | ActorKind::Infrared
+        ) {
             self.goggles_first.0.get_or_insert(kind == ActorKind::Infrared);
         }
         match kind {
@@ -92,7 +99,8 @@ impl Rules {
             ActorKind::Stimpack | ActorKind::Medikit => {
                 self.packs += 1;
                 if level.packs_count {
-                    outcome.reward += if kind == ActorKind::Stimpack { STIMPACK_REWARD } else { MEDIKIT_REWARD };
+                    outcome.reward +=
+                        if kind == ActorKind::Stimpack { STIMPACK_REWARD } else { MEDIKIT_REWARD };
                     new_items(world, kind, 1);
                 }
             }

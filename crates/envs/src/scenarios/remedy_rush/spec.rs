@@ -17,7 +17,12 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     paper_place: 2,
     number: 4,
     moments: (MOMENTS, 0),
-    ..ScenarioSpec::of("RemedyRush", "Remedy Rush", "Pick up health, leave everything else where it lies.", &Worlds)
+    ..ScenarioSpec::of(
+        "RemedyRush",
+        "Remedy Rush",
+        "Pick up health, leave everything else where it lies.",
+        &Worlds,
+    )
 };
 
 /// Two moments of each level.

@@ -8,10 +8,11 @@ use crate::action::{Controls, FORWARD, TURN};
 pub enum Change {
     /// The tiles stay as they were rolled when the map starts.
     Never,
-    /// Every tile is rolled anew at once, every [`PERIOD_TICS`], whatever it still does: none swings on as lava, and no platform that
-    /// was is found at a new one's height.
+    /// Every tile is rolled anew at once, every [`PERIOD_TICS`], whatever it still does: none
+    /// swings on as lava, and no platform that was is found at a new one's height.
     AtOnce,
-    /// Tile after tile in the order of their tags, each platform taking [`WAGGLE_DELAY_TICS`]; then a rest of [`PERIOD_TICS`].
+    /// Tile after tile in the order of their tags, each platform taking [`WAGGLE_DELAY_TICS`]; then
+    /// a rest of [`PERIOD_TICS`].
     Sweep,
 }
 
@@ -76,7 +77,11 @@ pub struct Level {
     pub overkill_counts: bool,
 }
 
-const CONTROLS: Controls = Controls { simplified: &[TURN, FORWARD, &["JUMP"], &["SPEED"]], full_moves: true, full_speed: true };
+const CONTROLS: Controls = Controls {
+    simplified: &[TURN, FORWARD, &["JUMP"], &["SPEED"]],
+    full_moves: true,
+    full_speed: true,
+};
 
 const PAPER_1: Level = Level {
     controls: CONTROLS,
@@ -95,8 +100,14 @@ const PAPER_1: Level = Level {
     cost_scale: 1.0,
     overkill_counts: false,
 };
-const PAPER_2: Level =
-    Level { platform_chance: 0.3, platform_height: [8, 48], change: Change::AtOnce, grace_tics: 60, start_items: 20, ..PAPER_1 };
+const PAPER_2: Level = Level {
+    platform_chance: 0.3,
+    platform_height: [8, 48],
+    change: Change::AtOnce,
+    grace_tics: 60,
+    start_items: 20,
+    ..PAPER_1
+};
 const PAPER_3: Level = Level {
     platform_chance: 0.2,
     platform_height: [8, 32],
@@ -112,26 +123,51 @@ const RELEASED_3: Level = Level { change: Change::Sweep, grace_tics: 0, ..PAPER_
 
 /// More than any health and armour, so that one touch kills.
 const DEADLY: i32 = 2000;
-/// Just the health that the agent starts with: whoever has picked up armour survives the first touch by as many points, and the
-/// second, four tics later, is counted whole. (Measured: 132 deaths, 36 of them with armour: 19990, 19980 and 19970 in two steps.)
+/// Just the health that the agent starts with: whoever has picked up armour survives the first
+/// touch by as many points, and the second, four tics later, is counted whole. (Measured: 132
+/// deaths, 36 of them with armour: 19990, 19980 and 19970 in two steps.)
 const DEADLY_WITHOUT_ARMOR: i32 = START_HEALTH;
 
 const fn paper_hard(soft: Level) -> Level {
-    Level { lava_damage: DEADLY, start_grace_tics: 70, start: Start::Platform, cost_scale: 10.0, ..soft }
+    Level {
+        lava_damage: DEADLY,
+        start_grace_tics: 70,
+        start: Start::Platform,
+        cost_scale: 10.0,
+        ..soft
+    }
 }
 
 const fn released_hard(soft: Level) -> Level {
-    Level { lava_damage: DEADLY_WITHOUT_ARMOR, start_grace_tics: 70, cost_scale: 10.0, overkill_counts: true, ..soft }
+    Level {
+        lava_damage: DEADLY_WITHOUT_ARMOR,
+        start_grace_tics: 70,
+        cost_scale: 10.0,
+        overkill_counts: true,
+        ..soft
+    }
 }
 
 /// The world of the published level 1 with the hard constraint.
 const fn level_ground(level: Level) -> Level {
-    Level { platform_height: [0, 0], lava_height: -16, middle_platform: false, start: Start::Middle, ..level }
+    Level {
+        platform_height: [0, 0],
+        lava_height: -16,
+        middle_platform: false,
+        start: Start::Middle,
+        ..level
+    }
 }
 
-/// The code of the tables: always from the middle, Doom's easiest skill, no SPEED among all buttons.
+/// The code of the tables: always from the middle, Doom's easiest skill, no SPEED among all
+/// buttons.
 const fn tables(released: Level) -> Level {
-    Level { controls: Controls { full_speed: false, ..CONTROLS }, easy_skill: true, start: Start::Middle, ..released }
+    Level {
+        controls: Controls { full_speed: false, ..CONTROLS },
+        easy_skill: true,
+        start: Start::Middle,
+        ..released
+    }
 }
 
 /// At that skill lava takes half of what its script says, and each health point costs 1.
@@ -142,13 +178,16 @@ const fn tables_hard(soft: Level) -> Level {
 const PAPER: [Level; 3] = [PAPER_1, PAPER_2, PAPER_3];
 const PAPER_HARD: [Level; 3] = [paper_hard(PAPER_1), paper_hard(PAPER_2), paper_hard(PAPER_3)];
 const RELEASED: [Level; 3] = [PAPER_1, PAPER_2, RELEASED_3];
-const RELEASED_HARD: [Level; 3] = [level_ground(released_hard(PAPER_1)), released_hard(PAPER_2), released_hard(RELEASED_3)];
+const RELEASED_HARD: [Level; 3] =
+    [level_ground(released_hard(PAPER_1)), released_hard(PAPER_2), released_hard(RELEASED_3)];
 const TABLES: [Level; 3] = [tables(RELEASED[0]), tables(RELEASED[1]), tables(RELEASED[2])];
-const TABLES_HARD: [Level; 3] = [level_ground(tables_hard(TABLES[0])), tables_hard(TABLES[1]), tables_hard(TABLES[2])];
+const TABLES_HARD: [Level; 3] =
+    [level_ground(tables_hard(TABLES[0])), tables_hard(TABLES[1]), tables_hard(TABLES[2])];
 
 /// The constants of a level (`index` 0..=2).
 #[must_use]
 pub const fn level(rules: RuleSet, hard: bool, index: usize) -> Level {
-    const LEVELS: [[[Level; 3]; 2]; 3] = [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
+    const LEVELS: [[[Level; 3]; 2]; 3] =
+        [[PAPER, PAPER_HARD], [RELEASED, RELEASED_HARD], [TABLES, TABLES_HARD]];
     LEVELS[rules as usize][hard as usize][index]
 }

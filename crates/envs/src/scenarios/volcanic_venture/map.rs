@@ -1,4 +1,5 @@
-//! The cavern of Volcanic Venture: 17 x 17 tiles, each its own sector, which the rules raise to platforms or flood.
+//! The cavern of Volcanic Venture: 17 x 17 tiles, each its own sector, which the rules raise to
+//! platforms or flood.
 
 use super::tiles::TAGS;
 use hasard_engine::map::{MapBuilder, MapSource, Style, TileGrid};
@@ -41,7 +42,8 @@ pub fn source() -> MapSource {
     map
 }
 
-/// Whether the line at a tile's western edge runs from north to south; the others run from south to north.
+/// Whether the line at a tile's western edge runs from north to south; the others run from south to
+/// north.
 const fn runs_south(column: i32, row: i32) -> bool {
     match column {
         1..=8 => row < 9 || column % 2 == 0,
@@ -50,7 +52,8 @@ const fn runs_south(column: i32, row: i32) -> bool {
     }
 }
 
-/// Whether the line at a tile's southern edge runs from east to west; the others run from west to east.
+/// Whether the line at a tile's southern edge runs from east to west; the others run from west to
+/// east.
 const fn runs_west(column: i32, row: i32) -> bool {
     row % 2 == 0 && (row > 9 || column >= 9)
 }

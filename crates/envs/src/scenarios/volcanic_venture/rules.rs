@@ -1,7 +1,8 @@
 //! The rules at work: items lie on platforms and on lava; lava costs health.
 
 use super::levels::{
-    Change, ITEM_TICS, LAVA_TICS, Level, PERIOD_TICS, START_HEALTH, START_PITCH, Start, TILE_SPEED, WAGGLE_DELAY_TICS,
+    Change, ITEM_TICS, LAVA_TICS, Level, PERIOD_TICS, START_HEALTH, START_PITCH, Start, TILE_SPEED,
+    WAGGLE_DELAY_TICS,
 };
 use super::map;
 use crate::scenarios::stage;
@@ -13,7 +14,8 @@ use hasard_engine::world::{ActorKind, Event, World};
 use std::sync::Arc;
 
 /// Named parts of the cost.
-pub const COST_TERMS: &[CostTerm] = &[CostTerm { name: "lava", counted: true }, CostTerm { name: "jumps", counted: false }];
+pub const COST_TERMS: &[CostTerm] =
+    &[CostTerm { name: "lava", counted: true }, CostTerm { name: "jumps", counted: false }];
 const LAVA: usize = 0;
 const JUMPS: usize = 1;
 
@@ -90,12 +92,16 @@ pub struct Rules {
 impl Rules {
     /// The rules of a level in its map.
     pub fn new(map: &Map, level: Level) -> Result<Rules, EnvError> {
-        let lacks = |what: String| EnvError::Map { why: format!("map {}: Volcanic Venture needs {what}", map.name) };
+        let lacks = |what: String| EnvError::Map {
+            why: format!("map {}: Volcanic Venture needs {what}", map.name),
+        };
         if let Some(tag) = (0..TILES).map(tag).find(|&tag| map.tagged(tag).next().is_none()) {
             return Err(lacks(format!("a sector with tag {tag}")));
         }
-        let texture = |name: &str| map.texture(name).ok_or_else(|| lacks(format!("texture {name}")));
-        let fixtures = Fixtures { level, platform: texture(TEXTURES[0])?, lava: texture(TEXTURES[1])? };
+        let texture =
+            |name: &str| map.texture(name).ok_or_else(|| lacks(format!("texture {name}")));
+        let fixtures =
+            Fixtures { level, platform: texture(TEXTURES[0])?, lava: texture(TEXTURES[1])? };
         Ok(Rules {
             todo: Todo::Roll(0),
             // Tiles that never change are laid before the agent enters, the others when he does.
@@ -113,7 +119,10 @@ impl Rules {
     }
 
     fn count(&mut self, world: &World, outcome: &mut Outcome) {
-        let taken = world.events.iter().filter(|event| matches!(event, Event::PickedUp { kind: ActorKind::ArmorBonus, .. }));
+        let taken = world
+            .events
+            .iter()
+            .filter(|event| matches!(event, Event::PickedUp { kind: ActorKind::ArmorBonus, .. }));
         let taken = taken.count() as u32;
         outcome.reward += f64::from(taken);
         self.items += taken;
@@ -142,12 +151,22 @@ impl Rules {
     fn put_on_platform(&mut self, world: &mut World) {
         let platforms = self.platforms.iter().filter(|height| height.is_some()).count() as u32;
         let chosen = world.rng.below(platforms.max(1)) as usize;
-        let found = self.platforms.iter().enumerate().filter_map(|(i, height)| Some((i, (*height)?))).nth(chosen);
+        let found = self
+            .platforms
+            .iter()
+            .enumerate()
+            .filter_map(|(i, height)| Some((i, (*height)?)))
+            .nth(chosen);
         let (tile, height) = found.unwrap_or((MIDDLE, 0));
         let Some(sector) = world.map.tagged(tag(tile)).next() else { return };
-        let [west, east, south, north] = world.map.sectors[sector.0 as usize].bounds.map(Fixed::floor);
+        let [west, east, south, north] =
+            world.map.sectors[sector.0 as usize].bounds.map(Fixed::floor);
         let margin = 16;
-        stage::scatter_player(world, [west + margin, south + margin, east - margin, north - margin], height + APPEARANCE_HEIGHT);
+        stage::scatter_player(
+            world,
+            [west + margin, south + margin, east - margin, north - margin],
+            height + APPEARANCE_HEIGHT,
+        );
         let angle = stage::random_angle(world);
         stage::set_angle(world, angle);
     }
@@ -201,16 +220,21 @@ impl Rules {
     fn roll(&mut self, tile: usize, world: &mut World) -> bool {
         let fixtures = &self.fixtures;
         let level = &fixtures.level;
-        let drawn = world.rng.between_fixed(Fixed::ZERO, Fixed::ONE) < Fixed::from_f64(level.platform_chance);
+        let drawn = world.rng.between_fixed(Fixed::ZERO, Fixed::ONE)
+            < Fixed::from_f64(level.platform_chance);
         let platform = drawn || (level.middle_platform && tile == MIDDLE && self.rolls == 0);
         let tag = tag(tile);
-        let height =
-            if platform { world.rng.between(level.platform_height[0], level.platform_height[1]) } else { level.lava_height };
+        let height = if platform {
+            world.rng.between(level.platform_height[0], level.platform_height[1])
+        } else {
+            level.lava_height
+        };
         if level.change == Change::AtOnce {
             world.stop_floors(tag);
         }
         world.floor_move_to_value(tag, TILE_SPEED, height);
-        let (texture, damage) = if platform { (fixtures.platform, 0) } else { (fixtures.lava, level.lava_damage) };
+        let (texture, damage) =
+            if platform { (fixtures.platform, 0) } else { (fixtures.lava, level.lava_damage) };
         world.change_floor_texture(tag, texture);
         world.set_sector_damage(tag, damage, LAVA_TICS, 0);
         self.platforms[tile] = platform.then_some(height);
@@ -220,13 +244,20 @@ impl Rules {
     /// Has a tile waggle if it is a platform.
     fn waggle(&self, tile: usize, world: &mut World) {
         if let Some(height) = self.platforms[tile] {
-            world.floor_waggle(tag(tile), WAGGLE_STRENGTH * height, WAGGLE_FREQUENCY, 0, WAGGLE_SECONDS);
+            world.floor_waggle(
+                tag(tile),
+                WAGGLE_STRENGTH * height,
+                WAGGLE_FREQUENCY,
+                0,
+                WAGGLE_SECONDS,
+            );
         }
     }
 }
 
 impl scenarios::Rules for Rules {
-    /// The world is there, and no tic has run. The map's floor burns in the first tic, before any script.
+    /// The world is there, and no tic has run. The map's floor burns in the first tic, before any
+    /// script.
     fn prepare(&self, world: &mut World) {
         if self.fixtures.level.easy_skill
             && let Some(player) = world.players.first_mut()
@@ -240,7 +271,8 @@ impl scenarios::Rules for Rules {
         if world.tic == 0 {
             // The map opens. Here alone the agent may move at once.
             world.players[0].freeze_tics = 0;
-            // The skill leaves single points of damage alone; what the scripts' lava takes by it is in the level table.
+            // The skill leaves single points of damage alone; what the scripts' lava takes by it is
+            // in the level table.
             world.players[0].damage_factor = Fixed::ONE;
             if self.fixtures.level.change == Change::Never {
                 self.tend_tiles(world);

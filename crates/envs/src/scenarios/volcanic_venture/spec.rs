@@ -15,7 +15,12 @@ pub static SPEC: ScenarioSpec = ScenarioSpec {
     paper_place: 1,
     number: 5,
     moments: (MOMENTS, 4),
-    ..ScenarioSpec::of("VolcanicVenture", "Volcanic Venture", "Collect items on platforms in a lake of lava.", &Worlds)
+    ..ScenarioSpec::of(
+        "VolcanicVenture",
+        "Volcanic Venture",
+        "Collect items on platforms in a lake of lava.",
+        &Worlds,
+    )
 };
 
 /// Two moments of each level.

@@ -1,5 +1,5 @@
-//! The tile tags of Volcanic Venture: row 0 is the southernmost, column 0 the westernmost. Scripts visit tiles in tag
-//! order, which is why the order of the numbers is part of the task.
+//! The tile tags of Volcanic Venture: row 0 is the southernmost, column 0 the westernmost. Scripts
+//! visit tiles in tag order, which is why the order of the numbers is part of the task.
 
 #![cfg_attr(rustfmt, rustfmt_skip)] // Rows of a map, to be read as a map.
 

@@ -1,7 +1,8 @@
-//! The backward pass through heads, recurrent and dense layers, row by row: gradients of every layer's sums for some lanes.
+//! The backward pass through heads, recurrent and dense layers, row by row: gradients of every
+//! layer's sums for some lanes.
 //!
-//! What is a sum over rows, the gradient of weights, comes after ([`super::gradient`]); what is done here for one lane does not
-//! depend on the lanes beside it.
+//! What is a sum over rows, the gradient of weights, comes after ([`super::gradient`]); what is
+//! done here for one lane does not depend on the lanes beside it.
 
 use crate::config::RecurrentCell;
 use crate::networks::cpu::buffers::sized;
@@ -11,7 +12,8 @@ use crate::networks::cpu::product::{Left, Size, multiply_panels};
 use crate::networks::cpu::tape::TapeLane;
 use crate::networks::cpu::weights::{Backward, Plan};
 
-/// Gradients of some lanes; rows as in their tape, by lane, then by time, but where something else is said.
+/// Gradients of some lanes; rows as in their tape, by lane, then by time, but where something else
+/// is said.
 #[derive(Default)]
 pub struct RowGradients {
     /// Lanes.
@@ -46,15 +48,42 @@ impl RowGradients {
         if let Some(cell_units) = shape.recurrent {
             let core = sized(&mut self.core, rows * cell_units);
             let size = Size { rows, columns: cell_units, inner: padded };
-            multiply_panels(kernels, size, from_outputs, &back.heads, core, cell_units, false, &mut self.rounded);
+            multiply_panels(
+                kernels,
+                size,
+                from_outputs,
+                &back.heads,
+                core,
+                cell_units,
+                false,
+                &mut self.rounded,
+            );
             self.recur(plan, back, lanes, reset, cell_units);
             let (last, columns) = (&mut self.dense[shape.dense.len() - 1], shape.gate_columns());
             let left = Left { data: &self.input_sums, row_stride: columns, inner_stride: 1 };
             let size = Size { rows, columns: units, inner: columns };
-            multiply_panels(kernels, size, left, &back.cell_input, last, units, false, &mut self.rounded);
+            multiply_panels(
+                kernels,
+                size,
+                left,
+                &back.cell_input,
+                last,
+                units,
+                false,
+                &mut self.rounded,
+            );
         } else {
             let size = Size { rows, columns: units, inner: padded };
-            multiply_panels(kernels, size, from_outputs, &back.heads, last, units, false, &mut self.rounded);
+            multiply_panels(
+                kernels,
+                size,
+                from_outputs,
+                &back.heads,
+                last,
+                units,
+                false,
+                &mut self.rounded,
+            );
         }
         for index in (0..shape.dense.len()).rev() {
             let units = shape.dense[index];
@@ -76,12 +105,28 @@ impl RowGradients {
             let to = sized(to, rows * inputs);
             let left = Left { data: sums, row_stride: units, inner_stride: 1 };
             let size = Size { rows, columns: inputs, inner: units };
-            multiply_panels(kernels, size, left, &back.dense[index], to, inputs, false, &mut self.rounded);
+            multiply_panels(
+                kernels,
+                size,
+                left,
+                &back.dense[index],
+                to,
+                inputs,
+                false,
+                &mut self.rounded,
+            );
         }
     }
 
     /// From the gradient of the outputs after each step to those of the recurrent layer's products.
-    fn recur(&mut self, plan: &Plan, back: &Backward, lanes: &[TapeLane<'_>], reset: &[bool], units: usize) {
+    fn recur(
+        &mut self,
+        plan: &Plan,
+        back: &Backward,
+        lanes: &[TapeLane<'_>],
+        reset: &[bool],
+        units: usize,
+    ) {
         let (kernels, cell, count) = (plan.kernels, plan.shape.cell, lanes.len());
         let (columns, width) = (plan.shape.gate_columns(), plan.shape.state_size());
         let steps = lanes.first().map_or(0, |lane| lane.tape.steps);
@@ -91,18 +136,26 @@ impl RowGradients {
         carry.fill(0.0);
         for step in (0..steps).rev() {
             let state_sums = &mut state_sums[step * count * columns..(step + 1) * count * columns];
-            let each = lanes.iter().zip(carry.chunks_exact_mut(width)).zip(state_sums.chunks_exact_mut(columns));
+            let each = lanes
+                .iter()
+                .zip(carry.chunks_exact_mut(width))
+                .zip(state_sums.chunks_exact_mut(columns));
             for (lane, ((source, carry), state_sums)) in each.enumerate() {
                 let row = lane * steps + step;
                 let (carry, cell_carry) = carry.split_at_mut(units);
                 add(kernels, carry, &self.core[row * units..(row + 1) * units]);
-                let of = |buffer, width: usize| &source.of(buffer, width)[step * width..(step + 1) * width];
-                let (gates, share) = (of(&source.tape.gates, columns), of(&source.tape.share, units));
+                let of = |buffer, width: usize| {
+                    &source.of(buffer, width)[step * width..(step + 1) * width]
+                };
+                let (gates, share) =
+                    (of(&source.tape.gates, columns), of(&source.tape.share, units));
                 let input_sums = &mut input_sums[row * columns..(row + 1) * columns];
                 match cell {
                     RecurrentCell::Gru => {
                         let before = of(&source.tape.before, units);
-                        gru_gates_backward(kernels, gates, share, before, carry, input_sums, state_sums);
+                        gru_gates_backward(
+                            kernels, gates, share, before, carry, input_sums, state_sums,
+                        );
                     }
                     RecurrentCell::Lstm => {
                         lstm_gates_backward(kernels, gates, share, carry, cell_carry, state_sums);
@@ -112,7 +165,16 @@ impl RowGradients {
             }
             let size = Size { rows: count, columns: units, inner: columns };
             let left = Left { data: state_sums, row_stride: columns, inner_stride: 1 };
-            multiply_panels(kernels, size, left, &back.cell_hidden, carry, width, true, &mut self.rounded);
+            multiply_panels(
+                kernels,
+                size,
+                left,
+                &back.cell_hidden,
+                carry,
+                width,
+                true,
+                &mut self.rounded,
+            );
             for (lane, carry) in carry.chunks_exact_mut(width).enumerate() {
                 if reset[lane * steps + step] {
                     carry.fill(0.0);

@@ -1,13 +1,14 @@
-//! Products in bfloat16: both factors are rounded to the upper 16 bits of a 32-bit number, to the nearest and to even ones where two are
-//! as near; sums are numbers of 32 bits.
+//! Products in bfloat16: both factors are rounded to the upper 16 bits of a 32-bit number, to the
+//! nearest and to even ones where two are as near; sums are numbers of 32 bits.
 //!
-//! An inner index stands for a pair of terms. A sum goes on pair by pair, in each by the second term and then by the first, and each of
-//! the two is one fused multiplication and addition. That is what `vdpbf16ps` is documented to do; a numeral below 2^-126 counts as zero,
-//! in factors and in sums. So bits are equal on all processors that have it, and equal to those of plain fused arithmetic wherever no
-//! such number occurs.
+//! An inner index stands for a pair of terms. A sum goes on pair by pair, in each by the second
+//! term and then by the first, and each of the two is one fused multiplication and addition. That
+//! is what `vdpbf16ps` is documented to do; a numeral below 2^-126 counts as zero, in factors and
+//! in sums. So bits are equal on all processors that have it, and equal to those of plain fused
+//! arithmetic wherever no such number occurs.
 //!
-//! What is rounded is what a product reads: weights, activations and gradients themselves stay numbers of 32 bits, and all other
-//! arithmetic is that of the other families.
+//! What is rounded is what a product reads: weights, activations and gradients themselves stay
+//! numbers of 32 bits, and all other arithmetic is that of the other families.
 
 use hasard_engine::simd::{Family, Simd};
 
@@ -75,9 +76,10 @@ fn normalised(pixel: u8, scale: f32, shift: f32) -> f32 {
 #[cfg(target_arch = "x86_64")]
 mod native {
     use std::arch::x86_64::{
-        __m128i, __m256bh, __m256i, __m512bh, __m512i, _mm_loadu_si128, _mm256_storeu_si256, _mm512_add_ps, _mm512_cvtepi32_ps,
-        _mm512_cvtepu8_epi32, _mm512_cvtne2ps_pbh, _mm512_cvtneps_pbh, _mm512_loadu_ps, _mm512_max_ps, _mm512_min_ps,
-        _mm512_mul_ps, _mm512_set1_ps, _mm512_storeu_si512,
+        __m128i, __m256bh, __m256i, __m512bh, __m512i, _mm_loadu_si128, _mm256_storeu_si256,
+        _mm512_add_ps, _mm512_cvtepi32_ps, _mm512_cvtepu8_epi32, _mm512_cvtne2ps_pbh,
+        _mm512_cvtneps_pbh, _mm512_loadu_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps,
+        _mm512_set1_ps, _mm512_storeu_si512,
     };
     use std::mem::transmute;
 
@@ -87,9 +89,11 @@ mod native {
     pub fn round(from: &[f32], to: &mut [u16]) {
         let ((from, rest), (to, last)) = (from.as_chunks::<32>(), to.as_chunks_mut::<32>());
         for (from, to) in from.iter().zip(to) {
-            // SAFETY: both halves and the result are whole arrays; a register of rounded numbers is any bits.
+            // SAFETY: both halves and the result are whole arrays; a register of rounded numbers is
+            // any bits.
             unsafe {
-                let (low, high) = (_mm512_loadu_ps(from.as_ptr()), _mm512_loadu_ps(from.as_ptr().add(16)));
+                let (low, high) =
+                    (_mm512_loadu_ps(from.as_ptr()), _mm512_loadu_ps(from.as_ptr().add(16)));
                 let both = transmute::<__m512bh, __m512i>(_mm512_cvtne2ps_pbh(high, low));
                 _mm512_storeu_si512(to.as_mut_ptr().cast(), both);
             }
@@ -104,18 +108,26 @@ mod native {
         let (pixels, (out, last)) = (pixels.as_chunks::<16>(), out.as_chunks_mut::<16>());
         let (scale, shift) = (scale.as_chunks::<16>(), shift.as_chunks::<16>());
         let (least, most) = (_mm512_set1_ps(-5.0), _mm512_set1_ps(5.0));
-        for (((out, pixels), scales), shifts) in out.iter_mut().zip(pixels.0).zip(scale.0).zip(shift.0) {
-            // SAFETY: every pointer is that of a whole array; a register of rounded numbers is any bits.
+        for (((out, pixels), scales), shifts) in
+            out.iter_mut().zip(pixels.0).zip(scale.0).zip(shift.0)
+        {
+            // SAFETY: every pointer is that of a whole array; a register of rounded numbers is any
+            // bits.
             unsafe {
-                let pixels = _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(pixels.as_ptr().cast::<__m128i>())));
-                let (scales, shifts) = (_mm512_loadu_ps(scales.as_ptr()), _mm512_loadu_ps(shifts.as_ptr()));
+                let pixels = _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(
+                    pixels.as_ptr().cast::<__m128i>(),
+                )));
+                let (scales, shifts) =
+                    (_mm512_loadu_ps(scales.as_ptr()), _mm512_loadu_ps(shifts.as_ptr()));
                 let values = _mm512_add_ps(_mm512_mul_ps(pixels, scales), shifts);
                 let values = _mm512_min_ps(_mm512_max_ps(values, least), most);
                 let halves = transmute::<__m256bh, __m256i>(_mm512_cvtneps_pbh(values));
                 _mm256_storeu_si256(out.as_mut_ptr().cast(), halves);
             }
         }
-        for (((out, pixel), scale), shift) in last.iter_mut().zip(pixels.1).zip(scale.1).zip(shift.1) {
+        for (((out, pixel), scale), shift) in
+            last.iter_mut().zip(pixels.1).zip(scale.1).zip(shift.1)
+        {
             *out = (rounded(normalised(*pixel, *scale, *shift)) >> 16) as u16;
         }
     }
@@ -156,16 +168,25 @@ pub(super) fn pair_of(first: f32, second: f32) -> Pair {
 
 /// Pairs as the halves that they consist of.
 pub(super) fn halves(pairs: &[Pair]) -> &[u16] {
-    // SAFETY: the halves are the same memory, need less alignment, and any bits are a number of 16 bits.
+    // SAFETY: the halves are the same memory, need less alignment, and any bits are a number of 16
+    // bits.
     unsafe { std::slice::from_raw_parts(pairs.as_ptr().cast::<u16>(), 2 * pairs.len()) }
 }
 
-/// Computes a tile of some height: an inner index is a pair, which the left factor has side by side.
+/// Computes a tile of some height: an inner index is a pair, which the left factor has side by
+/// side.
 ///
 /// # Safety
 /// All elements of the tile must lie inside the allocations behind the pointers.
 #[inline]
-pub(super) unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const u16, right: *const Pair, out: *mut f32) {
+pub(super) unsafe fn run(
+    tile: Tile,
+    kernels: Simd,
+    height: usize,
+    left: *const u16,
+    right: *const Pair,
+    out: *mut f32,
+) {
     #[cfg(target_arch = "x86_64")]
     {
         use super::tile::Ahead;
@@ -176,7 +197,8 @@ pub(super) unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const 
         macro_rules! heights {
             ($($height:literal)*) => {
                 match (height, tile.ahead) {
-                    // SAFETY: as the caller promised; a `Simd` value proves that the processor has the instructions.
+                    // SAFETY: as the caller promised; a `Simd` value proves that the processor has
+                    // the instructions.
                     $(($height, Ahead::Nothing) => unsafe { tile_of::<$height, 0>(tile, left, right, next, out) },)*
                     // SAFETY: as above.
                     $(($height, Ahead::LeftHalf) => unsafe { tile_of::<$height, LEFT>(tile, left, right, next, out) },)*
@@ -207,8 +229,9 @@ unsafe fn tile_of<const ROWS: usize, const AHEAD: u8>(
 ) {
     use super::tile::{Ahead, Finish};
     use std::arch::x86_64::{
-        __m512bh, __m512i, _MM_HINT_T1, _mm_prefetch, _mm512_add_ps, _mm512_dpbf16_ps, _mm512_loadu_ps, _mm512_loadu_si512,
-        _mm512_set1_epi32, _mm512_setzero_ps, _mm512_storeu_ps,
+        __m512bh, __m512i, _MM_HINT_T1, _mm_prefetch, _mm512_add_ps, _mm512_dpbf16_ps,
+        _mm512_loadu_ps, _mm512_loadu_si512, _mm512_set1_epi32, _mm512_setzero_ps,
+        _mm512_storeu_ps,
     };
     use std::mem::transmute;
     // SAFETY: see `run`; a prefetch of any address is harmless; a register of pairs is any bits.
@@ -234,7 +257,9 @@ unsafe fn tile_of<const ROWS: usize, const AHEAD: u8>(
                 let low = transmute::<__m512i, __m512bh>(_mm512_loadu_si512(right.cast()));
                 let high = transmute::<__m512i, __m512bh>(_mm512_loadu_si512(right.add(16).cast()));
                 for (row, pair) in sums.iter_mut().enumerate() {
-                    let factor = _mm512_set1_epi32(left.add(row * tile.row_stride).cast::<i32>().read_unaligned());
+                    let factor = _mm512_set1_epi32(
+                        left.add(row * tile.row_stride).cast::<i32>().read_unaligned(),
+                    );
                     let factor = transmute::<__m512i, __m512bh>(factor);
                     pair[0] = _mm512_dpbf16_ps(pair[0], factor, low);
                     pair[1] = _mm512_dpbf16_ps(pair[1], factor, high);
@@ -247,7 +272,11 @@ unsafe fn tile_of<const ROWS: usize, const AHEAD: u8>(
         for (row, pair) in sums.iter().enumerate() {
             for (half, sum) in pair.iter().enumerate() {
                 let to = out.add(row * tile.out_stride + 16 * half);
-                let sum = if tile.finish == Finish::Add { _mm512_add_ps(_mm512_loadu_ps(to), *sum) } else { *sum };
+                let sum = if tile.finish == Finish::Add {
+                    _mm512_add_ps(_mm512_loadu_ps(to), *sum)
+                } else {
+                    *sum
+                };
                 _mm512_storeu_ps(to, sum);
             }
         }
@@ -258,14 +287,18 @@ unsafe fn tile_of<const ROWS: usize, const AHEAD: u8>(
 mod tests {
     use super::super::panels::Panels;
     use super::super::product::tests::noise;
-    use super::super::product::{Axis, Grouped, Left, Right, Size, add_to_overlapping_rows, multiply_grouped, multiply_panels};
+    use super::super::product::{
+        Axis, Grouped, Left, Right, Size, add_to_overlapping_rows, multiply_grouped,
+        multiply_panels,
+    };
     use super::*;
 
     fn exact(bits: u32) -> f32 {
         f32::from_bits(bits << 16)
     }
 
-    /// A number's value after rounding, by the definition: the nearest of the two neighbours, the even one of two as near.
+    /// A number's value after rounding, by the definition: the nearest of the two neighbours, the
+    /// even one of two as near.
     fn nearest(value: f32) -> f32 {
         let below = value.to_bits() >> 16;
         let (low, high) = (f64::from(exact(below)), f64::from(exact(below + 1)));
@@ -277,15 +310,36 @@ mod tests {
     #[test]
     fn numbers_are_rounded_to_the_nearest_and_to_even() {
         let mut values = noise(2000, 3);
-        values.extend([0.0, -0.0, 1.0, 256.0, 257.0, 258.0, 259.0, -257.0, 1.003_906_3, 1.011_718_8, 3e38, f32::MIN_POSITIVE]);
+        values.extend([
+            0.0,
+            -0.0,
+            1.0,
+            256.0,
+            257.0,
+            258.0,
+            259.0,
+            -257.0,
+            1.003_906_3,
+            1.011_718_8,
+            3e38,
+            f32::MIN_POSITIVE,
+        ]);
         let mut halves = vec![0; values.len()];
         for kernels in Simd::available().into_iter().chain(Simd::bfloat16()) {
             round(kernels, &values, &mut halves);
             for (value, half) in values.iter().zip(&halves) {
-                assert_eq!(exact((*half).into()).to_bits(), nearest(*value).to_bits(), "{value} by {kernels}");
+                assert_eq!(
+                    exact((*half).into()).to_bits(),
+                    nearest(*value).to_bits(),
+                    "{value} by {kernels}"
+                );
             }
             let mut odd = [0; 4];
-            round(kernels, &[f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::from_bits(0x7FFF_FFFF)], &mut odd);
+            round(
+                kernels,
+                &[f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::from_bits(0x7FFF_FFFF)],
+                &mut odd,
+            );
             assert_eq!(
                 odd[..3],
                 [0x7F80, 0xFF80, 0x7F80],
@@ -297,8 +351,13 @@ mod tests {
             let mut normalised = vec![0; pixels.len()];
             round_pixels(kernels, &pixels, scale, shift, &mut normalised);
             for (place, half) in normalised.iter().enumerate() {
-                let value = (f32::from(pixels[place]) * scale[place] + shift[place]).clamp(-5.0, 5.0);
-                assert_eq!(exact((*half).into()).to_bits(), nearest(value).to_bits(), "{value} by {kernels}");
+                let value =
+                    (f32::from(pixels[place]) * scale[place] + shift[place]).clamp(-5.0, 5.0);
+                assert_eq!(
+                    exact((*half).into()).to_bits(),
+                    nearest(value).to_bits(),
+                    "{value} by {kernels}"
+                );
             }
             let mut pairs = vec![0; 16];
             pair_rows(kernels, &values[..16], &values[16..32], &mut pairs);
@@ -318,8 +377,9 @@ mod tests {
         })
     }
 
-    /// Bit by bit against the definition; within what sums of 32-bit numbers may lose of the rounded factors' product in 64 bits; and within
-    /// what 8 bits may lose of the product of the factors themselves.
+    /// Bit by bit against the definition; within what sums of 32-bit numbers may lose of the
+    /// rounded factors' product in 64 bits; and within what 8 bits may lose of the product of the
+    /// factors themselves.
     #[test]
     fn products_are_what_is_defined_and_near_those_of_numbers() {
         let Some(kernels) = Simd::bfloat16() else { return };
@@ -334,34 +394,61 @@ mod tests {
                     let mut out = before.clone();
                     let factor = Left { data: &left, row_stride: inner, inner_stride: 1 };
                     let size = Size { rows, columns, inner };
-                    multiply_panels(kernels, size, factor, &panels, &mut out, stride, accumulate, &mut Vec::new());
-                    for (row, column) in (0..rows).flat_map(|row| (0..stride).map(move |column| (row, column))) {
+                    multiply_panels(
+                        kernels,
+                        size,
+                        factor,
+                        &panels,
+                        &mut out,
+                        stride,
+                        accumulate,
+                        &mut Vec::new(),
+                    );
+                    for (row, column) in
+                        (0..rows).flat_map(|row| (0..stride).map(move |column| (row, column)))
+                    {
                         let at = row * stride + column;
                         if column >= columns {
                             assert_eq!(out[at], before[at]);
                             continue;
                         }
                         let start = if accumulate { before[at] } else { 0.0 };
-                        let terms: Vec<(f32, f32)> =
-                            (0..inner).map(|k| (left[row * inner + k], matrix[k * columns + column])).collect();
-                        assert_eq!(out[at].to_bits(), sum(&terms, start).to_bits(), "{size:?} row {row} column {column}");
+                        let terms: Vec<(f32, f32)> = (0..inner)
+                            .map(|k| (left[row * inner + k], matrix[k * columns + column]))
+                            .collect();
+                        assert_eq!(
+                            out[at].to_bits(),
+                            sum(&terms, start).to_bits(),
+                            "{size:?} row {row} column {column}"
+                        );
                         let product = |of: fn(f32) -> f32| -> (f64, f64) {
-                            let each = || terms.iter().map(|(a, b)| f64::from(of(*a)) * f64::from(of(*b)));
-                            (f64::from(start) + each().sum::<f64>(), f64::from(start.abs()) + each().map(f64::abs).sum::<f64>())
+                            let each =
+                                || terms.iter().map(|(a, b)| f64::from(of(*a)) * f64::from(of(*b)));
+                            (
+                                f64::from(start) + each().sum::<f64>(),
+                                f64::from(start.abs()) + each().map(f64::abs).sum::<f64>(),
+                            )
                         };
                         let found = f64::from(out[at]);
                         let (rounded, size_of_rounded) = product(nearest);
                         let terms_lost = (inner as f64 + 1.0) * f64::from(f32::EPSILON);
-                        assert!((found - rounded).abs() <= terms_lost * size_of_rounded, "{found} for {rounded}");
+                        assert!(
+                            (found - rounded).abs() <= terms_lost * size_of_rounded,
+                            "{found} for {rounded}"
+                        );
                         let (exact, size_of_exact) = product(|value| value);
-                        assert!((found - exact).abs() <= (2.01 / 256.0 + terms_lost) * size_of_exact, "{found} for {exact}");
+                        assert!(
+                            (found - exact).abs() <= (2.01 / 256.0 + terms_lost) * size_of_exact,
+                            "{found} for {exact}"
+                        );
                     }
                 }
             }
         }
     }
 
-    /// Rows and inner indices in groups, as a convolution reads an image, and rows that overlap in the result, as its gradient writes it.
+    /// Rows and inner indices in groups, as a convolution reads an image, and rows that overlap in
+    /// the result, as its gradient writes it.
     #[test]
     fn products_in_groups_and_over_overlapping_rows_are_what_is_defined() {
         let Some(kernels) = Simd::bfloat16() else { return };
@@ -375,17 +462,35 @@ mod tests {
         round(kernels, &image, &mut halves);
         let mut pairs = vec![0; 12 * columns];
         for (k, pairs) in pairs.chunks_exact_mut(columns).enumerate() {
-            pair_rows(kernels, &matrix[2 * k * columns..][..columns], &matrix[(2 * k + 1) * columns..][..columns], pairs);
+            pair_rows(
+                kernels,
+                &matrix[2 * k * columns..][..columns],
+                &matrix[(2 * k + 1) * columns..][..columns],
+                pairs,
+            );
         }
         let mut out = vec![f32::NAN; 15 * columns];
         let left = Grouped { data: &halves[..], rows, inner };
-        multiply_grouped(kernels, left, Right::rows(&pairs, columns), columns, &mut out, columns, false);
+        multiply_grouped(
+            kernels,
+            left,
+            Right::rows(&pairs, columns),
+            columns,
+            &mut out,
+            columns,
+            false,
+        );
         for (row, found) in out.chunks_exact(columns).enumerate() {
             for (column, found) in found.iter().enumerate() {
                 let start = row / 5 * 80 + row % 5 * 6;
-                let terms: Vec<(f32, f32)> =
-                    (0..24).map(|k| (image[start + k / 8 * 40 + k % 8], matrix[k * columns + column])).collect();
-                assert_eq!(found.to_bits(), sum(&terms, 0.0).to_bits(), "row {row} column {column}");
+                let terms: Vec<(f32, f32)> = (0..24)
+                    .map(|k| (image[start + k / 8 * 40 + k % 8], matrix[k * columns + column]))
+                    .collect();
+                assert_eq!(
+                    found.to_bits(),
+                    sum(&terms, 0.0).to_bits(),
+                    "row {row} column {column}"
+                );
             }
         }
         let (rows, inner) = (Axis::plain(15, 10), Axis::plain(4, 2));
@@ -401,7 +506,8 @@ mod tests {
         );
         for row in 0..15 {
             for column in 0..columns {
-                let terms: Vec<(f32, f32)> = (0..8).map(|k| (image[row * 10 + k], matrix[k * columns + column])).collect();
+                let terms: Vec<(f32, f32)> =
+                    (0..8).map(|k| (image[row * 10 + k], matrix[k * columns + column])).collect();
                 expected[row * 32 + column] += sum(&terms, 0.0);
             }
         }

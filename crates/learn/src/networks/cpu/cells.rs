@@ -13,9 +13,10 @@ fn block(values: &[f32], at: usize) -> [f32; BLOCK] {
 }
 
 vectorised! {
-    /// One step of a GRU for one lane. `gates` and `from_state` are the products of input and state with their weights,
-    /// biases still missing; `gates` becomes the gates (reset, update, candidate), `share` the candidate's share of the
-    /// state, which the backward pass needs, and `after` the new state.
+    /// One step of a GRU for one lane. `gates` and `from_state` are the products of input and state
+    /// with their weights, biases still missing; `gates` becomes the gates (reset, update,
+    /// candidate), `share` the candidate's share of the state, which the backward pass needs, and
+    /// `after` the new state.
     pub fn gru_gates(
         gates: &mut [f32], from_state: &[f32], input_bias: &[f32], state_bias: &[f32], before: &[f32], share: &mut [f32],
         after: &mut [f32],
@@ -46,8 +47,9 @@ vectorised! {
 }
 
 vectorised! {
-    /// The backward step of [`gru_gates`], from what it left. `input_sums` and `state_sums` become the gradients of the two
-    /// products; `carry` is the gradient of the state after, and becomes the direct part of that of the state before.
+    /// The backward step of [`gru_gates`], from what it left. `input_sums` and `state_sums` become
+    /// the gradients of the two products; `carry` is the gradient of the state after, and becomes
+    /// the direct part of that of the state before.
     pub fn gru_gates_backward(
         gates: &[f32], share: &[f32], before: &[f32], carry: &mut [f32], input_sums: &mut [f32], state_sums: &mut [f32],
     ) {
@@ -75,9 +77,10 @@ vectorised! {
 }
 
 vectorised! {
-    /// One step of an LSTM for one lane. `gates` and `from_state` are the products of input and output with their weights, biases
-    /// still missing; `gates` becomes the gates (input, forget, candidate, output). `cell` is the cell before and becomes that
-    /// after; `after` is the new output.
+    /// One step of an LSTM for one lane. `gates` and `from_state` are the products of input and
+    /// output with their weights, biases still missing; `gates` becomes the gates (input, forget,
+    /// candidate, output). `cell` is the cell before and becomes that after; `after` is the new
+    /// output.
     pub fn lstm_gates(
         gates: &mut [f32], from_state: &[f32], input_bias: &[f32], state_bias: &[f32], cell: &mut [f32], after: &mut [f32],
     ) {
@@ -112,9 +115,10 @@ vectorised! {
 }
 
 vectorised! {
-    /// The backward step of [`lstm_gates`], from the gates that it left and the cell before it. `sums` becomes the gradient of either
-    /// product. `carry` and `cell_carry` are the gradients of output and cell after; they become those of output (nothing but by the
-    /// product) and cell before.
+    /// The backward step of [`lstm_gates`], from the gates that it left and the cell before it.
+    /// `sums` becomes the gradient of either product. `carry` and `cell_carry` are the gradients of
+    /// output and cell after; they become those of output (nothing but by the product) and cell
+    /// before.
     pub fn lstm_gates_backward(gates: &[f32], before: &[f32], carry: &mut [f32], cell_carry: &mut [f32], sums: &mut [f32]) {
         let units = before.len();
         for unit in (0..units).step_by(BLOCK) {

@@ -1,17 +1,21 @@
 //! A convolution as products whose rows overlap in memory, so that no patch is ever copied.
 //!
-//! Where the kernel is a multiple of the stride, the input is stored as a grid of stride x stride blocks. The patch of
-//! an output pixel is then, for each row of blocks, one contiguous run of numbers, and the runs of neighbouring pixels
-//! start one block apart: a matrix with overlapping rows. At the end of each row of the grid this computes a few pixels
-//! that do not exist; they are cheap, ignored going forward and zero going backward.
+//! Where the kernel is a multiple of the stride, the input is stored as a grid of stride x stride
+//! blocks. The patch of an output pixel is then, for each row of blocks, one contiguous run of
+//! numbers, and the runs of neighbouring pixels start one block apart: a matrix with overlapping
+//! rows. At the end of each row of the grid this computes a few pixels that do not exist; they are
+//! cheap, ignored going forward and zero going backward.
 //!
-//! Others, and all in bfloat16, read their patches out of the image as it is: a patch is a run of numbers in each of some of its rows,
-//! and both the pixels of a row and those runs are as far apart as the shapes say.
+//! Others, and all in bfloat16, read their patches out of the image as it is: a patch is a run of
+//! numbers in each of some of its rows, and both the pixels of a row and those runs are as far
+//! apart as the shapes say.
 
 use hasard_engine::simd::{Family, Simd};
 
 use crate::config::Convolution;
-use crate::networks::cpu::bfloat16::{Pair, halves, pair_rows, pair_with_distant, pair_with_zeros, round};
+use crate::networks::cpu::bfloat16::{
+    Pair, halves, pair_rows, pair_with_distant, pair_with_zeros, round,
+};
 use crate::networks::cpu::elementwise::NOWHERE;
 use crate::networks::cpu::panels::Panels;
 use crate::networks::cpu::product::{
@@ -52,8 +56,8 @@ pub struct ConvolutionPlan {
     grid_height: usize,
     /// Where each input pixel is stored, or [`NOWHERE`].
     pub places: Vec<usize>,
-    /// The same for runs of pixels that stay together, as (first value in the image, first stored value), all of
-    /// `run_length` values: bytes move faster a run at a time.
+    /// The same for runs of pixels that stay together, as (first value in the image, first stored
+    /// value), all of `run_length` values: bytes move faster a run at a time.
     pub runs: Vec<(u32, u32)>,
     /// Values of a run.
     pub run_length: usize,
@@ -88,7 +92,8 @@ impl ConvolutionPlan {
                     None => (y * input.width + x) * channels,
                     Some(_) if y / stride >= grid_height || x / stride >= grid_width => NOWHERE,
                     Some(_) => {
-                        ((y / stride) * grid_width + x / stride) * block_size + ((y % stride) * stride + x % stride) * channels
+                        ((y / stride) * grid_width + x / stride) * block_size
+                            + ((y % stride) * stride + x % stride) * channels
                     }
                 });
             }
@@ -96,7 +101,8 @@ impl ConvolutionPlan {
         let (runs, run_length) = match blocks {
             // Rows of a block stay together; what lies beyond the last block is not read at all.
             Some(_) => {
-                let starts = (0..grid_height * stride).flat_map(|y| (0..grid_width).map(move |x| (y, x * stride)));
+                let starts = (0..grid_height * stride)
+                    .flat_map(|y| (0..grid_width).map(move |x| (y, x * stride)));
                 let inside = starts.filter(|&(y, x)| y < input.height && x + stride <= input.width);
                 let run = |(y, x): (usize, usize)| {
                     let pixel = y * input.width + x;
@@ -123,8 +129,14 @@ impl ConvolutionPlan {
         ConvolutionPlan {
             kernels,
             raw_places: pixels().map(|(y, x)| (y * grid_width + x) * output.channels).collect(),
-            gradient_places: pixels().map(|(y, x)| (lead + y * grid_width + x) * output.channels).collect(),
-            stored: if blocks.is_some() { grid_width * grid_height * block_size } else { input.size() },
+            gradient_places: pixels()
+                .map(|(y, x)| (lead + y * grid_width + x) * output.channels)
+                .collect(),
+            stored: if blocks.is_some() {
+                grid_width * grid_height * block_size
+            } else {
+                input.size()
+            },
             input,
             output,
             kernel,
@@ -139,7 +151,8 @@ impl ConvolutionPlan {
         }
     }
 
-    /// The plan of a layer of an encoder: `places` and `runs` speak of its image, without the border of zeros that the stored input has.
+    /// The plan of a layer of an encoder: `places` and `runs` speak of its image, without the
+    /// border of zeros that the stored input has.
     #[must_use]
     pub fn of(kernels: Simd, layer: &EncoderLayer) -> ConvolutionPlan {
         let (image, border) = (layer.image, layer.border);
@@ -147,8 +160,13 @@ impl ConvolutionPlan {
         let mut plan = ConvolutionPlan::new(kernels, around, &layer.convolution);
         if border > 0 {
             let rows = (0..image.height).map(|y| (y + border) * around.width + border);
-            plan.places = rows.flat_map(|first| plan.places[first..first + image.width].to_vec()).collect();
-            plan.runs = (0..).step_by(image.channels).zip(&plan.places).map(|(from, &to)| (from, to as u32)).collect();
+            plan.places =
+                rows.flat_map(|first| plan.places[first..first + image.width].to_vec()).collect();
+            plan.runs = (0..)
+                .step_by(image.channels)
+                .zip(&plan.places)
+                .map(|(from, &to)| (from, to as u32))
+                .collect();
             plan.run_length = image.channels;
         }
         plan
@@ -172,7 +190,8 @@ impl ConvolutionPlan {
         self.grid_width * self.grid_height * self.output.channels
     }
 
-    /// Numbers of the padded gradient of the raw result. What lies outside `gradient_places` must be zero.
+    /// Numbers of the padded gradient of the raw result. What lies outside `gradient_places` must
+    /// be zero.
     #[must_use]
     pub fn gradient_size(&self) -> usize {
         self.lead() * self.output.channels + self.raw_size()
@@ -200,7 +219,11 @@ impl ConvolutionPlan {
     /// Canonical weights in the order of the stored input, one row an input.
     fn ordered(&self, weights: &[f32]) -> Vec<f32> {
         let channels = self.output.channels;
-        self.weight_rows.iter().flat_map(|&row| &weights[row * channels..(row + 1) * channels]).copied().collect()
+        self.weight_rows
+            .iter()
+            .flat_map(|&row| &weights[row * channels..(row + 1) * channels])
+            .copied()
+            .collect()
     }
 
     /// Values of a kernel's row.
@@ -208,15 +231,29 @@ impl ConvolutionPlan {
         self.kernel * self.input.channels
     }
 
-    /// The pixels of the output as they are found in the image, whose numbers are `unit` halves or numbers long.
+    /// The pixels of the output as they are found in the image, whose numbers are `unit` halves or
+    /// numbers long.
     fn pixels(&self, unit: usize) -> Axis {
-        let (across, down) = (self.stride * self.input.channels, self.stride * self.input.width * self.input.channels);
-        Axis { count: self.output.width, stride: unit * across, groups: self.output.height, group_stride: unit * down }
+        let (across, down) = (
+            self.stride * self.input.channels,
+            self.stride * self.input.width * self.input.channels,
+        );
+        Axis {
+            count: self.output.width,
+            stride: unit * across,
+            groups: self.output.height,
+            group_stride: unit * down,
+        }
     }
 
     /// The numbers of a patch, `count` in each of the kernel's rows.
     fn patch(&self, count: usize, stride: usize, unit: usize) -> Axis {
-        Axis { count, stride, groups: self.kernel, group_stride: unit * self.input.width * self.input.channels }
+        Axis {
+            count,
+            stride,
+            groups: self.kernel,
+            group_stride: unit * self.input.width * self.input.channels,
+        }
     }
 
     /// Weights for [`ConvolutionPlan::forward`].
@@ -232,14 +269,18 @@ impl ConvolutionPlan {
             return packed.pack_transposed(self.kernels, &ordered, channels, self.depth());
         };
         let packed = packed.numbers(weights.len());
-        // For each row of blocks a matrix from the gradients of `side` neighbouring pixels to one block.
+        // For each row of blocks a matrix from the gradients of `side` neighbouring pixels to one
+        // block.
         let block = self.block_size();
         let inner = side * channels;
         for (part, matrix) in packed.chunks_exact_mut(inner * block).enumerate() {
             for neighbour in 0..side {
-                let rows = &ordered[(part * side + side - 1 - neighbour) * block * channels..][..block * channels];
+                let rows = &ordered[(part * side + side - 1 - neighbour) * block * channels..]
+                    [..block * channels];
                 for (column, row) in rows.chunks_exact(channels).enumerate() {
-                    let start = (column / PANEL) * inner * PANEL + neighbour * channels * PANEL + column % PANEL;
+                    let start = (column / PANEL) * inner * PANEL
+                        + neighbour * channels * PANEL
+                        + column % PANEL;
                     for (channel, value) in row.iter().enumerate() {
                         matrix[start + channel * PANEL] = *value;
                     }
@@ -263,7 +304,13 @@ impl ConvolutionPlan {
     }
 
     /// The raw result, biases and activation still missing.
-    pub fn forward(&self, stored: Stored<'_>, weights: &Panels, rounded: &mut Rounded, raw: &mut [f32]) {
+    pub fn forward(
+        &self,
+        stored: Stored<'_>,
+        weights: &Panels,
+        rounded: &mut Rounded,
+        raw: &mut [f32],
+    ) {
         let (kernels, channels, depth) = (self.kernels, self.output.channels, self.depth());
         let weights = match weights {
             Panels::Numbers(weights) => weights,
@@ -277,8 +324,17 @@ impl ConvolutionPlan {
         };
         let Stored::Numbers(stored) = stored else { unreachable!("rounded only for pairs") };
         let Some(side) = self.blocks else {
-            let left = Grouped { data: stored, rows: self.pixels(1), inner: self.patch(self.run(), 1, 1) };
-            return multiply_grouped(kernels, left, Right::panels(&weights[..], depth), channels, raw, channels, false);
+            let left =
+                Grouped { data: stored, rows: self.pixels(1), inner: self.patch(self.run(), 1, 1) };
+            return multiply_grouped(
+                kernels,
+                left,
+                Right::panels(&weights[..], depth),
+                channels,
+                raw,
+                channels,
+                false,
+            );
         };
         let inner = side * self.block_size();
         for part in 0..side {
@@ -287,14 +343,24 @@ impl ConvolutionPlan {
                 row_stride: self.block_size(),
                 inner_stride: 1,
             };
-            let right = Right { data: &weights[part * inner * PANEL..], panel_stride: depth * PANEL, inner_stride: PANEL };
+            let right = Right {
+                data: &weights[part * inner * PANEL..],
+                panel_stride: depth * PANEL,
+                inner_stride: PANEL,
+            };
             let size = Size { rows: self.rows(), columns: channels, inner };
             multiply(kernels, size, left, right, raw, channels, part > 0);
         }
     }
 
     /// Adds the gradient of the weights, in the order of the stored input.
-    pub fn weight_gradient(&self, stored: Stored<'_>, gradient: &[f32], rounded: &mut Rounded, weights: &mut [f32]) {
+    pub fn weight_gradient(
+        &self,
+        stored: Stored<'_>,
+        gradient: &[f32],
+        rounded: &mut Rounded,
+        weights: &mut [f32],
+    ) {
         let (kernels, channels) = (self.kernels, self.output.channels);
         if kernels.family() == Family::Avx512Bf16 {
             return self.weight_gradient_of_pairs(stored, gradient, rounded, weights);
@@ -302,7 +368,8 @@ impl ConvolutionPlan {
         let Stored::Numbers(stored) = stored else { unreachable!("rounded only for pairs") };
         let right = Right::rows(&gradient[self.lead() * channels..], channels);
         let Some(side) = self.blocks else {
-            let left = Grouped { data: stored, rows: self.patch(self.run(), 1, 1), inner: self.pixels(1) };
+            let left =
+                Grouped { data: stored, rows: self.patch(self.run(), 1, 1), inner: self.pixels(1) };
             return multiply_grouped(kernels, left, right, channels, weights, channels, true);
         };
         let rows = side * self.block_size();
@@ -313,13 +380,27 @@ impl ConvolutionPlan {
                 inner_stride: self.block_size(),
             };
             let size = Size { rows, columns: channels, inner: self.rows() };
-            multiply(kernels, size, left, right, &mut weights[part * rows * channels..], channels, true);
+            multiply(
+                kernels,
+                size,
+                left,
+                right,
+                &mut weights[part * rows * channels..],
+                channels,
+                true,
+            );
         }
     }
 
-    /// The inner dimension are the pixels of the output, two that are neighbours in a row together; the last of an odd number has none
-    /// beside it.
-    fn weight_gradient_of_pairs(&self, stored: Stored<'_>, gradient: &[f32], rounded: &mut Rounded, weights: &mut [f32]) {
+    /// The inner dimension are the pixels of the output, two that are neighbours in a row together;
+    /// the last of an odd number has none beside it.
+    fn weight_gradient_of_pairs(
+        &self,
+        stored: Stored<'_>,
+        gradient: &[f32],
+        rounded: &mut Rounded,
+        weights: &mut [f32],
+    ) {
         let (kernels, channels, width) = (self.kernels, self.output.channels, self.output.width);
         let both = width.div_ceil(2);
         let across = self.stride * self.input.channels;
@@ -328,7 +409,9 @@ impl ConvolutionPlan {
         image_pairs.resize(image.len() - across, 0);
         pair_with_distant(kernels, image, across, image_pairs);
         gradient_pairs.resize(self.output.height * both * channels, 0);
-        let rows = gradient.chunks_exact(width * channels).zip(gradient_pairs.chunks_exact_mut(both * channels));
+        let rows = gradient
+            .chunks_exact(width * channels)
+            .zip(gradient_pairs.chunks_exact_mut(both * channels));
         for (row, pairs) in rows {
             for (pixels, pairs) in row.chunks(2 * channels).zip(pairs.chunks_exact_mut(channels)) {
                 match pixels.split_at(channels) {
@@ -338,7 +421,11 @@ impl ConvolutionPlan {
             }
         }
         let pixels = Axis { count: both, stride: 2 * 2 * across, ..self.pixels(2) };
-        let left = Grouped { data: halves(image_pairs), rows: self.patch(self.run(), 2, 2), inner: pixels };
+        let left = Grouped {
+            data: halves(image_pairs),
+            rows: self.patch(self.run(), 2, 2),
+            inner: pixels,
+        };
         let right = Right::rows(&gradient_pairs[..], channels);
         multiply_grouped(kernels, left, right, channels, weights, channels, true);
     }
@@ -347,19 +434,35 @@ impl ConvolutionPlan {
     pub fn unorder(&self, ordered: &[f32], canonical: &mut [f32]) {
         let channels = self.output.channels;
         for (&row, values) in self.weight_rows.iter().zip(ordered.chunks_exact(channels)) {
-            super::elementwise::add(self.kernels, &mut canonical[row * channels..(row + 1) * channels], values);
+            super::elementwise::add(
+                self.kernels,
+                &mut canonical[row * channels..(row + 1) * channels],
+                values,
+            );
         }
     }
 
     /// The gradient of the stored input.
-    pub fn input_gradient(&self, gradient: &[f32], weights: &Panels, rounded: &mut Rounded, stored: &mut [f32]) {
+    pub fn input_gradient(
+        &self,
+        gradient: &[f32],
+        weights: &Panels,
+        rounded: &mut Rounded,
+        stored: &mut [f32],
+    ) {
         let channels = self.output.channels;
         let weights = match weights {
             Panels::Numbers(weights) => weights,
             Panels::Pairs(weights) => {
                 rounded.gradient.resize(gradient.len(), 0);
                 round(self.kernels, gradient, &mut rounded.gradient);
-                return self.add_patches::<u16>(&rounded.gradient, weights, channels / 2, 2, stored);
+                return self.add_patches::<u16>(
+                    &rounded.gradient,
+                    weights,
+                    channels / 2,
+                    2,
+                    stored,
+                );
             }
         };
         let Some(side) = self.blocks else {
@@ -367,14 +470,28 @@ impl ConvolutionPlan {
         };
         let (inner, block) = (side * channels, self.block_size());
         for part in 0..side {
-            // Block b receives from the pixels b - part * grid_width - (0..side): they are contiguous, the farthest first.
-            // Rows of blocks above the first such pixel or below the last receive nothing.
-            let right = Right::panels(&weights[part * inner * block..(part + 1) * inner * block], inner);
+            // Block b receives from the pixels b - part * grid_width - (0..side): they are
+            // contiguous, the farthest first. Rows of blocks above the first such pixel or below
+            // the last receive nothing.
+            let right =
+                Right::panels(&weights[part * inner * block..(part + 1) * inner * block], inner);
             let mut receive = |from: usize, to: usize, accumulate: bool| {
                 let size = Size { rows: (to - from) * self.grid_width, columns: block, inner };
                 let first = self.lead() + (from - part) * self.grid_width - (side - 1);
-                let left = Left { data: &gradient[first * channels..], row_stride: channels, inner_stride: 1 };
-                multiply(self.kernels, size, left, right, &mut stored[from * self.grid_width * block..], block, accumulate);
+                let left = Left {
+                    data: &gradient[first * channels..],
+                    row_stride: channels,
+                    inner_stride: 1,
+                };
+                multiply(
+                    self.kernels,
+                    size,
+                    left,
+                    right,
+                    &mut stored[from * self.grid_width * block..],
+                    block,
+                    accumulate,
+                );
             };
             // All but the last of them were reached by the part before already.
             let fresh = if part == 0 { 0 } else { part + self.output.height - 1 };
@@ -393,12 +510,17 @@ impl ConvolutionPlan {
         stored: &mut [f32],
     ) {
         let (channels, run) = (self.output.channels, self.run());
-        let (across, down) = (self.stride * self.input.channels, self.input.width * self.input.channels);
+        let (across, down) =
+            (self.stride * self.input.channels, self.input.width * self.input.channels);
         stored[..self.input.size()].fill(0.0);
-        for (y, row) in gradient[..self.output.size()].chunks_exact(self.output.width * channels).enumerate() {
-            let (rows, inner) = (Axis::plain(self.output.width, channels), Axis::plain(inner, inner_stride));
+        for (y, row) in
+            gradient[..self.output.size()].chunks_exact(self.output.width * channels).enumerate()
+        {
+            let (rows, inner) =
+                (Axis::plain(self.output.width, channels), Axis::plain(inner, inner_stride));
             for (ky, weights) in weights.chunks_exact(run * inner.count).enumerate() {
-                let (left, right) = (Grouped { data: row, rows, inner }, Right::panels(weights, inner.count));
+                let (left, right) =
+                    (Grouped { data: row, rows, inner }, Right::panels(weights, inner.count));
                 let to = &mut stored[(y * self.stride + ky) * down..self.input.size()];
                 add_to_overlapping_rows(self.kernels, left, right, run, to, across);
             }

@@ -1,7 +1,7 @@
 //! Element-wise passes: activations and their gradients, pixel scaling, sums of columns, Adam.
 //!
-//! Exponentials are a polynomial of relative error below 2e-7, because the system's are neither vectorised nor equal on
-//! all machines.
+//! Exponentials are a polynomial of relative error below 2e-7, because the system's are neither
+//! vectorised nor equal on all machines.
 
 use hasard_engine::simd::Simd;
 
@@ -53,7 +53,8 @@ fn elu_slope(y: f32) -> f32 {
 pub const NOWHERE: usize = usize::MAX;
 
 vectorised! {
-    /// Adds biases to `raw` pixels (`sources[p]` says where pixel `p` is) and writes their ELU to `places[p]`.
+    /// Adds biases to `raw` pixels (`sources[p]` says where pixel `p` is) and writes their ELU to
+    /// `places[p]`.
     pub fn bias_elu_scatter(raw: &[f32], sources: &[usize], bias: &[f32], places: &[usize], out: &mut [f32]) {
         let channels = bias.len();
         for (&source, &place) in sources.iter().zip(places) {
@@ -70,7 +71,8 @@ vectorised! {
 }
 
 vectorised! {
-    /// Gradient before the ELU: `gradient` times the slope at `output`, both laid out by `places`, gathered to `targets`.
+    /// Gradient before the ELU: `gradient` times the slope at `output`, both laid out by `places`,
+    /// gathered to `targets`.
     pub fn elu_backward_gather(
         gradient: &[f32], output: &[f32], places: &[usize], channels: usize, targets: &[usize], raw: &mut [f32],
     ) {
@@ -111,7 +113,8 @@ vectorised! {
 }
 
 vectorised! {
-    /// Multiplies gradients by the slope of the ELU at its outputs; the outputs' rows are `stride` apart.
+    /// Multiplies gradients by the slope of the ELU at its outputs; the outputs' rows are `stride`
+    /// apart.
     pub fn elu_backward_rows(gradient: &mut [f32], width: usize, output: &[f32], stride: usize) {
         for (gradient, output) in gradient.chunks_exact_mut(width).zip(output.chunks(stride)) {
             for (gradient, output) in gradient.iter_mut().zip(output) {
@@ -151,7 +154,8 @@ vectorised! {
     }
 }
 
-/// Sum of squares, in blocks so that it neither loses small terms nor depends on anything but its input.
+/// Sum of squares, in blocks so that it neither loses small terms nor depends on anything but its
+/// input.
 #[must_use]
 pub fn sum_of_squares(kernels: Simd, values: &[f32]) -> f64 {
     let mut total = 0.0;

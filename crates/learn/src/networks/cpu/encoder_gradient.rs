@@ -1,4 +1,5 @@
-//! The backward pass through the convolutions, image by image, gathering the gradients of their weights.
+//! The backward pass through the convolutions, image by image, gathering the gradients of their
+//! weights.
 
 use crate::networks::PixelScale;
 use crate::networks::cpu::buffers::sized;
@@ -10,7 +11,8 @@ use crate::networks::cpu::residual::ResidualImage;
 use crate::networks::cpu::tape::TapeLane;
 use crate::networks::cpu::weights::{Backward, PackedWeights, Plan};
 
-/// Gradients of the convolutions' weights and biases over some lanes, weights in the order of the stored inputs.
+/// Gradients of the convolutions' weights and biases over some lanes, weights in the order of the
+/// stored inputs.
 #[derive(Default)]
 pub struct EncoderGradient {
     layers: Vec<(Vec<f32>, Vec<f32>)>,
@@ -68,8 +70,17 @@ impl EncoderGradient {
         let features = plan.features;
         let layers = plan.convolutions.len();
         if !plan.shape.residual.is_empty() {
-            for (observation, d) in observations.iter().zip(feature_gradient.chunks_exact(features)) {
-                scratch.residual.add_gradients(plan, weights, back, pixels, observation, d, &mut self.layers);
+            for (observation, d) in observations.iter().zip(feature_gradient.chunks_exact(features))
+            {
+                scratch.residual.add_gradients(
+                    plan,
+                    weights,
+                    back,
+                    pixels,
+                    observation,
+                    d,
+                    &mut self.layers,
+                );
             }
             return;
         }
@@ -79,13 +90,29 @@ impl EncoderGradient {
                 let convolution = &plan.convolutions[layer];
                 let (weights, biases) = &mut self.layers[layer];
                 let padded = &mut scratch.padded[layer][..];
-                let row = |buffer, width: usize| &lane.of(buffer, width)[step * width..(step + 1) * width];
+                let row = |buffer, width: usize| {
+                    &lane.of(buffer, width)[step * width..(step + 1) * width]
+                };
                 let (d, output): (&[f32], &[f32]) = match plan.convolutions.get(layer + 1) {
-                    None => (&feature_gradient[step * features..][..features], row(&lane.tape.features, features)),
-                    Some(next) => (&scratch.stored[layer + 1], row(&lane.tape.activations[layer], next.stored)),
+                    None => (
+                        &feature_gradient[step * features..][..features],
+                        row(&lane.tape.features, features),
+                    ),
+                    Some(next) => (
+                        &scratch.stored[layer + 1],
+                        row(&lane.tape.activations[layer], next.stored),
+                    ),
                 };
                 let targets = &convolution.gradient_places;
-                elu_backward_gather(kernels, d, output, &places[layer], convolution.channels(), targets, padded);
+                elu_backward_gather(
+                    kernels,
+                    d,
+                    output,
+                    &places[layer],
+                    convolution.channels(),
+                    targets,
+                    padded,
+                );
                 add_column_sums(kernels, padded, biases);
                 let stored = if layer == 0 {
                     scratch.image.store(kernels, plan.shape.image, convolution, observation, pixels)
@@ -95,14 +122,26 @@ impl EncoderGradient {
                 convolution.weight_gradient(stored, padded, &mut scratch.rounded, weights);
                 if layer > 0 {
                     let received = &mut scratch.stored[layer];
-                    convolution.input_gradient(padded, &back.convolutions[layer], &mut scratch.rounded, received);
+                    convolution.input_gradient(
+                        padded,
+                        &back.convolutions[layer],
+                        &mut scratch.rounded,
+                        received,
+                    );
                 }
             }
         }
     }
 
     /// Adds the gradients of a layer to those of its parameters.
-    pub fn add_to(&self, layer: usize, convolution: &ConvolutionPlan, plan: &Plan, weights: &mut [f32], biases: &mut [f32]) {
+    pub fn add_to(
+        &self,
+        layer: usize,
+        convolution: &ConvolutionPlan,
+        plan: &Plan,
+        weights: &mut [f32],
+        biases: &mut [f32],
+    ) {
         let (own_weights, own_biases) = &self.layers[layer];
         convolution.unorder(own_weights, weights);
         add(plan.kernels, biases, own_biases);

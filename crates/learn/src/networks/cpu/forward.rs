@@ -1,5 +1,6 @@
-//! The forward pass: of whole trajectories when learning, of one step at a time when acting. Both are the same code and write
-//! to a [`Tape`]; a row's numbers do not depend on the rows that are computed with it.
+//! The forward pass: of whole trajectories when learning, of one step at a time when acting. Both
+//! are the same code and write to a [`Tape`]; a row's numbers do not depend on the rows that are
+//! computed with it.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -42,7 +43,8 @@ pub struct Forward {
     from_state: Vec<f32>,
 }
 
-/// Where the pixels of each convolution's output go: into the next one's input, or row by row behind the last.
+/// Where the pixels of each convolution's output go: into the next one's input, or row by row
+/// behind the last.
 pub(super) fn output_places(plan: &Plan, layer: usize) -> Cow<'_, [usize]> {
     match plan.convolutions.get(layer + 1) {
         Some(next) => Cow::Borrowed(&next.places),
@@ -74,10 +76,23 @@ impl Forward {
         }
         let (inputs, padded) = (shape.head_inputs(), plan.padded_outputs);
         let core = if shape.recurrent.is_some() { &tape.after } else { &tape.core_input };
-        let left = Left { data: &core[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
+        let left = Left {
+            data: &core[rows.span(inputs)],
+            row_stride: rows.stride * inputs,
+            inner_stride: 1,
+        };
         let size = Size { rows: rows.count, columns: padded, inner: inputs };
         let outputs = &mut tape.outputs[rows.span(padded)];
-        multiply_panels(kernels, size, left, &weights.heads, outputs, rows.stride * padded, false, &mut self.rows);
+        multiply_panels(
+            kernels,
+            size,
+            left,
+            &weights.heads,
+            outputs,
+            rows.stride * padded,
+            false,
+            &mut self.rows,
+        );
         bias_rows(kernels, outputs, rows.stride * padded, &weights.head_biases);
     }
 
@@ -88,7 +103,14 @@ impl Forward {
     }
 
     /// The encoder on every row, and the features that it ends in.
-    fn encode(&mut self, plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, tape: &mut Tape) {
+    fn encode(
+        &mut self,
+        plan: &Plan,
+        weights: &PackedWeights,
+        input: &Input<'_>,
+        rows: Rows,
+        tape: &mut Tape,
+    ) {
         let kernels = plan.kernels;
         let features = plan.features;
         if !plan.shape.residual.is_empty() {
@@ -98,22 +120,31 @@ impl Forward {
             }
             return;
         }
-        let places: Vec<_> = (0..plan.convolutions.len()).map(|layer| output_places(plan, layer)).collect();
+        let places: Vec<_> =
+            (0..plan.convolutions.len()).map(|layer| output_places(plan, layer)).collect();
         for (row, observation) in rows.iter().zip(input.observations) {
             let to = &mut tape.features[row * features..(row + 1) * features];
             let Some(first) = plan.convolutions.first() else {
                 scale_pixels(kernels, observation, &input.pixels.scale, &input.pixels.shift, to);
                 continue;
             };
-            let image = self.image.store(kernels, plan.shape.image, first, observation, input.pixels);
+            let image =
+                self.image.store(kernels, plan.shape.image, first, observation, input.pixels);
             for (layer, convolution) in plan.convolutions.iter().enumerate() {
                 let (earlier, rest) = tape.activations.split_at_mut(layer);
                 let stored = match earlier.last() {
                     None => image,
-                    Some(before) => Stored::Numbers(&before[row * convolution.stored..(row + 1) * convolution.stored]),
+                    Some(before) => Stored::Numbers(
+                        &before[row * convolution.stored..(row + 1) * convolution.stored],
+                    ),
                 };
                 let raw = sized(&mut self.raw, convolution.raw_size());
-                convolution.forward(stored, &weights.convolutions[layer], &mut self.convolution, raw);
+                convolution.forward(
+                    stored,
+                    &weights.convolutions[layer],
+                    &mut self.convolution,
+                    raw,
+                );
                 let to = match plan.convolutions.get(layer + 1) {
                     Some(next) => &mut rest[0][row * next.stored..(row + 1) * next.stored],
                     None => &mut tape.features[row * features..(row + 1) * features],
@@ -139,9 +170,22 @@ impl Forward {
         let (columns, width) = (plan.shape.gate_columns(), plan.shape.state_size());
         let rows = Rows::new(tape, &steps, &lanes);
         let size = Size { rows: rows.count, columns, inner: inputs };
-        let left = Left { data: &tape.core_input[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
+        let left = Left {
+            data: &tape.core_input[rows.span(inputs)],
+            row_stride: rows.stride * inputs,
+            inner_stride: 1,
+        };
         let gates = &mut tape.gates[rows.span(columns)];
-        multiply_panels(kernels, size, left, &weights.cell_input, gates, rows.stride * columns, false, &mut self.rows);
+        multiply_panels(
+            kernels,
+            size,
+            left,
+            &weights.cell_input,
+            gates,
+            rows.stride * columns,
+            false,
+            &mut self.rows,
+        );
         self.state.clear();
         self.state.extend_from_slice(input.state);
         let from_state = sized(&mut self.from_state, lanes.len() * columns);
@@ -154,7 +198,16 @@ impl Forward {
             }
             let size = Size { rows: lanes.len(), columns, inner: units };
             let left = Left { data: &self.state, row_stride: width, inner_stride: 1 };
-            multiply_panels(kernels, size, left, &weights.cell_hidden, from_state, columns, false, &mut self.rows);
+            multiply_panels(
+                kernels,
+                size,
+                left,
+                &weights.cell_hidden,
+                from_state,
+                columns,
+                false,
+                &mut self.rows,
+            );
             let each = self.state.chunks_exact_mut(width).zip(from_state.chunks_exact(columns));
             for (lane, (state, from_state)) in lanes.clone().zip(each) {
                 let row = lane * tape.steps + step;
@@ -164,10 +217,14 @@ impl Forward {
                 let (output, memory) = state.split_at_mut(units);
                 before.copy_from_slice(output);
                 match plan.shape.cell {
-                    RecurrentCell::Gru => gru_gates(kernels, gates, from_state, input_bias, state_bias, before, share, after),
+                    RecurrentCell::Gru => gru_gates(
+                        kernels, gates, from_state, input_bias, state_bias, before, share, after,
+                    ),
                     RecurrentCell::Lstm => {
                         share.copy_from_slice(memory);
-                        lstm_gates(kernels, gates, from_state, input_bias, state_bias, memory, after);
+                        lstm_gates(
+                            kernels, gates, from_state, input_bias, state_bias, memory, after,
+                        );
                     }
                 }
                 output.copy_from_slice(after);
@@ -177,7 +234,14 @@ impl Forward {
 }
 
 /// Dense layers, and the extra inputs behind the last.
-fn dense(plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, tape: &mut Tape, rounded: &mut Vec<u16>) {
+fn dense(
+    plan: &Plan,
+    weights: &PackedWeights,
+    input: &Input<'_>,
+    rows: Rows,
+    tape: &mut Tape,
+    rounded: &mut Vec<u16>,
+) {
     let (kernels, shape) = (plan.kernels, &plan.shape);
     for (index, &units) in shape.dense.iter().enumerate() {
         let (earlier, rest) = tape.dense.split_at_mut(index);
@@ -190,7 +254,11 @@ fn dense(plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, ta
             None => (&mut tape.core_input, shape.core_inputs()),
         };
         let size = Size { rows: rows.count, columns: units, inner: inputs };
-        let left = Left { data: &from[rows.span(inputs)], row_stride: rows.stride * inputs, inner_stride: 1 };
+        let left = Left {
+            data: &from[rows.span(inputs)],
+            row_stride: rows.stride * inputs,
+            inner_stride: 1,
+        };
         let (to, stride) = (&mut to[rows.span(width)], rows.stride * width);
         multiply_panels(kernels, size, left, &weights.dense[index], to, stride, false, rounded);
         bias_elu_rows(kernels, to, stride, &weights.dense_biases[index]);
@@ -198,7 +266,8 @@ fn dense(plan: &Plan, weights: &PackedWeights, input: &Input<'_>, rows: Rows, ta
     let (inputs, extra) = (shape.core_inputs(), shape.extra_inputs);
     if extra > 0 {
         for (row, extra) in rows.iter().zip(input.extra.chunks_exact(extra)) {
-            tape.core_input[(row + 1) * inputs - extra.len()..(row + 1) * inputs].copy_from_slice(extra);
+            tape.core_input[(row + 1) * inputs - extra.len()..(row + 1) * inputs]
+                .copy_from_slice(extra);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Gradients of parameters: sums over the rows of a batch, dealt out to threads.
 //!
-//! Threads share out the numbers of a dense layer's gradient, each of them summed over all rows in order, and the lanes of
-//! the convolutions' in a number of groups that follows from the batch alone. So no bit depends on the number of threads.
+//! Threads share out the numbers of a dense layer's gradient, each of them summed over all rows in
+//! order, and the lanes of the convolutions' in a number of groups that follows from the batch
+//! alone. So no bit depends on the number of threads.
 
 use crate::networks::PixelScale;
 use crate::networks::cpu::backward::RowGradients;
@@ -13,7 +14,8 @@ use crate::networks::cpu::weights::{Backward, PackedWeights, Plan};
 use crate::threads::{Piece, deal, in_parallel, pieces};
 use hasard_engine::simd::Simd;
 
-/// Most groups that lanes are dealt into, which bounds memory and the threads that convolutions keep busy.
+/// Most groups that lanes are dealt into, which bounds memory and the threads that convolutions
+/// keep busy.
 const MOST_GROUPS: usize = 16;
 
 /// Buffers that are used again.
@@ -63,7 +65,15 @@ impl<'a> Factors<'a> {
             let out;
             (out, weights) = weights.split_at_mut(rows.len() * self.columns);
             work.push(Box::new(move |(_, workspace)| {
-                sum_outer_products(kernels, &self.inputs, rows, &self.sums, self.columns, out, workspace);
+                sum_outer_products(
+                    kernels,
+                    &self.inputs,
+                    rows,
+                    &self.sums,
+                    self.columns,
+                    out,
+                    workspace,
+                );
             }));
         }
         work.push(Box::new(move |_| {
@@ -79,13 +89,33 @@ impl<'a> Finished<'a> {
         let shape = &plan.shape;
         let mut layers = Vec::new();
         for (index, &units) in shape.dense.iter().enumerate() {
-            let input = |tape: &'a Tape| -> &'a [f32] { if index == 0 { &tape.features } else { &tape.dense[index - 1] } };
-            layers.push(self.factors(input, plan.dense(index).inputs, |rows| &rows.dense[index], units, false));
+            let input = |tape: &'a Tape| -> &'a [f32] {
+                if index == 0 { &tape.features } else { &tape.dense[index - 1] }
+            };
+            layers.push(self.factors(
+                input,
+                plan.dense(index).inputs,
+                |rows| &rows.dense[index],
+                units,
+                false,
+            ));
         }
         if let Some(units) = shape.recurrent {
             let (inputs, columns) = (shape.core_inputs(), shape.gate_columns());
-            layers.push(self.factors(|tape| &tape.core_input, inputs, |rows| &rows.input_sums, columns, false));
-            layers.push(self.factors(|tape| &tape.before, units, |rows| &rows.state_sums, columns, true));
+            layers.push(self.factors(
+                |tape| &tape.core_input,
+                inputs,
+                |rows| &rows.input_sums,
+                columns,
+                false,
+            ));
+            layers.push(self.factors(
+                |tape| &tape.before,
+                units,
+                |rows| &rows.state_sums,
+                columns,
+                true,
+            ));
         }
         layers
     }
@@ -100,7 +130,11 @@ impl<'a> Finished<'a> {
         by_time: bool,
     ) -> Factors<'a> {
         let steps = self.lanes.first().map_or(0, |lane| lane.tape.steps);
-        let inputs = self.lanes.iter().flat_map(|lane| lane.of(input(lane.tape), width).chunks_exact(width)).collect();
+        let inputs = self
+            .lanes
+            .iter()
+            .flat_map(|lane| lane.of(input(lane.tape), width).chunks_exact(width))
+            .collect();
         let rows = self.rows.iter().flat_map(|rows| {
             let sums = sums(rows);
             (0..rows.lanes).flat_map(move |lane| {
@@ -116,11 +150,24 @@ impl<'a> Finished<'a> {
 
 impl ParameterGradients {
     /// Writes the gradients of all parameters to `gradient`, on `threads` threads.
-    pub fn run(&mut self, plan: &Plan, back: &Backward, batch: &Finished<'_>, threads: usize, gradient: &mut [f32]) {
+    pub fn run(
+        &mut self,
+        plan: &Plan,
+        back: &Backward,
+        batch: &Finished<'_>,
+        threads: usize,
+        gradient: &mut [f32],
+    ) {
         let (kernels, shape) = (plan.kernels, &plan.shape);
         let steps = batch.lanes.first().map_or(0, |lane| lane.tape.steps);
         let layers = batch.layers(plan);
-        let heads = batch.factors(|tape| tape.core(plan), shape.head_inputs(), |rows| &rows.outputs, plan.padded_outputs, false);
+        let heads = batch.factors(
+            |tape| tape.core(plan),
+            shape.head_inputs(),
+            |rows| &rows.outputs,
+            plan.padded_outputs,
+            false,
+        );
         let (convolutions, mut rest) = gradient.split_at_mut(plan.dense(0).offset);
         let lanes: Vec<_> = deal(batch.lanes.len(), MOST_GROUPS).collect();
         self.groups.resize_with(lanes.len(), Default::default);
@@ -128,7 +175,10 @@ impl ParameterGradients {
         let feature_gradients: Vec<&[f32]> = batch
             .rows
             .iter()
-            .flat_map(|rows| (0..rows.lanes).map(|lane| rows.features.get(lane * steps * features..).unwrap_or(&[])))
+            .flat_map(|rows| {
+                (0..rows.lanes)
+                    .map(|lane| rows.features.get(lane * steps * features..).unwrap_or(&[]))
+            })
             .collect();
         let mut work: Vec<Work<'_>> = Vec::new();
         // The longest pieces first.
@@ -141,7 +191,16 @@ impl ParameterGradients {
                         let observations = &batch.observations[lane * steps..(lane + 1) * steps];
                         let from = feature_gradients[lane];
                         let lane = batch.lanes[lane];
-                        group.add_lane(plan, batch.weights, back, batch.pixels, lane, observations, from, scratch);
+                        group.add_lane(
+                            plan,
+                            batch.weights,
+                            back,
+                            batch.pixels,
+                            lane,
+                            observations,
+                            from,
+                            scratch,
+                        );
                     }
                 }));
             }
@@ -155,7 +214,13 @@ impl ParameterGradients {
         // The heads' lie side by side, padded to whole panels, until they are split.
         self.joined_heads.resize(heads.width * heads.columns, 0.0);
         self.joined_biases.resize(heads.columns, 0.0);
-        heads.deal_out(kernels, pieces(threads), &mut self.joined_heads, &mut self.joined_biases, &mut work);
+        heads.deal_out(
+            kernels,
+            pieces(threads),
+            &mut self.joined_heads,
+            &mut self.joined_biases,
+            &mut work,
+        );
         self.threads.resize_with(threads, Default::default);
         self.threads.iter_mut().for_each(|(scratch, _)| scratch.prepare(plan));
         in_parallel(&mut self.threads, work);
@@ -170,7 +235,9 @@ impl ParameterGradients {
             work.push(move |_: &mut _| {
                 weights.fill(0.0);
                 biases.fill(0.0);
-                groups.iter().for_each(|group| group.add_to(layer, convolution, plan, weights, biases));
+                groups
+                    .iter()
+                    .for_each(|group| group.add_to(layer, convolution, plan, weights, biases));
             });
         }
         in_parallel(&mut self.threads, work);
@@ -186,7 +253,8 @@ impl ParameterGradients {
             for (to, from) in gradient[parameter.range()].chunks_exact_mut(count).zip(rows) {
                 to.copy_from_slice(&from[first..first + count]);
             }
-            gradient[plan.after(parameter).range()].copy_from_slice(&self.joined_biases[first..first + count]);
+            gradient[plan.after(parameter).range()]
+                .copy_from_slice(&self.joined_biases[first..first + count]);
             first += count;
         }
     }

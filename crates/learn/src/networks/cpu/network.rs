@@ -1,4 +1,5 @@
-//! The network on the processor as the rest of the crate sees it: learning on several threads, acting on one.
+//! The network on the processor as the rest of the crate sees it: learning on several threads,
+//! acting on one.
 
 use std::sync::Arc;
 
@@ -7,7 +8,10 @@ use crate::networks::cpu::forward::{Forward, Input};
 use crate::networks::cpu::gradient::{Finished, ParameterGradients};
 use crate::networks::cpu::tape::{Tape, TapeLane};
 use crate::networks::cpu::weights::{Backward, PackedWeights, Plan, stored_pixels};
-use crate::networks::{ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, RecordedLane, Sequences};
+use crate::networks::{
+    ActingNetwork, LearningNetwork, NetworkShape, NetworkWeights, PixelScale, Place, RecordedLane,
+    Sequences,
+};
 use crate::threads::{Piece, deal, in_parallel, pieces};
 use hasard_engine::simd::Simd;
 
@@ -21,7 +25,8 @@ pub struct CpuLearner {
     pixels: Arc<PixelScale>,
     /// What each thread works in.
     forwards: Vec<Forward>,
-    /// Forward passes of the last batch, their lanes one after the other; unused when all of it was recorded.
+    /// Forward passes of the last batch, their lanes one after the other; unused when all of it was
+    /// recorded.
     passes: Vec<Tape>,
     /// The last forward pass was found in recordings.
     recorded: bool,
@@ -50,9 +55,16 @@ impl CpuLearner {
     /// Where the activations of each lane of the last forward pass are.
     fn tapes<'a>(&'a self, batch: &'a Sequences<'_>) -> Vec<TapeLane<'a>> {
         if self.recorded {
-            return batch.recorded.iter().map(|lane| TapeLane { tape: &lane.recording.tape, lane: lane.lane }).collect();
+            return batch
+                .recorded
+                .iter()
+                .map(|lane| TapeLane { tape: &lane.recording.tape, lane: lane.lane })
+                .collect();
         }
-        let lanes = self.passes.iter().flat_map(|tape| (0..tape.lanes).map(move |lane| TapeLane { tape, lane }));
+        let lanes = self
+            .passes
+            .iter()
+            .flat_map(|tape| (0..tape.lanes).map(move |lane| TapeLane { tape, lane }));
         lanes.collect()
     }
 }
@@ -79,7 +91,10 @@ impl LearningNetwork for CpuLearner {
         let mut fresh = free.map_or_else(Arc::default, |index| self.spare.swap_remove(index));
         let packed = Arc::get_mut(&mut fresh).expect("nobody else holds it");
         let work: Vec<Piece<'_, Forward>> = packed.loading(&self.plan, parameters);
-        in_parallel(&mut self.forwards, work.into_iter().chain(self.backward.loading(&self.plan, parameters)));
+        in_parallel(
+            &mut self.forwards,
+            work.into_iter().chain(self.backward.loading(&self.plan, parameters)),
+        );
         self.spare.push(std::mem::replace(&mut self.weights, fresh));
     }
 
@@ -88,19 +103,24 @@ impl LearningNetwork for CpuLearner {
     }
 
     fn publish(&self) -> NetworkWeights {
-        NetworkWeights::Packed { weights: Arc::clone(&self.weights), pixels: Arc::clone(&self.pixels) }
+        NetworkWeights::Packed {
+            weights: Arc::clone(&self.weights),
+            pixels: Arc::clone(&self.pixels),
+        }
     }
 
     fn forward(&mut self, batch: &Sequences<'_>) -> Vec<f32> {
         let (steps, lanes) = (batch.steps, batch.lanes);
-        let usable =
-            |lane: &RecordedLane<'_>| lane.recording.holds(&self.weights, &self.pixels) && lane.recording.tape.steps == steps;
+        let usable = |lane: &RecordedLane<'_>| {
+            lane.recording.holds(&self.weights, &self.pixels) && lane.recording.tape.steps == steps
+        };
         self.recorded = batch.recorded.len() == lanes && batch.recorded.iter().all(usable);
         if !self.recorded {
             let shape = &self.plan.shape;
             let (units, extra_inputs) = (shape.state_size(), shape.extra_inputs);
             let observations = by_lane(batch, &batch.observations, 1);
-            let (extra, reset) = (by_lane(batch, &batch.extra, extra_inputs), by_lane(batch, &batch.reset, 1));
+            let (extra, reset) =
+                (by_lane(batch, &batch.extra, extra_inputs), by_lane(batch, &batch.reset, 1));
             let dealt = deal(lanes, pieces(self.forwards.len()));
             self.passes.resize_with(dealt.clone().count(), Default::default);
             let (plan, weights, pixels) = (&*self.plan, &*self.weights, &*self.pixels);
@@ -123,7 +143,8 @@ impl LearningNetwork for CpuLearner {
         let (outputs, padded) = (self.plan.shape.outputs(), self.plan.padded_outputs);
         let mut all = vec![0.0; batch.rows() * outputs];
         for (lane, tape) in self.tapes(batch).into_iter().enumerate() {
-            for (step, row) in tape.of(&tape.tape.outputs, padded).chunks_exact(padded).enumerate() {
+            for (step, row) in tape.of(&tape.tape.outputs, padded).chunks_exact(padded).enumerate()
+            {
                 all[(step * lanes + lane) * outputs..][..outputs].copy_from_slice(&row[..outputs]);
             }
         }
@@ -133,9 +154,11 @@ impl LearningNetwork for CpuLearner {
     fn backward(&mut self, batch: &Sequences<'_>, output_gradient: &[f32], gradient: &mut [f32]) {
         let (plan, steps) = (Arc::clone(&self.plan), batch.steps);
         let (outputs, padded) = (plan.shape.outputs(), plan.padded_outputs);
-        let (observations, reset) = (by_lane(batch, &batch.observations, 1), by_lane(batch, &batch.reset, 1));
+        let (observations, reset) =
+            (by_lane(batch, &batch.observations, 1), by_lane(batch, &batch.reset, 1));
         let output_gradient = by_lane(batch, output_gradient, outputs);
-        let (mut rows, mut parameters) = (std::mem::take(&mut self.rows), std::mem::take(&mut self.parameters));
+        let (mut rows, mut parameters) =
+            (std::mem::take(&mut self.rows), std::mem::take(&mut self.parameters));
         let lanes = self.tapes(batch);
         let threads = self.forwards.len();
         let dealt = deal(batch.lanes, pieces(threads));
@@ -147,7 +170,9 @@ impl LearningNetwork for CpuLearner {
             move |_: &mut ()| {
                 rows.outputs.clear();
                 rows.outputs.resize(own.len() * steps * padded, 0.0);
-                for (to, from) in rows.outputs.chunks_exact_mut(padded).zip(from.chunks_exact(outputs)) {
+                for (to, from) in
+                    rows.outputs.chunks_exact_mut(padded).zip(from.chunks_exact(outputs))
+                {
                     to[..outputs].copy_from_slice(from);
                 }
                 rows.run(plan, back, lanes, reset);
@@ -156,7 +181,8 @@ impl LearningNetwork for CpuLearner {
         in_parallel(&mut vec![(); threads], work);
         let dealt: Vec<&RowGradients> = rows.iter().collect();
         let (weights, pixels) = (&*self.weights, &*self.pixels);
-        let finished = Finished { lanes: &lanes, observations: &observations, weights, pixels, rows: &dealt };
+        let finished =
+            Finished { lanes: &lanes, observations: &observations, weights, pixels, rows: &dealt };
         parameters.run(&plan, &self.backward, &finished, threads, gradient);
         (self.rows, self.parameters) = (rows, parameters);
     }
@@ -201,10 +227,18 @@ impl ActingNetwork for CpuActor {
         }
     }
 
-    fn act(&mut self, observations: &[u8], extra: &[f32], state: &mut [f32], outputs: &mut [f32], place: Option<Place<'_>>) {
+    fn act(
+        &mut self,
+        observations: &[u8],
+        extra: &[f32],
+        state: &mut [f32],
+        outputs: &mut [f32],
+        place: Option<Place<'_>>,
+    ) {
         let plan = &*self.plan;
         let observations: Vec<&[u8]> = observations.chunks_exact(plan.shape.image.size()).collect();
-        let input = Input { observations: &observations, extra, state, reset: &[], pixels: &self.pixels };
+        let input =
+            Input { observations: &observations, extra, state, reset: &[], pixels: &self.pixels };
         let (tape, step, lanes) = match place {
             Some(place) => {
                 place.recording.note(&self.weights, &self.pixels);

@@ -1,7 +1,9 @@
-//! Sums of outer products: the gradient of a dense layer's weights, from its inputs and the gradients of its sums.
+//! Sums of outer products: the gradient of a dense layer's weights, from its inputs and the
+//! gradients of its sums.
 //!
-//! The inner dimension are the rows of a batch. They may lie anywhere, since both factors are repacked on their way: read in
-//! place, numbers that belong together would be kilobytes apart and push each other out of the nearest cache.
+//! The inner dimension are the rows of a batch. They may lie anywhere, since both factors are
+//! repacked on their way: read in place, numbers that belong together would be kilobytes apart and
+//! push each other out of the nearest cache.
 
 use std::ops::Range;
 
@@ -26,10 +28,12 @@ struct Packed<T> {
     right: Vec<T>,
 }
 
-/// `out[i][j]` = the sum over all rows k of `inputs[k][rows.start + i] * sums[k][j]`; `out` has `columns` columns.
+/// `out[i][j]` = the sum over all rows k of `inputs[k][rows.start + i] * sums[k][j]`; `out` has
+/// `columns` columns.
 ///
 /// # Panics
-/// If a row is too short, the two numbers of rows differ, `out` has another size, or `columns` is no multiple of [`PANEL`].
+/// If a row is too short, the two numbers of rows differ, `out` has another size, or `columns` is
+/// no multiple of [`PANEL`].
 pub fn sum_outer_products(
     kernels: Simd,
     inputs: &[&[f32]],
@@ -39,20 +43,36 @@ pub fn sum_outer_products(
     out: &mut [f32],
     workspace: &mut Workspace,
 ) {
-    assert!(columns.is_multiple_of(PANEL), "product of {columns} columns, not a multiple of {PANEL}");
-    assert!(inputs.len() == sums.len() && out.len() == rows.len() * columns, "sizes of an outer product");
+    assert!(
+        columns.is_multiple_of(PANEL),
+        "product of {columns} columns, not a multiple of {PANEL}"
+    );
+    assert!(
+        inputs.len() == sums.len() && out.len() == rows.len() * columns,
+        "sizes of an outer product"
+    );
     if inputs.is_empty() || columns == 0 {
         return out.fill(0.0);
     }
     if kernels.family() != Family::Avx512Bf16 {
-        return sum_packed(kernels, inputs, rows, sums, columns, out, &mut workspace.numbers, f32::run);
+        return sum_packed(
+            kernels,
+            inputs,
+            rows,
+            sums,
+            columns,
+            out,
+            &mut workspace.numbers,
+            f32::run,
+        );
     }
     let [left, right] = &mut workspace.paired;
     let inputs = paired(kernels, inputs, rows.clone(), left);
     let sums = paired(kernels, sums, 0..columns, right);
     let run = |tile: Tile, kernels, height, left: *const Pair, right, out| {
         // A step of the left factor is a pair of halves.
-        let tile = Tile { row_stride: 2 * tile.row_stride, left_inner: 2 * tile.left_inner, ..tile };
+        let tile =
+            Tile { row_stride: 2 * tile.row_stride, left_inner: 2 * tile.left_inner, ..tile };
         // SAFETY: as the caller promises.
         unsafe { u16::run(tile, kernels, height, left.cast(), right, out) }
     };
@@ -60,12 +80,19 @@ pub fn sum_outer_products(
 }
 
 /// Some columns of rows, two rows together.
-fn paired<'a>(kernels: Simd, rows: &[&[f32]], columns: Range<usize>, pairs: &'a mut Vec<Pair>) -> Vec<&'a [Pair]> {
+fn paired<'a>(
+    kernels: Simd,
+    rows: &[&[f32]],
+    columns: Range<usize>,
+    pairs: &'a mut Vec<Pair>,
+) -> Vec<&'a [Pair]> {
     let width = columns.len();
     pairs.resize(rows.len().div_ceil(2) * width, 0);
     for (rows, pairs) in rows.chunks(2).zip(pairs.chunks_exact_mut(width)) {
         match rows {
-            [first, second] => pair_rows(kernels, &first[columns.clone()], &second[columns.clone()], pairs),
+            [first, second] => {
+                pair_rows(kernels, &first[columns.clone()], &second[columns.clone()], pairs)
+            }
             _ => pair_with_zeros(kernels, &rows[0][columns.clone()], pairs),
         }
     }
@@ -106,9 +133,12 @@ fn sum_packed<T: Copy + Default>(
                         ahead: Ahead::at(row, row + height, count),
                     };
                     let left = &packed.left[row * length..][..height * length];
-                    let out = &mut out[row * columns + panel * PANEL..][..(height - 1) * columns + PANEL];
+                    let out =
+                        &mut out[row * columns + panel * PANEL..][..(height - 1) * columns + PANEL];
                     // SAFETY: the three slices are exactly the tile's elements.
-                    unsafe { run(tile, kernels, height, left.as_ptr(), right.as_ptr(), out.as_mut_ptr()) };
+                    unsafe {
+                        run(tile, kernels, height, left.as_ptr(), right.as_ptr(), out.as_mut_ptr())
+                    };
                 }
             }
         }
@@ -125,8 +155,15 @@ fn pack_panels<T: Copy + Default>(rows: &[&[T]], columns: usize, packed: &mut Ve
     }
 }
 
-/// Columns `first..first + count` of the inputs, tile after tile; in a tile one row of numbers after the other.
-fn pack_block<T: Copy + Default>(kernels: Simd, inputs: &[&[T]], first: usize, count: usize, packed: &mut Vec<T>) {
+/// Columns `first..first + count` of the inputs, tile after tile; in a tile one row of numbers
+/// after the other.
+fn pack_block<T: Copy + Default>(
+    kernels: Simd,
+    inputs: &[&[T]],
+    first: usize,
+    count: usize,
+    packed: &mut Vec<T>,
+) {
     packed.resize(count * inputs.len(), T::default());
     let mut all = tiles(kernels, count).peekable();
     // At most two heights occur, the taller first.
@@ -148,7 +185,8 @@ fn pack_block<T: Copy + Default>(kernels: Simd, inputs: &[&[T]], first: usize, c
     }
 }
 
-/// Tiles of a height known when this is compiled, so that a copy is a move or two rather than a call.
+/// Tiles of a height known when this is compiled, so that a copy is a move or two rather than a
+/// call.
 fn pack_tiles<T: Copy, const HEIGHT: usize>(inputs: &[&[T]], first: usize, packed: &mut [T]) {
     let length = inputs.len() * HEIGHT;
     let count = packed.len() / length;
@@ -164,20 +202,39 @@ mod tests {
     use super::super::product::tests::noise;
     use super::*;
 
-    /// Every family, with more rows than a stretch of the inner dimension and more columns than a block.
+    /// Every family, with more rows than a stretch of the inner dimension and more columns than a
+    /// block.
     #[test]
     fn sums_equal_plain_loops() {
         for kernels in Simd::available() {
-            for (count, width, columns, rows) in [(1, 40, 32, 3..40), (5, 300, 64, 0..300), (1100, 50, 96, 7..48)] {
+            for (count, width, columns, rows) in
+                [(1, 40, 32, 3..40), (5, 300, 64, 0..300), (1100, 50, 96, 7..48)]
+            {
                 let (inputs, sums) = (noise(count * width, 1), noise(count * columns, 2));
-                let (inputs, sums): (Vec<_>, Vec<_>) = (inputs.chunks(width).collect(), sums.chunks(columns).collect());
+                let (inputs, sums): (Vec<_>, Vec<_>) =
+                    (inputs.chunks(width).collect(), sums.chunks(columns).collect());
                 let mut out = vec![7.0; rows.len() * columns];
-                sum_outer_products(kernels, &inputs, rows.clone(), &sums, columns, &mut out, &mut Workspace::default());
+                sum_outer_products(
+                    kernels,
+                    &inputs,
+                    rows.clone(),
+                    &sums,
+                    columns,
+                    &mut out,
+                    &mut Workspace::default(),
+                );
                 for (i, row) in rows.clone().enumerate() {
                     for column in 0..columns {
-                        let terms = inputs.iter().zip(&sums).map(|(x, d)| f64::from(x[row]) * f64::from(d[column]));
-                        let (expected, found) = (terms.sum::<f64>(), f64::from(out[i * columns + column]));
-                        assert!((expected - found).abs() < 1e-4, "{kernels} {count} {row} {column}: {found}, not {expected}");
+                        let terms = inputs
+                            .iter()
+                            .zip(&sums)
+                            .map(|(x, d)| f64::from(x[row]) * f64::from(d[column]));
+                        let (expected, found) =
+                            (terms.sum::<f64>(), f64::from(out[i * columns + column]));
+                        assert!(
+                            (expected - found).abs() < 1e-4,
+                            "{kernels} {count} {row} {column}: {found}, not {expected}"
+                        );
                     }
                 }
             }
@@ -189,10 +246,19 @@ mod tests {
     fn parts_of_a_result_have_the_bits_of_the_whole() {
         for kernels in Simd::available() {
             let (inputs, sums) = (noise(700 * 70, 1), noise(700 * 32, 2));
-            let (inputs, sums): (Vec<_>, Vec<_>) = (inputs.chunks(70).collect(), sums.chunks(32).collect());
+            let (inputs, sums): (Vec<_>, Vec<_>) =
+                (inputs.chunks(70).collect(), sums.chunks(32).collect());
             let part = |rows: Range<usize>| {
                 let mut out = vec![0.0; rows.len() * 32];
-                sum_outer_products(kernels, &inputs, rows, &sums, 32, &mut out, &mut Workspace::default());
+                sum_outer_products(
+                    kernels,
+                    &inputs,
+                    rows,
+                    &sums,
+                    32,
+                    &mut out,
+                    &mut Workspace::default(),
+                );
                 out
             };
             assert_eq!(part(0..70), [part(0..11), part(11..23), part(23..70)].concat());

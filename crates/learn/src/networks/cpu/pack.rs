@@ -1,11 +1,16 @@
-//! Matrices stored panel after panel: a panel is read front to back by a tile; row by row the same reads would be kilobytes
-//! apart.
+//! Matrices stored panel after panel: a panel is read front to back by a tile; row by row the same
+//! reads would be kilobytes apart.
 
 use crate::networks::cpu::tile::PANEL;
 
-/// Stores a matrix of `inner` rows and `columns` columns, row by row in `source`, panel after panel in `packed`.
+/// Stores a matrix of `inner` rows and `columns` columns, row by row in `source`, panel after panel
+/// in `packed`.
 pub fn pack(source: &[f32], inner: usize, columns: usize, packed: &mut [f32]) {
-    assert!(columns.is_multiple_of(PANEL) && source.len() == inner * columns && packed.len() == source.len());
+    assert!(
+        columns.is_multiple_of(PANEL)
+            && source.len() == inner * columns
+            && packed.len() == source.len()
+    );
     for (row, values) in source.chunks_exact(columns).enumerate() {
         for (panel, part) in values.chunks_exact(PANEL).enumerate() {
             let start = (panel * inner + row) * PANEL;
@@ -16,9 +21,15 @@ pub fn pack(source: &[f32], inner: usize, columns: usize, packed: &mut [f32]) {
 
 /// As [`pack`], of the transpose: `source` has `columns` rows of `inner` columns.
 pub fn pack_transposed(source: &[f32], inner: usize, columns: usize, packed: &mut [f32]) {
-    assert!(columns.is_multiple_of(PANEL) && source.len() == inner * columns && packed.len() == source.len());
+    assert!(
+        columns.is_multiple_of(PANEL)
+            && source.len() == inner * columns
+            && packed.len() == source.len()
+    );
     const BLOCK: usize = 16;
-    for (rows, panel) in source.chunks_exact(PANEL * inner).zip(packed.chunks_exact_mut(PANEL * inner)) {
+    for (rows, panel) in
+        source.chunks_exact(PANEL * inner).zip(packed.chunks_exact_mut(PANEL * inner))
+    {
         let mut first = 0;
         while first < inner {
             let end = (first + BLOCK).min(inner);

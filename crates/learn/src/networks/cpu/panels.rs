@@ -1,4 +1,5 @@
-//! Weights as the products of a family read them: packed panel after panel, as numbers of 32 bits or as pairs of 16.
+//! Weights as the products of a family read them: packed panel after panel, as numbers of 32 bits
+//! or as pairs of 16.
 
 use hasard_engine::simd::{Family, Simd};
 
@@ -46,16 +47,21 @@ impl Panels {
         self.pack_runs(kernels, source, inner, columns);
     }
 
-    /// The same of runs of `run` rows, each of which a convolution finds in a row of its image: pairs never join two of them.
+    /// The same of runs of `run` rows, each of which a convolution finds in a row of its image:
+    /// pairs never join two of them.
     pub fn pack_runs(&mut self, kernels: Simd, source: &[f32], run: usize, columns: usize) {
-        assert!(columns.is_multiple_of(PANEL) && source.len().is_multiple_of((run * columns).max(1)), "a matrix of whole runs");
+        assert!(
+            columns.is_multiple_of(PANEL) && source.len().is_multiple_of((run * columns).max(1)),
+            "a matrix of whole runs"
+        );
         let inner = source.len() / columns.max(1);
         if kernels.family() != Family::Avx512Bf16 {
             return pack(source, inner, columns, self.numbers(source.len()));
         }
         let pairs = inner / run.max(1) * run.div_ceil(2);
         let packed = self.pairs(pairs * columns);
-        let rows = source.chunks_exact((run * columns).max(1)).flat_map(|run| run.chunks(2 * columns));
+        let rows =
+            source.chunks_exact((run * columns).max(1)).flat_map(|run| run.chunks(2 * columns));
         for (index, both) in rows.enumerate() {
             let (first, second) = both.split_at(columns);
             for panel in 0..columns / PANEL {
@@ -77,10 +83,14 @@ impl Panels {
         assert!(columns.is_multiple_of(PANEL) && source.len() == inner * columns);
         let pairs = inner.div_ceil(2);
         let packed = self.pairs(pairs * columns);
-        for (rows, panel) in source.chunks_exact((PANEL * inner).max(1)).zip(packed.chunks_exact_mut((PANEL * pairs).max(1))) {
+        for (rows, panel) in source
+            .chunks_exact((PANEL * inner).max(1))
+            .zip(packed.chunks_exact_mut((PANEL * pairs).max(1)))
+        {
             for (lane, row) in rows.chunks_exact(inner).enumerate() {
                 for (index, both) in row.chunks(2).enumerate() {
-                    panel[index * PANEL + lane] = pair_of(both[0], both.get(1).copied().unwrap_or(0.0));
+                    panel[index * PANEL + lane] =
+                        pair_of(both[0], both.get(1).copied().unwrap_or(0.0));
                 }
             }
         }

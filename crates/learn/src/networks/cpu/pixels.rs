@@ -34,7 +34,13 @@ impl StoredImage {
         let bytes = if as_it_is { observation } else { &self.bytes };
         if kernels.family() == Family::Avx512Bf16 {
             self.rounded.resize(convolution.rounded(), 0);
-            round_pixels(kernels, bytes, &pixels.scale, &pixels.shift, &mut self.rounded[..convolution.stored]);
+            round_pixels(
+                kernels,
+                bytes,
+                &pixels.scale,
+                &pixels.shift,
+                &mut self.rounded[..convolution.stored],
+            );
         } else {
             let numbers = sized(&mut self.numbers, convolution.stored);
             scale_pixels(kernels, bytes, &pixels.scale, &pixels.shift, numbers);
@@ -44,7 +50,11 @@ impl StoredImage {
 
     /// The image that was stored last.
     pub fn latest(&self, kernels: Simd) -> Stored<'_> {
-        if kernels.family() == Family::Avx512Bf16 { Stored::Rounded(&self.rounded) } else { Stored::Numbers(&self.numbers) }
+        if kernels.family() == Family::Avx512Bf16 {
+            Stored::Rounded(&self.rounded)
+        } else {
+            Stored::Numbers(&self.numbers)
+        }
     }
 
     /// Brings the bytes into the order of the stored input.

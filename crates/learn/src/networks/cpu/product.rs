@@ -1,9 +1,9 @@
 //! Matrix products, block by block over the register tile of [`super::tile`].
 //!
-//! Both factors are read in place through strides, so a convolution is a product whose rows overlap in memory and the
-//! gradient of its weights one with rows and inner dimension exchanged. Weights are repacked once an update, and the long
-//! factors of the dense layers' gradients on their way ([`super::outer`]). Tiles run at over 90 % of what the multiply-add
-//! units can do.
+//! Both factors are read in place through strides, so a convolution is a product whose rows overlap
+//! in memory and the gradient of its weights one with rows and inner dimension exchanged. Weights
+//! are repacked once an update, and the long factors of the dense layers' gradients on their way
+//! ([`super::outer`]). Tiles run at over 90 % of what the multiply-add units can do.
 //!
 //! [`multiply`] asserts that every address that it will touch lies inside its slices.
 
@@ -50,8 +50,8 @@ pub struct Left<'a> {
     pub inner_stride: usize,
 }
 
-/// Right factor: element (inner, 32 panel + column) is `data[panel * panel_stride + inner * inner_stride + column]`. In bfloat16 an
-/// element is a pair of inner indices.
+/// Right factor: element (inner, 32 panel + column) is `data[panel * panel_stride + inner *
+/// inner_stride + column]`. In bfloat16 an element is a pair of inner indices.
 #[derive(Clone, Copy)]
 pub struct Right<'a, T = f32> {
     /// The elements.
@@ -87,10 +87,12 @@ pub struct Size {
     pub inner: usize,
 }
 
-/// Bytes of the left factor that stay in the second-level cache while the panels of the right one pass by.
+/// Bytes of the left factor that stay in the second-level cache while the panels of the right one
+/// pass by.
 const BLOCK_BYTES: usize = 384 * 1024;
-/// Longest stretch of the inner dimension that is walked at once: a panel of so many rows stays in the second-level cache, and
-/// with short registers, which read it twice as often, nearly in the first.
+/// Longest stretch of the inner dimension that is walked at once: a panel of so many rows stays in
+/// the second-level cache, and with short registers, which read it twice as often, nearly in the
+/// first.
 pub(super) const fn stretch(kernels: Simd) -> usize {
     match kernels.family() {
         Family::Avx512 | Family::Avx512Bf16 => 2048,
@@ -102,16 +104,19 @@ pub(super) const fn stretch(kernels: Simd) -> usize {
 pub(super) fn stretches(kernels: Simd, inner: usize) -> impl Iterator<Item = (usize, usize)> {
     let count = inner.div_ceil(stretch(kernels)).max(1);
     let (length, longer) = (inner / count, inner % count);
-    (0..count).map(move |part| (part * length + part.min(longer), length + usize::from(part < longer)))
+    (0..count)
+        .map(move |part| (part * length + part.min(longer), length + usize::from(part < longer)))
 }
 
 /// Rows of the left factor in a block, for a stretch of the inner dimension.
 pub(super) fn block_rows(kernels: Simd, inner: usize) -> usize {
-    (BLOCK_BYTES / size_of::<f32>() / inner.clamp(1, stretch(kernels))).next_multiple_of(tallest(kernels))
+    (BLOCK_BYTES / size_of::<f32>() / inner.clamp(1, stretch(kernels)))
+        .next_multiple_of(tallest(kernels))
 }
 
-/// A left factor whose rows and inner indices come in groups, in which a convolution finds its patches without copying them. In
-/// bfloat16 strides count numbers of 16 bits, and an inner index is the pair of two of them that begins there.
+/// A left factor whose rows and inner indices come in groups, in which a convolution finds its
+/// patches without copying them. In bfloat16 strides count numbers of 16 bits, and an inner index
+/// is the pair of two of them that begins there.
 #[derive(Clone, Copy)]
 pub(super) struct Grouped<'a, T> {
     pub data: &'a [T],
@@ -129,14 +134,28 @@ pub(super) trait Factor: Copy {
     ///
     /// # Safety
     /// All elements of the tile must lie inside the allocations behind the pointers.
-    unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const Self, right: *const Self::Right, out: *mut f32);
+    unsafe fn run(
+        tile: Tile,
+        kernels: Simd,
+        height: usize,
+        left: *const Self,
+        right: *const Self::Right,
+        out: *mut f32,
+    );
 }
 
 impl Factor for f32 {
     type Right = f32;
     const READ: usize = 1;
     #[inline(always)]
-    unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const f32, right: *const f32, out: *mut f32) {
+    unsafe fn run(
+        tile: Tile,
+        kernels: Simd,
+        height: usize,
+        left: *const f32,
+        right: *const f32,
+        out: *mut f32,
+    ) {
         // SAFETY: as the caller promised.
         unsafe { tile.run(kernels, height, left, right, out) }
     }
@@ -146,13 +165,21 @@ impl Factor for u16 {
     type Right = Pair;
     const READ: usize = 2;
     #[inline(always)]
-    unsafe fn run(tile: Tile, kernels: Simd, height: usize, left: *const u16, right: *const Pair, out: *mut f32) {
+    unsafe fn run(
+        tile: Tile,
+        kernels: Simd,
+        height: usize,
+        left: *const u16,
+        right: *const Pair,
+        out: *mut f32,
+    ) {
         // SAFETY: as the caller promised.
         unsafe { bfloat16::run(tile, kernels, height, left, right, out) }
     }
 }
 
-/// `out = left * right`, or `out += left * right`; row `i` of the result starts at `out[i * out_stride]`.
+/// `out = left * right`, or `out += left * right`; row `i` of the result starts at `out[i *
+/// out_stride]`.
 ///
 /// # Panics
 /// If the size reaches outside a slice, or `columns` is no multiple of [`PANEL`].
@@ -167,11 +194,19 @@ pub fn multiply(
 ) {
     let Size { rows, columns, inner } = size;
     let (rows, inner) = (Axis::plain(rows, left.row_stride), Axis::plain(inner, left.inner_stride));
-    multiply_grouped(kernels, Grouped { data: left.data, rows, inner }, right, columns, out, out_stride, accumulate);
+    multiply_grouped(
+        kernels,
+        Grouped { data: left.data, rows, inner },
+        right,
+        columns,
+        out,
+        out_stride,
+        accumulate,
+    );
 }
 
-/// As [`multiply`] with weights as the family reads them; in bfloat16 the rows of the left factor, whose inner indices stand side by
-/// side, are rounded into `rounded` block by block.
+/// As [`multiply`] with weights as the family reads them; in bfloat16 the rows of the left factor,
+/// whose inner indices stand side by side, are rounded into `rounded` block by block.
 #[allow(clippy::too_many_arguments, reason = "two factors, a result and scratch")]
 pub fn multiply_panels(
     kernels: Simd,
@@ -186,7 +221,15 @@ pub fn multiply_panels(
     let Size { rows, columns, inner } = size;
     let pairs = match right {
         Panels::Numbers(data) => {
-            return multiply(kernels, size, left, Right::panels(data, inner), out, out_stride, accumulate);
+            return multiply(
+                kernels,
+                size,
+                left,
+                Right::panels(data, inner),
+                out,
+                out_stride,
+                accumulate,
+            );
         }
         Panels::Pairs(pairs) => pairs,
     };
@@ -201,14 +244,26 @@ pub fn multiply_panels(
             bfloat16::round(kernels, from, &mut to[..inner]);
             to[inner..].fill(0);
         }
-        let factor = Grouped { data: &rounded[..], rows: Axis::plain(count, width), inner: Axis::plain(width / 2, 2) };
+        let factor = Grouped {
+            data: &rounded[..],
+            rows: Axis::plain(count, width),
+            inner: Axis::plain(width / 2, 2),
+        };
         let right = Right::panels(&pairs[..], width / 2);
-        multiply_grouped(kernels, factor, right, columns, &mut out[first * out_stride..], out_stride, accumulate);
+        multiply_grouped(
+            kernels,
+            factor,
+            right,
+            columns,
+            &mut out[first * out_stride..],
+            out_stride,
+            accumulate,
+        );
     }
 }
 
-/// As [`multiply`], of a left factor in groups: the rows of all groups follow each other in the result, the inner indices in the right
-/// factor.
+/// As [`multiply`], of a left factor in groups: the rows of all groups follow each other in the
+/// result, the inner indices in the right factor.
 pub(super) fn multiply_grouped<T: Factor>(
     kernels: Simd,
     left: Grouped<'_, T>,
@@ -220,18 +275,26 @@ pub(super) fn multiply_grouped<T: Factor>(
 ) {
     let Grouped { data, rows, inner } = left;
     if rows.length() == 0 || columns == 0 || inner.length() == 0 {
-        assert!(inner.length() > 0 || accumulate, "an empty sum must be asked for as an accumulation");
+        assert!(
+            inner.length() > 0 || accumulate,
+            "an empty sum must be asked for as an accumulation"
+        );
         return;
     }
-    assert!(columns.is_multiple_of(PANEL), "product of {columns} columns, not a multiple of {PANEL}");
+    assert!(
+        columns.is_multiple_of(PANEL),
+        "product of {columns} columns, not a multiple of {PANEL}"
+    );
     assert!(rows.reach() + inner.reach() + T::READ <= data.len(), "left factor too short");
     let panels = columns / PANEL;
     assert!(
-        (panels - 1) * right.panel_stride + (inner.length() - 1) * right.inner_stride + PANEL <= right.data.len(),
+        (panels - 1) * right.panel_stride + (inner.length() - 1) * right.inner_stride + PANEL
+            <= right.data.len(),
         "right factor too short"
     );
     assert!(
-        (rows.length() - 1) * out_stride + columns <= out.len() && (rows.length() == 1 || out_stride >= columns),
+        (rows.length() - 1) * out_stride + columns <= out.len()
+            && (rows.length() == 1 || out_stride >= columns),
         "result too short"
     );
     for Stretch { start, parts, length } in inner.stretches(kernels) {
@@ -249,26 +312,40 @@ pub(super) fn multiply_grouped<T: Factor>(
             ahead: Ahead::Nothing,
         };
         let block = block_rows(kernels, length * parts);
-        for (group, first) in (0..rows.groups).flat_map(|group| (0..rows.count).step_by(block).map(move |first| (group, first))) {
+        for (group, first) in (0..rows.groups)
+            .flat_map(|group| (0..rows.count).step_by(block).map(move |first| (group, first)))
+        {
             let block_rows = block.min(rows.count - first);
             for panel in 0..panels {
                 for (row, height) in tiles(kernels, block_rows) {
-                    // The last tiles of a panel fetch the next: with few rows, weights come from afar all the time.
+                    // The last tiles of a panel fetch the next: with few rows, weights come from
+                    // afar all the time.
                     let is_last = panel + 1 == panels;
-                    tile.ahead = if is_last { Ahead::Nothing } else { Ahead::at(row, row + height, block_rows) };
+                    tile.ahead = if is_last {
+                        Ahead::Nothing
+                    } else {
+                        Ahead::at(row, row + height, block_rows)
+                    };
                     let row = first + row;
-                    let from = group * rows.group_stride + row * rows.stride + part * inner.group_stride + step * inner.stride;
+                    let from = group * rows.group_stride
+                        + row * rows.stride
+                        + part * inner.group_stride
+                        + step * inner.stride;
                     let to = (group * rows.count + row) * out_stride + panel * PANEL;
-                    // SAFETY: the assertions above bound every element of the tile: rows `row..row + height` of the group in the
-                    // left factor and in the result, panel `panel` of the right factor and of the result, and the inner indices
-                    // from `start` on, `length` of each of `parts` groups.
+                    // SAFETY: the assertions above bound every element of the tile: rows
+                    // `row..row + height` of the group in the left factor and in the result, panel
+                    // `panel` of the right factor and of the result, and the inner indices from
+                    // `start` on, `length` of each of `parts` groups.
                     unsafe {
                         T::run(
                             tile,
                             kernels,
                             height,
                             data.as_ptr().add(from),
-                            right.data.as_ptr().add(panel * right.panel_stride + start * right.inner_stride),
+                            right
+                                .data
+                                .as_ptr()
+                                .add(panel * right.panel_stride + start * right.inner_stride),
                             out.as_mut_ptr().add(to),
                         );
                     }
@@ -278,7 +355,8 @@ pub(super) fn multiply_grouped<T: Factor>(
     }
 }
 
-/// Inner indices that are walked at once: `length` of each of `parts` groups, from the index `start` on.
+/// Inner indices that are walked at once: `length` of each of `parts` groups, from the index
+/// `start` on.
 struct Stretch {
     start: usize,
     parts: usize,
@@ -290,8 +368,10 @@ impl Axis {
     fn stretches(self, kernels: Simd) -> impl Iterator<Item = Stretch> {
         let single = self.groups == 1;
         let at_once = (stretch(kernels) / self.count).max(1);
-        let (one, many) = (if single { self.count } else { 0 }, if single { 0 } else { self.groups });
-        let of_one = stretches(kernels, one).map(|(start, length)| Stretch { start, parts: 1, length });
+        let (one, many) =
+            (if single { self.count } else { 0 }, if single { 0 } else { self.groups });
+        let of_one =
+            stretches(kernels, one).map(|(start, length)| Stretch { start, parts: 1, length });
         let of_many = (0..many).step_by(at_once).map(move |first| Stretch {
             start: first * self.count,
             parts: at_once.min(many - first),
@@ -301,8 +381,9 @@ impl Axis {
     }
 }
 
-/// Adds `left * right` to rows that overlap: row `i` of the result starts at `out[i * out_stride]`, and panels of it that meet rows
-/// before are added after those, so that what meets in one number is added up in the order of the rows.
+/// Adds `left * right` to rows that overlap: row `i` of the result starts at `out[i * out_stride]`,
+/// and panels of it that meet rows before are added after those, so that what meets in one number
+/// is added up in the order of the rows.
 pub(super) fn add_to_overlapping_rows<T: Factor>(
     kernels: Simd,
     left: Grouped<'_, T>,
@@ -312,15 +393,25 @@ pub(super) fn add_to_overlapping_rows<T: Factor>(
     out_stride: usize,
 ) {
     let Grouped { data, rows, inner } = left;
-    assert!(columns.is_multiple_of(PANEL) && columns > 0, "product of {columns} columns, not a multiple of {PANEL}");
-    assert!(rows.groups == 1 && inner.groups == 1 && rows.count > 0 && inner.count > 0, "one group of rows");
+    assert!(
+        columns.is_multiple_of(PANEL) && columns > 0,
+        "product of {columns} columns, not a multiple of {PANEL}"
+    );
+    assert!(
+        rows.groups == 1 && inner.groups == 1 && rows.count > 0 && inner.count > 0,
+        "one group of rows"
+    );
     assert!(rows.reach() + inner.reach() + T::READ <= data.len(), "left factor too short");
     let panels = columns / PANEL;
     assert!(
-        (panels - 1) * right.panel_stride + (inner.count - 1) * right.inner_stride + PANEL <= right.data.len(),
+        (panels - 1) * right.panel_stride + (inner.count - 1) * right.inner_stride + PANEL
+            <= right.data.len(),
         "right factor too short"
     );
-    assert!((rows.count - 1) * out_stride + columns <= out.len() && out_stride >= PANEL, "result too short");
+    assert!(
+        (rows.count - 1) * out_stride + columns <= out.len() && out_stride >= PANEL,
+        "result too short"
+    );
     let tile = Tile {
         inner: inner.count,
         parts: 1,
@@ -382,8 +473,14 @@ pub(super) mod tests {
                     let mut packed = vec![0.0; matrix.len()];
                     pack(&matrix, inner, columns, &mut packed);
                     for (left, right) in [
-                        (Left { data: &overlap, row_stride: 3, inner_stride: 1 }, Right::panels(&packed, inner)),
-                        (Left { data: &exchanged, row_stride: 1, inner_stride: rows + 2 }, Right::rows(&matrix, columns)),
+                        (
+                            Left { data: &overlap, row_stride: 3, inner_stride: 1 },
+                            Right::panels(&packed, inner),
+                        ),
+                        (
+                            Left { data: &exchanged, row_stride: 1, inner_stride: rows + 2 },
+                            Right::rows(&matrix, columns),
+                        ),
                     ] {
                         for accumulate in [false, true] {
                             let stride = columns + 4;
@@ -396,10 +493,13 @@ pub(super) mod tests {
                                     let expected = if column >= columns {
                                         f64::from(before[at])
                                     } else {
-                                        let start = if accumulate { f64::from(before[at]) } else { 0.0 };
+                                        let start =
+                                            if accumulate { f64::from(before[at]) } else { 0.0 };
                                         (0..inner).fold(start, |sum, p| {
-                                            let a = left.data[row * left.row_stride + p * left.inner_stride];
-                                            sum + f64::from(a) * f64::from(matrix[p * columns + column])
+                                            let a = left.data
+                                                [row * left.row_stride + p * left.inner_stride];
+                                            sum + f64::from(a)
+                                                * f64::from(matrix[p * columns + column])
                                         })
                                     };
                                     assert!(
@@ -416,8 +516,8 @@ pub(super) mod tests {
         }
     }
 
-    /// Longer than any stretch: at 640x480 the first dense layer sums 136,192 terms, at 1280x720 429,312. One column is compared in full, with a
-    /// plain sum in twice the precision.
+    /// Longer than any stretch: at 640x480 the first dense layer sums 136,192 terms, at 1280x720
+    /// 429,312. One column is compared in full, with a plain sum in twice the precision.
     #[test]
     fn long_products_end_and_equal_plain_sums() {
         for inner in [2049, 98_305, 136_192, 429_312] {
@@ -435,16 +535,22 @@ pub(super) mod tests {
                     false,
                 );
                 for (row, column) in [(0, 0), (1, 31)] {
-                    let term = |k: usize| f64::from(left[row * inner + k]) * f64::from(right[k * PANEL + column]);
+                    let term = |k: usize| {
+                        f64::from(left[row * inner + k]) * f64::from(right[k * PANEL + column])
+                    };
                     let expected: f64 = (0..inner).map(term).sum();
                     let found = f64::from(out[row * PANEL + column]);
-                    assert!((found - expected).abs() < 1e-6 * inner as f64, "{kernels} {inner}: {found}, not {expected}");
+                    assert!(
+                        (found - expected).abs() < 1e-6 * inner as f64,
+                        "{kernels} {inner}: {found}, not {expected}"
+                    );
                 }
             }
         }
     }
 
-    /// The families that fuse multiplication and addition agree bit by bit, and so do any two ways of dealing out rows.
+    /// The families that fuse multiplication and addition agree bit by bit, and so do any two ways
+    /// of dealing out rows.
     #[test]
     fn neither_the_width_of_registers_nor_the_number_of_rows_changes_a_bit() {
         let (rows, inner, columns) = (29, 1300, 64);
@@ -453,14 +559,24 @@ pub(super) mod tests {
             let mut out = vec![0.0; rows * columns];
             let mut first = 0;
             for &rows in parts {
-                let factor = Left { data: &left[first * inner..], row_stride: inner, inner_stride: 1 };
+                let factor =
+                    Left { data: &left[first * inner..], row_stride: inner, inner_stride: 1 };
                 let size = Size { rows, columns, inner };
-                multiply(kernels, size, factor, Right::panels(&right, inner), &mut out[first * columns..], columns, false);
+                multiply(
+                    kernels,
+                    size,
+                    factor,
+                    Right::panels(&right, inner),
+                    &mut out[first * columns..],
+                    columns,
+                    false,
+                );
                 first += rows;
             }
             out
         };
-        let fused: Vec<_> = Simd::available().into_iter().filter(|&kernels| kernels != Simd::PLAIN).collect();
+        let fused: Vec<_> =
+            Simd::available().into_iter().filter(|&kernels| kernels != Simd::PLAIN).collect();
         for &kernels in fused.iter().chain(&[Simd::PLAIN]) {
             assert_eq!(product(kernels, &[rows]), product(kernels, &[1, 13, 15]), "{kernels}");
         }

@@ -1,7 +1,8 @@
-//! Element-wise passes of the residual encoder: rectifiers between layouts, pooling, and their gradients.
+//! Element-wise passes of the residual encoder: rectifiers between layouts, pooling, and their
+//! gradients.
 //!
-//! Images lie pixel by pixel, all channels of one together; `places`, `sources` and `targets` say where each pixel starts in another
-//! layout.
+//! Images lie pixel by pixel, all channels of one together; `places`, `sources` and `targets` say
+//! where each pixel starts in another layout.
 
 use crate::networks::ImageShape;
 use crate::networks::cpu::vectorised::vectorised;
@@ -58,7 +59,8 @@ pub fn gather(from: &[f32], sources: &[usize], channels: usize, image: &mut [f32
 }
 
 vectorised! {
-    /// Gradient before a rectifier whose output is `output`, both laid out by `places`, gathered to `targets`.
+    /// Gradient before a rectifier whose output is `output`, both laid out by `places`, gathered to
+    /// `targets`.
     pub fn rectified_backward_gather(
         gradient: &[f32], output: &[f32], places: &[usize], channels: usize, targets: &[usize], raw: &mut [f32],
     ) {
@@ -73,7 +75,8 @@ vectorised! {
 }
 
 vectorised! {
-    /// Adds the gradient before a rectifier whose output is `output`, both laid out by `places`, to an image.
+    /// Adds the gradient before a rectifier whose output is `output`, both laid out by `places`, to
+    /// an image.
     pub fn rectified_backward_add(gradient: &[f32], output: &[f32], places: &[usize], channels: usize, image: &mut [f32]) {
         for (&place, to) in places.iter().zip(image.chunks_exact_mut(channels)) {
             let (from, output) = (&gradient[place..place + channels], &output[place..place + channels]);
@@ -84,7 +87,8 @@ vectorised! {
     }
 }
 
-/// Pixels of `image` that a pooled one is the largest of, by their numbers in the 3x3 around every second pixel.
+/// Pixels of `image` that a pooled one is the largest of, by their numbers in the 3x3 around every
+/// second pixel.
 #[inline(always)]
 fn window(image: ImageShape, pooled: usize) -> impl Iterator<Item = (u8, usize)> {
     let width = image.width.div_ceil(2);
@@ -97,7 +101,8 @@ fn window(image: ImageShape, pooled: usize) -> impl Iterator<Item = (u8, usize)>
 }
 
 vectorised! {
-    /// The largest of the `raw` pixels in each window of an image, biases added, and which of the nine it was; the first of equal ones.
+    /// The largest of the `raw` pixels in each window of an image, biases added, and which of the
+    /// nine it was; the first of equal ones.
     pub fn pool(raw: &[f32], image: ImageShape, sources: &[usize], bias: &[f32], out: &mut [f32], largest: &mut [u8]) {
         let channels = bias.len();
         let pooled = out.chunks_exact_mut(channels).zip(largest.chunks_exact_mut(channels));
@@ -138,7 +143,8 @@ mod tests {
     use super::*;
     use hasard_engine::simd::Simd;
 
-    /// Pools of an image of 3x4 and of one of 2x2 pixels, by hand; equal values count once, for the first.
+    /// Pools of an image of 3x4 and of one of 2x2 pixels, by hand; equal values count once, for the
+    /// first.
     #[test]
     fn pools_take_the_largest_of_nine_and_give_back_to_it() {
         for kernels in Simd::available() {
@@ -154,6 +160,9 @@ mod tests {
             pool_backward(kernels, &[1.0, 2.0, 3.0, 4.0], image, &largest, 1, &places, &mut back);
             assert_eq!(back, [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 6.0, 0.0, 3.0, 0.0, 0.0, 0.0]);
         }
-        assert_eq!(ImageShape { height: 3, width: 4, channels: 1 }.pooled(), ImageShape { height: 2, width: 2, channels: 1 });
+        assert_eq!(
+            ImageShape { height: 3, width: 4, channels: 1 }.pooled(),
+            ImageShape { height: 2, width: 2, channels: 1 }
+        );
     }
 }

@@ -4,14 +4,16 @@ use std::ops::Range;
 
 use crate::networks::cpu::weights::Plan;
 
-/// Activations of some trajectories. Rows are ordered by lane, then by time: step `t` of lane `l` is row `l * steps + t`.
+/// Activations of some trajectories. Rows are ordered by lane, then by time: step `t` of lane `l`
+/// is row `l * steps + t`.
 #[derive(Clone, Debug, Default)]
 pub struct Tape {
     /// Steps of each lane.
     pub steps: usize,
     /// Lanes.
     pub lanes: usize,
-    /// Output of each convolution but the last, in the layout of the next one's input, row after row; empty for a residual encoder.
+    /// Output of each convolution but the last, in the layout of the next one's input, row after
+    /// row; empty for a residual encoder.
     pub activations: Vec<Vec<f32>>,
     /// Output of the last convolution, or the image without one.
     pub features: Vec<f32>,
@@ -21,7 +23,8 @@ pub struct Tape {
     pub core_input: Vec<f32>,
     /// Gates of the recurrent layer.
     pub gates: Vec<f32>,
-    /// What else its backward step needs: the candidate gate's share of the state (GRU), the cell before each step (LSTM).
+    /// What else its backward step needs: the candidate gate's share of the state (GRU), the cell
+    /// before each step (LSTM).
     pub share: Vec<f32>,
     /// Its output before each step, after resets.
     pub before: Vec<f32>,
@@ -37,7 +40,8 @@ impl Tape {
         let shape = &plan.shape;
         let rows = steps * lanes;
         (self.steps, self.lanes) = (steps, lanes);
-        let kept = if shape.residual.is_empty() { plan.convolutions.get(1..).unwrap_or(&[]) } else { &[] };
+        let kept =
+            if shape.residual.is_empty() { plan.convolutions.get(1..).unwrap_or(&[]) } else { &[] };
         self.activations.resize_with(kept.len(), Vec::new);
         for (activations, next) in self.activations.iter_mut().zip(kept) {
             activations.resize(rows * next.stored, 0.0);
@@ -94,7 +98,10 @@ pub(super) struct Rows {
 
 impl Rows {
     pub fn new(tape: &Tape, steps: &Range<usize>, lanes: &Range<usize>) -> Rows {
-        assert!(steps.end <= tape.steps && lanes.end <= tape.lanes && !steps.is_empty(), "rows outside the tape");
+        assert!(
+            steps.end <= tape.steps && lanes.end <= tape.lanes && !steps.is_empty(),
+            "rows outside the tape"
+        );
         assert!(steps.len() == 1 || steps.len() == tape.steps, "one step or all of them");
         let first = lanes.start * tape.steps + steps.start;
         if steps.len() == tape.steps {

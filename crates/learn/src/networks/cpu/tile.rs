@@ -1,10 +1,13 @@
-//! The register tile under all products: some rows x 32 columns of a result, summed over the inner dimension in order.
+//! The register tile under all products: some rows x 32 columns of a result, summed over the inner
+//! dimension in order.
 //!
-//! Each number of a result is one chain of additions from the first inner index to the last, whatever the family of kernels
-//! and however rows are dealt into tiles; leaving sums in memory and taking them up again changes no bit either. So results
-//! depend on the order of the inner dimension alone, never on block sizes or on the number of threads.
+//! Each number of a result is one chain of additions from the first inner index to the last,
+//! whatever the family of kernels and however rows are dealt into tiles; leaving sums in memory and
+//! taking them up again changes no bit either. So results depend on the order of the inner
+//! dimension alone, never on block sizes or on the number of threads.
 //!
-//! Products in bfloat16 have a tile of their own, [`super::bfloat16`], and share what is said of tiles here.
+//! Products in bfloat16 have a tile of their own, [`super::bfloat16`], and share what is said of
+//! tiles here.
 
 use hasard_engine::simd::{Family, Simd};
 
@@ -20,12 +23,13 @@ pub(super) const fn tallest(kernels: Simd) -> usize {
     }
 }
 
-/// Rows dealt into tiles of nearly equal height, as (first row, height): 16 rows are 8 + 8 rather than 12 + 4, which keeps
-/// the units busy.
+/// Rows dealt into tiles of nearly equal height, as (first row, height): 16 rows are 8 + 8 rather
+/// than 12 + 4, which keeps the units busy.
 pub(super) fn tiles(kernels: Simd, rows: usize) -> impl Iterator<Item = (usize, usize)> {
     let count = rows.div_ceil(tallest(kernels)).max(1);
     let (height, taller) = (rows / count, rows % count);
-    (0..count).map(move |tile| (tile * height + tile.min(taller), height + usize::from(tile < taller)))
+    (0..count)
+        .map(move |tile| (tile * height + tile.min(taller), height + usize::from(tile < taller)))
 }
 
 /// What becomes of a tile's sums.
@@ -44,7 +48,8 @@ pub(super) enum Finish {
 pub(super) struct Tile {
     /// Inner indices of a part.
     pub inner: usize,
-    /// Parts of the inner dimension: each begins so far behind the one before in the left factor, and right behind it in the right one.
+    /// Parts of the inner dimension: each begins so far behind the one before in the left factor,
+    /// and right behind it in the right one.
     pub parts: usize,
     pub left_part: usize,
     pub row_stride: usize,
@@ -58,7 +63,8 @@ pub(super) struct Tile {
     pub ahead: Ahead,
 }
 
-/// The part of the next panel that a tile fetches while it works on this one; a bit for each half, as kernels are made for it.
+/// The part of the next panel that a tile fetches while it works on this one; a bit for each half,
+/// as kernels are made for it.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Ahead {
     Nothing = 0,
@@ -68,8 +74,8 @@ pub(super) enum Ahead {
 }
 
 impl Ahead {
-    /// What a tile fetches which ends at row `end` of `rows`: the last two of a panel share the next, so that it comes no faster
-    /// than it has to.
+    /// What a tile fetches which ends at row `end` of `rows`: the last two of a panel share the
+    /// next, so that it comes no faster than it has to.
     pub fn at(first: usize, end: usize, rows: usize) -> Ahead {
         match (end == rows, first > 0) {
             (true, false) => Ahead::Everything,
@@ -90,12 +96,20 @@ impl Tile {
     /// # Safety
     /// All elements of the tile must lie inside the allocations behind the pointers.
     #[inline]
-    pub unsafe fn run(self, kernels: Simd, height: usize, left: *const f32, right: *const f32, out: *mut f32) {
+    pub unsafe fn run(
+        self,
+        kernels: Simd,
+        height: usize,
+        left: *const f32,
+        right: *const f32,
+        out: *mut f32,
+    ) {
         let next = right.wrapping_add(self.next);
         macro_rules! heights {
             ($function:ident: $($height:literal)*) => {
                 match (height, self.ahead) {
-                    // SAFETY: as the caller promised; whoever has these kernels has their instructions.
+                    // SAFETY: as the caller promised; whoever has these kernels has their
+                    // instructions.
                     $(($height, Ahead::Nothing) => unsafe { $function::<$height, 0>(self, left, right, next, out) },)*
                     // SAFETY: as above.
                     $(($height, Ahead::LeftHalf) => unsafe { $function::<$height, LEFT>(self, left, right, next, out) },)*
@@ -129,8 +143,8 @@ unsafe fn avx512<const ROWS: usize, const AHEAD: u8>(
     out: *mut f32,
 ) {
     use std::arch::x86_64::{
-        _MM_HINT_T1, _mm_prefetch, _mm512_add_ps, _mm512_fmadd_ps, _mm512_loadu_ps, _mm512_set1_ps, _mm512_setzero_ps,
-        _mm512_storeu_ps,
+        _MM_HINT_T1, _mm_prefetch, _mm512_add_ps, _mm512_fmadd_ps, _mm512_loadu_ps, _mm512_set1_ps,
+        _mm512_setzero_ps, _mm512_storeu_ps,
     };
     // SAFETY: see `Tile::run`; a prefetch of any address is harmless.
     unsafe {
@@ -167,7 +181,11 @@ unsafe fn avx512<const ROWS: usize, const AHEAD: u8>(
         for (row, pair) in sums.iter().enumerate() {
             for (half, sum) in pair.iter().enumerate() {
                 let to = out.add(row * tile.out_stride + 16 * half);
-                let sum = if tile.finish == Finish::Add { _mm512_add_ps(_mm512_loadu_ps(to), *sum) } else { *sum };
+                let sum = if tile.finish == Finish::Add {
+                    _mm512_add_ps(_mm512_loadu_ps(to), *sum)
+                } else {
+                    *sum
+                };
                 _mm512_storeu_ps(to, sum);
             }
         }
@@ -185,8 +203,8 @@ unsafe fn avx2<const ROWS: usize, const AHEAD: u8>(
     out: *mut f32,
 ) {
     use std::arch::x86_64::{
-        _MM_HINT_T1, _mm_prefetch, _mm256_add_ps, _mm256_fmadd_ps, _mm256_loadu_ps, _mm256_set1_ps, _mm256_setzero_ps,
-        _mm256_storeu_ps,
+        _MM_HINT_T1, _mm_prefetch, _mm256_add_ps, _mm256_fmadd_ps, _mm256_loadu_ps, _mm256_set1_ps,
+        _mm256_setzero_ps, _mm256_storeu_ps,
     };
     // SAFETY: see `Tile::run`; a prefetch of any address is harmless.
     unsafe {
@@ -223,7 +241,11 @@ unsafe fn avx2<const ROWS: usize, const AHEAD: u8>(
             for (row, pair) in sums.iter().enumerate() {
                 for (quarter, sum) in pair.iter().enumerate() {
                     let to = out.add(row * tile.out_stride + 8 * quarter);
-                    let sum = if tile.finish == Finish::Add { _mm256_add_ps(_mm256_loadu_ps(to), *sum) } else { *sum };
+                    let sum = if tile.finish == Finish::Add {
+                        _mm256_add_ps(_mm256_loadu_ps(to), *sum)
+                    } else {
+                        *sum
+                    };
                     _mm256_storeu_ps(to, sum);
                 }
             }
@@ -243,7 +265,8 @@ unsafe fn portable<const ROWS: usize, const AHEAD: u8>(
     // SAFETY: see `Tile::run`.
     unsafe {
         for quarter in 0..PANEL / WIDTH {
-            let (mut part, mut right, out) = (left, right.add(quarter * WIDTH), out.add(quarter * WIDTH));
+            let (mut part, mut right, out) =
+                (left, right.add(quarter * WIDTH), out.add(quarter * WIDTH));
             let mut sums = [[0.0f32; WIDTH]; ROWS];
             if tile.finish == Finish::Continue {
                 for (row, sums) in sums.iter_mut().enumerate() {

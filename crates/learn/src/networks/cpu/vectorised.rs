@@ -1,6 +1,7 @@
 //! Functions that are compiled once for each family of vector instructions.
 
-/// Defines a function over slices whose plain loops are compiled for every family; the first argument chooses among them.
+/// Defines a function over slices whose plain loops are compiled for every family; the first
+/// argument chooses among them.
 macro_rules! vectorised {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $body:block) => {
         $(#[$meta])*

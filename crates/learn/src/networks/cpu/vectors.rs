@@ -1,5 +1,5 @@
-//! Sums and products of vectors as long as a network, by which conjugate gradients go. Neither the kernels nor the number of
-//! threads change a bit.
+//! Sums and products of vectors as long as a network, by which conjugate gradients go. Neither the
+//! kernels nor the number of threads change a bit.
 
 use hasard_engine::simd::Simd;
 
@@ -33,19 +33,27 @@ impl Vectors {
     /// `to += scale * b`.
     pub fn add_scaled(self, to: &mut [f32], scale: f64, b: &[f32]) {
         let work = to.chunks_mut(STRETCH).zip(b.chunks(STRETCH));
-        self.each(work.map(|(to, b)| move |_: &mut ()| add_scaled(self.kernels, to, scale as f32, b)));
+        self.each(
+            work.map(|(to, b)| move |_: &mut ()| add_scaled(self.kernels, to, scale as f32, b)),
+        );
     }
 
     /// `to = a + scale * to`.
     pub fn scale_and_add(self, to: &mut [f32], scale: f64, a: &[f32]) {
         let work = to.chunks_mut(STRETCH).zip(a.chunks(STRETCH));
-        self.each(work.map(|(to, a)| move |_: &mut ()| scale_and_add(self.kernels, to, scale as f32, a)));
+        self.each(
+            work.map(|(to, a)| move |_: &mut ()| scale_and_add(self.kernels, to, scale as f32, a)),
+        );
     }
 
     /// `to = a + scale * b`.
     pub fn set_sum(self, to: &mut [f32], a: &[f32], scale: f64, b: &[f32]) {
         let work = to.chunks_mut(STRETCH).zip(a.chunks(STRETCH)).zip(b.chunks(STRETCH));
-        self.each(work.map(|((to, a), b)| move |_: &mut ()| set_sum(self.kernels, to, a, scale as f32, b)));
+        self.each(
+            work.map(|((to, a), b)| {
+                move |_: &mut ()| set_sum(self.kernels, to, a, scale as f32, b)
+            }),
+        );
     }
 
     fn each<W: FnOnce(&mut ()) + Send>(self, work: impl Iterator<Item = W> + Send) {
@@ -104,10 +112,15 @@ mod tests {
         for length in [0, 1, 15, 16, 1003, 2 * STRETCH + 5] {
             let (a, b) = (noise(length, 1), noise(length, 2));
             let expected: f64 = a.iter().zip(&b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum();
-            for (kernels, threads) in Simd::available().into_iter().flat_map(|kernels| [(kernels, 1), (kernels, 3)]) {
+            for (kernels, threads) in
+                Simd::available().into_iter().flat_map(|kernels| [(kernels, 1), (kernels, 3)])
+            {
                 let vectors = Vectors { kernels, threads };
                 let found = vectors.dot(&a, &b);
-                assert!((found - expected).abs() < 1e-9, "{vectors:?}, {length}: {found} against {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-9,
+                    "{vectors:?}, {length}: {found} against {expected}"
+                );
                 assert_eq!(found.to_bits(), plain.dot(&a, &b).to_bits(), "{vectors:?}, {length}");
                 let (mut added, mut scaled, mut set) = (a.clone(), a.clone(), vec![0.0; length]);
                 vectors.add_scaled(&mut added, 0.3, &b);

@@ -58,11 +58,16 @@ impl Plan {
     /// Parameter after another one in the table: the biases of a layer.
     #[must_use]
     pub fn after(&self, parameter: &Parameter) -> &Parameter {
-        let at = self.parameters.iter().position(|other| other.offset == parameter.offset).expect("from this table");
+        let at = self
+            .parameters
+            .iter()
+            .position(|other| other.offset == parameter.offset)
+            .expect("from this table");
         &self.parameters[at + 1]
     }
 
-    /// The four parameters of the recurrent layer: input weights and biases, hidden weights and biases.
+    /// The four parameters of the recurrent layer: input weights and biases, hidden weights and
+    /// biases.
     #[must_use]
     pub fn cell(&self) -> [&Parameter; 4] {
         let first = 2 * (self.convolutions.len() + self.shape.dense.len());
@@ -122,7 +127,11 @@ impl PackedWeights {
     }
 
     /// The same as pieces of work: one a layer, and one for the heads.
-    pub fn loading<'a, S>(&'a mut self, plan: &'a Plan, parameters: &'a [f32]) -> Vec<Piece<'a, S>> {
+    pub fn loading<'a, S>(
+        &'a mut self,
+        plan: &'a Plan,
+        parameters: &'a [f32],
+    ) -> Vec<Piece<'a, S>> {
         let (kernels, shape) = (plan.kernels, &plan.shape);
         let mut pieces: Vec<Piece<'a, S>> = Vec::new();
         if let Some(units) = shape.recurrent {
@@ -131,24 +140,35 @@ impl PackedWeights {
             let (from_input, from_hidden) = (&mut self.cell_input, &mut self.cell_hidden);
             copy(&mut self.cell_biases[0], &parameters[input_bias.range()]);
             copy(&mut self.cell_biases[1], &parameters[hidden_bias.range()]);
-            pieces.push(Box::new(move |_| from_input.pack(kernels, &parameters[input.range()], inputs, columns)));
-            pieces.push(Box::new(move |_| from_hidden.pack(kernels, &parameters[hidden.range()], units, columns)));
+            pieces.push(Box::new(move |_| {
+                from_input.pack(kernels, &parameters[input.range()], inputs, columns)
+            }));
+            pieces.push(Box::new(move |_| {
+                from_hidden.pack(kernels, &parameters[hidden.range()], units, columns)
+            }));
         }
         self.dense.resize_with(shape.dense.len(), Panels::default);
         self.dense_biases.resize_with(shape.dense.len(), Vec::new);
-        for (index, (packed, biases)) in self.dense.iter_mut().zip(&mut self.dense_biases).enumerate() {
+        for (index, (packed, biases)) in
+            self.dense.iter_mut().zip(&mut self.dense_biases).enumerate()
+        {
             let weights = plan.dense(index);
             copy(biases, &parameters[plan.after(weights).range()]);
             let units = shape.dense[index];
-            pieces.push(Box::new(move |_| packed.pack(kernels, &parameters[weights.range()], weights.inputs, units)));
+            pieces.push(Box::new(move |_| {
+                packed.pack(kernels, &parameters[weights.range()], weights.inputs, units)
+            }));
         }
         self.convolutions.resize_with(plan.convolutions.len(), Panels::default);
         self.convolution_biases.resize_with(plan.convolutions.len(), Vec::new);
-        let convolutions = self.convolutions.iter_mut().zip(&mut self.convolution_biases).zip(&plan.convolutions);
+        let convolutions =
+            self.convolutions.iter_mut().zip(&mut self.convolution_biases).zip(&plan.convolutions);
         for (index, ((packed, biases), convolution)) in convolutions.enumerate() {
             let weights = plan.convolution(index);
             copy(biases, &parameters[plan.after(weights).range()]);
-            pieces.push(Box::new(move |_| convolution.pack_forward(&parameters[weights.range()], packed)));
+            pieces.push(Box::new(move |_| {
+                convolution.pack_forward(&parameters[weights.range()], packed)
+            }));
         }
         let (heads, head_biases) = (&mut self.heads, &mut self.head_biases);
         pieces.push(Box::new(move |_| {
@@ -182,8 +202,13 @@ pub fn stored_pixels(plan: &Plan, pixels: &PixelScale) -> PixelScale {
 }
 
 impl Backward {
-    /// Packs `parameters`, reusing this value's memory: a piece of work a layer, and one for the heads.
-    pub fn loading<'a, S>(&'a mut self, plan: &'a Plan, parameters: &'a [f32]) -> Vec<Piece<'a, S>> {
+    /// Packs `parameters`, reusing this value's memory: a piece of work a layer, and one for the
+    /// heads.
+    pub fn loading<'a, S>(
+        &'a mut self,
+        plan: &'a Plan,
+        parameters: &'a [f32],
+    ) -> Vec<Piece<'a, S>> {
         let (kernels, shape) = (plan.kernels, &plan.shape);
         let mut pieces: Vec<Piece<'a, S>> = Vec::new();
         if let Some(units) = shape.recurrent {
@@ -193,7 +218,8 @@ impl Backward {
             let (to_input, to_hidden) = (&mut self.cell_input, &mut self.cell_hidden);
             pieces.push(Box::new(move |_| to_input.pack_transposed(kernels, rows, columns, dense)));
             let rows = &parameters[hidden.range()];
-            pieces.push(Box::new(move |_| to_hidden.pack_transposed(kernels, rows, columns, units)));
+            pieces
+                .push(Box::new(move |_| to_hidden.pack_transposed(kernels, rows, columns, units)));
         }
         self.dense.resize_with(shape.dense.len(), Panels::default);
         for (index, packed) in self.dense.iter_mut().enumerate() {
@@ -202,17 +228,28 @@ impl Backward {
             }
             let (weights, units) = (plan.dense(index), shape.dense[index]);
             let rows = &parameters[weights.range()];
-            pieces.push(Box::new(move |_| packed.pack_transposed(kernels, rows, units, weights.inputs)));
+            pieces.push(Box::new(move |_| {
+                packed.pack_transposed(kernels, rows, units, weights.inputs)
+            }));
         }
         self.convolutions.resize_with(plan.convolutions.len(), Panels::default);
-        for (index, (packed, convolution)) in self.convolutions.iter_mut().zip(&plan.convolutions).enumerate().skip(1) {
+        for (index, (packed, convolution)) in
+            self.convolutions.iter_mut().zip(&plan.convolutions).enumerate().skip(1)
+        {
             let weights = plan.convolution(index);
-            pieces.push(Box::new(move |_| convolution.pack_backward(&parameters[weights.range()], packed)));
+            pieces.push(Box::new(move |_| {
+                convolution.pack_backward(&parameters[weights.range()], packed)
+            }));
         }
         let heads = &mut self.heads;
         pieces.push(Box::new(move |_| {
-            // Nothing flows into the extra inputs, which without a recurrent layer are the last inputs of the heads.
-            let inputs = if shape.recurrent.is_some() { shape.head_inputs() } else { shape.core_inputs() - shape.extra_inputs };
+            // Nothing flows into the extra inputs, which without a recurrent layer are the last
+            // inputs of the heads.
+            let inputs = if shape.recurrent.is_some() {
+                shape.head_inputs()
+            } else {
+                shape.core_inputs() - shape.extra_inputs
+            };
             let rows = &joined_heads(plan, parameters)[..inputs * plan.padded_outputs];
             heads.pack_transposed(kernels, rows, plan.padded_outputs, inputs);
         }));
@@ -231,7 +268,9 @@ fn joined_heads(plan: &Plan, parameters: &[f32]) -> Vec<f32> {
     let mut first = 0;
     for (index, &outputs) in plan.shape.heads.iter().enumerate() {
         let weights = &parameters[plan.head(index).range()];
-        for (from, to) in weights.chunks_exact(outputs).zip(joined.chunks_exact_mut(plan.padded_outputs)) {
+        for (from, to) in
+            weights.chunks_exact(outputs).zip(joined.chunks_exact_mut(plan.padded_outputs))
+        {
             to[first..first + outputs].copy_from_slice(from);
         }
         first += outputs;

@@ -24,7 +24,8 @@ fn plate(canvas: &mut Canvas, x: i32, width: i32) {
     let blotch = Field::clouds(64, 32, (6, 4), 3, 902);
     for at_x in x..x + width {
         for y in 0..32 {
-            let tone = 78.0 + 34.0 * (brush.at(at_x, y) - 0.5) + 26.0 * (blotch.at(at_x, y) - 0.5) - y as f32 * 0.5;
+            let tone = 78.0 + 34.0 * (brush.at(at_x, y) - 0.5) + 26.0 * (blotch.at(at_x, y) - 0.5)
+                - y as f32 * 0.5;
             let (from_left, from_right) = (at_x - x, x + width - 1 - at_x);
             let rim = if y == 0 || from_left == 0 {
                 1.55
@@ -55,7 +56,8 @@ fn well(canvas: &mut Canvas, x: i32, y: i32, width: i32, height: i32) {
 fn reading_text(canvas: &mut Canvas, x: i32, y: i32, text: &str) {
     for (i, character) in text.chars().enumerate() {
         if let Some((_, rows)) = READING.iter().find(|(known, _)| *known == character) {
-            // The two middle rows of the seven are the same in most letters; five rows fit under the number.
+            // The two middle rows of the seven are the same in most letters; five rows fit under
+            // the number.
             let rows = [rows[0], rows[1], rows[3], rows[5], rows[6]];
             let x = x + 6 * i as i32;
             stamp_bits(canvas, x + 1, y + 1, &rows, 5, Colour::grey(14.0));

@@ -23,7 +23,12 @@ enum Mood {
 pub(super) fn paint(gallery: &mut Gallery) {
     for band in 0..5 {
         for glance in 0..3 {
-            gallery.graphic(&format!("STFST{band}{glance}"), &face(band, Mood::Glance(glance)), -5, -2);
+            gallery.graphic(
+                &format!("STFST{band}{glance}"),
+                &face(band, Mood::Glance(glance)),
+                -5,
+                -2,
+            );
         }
         gallery.graphic(&format!("STFOUCH{band}"), &face(band, Mood::Ouch), -5, -2);
         gallery.graphic(&format!("STFEVL{band}"), &face(band, Mood::Grin), -5, -2);
@@ -33,7 +38,12 @@ pub(super) fn paint(gallery: &mut Gallery) {
 }
 
 fn skin(light: f32, pale: f32) -> Colour {
-    let stops = [Colour::hex(0x3A1C10), Colour::hex(0x8A5436), Colour::hex(0xC48A62), Colour::hex(0xF4C8A0)];
+    let stops = [
+        Colour::hex(0x3A1C10),
+        Colour::hex(0x8A5436),
+        Colour::hex(0xC48A62),
+        Colour::hex(0xF4C8A0),
+    ];
     gradient(&stops, light).mix(Colour::hex(0x8C8478) * (0.4 + light), pale)
 }
 
@@ -49,9 +59,10 @@ fn face(band: i32, mood: Mood) -> Canvas {
         c.ellipse((x as f32 + 0.5, 14.5), (1.9, 3.4), |_, v| skin(shade - 0.1 * v, pale));
     }
     c.ellipse((12.0, 12.0), (9.4, 11.4), |u, v| skin(light_at(u, v), pale));
-    c.polygon(&[(2.9, 13.0), (21.1, 13.0), (20.2, 21.0), (16.6, 27.8), (7.4, 27.8), (3.8, 21.0)], |x, y| {
-        skin(light_at((x as f32 - 11.5) / 9.6, (y as f32 - 13.0) / 13.0), pale)
-    });
+    c.polygon(
+        &[(2.9, 13.0), (21.1, 13.0), (20.2, 21.0), (16.6, 27.8), (7.4, 27.8), (3.8, 21.0)],
+        |x, y| skin(light_at((x as f32 - 11.5) / 9.6, (y as f32 - 13.0) / 13.0), pale),
+    );
     // Stubble.
     for (x, y) in (4..20).flat_map(|x| (21..27).map(move |y| (x, y))) {
         if (x + y) % 2 == 0
@@ -63,7 +74,8 @@ fn face(band: i32, mood: Mood) -> Canvas {
     // Short hair with a jagged line.
     let hair = |x: i32, y: i32| {
         let strand = if (x * 5 + y * 3) % 4 == 0 { 1.35 } else { 1.0 };
-        gradient(&[Colour::hex(0x5C3A1C), Colour::hex(0x2A180A)], (x as f32 + y as f32) / 26.0) * strand
+        gradient(&[Colour::hex(0x5C3A1C), Colour::hex(0x2A180A)], (x as f32 + y as f32) / 26.0)
+            * strand
     };
     let hairline = [10, 9, 7, 5, 5, 4, 5, 4, 4, 5, 4, 5, 4, 5, 5, 7, 9, 10];
     for (i, &bottom) in hairline.iter().enumerate() {
@@ -148,9 +160,9 @@ fn features(c: &mut Canvas, mood: Mood, pale: f32) {
             c.rect(8, 20, 8, 1, lip);
             c.rect(8, 24, 8, 1, lip);
         }
-        Mood::Ouch => {
-            c.ellipse((12.0, 23.0), (3.0, 2.8), |_, v| if v < -0.5 { Colour::hex(0xE8E0D4) } else { Colour::hex(0x30100C) })
-        }
+        Mood::Ouch => c.ellipse((12.0, 23.0), (3.0, 2.8), |_, v| {
+            if v < -0.5 { Colour::hex(0xE8E0D4) } else { Colour::hex(0x30100C) }
+        }),
         Mood::Dead => c.rect(9, 22, 6, 2, Colour::hex(0x30140E)),
         Mood::Glance(_) => {
             c.rect(9, 22, 6, 1, lip * 0.7);
@@ -172,7 +184,8 @@ fn blood(c: &mut Canvas, band: i32) {
     for trail in trails.iter().take(band as usize) {
         for &(x, y, length) in trail.iter() {
             for i in 0..length {
-                let colour = if i == length - 1 { Colour::hex(0xD01810) } else { Colour::hex(0x980C08) };
+                let colour =
+                    if i == length - 1 { Colour::hex(0xD01810) } else { Colour::hex(0x980C08) };
                 if c.get(x, y + i).is_some() {
                     c.set(x, y + i, colour);
                 }

@@ -1,6 +1,7 @@
 //! Letter shapes as bit rows: one alphabet of 5 by 7 dots for reading, one of 3 by 5 for labels.
 
-/// The characters of the reading alphabet with their rows, top first; the highest of the five bits is the left dot.
+/// The characters of the reading alphabet with their rows, top first; the highest of the five bits
+/// is the left dot.
 pub(super) const READING: [(char, [u8; 7]); 59] = [
     ('A', [0b01110, 0b10001, 0b10001, 0b11111, 0b10001, 0b10001, 0b10001]),
     ('B', [0b11110, 0b10001, 0b10001, 0b11110, 0b10001, 0b10001, 0b11110]),
@@ -63,7 +64,8 @@ pub(super) const READING: [(char, [u8; 7]); 59] = [
     ('#', [0b01010, 0b01010, 0b11111, 0b01010, 0b11111, 0b01010, 0b01010]),
 ];
 
-/// The characters of the label alphabet with their rows; the highest of the three bits is the left dot.
+/// The characters of the label alphabet with their rows; the highest of the three bits is the left
+/// dot.
 pub(super) const LABEL: [(char, [u8; 5]); 23] = [
     ('A', [0b010, 0b101, 0b111, 0b101, 0b101]),
     ('B', [0b110, 0b101, 0b110, 0b101, 0b110]),

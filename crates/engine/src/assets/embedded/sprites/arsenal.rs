@@ -1,4 +1,5 @@
-//! The weapons: one model each, shown lying on the ground for pick-up and, from behind, in the player's hands.
+//! The weapons: one model each, shown lying on the ground for pick-up and, from behind, in the
+//! player's hands.
 
 use super::creatures::ahead_from;
 use crate::assets::embedded::camera::View;
@@ -101,7 +102,11 @@ pub(super) fn chaingun_parts() -> Chaingun {
     let mut m = Model::new();
     m.tube(Vector(-14.0, 0.0, 13.0), Vector(3.0, 0.0, 13.0), (6.0, 6.0), GUN);
     m.tube(Vector(-20.0, 0.0, 13.0), Vector(-14.0, 0.0, 13.0), (3.6, 5.4), GUN);
-    m.block(Vector(-7.0, 0.0, 4.2), Vector(6.4, 4.2, 4.4), Material::new(0x20240E, 0x565E2C, 0x949E5C));
+    m.block(
+        Vector(-7.0, 0.0, 4.2),
+        Vector(6.4, 4.2, 4.4),
+        Material::new(0x20240E, 0x565E2C, 0x949E5C),
+    );
     for i in 0..4 {
         m.ball(Vector(-12.0 + 3.4 * i as f32, -5.4, 9.6), 1.5, BRASS.fine());
     }
@@ -124,7 +129,12 @@ pub(super) fn launcher() -> Model {
         m.tube(Vector(x, 0.0, 12.0), Vector(x + 1.6, 0.0, 12.0), (4.9, 4.9), STEEL);
     }
     m.block(Vector(4.0, 0.0, 18.0), Vector(5.0, 1.4, 1.8), GUN);
-    m.tube(Vector(-1.0, 0.0, 18.4), Vector(-0.2, 0.0, 18.4), (1.8, 1.8), Material::new(0x301010, 0xA02820, 0xF07050));
+    m.tube(
+        Vector(-1.0, 0.0, 18.4),
+        Vector(-0.2, 0.0, 18.4),
+        (1.8, 1.8),
+        Material::new(0x301010, 0xA02820, 0xF07050),
+    );
     m.limb(Vector(-6.0, 0.0, 8.0), Vector(-7.6, 0.0, 1.6), (1.9, 2.0), GRIP);
     m.limb(Vector(8.0, 0.0, 8.0), Vector(8.0, 0.0, 2.4), (1.7, 1.8), GRIP);
     m

@@ -40,7 +40,12 @@ pub(super) fn paint(gallery: &mut Gallery) {
 }
 
 /// A fiend on legs: so many frames of its walk, of attack (then one of pain) and of death.
-fn walker(gallery: &mut Gallery, name: &str, figure: fn(Deed) -> Model, [moments, strikes, steps]: [usize; 3]) {
+fn walker(
+    gallery: &mut Gallery,
+    name: &str,
+    figure: fn(Deed) -> Model,
+    [moments, strikes, steps]: [usize; 3],
+) {
     for moment in 0..moments {
         around(gallery, name, &figure(Deed::Walk(moment)));
     }
@@ -86,7 +91,8 @@ fn around(gallery: &mut Gallery, name: &str, model: &Model) {
 
 /// The pictures of a model from five sides, the other three mirrored.
 pub(super) fn seen_around(gallery: &mut Gallery, model: &Model) -> SpriteFrame {
-    let images: [u32; 5] = std::array::from_fn(|side| hang(gallery, &portrait(model, View::side(side))));
+    let images: [u32; 5] =
+        std::array::from_fn(|side| hang(gallery, &portrait(model, View::side(side))));
     let mut frame = SpriteFrame::default();
     for rotation in 0..8 {
         let mirrored = rotation > 4;

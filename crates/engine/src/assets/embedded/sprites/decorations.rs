@@ -58,18 +58,38 @@ fn tech_lamp(height: f32, radius: f32, lit: usize) -> Model {
     m.tube(Vector(0.0, 0.0, 3.0), Vector(0.0, 0.0, 6.0), (radius * 0.5, radius * 0.35), STEEL);
     let neck = height * 0.42;
     m.tube(Vector(0.0, 0.0, 6.0), Vector(0.0, 0.0, neck), (2.4, 2.0), STEEL);
-    m.tube(Vector(0.0, 0.0, neck), Vector(0.0, 0.0, neck + 4.0), (radius * 0.3, radius * 0.55), DARK);
+    m.tube(
+        Vector(0.0, 0.0, neck),
+        Vector(0.0, 0.0, neck + 4.0),
+        (radius * 0.3, radius * 0.55),
+        DARK,
+    );
     let top = height - 6.0;
-    m.tube(Vector(0.0, 0.0, neck + 4.0), Vector(0.0, 0.0, top), (radius * 0.36, radius * 0.36), glass);
+    m.tube(
+        Vector(0.0, 0.0, neck + 4.0),
+        Vector(0.0, 0.0, top),
+        (radius * 0.36, radius * 0.36),
+        glass,
+    );
     let band = neck + 5.0 + (top - neck - 9.0) * lit as f32 / 3.0;
-    m.tube(Vector(0.0, 0.0, band), Vector(0.0, 0.0, band + 3.0), (radius * 0.42, radius * 0.42), bright);
+    m.tube(
+        Vector(0.0, 0.0, band),
+        Vector(0.0, 0.0, band + 3.0),
+        (radius * 0.42, radius * 0.42),
+        bright,
+    );
     for i in 0..4 {
         let (cos, sin) = turn(22.0 + i as f32 * 90.0);
         let (x, y) = (cos * radius * 0.5, sin * radius * 0.5);
         m.tube(Vector(x, y, neck + 4.0), Vector(x, y, top), (0.7, 0.7), STEEL);
     }
     m.tube(Vector(0.0, 0.0, top), Vector(0.0, 0.0, top + 3.0), (radius * 0.6, radius * 0.5), DARK);
-    m.limb(Vector(0.0, 0.0, top + 3.0), Vector(0.0, 0.0, height - 1.0), (radius * 0.25, 0.5), STEEL);
+    m.limb(
+        Vector(0.0, 0.0, top + 3.0),
+        Vector(0.0, 0.0, height - 1.0),
+        (radius * 0.25, 0.5),
+        STEEL,
+    );
     m
 }
 
@@ -98,7 +118,12 @@ fn fire(flicker: f32, reach: f32) -> Model {
     let mut m = Model::new();
     for (i, side) in [-1.0f32, -0.4, 0.3, 0.9].into_iter().enumerate() {
         let (y, height) = (side * reach * 0.7, reach * (1.2 + 0.4 * (i % 2) as f32) + flicker);
-        m.limb(Vector(0.0, y, 0.0), Vector(0.0, y + flicker, height), (reach * 0.3, 0.8), flame(0xF08020));
+        m.limb(
+            Vector(0.0, y, 0.0),
+            Vector(0.0, y + flicker, height),
+            (reach * 0.3, 0.8),
+            flame(0xF08020),
+        );
     }
     m
 }
@@ -166,8 +191,17 @@ fn tech_pillar() -> Model {
 }
 
 /// Adds a branch that forks again and again.
-fn branch(m: &mut Model, from: Vector, reach: Vector, radius: f32, forks: u32, seed: i32, bark: Material) -> Vector {
-    let bend = Vector(0.3, unit(seed, 1, 5) - 0.5, unit(seed, 2, 5) - 0.3) * (reach.length() * 0.35);
+fn branch(
+    m: &mut Model,
+    from: Vector,
+    reach: Vector,
+    radius: f32,
+    forks: u32,
+    seed: i32,
+    bark: Material,
+) -> Vector {
+    let bend =
+        Vector(0.3, unit(seed, 1, 5) - 0.5, unit(seed, 2, 5) - 0.3) * (reach.length() * 0.35);
     let middle = from + reach * 0.5 + bend;
     let tip = from + reach;
     m.limb(from, middle, (radius, radius * 0.8), bark);
@@ -175,8 +209,11 @@ fn branch(m: &mut Model, from: Vector, reach: Vector, radius: f32, forks: u32, s
     if forks > 0 {
         for (i, side) in [1.0, -1.0].into_iter().enumerate() {
             let spread = 0.5 + 0.5 * unit(seed, 3 + i as i32, 5);
-            let away =
-                Vector((unit(seed, 7, 5) - 0.5) * reach.length(), side * spread * reach.length() * 0.6, reach.2 * 0.5 + 2.0);
+            let away = Vector(
+                (unit(seed, 7, 5) - 0.5) * reach.length(),
+                side * spread * reach.length() * 0.6,
+                reach.2 * 0.5 + 2.0,
+            );
             let root = if i == 0 { middle } else { tip };
             branch(m, root, away * 0.85, radius * 0.55, forks - 1, seed * 2 + i as i32 + 1, bark);
         }
@@ -196,7 +233,11 @@ fn dead_tree() -> Model {
     branch(&mut m, Vector(0.0, 1.4, 18.0), Vector(3.0, 11.0, 12.0), 2.3, 2, 3, DEAD_BARK);
     branch(&mut m, Vector(0.0, -0.6, 25.0), Vector(2.0, -12.0, 10.0), 2.1, 2, 8, DEAD_BARK);
     branch(&mut m, Vector(0.0, -1.0, 30.0), Vector(0.0, 3.0, 14.0), 2.4, 2, 5, DEAD_BARK);
-    m.egg(Vector(4.0, 0.6, 19.0), Vector(1.8, 1.6, 2.4), Material::new(0x080604, 0x100C08, 0x1C140C));
+    m.egg(
+        Vector(4.0, 0.6, 19.0),
+        Vector(1.8, 1.6, 2.4),
+        Material::new(0x080604, 0x100C08, 0x1C140C),
+    );
     m
 }
 
@@ -221,7 +262,11 @@ fn great_tree() -> Model {
             let at = root + reach * (0.55 + 0.18 * i as f32);
             let shift = |k: i32| (unit(i, k + reach.1 as i32, 17) - 0.5) * 18.0;
             let size = 8.0 + 4.0 * unit(i, reach.1 as i32, 18);
-            m.egg(at + Vector(shift(1), shift(2), shift(3) * 0.6 + 3.0), Vector(size, size * 1.2, size * 0.8), leaves);
+            m.egg(
+                at + Vector(shift(1), shift(2), shift(3) * 0.6 + 3.0),
+                Vector(size, size * 1.2, size * 0.8),
+                leaves,
+            );
         }
     }
     m.egg(Vector(0.0, 0.0, 92.0), Vector(16.0, 20.0, 13.0), leaves);
@@ -249,7 +294,11 @@ fn pool_of_gore() -> Model {
     let mut m = Model::new();
     m.egg(Vector(0.0, 0.0, 0.6), Vector(14.0, 20.0, 1.0), blood);
     for (x, y, size) in [(4.0, -8.0, 3.0), (-2.0, 5.0, 3.6), (6.0, 9.0, 2.4), (0.0, -2.0, 2.8)] {
-        m.egg(Vector(x, y, 1.4), Vector(size, size * 1.3, size * 0.7), Material::new(0x4C1410, 0xA04840, 0xE08C80));
+        m.egg(
+            Vector(x, y, 1.4),
+            Vector(size, size * 1.3, size * 0.7),
+            Material::new(0x4C1410, 0xA04840, 0xE08C80),
+        );
     }
     m
 }
@@ -261,7 +310,12 @@ fn scattered_bones() -> Model {
     for i in 0..6 {
         let (cos, sin) = turn(unit(i, 0, 91) * 180.0);
         let centre = Vector((unit(i, 1, 91) - 0.5) * 14.0, (unit(i, 2, 91) - 0.5) * 22.0, 1.4);
-        m.limb(centre - Vector(cos, sin, 0.0) * 5.0, centre + Vector(cos, sin, 0.1) * 5.0, (1.2, 1.2), bone);
+        m.limb(
+            centre - Vector(cos, sin, 0.0) * 5.0,
+            centre + Vector(cos, sin, 0.1) * 5.0,
+            (1.2, 1.2),
+            bone,
+        );
     }
     m.egg(Vector(5.0, 1.0, 4.0), Vector(4.0, 3.8, 3.8), bone);
     m

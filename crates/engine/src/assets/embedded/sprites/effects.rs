@@ -19,8 +19,10 @@ const FIRE: [Colour; 6] = [
     Colour::hex(0xFFFFE0),
 ];
 const SMOKE: [Colour; 3] = [Colour::hex(0x181818), Colour::hex(0x505050), Colour::hex(0x989898)];
-const BLUE_FIRE: [Colour; 4] = [Colour::hex(0x081060), Colour::hex(0x2850F0), Colour::hex(0x80C8FF), Colour::hex(0xF0FFFF)];
-const GREEN_FIRE: [Colour; 4] = [Colour::hex(0x084008), Colour::hex(0x28B020), Colour::hex(0x80FF60), Colour::hex(0xF4FFE8)];
+const BLUE_FIRE: [Colour; 4] =
+    [Colour::hex(0x081060), Colour::hex(0x2850F0), Colour::hex(0x80C8FF), Colour::hex(0xF0FFFF)];
+const GREEN_FIRE: [Colour; 4] =
+    [Colour::hex(0x084008), Colour::hex(0x28B020), Colour::hex(0x80FF60), Colour::hex(0xF4FFE8)];
 
 /// Paints the effects.
 pub(super) fn paint(gallery: &mut Gallery) {
@@ -66,10 +68,20 @@ fn rocket() -> Model {
     let mut m = Model::new();
     let z = 4.0;
     m.tube(Vector(-8.0, 0.0, z), Vector(6.0, 0.0, z), (2.8, 2.8), steel);
-    m.limb(Vector(6.0, 0.0, z), Vector(11.0, 0.0, z), (2.6, 0.6), Material::new(0x580404, 0xC01810, 0xFF5840).polished(0.7));
+    m.limb(
+        Vector(6.0, 0.0, z),
+        Vector(11.0, 0.0, z),
+        (2.6, 0.6),
+        Material::new(0x580404, 0xC01810, 0xFF5840).polished(0.7),
+    );
     for i in 0..4 {
         let (cos, sin) = turn(45.0 + i as f32 * 90.0);
-        m.limb(Vector(-4.0, cos * 2.6, z + sin * 2.6), Vector(-9.0, cos * 5.4, z + sin * 5.4), (0.9, 1.1), steel);
+        m.limb(
+            Vector(-4.0, cos * 2.6, z + sin * 2.6),
+            Vector(-9.0, cos * 5.4, z + sin * 5.4),
+            (0.9, 1.1),
+            steel,
+        );
     }
     let flame = Material::new(0xD04804, 0xFFA820, 0xFFFFC0).glowing();
     m.limb(Vector(-8.0, 0.0, z), Vector(-17.0, 0.0, z), (2.6, 0.7), flame);
@@ -99,7 +111,13 @@ pub(super) fn fireball(size: i32, heat: f32, tones: &[Colour], seed: u32) -> Can
 /// A wisp of smoke: curls with gaps between them, thinner with every `age`.
 fn smoke(size: i32, age: u32) -> Canvas {
     let mut canvas = Canvas::new(size, size);
-    let curls = Field::clouds(size as usize, size as usize, (size as usize / 3, size as usize / 3), 2, 20 + age);
+    let curls = Field::clouds(
+        size as usize,
+        size as usize,
+        (size as usize / 3, size as usize / 3),
+        2,
+        20 + age,
+    );
     let radius = size as f32 / 2.0;
     for x in 0..size {
         for y in 0..size {
@@ -128,7 +146,8 @@ fn barrel_blast(gallery: &mut Gallery) {
         for i in 0..9 {
             let (cos, sin) = turn(i as f32 * 40.0 + seed as f32 * 13.0);
             let away = size as f32 * (0.28 + 0.2 * unit(i, 1, seed));
-            let (x, y) = ((size as f32 / 2.0 + cos * away) as i32, (size as f32 / 2.0 + sin * away) as i32);
+            let (x, y) =
+                ((size as f32 / 2.0 + cos * away) as i32, (size as f32 / 2.0 + sin * away) as i32);
             canvas.bevel(x, y, 3, 3, Colour::hex(0x5C6062), 0.5);
         }
         gallery.flat_frame("BEXP", &canvas, size / 2, size / 2 + 18);

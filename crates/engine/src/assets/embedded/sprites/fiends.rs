@@ -37,7 +37,12 @@ fn claws(model: &mut Model, hand: Vector, ahead: Vector, size: f32, material: Ma
     let frame = Frame::facing(ahead, Vector::UP);
     for spread in [-1.0, 0.0, 1.0] {
         let tip = hand + frame.out(Vector(size, spread * size * 0.55, -0.3 * size));
-        model.limb(hand + frame.out(Vector(0.0, spread * size * 0.3, 0.0)), tip, (size * 0.22, 0.25), material);
+        model.limb(
+            hand + frame.out(Vector(0.0, spread * size * 0.3, 0.0)),
+            tip,
+            (size * 0.22, 0.25),
+            material,
+        );
     }
 }
 
@@ -76,10 +81,16 @@ pub(super) fn imp(deed: Deed) -> Model {
         m.limb(at(-2.4, side * 6.0, 20.4), at(-6.0, side * 7.6, 26.5), (1.6, 0.3), BONE);
     }
     for i in 0..3 {
-        m.limb(at(-5.2, 0.0, 7.0 + 5.0 * i as f32), at(-9.0, 0.0, 9.5 + 5.0 * i as f32), (1.5, 0.3), BONE);
+        m.limb(
+            at(-5.2, 0.0, 7.0 + 5.0 * i as f32),
+            at(-9.0, 0.0, 9.5 + 5.0 * i as f32),
+            (1.5, 0.3),
+            BONE,
+        );
     }
     // Head: long jaw, swept horns.
-    let head = Frame::turned(pose.lean[0] * 0.35 - 6.0 * pose.flinch, pose.lean[1], pose.lean[2] * 0.5);
+    let head =
+        Frame::turned(pose.lean[0] * 0.35 - 6.0 * pose.flinch, pose.lean[1], pose.lean[2] * 0.5);
     let neck = at(2.4, 0.0, 22.0);
     let face = |x: f32, y: f32, z: f32| neck + head.out(Vector(x, y, z));
     m.egg_in(head, face(0.6, 0.0, 2.8), Vector(4.8, 4.2, 4.8), skin);
@@ -105,7 +116,11 @@ pub(super) fn imp(deed: Deed) -> Model {
         m.limb(elbow, elbow + Vector(-4.0, side * 1.2, -1.0), (1.4, 0.3), BONE);
         claws(&mut m, hand, hand - elbow, 4.6, CLAW);
         if strike && side < 0.0 {
-            m.ball(hand + Vector(2.5, 0.0, 3.5), 4.4, Material::new(0xE04808, 0xFF9018, 0xFFF090).glowing());
+            m.ball(
+                hand + Vector(2.5, 0.0, 3.5),
+                4.4,
+                Material::new(0xE04808, 0xFF9018, 0xFFF090).glowing(),
+            );
         }
     }
     finish(m, deed, roll, at(4.0, 0.0, 13.0))
@@ -118,13 +133,24 @@ pub(super) fn demon(deed: Deed) -> Model {
     let (mut pose, roll) = pose_of(deed, 21.0, 9.5, 8.0, 4);
     pose.lean[0] += 8.0;
     let mut m = Model::new();
-    let leg =
-        Leg { spread: 7.5, bones: (11.5, 11.5), radii: [7.6, 5.2, 4.2], bend: Vector(1.0, 0.0, 0.0), thigh: hide, shin: hide };
+    let leg = Leg {
+        spread: 7.5,
+        bones: (11.5, 11.5),
+        radii: [7.6, 5.2, 4.2],
+        bend: Vector(1.0, 0.0, 0.0),
+        thigh: hide,
+        shin: hide,
+    };
     leg.build(&mut m, &pose);
     for foot in pose.feet {
         m.egg(foot + Vector(2.6, 0.0, 0.6), Vector(6.4, 4.8, 3.2), hide);
         for toe in [-1.0, 0.0, 1.0] {
-            m.limb(foot + Vector(7.0, toe * 3.0, 0.2), foot + Vector(9.6, toe * 3.4, -1.0), (1.6, 0.5), CLAW);
+            m.limb(
+                foot + Vector(7.0, toe * 3.0, 0.2),
+                foot + Vector(9.6, toe * 3.4, -1.0),
+                (1.6, 0.5),
+                CLAW,
+            );
         }
     }
     let (frame, base) = pose.trunk();
@@ -138,7 +164,12 @@ pub(super) fn demon(deed: Deed) -> Model {
     // Spine ridge.
     for i in 0..4 {
         let part = i as f32;
-        m.limb(at(-11.0 + 3.0 * part, 0.0, 11.0 + 5.0 * part), at(-15.0 + 3.0 * part, 0.0, 15.0 + 5.0 * part), (2.4, 0.4), BONE);
+        m.limb(
+            at(-11.0 + 3.0 * part, 0.0, 11.0 + 5.0 * part),
+            at(-15.0 + 3.0 * part, 0.0, 15.0 + 5.0 * part),
+            (2.4, 0.4),
+            BONE,
+        );
     }
     // Head: the jaw drops when it bites or is hurt.
     let gape = match deed {
@@ -156,10 +187,19 @@ pub(super) fn demon(deed: Deed) -> Model {
         let x = 11.6 - y * y * 0.09;
         let size = if i % 4 == 0 { 3.8 } else { 2.6 };
         m.limb(face(x, y, 2.4), face(x + 0.4, y, 2.4 - size), (1.05, 0.25), CLAW);
-        m.limb(face(x - 0.6, y + 0.9, -0.8 - gape * 0.8), face(x, y + 0.9, -0.8 - gape * 0.8 + size * 0.8), (1.0, 0.25), CLAW);
+        m.limb(
+            face(x - 0.6, y + 0.9, -0.8 - gape * 0.8),
+            face(x, y + 0.9, -0.8 - gape * 0.8 + size * 0.8),
+            (1.0, 0.25),
+            CLAW,
+        );
     }
     for side in [1.0, -1.0] {
-        m.ball(face(8.2, side * 4.4, 7.2), 1.5, Material::new(0xC08008, 0xFFD020, 0xFFFF90).glowing().fine());
+        m.ball(
+            face(8.2, side * 4.4, 7.2),
+            1.5,
+            Material::new(0xC08008, 0xFFD020, 0xFFFF90).glowing().fine(),
+        );
         m.limb(face(6.6, side * 2.4, 8.6), face(8.2, side * 6.6, 9.6), (1.4, 1.4), hide);
         m.limb(face(0.0, side * 8.0, 8.6), face(3.0, side * 14.0, 13.0), (2.8, 2.0), BONE);
         m.limb(face(3.0, side * 14.0, 13.0), face(9.0, side * 14.5, 17.5), (2.0, 0.4), BONE);
@@ -184,8 +224,14 @@ pub(super) fn revenant(deed: Deed) -> Model {
     let sinew = Material::new(0x3C100C, 0x843028, 0xB85C4C).mottled(0.3, 1.4);
     let (pose, roll) = pose_of(deed, 30.0, 4.8, 8.5, 6);
     let mut m = Model::new();
-    let leg =
-        Leg { spread: 3.6, bones: (15.0, 15.0), radii: [2.2, 1.7, 1.3], bend: Vector(1.0, 0.0, 0.0), thigh: BONE, shin: BONE };
+    let leg = Leg {
+        spread: 3.6,
+        bones: (15.0, 15.0),
+        radii: [2.2, 1.7, 1.3],
+        bend: Vector(1.0, 0.0, 0.0),
+        thigh: BONE,
+        shin: BONE,
+    };
     for knee in leg.build(&mut m, &pose) {
         m.ball(knee + Vector(0.6, 0.0, 0.0), 2.3, BONE);
     }
@@ -208,12 +254,23 @@ pub(super) fn revenant(deed: Deed) -> Model {
         m.ball(at(0.0, side * 8.4, 20.0), 3.0, mail);
         // Launchers.
         let mount = at(-1.0, side * 8.6, 26.0);
-        m.tube(mount + frame.out(Vector(-7.0, 0.0, -0.6)), mount + frame.out(Vector(8.0, 0.0, 1.0)), (3.4, 3.8), tube);
-        m.tube(mount + frame.out(Vector(7.4, 0.0, 0.9)), mount + frame.out(Vector(8.8, 0.0, 1.1)), (2.6, 2.6), MAW);
+        m.tube(
+            mount + frame.out(Vector(-7.0, 0.0, -0.6)),
+            mount + frame.out(Vector(8.0, 0.0, 1.0)),
+            (3.4, 3.8),
+            tube,
+        );
+        m.tube(
+            mount + frame.out(Vector(7.4, 0.0, 0.9)),
+            mount + frame.out(Vector(8.8, 0.0, 1.1)),
+            (2.6, 2.6),
+            MAW,
+        );
         m.limb(at(0.0, side * 7.6, 20.0), mount, (1.5, 1.5), mail);
     }
     m.limb(at(0.2, 0.0, 22.0), at(1.2, 0.0, 26.0), (1.5, 1.4), BONE);
-    let head = Frame::turned(pose.lean[0] * 0.5 - 8.0 * pose.flinch, pose.lean[1], -pose.lean[2] * 0.5);
+    let head =
+        Frame::turned(pose.lean[0] * 0.5 - 8.0 * pose.flinch, pose.lean[1], -pose.lean[2] * 0.5);
     let neck = at(1.6, 0.0, 26.0);
     let gape = if pose.flinch > 0.0 || matches!(deed, Deed::Strike) { 1.6 } else { 0.4 };
     skull(&mut m, head, neck + head.out(Vector(0.6, 0.0, 4.4)), 4.7, gape);

@@ -12,7 +12,8 @@ const TOOTH: Material = Material::new(0x8C8060, 0xD8D0B0, 0xFFFFF0).fine();
 /// Height of the cacodemon's middle above its anchor.
 const MIDDLE: f32 = 29.0;
 
-/// The cacodemon: a red ball with one eye and a great mouth. `gape` opens the mouth (0..1), `wince` closes the eye and dents it.
+/// The cacodemon: a red ball with one eye and a great mouth. `gape` opens the mouth (0..1), `wince`
+/// closes the eye and dents it.
 pub(super) fn cacodemon(gape: f32, wince: f32) -> Model {
     let mut m = Model::new();
     let frame = Frame::turned(-10.0 * wince, 0.0, 0.0);
@@ -30,23 +31,48 @@ pub(super) fn cacodemon(gape: f32, wince: f32) -> Model {
     m.limb(at(-8.0, 0.0, 23.0), at(-14.0, 0.0, 33.0), (4.0, 0.5), HORN);
     // The eye.
     let white = Material::new(0x4C6020, 0xA8C840, 0xF4FFB0).polished(0.9);
-    m.egg_in(frame, at(20.5, 0.0, 7.0), Vector(7.0, 8.6, (7.6 * (1.0 - 0.72 * wince)).max(1.2)), white);
+    m.egg_in(
+        frame,
+        at(20.5, 0.0, 7.0),
+        Vector(7.0, 8.6, (7.6 * (1.0 - 0.72 * wince)).max(1.2)),
+        white,
+    );
     if wince < 0.6 {
-        m.egg_in(frame, at(26.2, 0.0, 7.2), Vector(1.9, 3.8, 4.2), Material::new(0x083008, 0x147414, 0x30B838).fine());
-        m.egg_in(frame, at(27.6, 0.0, 7.2), Vector(1.0, 1.4, 2.8), Material::new(0x000000, 0x080808, 0x181818).fine());
+        m.egg_in(
+            frame,
+            at(26.2, 0.0, 7.2),
+            Vector(1.9, 3.8, 4.2),
+            Material::new(0x083008, 0x147414, 0x30B838).fine(),
+        );
+        m.egg_in(
+            frame,
+            at(27.6, 0.0, 7.2),
+            Vector(1.0, 1.4, 2.8),
+            Material::new(0x000000, 0x080808, 0x181818).fine(),
+        );
     }
     // The mouth: a wide gap with a blue glow in the throat.
     let open = 3.6 + 5.4 * gape;
     let lip = Material::new(0x2C0404, 0x7C1410, 0xB83C30);
     m.egg_in(frame, at(15.4, 0.0, -9.0), Vector(11.6, 18.0, open + 2.2), lip);
-    m.egg_in(frame, at(17.4, 0.0, -9.0), Vector(10.6, 16.4, open), Material::new(0x04041C, 0x0C1468, 0x2C48D8));
+    m.egg_in(
+        frame,
+        at(17.4, 0.0, -9.0),
+        Vector(10.6, 16.4, open),
+        Material::new(0x04041C, 0x0C1468, 0x2C48D8),
+    );
     for i in 0..7 {
         let y = -13.5 + 4.5 * i as f32;
         let x = 27.4 - y * y * 0.05;
         let edge = open * (1.0 - y * y / 300.0);
         let size = if i % 2 == 0 { 4.8 } else { 3.4 };
         m.limb(at(x, y, -9.0 + edge), at(x + 0.6, y, -9.0 + edge - size), (1.6, 0.3), TOOTH);
-        m.limb(at(x - 0.6, y + 1.6, -9.0 - edge), at(x, y + 1.6, -9.0 - edge + size * 0.8), (1.5, 0.3), TOOTH);
+        m.limb(
+            at(x - 0.6, y + 1.6, -9.0 - edge),
+            at(x, y + 1.6, -9.0 - edge + size * 0.8),
+            (1.5, 0.3),
+            TOOTH,
+        );
     }
     m
 }
@@ -87,7 +113,12 @@ pub(super) fn lost_soul(flicker: u32, gape: f32) -> Model {
     for side in [1.0, -1.0] {
         let root = centre + Vector(0.0, side * 7.5, 6.5);
         m.limb(root, root + Vector(2.0, side * 7.0, 4.0), (3.0, 2.0), HORN);
-        m.limb(root + Vector(2.0, side * 7.0, 4.0), root + Vector(6.0, side * 7.5, 10.0), (2.0, 0.4), HORN);
+        m.limb(
+            root + Vector(2.0, side * 7.0, 4.0),
+            root + Vector(6.0, side * 7.5, 10.0),
+            (2.0, 0.4),
+            HORN,
+        );
     }
     m
 }
@@ -118,7 +149,8 @@ fn flames(m: &mut Model, centre: Vector, size: f32, flicker: u32) {
         let (cos, sin) = turn(i as f32 * 30.0 - 60.0);
         let long = 0.55 + 0.75 * unit(i, flicker as i32, 31);
         let root = centre + Vector(-0.45 * size, cos * size * 0.62, sin * size * 0.62);
-        let tip = root + Vector(-0.85 * size * long, cos * size * 0.5, sin * size * 0.4 + size * 0.75 * long);
+        let tip = root
+            + Vector(-0.85 * size * long, cos * size * 0.5, sin * size * 0.4 + size * 0.75 * long);
         m.limb(root, tip, (size * 0.34, 0.6), outer);
         m.limb(
             root + Vector(0.22 * size, 0.0, 0.0),

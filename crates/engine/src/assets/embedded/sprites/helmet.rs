@@ -14,12 +14,18 @@ pub(super) fn paint(gallery: &mut Gallery) {
 /// A red helmet with a dark visor and a yellow badge.
 fn helmet(glow: f32) -> Canvas {
     let mut c = Canvas::new(13, 19);
-    let red = [Colour::hex(0x4A0606), Colour::hex(0xB01410), Colour::hex(0xF03A28), Colour::hex(0xFF9080)];
+    let red = [
+        Colour::hex(0x4A0606),
+        Colour::hex(0xB01410),
+        Colour::hex(0xF03A28),
+        Colour::hex(0xFF9080),
+    ];
     let at = |u: f32, v: f32| gradient(&red, 0.62 - 0.42 * u - 0.38 * v);
     // Neck guard, then the dome over it.
-    c.polygon(&[(1.0, 8.0), (12.0, 8.0), (11.5, 15.0), (9.0, 19.0), (4.0, 19.0), (1.5, 15.0)], |x, y| {
-        at((x as f32 - 6.0) / 7.0, (y as f32 - 10.0) / 10.0) * 0.8
-    });
+    c.polygon(
+        &[(1.0, 8.0), (12.0, 8.0), (11.5, 15.0), (9.0, 19.0), (4.0, 19.0), (1.5, 15.0)],
+        |x, y| at((x as f32 - 6.0) / 7.0, (y as f32 - 10.0) / 10.0) * 0.8,
+    );
     c.ellipse((6.5, 7.0), (6.4, 6.8), at);
     // Visor slit and nose bar.
     let dark = Colour::hex(0x181416);

@@ -1,4 +1,5 @@
-//! The common build of two-legged figures: a pose, the limbs that follow from it, and how such a figure walks, flinches and falls.
+//! The common build of two-legged figures: a pose, the limbs that follow from it, and how such a
+//! figure walks, flinches and falls.
 
 use crate::assets::embedded::model::{Material, Model};
 use crate::assets::embedded::vector::{Frame, Vector, joint};
@@ -31,9 +32,16 @@ impl Pose {
     }
 
     /// One of the `count` moments of a walk: the feet go around, half a cycle apart.
-    pub(super) fn walking(hip_height: f32, stance: f32, stride: f32, moment: usize, count: usize) -> Pose {
+    pub(super) fn walking(
+        hip_height: f32,
+        stance: f32,
+        stride: f32,
+        moment: usize,
+        count: usize,
+    ) -> Pose {
         let mut pose = Pose::standing(hip_height, stance);
-        // Where a foot is along the cycle: planted and carried back in the first half, lifted and swung forward in the second.
+        // Where a foot is along the cycle: planted and carried back in the first half, lifted and
+        // swung forward in the second.
         let foot = |phase: f32| {
             let phase = phase - phase.floor();
             if phase < 0.5 {
@@ -91,7 +99,13 @@ impl Leg {
             let side = if i == 0 { 1.0 } else { -1.0 };
             let hip = pose.hips + Vector(0.0, side * self.spread, -1.0);
             let ankle = pose.feet[i];
-            let knee = joint(hip, ankle, self.bones.0, self.bones.1, self.bend + Vector(0.0, side * 0.25, 0.0));
+            let knee = joint(
+                hip,
+                ankle,
+                self.bones.0,
+                self.bones.1,
+                self.bend + Vector(0.0, side * 0.25, 0.0),
+            );
             model.limb(hip, knee, (self.radii[0], self.radii[1]), self.thigh);
             model.limb(knee, ankle, (self.radii[1], self.radii[2]), self.shin);
             knee
@@ -103,13 +117,23 @@ impl Leg {
 pub(super) fn boots(model: &mut Model, pose: &Pose, size: f32, material: Material) {
     for (foot, side) in pose.feet.into_iter().zip([1.0, -1.0]) {
         let frame = Frame::turned(0.0, 0.0, side * 12.0);
-        model.egg_in(frame, foot + Vector(size * 0.6, side * 0.3, -0.4), Vector(size * 1.5, size * 0.85, size * 0.75), material);
-        model.limb(foot + Vector(0.0, 0.0, 0.5), foot + Vector(0.0, 0.0, 4.0), (size * 0.85, size * 0.95), material);
+        model.egg_in(
+            frame,
+            foot + Vector(size * 0.6, side * 0.3, -0.4),
+            Vector(size * 1.5, size * 0.85, size * 0.75),
+            material,
+        );
+        model.limb(
+            foot + Vector(0.0, 0.0, 0.5),
+            foot + Vector(0.0, 0.0, 4.0),
+            (size * 0.85, size * 0.95),
+            material,
+        );
     }
 }
 
-/// How a figure falls to the ground in `count` steps and lies on its side in the last: the pose of a step and the roll of the
-/// whole figure around its feet, degrees.
+/// How a figure falls to the ground in `count` steps and lies on its side in the last: the pose of
+/// a step and the roll of the whole figure around its feet, degrees.
 pub(super) fn falling(hip_height: f32, stance: f32, step: usize, count: usize) -> (Pose, f32) {
     let part = step as f32 / (count - 1) as f32;
     let mut pose = Pose::flinching(hip_height * (1.0 - 0.12 * part), stance);
@@ -119,7 +143,8 @@ pub(super) fn falling(hip_height: f32, stance: f32, step: usize, count: usize) -
     (pose, 84.0 * part * part.sqrt())
 }
 
-/// Lays a figure over by `roll` degrees to its left, keeping its lower side of half thickness `thickness` on the ground.
+/// Lays a figure over by `roll` degrees to its left, keeping its lower side of half thickness
+/// `thickness` on the ground.
 pub(super) fn laid_over(model: &Model, roll: f32, thickness: f32) -> Model {
     let part = roll / 84.0;
     model.moved(Frame::turned(0.0, -roll, 0.0), Vector(0.0, 26.0 * part, thickness * part))

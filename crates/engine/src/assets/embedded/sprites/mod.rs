@@ -1,4 +1,5 @@
-//! Things of the world: items, decorations, creatures, effects and the weapons in the player's hands.
+//! Things of the world: items, decorations, creatures, effects and the weapons in the player's
+//! hands.
 
 mod arsenal;
 mod creatures;

@@ -1,4 +1,5 @@
-//! Undead soldiers, each with his weapon: rifleman, shotgunner, chaingunner; and the player's own figure.
+//! Undead soldiers, each with his weapon: rifleman, shotgunner, chaingunner; and the player's own
+//! figure.
 
 use super::humanoid::{Leg, Pose, boots, falling, laid_over};
 use crate::assets::embedded::model::{Material, Model};
@@ -170,11 +171,21 @@ impl Soldier {
             Soldier::Shotgunner => {
                 model.egg_in(frame, at(1.8, 0.0, 14.0), Vector(4.8, 6.4, 5.6), outfit.vest);
                 for side in [1.0, -1.0] {
-                    model.egg_in(frame, at(0.0, side * 8.8, 19.0), Vector(3.8, 3.4, 3.2), outfit.vest);
+                    model.egg_in(
+                        frame,
+                        at(0.0, side * 8.8, 19.0),
+                        Vector(3.8, 3.4, 3.2),
+                        outfit.vest,
+                    );
                 }
                 for shell in -2..3 {
                     let shell_red = Material::new(0x602008, 0xC05818, 0xF0A040);
-                    model.tube(at(5.4, shell as f32 * 1.9, 2.0), at(5.4, shell as f32 * 1.9, 5.0), (0.8, 0.8), shell_red);
+                    model.tube(
+                        at(5.4, shell as f32 * 1.9, 2.0),
+                        at(5.4, shell as f32 * 1.9, 5.0),
+                        (0.8, 0.8),
+                        shell_red,
+                    );
                 }
             }
             Soldier::Chaingunner => {
@@ -185,7 +196,11 @@ impl Soldier {
                 for i in 0..7 {
                     let part = i as f32 / 6.0;
                     model.ball(
-                        at(6.2 + 1.4 * (1.0 - (2.0 * part - 1.0) * (2.0 * part - 1.0)), -6.5 + 12.0 * part, 6.0 + 14.0 * part),
+                        at(
+                            6.2 + 1.4 * (1.0 - (2.0 * part - 1.0) * (2.0 * part - 1.0)),
+                            -6.5 + 12.0 * part,
+                            6.0 + 14.0 * part,
+                        ),
                         1.35,
                         brass,
                     );
@@ -193,9 +208,19 @@ impl Soldier {
             }
             Soldier::Player => {
                 model.egg_in(frame, at(1.0, 0.0, 14.2), Vector(5.6, 7.2, 6.4), outfit.vest);
-                model.block_in(frame, at(5.6, 0.0, 15.0), Vector(1.0, 2.6, 2.2), Material::new(0x303430, 0x606860, 0xA0A8A0));
+                model.block_in(
+                    frame,
+                    at(5.6, 0.0, 15.0),
+                    Vector(1.0, 2.6, 2.2),
+                    Material::new(0x303430, 0x606860, 0xA0A8A0),
+                );
                 for side in [1.0, -1.0] {
-                    model.egg_in(frame, at(0.0, side * 8.8, 19.2), Vector(3.6, 3.3, 3.0), outfit.vest);
+                    model.egg_in(
+                        frame,
+                        at(0.0, side * 8.8, 19.2),
+                        Vector(3.6, 3.3, 3.0),
+                        outfit.vest,
+                    );
                 }
                 model.block_in(frame, at(-6.0, 0.0, 14.0), Vector(2.2, 4.6, 5.0), outfit.trousers);
             }
@@ -252,13 +277,21 @@ impl Soldier {
         };
         let held = Frame::facing(heading, Vector::UP);
         model.attach(&self.weapon(), held, grip);
-        let fore = if pose.flinch > 0.5 { at(2.0, 15.0, 20.0) } else { grip + held.out(Vector(9.0, 0.5, -0.6)) };
+        let fore = if pose.flinch > 0.5 {
+            at(2.0, 15.0, 20.0)
+        } else {
+            grip + held.out(Vector(9.0, 0.5, -0.6))
+        };
         for (side, hand) in [(1.0, fore), (-1.0, grip)] {
             let shoulder = at(0.0, side * 8.0 * bulk, 18.6);
             let elbow = joint(shoulder, hand, 9.5, 9.0, Vector(-0.6, side * 0.8, -0.9));
             let sleeve = if self == Soldier::Chaingunner { outfit.skin } else { outfit.jacket };
             model.jointed([shoulder, elbow, hand], [3.3 * bulk, 2.6 * bulk, 2.0], sleeve);
-            model.ball(hand, 2.2, if self == Soldier::Player { BLACK_LEATHER } else { outfit.skin });
+            model.ball(
+                hand,
+                2.2,
+                if self == Soldier::Player { BLACK_LEATHER } else { outfit.skin },
+            );
         }
     }
 
@@ -284,7 +317,11 @@ impl Soldier {
                     m.tube(Vector(5.0, y, z), Vector(19.0, y, z), (0.9, 0.9), GUN.polished(1.0));
                 }
                 m.tube(Vector(14.0, 0.0, 0.9), Vector(15.6, 0.0, 0.9), (3.0, 3.0), GUN);
-                m.block(Vector(-1.0, 3.6, -1.6), Vector(3.0, 2.0, 2.6), Material::new(0x2C3018, 0x5C6434, 0x909A5C));
+                m.block(
+                    Vector(-1.0, 3.6, -1.6),
+                    Vector(3.0, 2.0, 2.6),
+                    Material::new(0x2C3018, 0x5C6434, 0x909A5C),
+                );
             }
         }
         m

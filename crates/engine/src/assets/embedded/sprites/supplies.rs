@@ -56,9 +56,23 @@ fn vial(glint: f32) -> Model {
         Material::new(0x188C14, 0x48E030, 0xB8FF98)
     };
     m.ball(Vector(0.0, 0.0, 6.4), 6.4, tonic.polished(1.0));
-    m.tube(Vector(0.0, 0.0, 11.0), Vector(0.0, 0.0, 15.0), (2.7, 2.3), Material::new(0x508050, 0xA8DCA8, 0xF0FFF0).polished(0.6));
-    m.tube(Vector(0.0, 0.0, 14.5), Vector(0.0, 0.0, 18.0), (2.9, 2.4), Material::new(0x4C2C10, 0xA06830, 0xE0A868));
-    m.ball(Vector(5.2, -2.0, 8.8), 1.1, Material::new(0xC0FFC0, 0xF0FFF0, 0xFFFFFF).glowing().fine());
+    m.tube(
+        Vector(0.0, 0.0, 11.0),
+        Vector(0.0, 0.0, 15.0),
+        (2.7, 2.3),
+        Material::new(0x508050, 0xA8DCA8, 0xF0FFF0).polished(0.6),
+    );
+    m.tube(
+        Vector(0.0, 0.0, 14.5),
+        Vector(0.0, 0.0, 18.0),
+        (2.9, 2.4),
+        Material::new(0x4C2C10, 0xA06830, 0xE0A868),
+    );
+    m.ball(
+        Vector(5.2, -2.0, 8.8),
+        1.1,
+        Material::new(0xC0FFC0, 0xF0FFF0, 0xFFFFFF).glowing().fine(),
+    );
     m
 }
 
@@ -67,13 +81,24 @@ fn first_aid(wide: f32, deep: f32, high: f32) -> Model {
     let mut m = Model::new();
     let half = high * 0.5;
     m.block(Vector(0.0, 0.0, half), Vector(deep, wide, half), WHITE);
-    m.block(Vector(0.0, 0.0, high * 0.72), Vector(deep + 0.15, wide + 0.15, 0.35), Material::new(0x404040, 0x787878, 0xA0A0A0));
+    m.block(
+        Vector(0.0, 0.0, high * 0.72),
+        Vector(deep + 0.15, wide + 0.15, 0.35),
+        Material::new(0x404040, 0x787878, 0xA0A0A0),
+    );
     let arm = half * 0.62;
     for face in [Vector(deep + 0.2, 0.0, half), Vector(0.0, 0.0, high + 0.2)] {
         let flat = face.0 > 0.0;
-        let (tall, broad) = (Vector(if flat { 0.3 } else { arm * 0.8 }, arm * 0.34, if flat { arm } else { 0.3 }), arm);
+        let (tall, broad) = (
+            Vector(if flat { 0.3 } else { arm * 0.8 }, arm * 0.34, if flat { arm } else { 0.3 }),
+            arm,
+        );
         m.block(face, tall, CROSS);
-        m.block(face, Vector(if flat { 0.3 } else { arm * 0.28 }, broad, if flat { arm * 0.34 } else { 0.3 }), CROSS);
+        m.block(
+            face,
+            Vector(if flat { 0.3 } else { arm * 0.28 }, broad, if flat { arm * 0.34 } else { 0.3 }),
+            CROSS,
+        );
     }
     if high > 7.0 {
         m.limb(Vector(0.0, -3.0, high + 0.6), Vector(0.0, 3.0, high + 0.6), (0.8, 0.8), DARK_STEEL);
@@ -84,12 +109,32 @@ fn first_aid(wide: f32, deep: f32, high: f32) -> Model {
 /// A rocket standing on its fins.
 fn rocket_round() -> Model {
     let mut m = Model::new();
-    m.tube(Vector(0.0, 0.0, 3.0), Vector(0.0, 0.0, 15.0), (4.0, 4.0), Material::new(0x484C50, 0xA0A8B0, 0xF0F4F8).polished(0.9));
-    m.tube(Vector(0.0, 0.0, 14.8), Vector(0.0, 0.0, 16.4), (4.3, 4.3), Material::new(0x5C4808, 0xD4B020, 0xFFF078));
-    m.limb(Vector(0.0, 0.0, 16.6), Vector(0.0, 0.0, 25.0), (3.7, 0.8), Material::new(0x800808, 0xE82418, 0xFF7860).polished(0.7));
+    m.tube(
+        Vector(0.0, 0.0, 3.0),
+        Vector(0.0, 0.0, 15.0),
+        (4.0, 4.0),
+        Material::new(0x484C50, 0xA0A8B0, 0xF0F4F8).polished(0.9),
+    );
+    m.tube(
+        Vector(0.0, 0.0, 14.8),
+        Vector(0.0, 0.0, 16.4),
+        (4.3, 4.3),
+        Material::new(0x5C4808, 0xD4B020, 0xFFF078),
+    );
+    m.limb(
+        Vector(0.0, 0.0, 16.6),
+        Vector(0.0, 0.0, 25.0),
+        (3.7, 0.8),
+        Material::new(0x800808, 0xE82418, 0xFF7860).polished(0.7),
+    );
     for i in 0..4 {
         let (cos, sin) = turn(45.0 + i as f32 * 90.0);
-        m.limb(Vector(cos * 3.0, sin * 3.0, 6.0), Vector(cos * 5.8, sin * 5.8, 1.2), (1.2, 1.5), STEEL);
+        m.limb(
+            Vector(cos * 3.0, sin * 3.0, 6.0),
+            Vector(cos * 5.8, sin * 5.8, 1.2),
+            (1.2, 1.5),
+            STEEL,
+        );
     }
     m.tube(Vector(0.0, 0.0, 0.6), Vector(0.0, 0.0, 3.0), (2.0, 2.6), DARK_STEEL);
     m
@@ -109,7 +154,11 @@ fn shells() -> Model {
 /// A power cell: a blue block with glowing cyan windows.
 fn cell() -> Model {
     let mut m = Model::new();
-    m.block(Vector(0.0, 0.0, 4.6), Vector(4.0, 8.2, 4.4), Material::new(0x0A1450, 0x2440C0, 0x6088F8).polished(0.6));
+    m.block(
+        Vector(0.0, 0.0, 4.6),
+        Vector(4.0, 8.2, 4.4),
+        Material::new(0x0A1450, 0x2440C0, 0x6088F8).polished(0.6),
+    );
     m.block(Vector(0.0, 0.0, 9.4), Vector(4.2, 8.6, 0.9), DARK_STEEL);
     m.block(Vector(0.0, 0.0, 0.7), Vector(4.3, 8.6, 0.8), DARK_STEEL);
     let glow = Material::new(0x20A0C0, 0x60E8F0, 0xC8FFFF).glowing().fine();
@@ -148,13 +197,21 @@ fn goggles(lit: bool) -> Model {
 fn blur_sphere(phase: usize) -> Model {
     let mut m = Model::new();
     let centre = Vector(0.0, 0.0, 15.0);
-    m.ball(centre, 14.4, Material::new(0x5008A0, 0xB030FF, 0xF0B0FF).mottled(0.4, 4.0).polished(1.0));
+    m.ball(
+        centre,
+        14.4,
+        Material::new(0x5008A0, 0xB030FF, 0xF0B0FF).mottled(0.4, 4.0).polished(1.0),
+    );
     for i in 0..5 {
         let (cos, sin) = turn(phase as f32 * 18.0 + i as f32 * 72.0);
         let spark = Material::new(0x4060F0, 0x88A8FF, 0xF0F8FF).glowing().fine();
         m.ball(centre + Vector(9.5, cos * 8.5, sin * 8.5), 2.1, spark);
     }
-    m.ball(centre + Vector(12.6, 0.0, 0.0), 3.4, Material::new(0x8C1C1C, 0xE05038, 0xFFC890).glowing());
+    m.ball(
+        centre + Vector(12.6, 0.0, 0.0),
+        3.4,
+        Material::new(0x8C1C1C, 0xE05038, 0xFFC890).glowing(),
+    );
     m
 }
 
@@ -164,16 +221,32 @@ fn computer_map(glow: f32) -> Model {
     let body = Frame::turned(-28.0, 0.0, 0.0);
     let at = |x: f32, y: f32, z: f32| Vector(0.0, 0.0, 9.0) + body.out(Vector(x, y, z));
     m.block_in(body, at(0.0, 0.0, 1.0), Vector(2.0, 12.4, 9.6), STEEL);
-    m.block_in(body, at(2.0, 0.0, 2.2), Vector(0.4, 10.4, 6.8), Material::new(0x041C08, 0x0C4018, 0x106420));
-    let bright =
-        if glow > 0.5 { Material::new(0x40C040, 0x70F060, 0xC8FFB0) } else { Material::new(0x208028, 0x38B838, 0x78E868) };
+    m.block_in(
+        body,
+        at(2.0, 0.0, 2.2),
+        Vector(0.4, 10.4, 6.8),
+        Material::new(0x041C08, 0x0C4018, 0x106420),
+    );
+    let bright = if glow > 0.5 {
+        Material::new(0x40C040, 0x70F060, 0xC8FFB0)
+    } else {
+        Material::new(0x208028, 0x38B838, 0x78E868)
+    };
     let wall = bright.glowing().fine();
-    for (y, z, wide, high) in
-        [(-4.0, 5.0, 5.0, 0.4), (-9.0, 1.0, 0.4, 4.2), (1.0, 2.0, 0.4, 3.2), (4.0, -1.0, 4.6, 0.4), (6.0, 5.0, 0.4, 2.6)]
-    {
+    for (y, z, wide, high) in [
+        (-4.0, 5.0, 5.0, 0.4),
+        (-9.0, 1.0, 0.4, 4.2),
+        (1.0, 2.0, 0.4, 3.2),
+        (4.0, -1.0, 4.6, 0.4),
+        (6.0, 5.0, 0.4, 2.6),
+    ] {
         m.block_in(body, at(2.4, y, z), Vector(0.3, wide, high), wall);
     }
-    m.ball(at(2.6, -2.0, 0.0), 1.2 + glow * 0.5, Material::new(0xE02010, 0xFF4020, 0xFFA080).glowing().fine());
+    m.ball(
+        at(2.6, -2.0, 0.0),
+        1.2 + glow * 0.5,
+        Material::new(0xE02010, 0xFF4020, 0xFFA080).glowing().fine(),
+    );
     m.block_in(body, at(2.0, 0.0, -6.6), Vector(0.5, 8.0, 1.2), DARK_STEEL);
     m
 }
@@ -183,12 +256,30 @@ fn backpack() -> Model {
     let mut m = Model::new();
     m.egg(Vector(0.0, 0.0, 11.0), Vector(7.5, 10.5, 11.4), CANVAS);
     m.block(Vector(1.0, 0.0, 9.0), Vector(6.0, 8.8, 8.6), CANVAS);
-    m.egg(Vector(4.4, 0.0, 18.0), Vector(5.0, 10.2, 4.0), Material::new(0x584C2C, 0xC4B878, 0xF4ECC0));
-    m.limb(Vector(0.0, -11.0, 25.0), Vector(0.0, 11.0, 25.0), (3.4, 3.4), Material::new(0x20280E, 0x5C6830, 0x98A460));
+    m.egg(
+        Vector(4.4, 0.0, 18.0),
+        Vector(5.0, 10.2, 4.0),
+        Material::new(0x584C2C, 0xC4B878, 0xF4ECC0),
+    );
+    m.limb(
+        Vector(0.0, -11.0, 25.0),
+        Vector(0.0, 11.0, 25.0),
+        (3.4, 3.4),
+        Material::new(0x20280E, 0x5C6830, 0x98A460),
+    );
     for y in [-5.0, 5.0] {
-        m.block(Vector(8.0, y, 12.0), Vector(0.8, 0.9, 7.0), Material::new(0x1C1008, 0x402810, 0x644020));
+        m.block(
+            Vector(8.0, y, 12.0),
+            Vector(0.8, 0.9, 7.0),
+            Material::new(0x1C1008, 0x402810, 0x644020),
+        );
         m.block(Vector(9.0, y, 12.0), Vector(0.4, 1.1, 0.9), BRASS.fine());
-        m.tube(Vector(0.0, y, 25.0), Vector(0.0, y + 1.4, 25.0), (3.8, 3.8), Material::new(0x1C1008, 0x402810, 0x644020));
+        m.tube(
+            Vector(0.0, y, 25.0),
+            Vector(0.0, y + 1.4, 25.0),
+            (3.8, 3.8),
+            Material::new(0x1C1008, 0x402810, 0x644020),
+        );
     }
     m.block(Vector(7.0, 0.0, 6.0), Vector(1.8, 4.6, 4.0), CANVAS);
     m
@@ -201,14 +292,22 @@ fn radiation_suit() -> Model {
     let mut m = Model::new();
     for side in [1.0, -1.0] {
         m.limb(Vector(0.0, side * 3.6, 26.0), Vector(0.0, side * 4.6, 5.0), (4.4, 3.4), cloth);
-        m.egg(Vector(1.6, side * 4.8, 2.4), Vector(4.4, 3.2, 2.4), Material::new(0x101010, 0x303030, 0x606060));
+        m.egg(
+            Vector(1.6, side * 4.8, 2.4),
+            Vector(4.4, 3.2, 2.4),
+            Material::new(0x101010, 0x303030, 0x606060),
+        );
         m.limb(Vector(0.0, side * 7.4, 41.0), Vector(1.0, side * 9.4, 24.0), (3.2, 2.6), cloth);
         m.ball(Vector(1.0, side * 9.5, 22.4), 2.8, trim);
     }
     m.egg(Vector(0.0, 0.0, 34.0), Vector(5.6, 7.6, 11.0), cloth);
     m.tube(Vector(0.0, 0.0, 27.0), Vector(0.0, 0.0, 29.0), (6.2, 6.2), trim);
     m.egg(Vector(0.0, 0.0, 46.6), Vector(5.4, 5.2, 5.6), cloth);
-    m.egg(Vector(3.6, 0.0, 46.8), Vector(2.6, 3.8, 2.8), Material::new(0x1C2020, 0x586868, 0xD0F0F0).polished(1.0));
+    m.egg(
+        Vector(3.6, 0.0, 46.8),
+        Vector(2.6, 3.8, 2.8),
+        Material::new(0x1C2020, 0x586868, 0xD0F0F0).polished(1.0),
+    );
     m.limb(Vector(5.0, 0.0, 43.0), Vector(6.0, 3.0, 34.0), (1.3, 1.3), DARK_STEEL);
     m.tube(Vector(5.4, 0.0, 36.6), Vector(6.4, 0.0, 36.6), (2.2, 2.2), trim);
     m
@@ -242,7 +341,11 @@ fn key_skull(lit: bool) -> Model {
         m.ball(Vector(4.6, side * 2.2, 9.8), 1.5, eye);
     }
     for y in [-1.6, 0.0, 1.6] {
-        m.block(Vector(5.2, y, 3.0), Vector(0.4, 0.5, 1.4), Material::new(0x607088, 0xB0C0E0, 0xFFFFFF).fine());
+        m.block(
+            Vector(5.2, y, 3.0),
+            Vector(0.4, 0.5, 1.4),
+            Material::new(0x607088, 0xB0C0E0, 0xFFFFFF).fine(),
+        );
     }
     m
 }

@@ -1,4 +1,5 @@
-//! The weapons in the player's hands: the pick-up models enlarged, seen from behind, with gloved hands and muzzle flashes.
+//! The weapons in the player's hands: the pick-up models enlarged, seen from behind, with gloved
+//! hands and muzzle flashes.
 
 use super::arsenal;
 use super::effects::fireball;
@@ -12,14 +13,19 @@ const GLOVE: Material = Material::new(0x14100C, 0x44362A, 0x80685A).mottled(0.2,
 const SKIN: Material = Material::new(0x442418, 0xA87450, 0xE8B890).mottled(0.12, 4.0);
 const SLEEVE: Material = Material::new(0x0C1C0A, 0x2E5428, 0x608C50).mottled(0.25, 6.0);
 
-const FIRE: [Colour; 4] = [Colour::hex(0xC04808), Colour::hex(0xFF9018), Colour::hex(0xFFE060), Colour::hex(0xFFFFF0)];
-const BLUE: [Colour; 4] = [Colour::hex(0x1838D0), Colour::hex(0x4890FF), Colour::hex(0xA0E8FF), Colour::hex(0xFFFFFF)];
-const GREEN: [Colour; 4] = [Colour::hex(0x188818), Colour::hex(0x48E040), Colour::hex(0xB0FF90), Colour::hex(0xFFFFFF)];
+const FIRE: [Colour; 4] =
+    [Colour::hex(0xC04808), Colour::hex(0xFF9018), Colour::hex(0xFFE060), Colour::hex(0xFFFFF0)];
+const BLUE: [Colour; 4] =
+    [Colour::hex(0x1838D0), Colour::hex(0x4890FF), Colour::hex(0xA0E8FF), Colour::hex(0xFFFFFF)];
+const GREEN: [Colour; 4] =
+    [Colour::hex(0x188818), Colour::hex(0x48E040), Colour::hex(0xB0FF90), Colour::hex(0xFFFFFF)];
 
-/// Lowest row of the 320 by 200 screen that a view weapon can show: the status bar hides what is below.
+/// Lowest row of the 320 by 200 screen that a view weapon can show: the status bar hides what is
+/// below.
 const LOWEST_ROW: i32 = 188;
 
-/// How a weapon is held: where its model's origin lies in the 320 by 200 screen, and how far the eye is behind and above it.
+/// How a weapon is held: where its model's origin lies in the 320 by 200 screen, and how far the
+/// eye is behind and above it.
 #[derive(Clone, Copy)]
 struct Hold {
     at: (i32, i32),
@@ -32,12 +38,26 @@ impl Hold {
         let (x, y) = (self.at.0 + shift.0, self.at.1 + shift.1);
         let seen = model.foreshortened(self.eye.0, self.eye.1);
         let portrait = portrait_above(&seen, View::new(180.0, 0.0), (y - LOWEST_ROW) as f32);
-        // A view weapon rests at (1, 32) and lies that far minus its offset from the screen's corner.
-        gallery.flat_frame(name, &portrait.canvas, 1 - x + portrait.offset_x, 32 - y + portrait.offset_y);
+        // A view weapon rests at (1, 32) and lies that far minus its offset from the screen's
+        // corner.
+        gallery.flat_frame(
+            name,
+            &portrait.canvas,
+            1 - x + portrait.offset_x,
+            32 - y + portrait.offset_y,
+        );
     }
 
     /// Adds a muzzle flash centred on a point of the model.
-    fn flash(self, gallery: &mut Gallery, name: &str, muzzle: Vector, size: i32, tones: &[Colour], seed: u32) {
+    fn flash(
+        self,
+        gallery: &mut Gallery,
+        name: &str,
+        muzzle: Vector,
+        size: i32,
+        tones: &[Colour],
+        seed: u32,
+    ) {
         let scale = self.eye.0 / (self.eye.0 + muzzle.0);
         let x = self.at.0 - (muzzle.1 * scale) as i32;
         let y = self.at.1 - ((muzzle.2 - self.eye.1) * scale + self.eye.1) as i32;
@@ -57,7 +77,8 @@ pub(super) fn paint(gallery: &mut Gallery) {
     bfg(gallery);
 }
 
-/// A hand closed around a point, fingers curling to the left (`side` -1: a right hand) with the forearm running to `elbow`.
+/// A hand closed around a point, fingers curling to the left (`side` -1: a right hand) with the
+/// forearm running to `elbow`.
 fn hand(m: &mut Model, grip: Vector, elbow: Vector, side: f32, size: f32) {
     let at = |x: f32, y: f32, z: f32| grip + Vector(x, -side * y, z) * size;
     m.egg(at(-2.0, -0.6, 0.0), Vector(6.4, 6.0, 6.6) * size, GLOVE);
@@ -122,7 +143,9 @@ fn super_shotgun(gallery: &mut Gallery) {
         hand(&mut m, Vector(-22.0, -6.0, 24.0), Vector(-60.0, -34.0, -40.0), -1.0, 1.8);
         m
     };
-    for (open, drop) in [(0.0, 0), (0.3, 6), (0.7, 10), (1.0, 12), (1.0, 14), (0.8, 12), (0.4, 8), (0.15, 3)] {
+    for (open, drop) in
+        [(0.0, 0), (0.3, 6), (0.7, 10), (1.0, 12), (1.0, 14), (0.8, 12), (0.4, 8), (0.15, 3)]
+    {
         hold.frame(gallery, "SHT2", &figure(open), (0, drop));
     }
     for (size, seed) in [(58, 64), (70, 65)] {
@@ -136,7 +159,11 @@ fn chaingun(gallery: &mut Gallery) {
         let mut m = Model::new();
         // The barrels turn about their own axis, 13 above the model's origin.
         let (cos, sin) = turn(turned);
-        let spin = Frame { forward: Vector::FORWARD, left: Vector(0.0, cos, sin), up: Vector(0.0, -sin, cos) };
+        let spin = Frame {
+            forward: Vector::FORWARD,
+            left: Vector(0.0, cos, sin),
+            up: Vector(0.0, -sin, cos),
+        };
         let scale = 3.4;
         let gun = arsenal::chaingun_parts();
         let origin = Vector(0.0, 0.0, 4.0);

@@ -41,7 +41,10 @@ fn overgrown(tones: &[Colour], seed: u32) -> Surface {
     Surface::new(size, size, |x, y| {
         let sway = ((rock.at(x / 2, y) - 0.5) * 6.0) as i32;
         let strand = strands.at(x + sway, y);
-        (gradient(tones, rock.at(x, y) * 0.6 + strand * 0.5 - 0.05), rock.at(x, y) * 4.0 + strand * 3.0)
+        (
+            gradient(tones, rock.at(x, y) * 0.6 + strand * 0.5 - 0.05),
+            rock.at(x, y) * 4.0 + strand * 3.0,
+        )
     })
     .lit(0.26, 0.2, seed + 2)
 }
@@ -53,7 +56,8 @@ fn boulders(tones: &[Colour], seed: u32) -> Surface {
     let rough = Field::clouds(size, size, (8, 8), 5, seed + 1);
     Surface::new(size, size, |x, y| {
         let shift = (rough.at(x, y) - 0.5) * 8.0;
-        let cell = stones.at((x as f32 + shift).rem_euclid(128.0), (y as f32 + shift).rem_euclid(128.0));
+        let cell =
+            stones.at((x as f32 + shift).rem_euclid(128.0), (y as f32 + shift).rem_euclid(128.0));
         let dome = (cell.border / 8.0).min(1.0).sqrt();
         let tone = 0.2 + 0.3 * (cell.id & 255) as f32 / 255.0 + 0.5 * rough.at(x, y) * dome;
         (gradient(tones, tone), dome * 6.0 + rough.at(x, y) * 3.0)

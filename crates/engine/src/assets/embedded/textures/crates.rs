@@ -37,7 +37,10 @@ fn planks(size: usize, seed: u32, braced: bool) -> Surface {
             let (plank, into) = (y / 8, y % 8);
             let gap = into == 0;
             let shade = 0.62 + 0.16 * unit(plank, 0, seed + 2);
-            (wood * (shade + 0.4 * grain.at(x + plank * 13, y)) * if gap { 0.4 } else { 1.0 }, if gap { -0.6 } else { 0.4 })
+            (
+                wood * (shade + 0.4 * grain.at(x + plank * 13, y)) * if gap { 0.4 } else { 1.0 },
+                if gap { -0.6 } else { 0.4 },
+            )
         }
     });
     for near in [4, last - 4] {
@@ -55,23 +58,41 @@ fn container(seed: u32) -> Canvas {
     let surface = Surface::new(size, size, |x, y| {
         let edge = x.min(127 - x).min(y.min(127 - y)) as f32;
         let rib = (x % 16 - 8).abs() as f32;
-        let raise = if edge < 8.0 { 3.0 + (edge.min(8.0 - edge) / 2.0).min(1.0) } else { (rib / 3.0).min(1.0) * 1.6 };
+        let raise = if edge < 8.0 {
+            3.0 + (edge.min(8.0 - edge) / 2.0).min(1.0)
+        } else {
+            (rib / 3.0).min(1.0) * 1.6
+        };
         let paint = Colour::hex(0x4C5C70) * (0.85 + 0.3 * rust.at(x, y));
-        (paint.mix(Colour::hex(0x6C4020), ((rust.at(x + 40, y) - 0.62) * 5.0).clamp(0.0, 0.8)), raise)
+        (
+            paint.mix(Colour::hex(0x6C4020), ((rust.at(x + 40, y) - 0.62) * 5.0).clamp(0.0, 0.8)),
+            raise,
+        )
     });
     let mut canvas = surface.lit(0.3, 0.1, seed + 1).canvas();
     for (i, digit) in [0b1110111_u8, 0b1011101, 0b1111111].into_iter().enumerate() {
         let (x, y) = (30 + 24 * i as i32, 48);
-        for (segment, (left, top, width, height)) in
-            [(2, 0, 12, 3), (0, 2, 3, 12), (13, 2, 3, 12), (2, 14, 12, 3), (0, 16, 3, 12), (13, 16, 3, 12), (2, 28, 12, 3)]
-                .into_iter()
-                .enumerate()
+        for (segment, (left, top, width, height)) in [
+            (2, 0, 12, 3),
+            (0, 2, 3, 12),
+            (13, 2, 3, 12),
+            (2, 14, 12, 3),
+            (0, 16, 3, 12),
+            (13, 16, 3, 12),
+            (2, 28, 12, 3),
+        ]
+        .into_iter()
+        .enumerate()
         {
             if digit >> (6 - segment) & 1 == 1 {
                 for (dx, dy) in (0..width).flat_map(|dx| (0..height).map(move |dy| (dx, dy))) {
                     let (at_x, at_y) = (x + left + dx, y + top + dy);
                     if let Some(under) = canvas.get(at_x, at_y) {
-                        canvas.set(at_x, at_y, under.mix(Colour::hex(0xD8C88C), 0.55 + 0.4 * rust.at(at_x, at_y)));
+                        canvas.set(
+                            at_x,
+                            at_y,
+                            under.mix(Colour::hex(0xD8C88C), 0.55 + 0.4 * rust.at(at_x, at_y)),
+                        );
                     }
                 }
             }

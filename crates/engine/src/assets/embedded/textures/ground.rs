@@ -27,7 +27,8 @@ fn cracked(size: usize, cells: usize, seed: u32) -> Surface {
     let rough = Field::clouds(size, size, (6, 6), 5, seed + 2);
     Surface::new(size, size, |x, y| {
         let (dx, dy) = ((warp.at(x, y) - 0.5) * 7.0, (warp.at(y + 50, x + 9) - 0.5) * 7.0);
-        let cell = plates.at((x as f32 + dx).rem_euclid(size as f32), (y as f32 + dy).rem_euclid(size as f32));
+        let cell = plates
+            .at((x as f32 + dx).rem_euclid(size as f32), (y as f32 + dy).rem_euclid(size as f32));
         let tone = 0.85 + 0.22 * ((cell.id & 255) as f32 / 255.0) + 0.4 * (rough.at(x, y) - 0.5);
         let crack = (1.0 - cell.border / 1.4).clamp(0.0, 1.0);
         (
@@ -43,7 +44,12 @@ fn grass(seed: u32) -> Surface {
     let size = 64;
     let patch = Field::clouds(size, size, (4, 4), 4, seed);
     let fine = Field::clouds(size, size, (16, 16), 2, seed + 1);
-    let tones = [Colour::hex(0x2A2A16), Colour::hex(0x38401E), Colour::hex(0x4C5830), Colour::hex(0x6C7844)];
+    let tones = [
+        Colour::hex(0x2A2A16),
+        Colour::hex(0x38401E),
+        Colour::hex(0x4C5830),
+        Colour::hex(0x6C7844),
+    ];
     Surface::new(size, size, |x, y| {
         let blade = unit(x, y / 2, seed + 2);
         let level = patch.at(x, y) * 0.5 + fine.at(x, y) * 0.25 + blade * 0.3;

@@ -8,8 +8,18 @@ use crate::assets::embedded::surface::Surface;
 
 /// Paints the lamps.
 pub(super) fn paint(gallery: &mut Gallery) {
-    let red = [Colour::hex(0xFFE8D8), Colour::hex(0xF05040), Colour::hex(0xC01C14), Colour::hex(0x5C0808)];
-    let amber = [Colour::hex(0xFFFFF0), Colour::hex(0xFFF0A0), Colour::hex(0xE0B040), Colour::hex(0x704810)];
+    let red = [
+        Colour::hex(0xFFE8D8),
+        Colour::hex(0xF05040),
+        Colour::hex(0xC01C14),
+        Colour::hex(0x5C0808),
+    ];
+    let amber = [
+        Colour::hex(0xFFFFF0),
+        Colour::hex(0xFFF0A0),
+        Colour::hex(0xE0B040),
+        Colour::hex(0x704810),
+    ];
     gallery.texture("TLITE6_5", &round_lamps(&red, 501));
     gallery.texture("TLITE6_4", &round_lamps(&amber, 511));
     gallery.texture("LITEBLU4", &strips(Colour::hex(0x0C0C88), Colour::hex(0x3848FF), 16, 521));
@@ -78,7 +88,13 @@ fn light_crate(seed: u32) -> Canvas {
         for x in [2, 34] {
             for row in 0..6 {
                 let glow = [0.5, 0.8, 1.0, 1.0, 0.8, 0.5][row as usize];
-                canvas.rect(x, y + 5 + row, 28, 1, Colour::hex(0x706030).mix(Colour::hex(0xFFF8B0), glow));
+                canvas.rect(
+                    x,
+                    y + 5 + row,
+                    28,
+                    1,
+                    Colour::hex(0x706030).mix(Colour::hex(0xFFF8B0), glow),
+                );
             }
         }
     }

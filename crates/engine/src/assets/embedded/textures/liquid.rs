@@ -42,9 +42,10 @@ fn lava(phase: usize) -> Canvas {
     ];
     Surface::new(SIZE, SIZE, |x, y| {
         let apart = (first.at(x + dx, y + dy) - second.at(x - dx, y - dy)).abs();
-        // The offset sets how much of the surface glows: the specified mean without any scaling, which would turn the
-        // bright seams brown.
-        let cool = (apart * 2.3 + (crust.at(x - dy, y + dx) - 0.5) * 0.8 + COOLNESS).clamp(0.0, 1.0);
+        // The offset sets how much of the surface glows: the specified mean without any scaling,
+        // which would turn the bright seams brown.
+        let cool =
+            (apart * 2.3 + (crust.at(x - dy, y + dx) - 0.5) * 0.8 + COOLNESS).clamp(0.0, 1.0);
         (gradient(&glow, cool), cool)
     })
     .lit(0.2, 0.1, 14)
@@ -56,7 +57,12 @@ fn acid(phase: usize) -> Canvas {
     let (dx, dy) = DRIFT[phase];
     let slow = Field::clouds(SIZE, SIZE, (4, 4), 4, 21);
     let fast = Field::clouds(SIZE, SIZE, (7, 7), 3, 22);
-    let tones = [Colour::hex(0x0A2004), Colour::hex(0x163C0A), Colour::hex(0x2C6414), Colour::hex(0x7CD048)];
+    let tones = [
+        Colour::hex(0x0A2004),
+        Colour::hex(0x163C0A),
+        Colour::hex(0x2C6414),
+        Colour::hex(0x7CD048),
+    ];
     Surface::new(SIZE, SIZE, |x, y| {
         let wave = slow.at(x + dx, y - dy) * 0.6 + fast.at(x - 2 * dx, y + 2 * dy) * 0.4;
         let scum = (wave - 0.35).max(0.0) * 1.7;

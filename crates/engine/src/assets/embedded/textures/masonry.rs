@@ -12,24 +12,47 @@ const GREEN_STONE: Colour = Colour::hex(0x868C78);
 pub(super) fn paint(gallery: &mut Gallery) {
     gallery.surface(
         "A-BROK28",
-        &worn_blocks(128, Courses { length: 64, height: 32 }, SAND, 31).with_mean(Colour(120.0, 97.0, 77.0)),
+        &worn_blocks(128, Courses { length: 64, height: 32 }, SAND, 31)
+            .with_mean(Colour(120.0, 97.0, 77.0)),
     );
-    gallery
-        .surface("FLAT5_5", &worn_blocks(64, Courses { length: 32, height: 16 }, SAND, 41).with_mean(Colour(87.0, 67.0, 50.0)));
-    gallery.surface("FLOOR0_5", &slabs(64, Courses { length: 64, height: 32 }, 51).with_mean(Colour(97.0, 97.0, 97.0)));
-    gallery.surface("AQF052", &slabs(64, Courses { length: 32, height: 16 }, 61).with_mean(Colour(83.0, 83.0, 83.0)));
-    gallery
-        .surface("BIGBRIK1", &worn_blocks(128, Courses { length: 64, height: 32 }, SAND, 71).with_mean(Colour(49.0, 30.0, 15.0)));
-    gallery
-        .surface("BSTONE3", &worn_blocks(128, Courses { length: 32, height: 32 }, SAND, 75).with_mean(Colour(92.0, 69.0, 40.0)));
+    gallery.surface(
+        "FLAT5_5",
+        &worn_blocks(64, Courses { length: 32, height: 16 }, SAND, 41)
+            .with_mean(Colour(87.0, 67.0, 50.0)),
+    );
+    gallery.surface(
+        "FLOOR0_5",
+        &slabs(64, Courses { length: 64, height: 32 }, 51).with_mean(Colour(97.0, 97.0, 97.0)),
+    );
+    gallery.surface(
+        "AQF052",
+        &slabs(64, Courses { length: 32, height: 16 }, 61).with_mean(Colour(83.0, 83.0, 83.0)),
+    );
+    gallery.surface(
+        "BIGBRIK1",
+        &worn_blocks(128, Courses { length: 64, height: 32 }, SAND, 71)
+            .with_mean(Colour(49.0, 30.0, 15.0)),
+    );
+    gallery.surface(
+        "BSTONE3",
+        &worn_blocks(128, Courses { length: 32, height: 32 }, SAND, 75)
+            .with_mean(Colour(92.0, 69.0, 40.0)),
+    );
     gallery.surface(
         "BIGSTON3",
-        &worn_blocks(128, Courses { length: 128, height: 64 }, GREEN_STONE, 79).with_mean(Colour(62.0, 66.0, 56.0)),
+        &worn_blocks(128, Courses { length: 128, height: 64 }, GREEN_STONE, 79)
+            .with_mean(Colour(62.0, 66.0, 56.0)),
     );
-    gallery
-        .surface("STONE7", &worn_blocks(128, Courses { length: 32, height: 16 }, SAND, 83).with_mean(Colour(87.0, 60.0, 31.0)));
+    gallery.surface(
+        "STONE7",
+        &worn_blocks(128, Courses { length: 32, height: 16 }, SAND, 83)
+            .with_mean(Colour(87.0, 60.0, 31.0)),
+    );
     gallery.surface("BRIKS20", &bricks(128, 87).with_mean(Colour(96.0, 56.0, 40.0)));
-    gallery.surface("TILES6", &slabs(64, Courses { length: 32, height: 32 }, 91).with_mean(Colour(104.0, 104.0, 106.0)));
+    gallery.surface(
+        "TILES6",
+        &slabs(64, Courses { length: 32, height: 32 }, 91).with_mean(Colour(104.0, 104.0, 106.0)),
+    );
 }
 
 /// A running bond: every second course shifted by half a brick.
@@ -48,7 +71,8 @@ struct InBrick {
 }
 
 impl Courses {
-    /// Where a (possibly displaced) point lies; `size` is the texture's side, around which the bond closes.
+    /// Where a (possibly displaced) point lies; `size` is the texture's side, around which the bond
+    /// closes.
     fn at(self, x: f32, y: f32, size: i32, seed: u32) -> InBrick {
         let (length, height) = (self.length as f32, self.height as f32);
         let (x, y) = (x + size as f32, y + size as f32);
@@ -108,9 +132,17 @@ fn bricks(size: usize, seed: u32) -> Surface {
         let brick = courses.at(x as f32 + 0.5, y as f32 + 0.5 + wobble, size as i32, seed);
         let mortar = brick.edge < 0.9;
         let burnt = if brick.id.is_multiple_of(7) { 0.62 } else { 1.0 };
-        let face = Colour::hex(0xA05038).mix(Colour::hex(0x8C6448), tone(brick.id >> 8) * 0.5 + 0.5);
-        let colour = if mortar { Colour::hex(0x8C8070) * 0.72 } else { face * (burnt + 0.14 * tone(brick.id)) };
-        (colour * (0.8 + 0.4 * stain.at(x, y)), (brick.edge / 1.6).min(1.0) * 1.3 + fine.at(x, y) * 0.9)
+        let face =
+            Colour::hex(0xA05038).mix(Colour::hex(0x8C6448), tone(brick.id >> 8) * 0.5 + 0.5);
+        let colour = if mortar {
+            Colour::hex(0x8C8070) * 0.72
+        } else {
+            face * (burnt + 0.14 * tone(brick.id))
+        };
+        (
+            colour * (0.8 + 0.4 * stain.at(x, y)),
+            (brick.edge / 1.6).min(1.0) * 1.3 + fine.at(x, y) * 0.9,
+        )
     })
     .lit(0.34, 0.16, seed + 2)
 }

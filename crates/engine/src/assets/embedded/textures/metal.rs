@@ -17,12 +17,18 @@ fn rust_plates(seed: u32) -> Surface {
     let size = 128;
     let rust = Field::clouds(size, size, (4, 4), 5, seed);
     let drip = Field::clouds(size, size, (24, 3), 3, seed + 1);
-    let tones =
-        [Colour::hex(0x3A3630), Colour::hex(0x4A443A), Colour::hex(0x5A4C3C), Colour::hex(0x6A4C30), Colour::hex(0x7C5028)];
+    let tones = [
+        Colour::hex(0x3A3630),
+        Colour::hex(0x4A443A),
+        Colour::hex(0x5A4C3C),
+        Colour::hex(0x6A4C30),
+        Colour::hex(0x7C5028),
+    ];
     let mut surface = Surface::new(size, size, |x, y| {
         let (u, v) = (x % 64, y % 64);
         let edge = u.min(63 - u).min(v.min(63 - v)) as f32;
-        let eaten = rust.at(x, y) * 0.75 + drip.at(x, y) * 0.35 - 0.08 + (4.0 - edge).max(0.0) * 0.05;
+        let eaten =
+            rust.at(x, y) * 0.75 + drip.at(x, y) * 0.35 - 0.08 + (4.0 - edge).max(0.0) * 0.05;
         let seam = if edge < 1.0 { 0.45 } else { 1.0 };
         (gradient(&tones, eaten) * seam, (edge / 2.0).min(1.0) * 1.5 + rust.at(x, y) * 1.6)
     });
@@ -50,7 +56,10 @@ fn dark_steel(seed: u32) -> Surface {
         let v = y % 32;
         let rib = if v < 6 { (v.min(5 - v) as f32).min(1.5) + 0.5 } else { 0.0 };
         let seam = x % 64 == 0;
-        (Colour::grey(40.0 * (0.75 + 0.5 * grime.at(x, y)) * if seam { 0.4 } else { 1.0 }), rib * 1.4 + grime.at(x, y))
+        (
+            Colour::grey(40.0 * (0.75 + 0.5 * grime.at(x, y)) * if seam { 0.4 } else { 1.0 }),
+            rib * 1.4 + grime.at(x, y),
+        )
     });
     for y in [19, 51, 83, 115] {
         for x in [6, 58, 70, 122] {
@@ -68,7 +77,8 @@ fn girder(seed: u32) -> Surface {
         let flange = u.min(31 - u);
         let (dx, dy) = (u as f32 - 15.5, v as f32 - 15.5);
         let hole = dx * dx + dy * dy < 36.0;
-        let steel = Colour::hex(0x6C665C).mix(Colour::hex(0x74481E), (rust.at(x, y) - 0.4).max(0.0) * 1.6);
+        let steel =
+            Colour::hex(0x6C665C).mix(Colour::hex(0x74481E), (rust.at(x, y) - 0.4).max(0.0) * 1.6);
         if hole {
             (Colour::hex(0x14120E), -3.0)
         } else if flange < 6 {

@@ -25,7 +25,10 @@ pub(super) fn paint(gallery: &mut Gallery) {
     crates::paint(gallery);
     panels::paint(gallery);
     fences::paint(gallery);
-    for name in ["A-BROK28", "AQF052", "FLAT5_5", "STONE5", "RROCK15", "AQRUST07", "STARGR2", "SLIME16", "BIGSTON3", "BRIKS20"] {
+    for name in [
+        "A-BROK28", "AQF052", "FLAT5_5", "STONE5", "RROCK15", "AQRUST07", "STARGR2", "SLIME16",
+        "BIGSTON3", "BRIKS20",
+    ] {
         gallery.fallback(name);
     }
 }

@@ -8,10 +8,22 @@ use crate::assets::embedded::surface::Surface;
 
 /// Paints the panels.
 pub(super) fn paint(gallery: &mut Gallery) {
-    gallery.surface("STARGR2", &wall_panels(Colour::hex(0x5C5C5C), 64, 701).with_mean(Colour(84.0, 84.0, 83.0)));
-    gallery.surface("GRAY4", &wall_panels(Colour::hex(0x686868), 32, 706).with_mean(Colour(98.0, 98.0, 98.0)));
-    gallery.surface("SILVER3", &wall_panels(Colour::hex(0x8C9098), 128, 711).with_mean(Colour(116.0, 120.0, 126.0)));
-    gallery.surface("REDWALL1", &wall_panels(Colour::hex(0xA01010), 64, 716).with_mean(Colour(193.0, 4.0, 4.0)));
+    gallery.surface(
+        "STARGR2",
+        &wall_panels(Colour::hex(0x5C5C5C), 64, 701).with_mean(Colour(84.0, 84.0, 83.0)),
+    );
+    gallery.surface(
+        "GRAY4",
+        &wall_panels(Colour::hex(0x686868), 32, 706).with_mean(Colour(98.0, 98.0, 98.0)),
+    );
+    gallery.surface(
+        "SILVER3",
+        &wall_panels(Colour::hex(0x8C9098), 128, 711).with_mean(Colour(116.0, 120.0, 126.0)),
+    );
+    gallery.surface(
+        "REDWALL1",
+        &wall_panels(Colour::hex(0xA01010), 64, 716).with_mean(Colour(193.0, 4.0, 4.0)),
+    );
     gallery.texture("COMPUTE2", &computers(721));
     for (name, kind, seed) in [("CONS1_1", 0, 731), ("CONS1_5", 1, 736), ("CONS1_7", 2, 741)] {
         gallery.texture(name, &console(kind, seed));
@@ -34,7 +46,10 @@ fn wall_panels(colour: Colour, width: i32, seed: u32) -> Surface {
         let edge = u.min(width - 1 - u).min(v.min(63 - v)) as f32;
         let streak = if v < 24 { 0.1 * (brush.at(x, y / 3) - 0.5) } else { 0.0 };
         let tone = 0.88 + 0.18 * brush.at(x, y) + 0.28 * (stain.at(x, y) - 0.5) + streak;
-        (colour * if edge < 1.0 { 0.5 } else { tone }, (edge / 2.5).min(1.0) * 1.6 - if edge > 5.0 { 0.5 } else { 0.0 })
+        (
+            colour * if edge < 1.0 { 0.5 } else { tone },
+            (edge / 2.5).min(1.0) * 1.6 - if edge > 5.0 { 0.5 } else { 0.0 },
+        )
     });
     for x in (0..128).step_by(width as usize) {
         for y in [8, 55, 72, 119] {
@@ -71,7 +86,11 @@ fn computers(seed: u32) -> Canvas {
                     // Drives: slots with a lamp each.
                     for slot in 0..4 {
                         c.bevel(x + 6, y + 6 + 4 * slot, 16, 3, Colour::grey(16.0), -0.6);
-                        let lamp = if unit(column * 5 + slot, row, seed) > 0.5 { 0x40D040 } else { 0xC03018 };
+                        let lamp = if unit(column * 5 + slot, row, seed) > 0.5 {
+                            0x40D040
+                        } else {
+                            0xC03018
+                        };
                         c.rect(x + 25, y + 6 + 4 * slot, 2, 2, Colour::hex(lamp));
                     }
                 }
@@ -129,13 +148,20 @@ fn console(kind: u32, seed: u32) -> Canvas {
             c.rect(x + left, top, width, height, dark);
             for line in 0..height / 4 {
                 let length = (unit(line, left + x, seed) * (width - 4) as f32) as i32 + 2;
-                c.rect(x + left + 1, top + 2 + line * 4, length.min(width - 2), 1, dark.mix(Colour::hex(0xFFFFFF), 0.45) * 1.4);
+                c.rect(
+                    x + left + 1,
+                    top + 2 + line * 4,
+                    length.min(width - 2),
+                    1,
+                    dark.mix(Colour::hex(0xFFFFFF), 0.45) * 1.4,
+                );
             }
         }
         c.bevel(x + 4, 60, 56, 26, Colour::grey(52.0), 0.4);
         for button in 0..24 {
             let (dx, dy) = (button % 8, button / 8);
-            let lamp = [0xD03020, 0x30C040, 0xE0C030, 0x4060E0, 0x606468][(hash(button, x, seed) % 5) as usize];
+            let lamp = [0xD03020, 0x30C040, 0xE0C030, 0x4060E0, 0x606468]
+                [(hash(button, x, seed) % 5) as usize];
             c.bevel(x + 8 + dx * 6, 64 + dy * 7, 4, 4, Colour::hex(lamp), 0.4);
         }
         c.bevel(x + 4, 90, 56, 34, Colour::grey(66.0), 0.3);
@@ -156,7 +182,11 @@ fn circuitry(seed: u32) -> Canvas {
         let length = 10 + (hash(track, 3, seed) % 30) as i32;
         for step in 0..length {
             // Down, then across.
-            let (at_x, at_y) = if step < length / 2 { (x, y + step) } else { (x + step - length / 2, y + length / 2) };
+            let (at_x, at_y) = if step < length / 2 {
+                (x, y + step)
+            } else {
+                (x + step - length / 2, y + length / 2)
+            };
             c.set(at_x % 64, at_y % 64, Colour::hex(colour));
         }
         c.bevel(x.min(60), y.min(60), 4, 4, Colour::hex(0x7C6CA8), 0.4);
@@ -197,7 +227,8 @@ fn shutters(seed: u32) -> Canvas {
         let edge = u.min(63 - u) as f32;
         let slat = (y % 8) as f32;
         let steel = Colour::hex(0x64686C) * (0.8 + 0.4 * rust.at(x, y));
-        let colour = steel.mix(Colour::hex(0x6C4424), ((rust.at(x + 31, y + 77) - 0.6) * 4.0).clamp(0.0, 0.7));
+        let colour = steel
+            .mix(Colour::hex(0x6C4424), ((rust.at(x + 31, y + 77) - 0.6) * 4.0).clamp(0.0, 0.7));
         if edge < 6.0 || y < 8 {
             (colour * 0.85, 4.0 + (edge.min(6.0 - edge) / 2.0).clamp(0.0, 1.0))
         } else {
@@ -217,9 +248,13 @@ fn house_front(seed: u32) -> Canvas {
     let stain = Field::clouds(128, 128, (5, 5), 5, seed);
     let drip = Field::clouds(128, 128, (20, 3), 3, seed + 1);
     let surface = Surface::new(128, 128, |x, y| {
-        let plaster = Colour::hex(0x7C7870) * (0.75 + 0.35 * stain.at(x, y) - 0.2 * (drip.at(x, y) - 0.5));
+        let plaster =
+            Colour::hex(0x7C7870) * (0.75 + 0.35 * stain.at(x, y) - 0.2 * (drip.at(x, y) - 0.5));
         let band = (y / 6) % 10 == 0;
-        (plaster * if band { 0.8 } else { 1.0 }, stain.at(x, y) * 1.4 + if band { 1.5 } else { 0.0 })
+        (
+            plaster * if band { 0.8 } else { 1.0 },
+            stain.at(x, y) * 1.4 + if band { 1.5 } else { 0.0 },
+        )
     });
     let mut c = surface.lit(0.34, 0.14, seed + 2).canvas();
     for (x, lit) in [(10, false), (74, true)] {
@@ -230,7 +265,10 @@ fn house_front(seed: u32) -> Canvas {
                 let glass = if lit && y == 14 {
                     gradient(&[Colour::hex(0xD8B060), Colour::hex(0x8C6428)], dy as f32 / 32.0)
                 } else {
-                    gradient(&[Colour::hex(0x303C48), Colour::hex(0x101418)], (dx + dy) as f32 / 68.0)
+                    gradient(
+                        &[Colour::hex(0x303C48), Colour::hex(0x101418)],
+                        (dx + dy) as f32 / 68.0,
+                    )
                 };
                 c.set(x + 4 + dx, y + 4 + dy, glass);
             }

@@ -11,12 +11,28 @@ const SIZE: usize = 64;
 /// Paints the floors.
 pub(super) fn paint(gallery: &mut Gallery) {
     gallery.surface("FLAT5", &pavers(401).with_mean(Colour(108.0, 72.0, 39.0)));
-    gallery.surface("SLIME16", &square_tiles(32, Colour::hex(0x806850), 411).with_mean(Colour(111.0, 88.0, 67.0)));
-    gallery.surface("FLAT22", &panels(Colour::hex(0x2C2C90), 421).with_mean(Colour(41.0, 41.0, 133.0)));
-    gallery.surface("FLAT14", &carpet(Colour::hex(0x080860), 431).with_mean(Colour(2.0, 2.0, 85.0)));
-    gallery.surface("FLOOR1_6", &carpet(Colour::hex(0x700404), 441).with_mean(Colour(118.0, 2.0, 2.0)));
-    gallery.surface("FLAT19", &square_tiles(64, Colour::hex(0x707070), 451).with_mean(Colour(104.0, 104.0, 104.0)));
-    gallery.surface("FLOOR3_3", &square_tiles(16, Colour::hex(0x605038), 461).with_mean(Colour(84.0, 68.0, 46.0)));
+    gallery.surface(
+        "SLIME16",
+        &square_tiles(32, Colour::hex(0x806850), 411).with_mean(Colour(111.0, 88.0, 67.0)),
+    );
+    gallery.surface(
+        "FLAT22",
+        &panels(Colour::hex(0x2C2C90), 421).with_mean(Colour(41.0, 41.0, 133.0)),
+    );
+    gallery
+        .surface("FLAT14", &carpet(Colour::hex(0x080860), 431).with_mean(Colour(2.0, 2.0, 85.0)));
+    gallery.surface(
+        "FLOOR1_6",
+        &carpet(Colour::hex(0x700404), 441).with_mean(Colour(118.0, 2.0, 2.0)),
+    );
+    gallery.surface(
+        "FLAT19",
+        &square_tiles(64, Colour::hex(0x707070), 451).with_mean(Colour(104.0, 104.0, 104.0)),
+    );
+    gallery.surface(
+        "FLOOR3_3",
+        &square_tiles(16, Colour::hex(0x605038), 461).with_mean(Colour(84.0, 68.0, 46.0)),
+    );
 }
 
 /// Six-sided pavers.
@@ -28,7 +44,10 @@ fn pavers(seed: u32) -> Surface {
         let cell = stones.at(x as f32, y as f32);
         let tone = 0.86 + 0.22 * (cell.id & 255) as f32 / 255.0 + 0.35 * (stain.at(x, y) - 0.5);
         let joint = if cell.border < 0.7 { 0.6 } else { 1.0 };
-        (Colour::hex(0x7C5430) * (tone * joint), (cell.border / 2.0).min(1.0) * 1.3 + fine.at(x, y) * 0.9)
+        (
+            Colour::hex(0x7C5430) * (tone * joint),
+            (cell.border / 2.0).min(1.0) * 1.3 + fine.at(x, y) * 0.9,
+        )
     })
     .lit(0.32, 0.14, seed + 3)
 }
@@ -56,10 +75,14 @@ fn panels(colour: Colour, seed: u32) -> Surface {
         let (u, v) = (x % 32, y % 32);
         let edge = u.min(31 - u).min(v.min(31 - v));
         let tone = 0.85 + 0.3 * sheen.at(x, y) + if (2..5).contains(&edge) { 0.25 } else { 0.0 };
-        (colour * if edge == 0 { 0.4 } else { tone }, (edge as f32 / 2.0).min(1.0) * 1.4 - if edge > 5 { 0.6 } else { 0.0 })
+        (
+            colour * if edge == 0 { 0.4 } else { tone },
+            (edge as f32 / 2.0).min(1.0) * 1.4 - if edge > 5 { 0.6 } else { 0.0 },
+        )
     });
-    for (x, y) in
-        [(3, 3), (28, 3), (3, 28), (28, 28)].into_iter().flat_map(|(x, y)| [(x, y), (x + 32, y), (x, y + 32), (x + 32, y + 32)])
+    for (x, y) in [(3, 3), (28, 3), (3, 28), (28, 28)]
+        .into_iter()
+        .flat_map(|(x, y)| [(x, y), (x + 32, y), (x, y + 32), (x + 32, y + 32)])
     {
         surface.rivet(x, y, 1.0, colour * 1.5);
     }

@@ -23,9 +23,11 @@ pub(crate) struct DrawSeg {
     pub seg: u32,
     /// Inverse distances of the farther and the nearer end.
     pub inverses: [i64; 2],
-    /// Things whose picture ends above this height are not hidden below; `None` hides nothing below.
+    /// Things whose picture ends above this height are not hidden below; `None` hides nothing
+    /// below.
     pub floor: Option<Fixed>,
-    /// Things whose picture ends below this height are not hidden above; `None` hides nothing above.
+    /// Things whose picture ends below this height are not hidden above; `None` hides nothing
+    /// above.
     pub ceiling: Option<Fixed>,
     /// Everything behind is hidden.
     pub solid: bool,
@@ -65,8 +67,8 @@ impl DrawSegs {
         self.drawn.clear();
     }
 
-    /// Adds a drawseg with the rows that are open in its columns: `tops` and `bottoms` begin there and are padded, so
-    /// that few columns are copied without a call.
+    /// Adds a drawseg with the rows that are open in its columns: `tops` and `bottoms` begin there
+    /// and are padded, so that few columns are copied without a call.
     pub fn add(&mut self, mut drawseg: DrawSeg, tops: &[i16], bottoms: &[i16]) {
         let (rows, count) = (self.used, drawseg.end - drawseg.first);
         drawseg.rows = rows;
@@ -88,8 +90,9 @@ impl DrawSegs {
         self.list.push(drawseg);
     }
 
-    /// Lists the drawsegs that share a column with a sprite of the columns `first..end`, and stand before it in part or have a
-    /// masked texture; `inverse` is its inverse distance. Gives how many there are; they are [`DrawSegs::met`].
+    /// Lists the drawsegs that share a column with a sprite of the columns `first..end`, and stand
+    /// before it in part or have a masked texture; `inverse` is its inverse distance. Gives how
+    /// many there are; they are [`DrawSegs::met`].
     pub fn meet(&mut self, simd: Simd, first: usize, end: usize, inverse: i64) -> usize {
         self.met.resize(self.reaches.nears.len(), 0);
         overlap::list(&self.reaches, simd, [first as u32, end as u32], inverse, &mut self.met)

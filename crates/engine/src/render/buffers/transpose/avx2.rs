@@ -5,7 +5,8 @@ use std::arch::x86_64::*;
 /// Rows that are turned at once; columns are padded to whole groups of as many.
 const GROUP: usize = 32;
 
-/// Weaves the bytes of sixteen vectors: four times over, this turns 16 by 16 bytes in each half of the vectors.
+/// Weaves the bytes of sixteen vectors: four times over, this turns 16 by 16 bytes in each half of
+/// the vectors.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn weave(v: &[__m256i; 16]) -> [__m256i; 16] {
@@ -36,7 +37,8 @@ pub(crate) fn strip(columns: &[u8], stride: usize, pixels: &mut [u8], width: usi
         let pixels = &mut pixels[first * width..][..(count - 1) * width + 16];
         let mut row = pixels.as_mut_ptr();
         for v in &v[..count.min(16)] {
-            // SAFETY: of each of the `count` rows, which are `width` apart, 16 bytes are in the slice.
+            // SAFETY: of each of the `count` rows, which are `width` apart, 16 bytes are in the
+            // slice.
             unsafe { _mm_storeu_si128(row.cast(), _mm256_castsi256_si128(*v)) }
             row = row.wrapping_add(width);
         }

@@ -1,4 +1,5 @@
-//! Turning a picture that lies column by column into one that lies row by row: walls are drawn by columns, floors by rows.
+//! Turning a picture that lies column by column into one that lies row by row: walls are drawn by
+//! columns, floors by rows.
 
 crate::simd::kernel_files!(avx2, avx512);
 mod scalar;
@@ -7,8 +8,16 @@ mod strip;
 use crate::simd::{Simd, dispatch};
 use strip::STRIP;
 
-/// Writes the `rows` first bytes of each column, which lie `stride` apart, as rows of `width` bytes.
-pub(crate) fn to_rows(simd: Simd, columns: &[u8], stride: usize, pixels: &mut [u8], width: usize, rows: usize) {
+/// Writes the `rows` first bytes of each column, which lie `stride` apart, as rows of `width`
+/// bytes.
+pub(crate) fn to_rows(
+    simd: Simd,
+    columns: &[u8],
+    stride: usize,
+    pixels: &mut [u8],
+    width: usize,
+    rows: usize,
+) {
     let mut first = 0;
     while first + STRIP <= width {
         let strip = &columns[first * stride..(first + STRIP) * stride];
@@ -41,7 +50,11 @@ mod tests {
                 to_rows(simd, &columns, stride, &mut pixels, width, rows);
                 for (at, &pixel) in pixels.iter().enumerate() {
                     let (x, row) = (at % width, at / width);
-                    assert_eq!(pixel, if row < rows { columns[x * stride + row] } else { 7 }, "{simd:?}: {x}, {row}");
+                    assert_eq!(
+                        pixel,
+                        if row < rows { columns[x * stride + row] } else { 7 },
+                        "{simd:?}: {x}, {row}"
+                    );
                 }
             }
         }

@@ -1,7 +1,9 @@
 //! Palette look-ups with vectors of 64 bytes.
 
 use crate::simd::lookup::avx512::{LANES, load, load_table, look_up_block, store};
-use std::arch::x86_64::{__m512i, _mm512_mask_blend_epi16, _mm512_mask_permutexvar_epi8, _mm512_permutex2var_epi8};
+use std::arch::x86_64::{
+    __m512i, _mm512_mask_blend_epi16, _mm512_mask_permutexvar_epi8, _mm512_permutex2var_epi8,
+};
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
 pub(crate) fn look_up(table: &[u8; 256], indices: &[u8], out: &mut [u8]) -> usize {
@@ -28,7 +30,8 @@ fn look_up_channels([red, green, blue]: [[__m512i; 4]; 3], indices: __m512i) -> 
     [look_up_block(red, indices), look_up_block(green, indices), look_up_block(blue, indices)]
 }
 
-/// For each of the three output blocks, which lane of red or green (plus 64) goes where, and where blue goes.
+/// For each of the three output blocks, which lane of red or green (plus 64) goes where, and where
+/// blue goes.
 const WEAVE: [([u8; LANES], u64, [u8; LANES]); 3] = {
     let mut weave = [([0; LANES], 0, [0; LANES]); 3];
     let mut at = 0;
@@ -64,7 +67,8 @@ pub(crate) fn interleaved(tables: &[[u8; 256]; 3], indices: &[u8], out: &mut [u8
     blocks.len().min(triples.len()) * LANES
 }
 
-/// For each of the four output blocks, which lane of the first or the second (plus 64) of two bytes goes where.
+/// For each of the four output blocks, which lane of the first or the second (plus 64) of two bytes
+/// goes where.
 const PAIRS: [[u8; LANES]; 4] = {
     let mut pairs = [[0; LANES]; 4];
     let mut at = 0;
@@ -76,7 +80,12 @@ const PAIRS: [[u8; LANES]; 4] = {
 };
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-pub(crate) fn with_depth(tables: &[[u8; 256]; 3], indices: &[u8], depth: &[u8], out: &mut [u8]) -> usize {
+pub(crate) fn with_depth(
+    tables: &[[u8; 256]; 3],
+    indices: &[u8],
+    depth: &[u8],
+    out: &mut [u8],
+) -> usize {
     let tables = load_tables(tables);
     let ((blocks, _), (depths, _)) = (indices.as_chunks::<LANES>(), depth.as_chunks::<LANES>());
     let (out_blocks, _) = out.as_chunks_mut::<LANES>();
@@ -86,7 +95,10 @@ pub(crate) fn with_depth(tables: &[[u8; 256]; 3], indices: &[u8], depth: &[u8], 
         let [red, green, blue] = look_up_channels(tables, from);
         for (to, pairs) in four.iter_mut().zip(&PAIRS) {
             let pairs = load(pairs);
-            let (first, second) = (_mm512_permutex2var_epi8(red, pairs, green), _mm512_permutex2var_epi8(blue, pairs, depth));
+            let (first, second) = (
+                _mm512_permutex2var_epi8(red, pairs, green),
+                _mm512_permutex2var_epi8(blue, pairs, depth),
+            );
             store(to, _mm512_mask_blend_epi16(0xaaaa_aaaa, first, second));
         }
     }

@@ -38,16 +38,26 @@ fn colour_of<const N: usize>(colours: &[[u8; 3]; N], class: u16) -> [u8; 3] {
     colours[usize::from(class).min(N - 1)]
 }
 
-/// The value of each class: 255 for `full`, 0 for the others below 8, `values` for the rest; those beyond share its last one.
+/// The value of each class: 255 for `full`, 0 for the others below 8, `values` for the rest; those
+/// beyond share its last one.
 ///
 /// Most of a picture is surfaces and the weapon, which are converted a block at a time.
-pub(crate) fn classes_one_byte<const N: usize>(values: &[u8; N], full: u16, classes: &[u16], out: &mut [u8]) {
+pub(crate) fn classes_one_byte<const N: usize>(
+    values: &[u8; N],
+    full: u16,
+    classes: &[u16],
+    out: &mut [u8],
+) {
     const BLOCK: usize = 32;
     for (to, classes) in out.chunks_mut(BLOCK).zip(classes.chunks(BLOCK)) {
         if classes.iter().fold(0, |bits, &class| bits | class) < 8 {
-            to.iter_mut().zip(classes).for_each(|(to, &class)| *to = if class == full { 255 } else { 0 });
+            to.iter_mut()
+                .zip(classes)
+                .for_each(|(to, &class)| *to = if class == full { 255 } else { 0 });
         } else {
-            to.iter_mut().zip(classes).for_each(|(to, &class)| *to = values[usize::from(class).min(N - 1)]);
+            to.iter_mut()
+                .zip(classes)
+                .for_each(|(to, &class)| *to = values[usize::from(class).min(N - 1)]);
         }
     }
 }
@@ -56,7 +66,13 @@ pub(crate) fn classes_one_byte<const N: usize>(values: &[u8; N], full: u16, clas
 const STRETCH: usize = 1024;
 
 /// Red, green, blue of each pixel in turn, and its depth.
-pub(crate) fn rgb_depth_interleaved(simd: Simd, colours: &Colours, indices: &[u8], depth: &[u8], out: &mut [u8]) {
+pub(crate) fn rgb_depth_interleaved(
+    simd: Simd,
+    colours: &Colours,
+    indices: &[u8],
+    depth: &[u8],
+    out: &mut [u8],
+) {
     let done = dispatch!(simd; avx512 => avx512::with_depth(&colours.channels, indices, depth, out), scalar => 0);
     let (pixels, _) = out[done * 4..].as_chunks_mut::<4>();
     for ((to, &index), &depth) in pixels.iter_mut().zip(&indices[done..]).zip(&depth[done..]) {
@@ -65,7 +81,12 @@ pub(crate) fn rgb_depth_interleaved(simd: Simd, colours: &Colours, indices: &[u8
 }
 
 /// The colour of each class, pixel by pixel.
-pub(crate) fn classes_interleaved<const N: usize>(simd: Simd, colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
+pub(crate) fn classes_interleaved<const N: usize>(
+    simd: Simd,
+    colours: &[[u8; 3]; N],
+    classes: &[u16],
+    out: &mut [u8],
+) {
     let mut palette = [[0; 3]; 256];
     palette.iter_mut().zip(colours).for_each(|(to, &colour)| *to = colour);
     let palette = Colours::new(palette);
@@ -84,7 +105,11 @@ pub(crate) fn classes_interleaved<const N: usize>(simd: Simd, colours: &[[u8; 3]
 }
 
 /// The colour of each class, as three planes.
-pub(crate) fn classes_planes<const N: usize>(colours: &[[u8; 3]; N], classes: &[u16], out: &mut [u8]) {
+pub(crate) fn classes_planes<const N: usize>(
+    colours: &[[u8; 3]; N],
+    classes: &[u16],
+    out: &mut [u8],
+) {
     for (i, plane) in out.chunks_exact_mut(classes.len()).enumerate() {
         plane.iter_mut().zip(classes).for_each(|(to, &class)| *to = colour_of(colours, class)[i]);
     }
@@ -101,11 +126,14 @@ mod tests {
         values[5] = 255;
         (8..64).for_each(|i| values[i] = i as u8 * 3);
         for length in [0, 31, 32, 33, 100] {
-            for (at, class) in [(0, 5), (length / 2, 63), (length.max(1) - 1, 9), (3, 700), (7, 4)] {
-                let classes: Vec<u16> = (0..length).map(|i| if i == at { class } else { i as u16 % 5 }).collect();
+            for (at, class) in [(0, 5), (length / 2, 63), (length.max(1) - 1, 9), (3, 700), (7, 4)]
+            {
+                let classes: Vec<u16> =
+                    (0..length).map(|i| if i == at { class } else { i as u16 % 5 }).collect();
                 let mut out = vec![1; length];
                 classes_one_byte(&values, 5, &classes, &mut out);
-                let plain: Vec<u8> = classes.iter().map(|&class| values[usize::from(class).min(63)]).collect();
+                let plain: Vec<u8> =
+                    classes.iter().map(|&class| values[usize::from(class).min(63)]).collect();
                 assert_eq!(out, plain);
             }
         }
@@ -125,7 +153,10 @@ mod tests {
                 let mut out = vec![0; length * 4];
                 rgb_depth_interleaved(simd, &Colours::new(palette), &indices, &depth, &mut out);
                 for (i, pixel) in out.chunks_exact(4).enumerate() {
-                    assert_eq!((&pixel[..3], pixel[3]), (&palette[usize::from(indices[i])][..], depth[i]));
+                    assert_eq!(
+                        (&pixel[..3], pixel[3]),
+                        (&palette[usize::from(indices[i])][..], depth[i])
+                    );
                 }
                 let mut out = vec![0; length * 3];
                 classes_interleaved(simd, &colours, &classes, &mut out);
@@ -143,19 +174,26 @@ mod tests {
         let colours = Colours::new(palette);
         for length in [0, 1, 3, 4, 63, 64, 65, 192, 1000, 9216] {
             let indices: Vec<u8> = (0..length).map(|_| rng.byte() as u8).collect();
-            let pixels: Vec<[u8; 3]> = indices.iter().map(|&index| palette[usize::from(index)]).collect();
+            let pixels: Vec<[u8; 3]> =
+                indices.iter().map(|&index| palette[usize::from(index)]).collect();
             for simd in Simd::available() {
                 let mut out = vec![0; length * 3];
                 rgb_interleaved(simd, &colours, &indices, &mut out);
                 assert_eq!(out, pixels.concat(), "{simd:?}");
                 let mut out = vec![0; length];
                 grey(simd, &colours, &indices, &mut out);
-                assert!(out.iter().zip(&pixels).all(|(&grey, &pixel)| grey == luminance(pixel)), "{simd:?}");
+                assert!(
+                    out.iter().zip(&pixels).all(|(&grey, &pixel)| grey == luminance(pixel)),
+                    "{simd:?}"
+                );
                 let mut out = vec![0; length * 3];
                 if length > 0 {
                     rgb_planes(simd, &colours, &indices, &mut out);
                 }
-                assert!((0..length * 3).all(|i| out[i] == pixels[i % length][i / length]), "{simd:?}");
+                assert!(
+                    (0..length * 3).all(|i| out[i] == pixels[i % length][i / length]),
+                    "{simd:?}"
+                );
             }
         }
     }

@@ -19,7 +19,8 @@ pub(crate) fn fetch<const BITS: u32, const TEXELS: usize>(
     let splat = |number: u32| _mm512_set1_epi32(number as i32);
     // SAFETY: 64 bytes are readable behind the reference.
     let columns = unsafe { _mm512_loadu_si512(columns.as_ptr().cast()) };
-    let at = |at: u32, step: u32| _mm512_add_epi32(splat(at), _mm512_mullo_epi32(splat(step), columns));
+    let at =
+        |at: u32, step: u32| _mm512_add_epi32(splat(at), _mm512_mullo_epi32(splat(step), columns));
     let (u, v) = (at(walk.u, walk.u_step), at(walk.v, walk.v_step));
     let index = if BITS == 6 {
         _mm512_or_si512(_mm512_slli_epi32(_mm512_srli_epi32(u, 26), 6), _mm512_srli_epi32(v, 26))

@@ -1,6 +1,7 @@
 //! Texture positions along a row of a floor.
 
-/// Texture positions along a row, as fractions of the texture's side with 32 bits: linear in the base column.
+/// Texture positions along a row, as fractions of the texture's side with 32 bits: linear in the
+/// base column.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowWalk {
     /// At base column 0, to the right.

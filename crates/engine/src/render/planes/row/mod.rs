@@ -1,11 +1,14 @@
 //! A row of a floor: its texture positions, several pixels at a time.
 //!
-//! The positions of a chunk of pixels are those of the one before plus a constant (see [`CHUNK`]), so that vector additions replace a
-//! multiplication a pixel.
+//! The positions of a chunk of pixels are those of the one before plus a constant (see [`CHUNK`]),
+//! so that vector additions replace a multiplication a pixel.
 
 crate::simd::kernel_files!(avx2, avx512);
 pub mod data;
-#[cfg_attr(target_arch = "x86_64", allow(dead_code, reason = "every x86-64 has the vectors of sse2"))]
+#[cfg_attr(
+    target_arch = "x86_64",
+    allow(dead_code, reason = "every x86-64 has the vectors of sse2")
+)]
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
@@ -13,8 +16,9 @@ mod sse2;
 use crate::render::blocks::CHUNK;
 use data::{RowWalk, index};
 
-/// Fills the pixels of the base columns `columns` with what `fetch` gives for the index into a square texture of
-/// side `2^BITS`, at most 128. `stride` is what the base column rises by over a chunk.
+/// Fills the pixels of the base columns `columns` with what `fetch` gives for the index into a
+/// square texture of side `2^BITS`, at most 128. `stride` is what the base column rises by over a
+/// chunk.
 #[inline(always)]
 pub(crate) fn draw<const BITS: u32>(
     walk: &RowWalk,
@@ -107,15 +111,34 @@ mod tests {
             let (first, count) = ((any() % 100) as usize, (any() % 90) as usize);
             let before: Vec<u8> = (0..count + ROW_GROUP).map(|_| any() as u8).collect();
             let (mut plain, mut wide) = (before.clone(), before);
-            let (own, chunk) = (&columns[first..first + count], columns[first..].first_chunk().unwrap());
+            let (own, chunk) =
+                (&columns[first..first + count], columns[first..].first_chunk().unwrap());
             // SAFETY: the processor has the instructions, see above.
             unsafe {
                 if round % 2 == 0 {
-                    draw::<6>(&walk, &mut plain[..count], own, 10, |index| table[usize::from(small[index])]);
-                    avx2::draw::<6, { 64 * 64 }>(&walk, &mut wide, count, chunk, 10, (&small, &table));
+                    draw::<6>(&walk, &mut plain[..count], own, 10, |index| {
+                        table[usize::from(small[index])]
+                    });
+                    avx2::draw::<6, { 64 * 64 }>(
+                        &walk,
+                        &mut wide,
+                        count,
+                        chunk,
+                        10,
+                        (&small, &table),
+                    );
                 } else {
-                    draw::<7>(&walk, &mut plain[..count], own, 10, |index| table[usize::from(large[index])]);
-                    avx2::draw::<7, { 128 * 128 }>(&walk, &mut wide, count, chunk, 10, (large, &table));
+                    draw::<7>(&walk, &mut plain[..count], own, 10, |index| {
+                        table[usize::from(large[index])]
+                    });
+                    avx2::draw::<7, { 128 * 128 }>(
+                        &walk,
+                        &mut wide,
+                        count,
+                        chunk,
+                        10,
+                        (large, &table),
+                    );
                 }
             }
             assert_eq!(wide, plain, "{count} pixels from column {first}");

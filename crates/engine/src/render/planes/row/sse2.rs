@@ -1,10 +1,11 @@
-//! Texture positions four at a time, which the compiler takes apart again unless the vectors are spelt out.
+//! Texture positions four at a time, which the compiler takes apart again unless the vectors are
+//! spelt out.
 
 use crate::render::blocks::CHUNK;
 use crate::render::planes::row::data::RowWalk;
 use std::arch::x86_64::{
-    _mm_add_epi32, _mm_cvtsi32_si128, _mm_cvtsi128_si64, _mm_or_si128, _mm_packs_epi32, _mm_set_epi32, _mm_set1_epi32,
-    _mm_sll_epi32, _mm_srl_epi32, _mm_unpackhi_epi64,
+    _mm_add_epi32, _mm_cvtsi32_si128, _mm_cvtsi128_si64, _mm_or_si128, _mm_packs_epi32,
+    _mm_set_epi32, _mm_set1_epi32, _mm_sll_epi32, _mm_srl_epi32, _mm_unpackhi_epi64,
 };
 
 /// Fills whole chunks, the first of which has the given base columns.
@@ -34,7 +35,8 @@ pub(crate) fn draw_chunks<const BITS: u32>(
         vs = vs.map(|v| _mm_add_epi32(v, v_stride));
         // Indices are below 2^15, so that signed saturation leaves them alone.
         let packed = _mm_packs_epi32(indices[0], indices[1]);
-        let halves = [packed, _mm_unpackhi_epi64(packed, packed)].map(|half| _mm_cvtsi128_si64(half) as u64);
+        let halves =
+            [packed, _mm_unpackhi_epi64(packed, packed)].map(|half| _mm_cvtsi128_si64(half) as u64);
         let (low, high) = chunk.split_at_mut(CHUNK / 2);
         for (pixels, half) in [(low, halves[0]), (high, halves[1])] {
             for (i, pixel) in pixels.iter_mut().enumerate() {

@@ -15,9 +15,16 @@ pub(crate) fn fits(shader: &SkyShader) -> bool {
     shader.picture.height as usize <= MOST_TEXELS
 }
 
-/// Draws a plane of the sky. `starts` are where the texels of each column begin, `texel_rows` the texel of each row.
+/// Draws a plane of the sky. `starts` are where the texels of each column begin, `texel_rows` the
+/// texel of each row.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw(shader: &SkyShader, columns: &mut Columns, plane: &VisPlane, starts: &[u32], texel_rows: &[u16]) {
+pub(crate) fn draw(
+    shader: &SkyShader,
+    columns: &mut Columns,
+    plane: &VisPlane,
+    starts: &[u32],
+    texel_rows: &[u16],
+) {
     let table = load_table(shader.table);
     for (block, texel_rows) in texel_rows.chunks(ROW_BLOCK).enumerate() {
         let mut bytes = [0; ROW_BLOCK];
@@ -26,7 +33,8 @@ pub(crate) fn draw(shader: &SkyShader, columns: &mut Columns, plane: &VisPlane, 
         let from = block * ROW_BLOCK;
         let range = plane.first..plane.end;
         for (x, &start) in range.clone().zip(&starts[range]) {
-            let bounded = |row: i16| (i32::from(row) - from as i32).clamp(0, ROW_BLOCK as i32) as u32;
+            let bounded =
+                |row: i16| (i32::from(row) - from as i32).clamp(0, ROW_BLOCK as i32) as u32;
             let (top, bottom) = (bounded(plane.top[x]), bounded(plane.bottom[x]));
             if top >= bottom {
                 continue;
@@ -34,7 +42,8 @@ pub(crate) fn draw(shader: &SkyShader, columns: &mut Columns, plane: &VisPlane, 
             let texels = &shader.picture.pixels[start as usize..][..shader.picture.height as usize];
             let lit = look_up_block(table, look_up_block(texel_table(texels), rows));
             let mask = (u64::MAX << top) & (u64::MAX >> (ROW_BLOCK as u32 - bottom));
-            let pixels: &mut [u8; ROW_BLOCK] = columns.colour_of(x)[from..].first_chunk_mut().expect("columns are whole blocks");
+            let pixels: &mut [u8; ROW_BLOCK] =
+                columns.colour_of(x)[from..].first_chunk_mut().expect("columns are whole blocks");
             // SAFETY: 64 bytes are writable behind the reference.
             unsafe { _mm512_mask_storeu_epi8(pixels.as_mut_ptr().cast(), mask, lit) }
         }

@@ -9,7 +9,8 @@ use crate::render::buffers::visplane::VisPlane;
 use crate::simd::{Simd, dispatch};
 use shader::SkyShader;
 
-/// Draws a plane of the sky. `texel_rows` are those of the picture's height; `starts` is scratch of an entry for each column.
+/// Draws a plane of the sky. `texel_rows` are those of the picture's height; `starts` is scratch of
+/// an entry for each column.
 pub(crate) fn draw(
     shader: &SkyShader,
     simd: Simd,
@@ -50,8 +51,16 @@ mod tests {
         let table: [u8; 256] = std::array::from_fn(|_| rng.byte() as u8);
         for round in 0..60 {
             let (width, height) = (256u16, [128u16, 200, 64, 240, 33, 300][round % 6]);
-            let pixels = (0..usize::from(width) * usize::from(height)).map(|_| rng.byte() as u8).collect();
-            let picture = WallTexture::new(&Image { width, height, offset_x: 0, offset_y: 0, pixels, mask: None });
+            let pixels =
+                (0..usize::from(width) * usize::from(height)).map(|_| rng.byte() as u8).collect();
+            let picture = WallTexture::new(&Image {
+                width,
+                height,
+                offset_x: 0,
+                offset_y: 0,
+                pixels,
+                mask: None,
+            });
             let size = [FrameSize::LEARNER, FrameSize { width: 320, height: 240 }][round / 6 % 2];
             let view = View::new(size).unwrap();
             let camera = Camera { angle: Angle(rng.next_u64() as u32), ..Camera::default() };
@@ -66,16 +75,28 @@ mod tests {
                 *top = rng.below(view.view_rows as u32) as i16;
                 *bottom = rng.below(view.view_rows as u32 + 1) as i16;
             }
-            let shader = SkyShader { camera: &camera, view: &view, table: &table, picture: &picture };
+            let shader =
+                SkyShader { camera: &camera, view: &view, table: &table, picture: &picture };
             let drawn = |simd: Simd| {
                 let mut columns = Columns::default();
                 columns.fit(view.width(), view.view_rows);
-                draw(&shader, simd, &mut columns, &planes.used()[0], &mut vec![0; view.width()], &texel_rows);
-                (0..view.width()).map(|x| columns.colour_of(x)[..view.view_rows].to_vec()).collect::<Vec<_>>()
+                draw(
+                    &shader,
+                    simd,
+                    &mut columns,
+                    &planes.used()[0],
+                    &mut vec![0; view.width()],
+                    &texel_rows,
+                );
+                (0..view.width())
+                    .map(|x| columns.colour_of(x)[..view.view_rows].to_vec())
+                    .collect::<Vec<_>>()
             };
             let plain = drawn(Simd::PLAIN);
             assert!(plain.iter().flatten().any(|&pixel| pixel != 0));
-            Simd::available().into_iter().for_each(|simd| assert!(drawn(simd) == plain, "{simd:?}, height {height}"));
+            Simd::available()
+                .into_iter()
+                .for_each(|simd| assert!(drawn(simd) == plain, "{simd:?}, height {height}"));
         }
     }
 }

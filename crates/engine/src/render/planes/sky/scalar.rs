@@ -5,7 +5,13 @@ use crate::render::buffers::visplane::VisPlane;
 use crate::render::planes::sky::shader::SkyShader;
 
 /// Draws the columns of a plane of the sky; `starts` has the first texel of each.
-pub(crate) fn draw(shader: &SkyShader, columns: &mut Columns, plane: &VisPlane, starts: &[u32], texel_rows: &[u16]) {
+pub(crate) fn draw(
+    shader: &SkyShader,
+    columns: &mut Columns,
+    plane: &VisPlane,
+    starts: &[u32],
+    texel_rows: &[u16],
+) {
     let shown = plane.first..plane.end;
     for (x, &start) in shown.clone().zip(&starts[shown]) {
         let (top, bottom) = (plane.top[x], plane.bottom[x]);

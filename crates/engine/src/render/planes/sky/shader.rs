@@ -4,7 +4,8 @@ use crate::render::textures::wall::WallTexture;
 use crate::render::view::camera::Camera;
 use crate::render::view::tables::View;
 
-/// Height of the cylinder in units of 1/200 screen height, whatever the picture's: enough to look all the way up.
+/// Height of the cylinder in units of 1/200 screen height, whatever the picture's: enough to look
+/// all the way up.
 const SKY_UNITS: i64 = 228;
 const UNITS_A_SCREEN: i64 = 200;
 /// Units of it above the horizon.

@@ -17,8 +17,16 @@ pub(crate) fn list(plane: &VisPlane, spans: &mut Vec<Span>) -> usize {
         while from < plane.end {
             let (top, bottom) = block(plane, from);
             let (top, bottom) = (load_avx512(top), load_avx512(bottom));
-            let low = _mm512_mask_cmpgt_epi16_mask(_mm512_cmple_epi16_mask(top[0], here), bottom[0], here);
-            let high = _mm512_mask_cmpgt_epi16_mask(_mm512_cmple_epi16_mask(top[1], here), bottom[1], here);
+            let low = _mm512_mask_cmpgt_epi16_mask(
+                _mm512_cmple_epi16_mask(top[0], here),
+                bottom[0],
+                here,
+            );
+            let high = _mm512_mask_cmpgt_epi16_mask(
+                _mm512_cmple_epi16_mask(top[1], here),
+                bottom[1],
+                here,
+            );
             list.add(from, u64::from(low) | u64::from(high) << 32);
             from += SPAN_BLOCK;
         }
@@ -30,5 +38,7 @@ pub(crate) fn list(plane: &VisPlane, spans: &mut Vec<Span>) -> usize {
 #[target_feature(enable = "avx512f")]
 pub(crate) fn load_avx512(list: &[i16; SPAN_BLOCK]) -> [__m512i; 2] {
     // SAFETY: 128 bytes are readable behind the reference.
-    unsafe { [_mm512_loadu_si512(list.as_ptr().cast()), _mm512_loadu_si512(list.as_ptr().add(32).cast())] }
+    unsafe {
+        [_mm512_loadu_si512(list.as_ptr().cast()), _mm512_loadu_si512(list.as_ptr().add(32).cast())]
+    }
 }

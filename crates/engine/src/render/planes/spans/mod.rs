@@ -7,9 +7,14 @@ mod scalar;
 use crate::render::buffers::visplane::{Span, VisPlane};
 use crate::simd::{Simd, dispatch};
 
-/// Lists every run of pixels of the plane in `spans`, in any order, and returns how many there are. `starts` is scratch of one entry
-/// more than the frame has rows.
-pub(crate) fn list(plane: &VisPlane, simd: Simd, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
+/// Lists every run of pixels of the plane in `spans`, in any order, and returns how many there are.
+/// `starts` is scratch of one entry more than the frame has rows.
+pub(crate) fn list(
+    plane: &VisPlane,
+    simd: Simd,
+    starts: &mut [u16],
+    spans: &mut Vec<Span>,
+) -> usize {
     dispatch!(simd;
         avx512 => avx512::list(plane, spans),
         avx2 => avx2::list(plane, spans),
@@ -25,7 +30,8 @@ mod tests {
     use crate::render::buffers::visplane::VisPlaneKey;
     use crate::render::buffers::visplane::VisPlanes;
 
-    const KEY: VisPlaneKey = VisPlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
+    const KEY: VisPlaneKey =
+        VisPlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
 
     fn covered(simd: Simd, columns: &[(i16, i16)]) -> Vec<u8> {
         let mut planes = VisPlanes::default();
@@ -40,11 +46,14 @@ mod tests {
         }
         let mut pixels = vec![0; 8 * columns.len()];
         let mut spans = Vec::new();
-        let count = if first < end { list(&planes.used()[0], simd, &mut [0; 9], &mut spans) } else { 0 };
+        let count =
+            if first < end { list(&planes.used()[0], simd, &mut [0; 9], &mut spans) } else { 0 };
         for span in &spans[..count] {
             assert!(span.first < span.end);
             let row = usize::from(span.row) * columns.len();
-            pixels[row + usize::from(span.first)..row + usize::from(span.end)].iter_mut().for_each(|p| *p += 1);
+            pixels[row + usize::from(span.first)..row + usize::from(span.end)]
+                .iter_mut()
+                .for_each(|p| *p += 1);
         }
         pixels
     }
@@ -56,13 +65,19 @@ mod tests {
             let width = [6, 6, 6, 64, 128, 200][round % 6];
             let mut any = |most: i32| rng.between(0, most) as i16;
             let flat = round % 4 == 0;
-            let columns: Vec<(i16, i16)> = (0..width).map(|_| (any(if flat { 2 } else { 8 }), any(8))).collect();
+            let columns: Vec<(i16, i16)> =
+                (0..width).map(|_| (any(if flat { 2 } else { 8 }), any(8))).collect();
             for simd in Simd::available() {
                 let pixels = covered(simd, &columns);
                 for (i, &count) in pixels.iter().enumerate() {
                     let (row, (top, bottom)) = ((i / width) as i16, columns[i % width]);
                     let expected = u8::from(row >= top && row < bottom);
-                    assert_eq!(count, expected, "{simd:?}: {columns:?} row {row} column {}", i % width);
+                    assert_eq!(
+                        count,
+                        expected,
+                        "{simd:?}: {columns:?} row {row} column {}",
+                        i % width
+                    );
                 }
             }
         }

@@ -6,7 +6,8 @@ use std::ops::Range;
 /// The rows of a block of columns.
 #[inline(always)]
 pub(crate) fn block(plane: &VisPlane, from: usize) -> (&[i16; SPAN_BLOCK], &[i16; SPAN_BLOCK]) {
-    let [top, bottom] = [&plane.top, &plane.bottom].map(|list| list[from..].first_chunk().expect("lists are padded"));
+    let [top, bottom] = [&plane.top, &plane.bottom]
+        .map(|list| list[from..].first_chunk().expect("lists are padded"));
     (top, bottom)
 }
 
@@ -44,7 +45,10 @@ impl RowSpans<'_> {
     #[inline(always)]
     pub fn add(&mut self, from: usize, mut mask: u64) {
         let spans = &mut self.spans[..];
-        if mask & 1 != 0 && self.count > self.row_start && usize::from(spans[self.count - 1].end) == from {
+        if mask & 1 != 0
+            && self.count > self.row_start
+            && usize::from(spans[self.count - 1].end) == from
+        {
             // It goes on from the block before.
             let more = mask.trailing_ones();
             spans[self.count - 1].end += more as u16;
@@ -52,7 +56,11 @@ impl RowSpans<'_> {
         }
         while mask != 0 {
             let run = next_run(&mut mask);
-            spans[self.count] = Span { row: self.row, first: (from + run.start) as u16, end: (from + run.end) as u16 };
+            spans[self.count] = Span {
+                row: self.row,
+                first: (from + run.start) as u16,
+                end: (from + run.end) as u16,
+            };
             self.count += 1;
         }
     }

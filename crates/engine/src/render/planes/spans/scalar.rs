@@ -2,14 +2,16 @@
 
 use crate::render::buffers::visplane::{NO_ROW, Span, VisPlane};
 
-/// From column to column an end of the run of rows stays or moves by one, and which is unpredictable: the first
-/// row that comes or goes is handled without a branch, by writing it in any case, and more of them by loops.
+/// From column to column an end of the run of rows stays or moves by one, and which is
+/// unpredictable: the first row that comes or goes is handled without a branch, by writing it in
+/// any case, and more of them by loops.
 pub(crate) fn list(plane: &VisPlane, starts: &mut [u16], spans: &mut Vec<Span>) -> usize {
     let nowhere = starts.len() - 1;
     let mut count = 0;
     // The column behind the last one has no rows, which ends the last spans.
     let (mut top1, mut bottom1) = (0, i32::from(NO_ROW));
-    let columns = plane.top[plane.first..=plane.end].iter().zip(&plane.bottom[plane.first..=plane.end]);
+    let columns =
+        plane.top[plane.first..=plane.end].iter().zip(&plane.bottom[plane.first..=plane.end]);
     for (x, (&top2, &bottom2)) in (plane.first as u16..).zip(columns) {
         let (top2, bottom2) = (i32::from(top2), i32::from(bottom2));
         if (top1, bottom1) == (top2, bottom2) {
@@ -23,7 +25,8 @@ pub(crate) fn list(plane: &VisPlane, starts: &mut [u16], spans: &mut Vec<Span>) 
         let mut row = top1;
         loop {
             // The first row of a column without rows may be left from a higher frame.
-            spans[count] = Span { row: row as u16, first: starts[(row as usize).min(nowhere)], end: x };
+            spans[count] =
+                Span { row: row as u16, first: starts[(row as usize).min(nowhere)], end: x };
             count += usize::from(row < upper_end);
             row += 1;
             if row >= upper_end {

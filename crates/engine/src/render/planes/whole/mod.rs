@@ -7,7 +7,8 @@ use crate::render::planes::shader::PlaneShader;
 use crate::render::textures::flat::FlatTexture;
 use crate::simd::{Simd, dispatch};
 
-/// Draws a plane, if it can be drawn as a whole; returns whether it was. What is left is drawn span by span.
+/// Draws a plane, if it can be drawn as a whole; returns whether it was. What is left is drawn span
+/// by span.
 pub(crate) fn draw<const DEPTH: bool, const CLASS: bool>(
     shader: &PlaneShader,
     simd: Simd,

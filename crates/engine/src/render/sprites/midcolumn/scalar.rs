@@ -5,7 +5,12 @@ use std::ops::Range;
 
 /// Gives the frame rows of `rows` that show a texel and their colours to `put`.
 #[inline(always)]
-pub(crate) fn draw(column: &MidColumn, base_rows: &[u32], rows: Range<usize>, mut put: impl FnMut(usize, u8)) {
+pub(crate) fn draw(
+    column: &MidColumn,
+    base_rows: &[u32],
+    rows: Range<usize>,
+    mut put: impl FnMut(usize, u8),
+) {
     // Further down there are no texels further up.
     let (mut runs, mut run, mut first_row) = (column.runs.iter(), [0, 0], i64::MAX);
     for row in rows {

@@ -1,4 +1,5 @@
-//! Columns in batches with vectors of 64 bytes: eight are listed at once, and each is drawn as one vector.
+//! Columns in batches with vectors of 64 bytes: eight are listed at once, and each is drawn as one
+//! vector.
 
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::buffers::frame::Columns;
@@ -13,8 +14,8 @@ use crate::simd::first_of_eight;
 use crate::simd::lookup::avx512::{load, load_table, look_up_block};
 use std::arch::x86_64::*;
 
-/// Adds the `count` frame columns from `first` on of a wall that shows a picture with texels from `start` on, where `tops`
-/// are above `bottoms`; these lists are padded.
+/// Adds the `count` frame columns from `first` on of a wall that shows a picture with texels from
+/// `start` on, where `tops` are above `bottoms`; these lists are padded.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
 pub(crate) fn add<const DEPTH: bool>(
     batch: &mut WallBatch,
@@ -48,7 +49,8 @@ fn add_block<const DEPTH: bool>(
     let columns = shader.view.columns[first..].first_chunk().expect("the list is padded");
     let WallVectors { distance, u, table, at, step } = avx512::vectors(shader, slope, columns);
     let WallTexture { width, height, .. } = *shader.picture;
-    let column = _mm256_and_si256(_mm512_cvtepi64_epi32(_mm512_srai_epi64(u, 16)), splat(width - 1));
+    let column =
+        _mm256_and_si256(_mm512_cvtepi64_epi32(_mm512_srai_epi64(u, 16)), splat(width - 1));
     let texels = _mm256_add_epi32(splat(start), _mm256_mullo_epi32(column, splat(height)));
     let x = _mm256_add_epi32(splat(first as u32), _mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0));
     put(&mut batch.texels[batch.count..], shown, texels);
@@ -59,8 +61,13 @@ fn add_block<const DEPTH: bool>(
     put(&mut batch.columns[batch.count..], shown, x);
     // From the first row on, and before the last one's end: of 64 rows, counts are those of bits.
     let all = _mm512_set1_epi64(-1);
-    let below = _mm512_srlv_epi64(all, _mm512_sub_epi64(_mm512_set1_epi64(ROW_BLOCK as i64), bottoms));
-    put_wide(&mut batch.rows[batch.count..], shown, _mm512_and_si512(_mm512_sllv_epi64(all, tops), below));
+    let below =
+        _mm512_srlv_epi64(all, _mm512_sub_epi64(_mm512_set1_epi64(ROW_BLOCK as i64), bottoms));
+    put_wide(
+        &mut batch.rows[batch.count..],
+        shown,
+        _mm512_and_si512(_mm512_sllv_epi64(all, tops), below),
+    );
     if DEPTH {
         put_wide(&mut batch.distances[batch.count..], shown, distance);
     }
@@ -80,9 +87,11 @@ pub(crate) fn draw<const DEPTH: bool>(
     let count = batch.count;
     let (starts, lasts) = (&batch.texels[..count], &batch.last_texels[..count]);
     let (positions, steps) = (&batch.positions[..count], &batch.steps[..count]);
-    let (table_numbers, columns, masks) = (&batch.tables[..count], &batch.columns[..count], &batch.rows[..count]);
+    let (table_numbers, columns, masks) =
+        (&batch.tables[..count], &batch.columns[..count], &batch.rows[..count]);
     for i in 0..count {
-        let halves: &[u8; MOST_TEXELS] = texels[starts[i] as usize..].first_chunk().expect("the list is padded");
+        let halves: &[u8; MOST_TEXELS] =
+            texels[starts[i] as usize..].first_chunk().expect("the list is padded");
         let (halves, _) = halves.as_chunks::<ROW_BLOCK>();
         // The highest 6 or 7 bits of a position; those that come from its neighbour are cut.
         let shift = _mm_cvtsi32_si128(if lasts[i] == 63 { 2 } else { 1 });
@@ -120,7 +129,9 @@ fn rows(list: &[i16]) -> __m512i {
 fn put(list: &mut [u32], mask: __mmask8, numbers: __m256i) {
     let to: &mut [u32; WALL_BLOCK] = list.first_chunk_mut().expect("there is room");
     // SAFETY: 32 bytes are writable behind the reference.
-    unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, numbers)) }
+    unsafe {
+        _mm256_storeu_si256(to.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, numbers))
+    }
 }
 
 /// The same with wider numbers.
@@ -129,7 +140,9 @@ fn put(list: &mut [u32], mask: __mmask8, numbers: __m256i) {
 fn put_wide(list: &mut [u64], mask: __mmask8, numbers: __m512i) {
     let to: &mut [u64; WALL_BLOCK] = list.first_chunk_mut().expect("there is room");
     // SAFETY: 64 bytes are writable behind the reference.
-    unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, numbers)) }
+    unsafe {
+        _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, numbers))
+    }
 }
 
 /// Writes the bytes of a mask.

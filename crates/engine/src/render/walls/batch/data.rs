@@ -8,7 +8,8 @@ pub(crate) struct WallBatch {
     pub texels: Vec<u32>,
     /// One less than there are texels.
     pub last_texels: Vec<u32>,
-    /// Position in the texture at base row 0, as a fraction of its height with 32 bits, and its change a base row.
+    /// Position in the texture at base row 0, as a fraction of its height with 32 bits, and its
+    /// change a base row.
     pub positions: Vec<u32>,
     pub steps: Vec<u32>,
     pub tables: Vec<u32>,
@@ -28,8 +29,20 @@ impl WallBatch {
     /// Has room for so many entries, and for as many again.
     pub fn make_room(&mut self, entries: usize) {
         if self.rows.len() < entries {
-            let Self { texels, last_texels, positions, steps, tables, columns, rows, distances, .. } = self;
-            [texels, last_texels, positions, steps, tables, columns].into_iter().for_each(|list| list.resize(2 * entries, 0));
+            let Self {
+                texels,
+                last_texels,
+                positions,
+                steps,
+                tables,
+                columns,
+                rows,
+                distances,
+                ..
+            } = self;
+            [texels, last_texels, positions, steps, tables, columns]
+                .into_iter()
+                .for_each(|list| list.resize(2 * entries, 0));
             [rows, distances].into_iter().for_each(|list| list.resize(2 * entries, 0));
         }
     }

@@ -1,6 +1,7 @@
-//! Columns of walls in batches, for processors with 64-byte vectors and frames as low as learners': listed while the world is walked, and
-//! drawn together. How many columns a wall has, and which of them are covered, is unpredictable; in one list of all walls one column is
-//! like the next. Other walls are drawn column by column (`walls::shade`); `render_tests` compares whole frames.
+//! Columns of walls in batches, for processors with 64-byte vectors and frames as low as learners':
+//! listed while the world is walked, and drawn together. How many columns a wall has, and which of
+//! them are covered, is unpredictable; in one list of all walls one column is like the next. Other
+//! walls are drawn column by column (`walls::shade`); `render_tests` compares whole frames.
 
 crate::simd::kernel_files!(avx512);
 pub mod data;
@@ -17,8 +18,9 @@ pub(crate) fn is_used(simd: Simd) -> bool {
     simd.level() == Level::Avx512
 }
 
-/// Adds the `count` frame columns from `first` on of a wall that shows a picture with texels from `start` on, where `tops` are above
-/// `bottoms`; these lists are padded. Only where batches [are used](is_used).
+/// Adds the `count` frame columns from `first` on of a wall that shows a picture with texels from
+/// `start` on, where `tops` are above `bottoms`; these lists are padded. Only where batches [are
+/// used](is_used).
 #[allow(clippy::too_many_arguments, reason = "a wall, its picture and its columns")]
 pub(crate) fn add<const DEPTH: bool>(
     batch: &mut WallBatch,
@@ -36,7 +38,8 @@ pub(crate) fn add<const DEPTH: bool>(
     );
 }
 
-/// Draws the columns and forgets them; `rows` are the frame's base rows, `texels` those of all pictures.
+/// Draws the columns and forgets them; `rows` are the frame's base rows, `texels` those of all
+/// pictures.
 pub(crate) fn draw<const DEPTH: bool>(
     batch: &mut WallBatch,
     simd: Simd,

@@ -1,4 +1,5 @@
-//! The frame rows of an edge in sixteen columns with vectors of 32 bytes: positions are doubles, which hold them where the edge is exact.
+//! The frame rows of an edge in sixteen columns with vectors of 32 bytes: positions are doubles,
+//! which hold them where the edge is exact.
 
 use crate::render::blocks::COLUMN_BLOCK;
 use crate::render::view::line::{Edge, ROW_BITS};
@@ -10,7 +11,8 @@ use std::arch::x86_64::*;
 #[target_feature(enable = "avx2")]
 pub(crate) fn rows(scale: &RowScale, edge: Edge, base: &[u32; COLUMN_BLOCK]) -> __m256i {
     const LAST_BIT: f64 = 1.0 / (1 << ROW_BITS) as f64;
-    let in_rows = |number: i64| _mm256_mul_pd(_mm256_set1_pd(number as f64), _mm256_set1_pd(LAST_BIT));
+    let in_rows =
+        |number: i64| _mm256_mul_pd(_mm256_set1_pd(number as f64), _mm256_set1_pd(LAST_BIT));
     let (at, step) = (in_rows(edge.at), in_rows(edge.step));
     let (fours, _) = base.as_chunks::<4>();
     let base_rows = |four: &[u32; 4]| {
@@ -24,7 +26,10 @@ pub(crate) fn rows(scale: &RowScale, edge: Edge, base: &[u32; COLUMN_BLOCK]) -> 
     let frame_rows = |low: __m128i, high: __m128i| {
         let base = _mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1);
         let base = _mm256_min_epi32(_mm256_max_epi32(base, zero), last);
-        _mm256_srli_epi32(_mm256_add_epi32(_mm256_mullo_epi32(base, factor), addend), RowScale::BITS as i32)
+        _mm256_srli_epi32(
+            _mm256_add_epi32(_mm256_mullo_epi32(base, factor), addend),
+            RowScale::BITS as i32,
+        )
     };
     // Packing works within halves of vectors: 0 and 1, then 2 and 3.
     let even = frame_rows(base_rows(&fours[0]), base_rows(&fours[2]));

@@ -15,10 +15,15 @@ pub(crate) fn rows(scale: &RowScale, edge: Edge, base: &[u32; COLUMN_BLOCK]) -> 
     let base_rows = |eight: &[u32; 8]| {
         // SAFETY: 32 bytes are readable behind the reference.
         let column = _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(eight.as_ptr().cast()) });
-        let row = _mm512_srai_epi64(_mm512_add_epi64(at, _mm512_mullo_epi64(step, column)), ROW_BITS);
+        let row =
+            _mm512_srai_epi64(_mm512_add_epi64(at, _mm512_mullo_epi64(step, column)), ROW_BITS);
         _mm512_cvtepi64_epi32(_mm512_min_epi64(_mm512_max_epi64(row, zero), last))
     };
-    let base = _mm512_inserti32x8(_mm512_castsi256_si512(base_rows(&eights[0])), base_rows(&eights[1]), 1);
-    let scaled = _mm512_add_epi32(_mm512_mullo_epi32(base, _mm512_set1_epi32(scale.factor)), _mm512_set1_epi32(scale.addend));
+    let base =
+        _mm512_inserti32x8(_mm512_castsi256_si512(base_rows(&eights[0])), base_rows(&eights[1]), 1);
+    let scaled = _mm512_add_epi32(
+        _mm512_mullo_epi32(base, _mm512_set1_epi32(scale.factor)),
+        _mm512_set1_epi32(scale.addend),
+    );
     _mm512_cvtepi32_epi16(_mm512_srli_epi32(scaled, RowScale::BITS))
 }

@@ -12,9 +12,9 @@ use crate::simd::{Simd, dispatch};
 use pass::ClipLists;
 use std::ops::Range;
 
-/// In some columns the plane takes the rows up to the first edge, the wall those from there to the second one, and what is left
-/// stays open: from below if `FLOOR`, else from above. Where the plane has rows already, another one goes on. Returns whether any
-/// of the wall is to be seen.
+/// In some columns the plane takes the rows up to the first edge, the wall those from there to the
+/// second one, and what is left stays open: from below if `FLOOR`, else from above. Where the plane
+/// has rows already, another one goes on. Returns whether any of the wall is to be seen.
 #[inline]
 pub(crate) fn clip_columns<const FLOOR: bool, const PLANE: bool, const WALL: bool>(
     simd: Simd,
@@ -42,7 +42,8 @@ mod tests {
     use crate::render::view::size::FrameSize;
     use crate::render::view::tables::View;
 
-    const KEY: VisPlaneKey = VisPlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
+    const KEY: VisPlaneKey =
+        VisPlaneKey { height: Fixed::ZERO, texture: TextureId(0), light: 0, sky: false };
 
     /// What a frame's segs clip_columns, and the rows of a wall.
     #[derive(Clone)]
@@ -54,7 +55,11 @@ mod tests {
 
     impl Lists {
         fn new(view: &View) -> Lists {
-            let mut lists = Lists { clip: ColumnClip::default(), planes: VisPlanes::default(), wall: [const { vec![] }; 2] };
+            let mut lists = Lists {
+                clip: ColumnClip::default(),
+                planes: VisPlanes::default(),
+                wall: [const { vec![] }; 2],
+            };
             lists.clip.reset(view.width(), view.view_rows);
             lists.planes.reset(view.width());
             lists.wall = [const { vec![] }; 2].map(|_: Vec<i16>| vec![0; padded(view.width())]);
@@ -66,7 +71,12 @@ mod tests {
             let width = self.wall[0].len() - COLUMN_BLOCK;
             let open: Vec<bool> = (0..width).map(|x| self.clip.any_open(x, x + 1)).collect();
             let rows = [self.clip.top.clone(), self.clip.bottom.clone()];
-            let planes: Vec<_> = self.planes.used().iter().map(|plane| (plane.top.clone(), plane.bottom.clone())).collect();
+            let planes: Vec<_> = self
+                .planes
+                .used()
+                .iter()
+                .map(|plane| (plane.top.clone(), plane.bottom.clone()))
+                .collect();
             (rows, open, self.wall.clone().map(|list| list[columns.clone()].to_vec()), planes)
         }
 
@@ -79,7 +89,8 @@ mod tests {
         ) -> bool {
             let plane = if PLANE { self.planes.find(KEY) } else { 0 };
             let wall = self.wall.each_mut().map(|list| &mut list[..]);
-            let mut lists = ClipLists { view, clip: &mut self.clip, planes: &mut self.planes, wall };
+            let mut lists =
+                ClipLists { view, clip: &mut self.clip, planes: &mut self.planes, wall };
             clip_columns::<FLOOR, PLANE, WALL>(simd, &mut lists, columns, plane, edges)
         }
 
@@ -90,21 +101,29 @@ mod tests {
             columns: Range<usize>,
             [edge, wall]: [Edge; 2],
         ) -> bool {
-            let (ColumnClip { top: tops, bottom: bottoms, .. }, [uppers, lowers]) = (&mut self.clip, &mut self.wall);
+            let (ColumnClip { top: tops, bottom: bottoms, .. }, [uppers, lowers]) =
+                (&mut self.clip, &mut self.wall);
             let (mut walled, mut closed) = (false, vec![]);
             for x in columns {
                 let frame_row = |edge: Edge| {
-                    let base = edge.base_row(i64::from(view.columns[x])).clamp(0, i64::from(view.base_view_rows));
+                    let base = edge
+                        .base_row(i64::from(view.columns[x]))
+                        .clamp(0, i64::from(view.base_view_rows));
                     view.first_row[base as usize]
                 };
                 let (top, bottom) = (tops[x], bottoms[x]);
                 let row = frame_row(edge).max(top).min(bottom);
-                let far = if FLOOR { frame_row(wall).max(top).min(row) } else { frame_row(wall).max(row).min(bottom) };
+                let far = if FLOOR {
+                    frame_row(wall).max(top).min(row)
+                } else {
+                    frame_row(wall).max(row).min(bottom)
+                };
                 let open = if WALL { far } else { row };
                 if PLANE {
                     let plane = self.planes.find(KEY);
                     let [plane_top, plane_bottom] = self.planes.columns(plane, x, x + 1);
-                    (plane_top[0], plane_bottom[0]) = if FLOOR { (row, bottom) } else { (top, row) };
+                    (plane_top[0], plane_bottom[0]) =
+                        if FLOOR { (row, bottom) } else { (top, row) };
                 }
                 if WALL {
                     (uppers[x], lowers[x]) = if FLOOR { (open, row) } else { (row, open) };
@@ -144,7 +163,11 @@ mod tests {
         let walled = plain.narrow_plainly::<FLOOR, PLANE, WALL>(view, columns.clone(), edges);
         for simd in Simd::available() {
             let mut lists = lists.clone();
-            assert_eq!(lists.clip_columns::<FLOOR, PLANE, WALL>(simd, view, columns.clone(), edges), walled, "{simd:?}");
+            assert_eq!(
+                lists.clip_columns::<FLOOR, PLANE, WALL>(simd, view, columns.clone(), edges),
+                walled,
+                "{simd:?}"
+            );
             assert_eq!(lists.seen(&columns), plain.seen(&columns), "{simd:?}");
         }
     }
@@ -175,7 +198,9 @@ mod tests {
             let [plane_top, plane_bottom] = lists.planes.columns(plane, 40, 41);
             (plane_top[0], plane_bottom[0]) = (3, 4);
             assert!(!lists.clip_columns::<false, true, false>(simd, &view, 0..64, edges));
-            let [first, other] = lists.planes.used() else { panic!("{} planes", lists.planes.used().len()) };
+            let [first, other] = lists.planes.used() else {
+                panic!("{} planes", lists.planes.used().len())
+            };
             // Each column's rows are in one of both: the first one's as far as whole blocks go.
             let row = lists.clip.top[0];
             let split = (0..=40).rev().find(|&x| x == 0 || first.bottom[x - 1] == row).unwrap();

@@ -21,7 +21,8 @@ pub(crate) struct ClipLists<'a> {
 /// What came of a pass.
 #[derive(Clone, Copy)]
 struct Clipped {
-    /// Where it ended: before the last column where the plane has other rows in one of the next already.
+    /// Where it ended: before the last column where the plane has other rows in one of the next
+    /// already.
     done: usize,
     /// Some of the wall is to be seen.
     walled: bool,
@@ -55,14 +56,21 @@ fn pass<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
     [edge, wall]: [Edge; 2],
 ) -> Clipped {
     let first = columns.start;
-    // All lists are cut to the same number of blocks once, so that no place in them is in doubt later.
+    // All lists are cut to the same number of blocks once, so that no place in them is in doubt
+    // later.
     let blocks = columns.len().div_ceil(R::COUNT);
     let of = |used: bool| ..if used { blocks } else { 0 };
     let (tops, bottoms, mut open_columns) = lists.clip.from(first);
-    let (tops, bottoms) = (&mut R::blocks_mut(tops)[of(true)], &mut R::blocks_mut(bottoms)[of(true)]);
+    let (tops, bottoms) =
+        (&mut R::blocks_mut(tops)[of(true)], &mut R::blocks_mut(bottoms)[of(true)]);
     let (base, scale) = (&R::blocks(&lists.view.columns[first..])[of(true)], &lists.view.row_scale);
-    let [uppers, lowers] = lists.wall.each_mut().map(|list| &mut R::blocks_mut(&mut list[first..])[of(WALL)]);
-    let plane_rows = if PLANE { lists.planes.columns(plane, first, columns.end) } else { [&mut [][..], &mut []] };
+    let [uppers, lowers] =
+        lists.wall.each_mut().map(|list| &mut R::blocks_mut(&mut list[first..])[of(WALL)]);
+    let plane_rows = if PLANE {
+        lists.planes.columns(plane, first, columns.end)
+    } else {
+        [&mut [][..], &mut []]
+    };
     let [plane_tops, plane_bottoms] = plane_rows.map(|list| &mut R::blocks_mut(list)[of(PLANE)]);
     let mut walled = R::first(0).and_not(R::first(0));
     for i in 0..blocks {
@@ -84,7 +92,11 @@ fn pass<R: Rows, const FLOOR: bool, const PLANE: bool, const WALL: bool>(
         let mut open = row;
         if WALL {
             let far = R::of_edge(scale, wall, &base[i]);
-            open = if FLOOR { far.at_least(top).at_most(row) } else { far.at_least(row).at_most(bottom) };
+            open = if FLOOR {
+                far.at_least(top).at_most(row)
+            } else {
+                far.at_least(row).at_most(bottom)
+            };
             let (upper, lower) = if FLOOR { (open, row) } else { (row, open) };
             // Who reads these surfaces at no column beyond the seg's.
             upper.store(&mut uppers[i]);

@@ -1,4 +1,5 @@
-//! Rows of columns side by side, as the pass over a seg's columns computes with them: what every family of vectors must offer.
+//! Rows of columns side by side, as the pass over a seg's columns computes with them: what every
+//! family of vectors must offer.
 
 use crate::render::view::line::Edge;
 use crate::render::view::tables::RowScale;

@@ -1,8 +1,9 @@
-//! Rows of sixteen columns in a vector of 32 bytes. What differs between the two families is how the 64-bit positions of edges become
-//! rows: `avx2` and `avx512`.
+//! Rows of sixteen columns in a vector of 32 bytes. What differs between the two families is how
+//! the 64-bit positions of edges become rows: `avx2` and `avx512`.
 //!
-//! The functions may only be called where the instructions are; the dispatch does so in functions that are compiled for them. They are
-//! inlined there, which is why they are no `unsafe` functions of their own.
+//! The functions may only be called where the instructions are; the dispatch does so in functions
+//! that are compiled for them. They are inlined there, which is why they are no `unsafe` functions
+//! of their own.
 
 use crate::render::blocks::COLUMN_BLOCK;
 use crate::render::view::line::Edge;
@@ -45,7 +46,9 @@ impl<const AVX512: bool> Rows for Wide<AVX512> {
     #[inline(always)]
     fn of_edge(scale: &RowScale, edge: Edge, base: &[u32; COLUMN_BLOCK]) -> Self {
         // SAFETY: the instructions are there, see above.
-        Wide(unsafe { if AVX512 { avx512::rows(scale, edge, base) } else { avx2::rows(scale, edge, base) } })
+        Wide(unsafe {
+            if AVX512 { avx512::rows(scale, edge, base) } else { avx2::rows(scale, edge, base) }
+        })
     }
 
     #[inline(always)]
@@ -114,7 +117,11 @@ impl<const AVX512: bool> Rows for Wide<AVX512> {
 
     #[inline(always)]
     fn first(count: usize) -> Self {
-        Wide::load(YES_NO[COLUMN_BLOCK - count.min(COLUMN_BLOCK)..].first_chunk().expect("at most a block is left out"))
+        Wide::load(
+            YES_NO[COLUMN_BLOCK - count.min(COLUMN_BLOCK)..]
+                .first_chunk()
+                .expect("at most a block is left out"),
+        )
     }
 }
 

@@ -1,11 +1,12 @@
-//! Columns of textures 64 or 128 texels high, 32 rows at a time: texels are numbers of the picture's own colours, so that two small tables
-//! stand in for one of 256 entries.
+//! Columns of textures 64 or 128 texels high, 32 rows at a time: texels are numbers of the
+//! picture's own colours, so that two small tables stand in for one of 256 entries.
 
 use crate::render::walls::column::data::IndexedColumn;
 use crate::simd::lookup::avx2::{GROUP, bytes_of, first_bytes, look_up};
 use std::arch::x86_64::*;
 
-/// Draws rows `top..bottom` with vectors of 32 bytes: texels and their colours are picked from tables in registers. `pixels` are whole groups.
+/// Draws rows `top..bottom` with vectors of 32 bytes: texels and their colours are picked from
+/// tables in registers. `pixels` are whole groups.
 #[inline]
 #[target_feature(enable = "avx2")]
 pub(crate) fn draw<const TEXELS: usize, const COLOURS: usize>(
@@ -23,7 +24,10 @@ pub(crate) fn draw<const TEXELS: usize, const COLOURS: usize>(
         let group: &[u32; GROUP] = rows[start..].first_chunk().expect("rows are padded");
         let texels = look_up(column.texels, texel_numbers::<TEXELS>(at, step, group));
         let lit = look_up(column.lit, texels);
-        let shown = _mm256_andnot_si256(first_bytes(top.saturating_sub(start)), first_bytes(bottom - start));
+        let shown = _mm256_andnot_si256(
+            first_bytes(top.saturating_sub(start)),
+            first_bytes(bottom - start),
+        );
         let pixels: &mut [u8; GROUP] = pixels[start..].first_chunk_mut().expect("a whole group");
         // SAFETY: 32 bytes are readable and writable behind the reference.
         unsafe {
@@ -52,16 +56,29 @@ fn numbers<const TEXELS: usize>(at: __m256i, step: __m256i, rows: &[u32; 8]) -> 
     if TEXELS == 64 { _mm256_srli_epi32(position, 26) } else { _mm256_srli_epi32(position, 25) }
 }
 
-/// A column whose picture has few colours, made ready here: for tests, on a processor that has the instructions.
+/// A column whose picture has few colours, made ready here: for tests, on a processor that has the
+/// instructions.
 #[cfg(test)]
-pub(super) fn draw_by_own_colours(column: &super::data::Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+pub(super) fn draw_by_own_colours(
+    column: &super::data::Column,
+    pixels: &mut [u8],
+    rows: &[u32],
+    top: usize,
+    bottom: usize,
+) {
     use super::data::IndexedColumn;
     use crate::render::textures::local_palette::LocalPalette;
     let own = LocalPalette::new(column.texels, &[*column.table]);
     macro_rules! draw {
         ($texels:literal, $colours:literal) => {{
-            let (texels, lit) = (own.texels.first_chunk().unwrap(), own.lit(0).first_chunk().unwrap());
-            let column = IndexedColumn::<$texels, $colours> { texels, lit, at: column.at, step: column.step };
+            let (texels, lit) =
+                (own.texels.first_chunk().unwrap(), own.lit(0).first_chunk().unwrap());
+            let column = IndexedColumn::<$texels, $colours> {
+                texels,
+                lit,
+                at: column.at,
+                step: column.step,
+            };
             // SAFETY: the processor has the instructions.
             unsafe { draw(&column, pixels, rows, top, bottom) }
         }};

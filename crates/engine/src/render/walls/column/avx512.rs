@@ -1,5 +1,5 @@
-//! Columns of textures 64 or 128 texels high, 64 rows at a time: a column of the frame is one vector, the texture one or two, the light
-//! table four: nothing is fetched texel by texel.
+//! Columns of textures 64 or 128 texels high, 64 rows at a time: a column of the frame is one
+//! vector, the texture one or two, the light table four: nothing is fetched texel by texel.
 
 use crate::render::blocks::ROW_BLOCK;
 use crate::render::walls::column::data::Column;
@@ -20,11 +20,19 @@ static HIGHEST_BYTES: [u8; 64] = {
 /// Draws rows `top..bottom` of a column of a texture `2^BITS` texels high.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn draw<const BITS: u32>(column: &Column, pixels: &mut [u8], rows: &[u32], top: usize, bottom: usize) {
+pub(crate) fn draw<const BITS: u32>(
+    column: &Column,
+    pixels: &mut [u8],
+    rows: &[u32],
+    top: usize,
+    bottom: usize,
+) {
     let (pixels, _) = pixels.as_chunks_mut::<ROW_BLOCK>();
     let (rows, _) = rows.as_chunks::<ROW_BLOCK>();
     let blocks = top / ROW_BLOCK..bottom.div_ceil(ROW_BLOCK);
-    for (block, (pixels, rows)) in blocks.clone().zip(pixels[blocks.clone()].iter_mut().zip(&rows[blocks])) {
+    for (block, (pixels, rows)) in
+        blocks.clone().zip(pixels[blocks.clone()].iter_mut().zip(&rows[blocks]))
+    {
         let texels = texels_avx512::<BITS>(column, rows);
         let lit = look_up_block(load_table(column.table), texels);
         let above = top.saturating_sub(block * ROW_BLOCK);
@@ -43,7 +51,11 @@ fn texels_avx512<const BITS: u32>(column: &Column, rows: &[u32; ROW_BLOCK]) -> _
     // Bits that a byte gets from its neighbour are above those that the permutations look at.
     let (blocks, _) = column.texels.as_chunks::<64>();
     if BITS == 7 {
-        _mm512_permutex2var_epi8(load(&blocks[0]), _mm512_srli_epi16(positions, 1), load(&blocks[1]))
+        _mm512_permutex2var_epi8(
+            load(&blocks[0]),
+            _mm512_srli_epi16(positions, 1),
+            load(&blocks[1]),
+        )
     } else {
         _mm512_permutexvar_epi8(_mm512_srli_epi16(positions, 2), load(&blocks[0]))
     }

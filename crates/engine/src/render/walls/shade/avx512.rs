@@ -23,14 +23,25 @@ pub(crate) struct WallVectors {
 /// The eight base columns `columns`.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn vectors(shader: &WallShader, slope: &WallSlope, columns: &[u32; WALL_BLOCK]) -> WallVectors {
+pub(crate) fn vectors(
+    shader: &WallShader,
+    slope: &WallSlope,
+    columns: &[u32; WALL_BLOCK],
+) -> WallVectors {
     // SAFETY: 32 bytes are readable behind the reference.
     let column = _mm512_cvtepu32_epi64(unsafe { _mm256_loadu_si256(columns.as_ptr().cast()) });
     let distance = quotients(inverse_at(shader.line, column));
-    let nearness = _mm512_mullo_epi64(inverse_at(shader.ends, column), _mm512_set1_epi64(ONE_TABLE_DISTANCE));
+    let nearness =
+        _mm512_mullo_epi64(inverse_at(shader.ends, column), _mm512_set1_epi64(ONE_TABLE_DISTANCE));
     let nearness = _mm512_srai_epi64(nearness, INVERSE_BITS - 16);
-    let step = _mm512_srai_epi64(_mm512_mullo_epi64(distance, _mm512_set1_epi64(shader.view.inverse_focal_y)), 24);
-    let step = _mm512_srai_epi64(_mm512_mullo_epi64(step, _mm512_set1_epi64(shader.picture.inverse_height)), 24);
+    let step = _mm512_srai_epi64(
+        _mm512_mullo_epi64(distance, _mm512_set1_epi64(shader.view.inverse_focal_y)),
+        24,
+    );
+    let step = _mm512_srai_epi64(
+        _mm512_mullo_epi64(step, _mm512_set1_epi64(shader.picture.inverse_height)),
+        24,
+    );
     let whole = _mm512_mullo_epi64(step, _mm512_set1_epi64(slope.rows));
     let part = _mm512_srai_epi64(_mm512_mullo_epi64(step, _mm512_set1_epi64(slope.fraction)), 16);
     WallVectors {
@@ -54,9 +65,19 @@ pub(crate) struct WallColumns {
 /// The same as lists.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-pub(crate) fn columns(shader: &WallShader, slope: &WallSlope, columns: &[u32; WALL_BLOCK]) -> WallColumns {
+pub(crate) fn columns(
+    shader: &WallShader,
+    slope: &WallSlope,
+    columns: &[u32; WALL_BLOCK],
+) -> WallColumns {
     let WallVectors { distance, u, table, at, step } = vectors(shader, slope, columns);
-    WallColumns { distance: listed(distance), u: listed(u), table: listed(table), at: listed(at), step: listed(step) }
+    WallColumns {
+        distance: listed(distance),
+        u: listed(u),
+        table: listed(table),
+        at: listed(at),
+        step: listed(step),
+    }
 }
 
 /// [`ProjectedLine::inverse_at`].
@@ -92,7 +113,10 @@ fn texture_at(line: &TextureLine, column: __m512i, distance: __m512i) -> __m512i
     let gain = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(line.gain), change), 32);
     let gained = _mm512_mullo_epi64(distance, gain);
     let along = _mm512_srai_epi64(_mm512_add_epi64(_mm512_set1_epi64(line.along), gained), 28);
-    let along = _mm512_max_epi64(_mm512_min_epi64(along, _mm512_set1_epi64(line.last)), _mm512_set1_epi64(line.least));
+    let along = _mm512_max_epi64(
+        _mm512_min_epi64(along, _mm512_set1_epi64(line.last)),
+        _mm512_set1_epi64(line.least),
+    );
     _mm512_add_epi64(along, _mm512_set1_epi64(line.offset))
 }
 
@@ -119,8 +143,9 @@ impl WallColumns {
     }
 }
 
-/// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on: what eight columns show is worked out at once. The whole loop
-/// is compiled for these instructions, as what is done for a column is short: calls into functions for others would be much of it.
+/// Draws rows `tops[i]..bottoms[i]` of the frame columns from `first` on: what eight columns show
+/// is worked out at once. The whole loop is compiled for these instructions, as what is done for a
+/// column is short: calls into functions for others would be much of it.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
 pub(crate) fn draw<const DEPTH: bool>(
     shader: &WallShader,
@@ -132,11 +157,22 @@ pub(crate) fn draw<const DEPTH: bool>(
 ) {
     let slope = shader.slope();
     for from in (0..tops.len()).step_by(WALL_BLOCK) {
-        let block = columns(shader, &slope, shader.view.columns[first + from..].first_chunk().expect("the list is padded"));
+        let block = columns(
+            shader,
+            &slope,
+            shader.view.columns[first + from..].first_chunk().expect("the list is padded"),
+        );
         for i in from..(from + WALL_BLOCK).min(tops.len()) {
             if tops[i] < bottoms[i] {
                 let rows = [tops[i] as usize, bottoms[i] as usize];
-                scalar::draw_column::<DEPTH>(shader, simd, frame, first + i, rows, block.column(i - from));
+                scalar::draw_column::<DEPTH>(
+                    shader,
+                    simd,
+                    frame,
+                    first + i,
+                    rows,
+                    block.column(i - from),
+                );
             }
         }
     }

@@ -45,7 +45,14 @@ mod tests {
         let mut rng = Rng::new(12);
         let pictures = [64, 96, 128].map(|height| {
             let pixels = vec![0; 64 * usize::from(height)].into();
-            WallTexture::new(&Image { width: 64, height, offset_x: 0, offset_y: 0, pixels, mask: None })
+            WallTexture::new(&Image {
+                width: 64,
+                height,
+                offset_x: 0,
+                offset_y: 0,
+                pixels,
+                mask: None,
+            })
         });
         let own = LocalPalette::new(&[], &[]);
         let view = View::new(FrameSize::LEARNER).unwrap();
@@ -58,7 +65,11 @@ mod tests {
                 ProjectedLine { inverse: signed(bits), inverse_step: signed(bits - 8) }
             };
             let (line, ends) = (line(), line());
-            let camera = Camera { horizon: signed(24), extra_light: (signed(1) & 1) as i32, ..Camera::default() };
+            let camera = Camera {
+                horizon: signed(24),
+                extra_light: (signed(1) & 1) as i32,
+                ..Camera::default()
+            };
             let shader = WallShader {
                 camera: &camera,
                 view: &view,
@@ -80,7 +91,8 @@ mod tests {
                 hung_from: signed(28),
             };
             let slope = shader.slope();
-            let columns: [u32; WALL_BLOCK] = *view.columns[rng.below(128) as usize..].first_chunk().unwrap();
+            let columns: [u32; WALL_BLOCK] =
+                *view.columns[rng.below(128) as usize..].first_chunk().unwrap();
             let plain = columns.map(|column| scalar::column(&shader, &slope, i64::from(column)));
             if has(Level::Avx512) {
                 // SAFETY: the processor has the instructions.
@@ -94,9 +106,19 @@ mod tests {
                 let block = unsafe { avx2::columns(&shader, &slope, &columns) };
                 for (i, plain) in plain.iter().enumerate() {
                     let (distance, table) = (block.distance[i], block.table[i] as usize);
-                    assert_eq!((distance, table), (plain.distance, plain.table), "{line:?} at {}", columns[i]);
+                    assert_eq!(
+                        (distance, table),
+                        (plain.distance, plain.table),
+                        "{line:?} at {}",
+                        columns[i]
+                    );
                     let expected = ((plain.u >> 16) as u32, plain.at, plain.step);
-                    assert_eq!((block.u[i], block.at[i], block.step[i]), expected, "{line:?} at {}", columns[i]);
+                    assert_eq!(
+                        (block.u[i], block.at[i], block.step[i]),
+                        expected,
+                        "{line:?} at {}",
+                        columns[i]
+                    );
                 }
                 fitting += 1;
             }

@@ -12,8 +12,13 @@ use crate::simd::Simd;
 pub(crate) fn column(shader: &WallShader, slope: &WallSlope, column: i64) -> WallColumn {
     let distance = shader.line.distance_at(column);
     let nearness = (shader.ends.inverse_at(column) * ONE_TABLE_DISTANCE) >> (INVERSE_BITS - 16);
-    let step = (((distance * shader.view.inverse_focal_y) >> 24).wrapping_mul(shader.picture.inverse_height)) >> 24;
-    let at = slope.start.wrapping_add(step.wrapping_mul(slope.rows)).wrapping_sub((step * slope.fraction) >> 16);
+    let step = (((distance * shader.view.inverse_focal_y) >> 24)
+        .wrapping_mul(shader.picture.inverse_height))
+        >> 24;
+    let at = slope
+        .start
+        .wrapping_add(step.wrapping_mul(slope.rows))
+        .wrapping_sub((step * slope.fraction) >> 16);
     WallColumn {
         distance,
         u: shader.texture.at(column, distance),
@@ -33,7 +38,8 @@ pub(crate) fn draw_column<const DEPTH: bool>(
     [top, bottom]: [usize; 2],
     WallColumn { distance, u, table, at, step }: WallColumn,
 ) {
-    let column = Column { texels: shader.picture.column(u), table: &shader.tables[table], at, step };
+    let column =
+        Column { texels: shader.picture.column(u), table: &shader.tables[table], at, step };
     column::draw(&column, simd, frame.colour_of(x), &shader.view.rows, top, bottom);
     if DEPTH {
         let depth = shader.depths.wall(distance, shader.picture.height);

@@ -1,7 +1,8 @@
 //! What decides whether a drawseg and a sprite overlap.
 
-/// What decides in most cases that a drawseg and a sprite have nothing to do with each other, on its own: a frame has
-/// dozens of drawsegs, and each sprite asks all of them. Lists of `count`, padded to whole blocks.
+/// What decides in most cases that a drawseg and a sprite have nothing to do with each other, on
+/// its own: a frame has dozens of drawsegs, and each sprite asks all of them. Lists of `count`,
+/// padded to whole blocks.
 #[derive(Debug, Default)]
 pub(crate) struct DrawSegBounds {
     pub count: usize,
@@ -24,7 +25,8 @@ impl DrawSegBounds {
             self.ends.resize(length, 0);
             self.nears.resize(length, 0);
         }
-        (self.firsts[self.count], self.ends[self.count], self.nears[self.count]) = (first as u32, end as u32, near);
+        (self.firsts[self.count], self.ends[self.count], self.nears[self.count]) =
+            (first as u32, end as u32, near);
         self.count += 1;
     }
 }
