@@ -128,17 +128,21 @@ impl TrainedAgent {
     /// act(observations, state, costs, over, cost_terms=None) -> (actions int64 [n, groups], deltas
     /// float32 [n, 2], state)
     ///
-    /// Args: observations: uint8 [n, height, width, channels]. state: what the agent carries, from
-    /// `begin` or the last call. costs: of the step before, a number a lane, which agents that
-    /// watch their budget need; None in the first step. over: bool a lane, those whose episode has
-    /// ended; they begin a new one, whose seed follows the old one's. cost_terms: a row of k
-    /// numbers a lane, which agents that watch one of the terms need.
+    /// Args:
+    ///     observations: uint8 [n, height, width, channels].
+    ///     state: what the agent carries, from `begin` or the last call.
+    ///     costs: of the step before, a number a lane, which agents that watch their budget need;
+    ///         None in the first step.
+    ///     over: bool a lane, those whose episode has ended; they begin a new one, whose seed
+    ///         follows the old one's.
+    ///     cost_terms: a row of k numbers a lane, which agents that watch one of the terms need.
     ///
     /// Returns:
     ///     Choices, continuous parts, and what the agent carries then.
     ///
-    /// Raises: ValueError for the wrong number of lanes or shape of observations, or cost_terms
-    /// that are missing.
+    /// Raises:
+    ///     ValueError for the wrong number of lanes or shape of observations, or cost_terms that
+    ///         are missing.
     #[pyo3(signature = (observations, state, costs, over, cost_terms=None))]
     fn act<'py>(
         &self,
@@ -204,8 +208,9 @@ impl TrainedAgent {
     ///     observations: uint8 [n, height, width, channels].
     ///     state: what the agent carries, from `begin` or the last call.
     ///
-    /// Returns: Rows of logits and parameters of the actions, the value, and the cost critics'
-    /// values; and what the agent carries then.
+    /// Returns:
+    ///     Rows of logits and parameters of the actions, the value, and the cost critics' values;
+    ///         and what the agent carries then.
     ///
     /// Raises:
     ///     ValueError for the wrong number of lanes or shape of observations.
@@ -235,11 +240,13 @@ impl TrainedAgent {
     /// Plays an episode of each of the `seeds` (int) with the weights that were loaded, in worlds
     /// as it was trained in.
     ///
-    /// Returns: A JSON list, of an object an episode and the summary, as `hasard eval --json`
-    /// prints them.
+    /// Returns:
+    ///     A JSON list, of an object an episode and the summary, as `hasard eval --json` prints
+    ///         them.
     ///
-    /// Raises: InvalidOption for worlds that cannot be made; what a signal's handler raises, such
-    /// as KeyboardInterrupt.
+    /// Raises:
+    ///     InvalidOption for worlds that cannot be made; what a signal's handler raises, such as
+    ///         KeyboardInterrupt.
     fn evaluate(&self, py: Python<'_>, seeds: Vec<u64>) -> PyResult<String> {
         let mut raised = None;
         let played = py.detach(|| {

@@ -8,14 +8,19 @@ use std::sync::Arc;
 
 /// What a reset or a step brought, one row a lane. Attributes only.
 ///
-/// Attributes: observations: uint8 [m, *observation_shape]. rewards, costs: float32 [m], of the
-/// step. cost_terms: float32 [m, k], in the order of `Worlds.cost_terms`. statistics: float64 [m,
-/// s], in the order of `Worlds.statistics`, where they were asked for. positions: int32 [m, 2], map
-/// units, at the end of the step and before any reset. terminated, truncated: bool [m]. lanes:
-/// int32 [m], the lane of each row. final_lanes: int32 [f], the lanes whose episode ended and whose
-/// last observations are in final_observations. final_observations: uint8 [f, *observation_shape].
-/// episodes: for each episode that ended a dict: lane, seed, return, cost, length (steps),
-/// terminated, truncated, costs (by term), statistics (by name).
+/// Attributes:
+///     observations: uint8 [m, *observation_shape].
+///     rewards, costs: float32 [m], of the step.
+///     cost_terms: float32 [m, k], in the order of `Worlds.cost_terms`.
+///     statistics: float64 [m, s], in the order of `Worlds.statistics`, where they were asked for.
+///     positions: int32 [m, 2], map units, at the end of the step and before any reset.
+///     terminated, truncated: bool [m].
+///     lanes: int32 [m], the lane of each row.
+///     final_lanes: int32 [f], the lanes whose episode ended and whose last observations are in
+///         final_observations.
+///     final_observations: uint8 [f, *observation_shape].
+///     episodes: for each episode that ended a dict: lane, seed, return, cost, length (steps),
+///         terminated, truncated, costs (by term), statistics (by name).
 #[pyclass(frozen, get_all, module = "hasard_rs._core")]
 pub struct Batch {
     observations: Py<PyAny>,

@@ -71,11 +71,15 @@ pub fn follow(
 ///
 /// Trains as `hasard train` does; `hasard_rs.train` is what to use.
 ///
-/// Args: words: of the command line after `hasard train`. callback: is called with every report, a
-/// dict; where it gives True the run ends with a checkpoint, as it does when it raises, or at
-/// Ctrl-C: what was raised is raised again when the run has ended. Or None. warn: is called with
-/// each warning, a str. exchange: takes uint8 [bytes] and gives a list of everyone's: this is the
-/// first of so many workers, and the others `follow`. ranks: number of workers.
+/// Args:
+///     words: of the command line after `hasard train`.
+///     callback: is called with every report, a dict; where it gives True the run ends with a
+///         checkpoint, as it does when it raises, or at
+///         Ctrl-C: what was raised is raised again when the run has ended. Or None.
+///     warn: is called with each warning, a str.
+///     exchange: takes uint8 [bytes] and gives a list of everyone's: this is the first of so many
+///         workers, and the others `follow`.
+///     ranks: number of workers.
 ///
 /// Returns:
 ///     The directory, whether the run was ended by the callback, and the last report.

@@ -52,18 +52,23 @@ enum CameBack {
 /// Every call lets the interpreter go while the worlds work. Two threads that use one object take
 /// turns.
 ///
-/// Args: env_id: with or without `hasard/`. num_envs: lanes, 1 to 65536. num_threads: worker
-/// threads beside the caller's; None: one for every four lanes, as far as there are processors. No
-/// result depends on it. groups: of lanes that `send` and `recv` step on their own, 1 (None) to
-/// num_envs. autoreset_mode: "SameStep" (None means it), "NextStep" or "Disabled", or Gymnasium's
-/// enum. final_observations: whose last observation a batch holds under "SameStep": "every"
-/// episode's, or only those "truncated". statistics: whether batches hold the statistics of every
-/// step. arguments: rules, hard_constraint, full_actions, frame_skip, resolution, observation,
-/// layout, frame_stack, max_episode_steps, seed, safety_budget, maps, iwad, published_depth,
-/// published_colours, as in `help(hasard_rs.Env)`.
+/// Args:
+///     env_id: with or without `hasard/`.
+///     num_envs: lanes, 1 to 65536.
+///     num_threads: worker threads beside the caller's; None: one for every four lanes, as far as
+///         there are processors. No result depends on it.
+///     groups: of lanes that `send` and `recv` step on their own, 1 (None) to num_envs.
+///     autoreset_mode: "SameStep" (None means it), "NextStep" or "Disabled", or Gymnasium's enum.
+///     final_observations: whose last observation a batch holds under "SameStep": "every"
+///         episode's, or only those "truncated".
+///     statistics: whether batches hold the statistics of every step.
+///     arguments: rules, hard_constraint, full_actions, frame_skip, resolution, observation,
+///         layout, frame_stack, max_episode_steps, seed, safety_budget, maps, iwad,
+///         published_depth, published_colours, as in `help(hasard_rs.Env)`.
 ///
-/// Raises: UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no
-/// argument: before any thread starts.
+/// Raises:
+///     UnknownEnvironment, InvalidOption, InvalidMap, or TypeError for a name that is no argument:
+///         before any thread starts.
 ///
 /// Every method raises Closed after `close`, OutOfTurn in a process forked from the one that made
 /// threads, and WorldPanicked for a fault of this package, after which the worlds are closed.
@@ -348,16 +353,18 @@ impl Worlds {
     ///
     /// Starts the next episode of every lane, or of those that are chosen.
     ///
-    /// Args: seeds: None goes on with the lanes' streams of seeds; an int s starts the stream of
-    /// lane i anew from s + i; a sequence has one entry a lane (None goes on). Not negative; taken
-    /// modulo 2^64. mask: bool [num_envs], the lanes to reset; the others stay as they are. None:
-    /// all.
+    /// Args:
+    ///     seeds: None goes on with the lanes' streams of seeds; an int s starts the stream of lane
+    ///         i anew from s + i; a sequence has one entry a lane (None goes on). Not negative;
+    ///         taken modulo 2^64.
+    ///     mask: bool [num_envs], the lanes to reset; the others stay as they are. None: all.
     ///
     /// Returns:
     ///     A Batch of all lanes, with rewards and costs 0.
     ///
-    /// Raises: TypeError or ValueError for seeds or a mask of the wrong kind; ResetNeeded if the
-    /// first reset is of some lanes only.
+    /// Raises:
+    ///     TypeError or ValueError for seeds or a mask of the wrong kind; ResetNeeded if the first
+    ///         reset is of some lanes only.
     #[pyo3(signature = (seeds=None, mask=None))]
     fn reset(
         &self,
@@ -392,17 +399,20 @@ impl Worlds {
     ///
     /// Steps every lane, or chosen ones.
     ///
-    /// Args: actions: integers [m, len(nvec)], a choice for each categorical part; any integer
-    /// dtype and strides, lists too. deltas: numbers [m, 2] in [-1, 1], where num_deltas is not 0;
-    /// None otherwise. lanes: the m lanes to step, each once; None: all of them, in order.
+    /// Args:
+    ///     actions: integers [m, len(nvec)], a choice for each categorical part; any integer dtype
+    ///         and strides, lists too.
+    ///     deltas: numbers [m, 2] in [-1, 1], where num_deltas is not 0; None otherwise.
+    ///     lanes: the m lanes to step, each once; None: all of them, in order.
     ///
     /// Returns:
     ///     A Batch of m rows, in the order of lanes.
     ///
-    /// Raises: InvalidAction, which names lane, part, value and range; TypeError or ValueError for
-    /// the wrong dtype or shape; InvalidOption for a lane that is none, or named twice; ResetNeeded
-    /// before the first reset, or where an episode is over under "Disabled"; OutOfTurn with a batch
-    /// under way. Nothing has moved then.
+    /// Raises:
+    ///     InvalidAction, which names lane, part, value and range; TypeError or ValueError for the
+    ///         wrong dtype or shape; InvalidOption for a lane that is none, or named twice;
+    ///         ResetNeeded before the first reset, or where an episode is over under "Disabled";
+    ///         OutOfTurn with a batch under way. Nothing has moved then.
     #[pyo3(signature = (actions, deltas=None, *, lanes=None))]
     fn step(
         &self,
@@ -435,12 +445,15 @@ impl Worlds {
     ///
     /// Hands a group's actions over and comes back at once; the worlds step meanwhile.
     ///
-    /// Args: actions: integers [num_envs / groups, len(nvec)], as for `step`; the array may be used
-    /// again at once. deltas: numbers [num_envs / groups, 2], as for `step`. group: 0 to
-    /// groups - 1.
+    /// Args:
+    ///     actions: integers [num_envs / groups, len(nvec)], as for `step`; the array may be used
+    ///         again at once.
+    ///     deltas: numbers [num_envs / groups, 2], as for `step`.
+    ///     group: 0 to groups - 1.
     ///
-    /// Raises: What `step` raises; OutOfTurn if the group's last batch was not fetched by `recv`;
-    /// InvalidOption for a group that is none.
+    /// Raises:
+    ///     What `step` raises; OutOfTurn if the group's last batch was not fetched by `recv`;
+    ///         InvalidOption for a group that is none.
     #[pyo3(signature = (actions, deltas=None, *, group=0))]
     fn send(
         &self,
@@ -512,8 +525,9 @@ impl Worlds {
     ///     truncated: bool [num_envs].
     ///     cost_terms: float32 [num_envs, k], or None.
     ///
-    /// Raises: BufferError, which tells the dtype and shape wanted and given; OutOfTurn with a
-    /// batch under way.
+    /// Raises:
+    ///     BufferError, which tells the dtype and shape wanted and given; OutOfTurn with a batch
+    ///         under way.
     #[pyo3(signature = (*, observations, rewards, costs, terminated, truncated, cost_terms=None))]
     #[allow(clippy::too_many_arguments, reason = "Python's keyword arguments")]
     fn bind(
@@ -595,15 +609,19 @@ impl Worlds {
     ///
     /// Draws the present of a lane, which goes on unchanged.
     ///
-    /// Args: lane: 0 to num_envs - 1. kind: "rgb", "segmented", "automap", "depth" (0 near to 255
-    /// far, 7.3 map units a level), "labels" or "grey". resolution: "WxH" or (width, height), 64x48
-    /// to 1920x1080.
+    /// Args:
+    ///     lane: 0 to num_envs - 1.
+    ///     kind: "rgb", "segmented", "automap", "depth" (0 near to 255 far, 7.3 map units a level),
+    ///         "labels" or "grey".
+    ///     resolution: "WxH" or (width, height), 64x48 to 1920x1080.
     ///
-    /// Returns: uint8 [height, width, 3] for rgb, segmented and automap, uint8 [height, width] for
-    /// depth, labels and grey.
+    /// Returns:
+    ///     uint8 [height, width, 3] for rgb, segmented and automap, uint8 [height, width] for
+    ///     depth, labels and grey.
     ///
-    /// Raises: InvalidOption for another kind or size, IndexError for a lane that is none,
-    /// OutOfTurn with a batch under way.
+    /// Raises:
+    ///     InvalidOption for another kind or size, IndexError for a lane that is none, OutOfTurn
+    ///         with a batch under way.
     #[pyo3(signature = (lane=0, kind="rgb", resolution=None))]
     fn render<'py>(
         &self,
