@@ -1,0 +1,9 @@
+//! What sectors do: floors and ceilings that move, lights that change, actors that ride.
+
+pub mod by_sector;
+pub mod floor_waggle;
+pub mod lights;
+pub mod map_lights;
+pub mod movers;
+pub mod riders;
+pub mod waggle;
