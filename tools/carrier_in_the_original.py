@@ -4,7 +4,7 @@
     python carrier_in_the_original.py 1 300 [--hard]                                       # there: level, episodes
     hasard rollout ArmamentBurdenLevel1-v0 --policy carrier --rules released --maps auto --iwad auto --episodes 300 --json   # here
 
-It walks to the nearest weapon that it may carry, and home with it, as `--policy carrier` does here (crates/envs/src/carrier.rs). Where a
+It walks to the nearest weapon that it may carry, and home with it, as `--policy carrier` does here (crates/envs/src/policies/carrier.rs). Where a
 random policy earns nothing, it compares rewards for deliveries and costs of what is carried.
 """
 

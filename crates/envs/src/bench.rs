@@ -1,8 +1,11 @@
 //! How fast a batch of worlds runs.
 
-use crate::policy::draw_action;
-use crate::scenarios::EPISODE_TICS;
-use crate::{EnvError, EnvOptions, VecEnv, VecOptions};
+use crate::error::EnvError;
+use crate::interface::batch::Batch;
+use crate::options::EnvOptions;
+use crate::policies::policy::draw_action;
+use crate::scenarios::common::spec::EPISODE_TICS;
+use crate::vec_env::{VecEnv, VecOptions};
 use hasard_engine::math::Rng;
 use std::time::Instant;
 
@@ -45,7 +48,7 @@ pub fn bench(
     let mut rng = Rng::new(0);
     let mut batch = worlds.whole_batch();
     worlds.reset(&mut batch)?;
-    let draw = |rng: &mut Rng, batch: &mut crate::Batch| {
+    let draw = |rng: &mut Rng, batch: &mut Batch| {
         let deltas = batch.deltas.len() / lanes;
         for lane in 0..lanes {
             let actions = &mut batch.actions[lane * sizes.len()..(lane + 1) * sizes.len()];

@@ -36,39 +36,33 @@
 // They panic where a stream is closed or its disk is full.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
-mod action;
-mod batch;
 mod bench;
-mod buffer;
-mod carrier;
-mod env;
-mod environment;
 mod error;
-mod eye;
-mod game;
+mod interface;
 pub mod maps;
 mod options;
 pub mod own;
-mod policy;
+mod policies;
 mod registry;
-mod rollout;
 pub mod scenarios;
-mod snapshot;
+mod single;
+mod spaces;
 mod vec_env;
 
-pub use action::{
-    ActionGroup, ActionSpace, BUTTONS, Controls, DELTA_DEGREES, DeltaButton, parse_command,
-};
-pub use batch::{Batch, Episode, EpisodeCost, episode_costs};
 pub use bench::{BenchReport, bench};
-pub use buffer::{Buffer, Memory};
-pub use env::Env;
-pub use environment::{CostTerm, Environment, Step};
 pub use error::EnvError;
 pub use hasard_engine::render::FrameSize;
-pub use options::{EnvOptions, Layout, ObservationKind, RuleSet};
-pub use policy::{Move, Policy, PolicyRun};
-pub use registry::{EnvId, Scenario, edit_distance};
-pub use rollout::rollout;
-pub use snapshot::Snapshot;
+pub use interface::batch::{Batch, Episode, EpisodeCost, episode_costs};
+pub use interface::buffer::{Buffer, Memory};
+pub use interface::environment::{CostTerm, Environment, Step};
+pub use options::{EnvOptions, Layout, ObservationKind};
+pub use policies::policy::{Policy, PolicyRun};
+pub use policies::rollout::rollout;
+pub use registry::scenario::{EnvId, Scenario, edit_distance};
+pub use scenarios::common::rule_set::RuleSet;
+pub use single::env::Env;
+pub use single::snapshot::Snapshot;
+pub use spaces::action::{
+    ActionGroup, ActionSpace, BUTTONS, Controls, DELTA_DEGREES, DeltaButton, Move, parse_command,
+};
 pub use vec_env::{Autoreset, FinalObservations, LaneState, Restart, VecEnv, VecOptions};

@@ -1,60 +1,10 @@
 //! How an environment is made.
 
+use crate::error::EnvError;
+use crate::maps::folder::Maps;
+use crate::registry::scenario::Scenario;
+use crate::scenarios::common::rule_set::RuleSet;
 use hasard_engine::render::FrameSize;
-
-/// Which set of constants a scenario follows; the tables of its page hold all of them.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
-pub enum RuleSet {
-    /// The paper's text made self-consistent.
-    #[default]
-    Paper,
-    /// What the published package does.
-    Released,
-    /// What the code did when the paper's tables were made.
-    Tables,
-}
-
-impl RuleSet {
-    /// Every rule set, in the order of the columns of the level tables.
-    pub const ALL: [RuleSet; 3] = [RuleSet::Paper, RuleSet::Released, RuleSet::Tables];
-
-    /// Its name, as on the command line and in files.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        ["paper", "released", "tables"][self as usize]
-    }
-
-    /// The names of all, for messages.
-    #[must_use]
-    pub fn names() -> String {
-        RuleSet::ALL.map(RuleSet::name).join(", ")
-    }
-
-    /// Whether the hard constraint is played in the worlds that were published for it.
-    #[must_use]
-    pub const fn plays_published_hard_worlds(self) -> bool {
-        [false, true, true][self as usize]
-    }
-}
-
-impl std::fmt::Display for RuleSet {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl std::str::FromStr for RuleSet {
-    type Err = crate::EnvError;
-
-    fn from_str(text: &str) -> Result<RuleSet, crate::EnvError> {
-        let wrong = || crate::EnvError::Option {
-            option: "rules",
-            given: crate::error::excerpt(text),
-            allowed: format!("one of {}", RuleSet::names()),
-        };
-        RuleSet::ALL.into_iter().find(|rules| rules.name() == text).ok_or_else(wrong)
-    }
-}
 
 /// What the learner sees.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -85,7 +35,7 @@ pub enum Layout {
 pub struct EnvOptions {
     /// The scenario that the id is of, where it must not be looked for in the registry, which may
     /// have another of the same name.
-    pub scenario: Option<crate::Scenario>,
+    pub scenario: Option<Scenario>,
     /// Which constants.
     pub rules: RuleSet,
     /// Detonator's Dilemma 1 under [`RuleSet::Tables`] with the creatures that the first of the
@@ -120,7 +70,7 @@ pub struct EnvOptions {
     pub published_colours: bool,
     /// Maps to play in instead of the built-in ones, from files: the published ones, or a user's
     /// own.
-    pub maps: Option<std::sync::Arc<crate::maps::Maps>>,
+    pub maps: Option<std::sync::Arc<Maps>>,
     /// One map to play in, before any other: it needs a player start and the sector tags that the
     /// scenario's rules change.
     pub map: Option<std::sync::Arc<hasard_engine::map::MapSource>>,
@@ -182,14 +132,14 @@ impl EnvOptions {
     }
 
     /// What is wrong with the options, if anything.
-    pub fn check(&self) -> Result<(), crate::EnvError> {
+    pub fn check(&self) -> Result<(), EnvError> {
         let within = |option, given: usize, least: usize, most: usize| {
             let allowed = format!("{least}..={most}");
             let fits = (least..=most).contains(&given);
             if fits {
                 Ok(())
             } else {
-                Err(crate::EnvError::Option { option, given: given.to_string(), allowed })
+                Err(EnvError::Option { option, given: given.to_string(), allowed })
             }
         };
         within("frame_skip", self.frame_skip as usize, 1, 35)?;
@@ -198,7 +148,7 @@ impl EnvOptions {
             within("max_episode_steps", steps as usize, 1, u32::MAX as usize)?;
         }
         let allowed = "64x48 to 1920x1080".to_string();
-        self.size.check().map_err(|_| crate::EnvError::Option {
+        self.size.check().map_err(|_| EnvError::Option {
             option: "the frame size",
             given: self.size.to_string(),
             allowed,

@@ -1,6 +1,7 @@
 //! `auto`: where a user's copies lie.
 
-use crate::EnvError;
+use crate::error::EnvError;
+use crate::maps::files::shown;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
@@ -29,9 +30,7 @@ pub fn ask(interpreter: &Path) {
 
 /// Who is asked, for a message.
 fn asked() -> String {
-    INTERPRETER
-        .get()
-        .map_or_else(|| "the python3 on the path".to_string(), |path| super::shown(path))
+    INTERPRETER.get().map_or_else(|| "the python3 on the path".to_string(), |path| shown(path))
 }
 
 /// The maps of the published package `hasard`, where the `python3` on the path has it.

@@ -1,7 +1,7 @@
 //! The file in which the published engine has pictures of its own: sprites that no IWAD has.
 
-use super::{read, shown};
-use crate::EnvError;
+use crate::error::EnvError;
+use crate::maps::files::{read, shown};
 use hasard_engine::map::TextureName;
 use hasard_engine::wad::{Lump, WadKind, write};
 use std::io::{Cursor, Read};

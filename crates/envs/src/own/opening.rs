@@ -4,7 +4,7 @@
 use super::model::{Facing, Goal, Height, Place, Spawn};
 use super::program::Program;
 use super::rules::{OwnRules, body};
-use crate::scenarios::stage;
+use crate::scenarios::common::stage;
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::{ActorId, ActorKind, World};
 use std::sync::atomic::Ordering;

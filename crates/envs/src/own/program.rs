@@ -4,7 +4,7 @@
 use super::generate::Layout;
 use super::model::{Goal, MapPlan, Place, Plan, Trigger, When};
 use crate::EnvError;
-use crate::scenarios::stage::Area;
+use crate::scenarios::common::stage::Area;
 use hasard_engine::map::{Map, SectorId};
 use hasard_engine::math::Fixed;
 use hasard_engine::world::ActorKind;

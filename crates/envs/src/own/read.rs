@@ -8,8 +8,8 @@ use super::model::{
 };
 use super::tree::{Node, Value};
 use super::{read_map, read_spawns, read_whens};
-use crate::action::BUTTONS;
-use crate::scenarios::outcome::MOST_TERMS;
+use crate::scenarios::common::outcome::MOST_TERMS;
+use crate::spaces::action::BUTTONS;
 use hasard_engine::world::ActorKind;
 
 /// Farthest from the origin that anything lies, map units.
@@ -46,7 +46,7 @@ pub(super) fn plan(document: &Node, names: &mut Names, mistakes: &mut Mistakes) 
     }
     let name = head.text("name", mistakes);
     if let Some((name, at)) = name
-        && !crate::registry::is_name(name)
+        && !crate::registry::scenario::is_name(name)
     {
         let rule = "it must have 1 to 40 letters and digits, a letter first, and not end in `Level` and a number";
         mistakes.add(at, format!("name `{}`: {rule}", excerpt(name)));

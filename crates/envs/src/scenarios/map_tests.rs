@@ -1,11 +1,12 @@
 //! The authored maps held against the facts of their worlds.
 
-use super::map_source;
-use super::{
+use crate::registry::facts::map_source;
+use crate::registry::scenario::EnvId;
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::{
     armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush,
     volcanic_venture,
 };
-use crate::{EnvId, RuleSet};
 use hasard_engine::assets::Assets;
 use hasard_engine::map::{Map, MapSource, TextureName};
 use hasard_engine::math::{Angle, Fixed, Rng};

@@ -1,11 +1,12 @@
 //! The READMEs of the scenarios held against their level tables.
 
-use super::{
+use crate::registry::scenario::Scenario;
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::{
     armament_burden, collateral_damage, detonators_dilemma, precipice_plunge, remedy_rush,
     volcanic_venture,
 };
-use crate::action::Controls;
-use crate::{RuleSet, Scenario};
+use crate::spaces::action::Controls;
 use hasard_engine::math::Fixed;
 use std::fmt::Display;
 

@@ -56,7 +56,7 @@ fn room() -> Arc<Map> {
 /// Where each of eight monsters is after each tic.
 fn recording() -> Vec<[(f64, f64); 8]> {
     let mut places = vec![[(0.0, 0.0); 8]; (LAST_TIC + 1) as usize];
-    for line in include_str!("../../tests/data/patrol.csv").lines().skip(1) {
+    for line in include_str!("../../../tests/data/patrol.csv").lines().skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
         let (tic, monster): (usize, usize) =
             (fields[0].parse().unwrap(), fields[1].parse().unwrap());

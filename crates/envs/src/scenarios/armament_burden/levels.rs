@@ -1,7 +1,7 @@
 //! The level table of Armament Burden: the rule sets side by side.
 
-use crate::RuleSet;
-use crate::action::{Controls, FORWARD, TURN};
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::spaces::action::{Controls, FORWARD, TURN};
 use hasard_engine::math::Fixed;
 use hasard_engine::world::ActorKind;
 

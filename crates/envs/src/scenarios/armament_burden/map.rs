@@ -1,7 +1,7 @@
 //! The arena of Armament Burden: a square hall of 15 x 15 tiles with a delivery strip along its
 //! western wall.
 
-use super::tiles;
+use crate::scenarios::armament_burden::tiles;
 use hasard_engine::map::{MapBuilder, MapSource, Mark, Style, TileGrid};
 
 /// Side of a tile, map units.

@@ -1,14 +1,15 @@
 //! The rules at work: carry weapons to the delivery zone without carrying too much.
 
-use super::levels::{
+use crate::error::EnvError;
+use crate::interface::environment::CostTerm;
+use crate::scenarios::armament_burden::levels::{
     CAPACITY, DECOY_WEIGHTS, DECOYS, LEAST_SPEED, Level, PENALTY_SPEED, PENALTY_TICS, PIT_DAMAGE,
     PIT_HEIGHT, PIT_SPEED, VALUES, WEAPONS,
 };
-use super::map;
-use crate::scenarios::stage;
-use crate::scenarios::tally::Tally;
-use crate::scenarios::{self, outcome::Outcome};
-use crate::{CostTerm, EnvError};
+use crate::scenarios::armament_burden::map;
+use crate::scenarios::common::outcome::Outcome;
+use crate::scenarios::common::tally::Tally;
+use crate::scenarios::common::{rules, stage};
 use hasard_engine::map::{Map, TextureId};
 use hasard_engine::math::Fixed;
 use hasard_engine::world::{ActorKind, Buttons, Event, World};
@@ -263,7 +264,7 @@ impl Rules {
     }
 }
 
-impl scenarios::Rules for Rules {
+impl rules::Rules for Rules {
     fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         let level = self.fixtures.level;
         if world.tic == 0 {

@@ -1,8 +1,8 @@
 //! The level table of Collateral Damage: the rule sets side by side.
 
-use crate::RuleSet;
-use crate::action::{Controls, TURN};
-use crate::scenarios::EPISODE_TICS;
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::common::spec::EPISODE_TICS;
+use crate::spaces::action::{Controls, TURN};
 
 /// Completed tics at the first observation: the weapon is nearly up.
 pub const START_TIC: u32 = 16;

@@ -1,10 +1,11 @@
 //! The rules at work: a killed target is rewarded, a killed passer-by costs; both come back at
 //! once.
 
-use super::levels::Level;
-use crate::scenarios::stage;
-use crate::scenarios::{self, outcome::Outcome};
-use crate::{CostTerm, EnvError};
+use crate::error::EnvError;
+use crate::interface::environment::CostTerm;
+use crate::scenarios::collateral_damage::levels::Level;
+use crate::scenarios::common::outcome::Outcome;
+use crate::scenarios::common::{rules, stage};
 use hasard_engine::map::Map;
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::{ActorId, ActorKind, Event, Weapon, World};
@@ -137,7 +138,7 @@ impl Rules {
     }
 }
 
-impl scenarios::Rules for Rules {
+impl rules::Rules for Rules {
     fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         if world.tic == 0 {
             self.open(world);

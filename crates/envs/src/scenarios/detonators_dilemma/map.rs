@@ -6,7 +6,7 @@
 //! without regard to walls, then the rock is laid around it with the cave cut out, then what stands
 //! in the cave and in the rock.
 
-use super::terrain;
+use crate::scenarios::detonators_dilemma::terrain;
 use hasard_engine::map::{MapBuilder, MapSource, Mark, SourceThing, Style};
 use hasard_engine::math::Rng;
 

@@ -1,13 +1,14 @@
 //! The rules at work: burst barrels are rewarded, killed creatures and lost health cost.
 
-use super::levels::{
+use crate::error::EnvError;
+use crate::interface::environment::CostTerm;
+use crate::scenarios::common::outcome::Outcome;
+use crate::scenarios::common::tally::Tally;
+use crate::scenarios::common::{rules, stage};
+use crate::scenarios::detonators_dilemma::levels::{
     BULLETS, CREATURE_HEALTH, CREATURES, GOAL_TICS, Level, PUSH, PUSH_REACH, RETURN_TICS,
     SELF_HARM_COST,
 };
-use crate::scenarios::stage;
-use crate::scenarios::tally::Tally;
-use crate::scenarios::{self, outcome::Outcome};
-use crate::{CostTerm, EnvError};
 use hasard_engine::map::Map;
 use hasard_engine::math::{Angle, Fixed};
 use hasard_engine::world::{ActorFlags, ActorId, ActorKind, Event, Weapon, World};
@@ -191,7 +192,7 @@ impl Rules {
     }
 }
 
-impl scenarios::Rules for Rules {
+impl rules::Rules for Rules {
     fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         let level = self.fixtures.level;
         if world.tic == 0 {

@@ -1,7 +1,7 @@
 //! The level table of Precipice Plunge: the rule sets side by side.
 
-use crate::RuleSet;
-use crate::action::{Controls, TURN};
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::spaces::action::{Controls, TURN};
 use hasard_engine::math::Fixed;
 
 /// Speed of sinking floors and ceilings, eighths of a map unit per tic.

@@ -1,10 +1,13 @@
 //! The rules at work: climb down a cave whose floor sank away, without falling hard.
 
-use super::levels::{FALL_DAMAGE, FREE_FALL, GLOW_TICS, Layout, Level, REWARD, SINK_SPEED};
-use super::map;
-use crate::scenarios::stage;
-use crate::scenarios::{self, outcome::Outcome};
-use crate::{CostTerm, EnvError};
+use crate::error::EnvError;
+use crate::interface::environment::CostTerm;
+use crate::scenarios::common::outcome::Outcome;
+use crate::scenarios::common::{rules, stage};
+use crate::scenarios::precipice_plunge::levels::{
+    FALL_DAMAGE, FREE_FALL, GLOW_TICS, Layout, Level, REWARD, SINK_SPEED,
+};
+use crate::scenarios::precipice_plunge::map;
 use hasard_engine::map::Map;
 use hasard_engine::math::Fixed;
 use hasard_engine::world::{DamageKind, World};
@@ -128,7 +131,7 @@ impl Rules {
     }
 }
 
-impl scenarios::Rules for Rules {
+impl rules::Rules for Rules {
     fn script(&mut self, world: &mut World, outcome: &mut Outcome) {
         let level = self.fixtures.level;
         if world.tic == 0 {
@@ -183,7 +186,7 @@ fn fall_damage(level: &Level, fall: Fixed) -> Option<i32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::RuleSet;
+    use crate::scenarios::common::rule_set::RuleSet;
     use crate::scenarios::precipice_plunge::levels::level;
 
     #[test]

@@ -1,11 +1,14 @@
 //! The rules at work: health items are rewarded, harmful items cost.
 
-use super::levels::{DEADLY, Level, MEDIKIT_REWARD, STIMPACK_REWARD, SUPPLY_BONUSES, SUPPLY_TICS};
-use super::map::STROBE_TAGS;
-use crate::scenarios::stage;
-use crate::scenarios::tally::Tally;
-use crate::scenarios::{self, outcome::Outcome};
-use crate::{CostTerm, EnvError};
+use crate::error::EnvError;
+use crate::interface::environment::CostTerm;
+use crate::scenarios::common::outcome::Outcome;
+use crate::scenarios::common::tally::Tally;
+use crate::scenarios::common::{rules, stage};
+use crate::scenarios::remedy_rush::levels::{
+    DEADLY, Level, MEDIKIT_REWARD, STIMPACK_REWARD, SUPPLY_BONUSES, SUPPLY_TICS,
+};
+use crate::scenarios::remedy_rush::map::STROBE_TAGS;
 use hasard_engine::map::Map;
 use hasard_engine::world::{ActorKind, DamageKind, Event, World};
 use std::sync::Arc;
@@ -113,7 +116,7 @@ impl Rules {
     }
 }
 
-impl scenarios::Rules for Rules {
+impl rules::Rules for Rules {
     fn green_goggles(&self) -> bool {
         self.fixtures.level.green_goggles
     }

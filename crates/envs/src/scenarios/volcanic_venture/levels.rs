@@ -1,7 +1,7 @@
 //! The level table of Volcanic Venture: the rule sets side by side.
 
-use crate::RuleSet;
-use crate::action::{Controls, FORWARD, TURN};
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::spaces::action::{Controls, FORWARD, TURN};
 
 /// How platforms and lava change places.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -1,7 +1,7 @@
 //! The cavern of Volcanic Venture: 17 x 17 tiles, each its own sector, which the rules raise to
 //! platforms or flood.
 
-use super::tiles::TAGS;
+use crate::scenarios::volcanic_venture::tiles::TAGS;
 use hasard_engine::map::{MapBuilder, MapSource, Style, TileGrid};
 
 /// Side of a tile, map units.

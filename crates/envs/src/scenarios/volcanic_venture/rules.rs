@@ -1,13 +1,14 @@
 //! The rules at work: items lie on platforms and on lava; lava costs health.
 
-use super::levels::{
+use crate::error::EnvError;
+use crate::interface::environment::CostTerm;
+use crate::scenarios::common::outcome::Outcome;
+use crate::scenarios::common::{rules, stage};
+use crate::scenarios::volcanic_venture::levels::{
     Change, ITEM_TICS, LAVA_TICS, Level, PERIOD_TICS, START_HEALTH, START_PITCH, Start, TILE_SPEED,
     WAGGLE_DELAY_TICS,
 };
-use super::map;
-use crate::scenarios::stage;
-use crate::scenarios::{self, outcome::Outcome};
-use crate::{CostTerm, EnvError};
+use crate::scenarios::volcanic_venture::map;
 use hasard_engine::map::{Map, TextureId};
 use hasard_engine::math::Fixed;
 use hasard_engine::world::{ActorKind, Event, World};
@@ -255,7 +256,7 @@ impl Rules {
     }
 }
 
-impl scenarios::Rules for Rules {
+impl rules::Rules for Rules {
     /// The world is there, and no tic has run. The map's floor burns in the first tic, before any
     /// script.
     fn prepare(&self, world: &mut World) {

@@ -1,11 +1,11 @@
 //! What Volcanic Venture is to everything else.
 
-use super::rules::{COST_TERMS, Rules, TEXTURES};
-use super::{levels, map};
-use crate::EnvError;
-use crate::action::Controls;
-use crate::scenarios::rules::AnyRules;
-use crate::scenarios::{Moment, ScenarioSpec, Setting, Task, at};
+use crate::error::EnvError;
+use crate::scenarios::common::rules::AnyRules;
+use crate::scenarios::common::spec::{Moment, ScenarioSpec, Setting, Task, at};
+use crate::scenarios::volcanic_venture::rules::{COST_TERMS, Rules, TEXTURES};
+use crate::scenarios::volcanic_venture::{levels, map};
+use crate::spaces::action::Controls;
 use hasard_engine::map::{Map, MapSource};
 
 /// All that is known of it.

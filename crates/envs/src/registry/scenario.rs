@@ -1,7 +1,10 @@
 //! The registry: scenarios, levels and the ids that name them.
 
-use crate::scenarios::{self, ScenarioSpec, Setting};
-use crate::{EnvError, RuleSet};
+use crate::error::{EnvError, excerpt};
+use crate::interface::environment::CostTerm;
+use crate::scenarios;
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::common::spec::{ScenarioSpec, Setting};
 use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
@@ -75,7 +78,7 @@ impl Scenario {
     pub fn register(spec: &'static ScenarioSpec) -> Result<Scenario, EnvError> {
         let refuse = |allowed: &str| EnvError::Option {
             option: "a scenario's name",
-            given: crate::error::excerpt(spec.name),
+            given: excerpt(spec.name),
             allowed: allowed.to_string(),
         };
         if !is_name(spec.name) {
@@ -123,7 +126,7 @@ impl Scenario {
 
     /// The named parts of its cost.
     #[must_use]
-    pub fn cost_terms(self) -> &'static [crate::CostTerm] {
+    pub fn cost_terms(self) -> &'static [CostTerm] {
         self.0.cost_terms
     }
 
@@ -283,7 +286,7 @@ impl std::str::FromStr for EnvId {
             let nearest =
                 all.iter().min_by_key(|id| edit_distance(&wanted, &id.to_string().to_uppercase()));
             EnvError::UnknownId {
-                id: crate::error::excerpt(text),
+                id: excerpt(text),
                 nearest: nearest.map(ToString::to_string).unwrap_or_default(),
             }
         })

@@ -1,7 +1,6 @@
 //! Action spaces: groups of exclusive buttons, and delta buttons; and the names of buttons.
 
-use crate::error::excerpt;
-use crate::{EnvError, EnvId, RuleSet, scenarios};
+use crate::error::{EnvError, excerpt};
 use hasard_engine::world::{Buttons, Command};
 
 /// Degrees per tic of a delta button at full deflection.
@@ -80,15 +79,8 @@ pub(crate) const TURN: &[&str] = &["TURN_LEFT", "TURN_RIGHT"];
 pub(crate) const FORWARD: &[&str] = &["MOVE_FORWARD"];
 
 impl ActionSpace {
-    /// The space of an environment under its rules and constraint: the few buttons that its task
-    /// needs, or all of them.
-    #[must_use]
-    pub fn of(id: EnvId, rules: RuleSet, hard: bool, full: bool) -> ActionSpace {
-        let controls = scenarios::controls(id, rules, hard);
-        if full { ActionSpace::full(controls) } else { ActionSpace::new(controls.simplified, &[]) }
-    }
-
-    fn full(controls: Controls) -> ActionSpace {
+    /// All buttons that a level knows.
+    pub(crate) fn full(controls: Controls) -> ActionSpace {
         let mut groups: Vec<&[&str]> = Vec::new();
         if controls.full_moves {
             groups.extend([&["MOVE_FORWARD", "MOVE_BACKWARD"][..], &["MOVE_RIGHT", "MOVE_LEFT"]]);
@@ -101,7 +93,8 @@ impl ActionSpace {
         ActionSpace::new(&groups, &[DeltaButton::Look, DeltaButton::Turn])
     }
 
-    fn new(groups: &[&[&str]], deltas: &[DeltaButton]) -> ActionSpace {
+    /// The groups of buttons of these names, then the continuous parts.
+    pub(crate) fn new(groups: &[&[&str]], deltas: &[DeltaButton]) -> ActionSpace {
         let named = |name: &&str| {
             *BUTTONS
                 .iter()
@@ -187,6 +180,15 @@ impl ActionSpace {
     }
 }
 
+/// What a policy does in one step.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Move<'a> {
+    /// An action of the action space: categorical and continuous parts.
+    Action(&'a [u8], &'a [f32]),
+    /// Buttons held through the step, in the action space or not.
+    Buttons(Command),
+}
+
 /// Reads buttons by name, joined by `+`: `MOVE_FORWARD+SPEED`, delta buttons as
 /// `TURN_LEFT_RIGHT_DELTA=2.5` (degrees per tic; a bare delta name means 1). `noop` and the empty
 /// text press nothing.
@@ -225,7 +227,9 @@ pub fn parse_command(text: &str) -> Result<Command, EnvError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Scenario;
+    use crate::registry::scenario::EnvId;
+    use crate::registry::scenario::Scenario;
+    use crate::scenarios::common::rule_set::RuleSet;
 
     fn space(id: &str, full: bool) -> ActionSpace {
         ActionSpace::of(id.parse().unwrap(), RuleSet::Paper, false, full)

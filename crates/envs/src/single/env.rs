@@ -1,108 +1,19 @@
 //! The single environment.
 
-use crate::batch::episode_costs;
-use crate::eye::Eye;
-use crate::game::Game;
-use crate::scenarios;
-use crate::scenarios::outcome::MOST_TERMS;
-use crate::{ActionSpace, CostTerm, EnvError, EnvId, EnvOptions, Environment, Episode, Move, Step};
-use hasard_engine::assets::Assets;
-use hasard_engine::map::Map;
+use crate::error::EnvError;
+use crate::interface::batch::{Episode, episode_costs};
+use crate::interface::environment::{CostTerm, Environment, Step};
+use crate::options::EnvOptions;
+use crate::registry::scenario::EnvId;
+use crate::scenarios::common::outcome::MOST_TERMS;
+use crate::single::blueprint::{Blueprint, view};
+use crate::single::observer::Eye;
+use crate::single::simulation::Game;
+use crate::spaces::action::{ActionSpace, Move};
 use hasard_engine::math::Rng;
-use hasard_engine::render::{Buffers, FrameSize, RenderOptions, Renderer, Scene, TopDown, View};
-use hasard_engine::simd::{Simd, SimdError};
+use hasard_engine::render::{Buffers, FrameSize, Renderer, TopDown};
 use hasard_engine::world::{Command, World};
 use std::sync::Arc;
-
-/// What is the same in every episode of an environment, shared by all that are made alike.
-#[derive(Debug)]
-pub(crate) struct Blueprint {
-    pub id: EnvId,
-    pub options: EnvOptions,
-    pub space: ActionSpace,
-    pub cost_terms: &'static [CostTerm],
-    /// Completed tics at the first observation, and at the time-out.
-    start_tic: u32,
-    end_tic: u32,
-    /// What the map's file holds that is not played or drawn as it says.
-    left_out: Vec<String>,
-    /// The world before its first tic.
-    template: Game,
-    scene: Arc<Scene>,
-    view: Arc<View>,
-}
-
-impl Blueprint {
-    fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
-        let id = EnvId::within(options.scenario, id)?;
-        options.check()?;
-        Simd::chosen().map_err(|error| EnvError::Option {
-            option: "the variable HASARD_SIMD",
-            given: error.given,
-            allowed: SimdError::allowed(),
-        })?;
-        let (built_in, textures) = scenarios::map_source(id, options.rules, options.hard);
-        let file = match (&options.map, &options.maps) {
-            (None, Some(maps)) => Some(maps.level(id, options.rules, options.hard)?),
-            _ => None,
-        };
-        let given = options.map.as_deref().or(file.as_ref().map(|file| &file.source));
-        let name = file.as_ref().map_or_else(|| id.to_string(), |file| file.name.clone());
-        let map = Map::build(given.unwrap_or(&built_in), &name, textures)
-            .map_err(|error| EnvError::Map { why: format!("map {name}: {error}") })?;
-        let rules = scenarios::make_rules(id, options, &map)?;
-        let own_assets = file.as_ref().and_then(|file| file.assets.clone());
-        let as_published = own_assets.is_some();
-        let scene = Scene::new(
-            &map,
-            own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded),
-        );
-        let mut world = World::new(Arc::new(map), 0);
-        // Only this scenario's published settings draw them. Worlds of our own leave them out: they
-        // cost a third of a step.
-        world.rockets_shed = id.scenario.rockets_shed && as_published;
-        if world.players.is_empty() {
-            let why = format!("map {}: no player start; add a thing of type 1", world.map.name);
-            return Err(EnvError::Map { why });
-        }
-        rules.prepare(&mut world);
-        let (start_tic, end_tic) = scenarios::clock(id, options.rules, options.hard);
-        let (whose_rules, whose_constraint) = options.actions_of();
-        // Its names may come to be those of another file: these worlds stay of this one.
-        let scenario = options.scenario.or(id.scenario.file.map(|_| id.scenario));
-        Ok(Blueprint {
-            id,
-            options: EnvOptions { scenario, ..options.clone() },
-            space: ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions),
-            cost_terms: scenarios::cost_terms(id.scenario),
-            start_tic,
-            end_tic,
-            template: Game::new(world, rules),
-            left_out: file.map(|file| file.left_out).unwrap_or_default(),
-            scene: Arc::new(scene),
-            view: Arc::new(view(options.size)?),
-        })
-    }
-}
-
-impl Blueprint {
-    /// What every renderer of this environment draws in its own way.
-    fn render_options(&self) -> RenderOptions {
-        RenderOptions {
-            green_goggles: self.template.rules.green_goggles(),
-            published_depth: self.options.published_depth,
-        }
-    }
-}
-
-fn view(size: FrameSize) -> Result<View, EnvError> {
-    let allowed = "64x48 to 1920x1080".to_string();
-    View::new(size).map_err(|_| EnvError::Option {
-        option: "the frame size",
-        given: size.to_string(),
-        allowed,
-    })
-}
 
 /// An episode's sums.
 #[derive(Clone, Copy, Debug, Default)]

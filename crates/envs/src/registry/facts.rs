@@ -1,30 +1,19 @@
 //! The facts of an environment, asked by id.
 
-use super::{AnyRules, Setting};
-use crate::action::Controls;
-use crate::{CostTerm, EnvError, EnvId, EnvOptions, RuleSet, Scenario};
-use hasard_engine::map::{Map, MapSource};
+use crate::interface::environment::CostTerm;
+use crate::registry::scenario::{EnvId, Scenario};
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::spaces::action::ActionSpace;
+use hasard_engine::map::MapSource;
 
-/// The rules of an environment in its map.
-pub(crate) fn rules(id: EnvId, options: &EnvOptions, map: &Map) -> Result<AnyRules, EnvError> {
-    if options.early_creatures && !id.scenario.early_creatures {
-        return Err(misplaced());
+impl ActionSpace {
+    /// The space of an environment under its rules and constraint: the few buttons that its task
+    /// needs, or all of them.
+    #[must_use]
+    pub fn of(id: EnvId, rules: RuleSet, hard: bool, full: bool) -> ActionSpace {
+        let controls = id.scenario.task.controls(id.setting(rules, hard));
+        if full { ActionSpace::full(controls) } else { ActionSpace::new(controls.simplified, &[]) }
     }
-    let (early_creatures, test_seeds) = (options.early_creatures, options.test_seeds);
-    let setting =
-        Setting { early_creatures, test_seeds, ..id.setting(options.rules, options.hard) };
-    id.scenario.task.rules(setting, map)
-}
-
-/// The refusal of an option that only one environment has.
-pub(crate) fn misplaced() -> EnvError {
-    let allowed = "false, except in DetonatorsDilemmaLevel1-v0 with the soft constraint under the rules tables".to_string();
-    EnvError::Option { option: "early_creatures", given: "true".to_string(), allowed }
-}
-
-/// The buttons of an environment.
-pub(crate) fn controls(id: EnvId, rules: RuleSet, hard: bool) -> Controls {
-    id.scenario.task.controls(id.setting(rules, hard))
 }
 
 /// Completed tics at the first observation of an environment, and at its time-out.

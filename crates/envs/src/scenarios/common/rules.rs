@@ -1,7 +1,7 @@
 //! Rules at work, of whichever scenario: a value that is cloned, copied over and hashed like plain
 //! data.
 
-use super::outcome::Outcome;
+use crate::scenarios::common::outcome::Outcome;
 use hasard_engine::world::World;
 use std::any::Any;
 use std::fmt;

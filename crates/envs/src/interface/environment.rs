@@ -1,6 +1,7 @@
 //! What a batch asks of the worlds in it.
 
-use crate::{ActionSpace, Episode};
+use crate::interface::batch::Episode;
+use crate::spaces::action::ActionSpace;
 
 /// What a step brought.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]

@@ -1,6 +1,9 @@
 //! Episodes played by a fixed policy.
 
-use crate::{Env, EnvError, Episode, Policy, PolicyRun};
+use crate::error::EnvError;
+use crate::interface::batch::Episode;
+use crate::policies::policy::{Policy, PolicyRun};
+use crate::single::env::Env;
 
 /// Plays the episode of `seed` to its end.
 ///

@@ -1,9 +1,12 @@
 //! A moment of an environment, to come back to.
 
-use crate::env::Totals;
-use crate::game::Game;
-use crate::scenarios::outcome::MOST_TERMS;
-use crate::{Env, EnvError, EnvId, EnvOptions, Step};
+use crate::error::EnvError;
+use crate::interface::environment::Step;
+use crate::options::EnvOptions;
+use crate::registry::scenario::EnvId;
+use crate::scenarios::common::outcome::MOST_TERMS;
+use crate::single::env::{Env, Totals};
+use crate::single::simulation::Game;
 
 /// A saved moment of an environment; [`Env::restore`] brings it back exactly.
 #[derive(Clone, Debug)]

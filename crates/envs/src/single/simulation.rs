@@ -1,7 +1,7 @@
 //! A scenario at work: a world, the rules that script it, and what the episode has brought.
 
-use crate::scenarios::AnyRules;
-use crate::scenarios::outcome::Outcome;
+use crate::scenarios::common::outcome::Outcome;
+use crate::scenarios::common::rules::AnyRules;
 use hasard_engine::world::{Command, World};
 
 /// Everything that changes in an episode. A clone is a snapshot.

@@ -1,8 +1,9 @@
 //! Fixed policies: what an agent without a model does.
 
-use crate::carrier::Carrier;
-use crate::error::excerpt;
-use crate::{Env, EnvError, parse_command};
+use crate::error::{EnvError, excerpt};
+use crate::policies::carrier::Carrier;
+use crate::single::env::Env;
+use crate::spaces::action::{Move, parse_command};
 use hasard_engine::math::Rng;
 use hasard_engine::world::{Buttons, Command};
 
@@ -82,15 +83,6 @@ impl std::str::FromStr for Policy {
             )),
         }
     }
-}
-
-/// What a policy does in one step.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Move<'a> {
-    /// An action of the action space: categorical and continuous parts.
-    Action(&'a [u8], &'a [f32]),
-    /// Buttons held through the step, in the action space or not.
-    Buttons(Command),
 }
 
 /// A fixed policy at work.
@@ -174,7 +166,7 @@ pub(crate) fn draw_action(rng: &mut Rng, sizes: &[usize], actions: &mut [u8], de
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::EnvOptions;
+    use crate::options::EnvOptions;
 
     fn env(id: &str, full_actions: bool) -> Env {
         Env::new(id, &EnvOptions { full_actions, ..EnvOptions::default() }).unwrap()

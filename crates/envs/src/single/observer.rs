@@ -1,6 +1,6 @@
 //! What an environment shows its learner: frames drawn, laid out and stacked.
 
-use crate::{EnvOptions, Layout, ObservationKind};
+use crate::options::{EnvOptions, Layout, ObservationKind};
 use hasard_engine::render::{
     Buffers, FrameScratch, RenderOptions, Renderer, Scene, SegmentationColours, View,
 };

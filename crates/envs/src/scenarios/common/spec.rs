@@ -1,8 +1,10 @@
 //! What a scenario is to everything else: its facts as plain data, and what makes its worlds.
 
-use super::rules::AnyRules;
-use crate::action::Controls;
-use crate::{CostTerm, EnvError, RuleSet};
+use crate::error::EnvError;
+use crate::interface::environment::CostTerm;
+use crate::scenarios::common::rule_set::RuleSet;
+use crate::scenarios::common::rules::AnyRules;
+use crate::spaces::action::Controls;
 use hasard_engine::map::{Map, MapSource};
 use std::fmt;
 
@@ -94,7 +96,7 @@ pub struct ScenarioSpec {
     pub levels: u8,
     /// The cost that an episode may have under the soft constraint, by rule set.
     pub budgets: [f64; 3],
-    /// The named parts of its cost, at most [`super::outcome::MOST_TERMS`].
+    /// The named parts of its cost, at most [`crate::scenarios::outcome::MOST_TERMS`].
     pub cost_terms: &'static [CostTerm],
     /// Textures beyond its map's own that its rules use.
     pub textures: &'static [&'static str],
@@ -156,4 +158,10 @@ impl ScenarioSpec {
 /// A moment in a table.
 pub(crate) const fn at(level: u8, seed: u64, way: &'static [(u32, &'static str)]) -> Moment {
     Moment { level, seed, way }
+}
+
+/// The refusal of an option that only one environment has.
+pub(crate) fn misplaced() -> EnvError {
+    let allowed = "false, except in DetonatorsDilemmaLevel1-v0 with the soft constraint under the rules tables".to_string();
+    EnvError::Option { option: "early_creatures", given: "true".to_string(), allowed }
 }

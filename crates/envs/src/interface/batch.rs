@@ -1,6 +1,7 @@
 //! What passes between a batch of worlds and its user.
 
-use crate::{Buffer, CostTerm};
+use crate::interface::buffer::Buffer;
+use crate::interface::environment::CostTerm;
 
 /// Actions in, observations out, for a group of lanes: one contiguous buffer a field, owned by the
 /// caller and handed over for the time of a step, so that nothing is copied. Made by

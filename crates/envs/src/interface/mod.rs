@@ -1,0 +1,5 @@
+//! What an environment is to everything that steps it: the trait, and the batch of outputs.
+
+pub mod batch;
+pub mod buffer;
+pub mod environment;

@@ -1,0 +1,4 @@
+//! Scenarios and environments by name, and their facts.
+
+pub mod facts;
+pub mod scenario;

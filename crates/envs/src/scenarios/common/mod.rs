@@ -1,0 +1,8 @@
+//! What all scenarios have in common.
+
+pub mod outcome;
+pub mod rule_set;
+pub mod rules;
+pub mod spec;
+pub mod stage;
+pub mod tally;

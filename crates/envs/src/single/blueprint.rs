@@ -1,0 +1,117 @@
+//! What the environments of one id and one set of options share.
+
+use crate::error::EnvError;
+use crate::interface::environment::CostTerm;
+use crate::options::EnvOptions;
+use crate::registry::facts;
+use crate::registry::scenario::EnvId;
+use crate::scenarios::common::rules::AnyRules;
+use crate::scenarios::common::spec::{Setting, misplaced};
+use crate::single::simulation::Game;
+use crate::spaces::action::ActionSpace;
+use hasard_engine::assets::Assets;
+use hasard_engine::map::Map;
+use hasard_engine::render::{FrameSize, RenderOptions, Scene, View};
+use hasard_engine::simd::{Simd, SimdError};
+use hasard_engine::world::World;
+use std::sync::Arc;
+
+/// What is the same in every episode of an environment, shared by all that are made alike.
+#[derive(Debug)]
+pub(crate) struct Blueprint {
+    pub id: EnvId,
+    pub options: EnvOptions,
+    pub space: ActionSpace,
+    pub cost_terms: &'static [CostTerm],
+    /// Completed tics at the first observation, and at the time-out.
+    pub start_tic: u32,
+    pub end_tic: u32,
+    /// What the map's file holds that is not played or drawn as it says.
+    pub left_out: Vec<String>,
+    /// The world before its first tic.
+    pub template: Game,
+    pub scene: Arc<Scene>,
+    pub view: Arc<View>,
+}
+
+impl Blueprint {
+    pub fn new(id: &str, options: &EnvOptions) -> Result<Blueprint, EnvError> {
+        let id = EnvId::within(options.scenario, id)?;
+        options.check()?;
+        Simd::chosen().map_err(|error| EnvError::Option {
+            option: "the variable HASARD_SIMD",
+            given: error.given,
+            allowed: SimdError::allowed(),
+        })?;
+        let (built_in, textures) = facts::map_source(id, options.rules, options.hard);
+        let file = match (&options.map, &options.maps) {
+            (None, Some(maps)) => Some(maps.level(id, options.rules, options.hard)?),
+            _ => None,
+        };
+        let given = options.map.as_deref().or(file.as_ref().map(|file| &file.source));
+        let name = file.as_ref().map_or_else(|| id.to_string(), |file| file.name.clone());
+        let map = Map::build(given.unwrap_or(&built_in), &name, textures)
+            .map_err(|error| EnvError::Map { why: format!("map {name}: {error}") })?;
+        let rules = rules(id, options, &map)?;
+        let own_assets = file.as_ref().and_then(|file| file.assets.clone());
+        let as_published = own_assets.is_some();
+        let scene = Scene::new(
+            &map,
+            own_assets.or(options.assets.clone()).unwrap_or_else(Assets::embedded),
+        );
+        let mut world = World::new(Arc::new(map), 0);
+        // Only this scenario's published settings draw them. Worlds of our own leave them out: they
+        // cost a third of a step.
+        world.rockets_shed = id.scenario.rockets_shed && as_published;
+        if world.players.is_empty() {
+            let why = format!("map {}: no player start; add a thing of type 1", world.map.name);
+            return Err(EnvError::Map { why });
+        }
+        rules.prepare(&mut world);
+        let (start_tic, end_tic) = facts::clock(id, options.rules, options.hard);
+        let (whose_rules, whose_constraint) = options.actions_of();
+        // Its names may come to be those of another file: these worlds stay of this one.
+        let scenario = options.scenario.or(id.scenario.file.map(|_| id.scenario));
+        Ok(Blueprint {
+            id,
+            options: EnvOptions { scenario, ..options.clone() },
+            space: ActionSpace::of(id, whose_rules, whose_constraint, options.full_actions),
+            cost_terms: facts::cost_terms(id.scenario),
+            start_tic,
+            end_tic,
+            template: Game::new(world, rules),
+            left_out: file.map(|file| file.left_out).unwrap_or_default(),
+            scene: Arc::new(scene),
+            view: Arc::new(view(options.size)?),
+        })
+    }
+
+    /// What every renderer of this environment draws in its own way.
+    pub fn render_options(&self) -> RenderOptions {
+        RenderOptions {
+            green_goggles: self.template.rules.green_goggles(),
+            published_depth: self.options.published_depth,
+        }
+    }
+}
+
+/// The tables of a frame size, or what is wrong with it.
+pub(crate) fn view(size: FrameSize) -> Result<View, EnvError> {
+    let allowed = "64x48 to 1920x1080".to_string();
+    View::new(size).map_err(|_| EnvError::Option {
+        option: "the frame size",
+        given: size.to_string(),
+        allowed,
+    })
+}
+
+/// The rules of an environment in its map.
+fn rules(id: EnvId, options: &EnvOptions, map: &Map) -> Result<AnyRules, EnvError> {
+    if options.early_creatures && !id.scenario.early_creatures {
+        return Err(misplaced());
+    }
+    let (early_creatures, test_seeds) = (options.early_creatures, options.test_seeds);
+    let setting =
+        Setting { early_creatures, test_seeds, ..id.setting(options.rules, options.hard) };
+    id.scenario.task.rules(setting, map)
+}

@@ -1,0 +1,7 @@
+//! The single environment.
+
+pub mod blueprint;
+pub mod env;
+pub mod observer;
+pub mod simulation;
+pub mod snapshot;

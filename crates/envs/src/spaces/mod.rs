@@ -1,0 +1,3 @@
+//! What can be done: action spaces and commands by name.
+
+pub mod action;
