@@ -1,4 +1,4 @@
-"""The scripted carrier of Armament Burden at play in the published engine, by what that engine says of its things.
+"""The scripted carrier of Armament Burden at play in ViZDoom, by what that engine says of its things.
 
     pip install vizdoom==1.3.2 hasard==0.2.0 numpy
     python carrier_in_the_original.py 1 300 [--hard]                                       # there: level, episodes

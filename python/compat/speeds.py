@@ -3,7 +3,7 @@
 PART: `batch` (VectorEnv of 32 worlds beside `hasard bench`, one and two threads), `work` (the same by processor time on one thread, which programs beside
 disturb less), `single` (make(id) beside `hasard bench --envs 1`), `thread` (what a
 second Python thread keeps while worlds step), `import`, and `sb3`, `torchrl`, `rllib`: those libraries' own loops with random actions, beside the same
-loop of the published engine (packages vizdoom and hasard, the latter wherever HASARD_PUBLISHED says that it lies), all on one core, as the published engine
+loop of ViZDoom (packages vizdoom and hasard, the latter wherever HASARD_PUBLISHED says that it lies), all on one core, as ViZDoom
 is a process that Python wakes with every step (see `beside_published_speed.py`). Wants a machine that does nothing else.
 """
 
@@ -19,7 +19,7 @@ import time
 
 IDS = ("VolcanicVentureLevel1-v0", "RemedyRushLevel1-v0")
 SECONDS = 0.5
-# What speaks to the published engine lies there.
+# What speaks to ViZDoom lies there.
 EXAMPLES = str(pathlib.Path(__file__).parents[2] / "crates" / "envs" / "examples")
 
 
@@ -173,7 +173,7 @@ def imported(rounds):
 
 
 def published(level=1):
-    """One world of the published engine as a Gymnasium environment: its buttons pressed or not, 160x120 reduced to 128x72 by indexing."""
+    """One world of ViZDoom as a Gymnasium environment: its buttons pressed or not, 160x120 reduced to 128x72 by indexing."""
     import gymnasium
     import numpy as np
 
@@ -218,7 +218,7 @@ def sb3(rounds):
         return lambda: rate(lambda: envs.step(actions[next(turn) % 64]), envs.num_envs)
 
     ours, theirs = looped(make_vec_env(f"hasard/{IDS[0]}", 8, resolution="128x72")), looped(DummyVecEnv([published] * 8))
-    told("Stable-Baselines3's VecEnv.step, 8 worlds, beside DummyVecEnv of the published engine", [(ours(), theirs()) for _ in range(rounds)])
+    told("Stable-Baselines3's VecEnv.step, 8 worlds, beside DummyVecEnv of ViZDoom", [(ours(), theirs()) for _ in range(rounds)])
 
 
 def torchrl(rounds):
@@ -234,7 +234,7 @@ def torchrl(rounds):
 
     ours = collected(HasardEnv(f"hasard/{IDS[0]}", 8, resolution="128x72"))
     theirs = collected(SerialEnv(8, lambda: GymWrapper(published())))
-    told("TorchRL's Collector with random actions, 8 worlds, beside SerialEnv of the published engine", [(ours(), theirs()) for _ in range(rounds)])
+    told("TorchRL's Collector with random actions, 8 worlds, beside SerialEnv of ViZDoom", [(ours(), theirs()) for _ in range(rounds)])
 
 
 def rllib(rounds):
@@ -255,11 +255,11 @@ def rllib(rounds):
         return lambda: rate(sample, 800)
 
     ours, theirs = sampled(f"hasard_rs:hasard/{IDS[0]}", "vector_entry_point", resolution="128x72"), sampled("published", "sync")
-    told("RLlib's SingleAgentEnvRunner with random actions, 8 worlds, beside the published engine's in SyncVectorEnv", [(ours(), theirs()) for _ in range(rounds)])
+    told("RLlib's SingleAgentEnvRunner with random actions, 8 worlds, beside ViZDoom's in SyncVectorEnv", [(ours(), theirs()) for _ in range(rounds)])
 
 
 def sharing_a_core(part):
-    """A part that compares with the published engine: all on one core."""
+    """A part that compares with ViZDoom: all on one core."""
 
     def run(rounds):
         sys.path.insert(0, EXAMPLES)

@@ -5,8 +5,8 @@
     python python/examples/ppo_lag_torch.py --safety-budget 50 --safety-budget jumps=20        # two constraints
     tensorboard --logdir runs
 
-PPO: Schulman et al. 2017. The multipliers follow Stooke, Achiam, Abbeel 2020 (algorithm 2). Defaults are those of `hasard train --preset quick`.
-One step of an environment is four frames, as the paper counts them.
+PPO: Schulman et al. 2017. The multipliers follow Stooke, Achiam, Abbeel 2020 (algorithm 2). Settings and formulas are those of
+`hasard train --preset quick`; docs/results/torch_example.md compares what both learn. One step of an environment is four frames, as the paper counts them.
 """
 
 from __future__ import annotations
@@ -44,33 +44,37 @@ def parse_args() -> argparse.Namespace:
     parser.add_argument("--gae-lambda", type=float, default=0.95)
     parser.add_argument("--clip", type=float, default=0.1, help="ratios are clipped to 1/(1+clip) .. 1+clip")
     parser.add_argument("--clip-value", type=float, default=1.0)
-    parser.add_argument("--entropy", type=float, default=0.003, help="weight of the entropy in the loss")
+    parser.add_argument("--exploration", type=float, default=0.003, help="weight of the policy's distance from a uniform one")
     parser.add_argument("--value-coefficient", type=float, default=0.5)
     parser.add_argument("--max-grad-norm", type=float, default=4.0)
     parser.add_argument("--budget-share", type=float, default=0.9, help="the multipliers aim at this share of each budget")
-    parser.add_argument("--kp", type=float, default=1.5, help="proportional gain, of the excess of cost a step")
-    parser.add_argument("--ki", type=float, default=0.04, help="integral gain, a rollout")
-    parser.add_argument("--kd", type=float, default=0.0, help="derivative gain")
+    parser.add_argument("--kp", type=float, default=1.5, help="proportional gain: multiplier per cost a step above the aim")
+    parser.add_argument("--ki", type=float, default=0.04, help="integral gain: what a rollout adds per cost a step above the aim")
+    parser.add_argument("--kd", type=float, default=0.0, help="derivative gain: multiplier per rise of the cost a step between updates")
     return parser.parse_args()
 
 
-class Moments:
-    """Running mean and deviation of each column, for returns of unknown scale."""
+class Moments(nn.Module):
+    """Running mean and variance of each column, which put numbers of unknown scale on one; cut off at five deviations."""
 
-    def __init__(self, columns: int, device: torch.device) -> None:
-        self.count = 1e-4
-        self.mean, self.variance = torch.zeros(columns, device=device), torch.ones(columns, device=device)
+    def __init__(self, columns: int) -> None:
+        super().__init__()
+        for name, value in (("count", torch.ones(())), ("mean", torch.zeros(columns)), ("variance", torch.ones(columns))):
+            self.register_buffer(name, value)
 
-    def update(self, values: torch.Tensor) -> None:
-        values = values.reshape(-1, values.shape[-1])
-        total, delta = self.count + len(values), values.mean(0) - self.mean
-        share = len(values) / total
-        self.variance = self.variance * (1 - share) + values.var(0, unbiased=False) * share + delta**2 * share * (1 - share)
-        self.mean, self.count = self.mean + delta * share, total
+    @torch.no_grad()
+    def update(self, rows: torch.Tensor) -> None:
+        variance, mean = torch.var_mean(rows, 0)
+        share, delta = len(rows) / (self.count + len(rows)), mean - self.mean
+        self.variance.copy_(self.variance * (1 - share) + variance * share + delta**2 * share * (1 - share))
+        self.mean.add_(delta * share)
+        self.count.add_(len(rows))
 
-    @property
-    def deviation(self) -> torch.Tensor:
-        return self.variance.sqrt().clamp(min=1e-4)
+    def normalised(self, values: torch.Tensor) -> torch.Tensor:
+        return ((values - self.mean) / (self.variance + 1e-5).sqrt()).clamp(-5, 5)
+
+    def denormalised(self, values: torch.Tensor) -> torch.Tensor:
+        return values.clamp(-5, 5) * (self.variance + 1e-5).sqrt() + self.mean
 
 
 class Agent(nn.Module):
@@ -79,6 +83,8 @@ class Agent(nn.Module):
     def __init__(self, shape: tuple[int, int, int], choices: list[int], critics: int) -> None:
         super().__init__()
         height, width, channels = shape
+        # Each pixel of each colour by its own moments; returns of the reward and of each cost likewise.
+        self.pixels, self.returns = Moments(height * width * channels), Moments(critics)
         layers: list[nn.Module] = []
         for kernel, stride in ((8, 6), (3, 2), (3, 2)):
             layers += [nn.Conv2d(channels, 32, kernel, stride), nn.ELU()]
@@ -90,17 +96,15 @@ class Agent(nn.Module):
         self.memory = nn.GRUCell(256, 256)
         self.policy, self.critic = nn.Linear(256, sum(choices)), nn.Linear(256, critics)
         self.choices = choices
-        for module in self.modules():
-            if isinstance(module, (nn.Conv2d, nn.Linear)):
-                nn.init.orthogonal_(module.weight, 0.01 if module is self.policy else 1.0)
-                nn.init.zeros_(module.bias)
+        for weights in self.parameters():
+            nn.init.orthogonal_(weights) if weights.dim() > 1 else nn.init.zeros_(weights)
 
     def forward(self, pixels: torch.Tensor, state: torch.Tensor, begins: torch.Tensor) -> tuple[list[Categorical], torch.Tensor, torch.Tensor]:
         """Of pixels uint8 [steps, lanes, h, w, c]: the policy, values [steps, lanes, critics] and the state after them. `begins` [steps, lanes] is 1
         where an episode begins, whose state is zero."""
         steps, lanes = pixels.shape[:2]
-        flat = pixels.flatten(0, 1).permute(0, 3, 1, 2).float() / 127.5 - 1.0
-        features = self.dense(self.convolutions(flat)).unflatten(0, (steps, lanes))
+        flat = self.pixels.normalised(pixels.reshape(steps * lanes, -1) / 255).view(-1, *pixels.shape[2:])
+        features = self.dense(self.convolutions(flat.permute(0, 3, 1, 2))).unflatten(0, (steps, lanes))
         rows = []
         for feature, begin in zip(features, begins):
             state = self.memory(feature, state * (1.0 - begin[:, None]))
@@ -113,20 +117,26 @@ def log_probability(policy: list[Categorical], actions: torch.Tensor) -> torch.T
     return sum(part.log_prob(actions[..., index]) for index, part in enumerate(policy))
 
 
+def distance_from_uniform(policy: list[Categorical]) -> torch.Tensor:
+    """Mean of the divergences from a uniform policy, one way and the other: it keeps a policy from settling too early."""
+    return sum(0.5 * ((part.probs - 1 / part.probs.shape[-1]) * part.logits).sum(-1) for part in policy)
+
+
 class PidMultipliers:
-    """A multiplier for each constraint: proportional, integral and derivative parts of the excess of an episode's cost, a step."""
+    """A multiplier for each constraint, moved by what an episode costs above its aim, a step."""
 
     def __init__(self, args: argparse.Namespace, budgets: np.ndarray, episode_steps: float) -> None:
         self.gains, self.aims, self.steps = (args.kp, args.ki, args.kd), budgets * args.budget_share, episode_steps
-        self.integral, self.last, self.values = np.zeros_like(budgets), None, np.zeros_like(budgets)
+        self.integral, self.last, self.values = np.zeros_like(budgets), np.zeros_like(budgets), np.zeros_like(budgets)
 
-    def update(self, costs: np.ndarray, rollouts: int) -> None:
-        """Moves them by the mean costs of the episodes that have ended in so many rollouts."""
+    def update(self, fresh: np.ndarray, latest: np.ndarray, rollouts: int) -> None:
+        """`fresh`: mean costs of the episodes that ended in so many rollouts, each of which counts once in the integral. `latest`: of as many
+        as there are environments, since a few alone are noise to the other parts."""
         kp, ki, kd = self.gains
-        excess = (costs - self.aims) / self.steps
-        self.integral = np.maximum(0.0, self.integral + ki * excess * rollouts)
-        rise = np.maximum(0.0, excess - self.last) if self.last is not None else 0.0
-        self.values, self.last = np.maximum(0.0, kp * excess + self.integral + kd * rise), excess
+        self.integral = np.maximum(0.0, self.integral + ki * rollouts * (fresh - self.aims) / self.steps)
+        rise = np.maximum(0.0, latest - self.last) / self.steps
+        self.values = np.maximum(0.0, kp * (latest - self.aims) / self.steps + self.integral + kd * rise)
+        self.last = latest
 
 
 def constraints_of(args: argparse.Namespace, envs: hasard_rs.VectorEnv) -> tuple[list[str | None], np.ndarray]:
@@ -155,7 +165,7 @@ def main() -> None:
     shape, choices, critics = envs.single_observation_space.shape, [int(n) for n in envs.single_action_space.nvec], 1 + len(budgets)
     agent = Agent(shape, choices, critics).to(device)
     optimiser = torch.optim.Adam(agent.parameters(), lr=args.learning_rate, eps=1e-6)
-    moments, multipliers = Moments(critics, device), PidMultipliers(args, budgets, episode_steps)
+    multipliers = PidMultipliers(args, budgets, episode_steps)
     steps, lanes = args.num_steps, args.num_envs
     pixels = torch.zeros((steps, lanes, *shape), dtype=torch.uint8, device=device)
     begins, log_probabilities = (torch.zeros((steps, lanes), device=device) for _ in range(2))
@@ -167,9 +177,6 @@ def main() -> None:
     def of_step(rewards: np.ndarray, infos: dict) -> np.ndarray:
         costs = [infos["cost"] if column is None else infos["cost_terms"][:, column] for column in columns]
         return np.stack([rewards, *costs], -1).astype(np.float32)
-
-    def denormalised(raw: torch.Tensor) -> torch.Tensor:
-        return raw * moments.deviation + moments.mean
 
     observation, _ = envs.reset(seed=args.seed)
     envs.action_space.seed(args.seed)
@@ -194,7 +201,7 @@ def main() -> None:
             with torch.no_grad():
                 policy, value, state = agent(observation[None], state, begin[None])
             action = torch.stack([part.sample()[0] for part in policy], -1)
-            actions[step], values[step] = action, denormalised(value[0])
+            actions[step], values[step] = action, value[0]
             log_probabilities[step] = log_probability(policy, action[None])[0]
             observation, rewards, terminated, truncated, infos = envs.step(action.cpu().numpy())
             observation = torch.as_tensor(observation, device=device)
@@ -209,26 +216,28 @@ def main() -> None:
                 last = torch.as_tensor(np.stack([infos["final_obs"][lane] for lane in cut]), device=device)
                 with torch.no_grad():
                     _, beyond, _ = agent(last[None], state[cut], torch.zeros((1, len(cut)), device=device))
-                gains[step, cut] += args.gamma * denormalised(beyond[0])
+                gains[step, cut] += args.gamma * agent.returns.denormalised(beyond[0])
             finished += [running[lane].copy() for lane in np.flatnonzero(over & whole)]
             running[over], whole = 0.0, whole | over
         frames, rollouts, waited = frames + steps * lanes * frame_skip, rollouts + 1, waited + 1
         if finished:
-            multipliers.update(np.mean(finished, 0)[1:], waited)
             latest.extend(finished)
+            multipliers.update(np.mean(finished, 0)[1:], np.mean(list(latest)[-lanes:], 0)[1:], waited)
             finished, waited = [], 0
 
         with torch.no_grad():
             _, value, _ = agent(observation[None], state, begin[None])
-            following, advantages, running_advantage = denormalised(value[0]), torch.zeros_like(gains), 0.0
+            estimates, following = agent.returns.denormalised(values), agent.returns.denormalised(value[0])
+            advantages, later = torch.zeros_like(gains), 0.0
             for step in reversed(range(steps)):
                 goes_on = (1.0 - ends[step])[:, None]
-                delta = gains[step] + args.gamma * following * goes_on - values[step]
-                running_advantage = delta + args.gamma * args.gae_lambda * goes_on * running_advantage
-                advantages[step], following = running_advantage, values[step]
-            returns = advantages + values
-            moments.update(returns)
-            targets, old_values = ((part - moments.mean) / moments.deviation for part in (returns, values))
+                surprise = gains[step] + args.gamma * following * goes_on - estimates[step]
+                later = surprise + args.gamma * args.gae_lambda * goes_on * later
+                advantages[step], following = later, estimates[step]
+            returns = advantages + estimates
+            agent.returns.update(returns.flatten(0, 1))
+            targets = agent.returns.normalised(returns)
+            agent.pixels.update(pixels.view(steps * lanes, -1) / 255)
             prices = torch.as_tensor(multipliers.values, dtype=torch.float32, device=device)
             mixed = advantages[..., 0] - (advantages[..., 1:] * prices).sum(-1)
 
@@ -240,15 +249,15 @@ def main() -> None:
                 advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
                 clipped = ratio.clamp(1.0 / (1.0 + args.clip), 1.0 + args.clip)
                 policy_loss = -torch.min(ratio * advantage, clipped * advantage).mean()
-                near = old_values[:, part] + (value - old_values[:, part]).clamp(-args.clip_value, args.clip_value)
+                near = values[:, part] + (value - values[:, part]).clamp(-args.clip_value, args.clip_value)
                 errors = torch.max((value - targets[:, part]) ** 2, (near - targets[:, part]) ** 2)
-                entropy = sum(one.entropy() for one in policy).mean()
-                loss = policy_loss + args.value_coefficient * errors.mean((0, 1)).sum() - args.entropy * entropy
+                loss = policy_loss + args.value_coefficient * errors.mean((0, 1)).sum() + args.exploration * distance_from_uniform(policy).mean()
                 optimiser.zero_grad()
                 loss.backward()
                 norm = nn.utils.clip_grad_norm_(agent.parameters(), args.max_grad_norm)
                 optimiser.step()
 
+        entropy = sum(one.entropy() for one in policy).mean()
         row = {"loss": loss.item(), "policy_loss": policy_loss.item(), "entropy": entropy.item(), "gradient_norm": norm.item()}
         row |= {"learning_rate": optimiser.param_groups[0]["lr"], "fps": frames / (time.time() - began)}
         row |= {f"multiplier/{term or 'cost'}": price for term, price in zip(terms, multipliers.values)}

@@ -49,7 +49,7 @@ class Arguments:
 
     @property
     def hard_constraint(self) -> bool:
-        """Whether harm ends the episode."""
+        """Whether the first violation ends the episode."""
         return bool(self.world.get("hard_constraint", self.world.get("hard", False)))
 
     def without(self, where: str, *names: str) -> Arguments:

@@ -30,7 +30,7 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
             scenario, level, scenario_file: bound by the id.
             rules ("paper"): or "released", those of the published package, or "tables", those of the code behind the paper's tables.
             early_creatures (False): in Detonator's Dilemma 1 under "tables", the creatures that the first of the paper's runs met.
-            hard_constraint, or hard (False): harm ends the episode.
+            hard_constraint, or hard (False): the first violation ends the episode.
             full_actions (False): all buttons, and two continuous axes.
             frame_skip (4): tics of 1/35 s that an action is held, 1 to 35.
             resolution, or size ("160x120"): "WxH" or (width, height), a list too, pixels, 64x48 to 1920x1080.
@@ -45,7 +45,7 @@ class Env(Shared, gymnasium.Env[np.ndarray, Any]):
             env_stats (False): adds "env_stats", a dict of floats by name.
             safety_budget (None): an attribute, without effect on the world.
             maps, or map (None): a folder, a WAD, or "auto" for the published package's. iwad (None): a file, or "auto".
-            published_depth, published_colours (False): depth and segments look as the published engine's.
+            published_depth, published_colours (False): depth and segments look as ViZDoom's.
 
     Raises:
         UnknownEnvironment, InvalidOption (two names of one argument that contradict each other, too), InvalidMap, or TypeError for a name that

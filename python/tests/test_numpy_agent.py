@@ -1,4 +1,4 @@
-"""The policy in NumPy that plays agents in the published engine gives what the program's own network gives."""
+"""The policy in NumPy that plays agents in ViZDoom gives what the program's own network gives."""
 
 from __future__ import annotations
 

@@ -91,7 +91,7 @@ pub struct EnvArgs {
     /// PPOLag), not of the later
     #[arg(long)]
     pub early_creatures: bool,
-    /// Hard constraint: harm ends the episode
+    /// Hard constraint: the first violation ends the episode
     #[arg(long)]
     pub hard: bool,
     /// The full action space instead of the simplified one
@@ -168,8 +168,7 @@ pub struct ObservationArgs {
 /// Options of how depth and segmentation look.
 #[derive(Args, Debug, Clone, Default)]
 pub struct LooksArgs {
-    /// Depth of walls, things and sky ends at 255 * rows / 480, as in the published engine, not at
-    /// 255
+    /// Depth of walls, things and sky ends at 255 * rows / 480, as in ViZDoom, not at 255
     #[arg(long)]
     pub published_depth: bool,
     /// Segment in the published colours, some of which several classes share

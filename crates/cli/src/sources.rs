@@ -39,7 +39,7 @@ pub fn looks_telling(
     Ok(EnvOptions { maps: Some(Arc::new(maps)), ..EnvOptions::default() })
 }
 
-/// The pictures of an IWAD, with those of the published engine's own file where that lies beside
+/// The pictures of an IWAD, with those of ViZDoom's own file where that lies beside
 /// it.
 fn assets(path: &Path) -> Result<Arc<Assets>, Failure> {
     let bytes = hasard_media::files::read_limited(path, LARGEST_IWAD).map_err(Failure::bad)?;

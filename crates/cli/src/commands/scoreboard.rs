@@ -72,11 +72,11 @@ pub fn run(args: &ScoreboardArgs) -> Outcome {
     } else {
         say!("{}: {} of {} claims hold", page.display(), paths.len() - refused.len(), paths.len());
     }
-    match refused.is_empty() {
-        true => Ok(()),
-        false => Err(Failure::Negative(format!(
-            "{} claims are not listed; the page says why",
-            refused.len()
-        ))),
+    match refused.len() {
+        0 => Ok(()),
+        1 => Err(Failure::Negative("1 claim is not listed; the page says why".into())),
+        count => {
+            Err(Failure::Negative(format!("{count} claims are not listed; the page says why")))
+        }
     }
 }

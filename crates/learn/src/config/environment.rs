@@ -33,7 +33,7 @@ pub struct EnvConfig {
     pub observation: String,
     /// Frames stacked.
     pub frame_stack: usize,
-    /// Depth ends where the published engine's does.
+    /// Depth of walls, things and sky ends where ViZDoom's does, at 255 * rows / 480, not at 255.
     #[serde(default, skip_serializing_if = "is_off")]
     pub published_depth: bool,
     /// Segmented in the published colours.

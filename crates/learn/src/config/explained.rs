@@ -39,6 +39,9 @@ pub fn settings() -> Vec<Explained> {
         for line in body.map(str::trim) {
             if let Some(text) = line.strip_prefix("///") {
                 meaning.push(text.trim());
+            } else if line.starts_with("pub(") {
+                // A field of older files alone is no setting, nor does its comment belong to the next.
+                meaning.clear();
             } else if let Some((name, _)) =
                 line.strip_prefix("pub ").and_then(|field| field.split_once(':'))
             {
@@ -128,6 +131,9 @@ mod tests {
                 .unwrap_or_else(|| panic!("{name} is not explained"));
             assert!(one.meaning.ends_with('.') && one.meaning.len() > 3, "{one:?}");
         }
+        // The comment of a field that only older files have is not the next one's.
+        let gains = explained.iter().find(|one| one.name.ends_with("pid_gains")).unwrap();
+        assert!(gains.meaning.starts_with("PID: "), "{gains:?}");
     }
 
     #[test]
